@@ -77,6 +77,24 @@ def test_constants_of_constants(text: str, x: float, expected: float, backend: C
     check_results(text, expected, backend, [x])
 
 
+AT_FILE_SCOPE = [
+    ("mat2 g = mat2(vec4(1.0, 2.0, 3.0, 4.0));", "g[1].x + g[0].y", 5.0),
+    ("vec4 g = vec4(mat2(1.0, 2.0, 3.0, 4.0));", "g.z + g.y", 5.0),
+    ("vec3 g = vec3(1.0, mat2(2.0, 3.0, 4.0, 5.0));", "g.z + g.x", 4.0),
+    ("S g = 1 > 0 ? S(2.0, mat2(3.0)) : S(4.0, mat2(5.0));", "g.a + g.m[1].y", 5.0),
+    ("mat2 g = true ? mat2(2.0) : mat2(3.0);", "g[1].y", 2.0),
+]
+
+
+@pytest.mark.parametrize("qualifier", ["", "const "])
+@pytest.mark.parametrize(("declared", "value", "expected"), AT_FILE_SCOPE)
+def test_values_at_file_scope_need_no_statements(
+    qualifier: str, declared: str, value: str, expected: float, backend: Callable[[str], Backend]
+) -> None:
+    text = f"struct S {{ float a; mat2 m; }}; {qualifier}{declared} float f(float x) {{ return x + {value}; }}"
+    check_results(text, 1.0 + expected, backend, [1.0])
+
+
 COMPUTED = [
     ("uniform float u; float g = u * 2.0; float f(float x) { return g + x; }", 7.0),
     ("uniform float u; float g = u * 2.0; float h = g + 1.0; float e(float x) { return h * x; }"

@@ -415,6 +415,11 @@ def test_struct_results_are_records() -> None:
     np.testing.assert_array_equal(result.b, [X, X])
 
 
+def test_a_member_may_have_a_name_of_records() -> None:
+    source = "struct S { float self; float replace; }; float f(float x) { S s = S(x, x); s.replace += 1.0; return s.replace; }"
+    np.testing.assert_array_equal(run(source, X), np.asarray(X) + 1.0)
+
+
 # Random programs
 
 

@@ -22,6 +22,7 @@ from sssgen.ir.types import (
     spell,
     vector_of,
 )
+from sssgen.ir.walk import subexpressions
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.context import Typed
 from sssgen.lang.check.expression_checker import ExpressionChecker
@@ -66,8 +67,8 @@ class ConstructorChecker:
         if self.context.plain and len(args) > 1 and isinstance(type_, Vector | Matrix):
             args = _without_excess(args, components(type_))
         values = tuple([arg.expr for arg in args])
-        if self.context.plain and len(values) == 1 and isinstance(values[0].type, Matrix) and isinstance(type_, Vector):
-            values = self.columns(values[0], components(type_))
+        if self.context.plain and values and isinstance(values[-1].type, Matrix) and isinstance(type_, Vector):
+            values = self.with_columns(values, components(type_))
             args = [Typed(value) for value in values]
         if len(values) == 1 and type_ == Matrix(2) and components(values[0].type) == 4 and kind_of(values[0].type):
             values = self.halves(values[0])
@@ -89,6 +90,16 @@ class ConstructorChecker:
         if len(values) == 1 and values[0].type == type_:
             return Typed(values[0], quantity)
         return Typed(ir.Construct(type_, values, call.span), quantity)
+
+    def with_columns(self, values: tuple[ir.Expr, ...], count: int) -> tuple[ir.Expr, ...]:
+        """The arguments of a vector of `count` components, with the columns of the matrix at their end."""
+        *first, matrix = values
+        missing = count - sum(components(value.type) for value in first)
+        if missing <= 0 or not all(isinstance(value.type, Scalar | Vector) for value in first):
+            return values
+        if any(isinstance(part, ir.Call) for value in first for part in subexpressions(value)):
+            first = [self.variable("part", value) for value in first]  # the matrix is computed after them
+        return (*first, *self.columns(matrix, missing))
 
     def columns(self, matrix: ir.Expr, count: int) -> tuple[ir.Expr, ...]:
         """The columns of a matrix as arguments of a vector of `count` components."""

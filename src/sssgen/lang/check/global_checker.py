@@ -95,12 +95,16 @@ class GlobalChecker:
         if declarator.value is None:
             raise context.fail(name.span, f"const '{name.text}' needs a value")
         if is_macro:
-            value = self.expressions.check(declarator.value).expr
+            value, prelude = self.expressions.value_at_file_scope(
+                declarator.value, lambda value: self.expressions.check(value).expr
+            )
             type_ = value.type
         else:
             type_ = self.expressions.declared_type(element, declaration.type, declarator)
-            value = self.expressions.check_as(declarator.value, type_, quantity, f"'{name.text}'")
-        if not all(self.is_constant(part) for part in subexpressions(value)):
+            value, prelude = self.expressions.value_at_file_scope(
+                declarator.value, lambda value: self.expressions.check_as(value, type_, quantity, f"'{name.text}'")
+            )
+        if prelude or not all(self.is_constant(part) for part in subexpressions(value)):
             message = f"the value of const '{name.text}' is not constant"
             raise context.fail(declarator.value.span, message, "use literals, other constants and builtins")
         context.globals[name.text] = GlobalValue(type_, quantity, constant_value(context, value), True)

@@ -482,6 +482,8 @@ class _Legaliser(Transformer):
         span = select.span
         condition = self.expression(select.condition)
         if self.current is None:
+            if not isinstance(select.type, Scalar | Vector):
+                raise Unsupported(_NOT_CONSTANT, span)
             yes, no = self.expression(select.yes), self.expression(select.no)
             return self.legal(ir.Select(select.type, condition, yes, no, span))
         arms = (select.yes, select.no)
