@@ -29,10 +29,14 @@ FEW = 200
 numbers."""
 STEPS = 34
 """Steps of a bisection: a float has 32 bits."""
+AWAY = (1, 2**6, 2**11, 2**16, 2**19)
+"""Distances of further inputs from a boundary, in units in the last place: next to it rounding may decide."""
 CLIMBS, CLIMBERS = 6, 16
 """Rounds of changing inputs that come near, and how many for each comparison."""
 UNDEFINED = 0.05
 """The largest share of inputs for which the result is undefined."""
+FOUND = 0.5
+"""The share of inputs that the search chose, those for outcomes included."""
 EACH = 6
 """How many inputs are chosen for each outcome."""
 
@@ -43,6 +47,8 @@ class Sampled(NamedTuple):
     values: dict[str, Array]
     run: Run
     outcomes: Outcomes
+    drawn: int
+    """How many of the first lanes were drawn at random; the search found the others."""
 
 
 class Search:
@@ -72,7 +78,7 @@ class Search:
         if first.outcomes.distances:
             parts += [self.boundaries(first), self.nearer(first)]
         parts = [part for part in parts if part]
-        return self.run(joined(parts)) if len(parts) > 1 else first
+        return self.run(joined(parts))._replace(drawn=first.drawn) if len(parts) > 1 else first
 
     def run(self, values: dict[str, Array]) -> Sampled:
         """Runs inputs."""
@@ -81,7 +87,7 @@ class Search:
         run = Run(self.program, lanes, {**self.textures, **values}, outcomes, limit=self.limit)
         run.result(self.key, {**self.textures, **values})
         self.spent += run.work * (1.0 + lanes / 2000.0) / 2.0
-        return Sampled(values, run, outcomes)
+        return Sampled(values, run, outcomes, lanes)
 
     def rounds(self, sampled: Sampled, count: int, lanes: int) -> list[dict[str, Array]]:
         """The inputs of each round: in one round, all lanes have the same uniforms.
@@ -118,7 +124,7 @@ class Search:
             return {}
         sites, low, high = self.narrowed(first.values, starts)
         low, high = self.coded(low), self.coded(high)
-        far = high
+        near, far = low, high
         for _ in range(STEPS):
             middle = {name: value + (high[name] - value) // 2 for name, value in low.items()}
             if self.spent > WORK or all((middle[name] == value).all() for name, value in low.items()):
@@ -128,9 +134,11 @@ class Search:
             under = distances < 0.0
             low = {name: np.where(under, middle[name], value) for name, value in low.items()}
             high = {name: np.where(under, value, middle[name]) for name, value in high.items()}
-        beyond = {name: value + np.sign(far[name] - value) for name, value in high.items()}
-        before = {name: value - np.sign(far[name] - value) for name, value in low.items()}
-        return joined([self.decoded(part) for part in (low, high, beyond, before)])
+        parts = [low, high]
+        for step in AWAY:
+            parts.append({name: _towards(value, far[name], step) for name, value in high.items()})
+            parts.append({name: _towards(value, near[name], step) for name, value in low.items()})
+        return joined([self.decoded(part) for part in parts])
 
     def narrowed(
         self, values: dict[str, Array], starts: list[tuple[Site, int, int]]
@@ -227,6 +235,12 @@ class Search:
         return {name: _decoded(value, kinds[name]) for name, value in codes.items()}
 
 
+def _towards(start: Array, end: Array, step: int) -> Array:
+    """At most so many steps from one number towards another."""
+    moved: Array = start + np.clip(end - start, -step, step)
+    return moved
+
+
 def _coded(value: Array) -> Array:
     if value.dtype.kind != "f":
         return value.astype(np.int64)
@@ -260,7 +274,8 @@ def chosen(sampled: Sampled, count: int, seed: int) -> Array:
     for mask in sorted(reached, key=lambda one: int((one & defined).sum())):
         for lane in order[(mask & defined)[order]][:each]:
             picked[int(lane)] = None
-    picked = dict.fromkeys(list(picked)[:count])
+    found = [int(lane) for lane in order if lane >= sampled.drawn and defined[lane]]
+    picked = dict.fromkeys([*list(picked), *found][: max(len(picked), int(FOUND * count))][:count])
     rest = [int(lane) for lane in range(lanes) if defined[lane] and lane not in picked]
     undefined = [int(lane) for lane in np.flatnonzero(sampled.run.undefined & ~sampled.run.endless)]
     room = count - len(picked)

@@ -20,7 +20,6 @@ from sssgen.harness.backends import Array
 from sssgen.harness.backends import call_program as calls
 from sssgen.harness.evaluate.evaluation import shape_of
 from sssgen.harness.verify.branch_outcomes import CASES, Outcomes
-from sssgen.harness.verify.rounded_floats import rounded, with_error
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.intrinsics.table import LARGEST
@@ -270,10 +269,14 @@ class Run:
 
     def binary(self, expr: ir.Binary) -> Value:
         if expr.op in ("&&", "||"):
-            left = np.broadcast_to(self.value(expr.left), (self.lanes,))
+            left = self.condition(expr.left, expr)
             right = self.within(left if expr.op == "&&" else ~left, expr.right)
             if right is None:
                 return left
+            if self.outcomes is not None:
+                self.outcomes.branch(
+                    expr.right, np.broadcast_to(right, (self.lanes,)), self.active & (left == (expr.op == "&&"))
+                )
             return left & right if expr.op == "&&" else left | right
         left, right = self.value(expr.left), self.value(expr.right)
         return self.operate(expr, expr.op, expr.left.type, expr.right.type, left, right)
@@ -425,39 +428,6 @@ class Run:
         if not holds.all():
             self.require(holds)
         return value
-
-
-class RoundedRun(Run):
-    """A run with a random error of each operation; `granted` adds those that the table grants to builtins."""
-
-    granted = False
-
-    def number(self, value: Value) -> Value:
-        return rounded(value)
-
-    def inexact(self, row: Any, args: list[Value], result: Value) -> Value:
-        if (row.kind == "alu" and row.ulp <= 4.0) or row.ulp == 0.0 or row.kind == "derivative":
-            return result
-        if not self.granted:
-            return result if row.kind == "fetch" else with_error(result, min(row.ulp, 4.0), 0.0)
-        absolute: Any = row.absolute
-        if row.name in ("sin", "cos", "tan"):
-            absolute = np.maximum(absolute, 2.0**-22 * np.abs(np.asarray(args[0])))
-        return with_error(result, row.ulp, absolute)
-
-    def read_from(self, row: Any, args: list[Value]) -> list[Value]:
-        if row.kind != "fetch" or not self.granted:
-            return args
-        return [
-            with_error(arg, 2.0, 2.0**-12) if isinstance(arg, np.ndarray) and arg.dtype.kind == "f" else arg
-            for arg in args
-        ]
-
-
-class GrantedRun(RoundedRun):
-    """A run with the errors that other drivers may make."""
-
-    granted = True
 
 
 class _Known:

@@ -64,7 +64,8 @@ def loop_inputs(module: Module, key: str) -> set[str]:
             if name not in reached:
                 reached.add(name)
                 pending.append(name)
-    return {name for owner, name in reached if owner in (key, "")}
+    own = {(key, param.name) for param in functions[key].params}
+    return {name for owner, name in reached if not owner or (owner, name) in own}
 
 
 def _bounds(function: Function, stmt: Stmt, constants: set[str]) -> Iterator[Name]:

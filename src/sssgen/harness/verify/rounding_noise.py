@@ -13,13 +13,63 @@ from typing import Any
 import numpy as np
 
 from sssgen.harness.backends import Array
-from sssgen.harness.evaluate.deviation import errors
-from sssgen.harness.verify.lane_interpreter import GrantedRun, Program, RoundedRun, Run
+from sssgen.harness.evaluate.deviation import GOAL, MARGIN, errors
+from sssgen.harness.verify.lane_interpreter import Program, Run, Value
 from sssgen.harness.verify.plain_inputs import taken
-from sssgen.harness.verify.rounded_floats import seeded
+from sssgen.harness.verify.rounded_floats import rounded, seeded, with_error
+from sssgen.targets import numpy_runtime as rt
 
 CHUNK = 8192
 """How many lanes are run together."""
+
+
+UNDETERMINED = 0.5
+"""Where rounding moves a result by more than this, relative to its size, it may also become infinite or NaN: in the
+direction of a vector that is only rounding errors."""
+
+
+class RoundedRun(Run):
+    """A run with a random error of each operation; `granted` adds those that the table grants to builtins."""
+
+    granted = False
+
+    def number(self, value: Value) -> Value:
+        return rounded(value)
+
+    def inexact(self, row: Any, args: list[Value], result: Value) -> Value:
+        if row.ulp == 0.0 or row.kind == "derivative" or any(np.asarray(arg).dtype == bool for arg in args):
+            return result
+        if self.granted and row.size is not None:  # other formulas are allowed, whose terms cancel: x + (y - x) * a
+            size = np.abs(np.asarray(row.size(rt, *[np.asarray(arg) for arg in args]))).astype(np.float32)
+            return with_error(result, 0.0, row.ulp * np.spacing(size))
+        if row.kind == "alu" and row.ulp <= 4.0:
+            return result
+        if not self.granted:
+            return result if row.kind == "fetch" else with_error(result, min(row.ulp, 4.0), 0.0)
+        absolute: Any = row.absolute
+        if row.name in ("sin", "cos", "tan"):
+            absolute = np.maximum(absolute, 2.0**-22 * np.abs(np.asarray(args[0])))
+        return with_error(result, row.ulp, absolute)
+
+    def read_from(self, row: Any, args: list[Value]) -> list[Value]:
+        if row.kind != "fetch" or not self.granted:
+            return args
+        return [
+            with_error(arg, 2.0, 2.0**-12) if isinstance(arg, np.ndarray) and arg.dtype.kind == "f" else arg
+            for arg in args
+        ]
+
+
+class GrantedRun(RoundedRun):
+    """A run with the errors that other drivers may make."""
+
+    granted = True
+
+
+def explained(error: Array, limit: Array) -> Array:
+    """Whether rounding, which moves a result by `limit`, explains a deviation; or whether there is none."""
+    result: Array = (error <= GOAL) | (error <= MARGIN * limit) | (np.isinf(error) & (limit > UNDETERMINED))
+    return result
 
 
 def noise(

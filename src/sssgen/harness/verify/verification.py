@@ -27,14 +27,14 @@ import numpy as np
 from sssgen.harness.backends import Array, Bound, Call, CompilerMissing, Place, Stage, Text
 from sssgen.harness.backends import call_program as calls
 from sssgen.harness.backends.isolated import Isolated, isolated
-from sssgen.harness.evaluate.deviation import GOAL, MARGIN, errors
+from sssgen.harness.evaluate.deviation import GOAL, errors
 from sssgen.harness.verify.branch_outcomes import Outcomes, branches
 from sssgen.harness.verify.input_search import Search, chosen
 from sssgen.harness.verify.lane_interpreter import Program, Run
 from sssgen.harness.verify.loop_inputs import loop_inputs
 from sssgen.harness.verify.plain_inputs import Source, picture, taken
 from sssgen.harness.verify.plain_probes import TEXTURES, Leaf, Probe, Probed, probed
-from sssgen.harness.verify.rounding_noise import noise
+from sssgen.harness.verify.rounding_noise import explained, noise
 from sssgen.harness.verify.stage_variables import MAIN, Plain, plain
 from sssgen.harness.verify.verification_report import BACKENDS, Comparison, Coverage, Report, Row
 from sssgen.ir.nodes import Function, Module, Param, Span
@@ -89,7 +89,7 @@ def verify(
     probes = "\n".join(probe.text for case in cases for probe in case.probes)
     with_probes = read(written.text + probes, shown)
     with _machines() as (machines, missing):
-        rows = [_Case(case, written, with_probes, machines, samples, seed).row() for case in cases]
+        rows = [Case(case, written, with_probes, machines, samples, seed).row() for case in cases]
     return Report(rows, missing)
 
 
@@ -126,7 +126,7 @@ def _machines() -> Iterator[tuple[dict[str, Isolated], dict[str, str]]]:
             machine.close()
 
 
-class _Inputs(NamedTuple):
+class Inputs(NamedTuple):
     """One round."""
 
     values: dict[str, Array]
@@ -143,7 +143,7 @@ class _Emitted(NamedTuple):
     """Old name → name in the text."""
 
 
-class _Case:
+class Case:
     """One function on all back ends."""
 
     def __init__(
@@ -159,7 +159,7 @@ class _Case:
         self.module = module._replace(variables=variables)
         closed = {function.name: function.params for function in uniforms_to_parameters(self.module).functions}
         self.params: dict[str, tuple[Param, ...]] = {name: closed[name] for name in names if name in closed}
-        self.inputs: list[_Inputs] = []
+        self.inputs: list[Inputs] = []
         if case.probes:
             self.program = Program(self.module)
             self.key = self.keys[case.probes[0].name]
@@ -181,7 +181,7 @@ class _Case:
             if isinstance(leaf.type, Sampler) and leaf.type in TEXTURES
         }
 
-    def search(self, samples: int) -> list[_Inputs]:
+    def search(self, samples: int) -> list[Inputs]:
         """The inputs of all rounds."""
         bounding = loop_inputs(self.program.module, self.key)
         leaves = [leaf for leaf in self.case.probes[0].leaves if not isinstance(leaf.type, Sampler)]
@@ -199,7 +199,7 @@ class _Case:
             taken(round_, chosen(search.run(round_), lanes, self.seed)) if rounds > 1 else round_
             for round_ in search.rounds(sampled, rounds, lanes)
         ]
-        return [_Inputs(values, self.textures) for values in picked if next(iter(values.values())).shape[-1]]
+        return [Inputs(values, self.textures) for values in picked if next(iter(values.values())).shape[-1]]
 
     def row(self) -> Row:
         """The comparison of all translations."""
@@ -259,9 +259,7 @@ class _Case:
                 break
             lanes = np.flatnonzero(unexplained)
             limits = self.noise(lanes, draws, name not in SAME_TEXT)
-            wrong = [
-                (error[lanes] > GOAL) & ~(error[lanes] <= MARGIN * limits[output]) for output, error in each.items()
-            ]
+            wrong = [~explained(error[lanes], limits[output]) for output, error in each.items()]
             unexplained[lanes] = np.any(wrong, axis=0)
         excluded = beyond & ~unexplained
         left = defined & ~excluded
@@ -314,7 +312,7 @@ class _Case:
         except SssgenError as error:
             return error.diagnostics[0].message
 
-    def all_rounds(self, run: Callable[[_Inputs], list[Array]], rounds: Sequence[_Inputs] = ()) -> dict[str, Array]:
+    def all_rounds(self, run: Callable[[Inputs], list[Array]], rounds: Sequence[Inputs] = ()) -> dict[str, Array]:
         """Each output of all rounds, lanes first."""
         results = [run(inputs) for inputs in rounds or self.inputs]
         return {
@@ -322,7 +320,7 @@ class _Case:
             for index, probe in enumerate(self.case.probes)
         }
 
-    def original(self, inputs: _Inputs) -> list[Array]:
+    def original(self, inputs: Inputs) -> list[Array]:
         """The outputs of the author's text, in the first version that the driver accepts."""
         number = self.written.version.split(" ")[0]
         versions = [self.written.version] if number and (int(number) >= 330 or self.written.is_es) else VERSIONS
@@ -334,7 +332,7 @@ class _Case:
                 refusals.append(error)
         raise refusals[0]
 
-    def draw_original(self, version: str, inputs: _Inputs) -> list[Array]:
+    def draw_original(self, version: str, inputs: Inputs) -> list[Array]:
         """The outputs of the author's text, followed by the probes. Its uniforms are bound by their names."""
         probes = "\n".join(probe.text for probe in self.case.probes)
         text = Text(f"{self.written.for_driver(version)}\n{probes}")
@@ -351,7 +349,7 @@ class _Case:
         drawing = drawing._replace(vertex=vertex, textures={**drawing.textures, **bound}, values=values)
         return calls.results(probe_calls, layout, self.machines["gl"].draw(drawing))
 
-    def transpiled(self, backend: str, inputs: _Inputs) -> list[Array]:
+    def transpiled(self, backend: str, inputs: Inputs) -> list[Array]:
         """The outputs of the translation for a back end."""
         machine = self.machines[backend]
         outputs: list[Array] = []
@@ -382,7 +380,7 @@ class _Case:
         text = "\n".join([text for name, text in compiled.files.items() if not name.endswith(".json")])
         return _Emitted(tuple(probes), Text(text), compiled.reflection["renames"])
 
-    def call(self, probe: Probe, name: str, params: Sequence[str], inputs: _Inputs) -> Call:
+    def call(self, probe: Probe, name: str, params: Sequence[str], inputs: Inputs) -> Call:
         """The call of a probe, called `name` in the text."""
         types = {param.name: param.type for param in self.params[probe.name]}
         args = tuple([inputs.values.get(param, param) for param in params])
