@@ -67,8 +67,9 @@ def checked(value: int, *conditions: bool) -> int:
 Operator = Callable[[int, int], int]
 _OPERATORS: dict[str, Operator] = {
     "+": lambda x, y: x + y, "-": lambda x, y: x - y, "*": lambda x, y: x * y,
-    "/": lambda x, y: divided(x, checked(y, y != 0, (x, y) != (LOWEST, -1))),
-    "%": lambda x, y: x % checked(y, x >= 0, y > 0),
+    # spirv-opt computes -(x / y) as -x / y, and the remainder of two constants of glslang as (x + y) % y
+    "/": lambda x, y: divided(x, checked(y, y != 0, x != LOWEST)),
+    "%": lambda x, y: x % checked(y, x >= 0, y > 0, x + y <= HIGHEST),
     "&": lambda x, y: x & y, "|": lambda x, y: x | y, "^": lambda x, y: x ^ y,
     "<<": lambda x, y: x << checked(y, 0 <= y < 32), ">>": lambda x, y: x >> checked(y, 0 <= y < 32),
 }  # fmt: skip

@@ -54,6 +54,10 @@ WRAPPED = [
 OVERLOADS = "int g(int a) { return 1; } int g(uint a) { return 2; } int g(float a) { return 3; }"
 TYPES = [
     (f"{OVERLOADS} int f(int x) {{ return g(-5) * 100 + g(2 + 3) * 10 + g(x > 0 ? 5 : 3); }}", 1, 111),
+    ("float f(int x) { return float(uint(x > 0 ? 2 : -2147483647)); }", 0, 2.0**31),
+    ("vec2 f(int x) { return vec2(uvec2(x > 0 ? 2 : -2147483647, 5) / 2u); }", 0, (2.0**30, 2.0)),
+    ("uint f(uint x) { return -(x / 7u); }", 70, 2**32 - 10),
+    ("const uint M = 0xaaaaaaaau; uint f(uint x) { return clamp(7u, 0u, M) + M + x; }", 0xAAAAAAAA, 0x5555555B),
     (f"{OVERLOADS} int f(int x) {{ return g(5u) * 100 + g(2.0) * 10 + g(x > 0 ? 1.0 : 2.0); }}", 1, 233),
     ("float f(float x) { return mix(3.0, 4.0, true) + float(mix(3u, 4u, true)) + float(mix(true, false, true)); }",
      0.0, 8.0),

@@ -14,6 +14,7 @@ from collections import Counter
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import FLOAT, INT, Array, Matrix, Scalar, Struct, Vector, kind_of
+from sssgen.ir.walk import subexpressions
 from sssgen.passes.uniform_blocks import block_type
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers import hlsl_sizes
@@ -69,6 +70,10 @@ class HlslPrinter(Printer):
         type_, args = construct.type, construct.args
         if isinstance(type_, Array | Struct):  # only in an initialiser
             return "{ " + self.arguments(args) + " }", PRIMARY
+        if kind_of(type_) == "uint" and any(map(_is_untyped_choice, args)):
+            # DXC converts `float(uint(b ? 2 : -5))` from a literal to a float
+            args = tuple([ir.Construct(INT, (arg,), arg.span) if _is_untyped_choice(arg) else arg for arg in args])
+            construct = construct._replace(args=args)
         if len(args) == 1 and not isinstance(type_, Scalar):  # a splat or a conversion is a cast here
             text, binding = self.bound(args[0])
             return f"({self.type(type_)}){text if binding >= POSTFIX else f'({text})'}", UNARY
@@ -159,3 +164,7 @@ def _is_untyped(expr: ir.Expr) -> bool:
         alone = expr.op in _SHIFTS or _is_untyped(expr.right)
         return alone and expr.type in (FLOAT, INT) and _is_untyped(expr.left)
     return isinstance(expr, ir.Select) and _is_untyped(expr.yes) and _is_untyped(expr.no)
+
+
+def _is_untyped_choice(expr: ir.Expr) -> bool:
+    return expr.type == INT and _is_untyped(expr) and any(isinstance(part, ir.Select) for part in subexpressions(expr))

@@ -115,7 +115,10 @@ class NumpyExpressions(Printer):
         return {"/": "int_divide", "%": "int_remainder"}.get(op, "")
 
     def arguments(self, args: tuple[ir.Expr, ...]) -> str:
-        return ", ".join(self.typed(*args))
+        texts = self.typed(*args)
+        if len(args) > 2 and texts[0] == self.typed(*args[:2])[0]:
+            return ", ".join(texts)
+        return ", ".join([*self.typed(*args[:2]), *texts[2:]])  # clamp computes with the first two alone
 
     def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
         return f"{_NAMES.get(call.name, call.name)}({self.arguments(call.args)})", PRIMARY
