@@ -75,9 +75,10 @@ class Interpreter:
         if isinstance(stmt, ir.Declare):
             self.frame[stmt.name] = zero(stmt.type) if stmt.value is None else self.value(stmt.value)
         elif isinstance(stmt, ir.Assign):
-            place, value = self.pinned(stmt.target), self.value(stmt.value)
+            place = self.pinned(stmt.target)
+            old = self.value(place) if stmt.op else None
+            value = self.value(stmt.value)
             if stmt.op:
-                old = self.value(place)
                 value = binary(stmt.op, place.type, place.type, stmt.value.type, old, value)
             self.store(place, value)
         elif isinstance(stmt, ir.Evaluate):

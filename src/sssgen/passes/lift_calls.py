@@ -127,6 +127,18 @@ def awkward(function: Function, calls: Calls) -> list[Stmt]:
     return stmts
 
 
+def reads_too_late(function: Function, calls: Calls) -> bool:
+    """Whether an operand reads a variable that a call to its right writes.
+
+    Where a language evaluates calls from left to right, a driver may still read variables after all of them.
+    """
+    lifter = _Lifter(function, calls)
+    return any(
+        (isinstance(stmt, Assign) and bool(stmt.op) and lifter.meets(stmt)) or any(map(lifter.late, expressions(stmt)))
+        for stmt in statements(function.body or ())
+    )
+
+
 def out_arguments(call: Expr, functions: Functions) -> list[str]:
     """The variables that a lifted call writes."""
     if not isinstance(call, Call):
@@ -203,6 +215,9 @@ class _Lifter(Transformer):
             return stmt
         pinned = any(map(self.written(value).__contains__, _read(stmt.target)))
         target = self.expression(self.pinned(stmt.target) if pinned else stmt.target)
+        if stmt.op and self.meets(stmt):  # the old value is read before the calls change it
+            value = Binary(target.type, stmt.op, target, value, stmt.span)
+            return Assign(target, "", self.expression(value), stmt.span)
         direct = isinstance(target, Local | Global) and not stmt.op and not self.meets(stmt)
         if direct and isinstance(value, Call) and self.writes_itself(value):
             call, after = self.call(value)
@@ -310,6 +325,16 @@ class _Lifter(Transformer):
             self.out.append(Declare(kept.name, kept.type, value, value.span))
             value = kept
         return value
+
+    def late(self, expr: Expr) -> bool:
+        """Whether an operand inside the expression reads a variable that a call to its right writes."""
+        if not self.writes(expr):
+            return False
+        parts = operands(expr)
+        return any(
+            self.late(part) or not self.written(part).isdisjoint(name for one in parts[:index] for name in _read(one))
+            for index, part in enumerate(parts)
+        )
 
     def choose(self, select: Select) -> Expr:
         """A choice as an if, so that only the chosen arm's calls write."""

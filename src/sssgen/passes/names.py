@@ -30,7 +30,7 @@ from sssgen.ir.nodes import (
 )
 from sssgen.ir.transform import rewrite
 from sssgen.ir.types import VEC4, Array, Field, Matrix, Struct, Type, spell
-from sssgen.ir.walk import all_expressions, statements
+from sssgen.ir.walk import all_expressions, statements, subexpressions
 from sssgen.passes.scopes import Renamer, declared, rename_locals
 from sssgen.passes.struct_types import Retyper
 
@@ -92,6 +92,9 @@ class _Namer:
         """The new name of each function, by its old key."""
         self.taken: set[str] = set()
         """The new names of the module's declarations."""
+        self.constant_values = {constant.name: constant.value for constant in module.constants}
+        self.uses: dict[str, set[str]] = {}
+        """What `used_by` has found."""
 
     def run(self) -> tuple[Module, dict[str, str]]:
         self.name_declarations()
@@ -270,13 +273,25 @@ class _Namer:
         names = {name for name in names if name in self.taken or name in BUILTINS}
         return names & self.used(function) if names else names
 
+    def used_by(self, name: str) -> set[str]:
+        """The new names of a declaration and of what a constant's value uses, as a function may compute it (NumPy)."""
+        if name not in self.uses:
+            self.uses[name] = {self.globals.get(name, name)}
+            if name in self.constant_values:
+                for part in subexpressions(self.constant_values[name]):
+                    if isinstance(part, Global):
+                        self.uses[name] |= self.used_by(part.name)
+                    elif isinstance(part, Intrinsic):
+                        self.uses[name].add(part.name)
+        return self.uses[name]
+
     def used(self, function: Function) -> set[str]:
         """The new names of what a function uses of the module, and of the builtins it calls."""
         used: set[str] = set()
         types = [function.result, *(param.type for param in function.params)]
         for expr in all_expressions(function.body or ()):
             if isinstance(expr, Global):
-                used.add(self.globals.get(expr.name, expr.name))
+                used |= self.used_by(expr.name)
             elif isinstance(expr, Call):
                 used.add(self.function_names[expr.function])
             elif isinstance(expr, Intrinsic):

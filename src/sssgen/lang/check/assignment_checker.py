@@ -10,7 +10,7 @@ from sssgen.ir.rules import operator_type
 from sssgen.ir.types import BOOL, FLOAT, Matrix, Sampler, Scalar, Vector, kind_of
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.context import CheckContext, Typed
-from sssgen.lang.check.evaluation_order import root_name, writes_of
+from sssgen.lang.check.evaluation_order import depends, root_name, writes_of
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.implicit_conversions import as_kind, converts
 from sssgen.lang.check.operator_checker import combined_quantity
@@ -79,7 +79,9 @@ class AssignmentChecker:
             return ir.Assign(self.fixed_place(target.expr, source, start), op, source, span)
         if assignment.value is not None:
             right = expressions.check(assignment.value)
+            before = len(context.function.prelude)
             target = target._replace(expr=self.fixed_place(target.expr, right.expr, start))
+            start += len(context.function.prelude) - before
         elif isinstance(type_, Scalar | Vector | Matrix) and type_.kind != "bool":
             number = FLOAT if type_.kind == "float" else Scalar(type_.kind)
             right = Typed(ir.Literal(number, 1.0 if number == FLOAT else 1, span))
@@ -96,6 +98,10 @@ class AssignmentChecker:
             if op not in ("*", "/") or not isinstance(value.type, Scalar):  # scaling in place keeps the quantity
                 scaled = target._replace(quantity=quantity)
                 expressions.require(scaled, type_, target.quantity, span, "the assigned value")
+        written, calls = writes_of(context.function.prelude[start:], context.out_arguments)
+        if depends(target.expr, written, calls):  # the old value is read before the right side changes it
+            old = context.function.temporary(f"{root_name(target.expr)}_before", target.expr, start)
+            return ir.Assign(target.expr, "", ir.Binary(type_, op, old, value, span), span)
         return ir.Assign(target.expr, op, value, span)
 
     def fixed_place(self, target: ir.Expr, value: ir.Expr, start: int) -> ir.Expr:

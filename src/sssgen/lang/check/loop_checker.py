@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.loops import at_every_end
 from sssgen.ir.types import BOOL
 from sssgen.ir.walk import all_expressions, subexpressions
 from sssgen.lang.check.evaluation_order import writes_of
@@ -45,7 +46,7 @@ class LoopChecker:
         before, init = _split(before, counters)
         others, step = _split(steps, counters) if all(map(_fits_in_head, steps)) else (steps, None)
         if others:
-            body = _at_every_end(body, others)
+            body = at_every_end(body, others)
         if tested:
             assert condition is not None
             body, condition = (*tested, _break_unless(condition), *body), None
@@ -86,7 +87,7 @@ class LoopChecker:
             last = tested if condition.value else [*tested, ir.Break(condition.span)]
         else:
             last = [*tested, _break_unless(condition)]
-        body = _at_every_end(body, last)
+        body = at_every_end(body, last)
         return [ir.While(ir.Literal(BOOL, True, statement.span), body, statement.span)]
 
     def loop_body(self, statement: s.Statement, dissolve: bool = False) -> ir.Block:
@@ -144,23 +145,3 @@ def _used(stmt: ir.Stmt) -> set[str]:
     """The variables that a statement reads or writes."""
     names = {part.name for part in all_expressions((stmt,)) if isinstance(part, ir.Local | ir.Global)}
     return names | _written(stmt)
-
-
-def _at_every_end(body: ir.Block, added: list[ir.Stmt]) -> ir.Block:
-    """A loop's body with statements at its end and before each `continue`."""
-    body = _before_continues(body, added)
-    is_left = bool(body) and isinstance(body[-1], ir.Break | ir.Continue | ir.Return | ir.Discard)
-    return body if is_left else (*body, *added)
-
-
-def _before_continues(body: ir.Block, added: list[ir.Stmt]) -> ir.Block:
-    """A loop's body with statements before each `continue` of the loop; if they end with `break`, instead of it."""
-    result: list[ir.Stmt] = []
-    for stmt in body:
-        if isinstance(stmt, ir.Continue):  # what follows is not executed
-            return (*result, *added) if added and isinstance(added[-1], ir.Break) else (*result, *added, stmt)
-        if isinstance(stmt, ir.If):
-            then, otherwise = _before_continues(stmt.then, added), _before_continues(stmt.otherwise, added)
-            stmt = stmt._replace(then=then, otherwise=otherwise)
-        result.append(stmt)
-    return tuple(result)

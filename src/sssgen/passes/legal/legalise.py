@@ -12,6 +12,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
 from sssgen.ir.constant_evaluation import combined
 from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.loops import at_every_end
 from sssgen.ir.transform import Transformer, rewrite
 from sssgen.ir.types import BOOL, FLOAT, UINT, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of
 from sssgen.ir.walk import calls_of, subexpressions
@@ -25,7 +26,7 @@ from sssgen.passes.legal.legal_operators import is_integer_division, legal_opera
 from sssgen.passes.legal.matrix_columns import by_whole_columns, matrix_from, needs_columns
 from sssgen.passes.legal.part_stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
 from sssgen.passes.legal.wide_constants import ConstantIntegers, is_wider
-from sssgen.passes.lift_calls import Calls, awkward, lift
+from sssgen.passes.lift_calls import Calls, awkward, lift, reads_too_late
 from sssgen.passes.scopes import assigned, declared, fresh, outs_of
 from sssgen.passes.substitute import inlined, is_cheap
 from sssgen.passes.unsupported import Unsupported
@@ -128,7 +129,11 @@ class _Legaliser(Transformer):
         if not self.capabilities.out_parameters:
             return self.lifted(lift(function, self.calls))
         stmts = awkward(function, self.calls)
-        lifts = stmts and (not self.capabilities.operand_order or awkward(function, Calls(self.functions)))
+        lifts = stmts and (
+            not self.capabilities.operand_order
+            or awkward(function, Calls(self.functions))
+            or reads_too_late(function, self.calls)
+        )
         if lifts or self.writes_parts(function):
             return self.lifted(lift(function, self.calls))
         self.ordered = {id(stmt) for stmt in stmts}
@@ -257,8 +262,10 @@ class _Legaliser(Transformer):
         init = self.header(stmt.init)
         start = len(self.out)
         step = self.header(stmt.step)
-        if len(self.out) > start:
-            raise Unsupported("this loop's step cannot be expressed for this target", stmt.span)
+        steps = [*self.out[start:], step] if step is not None else self.out[start:]
+        if len(steps) > 1:
+            del self.out[start:]
+            return ir.For(init, condition, None, at_every_end(body, steps), stmt.span)
         return ir.For(init, condition, step, body, stmt.span)
 
     def while_loop(self, stmt: ir.While) -> ir.Stmt | None:

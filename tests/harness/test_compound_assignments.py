@@ -1,0 +1,64 @@
+"""Operands, and the target of a compound assignment, are read before what follows changes them, on every back end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from results_of_glsl import check_results
+from sssgen.harness.backends import Backend
+from sssgen.lang.plain_glsl import load_glsl_text
+from sssgen.pipeline.compiler import transpile
+
+CASES = [
+    ("float f(float x) { x += x++; return x; }", 3.0, 6.0),
+    ("float f(float x) { x -= x = 1.0; return x; }", 3.0, 2.0),
+    ("float f(float x) { int i = int(x); i *= (i = 5) + 1; return float(i); }", 3.0, 18.0),
+    ("float f(float x) { vec2 v = vec2(x, 1.0); v.x += v.x++; v.yx *= vec2(v.x++, 2.0); return v.x * 10.0 + v.y; }",
+      3.0, 126.0),
+    ("float f(float x) { int a[3] = int[3](1, 2, 3), i = int(x); a[i] += a[i]++ + i--;"
+     " return float(a[0] * 100 + a[1] * 10 + a[2]); }", 1.0, 153.0),
+    ("float f(float x) { mat2 m = mat2(x); m[1] *= (m[1] = vec2(2.0)).y; return m[1].x * 10.0 + m[1].y; }", 3.0, 6.0),
+    ("struct S { int a; }; float f(float x) { S s = S(int(x)); s.a <<= s.a-- & 1; return float(s.a); }", 3.0, 6.0),
+    ("float g(inout float y) { y += 5.0; return y * 2.0; } float f(float x) { x -= g(x); return x; }", 3.0, -13.0),
+    ("float g(inout float y) { y += 5.0; return y * 2.0; } float f(float x) { x *= 1.0 + g(x) + x; return x; }",
+      3.0, 75.0),
+    ("float f(float x) { bool b = x > 0.0; x += b && (x += 1.0) > 0.0 ? x : 0.0; return x; }", 3.0, 7.0),
+]  # fmt: skip
+READ = """
+float t = 1.0;
+float g() { t += 2.0; return t; }
+float two(float a, float b) { return a * 10.0 + b; }
+float f(float x) { t = x; float y = t + g(); y = y * 100.0 + two(t, g()); return y + (t > 0.0 && g() > t ? 0.0 : 0.5); }
+"""
+SHARED = """
+float t = 1.0;
+float g() { t += 2.0; return t; }
+float f(float x) { t = x; t *= g(); t -= g() + t; return t; }
+"""
+
+
+@pytest.mark.parametrize(("text", "argument", "expected"), CASES)
+def test_the_target_is_read_first(
+    backend: Callable[[str], Backend], text: str, argument: float, expected: float
+) -> None:
+    check_results(text, expected, backend, (argument,))
+
+
+def test_a_variable_at_file_scope_is_read_first(backend: Callable[[str], Backend]) -> None:
+    backends = ("gl", "gl-es", "webgpu", "hlsl", "hlsl-glslang")
+    check_results(SHARED, 15.0 - (17.0 + 17.0), backend, (3.0,), backends=backends)
+
+
+def test_an_operand_is_read_before_a_call_to_its_right(backend: Callable[[str], Backend]) -> None:
+    backends = ("gl", "gl-es", "webgpu", "hlsl", "hlsl-glslang")
+    check_results(READ, (3.0 + 5.0) * 100.0 + 5.0 * 10.0 + 7.0 + 0.5, backend, (3.0,), backends=backends)
+
+
+def test_a_target_that_does_not_change_is_assigned_to() -> None:
+    text = "int f(int x, int i) { x += i++; x *= i; return x; }"
+    files = transpile(load_glsl_text(text, "case.glsl").module, "wgsl", "case", keep=True).files
+    emitted = next(content for name, content in files.items() if not name.endswith(".json"))
+    assert "x += i_before;" in emitted
+    assert "x *= i;" in emitted
