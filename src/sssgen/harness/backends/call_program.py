@@ -43,17 +43,17 @@ LANGUAGES = {
         "{type} {name} = {value};",
         {"float": "uintBitsToFloat({0})", "int": "{type}({0})", "uint": "{0}", "bool": "notEqual({0}, {zero})"},
         {"float": "floatBitsToUint({0})", "int": "{unsigned}({0})", "uint": "{0}", "bool": "{unsigned}({0})"},
-        "texelFetch(sssgen_data, ivec2(lane.x, lane.y + {row}), 0)",
+        "texelFetch(sssgen_data, ivec2(sssgen_lane.x, sssgen_lane.y + {row}), 0)",
         """
 {textures}
 uniform highp usampler2D sssgen_data;
 out highp uvec4 sssgen_words;
 void main() {{
-    ivec2 lane = ivec2(int(gl_FragCoord.x), int(gl_FragCoord.y) % {rows});
-    int slot = int(gl_FragCoord.y) / {rows};
-    uvec4 words = uvec4(0u);
+    ivec2 sssgen_lane = ivec2(int(gl_FragCoord.x), int(gl_FragCoord.y) % {rows});
+    int sssgen_slot = int(gl_FragCoord.y) / {rows};
+    uvec4 sssgen_value = uvec4(0u);
 {body}
-    sssgen_words = words;
+    sssgen_words = sssgen_value;
 }}
 """,
     ),
@@ -61,16 +61,16 @@ void main() {{
         "{type} {name} = {value};",
         {"float": "asfloat({0})", "int": "asint({0})", "uint": "{0}", "bool": "({0} != 0u)"},
         {"float": "asuint({0})", "int": "asuint({0})", "uint": "{0}", "bool": "({unsigned})({0})"},
-        "sssgen_data.Load(int3(lane.x, lane.y + {row}, 0))",
+        "sssgen_data.Load(int3(sssgen_lane.x, sssgen_lane.y + {row}, 0))",
         """
 {textures}
 Texture2D<uint4> sssgen_data;
-uint4 sssgen_main(float4 place : SV_Position) : SV_Target0 {{
-    int2 lane = int2(int(place.x), int(place.y) % {rows});
-    int slot = int(place.y) / {rows};
-    uint4 words = uint4(0u, 0u, 0u, 0u);
+uint4 sssgen_main(float4 sssgen_place : SV_Position) : SV_Target0 {{
+    int2 sssgen_lane = int2(int(sssgen_place.x), int(sssgen_place.y) % {rows});
+    int sssgen_slot = int(sssgen_place.y) / {rows};
+    uint4 sssgen_value = uint4(0u, 0u, 0u, 0u);
 {body}
-    return words;
+    return sssgen_value;
 }}
 """,
     ),
@@ -83,19 +83,19 @@ uint4 sssgen_main(float4 place : SV_Position) : SV_Target0 {{
             "uint": "{0}",
             "bool": "{unsigned}({0})",
         },
-        "textureLoad(sssgen_data, vec2i(lane.x, lane.y + {row}), 0)",
+        "textureLoad(sssgen_data, vec2i(sssgen_lane.x, sssgen_lane.y + {row}), 0)",
         """
 {textures}
 @group(0) @binding(0) var sssgen_data: texture_2d<u32>;
 @vertex fn sssgen_corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {{
     return vec4f(vec2f(f32(index % 2u), f32(index / 2u)) * 4.0 - 1.0, 0.0, 1.0);
 }}
-@fragment fn sssgen_main(@builtin(position) place: vec4f) -> @location(0) vec4u {{
-    let lane = vec2i(i32(place.x), i32(place.y) % {rows});
-    let slot = i32(place.y) / {rows};
-    var words = vec4u(0u);
+@fragment fn sssgen_main(@builtin(position) sssgen_place: vec4f) -> @location(0) vec4u {{
+    let sssgen_lane = vec2i(i32(sssgen_place.x), i32(sssgen_place.y) % {rows});
+    let sssgen_slot = i32(sssgen_place.y) / {rows};
+    var sssgen_value = vec4u(0u);
 {body}
-    return words;
+    return sssgen_value;
 }}
 """,
     ),
@@ -188,20 +188,22 @@ class _Writer:
     def call(self, number: int, call: Call) -> None:
         statements, args = [], []
         for index, (type_, arg) in enumerate(zip(call.params, call.args, strict=True)):
-            name = f"a{number}_{index}"
+            name = f"sssgen_a{number}_{index}"
             if isinstance(arg, str):
                 args.append(self.target.textures.argument.format(name=arg, sampler=f"{arg}_sampler"))
                 continue
             statements.append(self._declare(type_, name, self._read(type_, len(self.data) * self.grid.rows)))
             args.append(name)
             self.data += _rows(type_, self._rounded(np.asarray(arg)), self.grid)
-        result = f"r{number}"
+        result = f"sssgen_r{number}"
         statements.append(self._declare(call.result, result, f"{call.function}({', '.join(args)})"))
         columns = call.result.size if isinstance(call.result, Matrix) else 1
         for column in range(columns):
             part = f"{result}[{column}]" if isinstance(call.result, Matrix) else result
-            statements.append(f"if (slot == {self.slots + column}) {{ words = {self._words(call.result, part)}; }}")
-        condition = f"if (slot >= {self.slots} && slot < {self.slots + columns}) {{"
+            statements.append(
+                f"if (sssgen_slot == {self.slots + column}) {{ sssgen_value = {self._words(call.result, part)}; }}"
+            )
+        condition = f"if (sssgen_slot >= {self.slots} && sssgen_slot < {self.slots + columns}) {{"
         self.body += [condition, *statements, "}"]
         self.places.append((self.slots, columns))
         self.slots += columns
