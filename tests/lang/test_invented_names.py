@@ -208,6 +208,22 @@ SNIPPETS: dict[str, tuple[str, Callable[[float, int], float]]] = {
         "float f(float x, int n) { return lamp_color(x) + lamp.color; }",
         lambda x, n: 2.0 * x + 100.0,
     ),
+    "structs of two functions": (
+        "float g(float x) { struct S { float b; }; S s = S(x); return s.b; }\n"
+        "float f(float x, int n) { struct S { float a; float c; }; S s = S(x, g(x) * 2.0); return s.a + s.c; }",
+        lambda x, n: 3.0 * x,
+    ),
+    "a struct that hides another": (
+        "struct S { float q; };\nfloat g(float x) { S s; s.q = x; return s.q; }\n"
+        "float f(float x, int n) { S o = S(x);\n"
+        "{ struct S { float a; float b; }; S s = S(x, 1.0); o.q += s.a * s.b; } S p = S(g(x)); return o.q + p.q; }",
+        lambda x, n: 3.0 * x,
+    ),
+    "a constant and a function with the names of structs": (
+        "float S(float x) { return x * 2.0; }\nfloat g(float x) { struct S { float b; }; struct T { S s; };\n"
+        "T t = T(S(x)); return t.s.b; }\nconst float T = 4.0;\nfloat f(float x, int n) { return g(x) + S(x) + T; }",
+        lambda x, n: 3.0 * x + 4.0,
+    ),
     "a function that a builtin with out parameters would call": (
         "float trunc(float x) { return 7.0; }\nfloat f(float x, int n) { float w; return modf(x, w) + w + trunc(x); }",
         lambda x, n: x + 7.0,

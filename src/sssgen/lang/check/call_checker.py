@@ -41,8 +41,9 @@ class CallChecker:
         if isinstance(callee, s.TypeName):
             return self.constructors.type_constructor(callee, call)
         name = callee.text
-        if name in context.structs and name not in context.functions:
-            return self.constructors.construct_parts(context.structs[name], call)
+        struct = context.find_struct(name)
+        if struct is not None and (name not in context.functions or struct is not context.structs.get(name)):
+            return self.constructors.construct_parts(struct, call)
         overloads = context.functions.get(name, ())
         args = self.expressions.operands(call.args, self.outs(name, overloads, len(call.args)))
         types = tuple([arg.expr.type for arg in args])

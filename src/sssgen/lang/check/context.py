@@ -93,6 +93,10 @@ class CheckContext:
         self.texture_arrays: dict[str, list[str]] = {}
         """For each array of textures, the names of the textures that replace its elements."""
 
+    def find_struct(self, name: str) -> Struct | None:
+        """The struct that a name stands for here."""
+        return self.function.scopes.find_struct(name) or self.structs.get(name)
+
     def fail(self, span: ir.Span, message: str, hint: str = "") -> AlreadyReported:
         """Reports an error; gives the exception to raise."""
         self.reporter.error(span, message, hint)

@@ -51,7 +51,7 @@ def check_global_name(context: CheckContext, name: s.Name, overloads: bool = Fal
 def unused_global_name(context: CheckContext, name: str) -> str:
     """`name`, with a number where the file uses it at file scope, also later."""
     count, candidate = 2, name
-    while candidate in context.globals or candidate in context.file_names:
+    while candidate in context.globals or candidate in context.file_names or candidate in context.structs:
         candidate, count = f"{name}_{count}", count + 1
     return candidate
 
@@ -74,14 +74,20 @@ def names_of_file(file: s.File) -> set[str]:
     return names
 
 
-def declare_struct(context: CheckContext, struct: s.StructSyntax) -> None:
-    """Declares a struct. A struct of a function is declared at file scope, as most languages have no local structs."""
-    name = struct.name.text
-    check_global_name(context, struct.name)
+def declare_struct(context: CheckContext, struct: s.StructSyntax, local: bool = False) -> None:
+    """Declares a struct. One of a function is at file scope in the IR, as most languages have no local structs."""
+    name, scope = struct.name.text, context.function.scopes.structs[-1]
+    if not local:
+        check_global_name(context, struct.name)
+    else:
+        check_not_reserved(context, struct.name)
+        if name in scope:
+            raise context.fail(struct.name.span, f"'{name}' is already declared in this block")
+        name = unused_global_name(context, name)
     fields: dict[str, Field] = {}
     for member in struct.members:
         if member.type.struct is not None:
-            declare_struct(context, member.type.struct)
+            declare_struct(context, member.type.struct, local)
         type_, quantity = named_type(context, member.type)
         for declarator in member.declarators:
             label = declarator.name
@@ -92,5 +98,10 @@ def declare_struct(context: CheckContext, struct: s.StructSyntax) -> None:
             if isinstance(field_type, Sampler) or field_type == VOID:
                 raise context.fail(label.span, f"a member cannot be {a_type(field_type)}")
             fields[label.text] = Field(label.text, field_type, quantity)
-    struct_type = context.structs[name] = Struct(name, tuple(fields.values()))
+    struct_type = Struct(name, tuple(fields.values()))
+    if local:
+        scope[struct.name.text] = struct_type
+        context.file_names.add(name)
+    else:
+        context.structs[name] = struct_type
     context.struct_declarations.append(ir.StructDecl(struct_type, struct.doc, struct.name.span))

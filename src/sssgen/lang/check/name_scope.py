@@ -6,7 +6,7 @@ from collections.abc import Container
 from typing import NamedTuple
 
 from sssgen.ir.nodes import Span
-from sssgen.ir.types import Type
+from sssgen.ir.types import Struct, Type
 
 
 class Variable(NamedTuple):
@@ -50,6 +50,8 @@ class Scopes:
 
     def __init__(self) -> None:
         self.stack: list[dict[str, Variable]] = [{}]
+        self.structs: list[dict[str, Struct]] = [{}]
+        """The structs that each scope declares."""
         self.visible: dict[str, Variable] = {}
         """The variables of all scopes by their names in the IR."""
         self.taken: list[list[str]] = [[]]
@@ -59,6 +61,7 @@ class Scopes:
 
     def push(self) -> None:
         self.stack.append({})
+        self.structs.append({})
         self.taken.append([])
         self.counters.append({})
 
@@ -68,6 +71,7 @@ class Scopes:
         `loop`: it is the scope of a loop's head.
         """
         self.stack.pop()
+        self.structs.pop()
         names = self.taken.pop()
         self.counters.pop()
         if loop:
@@ -80,6 +84,12 @@ class Scopes:
 
     def find(self, name: str) -> Variable | None:
         for scope in reversed(self.stack):
+            if name in scope:
+                return scope[name]
+        return None
+
+    def find_struct(self, name: str) -> Struct | None:
+        for scope in reversed(self.structs):
             if name in scope:
                 return scope[name]
         return None

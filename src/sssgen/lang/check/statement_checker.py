@@ -102,7 +102,7 @@ class StatementChecker:
     def declaration(self, declaration: s.Declaration) -> list[ir.Stmt]:
         context, function = self.context, self.context.function
         if declaration.type.struct is not None:
-            declare_struct(context, declaration.type.struct)
+            declare_struct(context, declaration.type.struct, local=True)
         if not declaration.declarators:
             return []
         type_, quantity = named_type(context, replace(declaration.type, lengths=()))

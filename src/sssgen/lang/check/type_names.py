@@ -18,8 +18,8 @@ def named_type(context: CheckContext, name: s.TypeName) -> tuple[Type, str]:
     quantity = ""
     if name.name in BY_NAME:
         type_ = BY_NAME[name.name]
-    elif name.name in context.structs:
-        type_ = context.structs[name.name]
+    elif (struct := context.find_struct(name.name)) is not None:
+        type_ = struct
     elif name.name in q.QUANTITIES and not context.plain:
         type_, quantity = q.QUANTITIES[name.name], name.name
     elif context.plain and (why := why_not(name.name)):
