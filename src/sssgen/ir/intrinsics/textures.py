@@ -21,6 +21,9 @@ _LAYERS = ("vec4(sampler2DArray, vec3", "vec4(samplerCubeArray, vec4")
 _OWN_LAYER = ("vec4(sampler2DArray, vec2, int", "vec4(samplerCubeArray, vec3, int")
 _FLAT = ("vec4(sampler2D, vec2", "vec4(sampler3D, vec3")
 _SHADOWS = ("sampler2DShadow,vec3", "samplerCubeShadow,vec4", "sampler2DArrayShadow,vec4")
+_SHADOW_GRADIENTS = (
+    "sampler2DShadow,vec3,vec2,vec2", "samplerCubeShadow,vec4,vec3,vec3", "sampler2DArrayShadow,vec4,vec2,vec2",
+)  # fmt: skip
 _KINDS = ("", "i", "u")
 _EIGHT_BITS = "D3D: filter weights of 8 bits; WGSL, Vulkan, GLSL: no bound"
 
@@ -145,8 +148,11 @@ float textureLod(sampler2DShadow map, vec3 P, float level) { return textureCompa
         (
             "vec4(sampler2D, vec2, vec2, vec2)", *(f"{read}, vec3, vec3)" for read in _SAMPLE[1:]),
             "vec4(sampler2DArray, vec3, vec2, vec2)", "vec4(samplerCubeArray, vec4, vec3, vec3)",
+            "float(sampler2DShadow, vec3, vec2, vec2)", "float(samplerCubeShadow, vec4, vec3, vec3)",
+            "float(sampler2DArrayShadow, vec4, vec2, vec2)",
         ),
-        "Filtered texture read; the level comes from the given derivatives of the coordinate along screen x and y.",
+        "Filtered texture read; the level comes from the given derivatives of the coordinate along screen x and y. HLSL and "
+        "WGSL compare at level 0 only.",
         componentwise=False, range=texels,
         texts={
             "hlsl": "{texture}.SampleGrad({sampler}, {1}, {2}, {3})",
@@ -155,10 +161,14 @@ float textureLod(sampler2DShadow map, vec3 P, float level) { return textureCompa
             "hlsl-macros/sampler2D,vec2,vec2,vec2": "SAMPLE_TEXTURE2D_GRAD({texture}, {sampler}, {1}, {2}, {3})",
             "wgsl": "textureSampleGrad({texture}, {sampler}, {1}, {2}, {3})",
             "wgsl/sampler2DArray,vec3,vec2,vec2": "", "wgsl/samplerCubeArray,vec4,vec3,vec3": "",
+            **{f"{language}/{shadow}": "" for language in ("hlsl", "wgsl") for shadow in _SHADOW_GRADIENTS},
         },
         polyfill="""
 vec4 textureGrad(sampler2DArray map, vec3 P, vec2 dx, vec2 dy) { return textureLayerGrad(map, P.xy, int(round(P.z)), dx, dy); }
 vec4 textureGrad(samplerCubeArray map, vec4 P, vec3 dx, vec3 dy) { return textureLayerGrad(map, P.xyz, int(round(P.w)), dx, dy); }
+float textureGrad(sampler2DShadow map, vec3 P, vec2 dx, vec2 dy) { return textureCompareLod(map, P.xy, P.z); }
+float textureGrad(samplerCubeShadow map, vec4 P, vec3 dx, vec3 dy) { return textureCompareLod(map, P.xyz, P.w); }
+float textureGrad(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy) { return textureCompareLod(map, P.xy, int(round(P.z)), P.w); }
 """,
         splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
@@ -337,12 +347,17 @@ vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
         },
         splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),
-    Builtin("textureCompareLod", ("float(sampler2DShadow, vec2, float)",),
+    Builtin("textureCompareLod",
+        ("float(sampler2DShadow, vec2, float)", "float(samplerCubeShadow, vec3, float)", "float(sampler2DArrayShadow, vec2, int, float)"),
         "As textureCompare, at level 0.",
         componentwise=False, range=all_within(0.0, 1.0),
         texts={
             "glsl": "textureLod({texture}, vec3({1}, {2}), 0.0)", "hlsl": "{texture}.SampleCmpLevelZero({sampler}, {1}, {2})",
             "wgsl": "textureSampleCompareLevel({texture}, {sampler}, {1}, {2})",
+            "glsl/samplerCubeShadow,vec3,float": "textureGrad({texture}, vec4({1}, {2}), vec3(0.0), vec3(0.0))",
+            "glsl/sampler2DArrayShadow,vec2,int,float": "textureGrad({texture}, vec4({1}, float({2}), {3}), vec2(0.0), vec2(0.0))",
+            "hlsl/sampler2DArrayShadow,vec2,int,float": "{texture}.SampleCmpLevelZero({sampler}, float3({1}, float({2})), {3})",
+            "wgsl/sampler2DArrayShadow,vec2,int,float": "textureSampleCompareLevel({texture}, {sampler}, {1}, {2}, {3})",
         },
         splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
     ),

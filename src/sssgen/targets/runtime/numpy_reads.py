@@ -64,6 +64,8 @@ def textureLodOffset(texture: Texture, coord: Value, level: Value, offset: Value
 
 
 def textureGrad(texture: Texture, coord: Value, dx: Value, dy: Value) -> Value:
+    if texture.compare:
+        return textureCompareLod(texture, coord[:-1], coord[-1])
     return texture.sample(coord, texture.level(coord[: texture.axes], dx, dy))
 
 
