@@ -35,6 +35,7 @@ WRAPPED = [
     ("const uint K = 4294967295u; uint f(uint x) { return (K + 1u) / 2u + x; }", 5, 5),
     ("int f(int x) { return -2147483648 + x; }", 5, LOWEST + 5),
     ("int f(int x) { return -(-2147483648) + x; }", 5, LOWEST + 5),
+    ("int f(int x) { return 3000000000 + 037777777777 + x; }", 5, 3000000000 - 2**32 + 4),
     ("int f(int x) { return int(0x80000000u) / 2 + x; }", 0, -(2**30)),
     ("int f(int x) { return int(0xffffffffu) + x; }", 5, 4),
     ("int f(int x) { return (2147483647 + int(true)) / 2 + x; }", 0, -(2**30)),

@@ -178,7 +178,9 @@ class ExpressionChecker:
         if value is None:
             hint = "a number that begins with 0 is octal: remove the 0"
             raise self.context.fail(number.span, f"{number.text} is not an octal number", hint)
-        if value > 0xFFFFFFFF or (value > 0x7FFFFFFF and not unsigned and number.text[:2] not in ("0x", "0X")):
+        # GLSL takes the bits of an int that is too large; in a technique a decimal number like that is a mistake
+        by_bits = unsigned or self.context.plain or number.text[:2] in ("0x", "0X")
+        if value > (0xFFFFFFFF if by_bits else 0x7FFFFFFF):
             shown = number.text if len(number.text) <= 40 else f"{number.text[:40]}…"
             raise self.context.fail(number.span, f"{shown} does not fit in {'a uint' if unsigned else 'an int'}")
         return Typed(ir.Literal(UINT if unsigned else INT, value if unsigned else wrapped(value), number.span))
