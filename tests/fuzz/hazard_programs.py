@@ -234,6 +234,9 @@ COUNTS = ["int {0} = 0; {0} < 3; {0}++", "int {0} = 0; {0} < 40; {0}++", "int {0
           "uint {0} = 0u; {0} < (h & 7u); {0}++"]  # fmt: skip
 
 
+SIZED = ("float", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4")
+SCALES = ["1.0e-37", "1.0e-30", "1.0e-25", "1.0e-20", "1.0e-12", "1.0e-6", "1.0e-3", "1.0e3", "1.0e4", "1.0e6",
+          "1.0e10", "1.0e12", "1.0e13", "1.0e15", "1.0e20", "1.0e25", "1.0e30", "1.0e32", "1.9e32"]  # fmt: skip
 LITERALS = {"LIT": LIT, "SMALL": SMALL}
 OUTPUTS = "out float one, inout vec3 two, out mat2 three"
 PACKED = {"float": "vec4(result)", "vec2": "vec4(result, result)", "vec3": "vec4(result, 0.0)", "vec4": "result",
@@ -269,8 +272,12 @@ class HazardPrograms(ShaderPrograms):
         self.aid = aid = f"{name}_aid"
         text = f"float {aid}(float x, vec3 y, mat2 z) {{ return {self.of_aid()}; }}\n"
         self.result = self.random.choice(list(PACKED))
-        body = START + self.block(1, self.size) + "    one = t;\n    two = v;\n    three = item.turn;\n"
-        body += f"    return {self.expr(self.result)};\n"
+        body = self.block(1, self.size)
+        body += f"    one = {self.filled('{float} + t', 2)};\n    two = {self.filled('{vec3} + v', 2)};\n"
+        body += f"    three = {self.filled('{mat2} + item.turn', 2)};\n    return {self.expr(self.result)};\n"
+        if f"{aid}(" not in body:
+            text = ""
+        body = _used(START, body) + body
         text += f"{self.result} {name}_inner({PARAMETERS}, {OUTPUTS}) {{\n{body}}}\n"
         text += f"mat4 {name}({PARAMETERS}) {{\n    float one; vec3 two = d; mat2 three;\n"
         text += f"    {self.result} result = {name}_inner({NAMES}, one, two, three);\n"
@@ -288,10 +295,19 @@ class HazardPrograms(ShaderPrograms):
             return self.random.choice(LITERALS[type_])
         names = [name for name, known in self.known if known == (type_.lower() if type_.isupper() else type_)]
         if type_.isupper() or ((depth <= 0 or self.chance(20)) and names):
-            return self.random.choice(names) if names else self.leaves[type_.lower()]
+            leaf = self.random.choice(names) if names else self.leaves[type_.lower()]
+            return self.sized(leaf) if type_ in SIZED and self.chance(40) else leaf
         if depth <= 0:
             return self.leaves[type_]
         return self.filled(self.random.choice(self.rules[type_]), depth - 1)
+
+    def sized(self, leaf: str) -> str:
+        """A variable in another order of magnitude, or within bounds."""
+        limit = self.random.choice(SMALL)
+        return self.random.choice([
+            f"({leaf} * {self.random.choice(SCALES)})", f"({leaf} * {self.random.choice(SCALES)})",
+            f"({leaf} / {limit})",
+        ])  # fmt: skip
 
     def filled(self, rule: str, depth: int = 1) -> str:
         alike: dict[str, str] = {}
@@ -323,6 +339,17 @@ class HazardPrograms(ShaderPrograms):
         return self.loop(start, f"{pad}    {name} += 1;\n{pad}}}\n", (name, "int"), False, indent, size)
 
 
+def _used(declarations: str, body: str) -> str:
+    """The declarations that a body needs."""
+    lines = declarations.splitlines(keepends=True)
+    return "".join([line for line in lines if re.search(rf"\b{line.split('=')[0].split()[-1].split('[')[0]}\b", body)])
+
+
 def source(random: Random, count: int, size: int = 3) -> str:
-    """A text of `count` programs: `program_0` and so on, of `PARAMETERS`, each with a mat4 as result."""
-    return "\n".join([HELPERS, *(HazardPrograms(random, size).program(f"program_{number}") for number in range(count))])
+    """A text of `count` programs, `program_0` and so on, of `PARAMETERS`, each with a mat4 as result.
+
+    Each has up to `size` statements in a block.
+    """
+    sizes = [random.randint(1, size) for _ in range(count)]
+    programs = [HazardPrograms(random, one).program(f"program_{number}") for number, one in enumerate(sizes)]
+    return "\n".join([HELPERS, *programs])

@@ -28,9 +28,9 @@ from sssgen.ir.types import BY_NAME, Matrix, Type, Vector, kind_of  # noqa: E402
 from sssgen.lang.loader import load_text  # noqa: E402
 from sssgen.pipeline.compiler import transpile  # noqa: E402
 
-BATCH = 25
+BATCH = 40
 """Programs in one text."""
-LANES = 96
+LANES = 64
 _SIZES = [0.0, 1e-45, 1e-40, 1.2e-38, 1e-37, 1e-30, 1e-20, 1e-12, 1e-6, 1e-3, 0.25, 0.5, 1.0, 1.0, 1.5, 2.0, 3.0, 8.0,
           87.0, 130.0, 1e3, 1e4, 1e6]  # fmt: skip
 _BITS = [0, 1, 2, 3, 5, 31, 32, 255, 0x7F800000, 0x7FC00000, 0x7F800001, 0x3F800000, 0x7F7FFFFF, 0x7C007C00, 0x7FFFFFFF]
@@ -117,7 +117,7 @@ def main() -> int:
     parser.add_argument("--processes", type=int, default=1)
     parser.add_argument("--backend", default="numpy-f32")
     parser.add_argument("--batch", type=int, default=BATCH, help="programs in one text")
-    parser.add_argument("--size", type=int, default=3, help="statements in a block, at most")
+    parser.add_argument("--size", type=int, default=2, help="statements in a block, at most")
     options = parser.parse_args()
     start = time.monotonic()
     seeds = range(options.seed * 1_000_000, options.seed * 1_000_000 + -(-options.programs // options.batch))

@@ -96,6 +96,19 @@ def test_only_unproven_sites_are_guarded() -> None:
     assert body(source).count("max(") == 1 and "\n".join(lines(source, "all")).count("max(") == 4
 
 
+@pytest.mark.parametrize(
+    ("argument", "guarded"),
+    [
+        ("clamp(x, -1.0, 1.0)", "clamp(x, 1.0e-37, 1.0)"),
+        ("clamp(x, -2.0, -1.0)", "max(clamp(x, -2.0, -1.0), 1.0e-37)"),
+        ("clamp(x, 0.0, y)", "max(min(max(x, 0.0), y), 1.0e-37)"),
+        ("max(x, -2.0)", "max(x, 1.0e-37)"),
+    ],
+)
+def test_the_bound_of_a_guard_replaces_a_smaller_one_only_where_it_stays_in_force(argument: str, guarded: str) -> None:
+    assert body(f"float f(float x, float y) {{ return log(x + log2({argument})); }}").count(f"log2({guarded})") == 1
+
+
 def test_compound_assignments() -> None:
     shown = lines("float f(float x, float y) { x /= y; x *= 2.0; return x; }")
     assert shown[1:3] == ["x = x / (max(abs(y), 1.0e-20) * (2.0 * step(0.0, y) - 1.0));", "x *= 2.0;"]

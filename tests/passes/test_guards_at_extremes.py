@@ -114,6 +114,18 @@ def test_formulas_that_overflow_inside_are_guarded(name: str, backend: Callable[
         assert np.isfinite(got).all(), (source, got[..., ~np.isfinite(got).reshape(-1, 300).all(axis=0)][..., :3])
 
 
+@pytest.mark.parametrize("name", BACKENDS)
+def test_a_guard_does_not_repeat_a_call_that_writes(name: str, backend: Callable[[str], Backend]) -> None:
+    """The guard of atan(x, y) reads x too."""
+    source = """
+float next(inout float t) { t += 1.0; return t; }
+float f(float t, float y) { float angle = atan(next(t), y) + pow(next(t), y) + mod(y, next(t)); return angle + t; }
+"""
+    got = results(backend(name), source, [0.0, 1.0], [1.0, -3.0])
+    # atan(1, 1) + 2^1 + mod(1, 3) + 3, and atan(2, -3) + 3^-3 + mod(-3, 4) + 4
+    assert np.allclose(got, [0.785398 + 2.0 + 1.0 + 3.0, 2.553590 + 0.037037 + 1.0 + 4.0], rtol=1e-3)
+
+
 def test_products_of_ordinary_size_have_no_guard() -> None:
     for type_, value in (
         ("mat3", "m * m * 0.5 + outerProduct(v, w) + transpose(m)"),

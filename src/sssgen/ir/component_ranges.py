@@ -58,7 +58,17 @@ def linear_blend(F: Format, x: Range, y: Range, z: Range) -> Range:
 def positive_power(F: Format, x: Range, y: Range) -> Range:
     """pow, whose base is at least the smallest normal number, or 0, whose powers are 0."""
     result = power(maximum(x, F.tiny), y)
-    return result if x.low > 0.0 else Range(0.0, result.high)
+    low, high = (result.low if x.low > 0.0 else 0.0), result.high
+    if y.size > 64.0:  # the error of log2 counts; of 1 it has none
+        error = 2.0 ** min(logarithm_error(F) * y.size, 1000.0)
+        low = low / error if low <= 1.0 else max(low / error, 1.0)
+        high = high * error if high >= 1.0 else min(high * error, 1.0)
+    return Range(low, high)
+
+
+def logarithm_error(F: Format) -> float:
+    """The absolute error of log2 near 1 that WGSL and Vulkan allow."""
+    return 4.0 * F.epsilon
 
 
 def floored_remainder(F: Format, x: Range, y: Range) -> Range:

@@ -7,6 +7,7 @@ treat guards as ordinary code.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
@@ -15,7 +16,7 @@ from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.intrinsics import Guard, by_column, with_constants
 from sssgen.ir.transform import Transformer, rewrite_function
 from sssgen.ir.types import BOOL, FLOAT, UINT, Matrix, Type, components, kind_of, spell, vector_of
-from sssgen.ir.walk import operands, with_operands
+from sssgen.ir.walk import operands, subexpressions, with_operands
 from sssgen.passes.ranges.range_pass import Findings, analyse
 from sssgen.passes.ranges.sites import BOUNDS, DIVISION, Site
 from sssgen.passes.substitute import inlined, with_larger_bound
@@ -120,6 +121,8 @@ class _Guarder(Transformer):
         if not guard.text:
             return self.with_safe_divisions(node)
         args = operands(node)
+        if isinstance(node, ir.Intrinsic) and guard.replaces in ("x", "y", "z"):
+            guard = _of_whole_call(guard, node)
         name = guard.function or f"safe_{site.what}"
         types = [arg.type for arg in args]
         module, letters = self.source(guard, name, types, node.type, self.format, site.limits)
@@ -181,6 +184,17 @@ def guard_of(site: Site) -> Guard:
         if site.args[0].low >= low:
             return guard._replace(text="min(x, HIGH)")
     return guard
+
+
+def _of_whole_call(guard: Guard, node: ir.Intrinsic) -> Guard:
+    """The guard of one argument, or, if its text repeats another one that calls a function, of the whole call."""
+    letters = "xyz"[: len(node.args)]
+    repeated = [arg for letter, arg in zip(letters, node.args, strict=True)
+                if letter != guard.replaces and re.search(rf"\b{letter}\b", guard.text)]  # fmt: skip
+    if not any(isinstance(part, ir.Call) for arg in repeated for part in subexpressions(arg)):
+        return guard
+    args = ", ".join([guard.text if letter == guard.replaces else letter for letter in letters])
+    return guard._replace(text=f"{node.name}({args})", replaces="", scalar="")
 
 
 def remedy(site: Site, format: Format) -> str:

@@ -55,4 +55,7 @@ def with_larger_bound(module: ir.Module, args: Sequence[ir.Expr]) -> ir.Expr | N
     old, new = inner.args[1], value.args[1]
     if not isinstance(old, ir.Literal) or old.value > new.value:
         return None
+    upper = inner.args[2] if inner.name == "clamp" else new
+    if not isinstance(upper, ir.Literal) or upper.value < new.value:  # it would undo the larger bound
+        return None
     return inner._replace(args=(inner.args[0], new._replace(span=old.span), *inner.args[2:]))

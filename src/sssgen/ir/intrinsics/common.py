@@ -197,7 +197,7 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
     Builtin("smoothstep", ("genF(genF, genF, genF)", "genF(float, float, genF)"),
         "Cubic step t·t·(3 - 2·t) with t = clamp((z - x)/(y - x), 0, 1).",
         not_constant=("wgsl",), fold=_smoothstep, same_quantity=3, range=within(0.0, 1.0),
-        guards=(Guard(lambda F, x, y, z: (y - x).low > 0.0 and (y - x).high <= F.largest, "edges in the wrong order, or equal", "{ genF t = clamp((z - x) / clamp(y - x, DIVISOR, LARGEST), 0.0, 1.0); return t * t * (3.0 - 2.0 * t); }",
+        guards=(Guard(lambda F, x, y, z: (y - x).low >= F.tiny and (y - x).high <= F.largest, "edges in the wrong order, or equal", "{ genF t = clamp((z - x) / clamp(y - x, DIVISOR, LARGEST), 0.0, 1.0); return t * t * (3.0 - 2.0 * t); }",
             doc="smoothstep; a step if the edges are equal or in the wrong order."),),
         defined=lambda rt, x, y, z: x < y, inside=lambda rt, x, y, z: (x < y) & (y - x < 1e30),
         domain="x < y", explicit_type=("wgsl",), cost=8, ulp=16.0,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from sssgen.ir.component_ranges import positive_power
+from sssgen.ir.component_ranges import logarithm_error, positive_power
 from sssgen.ir.formats import Format
 from sssgen.ir.intervals import INF, Range, clip, falling, maximum, rising
 from sssgen.ir.intrinsics.table import F1, F2, LARGEST, Builtin, Guard, Samples, checked
@@ -20,6 +20,11 @@ def _below_overflow(F: Format, result: Range) -> Range:
     return Range(min(result.low, 0.99 * top), min(result.high, 1.01 * top))
 
 
+def _power_is_finite(F: Format, x: Range, y: Range) -> bool:
+    """Whether exp2(y * log2(x)) does not overflow, though log2 has an error; it has a margin of 1 for that."""
+    return (y * rising(math.log2, maximum(x, F.tiny))).high + max(logarithm_error(F) * y.size - 1.0, 0.0) < F.exponent
+
+
 # A table: several fields to a line.
 # fmt: off
 ROWS = (
@@ -27,7 +32,7 @@ ROWS = (
         fold=lambda x, y: checked(x > 0.0 or (x == 0.0 and y > 0.0), math.pow(x, y)),
         samples=Samples(floats=((0.0, LARGEST), (-64.0, 64.0))), exact_bounds=(0.0, INF), range=positive_power,
         guards=(
-            Guard(lambda F, x, y: (y * rising(math.log2, maximum(x, F.tiny))).high < F.exponent, "a power that overflows", "exp2(min(y * log2(max(x, TINY)), EXPONENT))", result=_below_overflow),
+            Guard(_power_is_finite, "a power that overflows", "exp2(min(y * log2(max(x, TINY)), EXPONENT))", result=_below_overflow),
             Guard(lambda F, x, y: x.low > 0.0 or (x.low >= 0.0 and y.low >= 0.25), "a power of less than 0, or one of 0 near the power 0", "max(x, TINY)", "x", result=_below_overflow),
         ),
         defined=lambda rt, x, y: (x > 0.0) | (x == 0.0) & (y > 0.0),
