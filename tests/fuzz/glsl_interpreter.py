@@ -250,9 +250,10 @@ class Interpreter:
             for index, (direction, place, value) in enumerate(args):
                 if direction in ("out", "inout"):
                     places.append((index, place(frame)))
-                    inner[index] = load(places[-1][1]) if direction == "inout" else UNSET
                 else:
                     inner[index] = value(frame)
+            for index, target in places:
+                inner[index] = load(target) if args[index][0] == "inout" else UNSET
             result = self.returned(function, body(inner))
             for index, target in places:
                 store(target, inner[index])

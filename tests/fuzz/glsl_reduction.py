@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from copy import deepcopy
 
-from glsl_tree import NONE, Function, Node, Program
+from glsl_tree import NONE, Function, Node, Program, copied, copied_program
 from glsl_values import kind, matrix_size, vector_size
 
 STATEMENTS = {"block", "declare", "do_expression", "if", "for", "while", "do", "switch", "break", "continue", "return",
@@ -40,7 +39,7 @@ def _without_declarations(program: Program, fails: Callable[[Program], bool]) ->
     for name in ("functions", "variables", "macros", "structs"):
         index = 0
         while index < len(getattr(program, name)):
-            smaller = deepcopy(program)
+            smaller = copied_program(program)
             declarations = getattr(smaller, name)
             key = index if isinstance(declarations, list) else list(declarations)[index]
             if isinstance(declarations[key], Function) and declarations[key].name == program.entry:
@@ -54,7 +53,7 @@ def _without_declarations(program: Program, fails: Callable[[Program], bool]) ->
     for index, variable in enumerate(program.variables):
         if variable.value is not None and variable.value.kind != "literal":
             for value in _simpler(variable.value):
-                smaller = deepcopy(program)
+                smaller = copied_program(program)
                 smaller.variables[index].value = value
                 if fails(smaller):
                     program = smaller
@@ -70,7 +69,7 @@ def _smaller_body(program: Program, index: int, fails: Callable[[Program], bool]
         if position >= len(nodes):
             return program
         for edit in _edits(nodes[position]):
-            smaller = deepcopy(program)
+            smaller = copied_program(program)
             edit(list(_nodes(smaller.functions[index].body))[position])
             if fails(smaller):
                 program = smaller
@@ -98,14 +97,14 @@ def _edits(node: Node) -> Iterator[Callable[[Node], None]]:
         for part in node.parts:
             bodies = part.parts if part.kind == "case" else [part] if part.kind in STATEMENTS else []
             if bodies and node.kind != "block":
-                yield lambda one, bodies=bodies: _become(one, Node("block", parts=deepcopy(bodies)))  # type: ignore[misc]
+                yield lambda one, bodies=bodies: _become(one, Node("block", parts=[copied(body) for body in bodies]))  # type: ignore[misc]
         if node.kind == "block" and len(node.parts) == 1:
             yield lambda one: _become(one, one.parts[0])
         return
     if node.kind in (NONE, "case") or not node.type:
         return
     for simpler in _simpler(node):
-        yield lambda one, simpler=simpler: _become(one, deepcopy(simpler))  # type: ignore[misc]
+        yield lambda one, simpler=simpler: _become(one, copied(simpler))  # type: ignore[misc]
 
 
 def _simpler(node: Node) -> Iterator[Node]:

@@ -6,8 +6,7 @@ type is its text in GLSL; `~float` and `~vec3` are floats that may be rounded, w
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 
@@ -238,12 +237,22 @@ def source(program: Program) -> str:
     return "".join(parts) + "".join(f"#undef {name}\n" for name in program.macros)
 
 
-def walk(node: Node) -> Iterator[Node]:
-    """A node and everything in it, labels too."""
-    yield node
-    for part in node.parts:
-        yield from walk(part)
+def copied(node: Node) -> Node:
+    """A copy that shares no node."""
+    data = node.data
     if node.kind == "case":
-        for label in node.data:
-            if label is not None:
-                yield from walk(label)
+        data = [None if label is None else copied(label) for label in data]
+    return Node(node.kind, node.type, [copied(part) for part in node.parts], data)
+
+
+def copied_program(program: Program) -> Program:
+    """A copy whose declarations and trees can be changed."""
+    variables = [replace(one, value=one.value and copied(one.value)) for one in program.variables]
+    functions = [replace(one, params=list(one.params), body=copied(one.body)) for one in program.functions]
+    return replace(
+        program,
+        structs=dict(program.structs),
+        macros=dict(program.macros),
+        variables=variables,
+        functions=functions,
+    )

@@ -62,6 +62,7 @@ def run(job: Job) -> Outcome:
     """Runs a batch in this process, whose back ends stay."""
     global _runner
     if _runner is None:
+        sys.setrecursionlimit(10_000)
         _runner = Runner(job.targets)
     _runner.seconds.clear()
     cases = _runner.timed("generate and interpret", batch, job.seed, job.number)

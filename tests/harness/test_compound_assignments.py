@@ -24,6 +24,11 @@ CASES = [
     ("float g(inout float y) { y += 5.0; return y * 2.0; } float f(float x) { x -= g(x); return x; }", 3.0, -13.0),
     ("float g(inout float y) { y += 5.0; return y * 2.0; } float f(float x) { x *= 1.0 + g(x) + x; return x; }",
       3.0, 75.0),
+    ("float f(float x) { ivec2 k = ivec2(x, 1); int y = ++k[k.x & 1]; return float(y * 10 + k.x); }", 1.0, 21.0),
+    ("float f(float x) { int a[2] = int[2](1, 0); int y = a[a[0]] = 7; return float(y * 100 + a[0] * 10 + a[1]); }",
+     0.0, 717.0),
+    ("float f(float x) { int a[2] = int[2](0, 5); int y = a[a[0]] = 1; return float(y * 100 + a[0] * 10 + a[1]); }",
+     0.0, 115.0),
     ("float f(float x) { bool b = x > 0.0; x += b && (x += 1.0) > 0.0 ? x : 0.0; return x; }", 3.0, 7.0),
 ]  # fmt: skip
 READ = """

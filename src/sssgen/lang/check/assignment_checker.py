@@ -36,7 +36,9 @@ class AssignmentChecker:
         """An assignment inside an expression."""
         function = self.context.function
         statement = self.assign(assignment)
-        value = statement.target
+        name, position = root_name(statement.target), len(function.prelude)
+        value = self.expressions.fixed_place(statement.target, {name}, calls=False, start=position)
+        statement = statement._replace(target=value)  # it is read again afterwards
         if assignment.after:
             value = function.temporary(f"{root_name(statement.target)}_before", statement.target)
         function.prelude.append(statement)

@@ -1,0 +1,100 @@
+"""Random plain GLSL on every target, against the interpreter of `glsl_interpreter.py`; by hand: `random_glsl.py`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import pytest
+
+import random_glsl
+from glsl_batches import TARGETS, Case, Runner
+from glsl_programs import INPUTS
+from glsl_reduction import reduced, size
+from glsl_tree import Function, Node, Parameter, Program, source
+from sssgen.harness.backends import Backend
+
+FEW, MANY = 4, 140
+"""Batches in a test run, and in a long one: 64 and 2,240 programs."""
+
+
+@pytest.fixture(scope="module")
+def runners() -> Iterator[dict[str, Runner]]:
+    """One runner per target; its back ends end with the tests."""
+    found = {target: Runner((target,)) for target in TARGETS}
+    yield found
+    for runner in found.values():
+        runner.close()
+
+
+def failures(runner: Runner, seed: int, batches: int) -> list[str]:
+    found = []
+    for number in range(batches):
+        cases = [case for case in random_glsl.batch(seed, number) if case.is_useful]
+        assert len(cases) > random_glsl.BATCH // 2
+        for case, failure in runner.failures(cases):
+            found.append(f"{random_glsl.title(failure)}, batch {number} of seed {seed}\n{failure.message}\n{case.text}")
+    return found
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_random_programs(backend: Callable[[str], Backend], runners: dict[str, Runner], target: str) -> None:
+    backend(target)  # skips where it is missing
+    found = failures(runners[target], 20, FEW)
+    assert not found, "\n\n".join(found[:3])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("target", TARGETS)
+def test_many_random_programs(backend: Callable[[str], Backend], runners: dict[str, Runner], target: str) -> None:
+    backend(target)
+    found = failures(runners[target], 21, MANY)
+    assert not found, "\n\n".join(found[:3])
+
+
+def program_of(value: Node) -> Program:
+    """A program that returns the value in the first of its four numbers; its inputs are a, b, c and so on."""
+    zero = Node("literal", "int", [], (0, "0"))
+    result = Node("return", "ivec4", [Node("construct", "ivec4", [value, zero, zero, zero], "ivec4")])
+    params = [Parameter(type_, letter) for type_, letter in zip(INPUTS, "abcdefghi", strict=True)]
+    return Program(functions=[Function("entry", "ivec4", params, Node("block", parts=[result]))], entry="entry")
+
+
+A, B = (Node("name", "int", [], name) for name in "ab")
+SUM = Node("binary", "int", [Node("binary", "int", [A, B], "*"), B], "+")
+
+
+def test_the_interpreter_wraps_integers() -> None:
+    case = Case(program_of(SUM))
+    assert case.valid.all()
+    assert any(abs(number) > 2**30 for number in case.expected[:, 0])
+    assert all(-(2**31) <= number < 2**31 for number in case.expected[:, 0])
+
+
+def test_a_wrong_program_is_found(runners: dict[str, Runner]) -> None:
+    """The text says `*` where the tree that is interpreted says `+`."""
+    case = Case(program_of(SUM))
+    assert runners["numpy"].failures([case]) == []
+    case.text = source(program_of(Node("binary", "int", [Node("binary", "int", [A, B], "*"), B], "*")))
+    (found,) = runners["numpy"].failures([case])
+    assert found[1].kind == "wrong"
+
+
+def test_an_invalid_program_is_found_in_its_batch(runners: dict[str, Runner]) -> None:
+    cases = [case for case in random_glsl.batch(22, 0) if case.is_useful]
+    cases[3].text = cases[3].text.replace("return ", "return undeclared + ", 1)
+    (found,) = runners["numpy"].failures(cases)
+    assert found[0] is cases[3]
+    assert found[1].kind == "refused"
+
+
+def test_a_program_is_reduced() -> None:
+    """To the operation that fails."""
+    program = random_glsl.batch(23, 1)[0].program
+    program.functions[-1].body.parts.insert(0, Node("do_expression", parts=[Node("assign", "int", [A, SUM], "=")]))
+
+    def fails(candidate: Program) -> bool:
+        return "a * b" in source(candidate)
+
+    small = reduced(program, fails)
+    assert fails(small)
+    assert size(small) < 20 < size(program)
