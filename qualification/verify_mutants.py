@@ -221,7 +221,7 @@ def originals(path: Path, seed: int) -> Iterator[Original]:
     shown = path.name
     module = load(written.text, shown, written.version)
     functions = [part for part in module.functions if part.body is not None and part.span.file == shown]
-    cases = [case for case in probed(module, functions) if case.probes]
+    cases = [case for case in probed(module, functions, written.text) if case.probes]
     probes = "\n".join(probe.text for case in cases for probe in case.probes)
     with_probes = load(written.text + probes, shown, written.version)
     for number in range(len(cases)):
