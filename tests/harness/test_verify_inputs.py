@@ -94,6 +94,8 @@ uint f(uint x, int n) {
     "angles": "float f(vec2 p) { return atan(p.y, p.x) + sin(p.x) * 100.0 + acos(clamp(p.y, -1.0, 1.0)); }",
     "long loops": "float f(int n, float s) { float t = 0.0; for (int i = 0; i < n; i++) t += s; return t; }",
     "float loops": "float f(float far) { float s = 0.0; for (float t = 0.0; t < far; t += 0.25) s += t; return s; }",
+    "known names": "int f(int iTime, ivec2 fragCoord) { return (iTime & 7) + fragCoord.x; }",
+    "blend": "float f(float a, float b, float k) { return mix(b, a, clamp(0.5 + (b - a) / k, 0.0, 1.0)); }",
     "open loops": "int f(uint n) { int k = 0; while (n != 0u) { n >>= 1; k++; } return k; }",
 }
 

@@ -136,7 +136,7 @@ def _drawn(
     kind = kind_of(source.type)
     if kind == "bool":
         return rng.random(shape) < 0.5
-    if ends := RANGES.get(source.shown):
+    if kind == "float" and (ends := RANGES.get(source.shown)):
         return single(np.where(rng.random(shape) < 0.9, rng.uniform(*ends, shape), _extreme(source, shape, rng)))
     if source.bounds_loops:
         few = rng.integers(-1, LOOPS, shape)

@@ -251,6 +251,9 @@ class Case:
         self, name: str, got: Mapping[str, Array], wanted: Mapping[str, Array], defined: Array
     ) -> Comparison:
         """The largest deviation of the defined lanes, without those whose deviation is explained by rounding."""
+        for output, right in wanted.items():
+            if got[output].shape != right.shape:
+                return Comparison(None, error=f"{output} has the shape {got[output].shape}, not {right.shape}")
         each = {output: np.where(defined, errors(got[output], right), 0.0) for output, right in wanted.items()}
         beyond = np.any([error > GOAL for error in each.values()], axis=0)
         unexplained = beyond.copy()
