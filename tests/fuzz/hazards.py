@@ -118,19 +118,18 @@ def main() -> int:
     parser.add_argument("--backend", default="numpy-f32")
     parser.add_argument("--batch", type=int, default=BATCH, help="programs in one text")
     parser.add_argument("--size", type=int, default=2, help="statements in a block, at most")
+    parser.add_argument("--seconds", type=float, default=float("inf"), help="start no more programs after this time")
     options = parser.parse_args()
     start = time.monotonic()
     seeds = range(options.seed * 1_000_000, options.seed * 1_000_000 + -(-options.programs // options.batch))
     work = partial(batch, options.backend, options.size, options.batch)
     total = Count(0, 0, 0, [])
-    if options.processes > 1:
-        with ProcessPoolExecutor(options.processes) as pool:
-            counts = pool.map(work, seeds)
-            for count in counts:
-                total = _added(total, count)
-    else:
-        for seed in seeds:
-            total = _added(total, work(seed))
+    with ProcessPoolExecutor(options.processes) as pool:
+        for count in pool.map(work, seeds):
+            total = _added(total, count)
+            if time.monotonic() - start > options.seconds:
+                pool.shutdown(cancel_futures=True)
+                break
     seconds = time.monotonic() - start
     print(
         f"{total.programs} programs of {LANES} lanes on {options.backend}: {total.proven} operations proven safe, ",

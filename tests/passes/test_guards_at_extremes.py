@@ -126,6 +126,16 @@ float f(float t, float y) { float angle = atan(next(t), y) + pow(next(t), y) + m
     assert np.allclose(got, [0.785398 + 2.0 + 1.0 + 3.0, 2.553590 + 0.037037 + 1.0 + 4.0], rtol=1e-3)
 
 
+@pytest.mark.parametrize("name", BACKENDS)
+def test_a_call_in_a_later_argument_may_write_an_earlier_one(name: str, backend: Callable[[str], Backend]) -> None:
+    source = """
+float scale(inout float x, float by) { x *= by; return by; }
+float f(float y, float by) { float x = by; scale(x, scale(x, clamp(by, 1.0e20, 1.0e30))); return x; }
+"""
+    got = results(backend(name), source, [0.0, 1.0], [1.0, 3.0])
+    assert np.isfinite(got).all() and (got >= 1e20).all(), got
+
+
 def test_products_of_ordinary_size_have_no_guard() -> None:
     for type_, value in (
         ("mat3", "m * m * 0.5 + outerProduct(v, w) + transpose(m)"),

@@ -97,10 +97,16 @@ class RangeAnalysis(CallSummaries):
 
     def call(self, node: ir.Call) -> Value:
         function = self.functions[node.function]
-        args = [
-            self.unknown(param.type) if param.direction == "out" else self.expr(arg)
-            for param, arg in zip(function.params, node.args, strict=True)
-        ]
+        args, before = [], []
+        for param, arg in zip(function.params, node.args, strict=True):
+            variable = root(arg) if param.direction == "inout" else None
+            args.append(self.unknown(param.type) if param.direction == "out" else self.expr(arg))
+            before.append((variable.name, self.state.env.get(variable.name)) if variable is not None else None)
+        for index, evaluated in enumerate(before):
+            # a call in a later argument may have written the variable, and the callee gets what is in it then
+            if evaluated is not None and self.state.env.get(evaluated[0]) is not evaluated[1]:
+                facts = self.state.facts
+                args[index] = self.joined(args[index], self.expr(node.args[index]), facts, facts)
         # the call may write an index that a target uses
         written = [
             self.places(arg) if param.direction != "in" and root(arg) is not None else None
