@@ -69,6 +69,12 @@ SNIPPETS = [
     ("struct T { vec3 v; }; struct S { T t; int n[2]; }; const S s = S(T(vec3(1.0, 2.0, 3.0)), int[2](4, 5));"
      " const T t = s.t; const vec2 w = t.v.zy; const int n = s.n[1]; float f(float x) { return x + w.x * float(n); }",
      1.0, 16.0),
+    ("const int K[2] = int[2](1, 3); const int N = K[1];"
+     " float f(float x) { for (int i = 0; i < N; i++) { x += 1.0; } return x; }", 1.0, 4.0),
+    ("float f(float x) { vec4 r = false ? vec4(1, ivec3(2)) : vec4(3); return r.y + x; }", 1.0, 4.0),
+    ("float f(float x) { vec4 r = mix(vec4(1.0, vec3(2.0)), vec4(3.0), bvec4(true, false, true, false));"
+     " return r.x * 10.0 + r.y + x; }", 1.0, 33.0),
+    ("float f(float x) { bvec3 r = true ? bvec3(true) : bvec3(true, bvec2(false)); return float(r.z) + x; }", 1.0, 2.0),
 ]  # fmt: skip
 
 

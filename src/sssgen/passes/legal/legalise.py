@@ -25,7 +25,7 @@ from sssgen.passes.legal.integer_operators import counts_up, with_result
 from sssgen.passes.legal.legal_operators import is_integer_division, legal_operator, widened
 from sssgen.passes.legal.matrix_columns import by_whole_columns, matrix_from, needs_columns
 from sssgen.passes.legal.part_stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
-from sssgen.passes.legal.wide_constants import ConstantIntegers, is_wider
+from sssgen.passes.legal.wide_constants import ConstantIntegers, chooses_nested, is_wider
 from sssgen.passes.lift_calls import Calls, awkward, lift, reads_too_late
 from sssgen.passes.scopes import assigned, declared, fresh, outs_of
 from sssgen.passes.substitute import inlined, is_cheap
@@ -333,14 +333,15 @@ class _Legaliser(Transformer):
 
     def legal(self, expr: ir.Expr) -> ir.Expr:
         """A node whose operands are legal already."""
-        if self.integers is None or kind_of(expr.type) not in ("int", "uint"):
+        nested = not self.capabilities.ternary and chooses_nested(expr)
+        if self.integers is None or not (nested or kind_of(expr.type) in ("int", "uint")):
             return self.expressible(expr)
         parts = self.integers.parts(expr)
         numbers = combined(expr, parts) if parts else None
         if numbers is None:
             return self.expressible(expr)
-        wider = is_wider(expr, parts, numbers)
-        legal = literal(expr.type, numbers, expr.span) if wider else self.expressible(expr)
+        computed = nested or is_wider(expr, parts, numbers)
+        legal = literal(expr.type, numbers, expr.span) if computed else self.expressible(expr)
         self.integers.note(legal, numbers)
         return legal
 

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 
 from sssgen.ir import constant_arithmetic as arithmetic
 from sssgen.ir.constant_evaluation import Value, combined
-from sssgen.ir.nodes import Binary, Construct, Expr, Global, Intrinsic, Literal, Local, Unary
-from sssgen.ir.types import kind_of
-from sssgen.ir.walk import operands
+from sssgen.ir.nodes import Binary, Construct, Expr, Global, Intrinsic, Literal, Local, Select, Unary
+from sssgen.ir.types import Vector, kind_of
+from sssgen.ir.walk import operands, subexpressions
 from sssgen.passes.constant_expressions import constant_numbers
 
 _INTEGERS = ("int", "uint")
@@ -72,3 +72,16 @@ def is_wider(expr: Expr, parts: Sequence[Value], numbers: Value) -> bool:
     else:
         return isinstance(expr, Intrinsic) and kind == "int" and -0x80000000 in numbers
     return exact is None or tuple(exact) != numbers
+
+
+def chooses_nested(expr: Expr) -> bool:
+    """Whether an expression chooses between vectors made of vectors: naga cannot compute that of constants."""
+    if not isinstance(expr.type, Vector) or not isinstance(expr, Select | Intrinsic):
+        return False
+    if isinstance(expr, Intrinsic) and (expr.name != "mix" or kind_of(expr.args[2].type) != "bool"):
+        return False
+    return any(
+        isinstance(part, Construct) and any(isinstance(arg.type, Vector) for arg in part.args)
+        for operand in operands(expr)
+        for part in subexpressions(operand)
+    )

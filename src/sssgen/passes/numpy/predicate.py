@@ -51,7 +51,7 @@ from sssgen.passes.lift_calls import DISCARDED, Functions, lift_calls, out_argum
 from sssgen.passes.numpy.masks import Mask, negated, zero
 from sssgen.passes.numpy.settle import settle
 from sssgen.passes.numpy.tidy import renumber, tidy
-from sssgen.passes.numpy.uniformity import Uniformity
+from sssgen.passes.numpy.uniformity import Uniformity, uniform_constants
 from sssgen.passes.numpy.variable_uses import may_change, written_outside
 from sssgen.passes.scopes import declared, fresh, separate
 
@@ -60,7 +60,7 @@ def predicate(module: Module) -> Module:
     """The module without control flow per lane. Its functions come after those they call."""
     module = lift_calls(module)
     functions = {function.key: function for function in module.functions}
-    constants = frozenset(constant.name for constant in module.constants)
+    constants = uniform_constants(module.constants)
     converted = tuple([_Converter(function, functions, constants).run() for function in module.functions])
     return module._replace(functions=converted)
 

@@ -6,7 +6,7 @@ Inputs (parameters, uniforms, textures) may differ from lane to lane. Used by `p
 
 from __future__ import annotations
 
-from collections.abc import Set
+from collections.abc import Sequence, Set
 from typing import NamedTuple
 
 from sssgen.ir.nodes import (
@@ -14,6 +14,7 @@ from sssgen.ir.nodes import (
     Binary,
     Block,
     Break,
+    Constant,
     Construct,
     Continue,
     Declare,
@@ -76,6 +77,17 @@ def count(loop: For) -> Count | None:
     right_way = size > 0 if test.op[0] == "<" else size < 0
     own = isinstance(step.target, Local) and step.target.name == init.name
     return Count(init.name, init.value, test.right, test.op, size) if own and right_way else None
+
+
+def uniform_constants(constants: Sequence[Constant]) -> frozenset[str]:
+    """The constants that are one number in NumPy; a part of an array or vector has an axis of lanes."""
+    names: set[str] = set()
+    for constant in constants:  # each after those that it uses
+        parts = list(subexpressions(constant.value))
+        used = {part.name for part in parts if isinstance(part, Global)}
+        if all(isinstance(part.type, Scalar) for part in parts) and used <= names:
+            names.add(constant.name)
+    return frozenset(names)
 
 
 class Uniformity:
