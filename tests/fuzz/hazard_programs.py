@@ -61,7 +61,7 @@ RULES: dict[str, list[str]] = {
         "sqrt({float})", "sqrt(abs({float}))", "sqrt(1.0 - {FLOAT:1} * {FLOAT:1})", "inversesqrt({float})",
         "inversesqrt(abs({float}) + {SMALL})",
         "log({float})", "log2({float})", "log(abs({float}) + {SMALL})", "exp({float})", "exp2({float})",
-        "exp(-abs({float}))", "exp(-{float} / {SMALL})",
+        "exp(-abs({float}))", "exp(-({float}) / {SMALL})",
         "pow({float}, {float})", "pow(abs({float}), {float})", "pow({float}, {LIT})",
         "pow(clamp({float}, 0.0, 1.0), {float})", "pow(abs({float}) + {SMALL}, {LIT})",
         "sin({float})", "cos({float})", "tan({float})", "asin({float})", "acos({float})", "atan({float})",

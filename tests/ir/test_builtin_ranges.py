@@ -15,7 +15,7 @@ from pass_cases import module_of
 from qualification.parity_inputs import DTYPES, EDGES, evaluated, inside, widened
 from sssgen.harness.backends import Array, Backend, Call, Text
 from sssgen.ir import nodes as ir
-from sssgen.ir import signatures
+from sssgen.ir import signatures, vector_ranges
 from sssgen.ir.component_ranges import within
 from sssgen.ir.contracts import INTEGERS
 from sssgen.ir.formats import FLOAT32
@@ -135,6 +135,49 @@ def test_results_are_in_the_computed_range(row: Builtin) -> None:
             assert_inside(found, result, built, (row.name, boxes))
             checked += 1
     assert checked > BOXES / 4, "too few boxes are within the domain"
+
+
+_EXTREMES = [0.0, 1e-45, 1e-40, 1.2e-38, 1e-37, 1e-30, 1e-20, 1e-12, 1e-6, 1e-3, 0.5, 1.0, 1.0000001, 2.0, 100.0,
+             1e4, 1e6, 1e10, 1e12, 1e15, 1e18, 1.8e19, 2e19, 1e20, 1e25, 1e30, 1e35, 1e37, 8e37, 1.2e38, 2e38,
+             LARGEST]  # fmt: skip
+
+
+def an_extreme_box(rng: np.random.Generator, type_: Type) -> list[Range]:
+    """A range for each component, over all magnitudes: points, ranges around 0, and ranges of one sign."""
+    numbers = np.array([sign * size for size in _EXTREMES for sign in (1.0, -1.0)], np.float32).astype(np.float64)
+    most = rng.choice(np.abs(numbers))
+    # sums of products overflow where all factors are of one size
+    numbers = numbers[(np.abs(numbers) <= most) & (np.abs(numbers) >= most * rng.choice([0.0, 0.01]))]
+    boxes = []
+    for _ in range(components(type_)):
+        low, high = sorted(map(float, rng.choice(numbers, 2)))
+        form = rng.random()
+        boxes.append(Range(low, low if form < 0.3 else high) if form < 0.8 else Range(-abs(high), abs(high)))
+    return boxes
+
+
+@pytest.mark.parametrize("row", [row for row in BOUNDED if row.ulp or row.guards], ids=lambda row: row.name)
+def test_what_is_proven_at_extreme_arguments_is_finite_and_in_the_computed_range(row: Builtin) -> None:
+    """No intermediate result of a formula overflows where its call is proven safe."""
+    rng = np.random.default_rng(zlib.crc32(row.name.encode()) + 1)
+    for params, result in overloads(row):
+        for number in range(BOXES if all(kind_of(type_) == "float" for type_ in (*params, result)) else 0):
+            same = number % 5 == 0 and len(set(params)) == 1
+            boxes = [an_extreme_box(rng, type_) for type_ in params]
+            boxes = [boxes[0]] * len(boxes) if same else boxes
+            args = tuple(drawn(rng, box, type_) for box, type_ in zip(boxes, params, strict=True))
+            args = (args[0],) * len(args) if same else args
+            found, sites = analysed(row, params, result, boxes, same)
+            if all(site.proven for site in sites):
+                assert_inside(found, result, called(row.name, args), (row.name, boxes))
+
+
+def test_the_check_at_extreme_arguments_detects_wrong_rows(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The test above fails if the range functions do not look at intermediate results."""
+    monkeypatch.setattr(vector_ranges, "_overflow", lambda F, *sizes: False)
+    for name in ("refract", "length", "distance"):
+        with pytest.raises(AssertionError):
+            test_what_is_proven_at_extreme_arguments_is_finite_and_in_the_computed_range(BUILTINS[name])
 
 
 def _unit(arg: Array) -> Array:
