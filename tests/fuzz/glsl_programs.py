@@ -171,7 +171,7 @@ class Programs(Expressions):
         # the value of one `out` parameter must not read another that is not set yet
         stmts += self.statements(size, self.random.choice((0, 1, 2)))
         if result != "void":
-            stmts.append(Node("return", result, [self.value(result, 2)]))
+            stmts.append(Node("return", result, [self.stored(result, 2)]))
         self.scopes.pop()
         return Node("block", parts=stmts)
 
@@ -309,7 +309,9 @@ class Programs(Expressions):
         is_constant = self.chance(12)
         fixed = is_constant and self.chance(50) and not type_.startswith("~")
         for _ in range(count):
-            value = self.constant_value(type_) if fixed else self.value(type_, depth)
+            value = self.constant_value(type_) if fixed else self.stored(type_, depth)
+            if value.kind == "construct" and self.chance(25) and ("[" in type_ or type_ in self.program.structs):
+                value = Node("list", type_, value.parts)
             name = self.new_name()
             while name in [param for scope in self.scopes[-1:] for param in scope]:
                 name = self.new_name()
@@ -317,7 +319,10 @@ class Programs(Expressions):
             self.constants = {*self.constants, name} if fixed else {*self.constants} - {name}
             names.append(name)
             values.append(value)
-        return Node("declare", type_, values, ("const" if is_constant else "", names))
+        qualifier = "const" if is_constant else self.random.choice(("",) * 12 + ("highp", "precise"))
+        if qualifier == "highp" and (kind(type_) == "bool" or type_ in self.program.structs):
+            qualifier = ""
+        return Node("declare", type_, values, (qualifier, names))
 
     def call_statement(self) -> Node | None:
         visible = self.visible()
@@ -359,10 +364,10 @@ class Programs(Expressions):
         self.scopes.append({})
         type_ = "uint" if self.chance(20) else "int"
         name = self.new_name()
+        self.declare(name, type_, writable=False)
         count = literal(type_, self.random.randint(1, 4))
         if self.chance(30):
             count = binary("&", type_, self.integer(type_, 1), literal(type_, 3))
-        self.declare(name, type_, writable=False)
         counter = Node("name", type_, [], name)
         start: Node = Node("declare", type_, [literal(type_, 0)], ("", [name]))
         test = binary(self.random.choice(("<", "!=")) if count.kind == "literal" else "<", "bool", counter, count)
@@ -377,6 +382,11 @@ class Programs(Expressions):
         made: list[Node]
         form = self.random.randrange(100)
         if form < 62:
+            if self.chance(15):
+                other = self.new_name()
+                start.data[1].append(other)
+                start.parts.append(self.value(type_, 1))
+                self.declare(other, type_)
             if self.chance(20) and (place := self.target("int")) is not None:
                 step = Node("comma", "int", [step, self.assignment(place, 1)])
             body = self.block(depth)

@@ -213,6 +213,17 @@ class Scoped:
             return self.fit(self.exact(type_, depth))
         return self.boolean(type_, depth) if kind_ == "bool" else self.integer(type_, depth)
 
+    def stored(self, type_: str, depth: int = 2) -> Node:
+        """A value for a place of the type, sometimes with an implicit conversion."""
+        size = vector_size(type_) or 1
+        if type_ in ("uint", "uvec2", "uvec3", "uvec4") and self.chance(12):
+            return self.integer(vector("int", size), depth)
+        if type_ in ("float", "vec2", "vec3", "vec4") and self.chance(8):
+            kind_ = self.random.choice(("int", "uint"))
+            small = self.integer(vector(kind_, size), depth - 1)
+            return Node("binary", small.type, [small, literal(kind_, 31)], "&")
+        return self.value(type_, depth)
+
     def whole(self, type_: str, depth: int) -> Node:
         """An array or a struct."""
         leaf = self.leaf(type_) if self.chance(40) else None
@@ -226,8 +237,8 @@ class Scoped:
         if "[" in type_:
             inner, length = element(type_)
             spelled = f"{inner}[]" if self.chance(30) else type_
-            return Node("construct", type_, [self.value(inner, depth - 1) for _ in range(length)], spelled)
-        return Node("construct", type_, [self.value(one, depth - 1) for one, _ in self.program.structs[type_]], type_)
+            return Node("construct", type_, [self.stored(inner, depth - 1) for _ in range(length)], spelled)
+        return Node("construct", type_, [self.stored(one, depth - 1) for one, _ in self.program.structs[type_]], type_)
 
     # What all kinds share
 
@@ -332,7 +343,7 @@ class Scoped:
                 value = self.fit(self.exact(operand, depth), 8.0, 1)
             else:
                 op, value = "*=", literal("float", self.random.choice((-1.0, 0.5, 1.0, 2.0)))
-        return Node("assign", type_, [place, value or self.value(type_, depth)], op)
+        return Node("assign", type_, [place, value or self.stored(type_, depth)], op)
 
     def from_macro(self, type_: str, depth: int) -> Node | None:
         """A use of a macro; its arguments have no effects, as they may be repeated."""

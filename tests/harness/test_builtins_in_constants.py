@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
+from results_of_glsl import check_results
 from sssgen.harness.backends import Backend, Call, Text
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.signatures import overloads
@@ -101,3 +102,11 @@ def test_builtins_of_constants(backend: Callable[[str], Backend], name: str, qua
         if not np.allclose(got.astype(np.float64), np.array(flat(case.value), np.float64), tolerance, tolerance):
             wrong.append(f"{case.text}: {got}, expected {case.value}")
     assert not wrong, "\n".join(wrong)
+
+
+def test_a_choice_of_constants_made_of_vectors(backend: Callable[[str], Backend]) -> None:
+    """naga crashed on `select` of these."""
+    text = (
+        "float f(float x) { vec3 y = mix(vec3(vec2(1.0), 3.0), vec3(4.0), bvec3(true, false, false)); return x + y.z; }"
+    )
+    check_results(text, 5.0, backend, (2.0,))

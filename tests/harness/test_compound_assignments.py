@@ -29,6 +29,11 @@ CASES = [
      0.0, 717.0),
     ("float f(float x) { int a[2] = int[2](0, 5); int y = a[a[0]] = 1; return float(y * 100 + a[0] * 10 + a[1]); }",
      0.0, 115.0),
+    ("float f(float x) { ivec2 s = ivec2(9, 3); s[--s[1] & 1] /= int(x); return float(s.x * 10 + s.y); }", 3.0, 32.0),
+    ("float f(float x) { int a[3] = int[3](1, 2, 3); a[a[0]++] = a[0] * int(x); return float(a[0] * 100 + a[1]); }",
+     3.0, 206.0),
+    ("void g(inout float y) { y = 7.0; } float f(float x) { vec2 v = vec2(x); g(v[int(v.x++)]); return v.x + v.y; }",
+     1.0, 9.0),
     ("float f(float x) { bool b = x > 0.0; x += b && (x += 1.0) > 0.0 ? x : 0.0; return x; }", 3.0, 7.0),
 ]  # fmt: skip
 READ = """

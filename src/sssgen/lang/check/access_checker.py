@@ -28,7 +28,8 @@ class AccessChecker:
     def index(self, index: s.IndexOf) -> Typed:
         if isinstance(index.value, s.Name) and index.value.text in self.context.texture_arrays:
             return self.texture_of(index.value, index)
-        value, position = self.expressions.operands((index.value, index.index))
+        outs = (0,) if id(index) in self.expressions.places else ()
+        value, position = self.expressions.operands((index.value, index.index), outs)
         if position.expr.type not in (INT, UINT):
             raise self.context.fail(
                 index.index.span, f"an index must be an int, but this is {a_type(position.expr.type)}"

@@ -72,7 +72,7 @@ class AssignmentChecker:
     def assign(self, assignment: s.Assignment) -> ir.Assign:
         """The statement of an assignment; the side effects of its two sides are in the prelude."""
         context, expressions = self.context, self.expressions
-        target, span = expressions.check(assignment.target), assignment.span
+        target, span = expressions.check_place(assignment.target), assignment.span
         check_writable(context, target.expr, assignment.target.span)
         type_, op, start = target.expr.type, assignment.op, len(context.function.prelude)
         if not op:

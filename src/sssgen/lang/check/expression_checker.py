@@ -40,6 +40,8 @@ class ExpressionChecker:
     def __init__(self, context: CheckContext) -> None:
         self.context = context
         context.check_expression = self.check
+        self.places: set[int] = set()
+        """The ids of the accesses in places that are written to."""
         self.methods: dict[type, Callable[[Any], Typed]] = {
             s.Name: self.name,
             s.Number: self.number,
@@ -91,12 +93,20 @@ class ExpressionChecker:
         parts = [self.check_as(item, part, "", what) for item, part in zip(listed.items, types, strict=True)]
         return ir.Construct(type_, tuple(parts), listed.span)
 
+    def check_place(self, expression: s.Expression) -> Typed:
+        """Checks an expression that is written to: what its indices change is no copy of the variable."""
+        part = expression
+        while isinstance(part, s.IndexOf | s.MemberOf):
+            self.places.add(id(part))
+            part = part.value
+        return self.check(expression)
+
     def operands(self, parts: Sequence[s.Expression], outs: Container[int] = ()) -> list[Typed]:
         """Checks expressions that are evaluated in this order; those at the positions `outs` are places to write to."""
         function, values = self.context.function, list[Typed]()
-        for part in parts:
+        for index, part in enumerate(parts):
             before = len(function.prelude)
-            values.append(self.check(part))
+            values.append(self.check_place(part) if index in outs else self.check(part))
             if len(function.prelude) > before:
                 self.store_earlier(values, before, outs)
         return values

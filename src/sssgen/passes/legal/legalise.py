@@ -110,12 +110,17 @@ class _Legaliser(Transformer):
         try:
             return self.initial(value)
         except Unsupported:
-            if self.constant_calls is None:
-                self.constant_calls = ConstantCalls(self.module, self.polyfill)
-            numbers = self.constant_calls.value(value)
+            numbers = self.number_of(value)
             if numbers is None:
                 raise
-            return self.initial(as_literals(value.type, numbers, value.span))
+            return self.initial(numbers)
+
+    def number_of(self, value: ir.Expr) -> ir.Expr | None:
+        """The value of an expression of constants as literals; None where it is not constant."""
+        if self.constant_calls is None:
+            self.constant_calls = ConstantCalls(self.module, self.polyfill)
+        numbers = self.constant_calls.value(value)
+        return None if numbers is None else as_literals(value.type, numbers, value.span)
 
     def function(self, function: ir.Function) -> ir.Function:
         new = self.in_order(function)
@@ -393,8 +398,13 @@ class _Legaliser(Transformer):
         types = [arg.type for arg in call.args]
         text = self.text(call.name, tuple(types))
         row = BUILTINS[call.name]
-        if self.current is None and self.language in row.not_constant:
-            raise Unsupported(_NOT_CONSTANT, call.span)
+        if self.language in row.not_constant:
+            if self.current is None:
+                raise Unsupported(_NOT_CONSTANT, call.span)
+            if types[-1] == Vector("bool", components(call.type)):
+                number = self.number_of(call)  # naga crashes on `select` of constants that are made of vectors
+                if number is not None:
+                    return number
         if text.startswith("op:"):
             if len(call.args) == 1:
                 return ir.Unary(call.type, text[3:], call.args[0], call.span)
