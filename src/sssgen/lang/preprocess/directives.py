@@ -20,6 +20,20 @@ _DIRECTIVE = re.compile(
 _IGNORED = re.compile(rf"{NEWLINE}|{LINE_COMMENT}|{BLOCK_COMMENT}")
 
 
+_TOKEN_PARTS = re.compile(rf"(?<=[\w.])(?:{NEWLINE}[\w.]+)+|(?<=[-+*/%&|^<>=!\#])(?:{NEWLINE}[-+*/&|^<>=\#]+)+")
+
+
+def with_whole_tokens(text: str) -> str:
+    """The text with the line continuations inside tokens after these tokens, so that lines keep their numbers."""
+    if "\\\n" not in text and "\\\r\n" not in text:
+        return text
+
+    def joined(match: re.Match[str]) -> str:
+        return re.sub(NEWLINE, "", match[0]) + "".join(re.findall(NEWLINE, match[0]))
+
+    return _TOKEN_PARTS.sub(joined, text)
+
+
 def directives(text: str) -> Iterator[re.Match[str]]:
     """The directives, each with its `mark` (#), its `name`, which may be empty, and the `rest` of its line."""
     if "#" in text:

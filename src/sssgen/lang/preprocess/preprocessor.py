@@ -15,7 +15,7 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from sssgen.ir.spans import Span
-from sssgen.lang.preprocess.directives import BLANK, Branch, SourceFile, directives, plain
+from sssgen.lang.preprocess.directives import BLANK, Branch, SourceFile, directives, plain, with_whole_tokens
 from sssgen.lang.preprocess.if_conditions import Fault, evaluate
 from sssgen.lang.preprocess.kept_constants import KeptConstants
 from sssgen.lang.preprocess.macros import MAX_TOKENS, Expander, Numbering, TooMuch, builtin_macros, definition
@@ -147,10 +147,11 @@ class _Run:
 
     def read(self, text: str, shown: str) -> None:
         """Reads a file to its end."""
-        file = SourceFile(text, shown)
         if shown in self.texts:
             self.repeated.add(shown)
         self.texts[shown] = text
+        text = with_whole_tokens(text)
+        file = SourceFile(text, shown)
         self.characters += len(text)
         self.chain.append(file)
         outer, self.expander.numbering = self.expander.numbering, Numbering()
