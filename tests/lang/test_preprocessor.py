@@ -175,6 +175,21 @@ def test_one_branch_is_taken_and_the_others_are_ignored() -> None:
     assert words("#if 0\n/*\n#endif\n*/ // \\\n#endif\na\n#endif\nb") == "b"
 
 
+@pytest.mark.parametrize(
+    ("text", "tokens"),
+    [
+        ("flo\\\nat x\\\n_1 = 1\\\n2.5\\\ne0;", "float x_1 = 12.5e0 ;"),
+        ("a \\\nb +\\\n= c <\\\r\n<\\\r\n= d", "a b += c <<= d"),
+        ("#def\\\nine A\\\nB(x\\\ny) xy #\\\n# 1\nAB(c)", "c1"),
+        ("a /\\\n/ b\n/\\\n* c *\\\n/ d", "a d"),
+        ("ab\\\n\\\ncd", "abcd"),
+    ],
+)  # fmt: skip
+def test_a_token_may_go_on_after_a_line_continuation(text: str, tokens: str) -> None:
+    assert words(text) == tokens
+    assert run(text + "\nz").tokens[-1].span.line == text.count("\n") + 2
+
+
 def test_directives_in_comments_and_within_lines_are_ignored() -> None:
     assert words("/*\n#if 0\n*/ a // \\\n#error no\n b") == "a b"
     assert words("/* x */ # /* y */ define /* z */ A /* w\n*/ b +\n  # \nA") == "b +"

@@ -121,8 +121,11 @@ class ConstructorChecker:
         return tuple([ir.Swizzle(half, variable, letters, value.span) for letters in ("xy", "zw")])
 
     def variable(self, name: str, value: ir.Expr) -> ir.Expr:
-        """A variable with this value, which is read more than once."""
-        return value if isinstance(value, ir.Local | ir.Global) else self.context.function.temporary(name, value)
+        """A variable with this value, which is read more than once; at file scope, where none can be, the value."""
+        function = self.context.function
+        if isinstance(value, ir.Local | ir.Global) or function is self.context.file_scope:
+            return value
+        return function.temporary(name, value)
 
     def literal(self, literal: ir.Literal, type_: Scalar, span: ir.Span) -> ir.Literal:
         """A literal converted by a constructor. Reports a float that no int or uint can hold."""

@@ -73,7 +73,8 @@ class CheckContext:
     def __init__(self, reporter: Reporter, plain: bool = False) -> None:
         self.reporter = reporter
         self.plain = plain
-        self.function = FunctionContext()
+        self.file_scope = FunctionContext()
+        self.function = self.file_scope
         self.check_expression: Callable[[s.Expression], Typed]
         """Checks an expression; the checker of expressions sets it."""
         self.structs: dict[str, Struct] = {}

@@ -15,7 +15,6 @@ from typing import Any, TypeVar
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import FLOAT_MAX, element_type
 from sssgen.ir.signatures import candidates
-from sssgen.ir.transform import rewrite
 from sssgen.ir.types import BOOL, FLOAT, INT, UINT, Array, Struct, Type, kind_of
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.builtin_variables import builtin_variable
@@ -148,24 +147,6 @@ class ExpressionChecker:
             return check(expression), function.prelude
         finally:
             function.prelude = outer
-
-    def value_at_file_scope(
-        self, expression: s.Expression, check: Callable[[s.Expression], ir.Expr]
-    ) -> tuple[ir.Expr, list[ir.Stmt]]:
-        """The result of `check` with its variables replaced by their values, and the rest of its prelude."""
-        value, prelude = self.with_prelude(expression, check)
-        values: dict[str, ir.Expr] = {}
-
-        def change(node: ir.Expr) -> ir.Expr:
-            return values.get(node.name, node) if isinstance(node, ir.Local) else node
-
-        rest = []
-        for stmt in prelude:
-            if isinstance(stmt, ir.Declare) and stmt.value is not None:
-                values[stmt.name] = rewrite(stmt.value, change)
-            else:
-                rest.append(stmt)
-        return rewrite(value, change) if values else value, rest
 
     def declared_type(self, element: Type, type_: s.TypeName, declarator: s.Declarator) -> Type:
         """The type of one name of a declaration whose element type is known."""

@@ -95,13 +95,13 @@ class GlobalChecker:
         if declarator.value is None:
             raise context.fail(name.span, f"const '{name.text}' needs a value")
         if is_macro:
-            value, prelude = self.expressions.value_at_file_scope(
+            value, prelude = self.expressions.with_prelude(
                 declarator.value, lambda value: self.expressions.check(value).expr
             )
             type_ = value.type
         else:
             type_ = self.expressions.declared_type(element, declaration.type, declarator)
-            value, prelude = self.expressions.value_at_file_scope(
+            value, prelude = self.expressions.with_prelude(
                 declarator.value, lambda value: self.expressions.check_as(value, type_, quantity, f"'{name.text}'")
             )
         if prelude or not all(self.is_constant(part) for part in subexpressions(value)):

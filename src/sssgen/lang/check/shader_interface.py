@@ -67,7 +67,7 @@ class ShaderInterface:
         def check(value: s.Expression) -> ir.Expr:
             return self.expressions.check_as(value, type_, quantity, f"'{name}'")
 
-        expr, prelude = self.expressions.value_at_file_scope(value, check)
+        expr, prelude = self.expressions.with_prelude(value, check)
         if prelude or any(isinstance(part, ir.Call) for part in subexpressions(expr)):
             hint = "set it at the beginning of main()"
             raise self.context.fail(value.span, "the initial value of a global variable cannot call functions", hint)

@@ -20,7 +20,9 @@ _DIRECTIVE = re.compile(
 _IGNORED = re.compile(rf"{NEWLINE}|{LINE_COMMENT}|{BLOCK_COMMENT}")
 
 
-_TOKEN_PARTS = re.compile(rf"(?<=[\w.])(?:{NEWLINE}[\w.]+)+|(?<=[-+*/%&|^<>=!\#])(?:{NEWLINE}[-+*/&|^<>=\#]+)+")
+_TOKEN_PARTS = re.compile(
+    rf"(?<=[\w.])(?:(?:{NEWLINE})+[\w.]+)+|(?<=[-+*/%&|^<>=!\#])(?:(?:{NEWLINE})+[-+*/&|^<>=\#]+)+"
+)
 
 
 def with_whole_tokens(text: str) -> str:
