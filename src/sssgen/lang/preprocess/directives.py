@@ -21,12 +21,15 @@ _IGNORED = re.compile(rf"{NEWLINE}|{LINE_COMMENT}|{BLOCK_COMMENT}")
 
 
 _TOKEN_PARTS = re.compile(
-    rf"(?<=[\w.])(?:(?:{NEWLINE})+[\w.]+)+|(?<=[-+*/%&|^<>=!\#])(?:(?:{NEWLINE})+[-+*/&|^<>=\#]+)+"
+    rf"(?<=[\w.])(?:(?:{NEWLINE})+(?:[\w.]+\(?|\())+|(?<=[-+*/%&|^<>=!\#])(?:(?:{NEWLINE})+[-+*/&|^<>=\#]+)+"
 )
 
 
 def with_whole_tokens(text: str) -> str:
-    """The text with the line continuations inside tokens after these tokens, so that lines keep their numbers."""
+    """The text with the line continuations inside tokens after these tokens, so that lines keep their numbers.
+
+    So it is for one between a macro's name and its `(`.
+    """
     if "\\\n" not in text and "\\\r\n" not in text:
         return text
 
