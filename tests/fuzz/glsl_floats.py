@@ -132,7 +132,8 @@ class Expressions(Integers):
             power = binary("&", vector("int", size), self.integer(vector("int", size), 1), literal("int", 3))
             return Bound(call("ldexp", type_, self.fit(x), power), LIMIT * 8.0, EIGHTHS)
         if rule < 90 and type_ == "vec2" and not self.constant:
-            return Bound(call("unpackHalf2x16", type_, call("packHalf2x16", "uint", self.fit(x))), LIMIT, EIGHTHS)
+            packed = call("packHalf2x16", "uint", call("abs", type_, self.fit(x)))  # -0.0 may become 0.0
+            return Bound(call("unpackHalf2x16", type_, packed), LIMIT, EIGHTHS)
         place = (
             self.target(type_, pure=True) if rule < 91 and not self.quiet and self.chance(2 * self.effects) else None
         )

@@ -153,7 +153,8 @@ class Integers(Scoped):
                     self.random.choice(("uaddCarry", "usubBorrow")), "uint", x, self.integer("uint", depth), place
                 )
         if type_ == "uint" and not self.constant:
-            return call("packHalf2x16", "uint", self.fit(self.exact("vec2", depth)))
+            positive = call("abs", "vec2", self.fit(self.exact("vec2", depth)))  # the sign of 0 can be another
+            return call("packHalf2x16", "uint", positive)
         return x
 
     def field(self) -> tuple[Node, Node]:

@@ -107,7 +107,9 @@ class Programs(Expressions):
         name = self.file_name(MACROS)
         type_ = self.random.choice(("int", "uint"))
         if self.chance(50):
+            known, self.constants = self.constants, set()  # where the macro is used, a name may mean something else
             body = self.constant_value(type_)
+            self.constants = known
             body = body if self.chance(30) and body.kind == "literal" else Node("brackets", type_, [body])
             params: list[str] = []
         else:

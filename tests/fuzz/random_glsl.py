@@ -14,6 +14,7 @@ import re
 import sys
 import time
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 from random import Random
 from typing import NamedTuple
@@ -54,8 +55,12 @@ _written: Counter[str] = Counter()
 
 
 def batch(seed: int, number: int) -> list[Case]:
-    """The cases of a batch."""
-    return [Case(program) for program in programs(Random(f"{seed}-{number}"), BATCH)]
+    """The cases of a batch; without programs that the generator got wrong, which the interpreter cannot run."""
+    cases = []
+    for program in programs(Random(f"{seed}-{number}"), BATCH):
+        with suppress(TypeError, KeyError, IndexError, RecursionError):
+            cases.append(Case(program))
+    return cases
 
 
 def run(job: Job) -> Outcome:
@@ -66,7 +71,7 @@ def run(job: Job) -> Outcome:
         _runner = Runner(job.targets)
     _runner.seconds.clear()
     cases = _runner.timed("generate and interpret", batch, job.seed, job.number)
-    excused: Counter[str] = Counter()
+    excused: Counter[str] = Counter({"programs that the interpreter refuses": BATCH - len(cases)})
     for case in cases:
         excused.update(case.reasons)
         excused["programs without results"] += not case.is_useful

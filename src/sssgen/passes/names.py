@@ -131,8 +131,8 @@ class _Namer:
     def choose(self, name: str, taken: Container[str]) -> str:
         """A legal name that is like `name` and is not taken."""
         base = re.sub(r"__+", "_", name.removeprefix("gl_"))
-        if not base.strip("_"):
-            base = "value"
+        if not base.strip("_") or base[0].isdigit():  # of `gl_2`, the name of a second `gl`
+            base = f"value_{base}".rstrip("_")
         if self.free(base, taken):
             return base
         if not base.endswith("_") and self.free(f"{base}_", taken):

@@ -40,6 +40,7 @@ class _OutOfOrder(Exception):
     """A value would be computed before a call that precedes it in the source."""
 
 
+_JUMPS = (ir.Return, ir.Break, ir.Continue, ir.Discard)
 _NOT_CONSTANT = "this cannot be expressed in a constant for this target"
 
 
@@ -188,6 +189,12 @@ class _Legaliser(Transformer):
         return name
 
     # Statements
+
+    def block(self, block: ir.Block) -> ir.Block:
+        if not self.capabilities.unreachable_statements:
+            last = next((index for index, stmt in enumerate(block) if isinstance(stmt, _JUMPS)), len(block))
+            block = block if last + 1 >= len(block) else block[: last + 1]
+        return super().block(block)
 
     def statement(self, stmt: ir.Stmt) -> ir.Stmt | None:
         start = len(self.out)

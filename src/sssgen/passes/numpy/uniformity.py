@@ -73,6 +73,8 @@ def count(loop: For) -> Count | None:
         return None
     if not isinstance(test.left, Local) or test.left.name != init.name or root(step.target) != step.target:
         return None
+    if any(isinstance(part, Local) and part.name == init.name for part in subexpressions(test.right)):
+        return None
     size = int(step.value.value) if step.op == "+" else -int(step.value.value)
     right_way = size > 0 if test.op[0] == "<" else size < 0
     own = isinstance(step.target, Local) and step.target.name == init.name

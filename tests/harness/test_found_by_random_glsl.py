@@ -1,0 +1,28 @@
+"""Programs that random plain GLSL has found to be wrong, on every back end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from results_of_glsl import check_results
+from sssgen.harness.backends import Backend
+
+CASES = {
+    "a bound that reads the counter": ("float f(float x) { for (int i = 0; i < 5 - i; i++) x += 1.0; return x; }", 4.0),
+    "a bound that is the counter": ("float f(float x) { for (int h = 0; h < h; h++) x += 1.0; return x; }", 1.0),
+    "a builtin after a return": ("float f(float x) { return x; x -= fma(x, 2.0, 1.0); }", 1.0),
+    "a builtin after a break": ("float f(float x) { while (true) { x++; break; x = fma(x, x, x); } return x; }", 2.0),
+    "a second gl": ("struct M { int a; }; float f(float gl) { { M gl = M(4), b = gl; return float(b.a); } }", 4.0),
+    "a constant that another one needs": (
+        "struct S { int x; }; const S w = S(4); const int A = w.x;"
+        "float f(float x) { float w = x * 10.0; return step(w, 0.0) + w + float(A); }", 14.0,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("title", CASES)
+def test_found(backend: Callable[[str], Backend], title: str) -> None:
+    text, expected = CASES[title]
+    check_results(text, expected, backend, (1.0,))
