@@ -48,7 +48,8 @@ class Failure(NamedTuple):
 
     target: str
     kind: str
-    """`wrong`, `invalid` (a compiler refuses the text), `refused` (the transpiler does), `crash`."""
+    """`wrong`, `invalid` (a compiler refuses the text), `refused` (the transpiler does), `crash`; `tool`: spirv-cross,
+    which only this harness needs, ends with an assertion."""
     message: str
 
 
@@ -164,6 +165,8 @@ class Runner:
     def failure(self, target: str, error: Exception) -> Failure:
         if isinstance(error, SssgenError):
             message = "; ".join(one.message for one in error.diagnostics[:2])
+            if "Assertion `" in message:
+                return Failure(target, "tool", message)
             driver = re.match(r"(?:gl|gl-es|webgpu|hlsl|browser)\S*: ", message)
             return Failure(target, "invalid" if driver else "refused", message)
         return Failure(target, "crash", f"{type(error).__name__}: {error}")

@@ -161,7 +161,7 @@ class Integers(Scoped):
         """An offset and a number of bits, at most 32 together."""
         if self.constant or self.chance(50):
             offset = self.random.randrange(33)
-            bits = self.random.choice((0, 1, 32 - offset, self.random.randint(0, 32 - offset)))
+            bits = self.random.choice((0, min(1, 32 - offset), 32 - offset, self.random.randint(0, 32 - offset)))
             return literal("int", offset), literal("int", bits)
         return tuple(
             binary("&", "int", self.integer("int", 1), literal("int", mask))

@@ -32,7 +32,10 @@ def failures(runner: Runner, seed: int, batches: int) -> list[str]:
         cases = [case for case in random_glsl.batch(seed, number) if case.is_useful]
         assert len(cases) > random_glsl.BATCH // 2
         for case, failure in runner.failures(cases):
-            found.append(f"{random_glsl.title(failure)}, batch {number} of seed {seed}\n{failure.message}\n{case.text}")
+            if failure.kind != "tool":
+                found.append(
+                    f"{random_glsl.title(failure)}, batch {number} of seed {seed}\n{failure.message}\n{case.text}"
+                )
     return found
 
 

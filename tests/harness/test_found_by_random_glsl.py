@@ -14,6 +14,7 @@ CASES = {
     "a bound that is the counter": ("float f(float x) { for (int h = 0; h < h; h++) x += 1.0; return x; }", 1.0),
     "a builtin after a return": ("float f(float x) { return x; x -= fma(x, 2.0, 1.0); }", 1.0),
     "a builtin after a break": ("float f(float x) { while (true) { x++; break; x = fma(x, x, x); } return x; }", 2.0),
+    "a builtin that is never reached": ("float f(float x) { if (true) return x; return fma(x, 2.0, 1.0); }", 1.0),
     "a second gl": ("struct M { int a; }; float f(float gl) { { M gl = M(4), b = gl; return float(b.a); } }", 4.0),
     "a constant that another one needs": (
         "struct S { int x; }; const S w = S(4); const int A = w.x;"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 LATER = {
-    "fma(x3, y3, z3)": {"glsl": "x3 * y3 + z3", "hlsl": "mad(x3, y3, z3)"},
+    "fma(x3, y3, z3)": {"glsl": "x3 * y3 + z3", "hlsl": "x3 * y3 + z3"},
     "ldexp(x3, i3)": {
         "glsl": """
             vec3 ldexp_(vec3 x, ivec3 y) {

@@ -53,7 +53,7 @@ float powers_of_two(float x) {
 }
 
 float at_once(float a, float b, float c) {
-    return mad(a, b, c) + mad(b, c, 1.0);
+    return a * b + c + (b * c + 1.0);
 }
 
 Two structs(bool first, float x) {
