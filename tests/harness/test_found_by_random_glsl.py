@@ -15,6 +15,11 @@ CASES = {
     "a builtin after a return": ("float f(float x) { return x; x -= fma(x, 2.0, 1.0); }", 1.0),
     "a builtin after a break": ("float f(float x) { while (true) { x++; break; x = fma(x, x, x); } return x; }", 2.0),
     "a builtin that is never reached": ("float f(float x) { if (true) return x; return fma(x, 2.0, 1.0); }", 1.0),
+    "a list in order": ("float f(float x) { float a[2] = {x, x++}; return a[0] * 10.0 + x; }", 12.0),
+    "a list of structs in order": (
+        "struct S { int a, b; }; float f(float x) { int i = 3; S s = {i++, i * i}; return float(s.a * 100 + s.b); }",
+        316.0,
+    ),
     "a second gl": ("struct M { int a; }; float f(float gl) { { M gl = M(4), b = gl; return float(b.a); } }", 4.0),
     "a constant that another one needs": (
         "struct S { int x; }; const S w = S(4); const int A = w.x;"

@@ -89,8 +89,13 @@ class ExpressionChecker:
         if len(types) != len(listed.items):
             message = f"{what} needs {len(types)} values for {a_type(type_)}, but {len(listed.items)} are listed"
             raise self.context.fail(listed.span, message)
-        parts = [self.check_as(item, part, "", what) for item, part in zip(listed.items, types, strict=True)]
-        return ir.Construct(type_, tuple(parts), listed.span)
+        values = list[Typed]()
+        for item, part in zip(listed.items, types, strict=True):
+            before = len(self.context.function.prelude)
+            values.append(Typed(self.check_as(item, part, "", what)))
+            if len(self.context.function.prelude) > before:
+                self.store_earlier(values, before)
+        return ir.Construct(type_, tuple([value.expr for value in values]), listed.span)
 
     def check_place(self, expression: s.Expression) -> Typed:
         """Checks an expression that is written to: what its indices change is no copy of the variable."""
