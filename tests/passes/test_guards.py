@@ -16,6 +16,7 @@ from sssgen.harness.evaluate.probes import subject
 from sssgen.ir.nodes import Assume, Module
 from sssgen.ir.verify import verify
 from sssgen.ir.walk import all_expressions, statements
+from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.lang.polyfills import guard as guard_source
 from sssgen.lang.polyfills import polyfill
 from sssgen.material import library
@@ -107,6 +108,24 @@ def test_only_unproven_sites_are_guarded() -> None:
 )
 def test_the_bound_of_a_guard_replaces_a_smaller_one_only_where_it_stays_in_force(argument: str, guarded: str) -> None:
     assert body(f"float f(float x, float y) {{ return log(x + log2({argument})); }}").count(f"log2({guarded})") == 1
+
+
+@pytest.mark.parametrize(("kind", "shown"), [("int", "clamp(i, 0, 3)"), ("uint", "min(i, 3u)")])
+@pytest.mark.parametrize("mode", ["auto", "all"])
+def test_indices_stay_among_the_elements(kind: str, shown: str, mode: str) -> None:
+    source = f"float f(vec4 v, {kind} i) {{ float a[4] = float[4](v.x, 2.0, 3.0, 4.0); a[i] = v[i]; return a[i]; }}"
+    assert "\n".join(lines(source, mode)).count(shown) == 2
+
+
+def test_variables_of_the_same_name_in_separate_blocks() -> None:
+    source = """float f(float x, int n) {
+        for (int i = 1; i < 8; i *= 3) { vec3 v = vec3(x); x += v.y; }
+        if (x > 1.0) { int v = n; x /= float(v); }
+        for (int i = 0; i < n; i++) { mat2 v = mat2(x); x += v[1].y; }
+        return sqrt(x);
+    }"""
+    files = transpile(load_glsl_text(source, "case.glsl").module, "glsl-330", "case", "auto", keep=True).files
+    assert "sqrt(max(x, 0.0))" in next(iter(files.values()))
 
 
 def test_compound_assignments() -> None:

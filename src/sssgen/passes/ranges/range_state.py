@@ -182,10 +182,10 @@ class AnalysisState:
     def join(self, one: State, two: State) -> State:
         if one is two:
             return one
-        env = {
+        env = {  # what has another number of parts is a variable of the same name in another block
             name: self.joined(value, two.env[name], one.facts, two.facts)
             for name, value in one.env.items()
-            if name in two.env
+            if name in two.env and len(two.env[name].parts) == len(value.parts)
         }
         return State(env, one.facts.joined(two.facts))
 
