@@ -20,6 +20,11 @@ CASES = {
         "struct S { int a, b; }; float f(float x) { int i = 3; S s = {i++, i * i}; return float(s.a * 100 + s.b); }",
         316.0,
     ),
+    "a call between a read and an effect": (
+        "float g(inout float y) { y += 5.0; return 1.0; }"
+        "float f(float x) { float z = 1.0; vec3 v = vec3(x, g(x), z--); return v.x * 100.0 + v.y * 10.0 + v.z; }",
+        111.0,
+    ),
     "a second gl": ("struct M { int a; }; float f(float gl) { { M gl = M(4), b = gl; return float(b.a); } }", 4.0),
     "a constant that another one needs": (
         "struct S { int x; }; const S w = S(4); const int A = w.x;"

@@ -16,11 +16,12 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.rules import FLOAT_MAX, element_type
 from sssgen.ir.signatures import candidates
 from sssgen.ir.types import BOOL, FLOAT, INT, UINT, Array, Struct, Type, kind_of
+from sssgen.ir.walk import subexpressions
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.builtin_variables import builtin_variable
 from sssgen.lang.check.constant_values import integer, integer_value
 from sssgen.lang.check.context import AlreadyReported, CheckContext, Typed
-from sssgen.lang.check.evaluation_order import depends, writes_of
+from sssgen.lang.check.evaluation_order import depends, root_name, writes_of
 from sssgen.lang.check.implicit_conversions import as_kind, converts, wrapped
 from sssgen.lang.check.type_names import array_type
 from sssgen.lang.check.wording import a_type, type_hint
@@ -122,8 +123,14 @@ class ExpressionChecker:
         """
         function = self.context.function
         written, calls = writes_of(function.prelude[start:], self.context.out_arguments)
+        later: list[tuple[set[str], bool]] = []
+        for typed in reversed(values[:-1]):  # a call that is stored is executed before what is to its left is read
+            later.append((written, calls))
+            for part in subexpressions(typed.expr):
+                if isinstance(part, ir.Call):
+                    written, calls = written | set(map(root_name, self.context.out_arguments(part))), True
         for index, typed in enumerate(values[:-1]):
-            count = len(function.prelude)
+            count, (written, calls) = len(function.prelude), later[-1 - index]
             if index in outs:
                 values[index] = typed._replace(expr=self.fixed_place(typed.expr, written, calls, start))
             elif depends(typed.expr, written, calls):
