@@ -103,7 +103,7 @@ class Case(NamedTuple):
     @property
     def constant(self) -> tuple[int, ...]:
         """The positions of arguments that are constants of the program; the same in all lanes."""
-        return tuple(index for index in self.row.constant if index < len(self.params))
+        return tuple(self.row.constants(self.params))
 
 
 @cache
@@ -296,7 +296,8 @@ def reads(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
     reference = (rng.integers(40, 216, FEW) + 0.5) / 256.0  # between the texels, which are multiples of 1/256
     linear, slopes = _over_the_image(texture)
     gradients = sum(isinstance(type_, Vector) and type_.kind == "float" for type_ in params) == 3
-    offsets = [params[index] for index in row.constant if index < len(params) and isinstance(params[index], Vector)]
+    constants = row.constants(params)
+    offsets = [params[index] for index in constants if isinstance(params[index], Vector)]
     if not row.uniform_flow and not gradients:
         linear = rng.uniform(-1.0, 2.0, linear.shape)
         if texture.dim == "Cube":
@@ -305,11 +306,12 @@ def reads(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
     for index, type_ in enumerate(params[1:], 1):
         last_int = type_ == INT and INT not in params[index + 1 :]
         value: Array
-        if index in row.constant:
+        if index in constants:
             value = CONSTANTS[spell(type_)][..., None] * np.ones(FEW, np.int32)
         elif isinstance(type_, Vector) and type_.kind == "int":
             value = np.concatenate([rng.integers(0, 2, (texture.axes, FEW)), [layer]])[: type_.size]
-            value -= CONSTANTS[spell(type_)][..., None] * bool(offsets)  # the texel that is read lies inside
+            for offset in offsets:  # the texel that is read lies inside
+                value[: components(offset)] -= CONSTANTS[spell(offset)][..., None]
         elif index == 1 and isinstance(type_, Vector):
             further = [layer + 0.25] * texture.layers + [reference] * texture.compare
             value = np.concatenate([linear, *(part[None] for part in further)])[: type_.size]
@@ -319,7 +321,7 @@ def reads(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
             value = np.full(FEW, min(1, len(texture.levels) - 1))
         elif type_ == INT:
             value = layer
-        elif sampler.shadow and components(params[1]) == texture.axes:
+        elif sampler.shadow and components(params[1]) < texture.axes + texture.layers + texture.compare:
             value = reference
         elif row.uniform_flow:
             value = np.full(FEW, 1.0 if offsets else 0.5)  # a bias

@@ -39,7 +39,8 @@ textureGatherOffset textureQueryLevels textureQueryLod
 LANGUAGES = ("glsl", "glsl-330", "hlsl", "hlsl-dx9", "hlsl-macros", "wgsl")
 OWN = {
     *("saturate", "fmod", "unpackNormal", "textureLayer", "textureLayerLod", "textureLayerGrad", "texelFetchLayer"),
-    *("textureCompare", "textureCompareLod"),
+    *("textureCompare", "textureCompareLod", "textureLayerOffset", "textureLayerLodOffset", "textureLayerGradOffset"),
+    *("textureCompareOffset", "textureCompareLodOffset", "textureGatherLayer", "textureGatherLayerOffset"),
 }
 REFUSED = {
     ("textureSize", "hlsl-dx9"), ("texelFetch", "hlsl-dx9"),

@@ -1,6 +1,6 @@
 """The text of every builtin of the intrinsic table in each target.
 
-SAME has the texts that are equal in all targets. CASES, texts_of_glsl_4.py and texts_of_reads.py have the other texts,
+SAME has the texts that are equal in all targets. CASES and the other files texts_of_*.py have the other texts,
 each for GLSL 3.30, HLSL and WGSL. GLSL ES uses the text of GLSL, and Unity's two dialects that of HLSL, unless a case
 has another text. NumPy has each builtin under its own name.
 """
@@ -8,7 +8,9 @@ has another text. NumPy has each builtin under its own name.
 from __future__ import annotations
 
 from sssgen.targets.registry import load
+from texts_of_gathers import GATHERS
 from texts_of_glsl_4 import LATER
+from texts_of_offsets import OFFSETS
 from texts_of_reads import READS
 from validate import SAMPLERS, TARGETS
 
@@ -482,4 +484,11 @@ for name in "map", "volume", "cube", "layers":
     refused = refusals("textureQueryLevels", "glsl", "glsl-es", "hlsl", "dx9", "urp")
     CASES[f"textureQueryLevels({name})"] = {"wgsl": f"i32(textureNumLevels({name}))", **refused}
 
-ALL = {**{text.strip(): {"glsl": text.strip()} for text in SAME.split(";")}, **CASES, **LATER, **READS}
+ALL = {
+    **{text.strip(): {"glsl": text.strip()} for text in SAME.split(";")},
+    **CASES,
+    **LATER,
+    **READS,
+    **OFFSETS,
+    **GATHERS,
+}

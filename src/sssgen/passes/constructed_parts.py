@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from sssgen.ir.constant_expressions import constant_numbers, literal
 from sssgen.ir.nodes import Call, Construct, Expr, Global, Literal, Local, Span, Swizzle
 from sssgen.ir.types import Scalar, Type, Vector, components, kind_of, vector_of
 from sssgen.ir.walk import subexpressions
-from sssgen.passes.constant_expressions import constant_numbers, literal
 
 
 def calls(expr: Expr) -> bool:

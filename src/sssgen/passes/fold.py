@@ -16,6 +16,7 @@ from typing import Any
 
 from sssgen.ir import constant_arithmetic as arithmetic
 from sssgen.ir.constant_arithmetic import Numbers
+from sssgen.ir.constant_expressions import constant_numbers, literal, placed_at, same_number, uniform_value
 from sssgen.ir.nodes import (
     Assign,
     Assume,
@@ -45,7 +46,6 @@ from sssgen.ir.rules import element_type
 from sssgen.ir.transform import Transformer, rewrite
 from sssgen.ir.types import BOOL, Matrix, Scalar, Struct, Vector, kind_of
 from sssgen.ir.walk import operands
-from sssgen.passes.constant_expressions import constant_numbers, literal, placed_at, same_number, uniform_value
 from sssgen.passes.constructed_parts import calls, only_argument, picked
 from sssgen.passes.scopes import separate
 

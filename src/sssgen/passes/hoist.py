@@ -48,6 +48,7 @@ from sssgen.ir.walk import (
     written_root,
 )
 from sssgen.passes.divergence import CallContext, Divergence, Summary, implicit, joined, summaries
+from sssgen.passes.explicit_levels import at_level
 from sssgen.passes.scopes import declared, fresh, qualified_name
 
 _LARGEST = 64
@@ -335,14 +336,14 @@ class _Hoister(Transformer):
         assert isinstance(map_.type, Sampler)
         if row.with_level is None or not row.with_gradients:
             return expr  # no such builtin has an explicit level
-        if map_.type.shadow and map_.type != Sampler("2D", shadow=True):
-            return expr  # no such builtin has an explicit level
         offset, bias = others[: len(row.constant)], others[len(row.constant) :]
         coordinates = self.start(coordinate) if not map_.type.shadow else None
         if coordinates is None or not any(map(self.may_vary, subexpressions(coordinates))):
+            read = at_level(expr, bias[0] if bias else Literal(FLOAT, 0.0, expr.span))
+            if read is None:
+                return expr  # no such builtin has an explicit level
             self.note(f"{_words(map_)} is read at level 0 here", expr.span)
-            level = bias[0] if bias else Literal(FLOAT, 0.0, expr.span)
-            return Intrinsic(expr.type, row.with_level.name, (map_, coordinate, level, *offset), expr.span)
+            return read
         name = coordinates.name if isinstance(coordinates, Local) else "coordinates"
         if map_.type.array:  # the layer has no slope
             letters = "xyzw"[: components(coordinate.type) - 1]

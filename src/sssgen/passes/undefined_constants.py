@@ -13,6 +13,7 @@ from typing import NamedTuple
 from sssgen.ir import constant_arithmetic as arithmetic
 from sssgen.ir.constant_arithmetic import Numbers
 from sssgen.ir.constant_evaluation import Value, combined
+from sssgen.ir.constant_expressions import constant_numbers
 from sssgen.ir.nodes import (
     Assign,
     Binary,
@@ -28,7 +29,6 @@ from sssgen.ir.nodes import (
 from sssgen.ir.rules import FLOAT_MAX
 from sssgen.ir.types import Matrix, kind_of, with_article
 from sssgen.ir.walk import expressions, operands, statements
-from sssgen.passes.constant_expressions import constant_numbers
 
 
 class Undefined(NamedTuple):

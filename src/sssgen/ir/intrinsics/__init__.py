@@ -44,6 +44,7 @@ from sssgen.ir.intrinsics import (
     matrices,
     packing,
     relations,
+    texture_parts,
     textures,
     trigonometry,
 )
@@ -55,7 +56,8 @@ from sssgen.ir.intrinsics.table import FINITE, NONZERO, Builtin, Guard, Level, S
 __all__ = ["BUILTINS", "FINITE", "NONZERO", "Builtin", "Guard", "Level", "Samples", "by_column", "with_constants"]
 
 CHAPTERS = (
-    trigonometry, exponential, common, packing, geometry, matrices, relations, integers, textures, derivatives,
+    trigonometry, exponential, common, packing, geometry, matrices, relations, integers, textures, texture_parts,
+    derivatives,
 )  # fmt: skip
 
 BUILTINS: dict[str, Builtin] = {row.name: row for chapter in CHAPTERS for row in chapter.ROWS}

@@ -4,14 +4,14 @@ Annotations are not postponed here: NamedTuple compiles each postponed one, whic
 """
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, Literal, NamedTuple
 
 from sssgen.ir import component_ranges, vector_ranges
 from sssgen.ir.formats import Format
 from sssgen.ir.intervals import INF, Range, clip
-from sssgen.ir.types import Matrix, spell
+from sssgen.ir.types import Matrix, Type, kind_of, spell
 
 Interval = tuple[float, float]
 
@@ -135,7 +135,7 @@ class Builtin(NamedTuple):
     texts: Mapping[str, str] = MappingProxyType({})
     polyfill: str = ""
     constant: tuple[int, ...] = ()
-    """The positions of arguments that must be constant expressions."""
+    """The positions of arguments that must be constant expressions where they are integers: offsets, channels."""
     splat: tuple[str, ...] = ("wgsl",)
     """Languages in which a scalar among vectors must be widened to a vector first."""
     explicit_type: tuple[str, ...] = ()
@@ -187,6 +187,10 @@ class Builtin(NamedTuple):
     def reads_neighbours_or_textures(self) -> bool:
         """Whether the result depends on more than the arguments' values."""
         return self.kind in ("fetch", "derivative")
+
+    def constants(self, types: Sequence[Type]) -> list[int]:
+        """The positions of the arguments of these types that must be constant expressions."""
+        return [index for index in self.constant if index < len(types) and kind_of(types[index]) == "int"]
 
     @property
     def reads_texels(self) -> bool:

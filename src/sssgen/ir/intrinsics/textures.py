@@ -1,8 +1,8 @@
 """Reads of textures.
 
 The coordinate of a texture with layers ends with the layer, that of a comparing texture with the reference. HLSL and
-WGSL need some of these as separate arguments. Builtins of the project have them so, `…Layer…` and `…Compare…`; the
-polyfills use these.
+WGSL need some of these as separate arguments. Builtins of the project have them so, `…Layer…` and `…Compare…`
+(`texture_parts.py`); the polyfills use these.
 
 Integer texels are only fetched, as WGSL and HLSL cannot filter them. HLSL queries a texture's size in a statement; its
 printer emits a function for that, `texture_size`. There is no such function yet for the number of levels.
@@ -18,29 +18,64 @@ from sssgen.ir.vector_ranges import all_within, any_numbers, texels
 
 _SAMPLE = ("vec4(sampler2D, vec2", "vec4(sampler3D, vec3", "vec4(samplerCube, vec3")
 _LAYERS = ("vec4(sampler2DArray, vec3", "vec4(samplerCubeArray, vec4")
-_OWN_LAYER = ("vec4(sampler2DArray, vec2, int", "vec4(samplerCubeArray, vec3, int")
-_FLAT = ("vec4(sampler2D, vec2", "vec4(sampler3D, vec3")
+_FLAT = ("vec4(sampler2D, vec2", "vec4(sampler3D, vec3", "vec4(sampler2DArray, vec3")
 _SHADOWS = ("sampler2DShadow,vec3", "samplerCubeShadow,vec4", "sampler2DArrayShadow,vec4")
 _SHADOW_GRADIENTS = (
     "sampler2DShadow,vec3,vec2,vec2", "samplerCubeShadow,vec4,vec3,vec3", "sampler2DArrayShadow,vec4,vec2,vec2",
 )  # fmt: skip
+_SHADOW_OFFSETS = ("float(sampler2DShadow, vec3, ivec2)", "float(sampler2DArrayShadow, vec4, ivec2)")
+_SHADOW_GRADIENT_OFFSETS = (
+    "float(sampler2DShadow, vec3, vec2, vec2, ivec2)", "float(sampler2DArrayShadow, vec4, vec2, vec2, ivec2)",
+)  # fmt: skip
+_GATHERED = ("sampler2D, vec2", "samplerCube, vec3", "sampler2DArray, vec3", "samplerCubeArray, vec4")
+_GATHERED_SHADOWS = (
+    "sampler2DShadow, vec2, float",
+    "samplerCubeShadow, vec3, float",
+    "sampler2DArrayShadow, vec3, float",
+)
 _KINDS = ("", "i", "u")
-_EIGHT_BITS = "D3D: filter weights of 8 bits; WGSL, Vulkan, GLSL: no bound"
+EIGHT_BITS = "D3D: filter weights of 8 bits; WGSL, Vulkan, GLSL: no bound"
+BY_READS = "In GLSL without it, by reads at the texels' centres"
 
 
-def _params(signature: str) -> str:
+def params(signature: str) -> str:
     """The parameters of a signature's beginning, as spelled in a key of `texts`: `sampler2D,vec2`."""
     return signature.partition("(")[2].replace(" ", "")
 
 
 def _offsets(extra: str = "") -> tuple[str, ...]:
     """Signatures with an offset in texels after `extra`."""
-    return tuple(f"{read}{extra}, ivec{size})" for read, size in zip(_FLAT, (2, 3), strict=True))
+    return tuple(f"{read}{extra}, ivec{size})" for read, size in zip(_FLAT, (2, 3, 2), strict=True))
 
 
-def _exists(rt: Any, texture: Any, place: Any, level: Any, offset: Any = 0) -> Any:
-    """Whether a texel of level 0 exists."""
-    return (level == 0) & (place + offset >= 0) & (place + offset < rt.textureSize(texture, 0))
+def gather_polyfill(parameters: str, size: str, read: str, channel: bool = False) -> str:
+    """A gather with an offset for languages without one, by `read`s at the centres `{}` of the four texels. Those of a
+    texture that compares are rounded, as the centres are."""
+    corners = [read.format(corner) for corner in ("vec2(low.x, high.y)", "high", "vec2(high.x, low.y)", "low")]
+    if channel:
+        lines = [f"vec4 {name} = {corner};" for name, corner in zip("abcd", corners, strict=True)]
+        lines.append("return vec4(a[channel], b[channel], c[channel], d[channel]);")
+    elif "Shadow" in parameters:
+        lines = [f"return round(vec4({', '.join(corners)}));"]
+    else:
+        lines = [f"return vec4({', '.join(f'{corner}.x' for corner in corners)});"]
+    statements = "\n    ".join(lines)
+    return f"""({parameters}, ivec2 offset{", int channel" if channel else ""}) {{
+    vec2 size = vec2({size});
+    vec2 low = (floor(P * size - 0.5) + vec2(offset) + 0.5) / size;
+    vec2 high = low + 1.0 / size;
+    {statements}
+}}
+"""
+
+
+def _exists(rt: Any, texture: Any, place: Any, level: Any, offset: Any = ()) -> Any:
+    """Whether a texel of level 0 exists. An offset has no component for the layer."""
+    exists = level == 0
+    for axis, (number, size) in enumerate(zip(place, rt.textureSize(texture, 0), strict=True)):
+        moved = number + offset[axis] if axis < len(offset) else number
+        exists = exists & (moved >= 0) & (moved < size)
+    return exists
 
 
 # A table: several fields to a line.
@@ -101,7 +136,7 @@ ROWS = (
         uniform_flow=True,
         texts={
             "hlsl": "{texture}.Sample({sampler}, {1})",
-            **{f"hlsl/{_params(read)},float": "{texture}.SampleBias({sampler}, {1}, {2})" for read in (*_SAMPLE, *_LAYERS)},
+            **{f"hlsl/{params(read)},float": "{texture}.SampleBias({sampler}, {1}, {2})" for read in (*_SAMPLE, *_LAYERS)},
             "hlsl-dx9": "tex{dim}({texture}, {1})",
             "hlsl-dx9/sampler2D,vec2,float": "tex2Dbias({texture}, float4({1}, 0.0, {2}))",
             "hlsl-dx9/sampler3D,vec3,float": "tex3Dbias({texture}, float4({1}, {2}))",
@@ -111,8 +146,8 @@ ROWS = (
             "hlsl-macros/sampler3D,vec3,float": "{bare_texture}.SampleBias({bare_sampler}, {1}, {2})",
             "hlsl-macros/samplerCube,vec3,float": "SAMPLE_TEXTURECUBE_BIAS({texture}, {sampler}, {1}, {2})",
             "wgsl": "textureSample({texture}, {sampler}, {1})",
-            **{f"wgsl/{_params(read)},float": "textureSampleBias({texture}, {sampler}, {1}, {2})" for read in _SAMPLE},
-            **{f"wgsl/{_params(read)}{bias}": "" for read in _LAYERS for bias in ("", ",float")},
+            **{f"wgsl/{params(read)},float": "textureSampleBias({texture}, {sampler}, {1}, {2})" for read in _SAMPLE},
+            **{f"wgsl/{params(read)}{bias}": "" for read in _LAYERS for bias in ("", ",float")},
             **{f"{language}/{shadow}": "" for language in ("hlsl", "wgsl") for shadow in _SHADOWS},
         },
         polyfill="""
@@ -124,7 +159,7 @@ float texture(sampler2DShadow map, vec3 P) { return textureCompare(map, P.xy, P.
 float texture(samplerCubeShadow map, vec4 P) { return textureCompare(map, P.xyz, P.w); }
 float texture(sampler2DArrayShadow map, vec4 P) { return textureCompare(map, P.xy, int(round(P.z)), P.w); }
 """,
-        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
+        splat=(), kind="fetch", absolute=2.0**-7, clause=EIGHT_BITS,
     ),
     Builtin("textureLod", (*(f"{read}, float)" for read in (*_SAMPLE, *_LAYERS)), "float(sampler2DShadow, vec3, float)"),
         "Filtered texture read at level z; HLSL and WGSL compare at level 0 only.",
@@ -135,14 +170,14 @@ float texture(sampler2DArrayShadow map, vec4 P) { return textureCompare(map, P.x
             "hlsl-dx9/sampler2D,vec2,float": "tex2Dlod({texture}, float4({1}, 0.0, {2}))",
             "hlsl-macros": "SAMPLE_TEXTURE{dim}_LOD({texture}, {sampler}, {1}, {2})",
             "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2})", "wgsl/sampler2DShadow,vec3,float": "",
-            **{f"wgsl/{_params(read)},float": "" for read in _LAYERS},
+            **{f"wgsl/{params(read)},float": "" for read in _LAYERS},
         },
         polyfill="""
 vec4 textureLod(sampler2DArray map, vec3 P, float level) { return textureLayerLod(map, P.xy, int(round(P.z)), level); }
 vec4 textureLod(samplerCubeArray map, vec4 P, float level) { return textureLayerLod(map, P.xyz, int(round(P.w)), level); }
 float textureLod(sampler2DShadow map, vec3 P, float level) { return textureCompareLod(map, P.xy, P.z); }
 """,
-        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
+        splat=(), kind="fetch", absolute=2.0**-7, clause=EIGHT_BITS,
     ),
     Builtin("textureGrad",
         (
@@ -170,39 +205,64 @@ float textureGrad(sampler2DShadow map, vec3 P, vec2 dx, vec2 dy) { return textur
 float textureGrad(samplerCubeShadow map, vec4 P, vec3 dx, vec3 dy) { return textureCompareLod(map, P.xyz, P.w); }
 float textureGrad(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy) { return textureCompareLod(map, P.xy, int(round(P.z)), P.w); }
 """,
-        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
+        splat=(), kind="fetch", absolute=2.0**-7, clause=EIGHT_BITS,
     ),
     # Filtered reads with an offset in texels
-    Builtin("textureOffset", (*_offsets(), *(f"{one[:-1]}, float)" for one in _offsets())),
+    Builtin("textureOffset", (*_offsets(), *(f"{one[:-1]}, float)" for one in _offsets()), *_SHADOW_OFFSETS),
         "As texture, with z added to the place in texels, and w to the level.",
         with_level=Level("textureLodOffset", 2), with_gradients="textureGradOffset",
         componentwise=False, range=texels, constant=(2,), uniform_flow=True,
         texts={
+            "glsl/sampler2DArrayShadow,vec4,ivec2": "",
             "hlsl": "{bare_texture}.Sample({bare_sampler}, {1}, {2})",
-            **{f"hlsl/{_params(one)[:-1]},float": "{bare_texture}.SampleBias({bare_sampler}, {1}, {3}, {2})" for one in _offsets()},
+            **{f"hlsl/{params(one)[:-1]},float": "{bare_texture}.SampleBias({bare_sampler}, {1}, {3}, {2})" for one in _offsets()},
             "hlsl-dx9": "",
             "wgsl": "textureSample({texture}, {sampler}, {1}, {2})",
-            **{f"wgsl/{_params(one)[:-1]},float": "textureSampleBias({texture}, {sampler}, {1}, {3}, {2})" for one in _offsets()},
+            **{f"wgsl/{params(one)[:-1]},float": "textureSampleBias({texture}, {sampler}, {1}, {3}, {2})" for one in _offsets()[:2]},
+            "wgsl/sampler2DArray,vec3,ivec2": "", "wgsl/sampler2DArray,vec3,ivec2,float": "",
+            **{f"{language}/{params(shadow)[:-1]}": "" for language in ("hlsl", "wgsl") for shadow in _SHADOW_OFFSETS},
         },
-        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
+        polyfill="""
+vec4 textureOffset(sampler2DArray map, vec3 P, ivec2 offset) { return textureLayerOffset(map, P.xy, int(round(P.z)), offset); }
+vec4 textureOffset(sampler2DArray map, vec3 P, ivec2 offset, float bias) { return textureLayerOffset(map, P.xy, int(round(P.z)), offset, bias); }
+float textureOffset(sampler2DShadow map, vec3 P, ivec2 offset) { return textureCompareOffset(map, P.xy, P.z, offset); }
+float textureOffset(sampler2DArrayShadow map, vec4 P, ivec2 offset) { return textureCompareOffset(map, P.xy, int(round(P.z)), P.w, offset); }
+""",
+        splat=(), kind="fetch", absolute=2.0**-7, clause=EIGHT_BITS,
     ),
-    Builtin("textureLodOffset", _offsets(", float"), "As textureLod, with w added to the place in texels.",
-        componentwise=False, range=texels, constant=(3,),
+    Builtin("textureLodOffset", (*_offsets(", float"), "float(sampler2DShadow, vec3, float, ivec2)"),
+        "As textureLod, with w added to the place in texels.",
+        componentwise=False, range=texels, constant=(3,), domain="z = 0 for a texture that compares",
         texts={
             "hlsl": "{bare_texture}.SampleLevel({bare_sampler}, {1}, {2}, {3})", "hlsl-dx9": "",
-            "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2}, {3})",
+            "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2}, {3})", "wgsl/sampler2DArray,vec3,float,ivec2": "",
+            "hlsl/sampler2DShadow,vec3,float,ivec2": "", "wgsl/sampler2DShadow,vec3,float,ivec2": "",
         },
-        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
+        polyfill="""
+vec4 textureLodOffset(sampler2DArray map, vec3 P, float level, ivec2 offset) { return textureLayerLodOffset(map, P.xy, int(round(P.z)), level, offset); }
+float textureLodOffset(sampler2DShadow map, vec3 P, float level, ivec2 offset) { return textureCompareLodOffset(map, P.xy, P.z, offset); }
+""",
+        splat=(), kind="fetch", absolute=2.0**-7, clause=EIGHT_BITS,
     ),
     Builtin("textureGradOffset",
-        ("vec4(sampler2D, vec2, vec2, vec2, ivec2)", "vec4(sampler3D, vec3, vec3, vec3, ivec3)"),
+        (
+            "vec4(sampler2D, vec2, vec2, vec2, ivec2)", "vec4(sampler3D, vec3, vec3, vec3, ivec3)",
+            "vec4(sampler2DArray, vec3, vec2, vec2, ivec2)", *_SHADOW_GRADIENT_OFFSETS,
+        ),
         "As textureGrad, with the last argument added to the place in texels.",
         componentwise=False, range=texels, constant=(4,),
         texts={
             "hlsl": "{bare_texture}.SampleGrad({bare_sampler}, {1}, {2}, {3}, {4})", "hlsl-dx9": "",
             "wgsl": "textureSampleGrad({texture}, {sampler}, {1}, {2}, {3}, {4})",
+            "wgsl/sampler2DArray,vec3,vec2,vec2,ivec2": "",
+            **{f"{language}/{params(shadow)[:-1]}": "" for language in ("hlsl", "wgsl") for shadow in _SHADOW_GRADIENT_OFFSETS},
         },
-        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
+        polyfill="""
+vec4 textureGradOffset(sampler2DArray map, vec3 P, vec2 dx, vec2 dy, ivec2 offset) { return textureLayerGradOffset(map, P.xy, int(round(P.z)), dx, dy, offset); }
+float textureGradOffset(sampler2DShadow map, vec3 P, vec2 dx, vec2 dy, ivec2 offset) { return textureCompareLodOffset(map, P.xy, P.z, offset); }
+float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec2 offset) { return textureCompareLodOffset(map, P.xy, int(round(P.z)), P.w, offset); }
+""",
+        splat=(), kind="fetch", absolute=2.0**-7, clause=EIGHT_BITS,
     ),
     # Texels
     Builtin("texelFetch",
@@ -223,142 +283,86 @@ float textureGrad(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy) { return t
         ),
         splat=(), kind="fetch", ulp=0.0,
     ),
-    Builtin("texelFetchOffset", ("vec4(sampler2D, ivec2, int, ivec2)", "vec4(sampler3D, ivec3, int, ivec3)"),
+    Builtin("texelFetchOffset",
+        tuple(
+            f"{kind}vec4({kind}sampler{place}, int, ivec{size})"
+            for kind in _KINDS for place, size in (("2D, ivec2", 2), ("3D, ivec3", 3), ("2DArray, ivec3", 2))
+        ),
         "As texelFetch, at y + w.",
         componentwise=False, range=texels, constant=(3,), defined=_exists, domain="the texel and the level exist",
         texts={"hlsl": "", "wgsl": ""},
-        polyfill="""
-vec4 texelFetchOffset(sampler2D map, ivec2 P, int level, ivec2 offset) { return texelFetch(map, P + offset, level); }
-vec4 texelFetchOffset(sampler3D map, ivec3 P, int level, ivec3 offset) { return texelFetch(map, P + offset, level); }
-""",
+        polyfill="\n".join(
+            f"{kind}vec4 texelFetchOffset({kind}sampler{place} P, int level, ivec{size} offset) {{ return {read}, level); }}"
+            for kind in _KINDS
+            for place, size, read in (
+                ("2D map, ivec2", 2, "texelFetch(map, P + offset"), ("3D map, ivec3", 3, "texelFetch(map, P + offset"),
+                ("2DArray map, ivec3", 2, "texelFetchLayer(map, P.xy + offset, P.z"),
+            )
+        ),
         splat=(), kind="fetch", ulp=0.0,
     ),
-    Builtin("textureGather", ("vec4(sampler2D, vec2)", "vec4(sampler2D, vec2, int)"),
+    Builtin("textureGather",
+        (
+            *(f"vec4({read}{channel})" for read in _GATHERED for channel in ("", ", int")),
+            *(f"vec4({read})" for read in _GATHERED_SHADOWS),
+        ),
         "One channel, the first or z, of the four texels around y at level 0: those at (0, 1), (1, 1), (1, 0), (0, 0) "
-        "from the lower left one.",
+        "from the lower left one. Of a texture that compares: 1 where the texel is not below the reference z, else 0.",
         componentwise=False, range=texels, constant=(2,),
         texts={
             "glsl": "",
             "hlsl": "{bare_texture}.Gather{channel}({bare_sampler}, {1})", "hlsl-dx9": "",
             "wgsl": "textureGather(0, {texture}, {sampler}, {1})",
-            "wgsl/sampler2D,vec2,int": "textureGather({2}, {texture}, {sampler}, {1})",
+            **{f"wgsl/{read.replace(', ', ',')},int": "textureGather({2}, {texture}, {sampler}, {1})" for read in _GATHERED[:2]},
+            **{f"wgsl/{read.replace(', ', ',')}{channel}": "" for read in _GATHERED[2:] for channel in ("", ",int")},
+            **{f"hlsl/{read.replace(', ', ',')}": "{texture}.GatherCmp({sampler}, {1}, {2})" for read in _GATHERED_SHADOWS[1:]},
+            # glslang fails, without a message, where there is no offset
+            "hlsl/sampler2DShadow,vec2,float": "{texture}.GatherCmp({sampler}, {1}, {2}, int2(0, 0))",
+            **{f"wgsl/{read.replace(', ', ',')}": "textureGatherCompare({texture}, {sampler}, {1}, {2})" for read in _GATHERED_SHADOWS[:2]},
+            "wgsl/sampler2DArrayShadow,vec3,float": "",
         },
         polyfill="""
 vec4 textureGather(sampler2D map, vec2 P) { return textureGatherOffset(map, P, ivec2(0)); }
 vec4 textureGather(sampler2D map, vec2 P, int channel) { return textureGatherOffset(map, P, ivec2(0), channel); }
+vec4 textureGather(sampler2DArray map, vec3 P) { return textureGatherLayer(map, P.xy, int(round(P.z))); }
+vec4 textureGather(sampler2DArray map, vec3 P, int channel) { return textureGatherLayer(map, P.xy, int(round(P.z)), channel); }
+vec4 textureGather(samplerCubeArray map, vec4 P) { return textureGatherLayer(map, P.xyz, int(round(P.w))); }
+vec4 textureGather(samplerCubeArray map, vec4 P, int channel) { return textureGatherLayer(map, P.xyz, int(round(P.w)), channel); }
+vec4 textureGather(sampler2DShadow map, vec2 P, float reference) { return textureGatherOffset(map, P, reference, ivec2(0)); }
+vec4 textureGather(sampler2DArrayShadow map, vec3 P, float reference) { return textureGatherLayer(map, P.xy, int(round(P.z)), reference); }
 """,
         splat=(), kind="fetch", ulp=0.0,
     ),
-    Builtin("textureGatherOffset", ("vec4(sampler2D, vec2, ivec2)", "vec4(sampler2D, vec2, ivec2, int)"),
-        "As textureGather, with z added to the places in texels; the channel is w.",
+    Builtin("textureGatherOffset",
+        (
+            *(f"vec4({read}, ivec2{channel})" for read in ("sampler2D, vec2", "sampler2DArray, vec3") for channel in ("", ", int")),
+            "vec4(sampler2DShadow, vec2, float, ivec2)", "vec4(sampler2DArrayShadow, vec3, float, ivec2)",
+        ),
+        "As textureGather, with an offset added to the places in texels: z, before the channel; after the reference of a "
+        "texture that compares.",
         componentwise=False, range=texels, constant=(2, 3),
         texts={
             "glsl": "",
             "hlsl": "{bare_texture}.Gather{channel}({bare_sampler}, {1}, {2})", "hlsl-dx9": "",
+            "hlsl/sampler2DShadow,vec2,float,ivec2": "{texture}.GatherCmp({sampler}, {1}, {2}, {3})",
+            "hlsl/sampler2DArrayShadow,vec3,float,ivec2": "{texture}.GatherCmp({sampler}, {1}, {2}, {3})",
             "wgsl": "textureGather(0, {texture}, {sampler}, {1}, {2})",
             "wgsl/sampler2D,vec2,ivec2,int": "textureGather({3}, {texture}, {sampler}, {1}, {2})",
+            "wgsl/sampler2DShadow,vec2,float,ivec2": "textureGatherCompare({texture}, {sampler}, {1}, {2}, {3})",
+            "wgsl/sampler2DArray,vec3,ivec2": "", "wgsl/sampler2DArray,vec3,ivec2,int": "",
+            "wgsl/sampler2DArrayShadow,vec3,float,ivec2": "",
         },
-        polyfill="""
-vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset) {
-    vec2 size = vec2(textureSize(map, 0));
-    vec2 low = (floor(P * size - 0.5) + vec2(offset) + 0.5) / size;
-    vec2 high = low + 1.0 / size;
-    return vec4(
-        textureLod(map, vec2(low.x, high.y), 0.0).x, textureLod(map, high, 0.0).x,
-        textureLod(map, vec2(high.x, low.y), 0.0).x, textureLod(map, low, 0.0).x
-    );
-}
-vec4 textureGatherOffset(sampler2D map, vec2 P, ivec2 offset, int channel) {
-    vec2 size = vec2(textureSize(map, 0));
-    vec2 low = (floor(P * size - 0.5) + vec2(offset) + 0.5) / size;
-    vec2 high = low + 1.0 / size;
-    vec4 a = textureLod(map, vec2(low.x, high.y), 0.0);
-    vec4 b = textureLod(map, high, 0.0);
-    vec4 c = textureLod(map, vec2(high.x, low.y), 0.0);
-    vec4 d = textureLod(map, low, 0.0);
-    return vec4(a[channel], b[channel], c[channel], d[channel]);
-}
-""",
-        splat=(), kind="fetch", absolute=2.0**-12, clause="In GLSL without it, by reads at the texels' centres",
-    ),
-    # Builtins of the project: layers and references as separate arguments
-    Builtin("textureLayer", (*(f"{read})" for read in _OWN_LAYER), *(f"{read}, float)" for read in _OWN_LAYER)),
-        "As texture, of layer z, with w added to the level.",
-        with_level=Level("textureLayerLod", 3), componentwise=False, range=texels, uniform_flow=True,
-        texts={
-            "glsl/sampler2DArray,vec2,int": "texture({texture}, vec3({1}, float({2})))",
-            "glsl/sampler2DArray,vec2,int,float": "texture({texture}, vec3({1}, float({2})), {3})",
-            "glsl/samplerCubeArray,vec3,int": "texture({texture}, vec4({1}, float({2})))",
-            "glsl/samplerCubeArray,vec3,int,float": "texture({texture}, vec4({1}, float({2})), {3})",
-            "hlsl/sampler2DArray,vec2,int": "{texture}.Sample({sampler}, float3({1}, float({2})))",
-            "hlsl/sampler2DArray,vec2,int,float": "{texture}.SampleBias({sampler}, float3({1}, float({2})), {3})",
-            "hlsl/samplerCubeArray,vec3,int": "{texture}.Sample({sampler}, float4({1}, float({2})))",
-            "hlsl/samplerCubeArray,vec3,int,float": "{texture}.SampleBias({sampler}, float4({1}, float({2})), {3})",
-            "wgsl": "textureSample({texture}, {sampler}, {1}, {2})",
-            **{f"wgsl/{_params(read)},float": "textureSampleBias({texture}, {sampler}, {1}, {2}, {3})" for read in _OWN_LAYER},
-        },
-        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
-    ),
-    Builtin("textureLayerLod", tuple(f"{read}, float)" for read in _OWN_LAYER), "As textureLod at level w, of layer z.",
-        componentwise=False, range=texels,
-        texts={
-            "glsl/sampler2DArray,vec2,int,float": "textureLod({texture}, vec3({1}, float({2})), {3})",
-            "glsl/samplerCubeArray,vec3,int,float": "textureLod({texture}, vec4({1}, float({2})), {3})",
-            "hlsl/sampler2DArray,vec2,int,float": "{texture}.SampleLevel({sampler}, float3({1}, float({2})), {3})",
-            "hlsl/samplerCubeArray,vec3,int,float": "{texture}.SampleLevel({sampler}, float4({1}, float({2})), {3})",
-            "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2}, {3})",
-        },
-        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
-    ),
-    Builtin("textureLayerGrad", ("vec4(sampler2DArray, vec2, int, vec2, vec2)", "vec4(samplerCubeArray, vec3, int, vec3, vec3)"),
-        "As textureGrad, of layer z.",
-        componentwise=False, range=texels,
-        texts={
-            "glsl/sampler2DArray,vec2,int,vec2,vec2": "textureGrad({texture}, vec3({1}, float({2})), {3}, {4})",
-            "glsl/samplerCubeArray,vec3,int,vec3,vec3": "textureGrad({texture}, vec4({1}, float({2})), {3}, {4})",
-            "hlsl/sampler2DArray,vec2,int,vec2,vec2": "{texture}.SampleGrad({sampler}, float3({1}, float({2})), {3}, {4})",
-            "hlsl/samplerCubeArray,vec3,int,vec3,vec3": "{texture}.SampleGrad({sampler}, float4({1}, float({2})), {3}, {4})",
-            "wgsl": "textureSampleGrad({texture}, {sampler}, {1}, {2}, {3}, {4})",
-        },
-        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
-    ),
-    Builtin("texelFetchLayer", tuple(f"{kind}vec4({kind}sampler2DArray, ivec2, int, int)" for kind in _KINDS),
-        "As texelFetch at level w, of layer z.",
-        componentwise=False, range=texels, domain="the texel, the layer and the level exist",
-        texts={
-            "glsl": "texelFetch({texture}, ivec3({1}, {2}), {3})", "hlsl": "{texture}.Load(int4({1}, {2}, {3}))",
-            "wgsl": "textureLoad({texture}, {1}, {2}, {3})",
-        },
-        splat=(), kind="fetch", ulp=0.0,
-    ),
-    Builtin("textureCompare",
-        ("float(sampler2DShadow, vec2, float)", "float(samplerCubeShadow, vec3, float)", "float(sampler2DArrayShadow, vec2, int, float)"),
-        "As texture of a texture that compares; the reference is the last argument.",
-        with_level=Level("textureCompareLod", 3, explicit=False),
-        componentwise=False, range=all_within(0.0, 1.0), uniform_flow=True,
-        texts={
-            "glsl/sampler2DShadow,vec2,float": "texture({texture}, vec3({1}, {2}))",
-            "glsl/samplerCubeShadow,vec3,float": "texture({texture}, vec4({1}, {2}))",
-            "glsl/sampler2DArrayShadow,vec2,int,float": "texture({texture}, vec4({1}, float({2}), {3}))",
-            "hlsl": "{texture}.SampleCmp({sampler}, {1}, {2})",
-            "hlsl/sampler2DArrayShadow,vec2,int,float": "{texture}.SampleCmp({sampler}, float3({1}, float({2})), {3})",
-            "wgsl": "textureSampleCompare({texture}, {sampler}, {1}, {2})",
-            "wgsl/sampler2DArrayShadow,vec2,int,float": "textureSampleCompare({texture}, {sampler}, {1}, {2}, {3})",
-        },
-        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
-    ),
-    Builtin("textureCompareLod",
-        ("float(sampler2DShadow, vec2, float)", "float(samplerCubeShadow, vec3, float)", "float(sampler2DArrayShadow, vec2, int, float)"),
-        "As textureCompare, at level 0.",
-        componentwise=False, range=all_within(0.0, 1.0),
-        texts={
-            "glsl": "textureLod({texture}, vec3({1}, {2}), 0.0)", "hlsl": "{texture}.SampleCmpLevelZero({sampler}, {1}, {2})",
-            "wgsl": "textureSampleCompareLevel({texture}, {sampler}, {1}, {2})",
-            "glsl/samplerCubeShadow,vec3,float": "textureGrad({texture}, vec4({1}, {2}), vec3(0.0), vec3(0.0))",
-            "glsl/sampler2DArrayShadow,vec2,int,float": "textureGrad({texture}, vec4({1}, float({2}), {3}), vec2(0.0), vec2(0.0))",
-            "hlsl/sampler2DArrayShadow,vec2,int,float": "{texture}.SampleCmpLevelZero({sampler}, float3({1}, float({2})), {3})",
-            "wgsl/sampler2DArrayShadow,vec2,int,float": "textureSampleCompareLevel({texture}, {sampler}, {1}, {2}, {3})",
-        },
-        splat=(), kind="fetch", absolute=2.0**-7, clause=_EIGHT_BITS,
+        polyfill="vec4 textureGatherOffset".join((
+            "",
+            gather_polyfill("sampler2D map, vec2 P", "textureSize(map, 0)", "textureLod(map, {}, 0.0)"),
+            gather_polyfill("sampler2D map, vec2 P", "textureSize(map, 0)", "textureLod(map, {}, 0.0)", channel=True),
+            gather_polyfill("sampler2DShadow map, vec2 P, float reference", "textureSize(map, 0)", "textureCompareLod(map, {}, reference)"),
+            "(sampler2DArray map, vec3 P, ivec2 offset) { return textureGatherLayerOffset(map, P.xy, int(round(P.z)), offset); }\n",
+            "(sampler2DArray map, vec3 P, ivec2 offset, int channel)"
+            " { return textureGatherLayerOffset(map, P.xy, int(round(P.z)), offset, channel); }\n",
+            "(sampler2DArrayShadow map, vec3 P, float reference, ivec2 offset)"
+            " { return textureGatherLayerOffset(map, P.xy, int(round(P.z)), reference, offset); }\n",
+        )),
+        splat=(), kind="fetch", absolute=2.0**-12, clause=BY_READS,
     ),
 )

@@ -6,12 +6,15 @@ from collections.abc import Callable, Iterator, Sequence
 
 from sssgen.ir import nodes as ir
 from sssgen.ir import old_names, out_builtins
+from sssgen.ir.constant_expressions import literal
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.rules import element_type
 from sssgen.ir.signatures import candidates, resolve
 from sssgen.ir.types import INT, Sampler, Type, kind_of, spell
+from sssgen.ir.walk import subexpressions
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.assignment_checker import check_writable
+from sssgen.lang.check.constant_values import constant_value
 from sssgen.lang.check.constructor_checker import ConstructorChecker
 from sssgen.lang.check.context import AlreadyReported, Typed
 from sssgen.lang.check.expression_checker import ExpressionChecker
@@ -154,6 +157,7 @@ class CallChecker:
         if result is None:
             message = f"no overload of {name} takes ({', '.join(spell(arg.expr.type) for arg in args)})"
             raise self.context.fail(call.span, message, overload_hint(name, [arg.expr for arg in args]))
+        values = self.with_constants(name, values)
         if not any(arg.quantity for arg in args):
             return Typed(ir.Intrinsic(result, name, values, call.span))
         try:
@@ -167,6 +171,25 @@ class CallChecker:
         except q.Mixup as mixup:
             raise self.context.fail(call.span, mixup.message, mixup.hint) from None
         return Typed(ir.Intrinsic(result, name, values, call.span), quantity)
+
+    def with_constants(self, name: str, values: tuple[ir.Expr, ...]) -> tuple[ir.Expr, ...]:
+        """The arguments of a builtin, with literals for those that must be constant expressions: languages choose a
+        name by a channel, and WGSL has no other constants in functions."""
+        row = BUILTINS[name]
+        for index in row.constants([value.type for value in values]) if row.constant else ():
+            value = values[index]
+            if value.span.file.startswith("intrinsics/"):  # a parameter of a polyfill, which is inlined
+                continue
+            numbers = constant_value(self.context, value)
+            what, lowest, highest = ("channel", 0, 3) if value.type == INT else ("offset", -8, 7)
+            if numbers is None:
+                message = f"the {what} of {name} must be a constant expression"
+                raise self.context.fail(value.span, message, "write a number, or a const variable with such a value")
+            if not all(lowest <= number <= highest for number in numbers):
+                raise self.context.fail(value.span, f"the {what} of {name} must be in {lowest}..{highest}")
+            if any(not isinstance(part, ir.Construct | ir.Literal | ir.Unary) for part in subexpressions(value)):
+                values = (*values[:index], literal(value.type, numbers, value.span), *values[index + 1 :])
+        return values
 
 
 def _is_viable(signature: Signature, types: tuple[Type, ...]) -> bool:

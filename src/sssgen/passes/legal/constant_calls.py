@@ -11,10 +11,10 @@ from collections.abc import Callable, Mapping, Sequence
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.constant_evaluation import Value, combined
+from sssgen.ir.constant_expressions import constant_numbers, literal
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of
 from sssgen.ir.walk import operands
-from sssgen.passes.constant_expressions import constant_numbers, literal
 
 Polyfill = Callable[[str, Sequence[Type]], ir.Module]
 

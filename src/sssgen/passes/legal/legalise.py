@@ -11,14 +11,14 @@ from collections.abc import Callable, Sequence
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
 from sssgen.ir.constant_evaluation import combined
+from sssgen.ir.constant_expressions import literal
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.loops import at_every_end
 from sssgen.ir.transform import Transformer, rewrite
-from sssgen.ir.types import BOOL, FLOAT, UINT, Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of
+from sssgen.ir.types import BOOL, FLOAT, UINT, Array, Matrix, Sampler, Scalar, Struct, Type, Vector, components, kind_of
 from sssgen.ir.walk import calls_of, subexpressions
 from sssgen.passes import uniform_blocks as blocks
 from sssgen.passes.capabilities import Capabilities
-from sssgen.passes.constant_expressions import literal
 from sssgen.passes.legal.array_results import by_out_parameter, filling
 from sssgen.passes.legal.constant_calls import ConstantCalls, as_literals
 from sssgen.passes.legal.integer_operators import counts_up, with_result
@@ -28,7 +28,7 @@ from sssgen.passes.legal.part_stores import is_dynamic_store, is_swizzle_store, 
 from sssgen.passes.legal.wide_constants import ConstantIntegers, chooses_nested, is_wider
 from sssgen.passes.lift_calls import Calls, awkward, lift, reads_too_late
 from sssgen.passes.scopes import assigned, declared, fresh, outs_of
-from sssgen.passes.substitute import inlined, is_cheap
+from sssgen.passes.substitute import inlined, is_cheap, returned
 from sssgen.passes.unsupported import Unsupported
 from sssgen.passes.variable_effects import effects
 
@@ -421,7 +421,7 @@ class _Legaliser(Transformer):
                 module = self.polyfill(call.name, types)
             except KeyError:
                 raise Unsupported(f"this target has no {call.name}", call.span) from None
-            return self.call_polyfill(call, module)
+            return self.call_polyfill(self.with_constants_inlined(call, module), module)
         if self.language in row.splat and isinstance(call.type, Vector):
             args = tuple(
                 ir.Construct(Vector(kind_of(arg.type), call.type.size), (arg,), arg.span)
@@ -438,6 +438,16 @@ class _Legaliser(Transformer):
         if text is None:
             text = self.texts[name, types] = signatures.text(name, self.dialect, types)
         return text
+
+    def with_constants_inlined(self, call: ir.Intrinsic, module: ir.Module) -> ir.Intrinsic:
+        """A call whose polyfill can be inlined, if it is an expression and an argument has to be constant: those of
+        functions are not."""
+        constants = BUILTINS[call.name].constants([arg.type for arg in call.args])
+        if not constants or returned(module) is None or inlined(module, call.args, call.span) is not None:
+            return call
+        fixed = [isinstance(arg.type, Sampler) or index in constants for index, arg in enumerate(call.args)]
+        kept = [arg if skip else self.keep_expensive(arg, "place") for arg, skip in zip(call.args, fixed, strict=True)]
+        return call._replace(args=tuple(kept))
 
     def call_polyfill(self, call: ir.Intrinsic, module: ir.Module) -> ir.Expr:
         """The polyfill's expression where it is short and its arguments are cheap, else a call of the polyfill."""

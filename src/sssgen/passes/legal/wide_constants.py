@@ -11,10 +11,10 @@ from collections.abc import Sequence
 
 from sssgen.ir import constant_arithmetic as arithmetic
 from sssgen.ir.constant_evaluation import Value, combined
+from sssgen.ir.constant_expressions import constant_numbers
 from sssgen.ir.nodes import Binary, Construct, Expr, Global, Intrinsic, Literal, Local, Select, Unary
 from sssgen.ir.types import Vector, kind_of
 from sssgen.ir.walk import operands, subexpressions
-from sssgen.passes.constant_expressions import constant_numbers
 
 _INTEGERS = ("int", "uint")
 

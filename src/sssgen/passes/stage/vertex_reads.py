@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Expr, Intrinsic, Literal, Module
-from sssgen.ir.signatures import resolve
 from sssgen.ir.transform import rewrite_module
 from sssgen.ir.types import FLOAT
+from sssgen.passes.explicit_levels import at_level
 
 
 def with_levels(module: Module) -> Module:
@@ -19,12 +19,6 @@ def with_levels(module: Module) -> Module:
 
 
 def _with_level(expr: Expr) -> Expr:
-    row = BUILTINS[expr.name] if isinstance(expr, Intrinsic) else None
-    if not isinstance(expr, Intrinsic) or row is None or row.with_level is None:
+    if not isinstance(expr, Intrinsic) or BUILTINS[expr.name].with_level is None:
         return expr
-    name, position, explicit = row.with_level
-    level = (Literal(FLOAT, 0.0, expr.span),) if explicit else ()
-    # a constant offset comes next; a bias, which comes last, has no meaning here
-    args = (*expr.args[:position], *level, *expr.args[position : position + len(row.constant)])
-    exists = resolve(name, [arg.type for arg in args]) == expr.type
-    return Intrinsic(expr.type, name, args, expr.span) if exists else expr
+    return at_level(expr, Literal(FLOAT, 0.0, expr.span)) or expr

@@ -49,6 +49,8 @@ def texture(texture: Texture, coord: Value, bias: Value = 0.0) -> Value:
 
 def textureOffset(texture: Texture, coord: Value, offset: Value, bias: Value = 0.0) -> Value:
     """The offset is the same in all lanes."""
+    if texture.compare:
+        return textureCompareOffset(texture, coord[:-1], coord[-1], offset)
     return texture.sample(coord, _by_derivatives(texture, coord, bias), _first(offset))
 
 
@@ -60,6 +62,8 @@ def textureLod(texture: Texture, coord: Value, level: Value) -> Value:
 
 def textureLodOffset(texture: Texture, coord: Value, level: Value, offset: Value) -> Value:
     """The offset is the same in all lanes."""
+    if texture.compare:
+        return textureCompareLodOffset(texture, coord[:-1], coord[-1], offset)
     return texture.sample(coord, level, _first(offset))
 
 
@@ -71,7 +75,9 @@ def textureGrad(texture: Texture, coord: Value, dx: Value, dy: Value) -> Value:
 
 def textureGradOffset(texture: Texture, coord: Value, dx: Value, dy: Value, offset: Value) -> Value:
     """The offset is the same in all lanes."""
-    return texture.sample(coord, texture.level(coord, dx, dy), _first(offset))
+    if texture.compare:
+        return textureCompareLodOffset(texture, coord[:-1], coord[-1], offset)
+    return texture.sample(coord, texture.level(coord[: texture.axes], dx, dy), _first(offset))
 
 
 def texelFetch(texture: Texture, place: Value, level: Value) -> Value:
@@ -81,17 +87,26 @@ def texelFetch(texture: Texture, place: Value, level: Value) -> Value:
 
 
 def texelFetchOffset(texture: Texture, place: Value, level: Value, offset: Value) -> Value:
-    return texelFetch(texture, place + offset, level)
+    place = np.array(np.broadcast_arrays(*place, *offset)[: len(place)])
+    place[: len(offset)] += offset
+    return texelFetch(texture, place, level)
 
 
-def textureGather(texture: Texture, coord: Value, channel: Value = 0) -> Value:
-    """The channel is the same in all lanes; at level 0."""
-    return texture.gather(coord, _level(channel))
+def textureGather(texture: Texture, coord: Value, channel_or_reference: Value = 0) -> Value:
+    """At level 0. The channel is the same in all lanes; a texture that compares has a reference."""
+    return _gathered(texture, coord, channel_or_reference, None)
 
 
-def textureGatherOffset(texture: Texture, coord: Value, offset: Value, channel: Value = 0) -> Value:
-    """The offset is the same in all lanes."""
-    return texture.gather(coord, _level(channel), _first(offset))
+def textureGatherOffset(texture: Texture, coord: Value, first: Value, second: Value = 0) -> Value:
+    """The offset, which is the same in all lanes, precedes the channel, and follows the reference."""
+    offset, rest = (second, first) if texture.compare else (first, second)
+    return _gathered(texture, coord, rest, _first(offset))
+
+
+def _gathered(texture: Texture, coord: Value, channel_or_reference: Value, offset: Value | None) -> Value:
+    if texture.compare:
+        return texture.gather(coord, 0, offset, np.asarray(channel_or_reference, coord.dtype))
+    return texture.gather(coord, _level(channel_or_reference), offset)
 
 
 def _first(offset: Value) -> Value:
@@ -122,11 +137,43 @@ def texelFetchLayer(texture: Texture, place: Value, layer: Value, level: Value) 
 def textureCompare(texture: Texture, coord: Value, *rest: Value) -> Value:
     """At level 0, the only one of depth textures here. `rest`: a layer where there are layers, then the reference."""
     *layer, reference = rest
-    coordinates = _with(coord, *layer)
-    return texture.sample(coordinates, 0.0, reference=np.asarray(reference, coordinates.dtype))[0]
+    return _compared(texture, _with(coord, *layer), reference, None)
 
 
 textureCompareLod = textureCompare
+
+
+def textureLayerOffset(texture: Texture, coord: Value, layer: Value, offset: Value, bias: Value = 0.0) -> Value:
+    return textureOffset(texture, _with(coord, layer), offset, bias)
+
+
+def textureLayerLodOffset(texture: Texture, coord: Value, layer: Value, level: Value, offset: Value) -> Value:
+    return textureLodOffset(texture, _with(coord, layer), level, offset)
+
+
+def textureLayerGradOffset(texture: Texture, coord: Value, layer: Value, dx: Value, dy: Value, offset: Value) -> Value:
+    return textureGradOffset(texture, _with(coord, layer), dx, dy, offset)
+
+
+def textureCompareOffset(texture: Texture, coord: Value, *rest: Value) -> Value:
+    """`rest`: a layer where there are layers, then the reference and the offset."""
+    *layer, reference, offset = rest
+    return _compared(texture, _with(coord, *layer), reference, _first(offset))
+
+
+textureCompareLodOffset = textureCompareOffset
+
+
+def textureGatherLayer(texture: Texture, coord: Value, layer: Value, channel_or_reference: Value = 0) -> Value:
+    return textureGather(texture, _with(coord, layer), channel_or_reference)
+
+
+def textureGatherLayerOffset(texture: Texture, coord: Value, layer: Value, first: Value, second: Value = 0) -> Value:
+    return textureGatherOffset(texture, _with(coord, layer), first, second)
+
+
+def _compared(texture: Texture, coord: Value, reference: Value, offset: Value | None) -> Value:
+    return texture.sample(coord, 0.0, offset, np.asarray(reference, coord.dtype))[0]
 
 
 def _with(coord: Value, *more: Value) -> Value:

@@ -124,16 +124,17 @@ class Texture:
                     result += weight * self._sample(number, coord, read)
             return result
 
-    def gather(self, coord: Array, channel: int, offset: Array | None = None) -> Array:
+    def gather(self, coord: Array, channel: int, offset: Array | None = None, reference: Array | None = None) -> Array:
         """One channel of the four texels, (4, n), that a linear filter reads at level 0, in this order:
-        (0, 1), (1, 1), (1, 0), (0, 0)."""
+        (0, 1), (1, 1), (1, 0), (0, 0). With a `reference`, () or (n,), they are 1 or 0."""
+        coord, layer = self._layer(coord)
+        face = None
         with np.errstate(all="ignore"):
+            if self.dim == "Cube":
+                face, coord = _project(coord)
             low = [np.floor(c * n - 0.5) for c, n in zip(coord, self.size(), strict=True)]
-        shift = np.zeros((2, 1), np.int64) if offset is None else offset
-        corners = [
-            self._wrapped(0, [_integers(p) + bit + o for p, bit, o in zip(low, corner, shift, strict=True)], None, None)
-            for corner in ((0, 1), (1, 1), (1, 0), (0, 0))
-        ]
+        read = _Read(layer, offset, reference)
+        corners = [self._corner(0, low, corner, face, read) for corner in ((0, 1), (1, 1), (1, 0), (0, 0))]
         return np.stack([texels[channel] for texels in corners]).astype(coord.dtype)
 
     def fetch(self, place: Array, level: int = 0) -> Array:
@@ -160,24 +161,24 @@ class Texture:
             face, coord = _project(coord)
         base = [c * n - (0.5 if self.filter == "linear" else 0.0) for c, n in zip(coord, size, strict=True)]
         low = [np.floor(b) for b in base]
-        shift = np.zeros((len(base), 1), np.int64) if read.offset is None else read.offset
-
-        def texels(corner: tuple[int, ...]) -> Array:
-            places = [_integers(p) + bit + o for p, bit, o in zip(low, corner, shift, strict=True)]
-            values = self._wrapped(level, places, face, read.layer)
-            if read.reference is not None:
-                values = np.where(read.reference <= values[:1].astype(coord.dtype), 1.0, 0.0)
-            return values.astype(coord.dtype)
-
         if self.filter == "nearest":
-            return texels((0,) * len(base))
+            return self._corner(level, low, (0,) * len(base), face, read)
         result = np.zeros((4, *coord.shape[1:]), coord.dtype)
         for corner in product((0, 1), repeat=len(base)):
             weight = np.ones((), coord.dtype)
             for b, p, bit in zip(base, low, corner, strict=True):
                 weight = weight * (b - p if bit else 1.0 - (b - p))
-            result = result + weight * texels(corner)
+            result = result + weight * self._corner(level, low, corner, face, read)
         return result
+
+    def _corner(self, level: int, low: list[Array], corner: tuple[int, ...], face: Array | None, read: _Read) -> Array:
+        """The texels, (4, n), of one corner of the filter from the lowest one, or their comparisons."""
+        shift = np.zeros((len(low), 1), np.int64) if read.offset is None else read.offset
+        places = [_integers(p) + bit + o for p, bit, o in zip(low, corner, shift, strict=True)]
+        values = self._wrapped(level, places, face, read.layer).astype(low[0].dtype)
+        if read.reference is None:
+            return values
+        return np.where(read.reference <= values[:1], 1.0, 0.0).astype(values.dtype)
 
     def _wrapped(self, level: int, places: list[Array], face: Array | None, layer: Array | None) -> Array:
         size = self.size(level)
