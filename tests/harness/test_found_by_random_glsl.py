@@ -30,6 +30,11 @@ CASES = {
         "struct S { int x; }; const S w = S(4); const int A = w.x;"
         "float f(float x) { float w = x * 10.0; return step(w, 0.0) + w + float(A); }", 14.0,
     ),
+    "variables of two switches, of which one is read later": (
+        "float f(float x) { switch (int(x)) {"
+        "case 1: switch (uint(abs(x * -4.0))) { case 7u: case 4u: return 15.0; case 0u: } break;"
+        "case 3: switch (1) { default: x; case 0: } } return 1.0; }", 15.0,
+    ),
 }  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from sssgen.ir.nodes import Assign, Block, Call, Declare, Expr, For, If, Local, 
 from sssgen.ir.transform import rewrite, rewrite_block
 from sssgen.ir.walk import statements, subexpressions
 from sssgen.passes.lift_calls import Functions
-from sssgen.passes.numpy.variable_uses import is_local, mentions, own_reads, own_writes, reads_of, writes_of
+from sssgen.passes.numpy.variable_uses import is_local, mentions, own_reads, own_writes, reads_of, set_in
 from sssgen.passes.scopes import fresh
 
 _NUMBER = re.compile(r"_\d+$")
@@ -80,7 +80,7 @@ def _inline_declaration(block: Block, index: int, declare: Declare, uses: _Uses)
         user = block[position]
         if not isinstance(user, For | While) and name in own_reads(user):
             return block[:index] + block[index + 1 : position] + (_put(user, name, value),) + block[position + 1 :]
-        if free.intersection(writes_of((user,), uses.functions)):
+        if free.intersection(set_in(user, uses.functions)):
             break
     return block
 
@@ -130,7 +130,7 @@ def _other_arm(done: list[Stmt], name: str, mask: str, functions: Functions) -> 
             reads = {part.name for part in subexpressions(choice.yes) if isinstance(part, Local)} | {mask}
             joinable = is_local(choice.condition, mask) and is_local(choice.no, name) and not reads & changed
             return position if joinable else None
-        changed.update(writes_of((stmt,), functions))
+        changed |= set_in(stmt, functions)
         if name in changed or name in reads_of((stmt,)):
             return None
     return None

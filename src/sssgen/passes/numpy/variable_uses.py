@@ -45,6 +45,15 @@ def writes_of(block: Block, functions: Functions) -> set[str]:
     return {name for stmt in statements(block) for name in own_writes(stmt, functions)}
 
 
+def set_in(stmt: Stmt, functions: Functions) -> set[str]:
+    """The variables that a statement, and all inside it, change or declare.
+
+    Sibling blocks may declare variables of one name each; without control flow they are one block.
+    """
+    declared = {inner.name for inner in statements((stmt,)) if isinstance(inner, Declare)}
+    return writes_of((stmt,), functions) | declared
+
+
 def own_writes(stmt: Stmt, functions: Functions) -> list[str]:
     """The variables that a statement itself changes, not by declaring them."""
     names = [name for expr in expressions(stmt) for name in out_arguments(expr, functions)]
