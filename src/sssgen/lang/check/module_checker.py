@@ -12,6 +12,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.types import Struct
 from sssgen.lang.check.access_checker import AccessChecker
 from sssgen.lang.check.assignment_checker import AssignmentChecker
+from sssgen.lang.check.builtin_variables import builtin_variable
 from sssgen.lang.check.call_checker import CallChecker
 from sssgen.lang.check.call_graph import callees_first, calls_in, report_deep_calls, report_recursion
 from sssgen.lang.check.constant_values import constant_value
@@ -56,6 +57,7 @@ class ModuleChecker:
 
     def __init__(self, context: CheckContext, vertex: bool = False) -> None:
         self.context = context
+        self.vertex = vertex
         expressions = ExpressionChecker(context)
         OperatorChecker(expressions)
         AccessChecker(expressions)
@@ -115,6 +117,9 @@ class ModuleChecker:
         if context.plain and not context.reporter.diagnostics:
             functions = callees_first(functions, calls, self.function_checker.define_zeros)
         report_deep_calls(functions, calls, context.reporter)
+        main = functions.get("main()") if self.vertex else None
+        if main is not None and "gl_Position" not in context.variables:  # a stage that has it is a vertex shader
+            builtin_variable(context, s.Name("gl_Position", main.span))
         return ir.Module(
             tuple(context.struct_declarations),
             tuple(self.globals.constants),

@@ -1,6 +1,6 @@
 """The interface of a whole shader: its stage, and where each of its in and out variables is bound.
 
-A module with a function `void main()` is a whole shader: a vertex shader if it writes gl_Position, else a fragment
+A module with a function `void main()` is a whole shader: a vertex shader if it has gl_Position, else a fragment
 shader.
 A location that the author wrote is kept; the other variables get the lowest free ones. What the vertex shader passes on
 is numbered by `varyings`, so that both stages agree; attributes and colours are in the order of their declaration.
@@ -20,7 +20,6 @@ from sssgen.ir.walk import all_expressions, builtins_of, operands
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.stage.varyings import locations, output_of, parts, varyings
 from sssgen.passes.unsupported import Unsupported
-from sssgen.passes.variable_effects import effects
 
 ENTRY = "main()"
 """The key of the function that a stage begins with."""
@@ -83,9 +82,7 @@ def stage_kind(module: Module) -> str:
     """vertex or fragment; '' for a module without an entry."""
     if entry_of(module) is None:
         return ""
-    positions = {variable.name for variable in module.variables if variable.builtin == "gl_Position"}
-    written = [effect.writes for effect in effects(module).values()] if positions else []
-    return "fragment" if all(map(positions.isdisjoint, written)) else "vertex"
+    return "vertex" if any(variable.builtin == "gl_Position" for variable in module.variables) else "fragment"
 
 
 class Matching(NamedTuple):
