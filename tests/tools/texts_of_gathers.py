@@ -86,18 +86,18 @@ GATHERS = {
         "urp": "error: Unity, Universal Render Pipeline has no sampler2DArray",
     },
     "textureGather(cubes, x4)": {
-        "glsl": "error: this target has no textureGatherLayer (glsl-330)",
+        "glsl": "error: this target has no textureGather (glsl-330)",
         "hlsl": "cubes.GatherRed(cubes_sampler, x4)",
         "wgsl": "textureGather(0, cubes, cubes_sampler, x4.xyz, i32(round(x4.w)))",
-        "glsl-es": "error: this target has no textureGatherLayer (glsl-es-300)",
+        "glsl-es": "error: this target has no textureGather (glsl-es-300)",
         "dx9": "error: Unity, built-in pipeline (surface shader) has no samplerCubeArray",
         "urp": "error: Unity, Universal Render Pipeline has no samplerCubeArray",
     },
     "textureGather(cubes, x4, 2)": {
-        "glsl": "error: this target has no textureGatherLayer (glsl-330)",
+        "glsl": "error: this target has no textureGather (glsl-330)",
         "hlsl": "cubes.GatherBlue(cubes_sampler, x4)",
         "wgsl": "textureGather(2, cubes, cubes_sampler, x4.xyz, i32(round(x4.w)))",
-        "glsl-es": "error: this target has no textureGatherLayer (glsl-es-300)",
+        "glsl-es": "error: this target has no textureGather (glsl-es-300)",
         "dx9": "error: Unity, built-in pipeline (surface shader) has no samplerCubeArray",
         "urp": "error: Unity, Universal Render Pipeline has no samplerCubeArray",
     },
@@ -130,7 +130,7 @@ GATHERS = {
 
             return textureGatherOffset_(shade, x2, y, ivec2(0));
         """,
-        "dx9": "error: this target has no textureSize (unity-builtin)",
+        "dx9": "error: this target has no textureGather (unity-builtin)",
         "urp": "error: Unity, Universal Render Pipeline has no sampler2DShadow",
     },
     "textureGather(shadecube, x3, y)": {

@@ -41,6 +41,7 @@ class _OutOfOrder(Exception):
 
 
 _JUMPS = (ir.Return, ir.Break, ir.Continue, ir.Discard)
+_MISSING = "this target has no"
 _NOT_CONSTANT = "this cannot be expressed in a constant for this target"
 
 
@@ -420,8 +421,13 @@ class _Legaliser(Transformer):
             try:
                 module = self.polyfill(call.name, types)
             except KeyError:
-                raise Unsupported(f"this target has no {call.name}", call.span) from None
-            return self.call_polyfill(self.with_constants_inlined(call, module), module)
+                raise Unsupported(f"{_MISSING} {call.name}", call.span) from None
+            try:
+                return self.call_polyfill(self.with_constants_inlined(call, module), module)
+            except Unsupported as error:
+                if error.message.startswith(_MISSING):  # the author has not written that
+                    raise Unsupported(f"{_MISSING} {call.name}", call.span) from None
+                raise
         if self.language in row.splat and isinstance(call.type, Vector):
             args = tuple(
                 ir.Construct(Vector(kind_of(arg.type), call.type.size), (arg,), arg.span)
