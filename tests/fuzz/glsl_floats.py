@@ -131,9 +131,11 @@ class Expressions(Integers):
         if rule < 89 and not self.constant:
             power = binary("&", vector("int", size), self.integer(vector("int", size), 1), literal("int", 3))
             return Bound(call("ldexp", type_, self.fit(x), power), LIMIT * 8.0, EIGHTHS)
-        if rule < 90 and type_ == "vec2" and not self.constant:
-            packed = call("packHalf2x16", "uint", call("abs", type_, self.fit(x)))  # -0.0 may become 0.0
-            return Bound(call("unpackHalf2x16", type_, packed), LIMIT, EIGHTHS)
+        if rule < 90 and type_ == "float" and not self.constant:
+            half = call("abs", type_, self.fit(x))  # -0.0 may become 0.0
+            packed = call("packHalf2x16", "uint", Node("construct", "vec2", [half], "vec2"))
+            both = call("unpackHalf2x16", "vec2", packed)  # Mesa's Vulkan driver computes 0 for y of a constant
+            return Bound(Node("swizzle", type_, [both], "x"), LIMIT, EIGHTHS)
         place = (
             self.target(type_, pure=True) if rule < 91 and not self.quiet and self.chance(2 * self.effects) else None
         )

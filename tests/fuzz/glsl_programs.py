@@ -158,19 +158,16 @@ class Programs(Expressions):
             {param.name: Symbol(param.name, param.type, param.direction != "const in") for param in params}
         )
         stmts = []
-        for param in params:
-            if param.direction == "out":
-                self.scopes[-1][param.name] = Symbol(param.name, param.type, False)
-        for param in params:
-            if param.direction == "out":
-                self.quiet += 1
-                hidden = self.scopes[-1].pop(param.name)
-                value = self.value(param.type, 1)
-                self.scopes[-1][param.name] = hidden._replace(writable=True)
-                self.quiet -= 1
-                target = Node("name", param.type, [], param.name)
-                stmts.append(Node("do_expression", parts=[Node("assign", param.type, [target, value], "=")]))
-        # the value of one `out` parameter must not read another that is not set yet
+        outs = [param for param in params if param.direction == "out"]
+        for param in outs:  # each hides a global of its name also while it has no value
+            self.scopes[-1][param.name] = Symbol(param.name, "unset", False)
+        for param in outs:
+            self.quiet += 1
+            value = self.value(param.type, 1)
+            self.scopes[-1][param.name] = Symbol(param.name, param.type, True)
+            self.quiet -= 1
+            target = Node("name", param.type, [], param.name)
+            stmts.append(Node("do_expression", parts=[Node("assign", param.type, [target, value], "=")]))
         stmts += self.statements(size, self.random.choice((0, 1, 2)))
         if result != "void":
             stmts.append(Node("return", result, [self.stored(result, 2)]))
@@ -367,11 +364,17 @@ class Programs(Expressions):
         type_ = "uint" if self.chance(20) else "int"
         name = self.new_name()
         self.declare(name, type_, writable=False)
+        start: Node = Node("declare", type_, [literal(type_, 0)], ("", [name]))
+        form = self.random.randrange(100)
+        if form < 62 and self.chance(15):
+            other = self.new_name()
+            start.data[1].append(other)
+            start.parts.append(self.value(type_, 1))
+            self.declare(other, type_)
         count = literal(type_, self.random.randint(1, 4))
         if self.chance(30):
             count = binary("&", type_, self.integer(type_, 1), literal(type_, 3))
         counter = Node("name", type_, [], name)
-        start: Node = Node("declare", type_, [literal(type_, 0)], ("", [name]))
         test = binary(self.random.choice(("<", "!=")) if count.kind == "literal" else "<", "bool", counter, count)
         if self.chance(25):
             others = self.boolean("bool", 1)
@@ -382,13 +385,7 @@ class Programs(Expressions):
         outer = self.loops, self.switches
         self.loops, self.switches = self.loops + 1, 0
         made: list[Node]
-        form = self.random.randrange(100)
         if form < 62:
-            if self.chance(15):
-                other = self.new_name()
-                start.data[1].append(other)
-                start.parts.append(self.value(type_, 1))
-                self.declare(other, type_)
             if self.chance(20) and (place := self.target("int")) is not None:
                 step = Node("comma", "int", [step, self.assignment(place, 1)])
             body = self.block(depth)

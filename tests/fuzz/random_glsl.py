@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import multiprocessing
+import os
 import re
 import sys
 import time
@@ -135,6 +136,7 @@ def main() -> int:
     jobs = [Job(options.seed, number, targets, options.output) for number in numbers]
     count, excused, titles, kinds = 0, Counter[str](), Counter[str](), Counter[str]()
     seconds: dict[str, float] = {}
+    os.environ.setdefault("GALLIVM_PERF", "nopt")  # Mesa compiles faster than it would optimise for one drawing
     context = multiprocessing.get_context("spawn")
     with context.Pool(options.processes) as pool:
         for done, outcome in enumerate(pool.imap_unordered(run, jobs), 1):

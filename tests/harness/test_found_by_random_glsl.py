@@ -35,6 +35,19 @@ CASES = {
         "case 1: switch (uint(abs(x * -4.0))) { case 7u: case 4u: return 15.0; case 0u: } break;"
         "case 3: switch (1) { default: x; case 0: } } return 1.0; }", 15.0,
     ),
+    "a switch without cases": (
+        "float g(out float y) { y = 5.0; return 1.0; }"
+        "float f(float x) { switch (g(x) > 0.5 ? 1 : 1) { } switch (int(g(x))) { default: x *= 2.0; } return x; }",
+        10.0,
+    ),
+    "a blend whose other argument has an effect": (
+        "float g(inout float y) { y += 5.0; return 1.0; }"
+        "float f(float x) { int k = mix(8 >> int(g(x)), 0, true); return x + float(k); }", 6.0,
+    ),
+    "a switch with two labels": (
+        "int g(inout float y) { y += 5.0; return 2; }"
+        "float f(float x) { switch (g(x)) { case 1: case 2: x *= 2.0; } return x; }", 12.0,
+    ),
 }  # fmt: skip
 
 

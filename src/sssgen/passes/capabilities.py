@@ -77,6 +77,6 @@ class Capabilities(NamedTuple):
     whole_equality: bool = False
     """`==` and `!=` of vectors, matrices, structs and arrays give one bool."""
     unreachable_statements: bool = False
-    """Statements may follow a `return`, `break`, `continue` or `discard` in its block; if not, they are omitted."""
+    """Statements may follow a `return`, `break` or `continue` in its block; if not, they are omitted."""
     wrapping_constants: bool = False
     """Constant expressions of ints wrap at 32 bits; if not, a part that would differ is replaced by its value."""

@@ -38,8 +38,11 @@ class SwitchChecker:
         function.switches = outer
         inside = tuple([stmt for body in bodies for stmt in body])
         written, calls = writes_of(inside, context.out_arguments)
-        if len(cases) > 1 and (not isinstance(value, ir.Local) or depends(value, written, calls)):
+        tests = sum(len(case.labels) for case in cases if all(label.value is not None for label in case.labels))
+        if max(tests, len(cases)) > 1 and (not isinstance(value, ir.Local) or depends(value, written, calls)):
             value = function.temporary("selected", value, position, before=inside)
+        elif not tests:
+            self.statements.assignments.calls_of(value)
         chain: ir.Block = ()
         for case, body in zip(reversed(cases), reversed(bodies), strict=True):
             test = self.matches(value, case.labels)

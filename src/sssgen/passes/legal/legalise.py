@@ -40,7 +40,7 @@ class _OutOfOrder(Exception):
     """A value would be computed before a call that precedes it in the source."""
 
 
-_JUMPS = (ir.Return, ir.Break, ir.Continue, ir.Discard)
+_JUMPS = (ir.Return, ir.Break, ir.Continue)  # in WGSL a discarded invocation goes on
 _MISSING = "this target has no"
 _NOT_CONSTANT = "this cannot be expressed in a constant for this target"
 
@@ -458,7 +458,8 @@ class _Legaliser(Transformer):
     def call_polyfill(self, call: ir.Intrinsic, module: ir.Module) -> ir.Expr:
         """The polyfill's expression where it is short and its arguments are cheap, else a call of the polyfill."""
         function = module.functions[-1]
-        placed = inlined(module, call.args, call.span)
+        writes = self.writing and any(map(self.calls.writing, call.args))  # each is evaluated once, in this order
+        placed = inlined(module, call.args, call.span) if not writes else None
         if placed is not None:
             return self.expression(placed)
         if self.current is None:
