@@ -48,8 +48,9 @@ class Failure(NamedTuple):
 
     target: str
     kind: str
-    """`wrong`, `invalid` (a compiler refuses the text), `refused` (the transpiler does), `crash`; `tool`: spirv-cross,
-    which only this harness needs, ends with an assertion."""
+    """`wrong`, `invalid` (a compiler refuses the text), `refused` (the transpiler does), `crash`; `tool`: a fault of
+    what runs the text: spirv-cross ends with an assertion, or a driver computes a lane of the same text right where all
+    lanes have its arguments, and wrong among others (llvmpipe's control flow)."""
     message: str
 
 
@@ -110,16 +111,20 @@ class Case:
         """Whether most lanes are defined."""
         return int(self.valid.sum()) >= LANES // 2
 
-    def difference(self, result: np.ndarray[Any, Any]) -> str:
-        """Where a result is not the expected one; '' where it is."""
+    def wrong_lanes(self, result: np.ndarray[Any, Any]) -> list[int]:
+        """The lanes whose result is not the expected one."""
+        result = np.moveaxis(result, -1, 0).astype(np.float64)
+        if result.shape != self.expected.shape:
+            return [0]
+        limit = TOLERANCE * np.maximum(1.0, np.abs(self.expected)) if self.program.smooth else 0.0
+        wrong = ~(np.abs(result - self.expected) <= limit) & self.valid[:, None]
+        return [int(lane) for lane in np.flatnonzero(wrong.any(axis=1))]
+
+    def difference(self, result: np.ndarray[Any, Any], lane: int) -> str:
+        """The result of a lane, and the expected one."""
         result = np.moveaxis(result, -1, 0).astype(np.float64)
         if result.shape != self.expected.shape:
             return f"a result of the shape {result.shape}"
-        limit = TOLERANCE * np.maximum(1.0, np.abs(self.expected)) if self.program.smooth else 0.0
-        wrong = ~(np.abs(result - self.expected) <= limit) & self.valid[:, None]
-        if not wrong.any():
-            return ""
-        lane = int(np.argmax(wrong.any(axis=1)))
         values = [one[lane] for one in arguments()]
         return f"lane {lane} {values}: {result[lane].tolist()}, expected {self.expected[lane].tolist()}"
 
@@ -180,12 +185,21 @@ class Runner:
             half = (len(cases) + 1) // 2
             return [one for part in (cases[:half], cases[half:]) for one in self.of_target(target, module, part)]
         found = []
-        for case, result in zip(cases, results, strict=True):
-            if difference := case.difference(result):
-                found.append((case, Failure(target, "wrong", difference)))
+        for index, (case, result) in enumerate(zip(cases, results, strict=True)):
+            lanes = case.wrong_lanes(result)
+            if lanes:
+                is_text = target == "numpy" or any(self.is_wrong_alone(target, module, cases, index, n) for n in lanes)
+                found.append((case, Failure(target, "wrong" if is_text else "tool", case.difference(result, lanes[0]))))
         return found
 
-    def results(self, target: str, module: Module, cases: Sequence[Case]) -> list[np.ndarray[Any, Any]]:
+    def is_wrong_alone(self, target: str, module: Module, cases: Sequence[Case], index: int, lane: int) -> bool:
+        """Whether a lane of a case is wrong, too, where all lanes have its arguments."""
+        return lane in cases[index].wrong_lanes(self.results(target, module, cases, lane)[index])
+
+    def results(
+        self, target: str, module: Module, cases: Sequence[Case], lane: int | None = None
+    ) -> list[np.ndarray[Any, Any]]:
+        """The results of the cases in one text; with `lane`, all lanes have its arguments."""
         backend = self.backend(target)
         if target == "numpy" and any(case.program.has_state for case in cases) and len(cases) > 1:
             return [self.results(target, module, [case])[0] for case in cases]
@@ -201,6 +215,8 @@ class Runner:
         text = next(text for name, text in compiled.files.items() if not name.endswith(".json"))
         renames = compiled.reflection["renames"]
         calls = [self.call(case, closed[case.program.entry], renames) for case in cases]
+        if lane is not None:
+            calls = [call._replace(args=tuple([_of_lane(arg, lane) for arg in call.args])) for call in calls]
         results: list[np.ndarray[Any, Any]] = self.timed(f"run {target}", backend.run, Text(text), calls)
         return results
 
@@ -212,3 +228,8 @@ class Runner:
         entry = case.program.entry
         result = BY_NAME["vec4" if case.program.smooth else "ivec4"]
         return Call(renames.get(entry, entry), tuple(param.type for param in params), result, tuple(args))
+
+
+def _of_lane(arg: Any, lane: int) -> Any:
+    """An argument whose lanes all have the value of one."""
+    return np.repeat(arg[..., lane : lane + 1], LANES, axis=-1)

@@ -87,7 +87,14 @@ def run(job: Job) -> Outcome:
 
 def title(failure: Failure) -> str:
     """The kind of fault: messages without their numbers and names."""
-    message = "" if failure.kind == "wrong" else re.sub(r"'[^']*'|`[^`]*`|\d+", "…", failure.message)[:80]
+    lane = failure.message.startswith("lane ")
+    message = (
+        "divergent lanes"
+        if lane and failure.kind == "tool"
+        else ""
+        if lane
+        else re.sub(r"'[^']*'|`[^`]*`|\d+", "…", failure.message)[:80]
+    )
     return f"{failure.target} {failure.kind} {message}".strip()
 
 
@@ -159,7 +166,7 @@ def main() -> int:
     print(
         f"{count} programs × {len(targets)} targets ({', '.join(targets)}): {kinds['wrong']} wrong numbers, "
         f"{kinds['invalid']} invalid texts, {kinds['refused']} refusals, {kinds['crash']} crashes, "
-        f"{kinds['tool']} failures of spirv-cross, "
+        f"{kinds['tool']} faults of the driver or spirv-cross, "
         f"{time.monotonic() - start:.0f} s"
     )
     return 1 if kinds.keys() - {"tool"} else 0
