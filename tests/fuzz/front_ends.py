@@ -33,7 +33,7 @@ from sssgen.ir.text import print_module
 from sssgen.ir.text_reader import TextError, read_module
 from sssgen.lab.scene import measured_scene
 from sssgen.lang.loader import load_file, load_text
-from sssgen.lang.plain_glsl import load_glsl
+from sssgen.lang.plain_glsl import load_glsl, load_glsl_text
 from sssgen.material import baked
 from sssgen.material.library import TECHNIQUES, load_path
 from sssgen.material.material_loading import load_material
@@ -151,7 +151,9 @@ def _shaders() -> list[bytes]:
 
 
 def _reflections() -> list[bytes]:
-    return [list(compile("jelly_cubes", "glsl-330").files.values())[-1].encode()]
+    """That of a transpiled file, which may have any name; the only one."""
+    module = load_glsl_text("vec3 f(vec3 x) { return x; }", "f.glsl").module
+    return [list(transpile(module, "glsl-330", "f", keep=True).files.values())[-1].encode()]
 
 
 def _numbers() -> list[bytes]:

@@ -16,6 +16,7 @@ import sys
 import time
 from collections import Counter
 from contextlib import suppress
+from itertools import accumulate
 from pathlib import Path
 from random import Random
 from typing import NamedTuple
@@ -27,6 +28,8 @@ from glsl_tree import Program
 
 BATCH = 16
 """The programs in one text."""
+DEEPEST = 80
+"""Programs with as many brackets inside each other are left out: the transpiler refuses them from 100 levels on."""
 SHOWN = 3
 """How many programs with the same fault are reduced and written."""
 
@@ -60,8 +63,15 @@ def batch(seed: int, number: int) -> list[Case]:
     cases = []
     for program in programs(Random(f"{seed}-{number}"), BATCH):
         with suppress(TypeError, KeyError, IndexError, RecursionError):
-            cases.append(Case(program))
+            case = Case(program)
+            if nesting(case.text) < DEEPEST:
+                cases.append(case)
     return cases
+
+
+def nesting(text: str) -> int:
+    """How deep the brackets of a text nest."""
+    return max(accumulate((char in "([{") - (char in ")]}") for char in text))
 
 
 def run(job: Job) -> Outcome:

@@ -44,6 +44,12 @@ CASES = {
         "float g(inout float y) { y += 5.0; return 1.0; }"
         "float f(float x) { int k = mix(8 >> int(g(x)), 0, true); return x + float(k); }", 6.0,
     ),
+    "bodies that run once": (
+        "float f(float x) { if (x > 0.0) do { float y = x; x = y * 2.0; } while (false); float y = 3.0;"
+        "do { x += y; if (x > 4.0) break; x = 9.0; } while (false);"
+        "for (int i = 0; i < 3; i++) do do { x += 1.0; if (i == 1) continue; x += 10.0; } while (false);"
+        "while (x++ > 100.0 && false); return x; }", 31.0,
+    ),
     "a switch with two labels": (
         "int g(inout float y) { y += 5.0; return 2; }"
         "float f(float x) { switch (g(x)) { case 1: case 2: x *= 2.0; } return x; }", 12.0,

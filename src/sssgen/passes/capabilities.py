@@ -70,13 +70,13 @@ class Capabilities(NamedTuple):
     """Constant expressions may give infinity or NaN."""
     uniform_values: bool = False
     """A uniform's declaration may give it a value."""
+    unreachable_statements: bool = False
+    """Statements may follow a `return`, `break` or `continue` in its block; if not, they are omitted."""
     variable_values: bool = False
     """A module variable may be initialised with an expression that is not constant."""
     varying_locations: bool = False
     """What the vertex shader passes to the fragment shader may have a location."""
     whole_equality: bool = False
     """`==` and `!=` of vectors, matrices, structs and arrays give one bool."""
-    unreachable_statements: bool = False
-    """Statements may follow a `return`, `break` or `continue` in its block; if not, they are omitted."""
     wrapping_constants: bool = False
     """Constant expressions of ints wrap at 32 bits; if not, a part that would differ is replaced by its value."""

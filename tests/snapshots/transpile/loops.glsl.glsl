@@ -127,20 +127,16 @@ int nested_leaves(int n) {
 }
 
 void do_once(inout vec2 p) {
-    while (true) {
-        p = p.yx * 0.5;
-        break;
-    }
+    p = p.yx * 0.5;
 }
 
 int once_or_for_ever(int n) {
     int sum = 0;
-    while (true) {
+    for (int once = 0; once < 1; once++) {
         if (n > 3) {
-            break;
+            continue;
         }
         sum++;
-        break;
     }
     while (true) {
         if (sum > 5) {

@@ -137,22 +137,17 @@ int nested_leaves(int n) {
 }
 
 void do_once(inout float2 p) {
-    [loop]
-    while (true) {
-        p = p.yx * 0.5;
-        break;
-    }
+    p = p.yx * 0.5;
 }
 
 int once_or_for_ever(int n) {
     int sum = 0;
-    [loop]
-    while (true) {
+    [unroll]
+    for (int once = 0; once < 1; once++) {
         if (n > 3) {
-            break;
+            continue;
         }
         sum++;
-        break;
     }
     [loop]
     while (true) {

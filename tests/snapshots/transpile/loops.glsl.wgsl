@@ -126,20 +126,16 @@ fn nested_leaves(n: i32) -> i32 {
 }
 
 fn do_once(p: ptr<function, vec2f>) {
-    while (true) {
-        *p = (*p).yx * 0.5;
-        break;
-    }
+    *p = (*p).yx * 0.5;
 }
 
 fn once_or_for_ever(n: i32) -> i32 {
     var sum = 0;
-    while (true) {
+    for (var once = 0; once < 1; once++) {
         if (n > 3) {
-            break;
+            continue;
         }
         sum++;
-        break;
     }
     while (true) {
         if (sum > 5) {

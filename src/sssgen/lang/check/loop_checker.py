@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.loops import at_every_end
-from sssgen.ir.types import BOOL
+from sssgen.ir.types import BOOL, INT
 from sssgen.ir.walk import all_expressions, subexpressions
+from sssgen.lang.check.context import FunctionContext
 from sssgen.lang.check.evaluation_order import writes_of
 from sssgen.lang.check.statement_checker import StatementChecker
 from sssgen.lang.check.termination import ends, skips
@@ -72,23 +73,29 @@ class LoopChecker:
         return [ir.While(condition, body, span)]
 
     def do(self, statement: s.DoStatement) -> list[ir.Stmt]:
-        """`do body while (test);` is `while (true) { body; if (!test) break; }`; each `continue` tests first, too."""
-        scopes = self.context.function.scopes
+        """`do body while (test);` is `while (true) { body; if (!test) break; }`; each `continue` tests first, too.
+
+        `do body while (false);` is the body, or a loop of one iteration where the body leaves it.
+        """
+        function, span = self.context.function, statement.span
+        scopes = function.scopes
         scopes.push()  # the condition's variables are in the scope of the body in the IR
         body = self.loop_body(statement.body, dissolve=True)
         condition, tested = self.expressions.with_prelude(statement.condition, self.statements.condition)
-        scopes.pop()
+        is_once = isinstance(condition, ir.Literal) and not condition.value
+        is_block = is_once and not skips(body, (ir.Break, ir.Continue))
+        scopes.pop(dissolve=is_block)
         if condition is None:
             return []
         if not self.context.plain:
             hint = "write for (int i = 0; i < N; i++)"
-            raise self.context.fail(statement.span, "this loop cannot be proven to end", hint)
-        if isinstance(condition, ir.Literal):  # while (false): the body runs once
-            last = tested if condition.value else [*tested, ir.Break(condition.span)]
-        else:
-            last = [*tested, _break_unless(condition)]
-        body = at_every_end(body, last)
-        return [ir.While(ir.Literal(BOOL, True, statement.span), body, statement.span)]
+            raise self.context.fail(span, "this loop cannot be proven to end", hint)
+        if is_block:
+            return [*body, *tested]
+        if is_once:
+            return [once(function, at_every_end(body, tested), span)]
+        last = tested if isinstance(condition, ir.Literal) else [*tested, _break_unless(condition)]
+        return [ir.While(ir.Literal(BOOL, True, span), at_every_end(body, last), span)]
 
     def loop_body(self, statement: s.Statement, dissolve: bool = False) -> ir.Block:
         function = self.context.function
@@ -98,6 +105,14 @@ class LoopChecker:
         function.loop_depth -= 1
         function.switches = outer
         return body
+
+
+def once(function: FunctionContext, body: ir.Block, span: ir.Span) -> ir.For:
+    """A loop of one iteration, which the body can leave at any place."""
+    counter = function.temporary("once", ir.Literal(INT, 0, span), before=body)
+    init = function.prelude.pop()
+    test = ir.Binary(BOOL, "<", counter, ir.Literal(INT, 1, span), span)
+    return ir.For(init, test, ir.Assign(counter, "+", ir.Literal(INT, 1, span), span), body, span)
 
 
 def _break_unless(condition: ir.Expr) -> ir.Stmt:

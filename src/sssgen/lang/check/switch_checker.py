@@ -7,6 +7,7 @@ from sssgen.ir.types import BOOL, INT, UINT
 from sssgen.ir.walk import statements
 from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.evaluation_order import depends, writes_of
+from sssgen.lang.check.loop_checker import once
 from sssgen.lang.check.statement_checker import StatementChecker
 from sssgen.lang.check.switch_cases import cases_of, has_break
 from sssgen.lang.check.wording import a_type
@@ -49,11 +50,7 @@ class SwitchChecker:
             chain = body if test is None else (ir.If(test, body, chain, case.span),)
         if not is_loop:
             return list(chain)
-        counter = function.temporary("once", ir.Literal(INT, 0, span), before=inside)
-        init = function.prelude.pop()
-        test = ir.Binary(BOOL, "<", counter, ir.Literal(INT, 1, span), span)
-        step = ir.Assign(counter, "+", ir.Literal(INT, 1, span), span)
-        result: list[ir.Stmt] = [ir.For(init, test, step, chain, span)]
+        result: list[ir.Stmt] = [once(function, chain, span)]
         if flag is not None and any(_assigns(stmt, flag) for stmt in statements(chain)):
             result.append(ir.If(flag, (ir.Continue(span),), (), span))
         elif flag is not None:

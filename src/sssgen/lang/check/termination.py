@@ -45,10 +45,11 @@ def _fails(condition: ir.Expr, steps: ir.Block, written: list[str]) -> bool:
     )
 
 
-def skips(block: ir.Block) -> bool:
-    """Whether a block may `continue` the loop that it is in."""
+def skips(block: ir.Block, jumps: tuple[type[ir.Stmt], ...] = (ir.Continue,)) -> bool:
+    """Whether a block may `continue` the loop that it is in, or have another jump of that loop."""
     return any(
-        isinstance(stmt, ir.Continue) or (isinstance(stmt, ir.If) and (skips(stmt.then) or skips(stmt.otherwise)))
+        isinstance(stmt, jumps)
+        or (isinstance(stmt, ir.If) and (skips(stmt.then, jumps) or skips(stmt.otherwise, jumps)))
         for stmt in block
     )
 
