@@ -79,10 +79,10 @@ def mutated(function: Function, mutation: Mutation) -> Function:
     """The function with one change."""
 
     def change(expr: Expr) -> Expr:
-        return mutation.replacement if expr is mutation.node else expr  # type: ignore[return-value]
+        return mutation.replacement if expr is mutation.node else expr  # type: ignore[return-value]  # of the node's kind
 
     def restate(stmt: Stmt) -> Block | None:
-        return mutation.replacement if stmt is mutation.node else None  # type: ignore[return-value]
+        return mutation.replacement if stmt is mutation.node else None  # type: ignore[return-value]  # of the node's kind
 
     return rewrite_function(function, change, restate)
 

@@ -114,8 +114,8 @@ class Original:
             defined = ~(undefined | endless)
             if (defined & hangs).any():
                 return True, True
-            for index, (one, right) in enumerate(zip(got, wanted, strict=True)):
-                error = np.where(defined, errors(one, right), 0.0)
+            for index, (left, right) in enumerate(zip(got, wanted, strict=True)):
+                error = np.where(defined, errors(left, right), 0.0)
                 for place, kind in enumerate((1, 0)):
                     limit = limits[kind][index]
                     found[place] |= not explained(error, limit).all()
@@ -162,8 +162,8 @@ class Original:
             defined = ~(undefined | endless)
             if (defined & hangs).any():
                 return True
-            for index, (one, right) in enumerate(zip(got, wanted, strict=True)):
-                error = np.where(defined, errors(one, right), 0.0)
+            for index, (left, right) in enumerate(zip(got, wanted, strict=True)):
+                error = np.where(defined, errors(left, right), 0.0)
                 lanes = np.flatnonzero(error > GOAL)[:256]
                 if len(lanes):
                     limit = noise(self.program, [self.keys[index]], values, textures, lanes, DRAWS, granted=True)[0]
@@ -233,7 +233,9 @@ def originals(path: Path, seed: int) -> Iterator[Original]:
 def changed(original: Original, mutation: Mutation) -> Module:
     """The program with one change."""
     module = original.program.module
-    functions = tuple([mutated(one, mutation) if one is original.function else one for one in module.functions])
+    functions = tuple(
+        [mutated(function, mutation) if function is original.function else function for function in module.functions]
+    )
     return module._replace(functions=functions)
 
 
@@ -282,21 +284,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for path in files:
         part: list[Result] = []
         for original in originals(path, options.seed):
-            for one in results(original, options.each, random):
-                part.append(one)
-                if one.differs:
-                    sample.append((original, one))
+            for result in results(original, options.each, random):
+                part.append(result)
+                if result.differs:
+                    sample.append((original, result))
             original.__dict__.pop("dense", None)
         total += part
         print(_line(path.name, part), flush=True)
-        for one in part:
-            if one.differs and not one.found:
-                print(f"    not found: {one}{' (found in the same driver)' if one.found_here else ''}")
+        for result in part:
+            if result.differs and not result.found:
+                print(f"    not found: {result}{' (found in the same driver)' if result.found_here else ''}")
     print(_line("total", total))
     if options.gl and sample:
         gl = get("gl")
         chosen = random.sample(sample, min(options.gl, len(sample)))
-        counts = Counter(in_driver(original, one.mutation, gl) for original, one in chosen)
+        counts = Counter(in_driver(original, result.mutation, gl) for original, result in chosen)
         print(f"in the OpenGL driver: {counts[True]} of {len(chosen)} found ({counts[True] / len(chosen):.2%})")
     return 0
 
@@ -306,8 +308,8 @@ def _is_plain(path: Path) -> bool:
 
 
 def _line(title: str, part: list[Result]) -> str:
-    differing = [one for one in part if one.differs]
-    found, here = sum(one.found for one in differing), sum(one.found_here for one in differing)
+    differing = [result for result in part if result.differs]
+    found, here = sum(result.found for result in differing), sum(result.found_here for result in differing)
     share = f"{found / len(differing):.2%} ({here / len(differing):.2%} in the same driver)" if differing else "–"
     equivalent = len(part) - len(differing)
     return f"{title:24} {len(part)} changes, {equivalent} equivalent, {found} of {len(differing)} found: {share}"

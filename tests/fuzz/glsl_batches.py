@@ -144,7 +144,7 @@ class Runner:
 
     def close(self) -> None:
         for backend in self.backends.values():
-            backend.close()  # type: ignore[attr-defined]
+            backend.close()
 
     def timed(self, stage: str, function: Callable[..., Any], *args: Any) -> Any:
         start = time.perf_counter()

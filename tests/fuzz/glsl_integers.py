@@ -166,7 +166,7 @@ class Integers(Scoped):
         return tuple(
             binary("&", "int", self.integer("int", 1), literal("int", mask))
             for mask in self.random.choice(((15, 15), (7, 15), (15, 7)))
-        )  # type: ignore[return-value]
+        )
 
     def assembled(self, type_: str, depth: int) -> Node:
         """A vector's constructor of scalars and vectors of any kind, or a part of a longer vector."""

@@ -90,7 +90,7 @@ class Interpreter:
     # Expressions
 
     def expression(self, node: Node) -> Run:
-        return getattr(self, f"_{node.kind}")(node)  # type: ignore[no-any-return]
+        return getattr(self, f"_{node.kind}")(node)
 
     def _literal(self, node: Node) -> Run:
         value = node.data[0]
@@ -325,7 +325,7 @@ class Interpreter:
             for one in runs:
                 outcome = one(frame)
                 if outcome[0]:
-                    return outcome  # type: ignore[no-any-return]
+                    return outcome
             return NEXT, None
 
         return run
@@ -339,7 +339,7 @@ class Interpreter:
         return run
 
     def statement(self, node: Node) -> Run:
-        return getattr(self, f"_run_{node.kind}")(node)  # type: ignore[no-any-return]
+        return getattr(self, f"_run_{node.kind}")(node)
 
     def _run_block(self, node: Node) -> Run:
         return self.scoped(node.parts)
@@ -406,7 +406,7 @@ class Interpreter:
                 if outcome[0] == BREAK:
                     break
                 if outcome[0] == RETURN:
-                    return outcome  # type: ignore[no-any-return]
+                    return outcome
                 step(frame)
             return NEXT, None
 
@@ -453,7 +453,7 @@ class Interpreter:
                 if outcome[0] == BREAK:
                     break
                 if outcome[0]:
-                    return outcome  # type: ignore[no-any-return]
+                    return outcome
             return NEXT, None
 
         return run

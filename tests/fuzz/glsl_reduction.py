@@ -90,21 +90,21 @@ def _edits(node: Node) -> Iterator[Callable[[Node], None]]:
         start = 1 if node.kind == "switch" else 0
         for length in (4, 2, 1):
             for first in range(start, len(node.parts) - length + 1):
-                yield lambda one, first=first, length=length: one.parts.__delitem__(slice(first, first + length))  # type: ignore[misc]
+                yield lambda one, first=first, length=length: one.parts.__delitem__(slice(first, first + length))
     if node.kind == "if" and len(node.parts) == 3:
         yield lambda one: one.parts.__delitem__(2)
     if node.kind in STATEMENTS and node.kind != "case":
         for part in node.parts:
             bodies = part.parts if part.kind == "case" else [part] if part.kind in STATEMENTS else []
             if bodies and node.kind != "block":
-                yield lambda one, bodies=bodies: _become(one, Node("block", parts=[copied(body) for body in bodies]))  # type: ignore[misc]
+                yield lambda one, bodies=bodies: _become(one, Node("block", parts=[copied(body) for body in bodies]))
         if node.kind == "block" and len(node.parts) == 1:
             yield lambda one: _become(one, one.parts[0])
         return
     if node.kind in (NONE, "case") or not node.type:
         return
     for simpler in _simpler(node):
-        yield lambda one, simpler=simpler: _become(one, copied(simpler))  # type: ignore[misc]
+        yield lambda one, simpler=simpler: _become(one, copied(simpler))
 
 
 def _simpler(node: Node) -> Iterator[Node]:

@@ -7,6 +7,7 @@ Floats are multiples of a power of two within bounds that each expression carrie
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from random import Random
 from typing import NamedTuple
@@ -63,7 +64,7 @@ def literal(type_: str, value: object) -> Node:
     return Node("literal", type_, [], (value, repr(value)))
 
 
-class Scoped:
+class Scoped(ABC):
     """The names in scope, and expressions over them."""
 
     def __init__(self, random: Random) -> None:
@@ -358,30 +359,30 @@ class Scoped:
 
     # What the other modules define
 
+    @abstractmethod
     def integer(self, type_: str, depth: int) -> Node:
         """An expression of an int or uint, or of a vector of them."""
-        raise NotImplementedError
 
+    @abstractmethod
     def boolean(self, type_: str, depth: int) -> Node:
         """An expression of a bool or a vector of bools."""
-        raise NotImplementedError
 
+    @abstractmethod
     def count(self, type_: str) -> Node:
         """A shift's count."""
-        raise NotImplementedError
 
+    @abstractmethod
     def divisor(self, type_: str) -> Node:
         """A divisor that is not 0, nor -1 where that could overflow."""
-        raise NotImplementedError
 
+    @abstractmethod
     def exact(self, type_: str, depth: int) -> Bound:
         """An expression of floats that are not rounded."""
-        raise NotImplementedError
 
+    @abstractmethod
     def fit(self, bound: Bound, limit: float = LIMIT, places: int = EIGHTHS) -> Node:
         """The expression, limited to what variables hold."""
-        raise NotImplementedError
 
+    @abstractmethod
     def smooth(self, type_: str, depth: int) -> Node:
         """A value that may be rounded."""
-        raise NotImplementedError

@@ -24,8 +24,7 @@ def run(text: str, kind: type[Run] = Run, **arguments: Any) -> tuple[list[Any], 
     function = program.module.functions[-1]
     kinds = {"float": np.float64, "int": np.int32, "uint": np.uint32}
     values: Mapping[str, Any] = {
-        param.name: np.array(arguments[param.name], kinds[param.type.kind])  # type: ignore[union-attr]
-        for param in function.params
+        param.name: np.array(arguments[param.name], kinds[param.type.kind]) for param in function.params
     }
     lanes = max(len(value) for value in values.values())
     one = kind(program, lanes, {}, Outcomes(lanes))

@@ -46,21 +46,21 @@ def disagreements(vertex: Shader, fragment: Shader) -> list[str]:
     return messages
 
 
-def _disagreements_of(given: Slot, outputs: Sequence[Slot], capabilities: Capabilities) -> Iterator[str]:
-    name = given["name"] + "".join(f"[{index}]" for index in given["path"])
-    found = next((output for output in outputs if _same(given, output)), None)
-    if found is None:
+def _disagreements_of(input_: Slot, outputs: Sequence[Slot], capabilities: Capabilities) -> Iterator[str]:
+    name = input_["name"] + "".join(f"[{index}]" for index in input_["path"])
+    partner = next((output for output in outputs if _same(input_, output)), None)
+    if partner is None:
         yield f"the vertex shader has no output '{name}'"
-    elif found["type"] != given["type"]:
-        yield f"'{name}' is {given['type']} here, but {found['type']} in the vertex shader"
-    elif found["location"] != given["location"] and not capabilities.named_varyings:
-        places = f"has location {given['location']} here, but {found['location']} in the vertex shader"
+    elif partner["type"] != input_["type"]:
+        yield f"'{name}' is {input_['type']} here, but {partner['type']} in the vertex shader"
+    elif partner["location"] != input_["location"] and not capabilities.named_varyings:
+        places = f"has location {input_['location']} here, but {partner['location']} in the vertex shader"
         yield f"'{name}' {places}: transpile this file --with the other"
 
 
-def _same(given: Slot, output: Slot) -> bool:
+def _same(input_: Slot, output: Slot) -> bool:
     """Whether these are matched in GLSL: by name, or by location where both state one."""
-    if given["link"] is None or output["link"] is None:
-        same: bool = given["link"] == output["link"] and given["location"] == output["location"]
+    if input_["link"] is None or output["link"] is None:
+        same: bool = input_["link"] == output["link"] and input_["location"] == output["location"]
         return same
-    return (given["link"], given["path"]) == (output["link"], output["path"])
+    return (input_["link"], input_["path"]) == (output["link"], output["path"])

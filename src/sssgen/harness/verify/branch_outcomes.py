@@ -72,11 +72,11 @@ class Outcomes:
         for component, (values, close) in enumerate(zip(difference, near, strict=True)):
             site = (id(node), which, component)
             case = np.sign(values) * np.where(np.abs(values) <= close, 1.0, 2.0)
-            for one in (-2.0, -1.0, 0.0, 1.0, 2.0):
-                lanes = active & (case == one)
+            for side in (-2.0, -1.0, 0.0, 1.0, 2.0):
+                lanes = active & (case == side)
                 if lanes.any():
-                    seen = self.cases.get((site, int(one)))
-                    self.cases[site, int(one)] = lanes if seen is None else seen | lanes
+                    seen = self.cases.get((site, int(side)))
+                    self.cases[site, int(side)] = lanes if seen is None else seen | lanes
             old = self.distances.get(site)
             new = np.where(active, values, np.nan)
             if old is not None:

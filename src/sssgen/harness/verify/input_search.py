@@ -119,7 +119,7 @@ class Search:
             below, above = (np.flatnonzero(usable & side) for side in (distance < 0.0, distance > 0.0))
             if len(below) and len(above):
                 pairs = zip(self.rng.choice(below, BRACKETS), self.rng.choice(above, BRACKETS), strict=True)
-                starts += [(site, int(one), int(other)) for one, other in pairs]
+                starts += [(site, int(low), int(high)) for low, high in pairs]
         if not starts:
             return {}
         sites, low, high = self.narrowed(first.values, starts)
@@ -271,7 +271,7 @@ def chosen(sampled: Sampled, count: int, seed: int) -> Array:
     each = max(1, min(EACH, count // (2 * max(len(reached), 1))))
     order = rng.permutation(lanes)
     picked: dict[int, None] = {}
-    for mask in sorted(reached, key=lambda one: int((one & defined).sum())):
+    for mask in sorted(reached, key=lambda mask: int((mask & defined).sum())):
         for lane in order[(mask & defined)[order]][:each]:
             picked[int(lane)] = None
     found = [int(lane) for lane in order if lane >= sampled.drawn and defined[lane]]

@@ -36,6 +36,7 @@ ROUNDS = 5000
 FAR = 1024.0
 """The largest coordinate of a texture."""
 
+# The interpreter has arrays and silences NumPy by itself: it calls what `silent` wraps, an attribute unknown to mypy.
 _ARITHMETIC: dict[str, Callable[..., Value]] = {
     "+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide, "&": np.bitwise_and, "|": np.bitwise_or,
     "^": np.bitwise_xor, "<<": rt.shift_left, ">>": rt.shift_right, "%": rt.int_remainder.__wrapped__,  # type: ignore[attr-defined]
@@ -231,7 +232,7 @@ class Run:
     def pinned(self, place: ir.Expr) -> ir.Expr:
         """A place to write to with its indices as they are now."""
         if isinstance(place, ir.Index):
-            return place._replace(value=self.pinned(place.value), index=_Known(self.index(place)))  # type: ignore[arg-type]
+            return place._replace(value=self.pinned(place.value), index=_Known(self.index(place)))  # type: ignore[arg-type]  # our own
         if isinstance(place, ir.Swizzle | ir.Member):
             return place._replace(value=self.pinned(place.value))
         return place
@@ -404,7 +405,7 @@ class Run:
     def index(self, expr: ir.Index) -> Value:
         place = self.value(expr.index)
         type_ = expr.value.type
-        length = type_.length if isinstance(type_, ArrayType) else type_.size  # type: ignore[union-attr]
+        length = type_.length if isinstance(type_, ArrayType) else type_.size  # type: ignore[union-attr]  # it has elements
         if not isinstance(expr.index, ir.Literal | _Known):
             self.require((place >= 0) & (place < length))
         return place.astype(np.int64)

@@ -117,7 +117,8 @@ INTEGER_EXTREMES = np.array(
 
 def drawn(sources: Sequence[Source], lanes: int, numbers: Numbers, seed: int) -> dict[str, Array]:
     """`lanes` values of each source, lanes last; floats are exact in float32."""
-    rng = np.random.default_rng([seed, crc32(" ".join([f"{one.shown} {one.type}" for one in sources]).encode())])
+    names = " ".join([f"{source.shown} {source.type}" for source in sources])
+    rng = np.random.default_rng([seed, crc32(names.encode())])
     pattern = rng.choice(len(SHARES), lanes, p=SHARES)
     chosen = rng.integers(0, max(len(sources), 1), lanes)
     exponent = rng.uniform(-12.0, 12.0, lanes)
@@ -212,14 +213,14 @@ def taken(values: dict[str, Array], lanes: Array) -> dict[str, Array]:
 def picture(name: str, type_: Sampler, seed: int) -> Texture:
     """A small texture: one half is smooth, the other has hard edges; in 3-D a distance field."""
     count = LAYERS if type_.array else 1
-    made = [texture(type_.dim, np.random.default_rng([seed, crc32(name.encode()), layer])) for layer in range(count)]
+    layers = [texture(type_.dim, np.random.default_rng([seed, crc32(name.encode()), layer])) for layer in range(count)]
     if type_.kind != "float":
         rng = np.random.default_rng([seed, crc32(name.encode())])
-        shape = (*((count,) if type_.array else ()), *made[0].levels[0].shape)
+        shape = (*((count,) if type_.array else ()), *layers[0].levels[0].shape)
         texels = as_integers(rng.integers(0, 2**32, shape), type_.kind)
         return Texture(texels, dim=type_.dim, layers=type_.array, kind=type_.kind, filter="nearest")
     if type_.array:
-        return Texture(np.stack([one.levels[0] for one in made]), dim=type_.dim, layers=True)
+        return Texture(np.stack([layer.levels[0] for layer in layers]), dim=type_.dim, layers=True)
     if type_.shadow:
-        return Texture(made[0].levels[0][..., :1], dim=type_.dim, compare=True)
-    return made[0]
+        return Texture(layers[0].levels[0][..., :1], dim=type_.dim, compare=True)
+    return layers[0]

@@ -111,9 +111,9 @@ def result(
     return _first(value), run.undefined | run.endless
 
 
-def _apart(one: Array, other: Array) -> Array:
+def _apart(left: Array, right: Array) -> Array:
     """How far two results are apart, relative to the smaller one, as the result in question may be either."""
-    return np.maximum(errors(one, other), errors(other, one))
+    return np.maximum(errors(left, right), errors(right, left))
 
 
 def _first(value: Array) -> Array:
