@@ -18,7 +18,7 @@ import pytest
 
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS, Builtin
-from sssgen.ir.signatures import candidates, overload, parse, resolve, text
+from sssgen.ir.signatures import candidates, overload, overloads, parse, resolve, text
 from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VEC2, VEC3, VEC4, Matrix, Sampler, Scalar, Type, Vector, kind_of
 from sssgen.targets import numpy_runtime as rt
 
@@ -153,9 +153,23 @@ def test_row_is_sane(row: Builtin) -> None:
         assert not which or which in params
         for place in re.findall(r"\{(\w+)\}", value):
             assert place in PLACES or int(place) < max(p.count(",") + 1 for p in params)
-    assert all(index < max(params_.count(",") + 1 for params_ in params) for index in row.constant)
+    used = [argument for types in overloads(row.name) for argument in row.constants(types).values()]
+    assert set(used) == set(row.constant)
     for definition in re.findall(r"^\w+ (\w+)\(", row.polyfill, re.MULTILINE):
         assert definition == row.name
+
+
+@pytest.mark.parametrize("row", [row for row in BUILTINS.values() if row.kind == "fetch"], ids=lambda row: row.name)
+def test_offsets_and_channels_are_constant_arguments(row: Builtin) -> None:
+    for types in overloads(row.name):
+        constants = {argument.what: (types[position], argument) for position, argument in row.constants(types).items()}
+        numbers = types.count(INT) - ("Layer" in row.name)
+        assert ("offset" in constants) == ("Offset" in row.name)
+        assert ("channel" in constants) == ("Gather" in row.name and numbers == 1)
+        assert len(constants) == ("offset" in constants) + ("channel" in constants)
+        for what, (type_, argument) in constants.items():
+            assert isinstance(type_, Vector) == (what == "offset")
+            assert (argument.lowest, argument.highest) == ((-8, 7) if what == "offset" else (0, 3))
 
 
 def test_the_table_is_complete() -> None:

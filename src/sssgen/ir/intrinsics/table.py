@@ -11,7 +11,7 @@ from typing import Any, Literal, NamedTuple
 from sssgen.ir import component_ranges, vector_ranges
 from sssgen.ir.formats import Format
 from sssgen.ir.intervals import INF, Range, clip
-from sssgen.ir.types import Matrix, Type, kind_of, spell
+from sssgen.ir.types import Matrix, Type, spell
 
 Interval = tuple[float, float]
 
@@ -100,6 +100,19 @@ class Level(NamedTuple):
     """False: the level is 0, without an argument."""
 
 
+class ConstantArgument(NamedTuple):
+    """An argument that must be a constant expression, as languages choose a name by it or have no other form."""
+
+    position: int
+    types: tuple[str, ...]
+    """Of these types alone: another overload may have something else at the same position."""
+    what: str
+    """What it is, for messages."""
+    lowest: int
+    highest: int
+    """The range of each component."""
+
+
 class Builtin(NamedTuple):
     """One row of the table."""
 
@@ -134,8 +147,8 @@ class Builtin(NamedTuple):
     # How languages have it
     texts: Mapping[str, str] = MappingProxyType({})
     polyfill: str = ""
-    constant: tuple[int, ...] = ()
-    """The positions of arguments that must be constant expressions where they are integers: offsets, channels."""
+    constant: tuple[ConstantArgument, ...] = ()
+    """The arguments that must be constant expressions."""
     splat: tuple[str, ...] = ("wgsl",)
     """Languages in which a scalar among vectors must be widened to a vector first."""
     explicit_type: tuple[str, ...] = ()
@@ -188,9 +201,13 @@ class Builtin(NamedTuple):
         """Whether the result depends on more than the arguments' values."""
         return self.kind in ("fetch", "derivative")
 
-    def constants(self, types: Sequence[Type]) -> list[int]:
-        """The positions of the arguments of these types that must be constant expressions."""
-        return [index for index in self.constant if index < len(types) and kind_of(types[index]) == "int"]
+    def constants(self, types: Sequence[Type]) -> dict[int, ConstantArgument]:
+        """The arguments that must be constant expressions in a call with these types, by their positions."""
+        return {
+            argument.position: argument
+            for argument in self.constant
+            if argument.position < len(types) and spell(types[argument.position]) in argument.types
+        }
 
     @property
     def reads_texels(self) -> bool:

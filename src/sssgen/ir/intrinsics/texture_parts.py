@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sssgen.ir.intrinsics.table import Builtin, Level
-from sssgen.ir.intrinsics.textures import BY_READS, EIGHT_BITS, gather_polyfill, params
+from sssgen.ir.intrinsics.textures import BY_READS, EIGHT_BITS, channel_at, gather_polyfill, offset_at, params
 from sssgen.ir.vector_ranges import all_within, texels
 
 _KINDS = ("", "i", "u")
@@ -94,7 +94,7 @@ ROWS = (
     # With an offset in texels
     Builtin("textureLayerOffset", ("vec4(sampler2DArray, vec2, int, ivec2)", "vec4(sampler2DArray, vec2, int, ivec2, float)"),
         "As textureOffset, of layer z, with the last argument added to the level.",
-        with_level=Level("textureLayerLodOffset", 3), componentwise=False, range=texels, constant=(3,), uniform_flow=True,
+        with_level=Level("textureLayerLodOffset", 3), componentwise=False, range=texels, constant=(offset_at(3),), uniform_flow=True,
         texts={
             "glsl": "textureOffset({texture}, vec3({1}, float({2})), {3})",
             "glsl/sampler2DArray,vec2,int,ivec2,float": "textureOffset({texture}, vec3({1}, float({2})), {3}, {4})",
@@ -107,7 +107,7 @@ ROWS = (
     ),
     Builtin("textureLayerLodOffset", ("vec4(sampler2DArray, vec2, int, float, ivec2)",),
         "As textureLodOffset at level w, of layer z.",
-        componentwise=False, range=texels, constant=(4,),
+        componentwise=False, range=texels, constant=(offset_at(4),),
         texts={
             "glsl": "textureLodOffset({texture}, vec3({1}, float({2})), {3}, {4})",
             "hlsl": "{texture}.SampleLevel({sampler}, float3({1}, float({2})), {3}, {4})",
@@ -116,7 +116,7 @@ ROWS = (
         splat=(), kind="fetch", absolute=2.0**-7, clause=EIGHT_BITS,
     ),
     Builtin("textureLayerGradOffset", ("vec4(sampler2DArray, vec2, int, vec2, vec2, ivec2)",), "As textureGradOffset, of layer z.",
-        componentwise=False, range=texels, constant=(5,),
+        componentwise=False, range=texels, constant=(offset_at(5),),
         texts={
             "glsl": "textureGradOffset({texture}, vec3({1}, float({2})), {3}, {4}, {5})",
             "hlsl": "{texture}.SampleGrad({sampler}, float3({1}, float({2})), {3}, {4}, {5})",
@@ -127,7 +127,7 @@ ROWS = (
     Builtin("textureCompareOffset", ("float(sampler2DShadow, vec2, float, ivec2)", "float(sampler2DArrayShadow, vec2, int, float, ivec2)"),
         "As textureCompare, with the last argument added to the place in texels. GLSL 3.30 compares layers at level 0.",
         with_level=Level("textureCompareLodOffset", 5, explicit=False),
-        componentwise=False, range=all_within(0.0, 1.0), constant=(3, 4), uniform_flow=True,
+        componentwise=False, range=all_within(0.0, 1.0), constant=(offset_at(3), offset_at(4)), uniform_flow=True,
         texts={
             "glsl": "textureOffset({texture}, vec3({1}, {2}), {3})",
             # textureOffset has no such overload before GLSL 4.30
@@ -142,7 +142,7 @@ ROWS = (
     ),
     Builtin("textureCompareLodOffset", ("float(sampler2DShadow, vec2, float, ivec2)", "float(sampler2DArrayShadow, vec2, int, float, ivec2)"),
         "As textureCompareOffset, at level 0.",
-        componentwise=False, range=all_within(0.0, 1.0), constant=(3, 4),
+        componentwise=False, range=all_within(0.0, 1.0), constant=(offset_at(3), offset_at(4)),
         texts={
             "glsl": "textureLodOffset({texture}, vec3({1}, {2}), 0.0, {3})",
             "glsl/sampler2DArrayShadow,vec2,int,float,ivec2":
@@ -160,7 +160,7 @@ ROWS = (
             "vec4(sampler2DArrayShadow, vec2, int, float)",
         ),
         "As textureGather, of layer z; the channel or the reference is w.",
-        componentwise=False, range=texels, constant=(3,),
+        componentwise=False, range=texels, constant=(channel_at(3),),
         texts={
             "glsl": "",
             "hlsl/sampler2DArray,vec2,int": "{texture}.GatherRed({sampler}, float3({1}, float({2})))",
@@ -185,7 +185,7 @@ vec4 textureGatherLayer(sampler2DArrayShadow map, vec2 P, int layer, float refer
             "vec4(sampler2DArrayShadow, vec2, int, float, ivec2)",
         ),
         "As textureGatherOffset, of layer z.",
-        componentwise=False, range=texels, constant=(3, 4),
+        componentwise=False, range=texels, constant=(offset_at(3), offset_at(4), channel_at(4)),
         texts={
             "glsl": "",
             "hlsl/sampler2DArray,vec2,int,ivec2": "{texture}.GatherRed({sampler}, float3({1}, float({2})), {3})",

@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import Any
 
 from sssgen.ir import vector_ranges
-from sssgen.ir.intrinsics.table import Builtin, Level, Samples
+from sssgen.ir.intrinsics.table import Builtin, ConstantArgument, Level, Samples
 from sssgen.ir.vector_ranges import all_within, any_numbers, texels
 
 _SAMPLE = ("vec4(sampler2D, vec2", "vec4(sampler3D, vec3", "vec4(samplerCube, vec3")
@@ -41,6 +41,16 @@ BY_READS = "In GLSL without it, by reads at the texels' centres"
 def params(signature: str) -> str:
     """The parameters of a signature's beginning, as spelled in a key of `texts`: `sampler2D,vec2`."""
     return signature.partition("(")[2].replace(" ", "")
+
+
+def offset_at(position: int) -> ConstantArgument:
+    """An offset in texels at this position; every OpenGL allows this range, D3D and WGSL no other."""
+    return ConstantArgument(position, ("ivec2", "ivec3"), "offset", -8, 7)
+
+
+def channel_at(position: int) -> ConstantArgument:
+    """The channel that a gather reads, at this position."""
+    return ConstantArgument(position, ("int",), "channel", 0, 3)
 
 
 def _offsets(extra: str = "") -> tuple[str, ...]:
@@ -211,7 +221,7 @@ float textureGrad(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy) { return t
     Builtin("textureOffset", (*_offsets(), *(f"{one[:-1]}, float)" for one in _offsets()), *_SHADOW_OFFSETS),
         "As texture, with z added to the place in texels, and w to the level.",
         with_level=Level("textureLodOffset", 2), with_gradients="textureGradOffset",
-        componentwise=False, range=texels, constant=(2,), uniform_flow=True,
+        componentwise=False, range=texels, constant=(offset_at(2),), uniform_flow=True,
         texts={
             "glsl/sampler2DArrayShadow,vec4,ivec2": "",
             "hlsl": "{bare_texture}.Sample({bare_sampler}, {1}, {2})",
@@ -232,7 +242,7 @@ float textureOffset(sampler2DArrayShadow map, vec4 P, ivec2 offset) { return tex
     ),
     Builtin("textureLodOffset", (*_offsets(", float"), "float(sampler2DShadow, vec3, float, ivec2)"),
         "As textureLod, with w added to the place in texels.",
-        componentwise=False, range=texels, constant=(3,), domain="z = 0 for a texture that compares",
+        componentwise=False, range=texels, constant=(offset_at(3),), domain="z = 0 for a texture that compares",
         texts={
             "hlsl": "{bare_texture}.SampleLevel({bare_sampler}, {1}, {2}, {3})", "hlsl-dx9": "",
             "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2}, {3})", "wgsl/sampler2DArray,vec3,float,ivec2": "",
@@ -250,7 +260,7 @@ float textureLodOffset(sampler2DShadow map, vec3 P, float level, ivec2 offset) {
             "vec4(sampler2DArray, vec3, vec2, vec2, ivec2)", *_SHADOW_GRADIENT_OFFSETS,
         ),
         "As textureGrad, with the last argument added to the place in texels.",
-        componentwise=False, range=texels, constant=(4,),
+        componentwise=False, range=texels, constant=(offset_at(4),),
         texts={
             "hlsl": "{bare_texture}.SampleGrad({bare_sampler}, {1}, {2}, {3}, {4})", "hlsl-dx9": "",
             "wgsl": "textureSampleGrad({texture}, {sampler}, {1}, {2}, {3}, {4})",
@@ -289,7 +299,7 @@ float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec
             for kind in _KINDS for place, size in (("2D, ivec2", 2), ("3D, ivec3", 3), ("2DArray, ivec3", 2))
         ),
         "As texelFetch, at y + w.",
-        componentwise=False, range=texels, constant=(3,), defined=_exists, domain="the texel and the level exist",
+        componentwise=False, range=texels, constant=(offset_at(3),), defined=_exists, domain="the texel and the level exist",
         texts={"hlsl": "", "wgsl": ""},
         polyfill="\n".join(
             f"{kind}vec4 texelFetchOffset({kind}sampler{place} P, int level, ivec{size} offset) {{ return {read}, level); }}"
@@ -308,7 +318,7 @@ float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec
         ),
         "One channel, the first or z, of the four texels around y at level 0: those at (0, 1), (1, 1), (1, 0), (0, 0) "
         "from the lower left one. Of a texture that compares: 1 where the texel is not below the reference z, else 0.",
-        componentwise=False, range=texels, constant=(2,),
+        componentwise=False, range=texels, constant=(channel_at(2),),
         texts={
             "glsl": "",
             "hlsl": "{bare_texture}.Gather{channel}({bare_sampler}, {1})", "hlsl-dx9": "",
@@ -340,7 +350,7 @@ vec4 textureGather(sampler2DArrayShadow map, vec3 P, float reference) { return t
         ),
         "As textureGather, with an offset added to the places in texels: z, before the channel; after the reference of a "
         "texture that compares.",
-        componentwise=False, range=texels, constant=(2, 3),
+        componentwise=False, range=texels, constant=(offset_at(2), offset_at(3), channel_at(3)),
         texts={
             "glsl": "",
             "hlsl": "{bare_texture}.Gather{channel}({bare_sampler}, {1}, {2})", "hlsl-dx9": "",

@@ -173,20 +173,22 @@ class CallChecker:
         return Typed(ir.Intrinsic(result, name, values, call.span), quantity)
 
     def with_constants(self, name: str, values: tuple[ir.Expr, ...]) -> tuple[ir.Expr, ...]:
-        """The arguments of a builtin, with literals for those that must be constant expressions: languages choose a
-        name by a channel, and WGSL has no other constants in functions."""
+        """The arguments of a builtin, with literals for those that must be constant expressions: WGSL has no other
+        constants in functions."""
         row = BUILTINS[name]
-        for index in row.constants([value.type for value in values]) if row.constant else ():
+        if not row.constant:
+            return values
+        for index, argument in row.constants([value.type for value in values]).items():
             value = values[index]
             if value.span.file.startswith("intrinsics/"):  # a parameter of a polyfill, which is inlined
                 continue
             numbers = constant_value(self.context, value)
-            what, lowest, highest = ("channel", 0, 3) if value.type == INT else ("offset", -8, 7)
             if numbers is None:
-                message = f"the {what} of {name} must be a constant expression"
+                message = f"the {argument.what} of {name} must be a constant expression"
                 raise self.context.fail(value.span, message, "write a number, or a const variable with such a value")
+            lowest, highest = argument.lowest, argument.highest
             if not all(lowest <= number <= highest for number in numbers):
-                raise self.context.fail(value.span, f"the {what} of {name} must be in {lowest}..{highest}")
+                raise self.context.fail(value.span, f"the {argument.what} of {name} must be in {lowest}..{highest}")
             if any(not isinstance(part, ir.Construct | ir.Literal | ir.Unary) for part in subexpressions(value)):
                 values = (*values[:index], literal(value.type, numbers, value.span), *values[index + 1 :])
         return values
