@@ -1,4 +1,4 @@
-"""The error of a pass for code that the target cannot express."""
+"""The errors of a pass for code that the target cannot express."""
 
 from __future__ import annotations
 
@@ -13,3 +13,10 @@ class Unsupported(Exception):
     def __init__(self, message: str, span: Span, more: Sequence[Unsupported] = ()) -> None:
         super().__init__(message)
         self.message, self.span, self.more = message, span, tuple(more)
+
+
+class MissingBuiltin(Unsupported):
+    """A builtin that the target has neither as such nor by a polyfill."""
+
+    def __init__(self, name: str, span: Span) -> None:
+        super().__init__(f"this target has no {name}", span)

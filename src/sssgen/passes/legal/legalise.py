@@ -29,7 +29,7 @@ from sssgen.passes.legal.wide_constants import ConstantIntegers, chooses_nested,
 from sssgen.passes.lift_calls import Calls, awkward, lift, reads_too_late
 from sssgen.passes.scopes import assigned, declared, fresh, outs_of
 from sssgen.passes.substitute import inlined, is_cheap, returned
-from sssgen.passes.unsupported import Unsupported
+from sssgen.passes.unsupported import MissingBuiltin, Unsupported
 from sssgen.passes.variable_effects import effects
 
 Polyfill = Callable[[str, Sequence[Type]], ir.Module]
@@ -41,7 +41,6 @@ class _OutOfOrder(Exception):
 
 
 _JUMPS = (ir.Return, ir.Break, ir.Continue)  # in WGSL a discarded invocation goes on
-_MISSING = "this target has no"
 _NOT_CONSTANT = "this cannot be expressed in a constant for this target"
 
 
@@ -421,13 +420,11 @@ class _Legaliser(Transformer):
             try:
                 module = self.polyfill(call.name, types)
             except KeyError:
-                raise Unsupported(f"{_MISSING} {call.name}", call.span) from None
+                raise MissingBuiltin(call.name, call.span) from None
             try:
                 return self.call_polyfill(self.with_constants_inlined(call, module), module)
-            except Unsupported as error:
-                if error.message.startswith(_MISSING):  # the author has not written that
-                    raise Unsupported(f"{_MISSING} {call.name}", call.span) from None
-                raise
+            except MissingBuiltin:  # one of the polyfill, which the author has not written
+                raise MissingBuiltin(call.name, call.span) from None
         if self.language in row.splat and isinstance(call.type, Vector):
             args = tuple(
                 ir.Construct(Vector(kind_of(arg.type), call.type.size), (arg,), arg.span)
