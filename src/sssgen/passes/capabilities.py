@@ -14,6 +14,8 @@ class Capabilities(NamedTuple):
     """`bool(x)` of a number is 0 or 1 also where it is converted again; if not, it is compared with 0."""
     bool_uniforms: bool = False
     """A uniform block may hold a bool; if not, it holds an int in its place."""
+    constant_choices: bool = False
+    """A choice between constant vectors that are made of vectors is computed; if not, its value is written."""
     dynamic_stores: bool = False
     """A component of a vector or a column of a matrix may be assigned through an index that is not constant."""
     float_array_uniforms: bool = False

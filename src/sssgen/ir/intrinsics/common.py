@@ -174,7 +174,7 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
     Builtin("mix",
         ("genF(genF, genF, genF)", "genF(genF, genF, float)", *(f"gen{k}(gen{k}, gen{k}, genB)" for k in "FIUB")),
         "Linear blend x·(1 - z) + y·z; with a bool, z ? y : x, and the number that is not chosen may be infinite or NaN.",
-        not_constant=("wgsl",), fold=_blend, samples=Samples(floats=((-LARGEST, LARGEST), (-LARGEST, LARGEST), (0.0, 1.0))),
+        not_constant=("wgsl",), chooses=True, fold=_blend, samples=Samples(floats=((-LARGEST, LARGEST), (-LARGEST, LARGEST), (0.0, 1.0))),
         same_quantity=2, quantity="blend", overflow_is_nan=True, range=linear_blend,
         inside=lambda rt, x, y, z: (z.dtype == bool) | (rt.max(abs(x), abs(y)) * rt.max(abs(z), 1.0) < 1e38), size=lambda rt, x, y, z: rt.max(abs(x), abs(y)) * rt.max(abs(z), 1.0),
         domain="x and y finite, unless z is a bool",

@@ -11,7 +11,7 @@ from typing import Any, Literal, NamedTuple
 from sssgen.ir import component_ranges, vector_ranges
 from sssgen.ir.formats import Format
 from sssgen.ir.intervals import INF, Range, clip
-from sssgen.ir.types import Matrix, Type, spell
+from sssgen.ir.types import Matrix, Type, kind_of, spell
 
 Interval = tuple[float, float]
 
@@ -155,6 +155,8 @@ class Builtin(NamedTuple):
     """Languages in which a call of literals alone is constant only if one of them has an explicit type."""
     not_constant: tuple[str, ...] = ()
     """Languages of which some compiler does not compute it in a constant at file scope."""
+    chooses: bool = False
+    """With bools as its last argument, it chooses between the first two, as `?:` does."""
     float32_bits: bool = False
     """It converts from or to the bits of a number, which WGSL has for float32 only."""
     # What it costs
@@ -208,6 +210,10 @@ class Builtin(NamedTuple):
             for argument in self.constant
             if argument.position < len(types) and spell(types[argument.position]) in argument.types
         }
+
+    def is_choice(self, types: Sequence[Type]) -> bool:
+        """Whether a call with these types chooses by a bool or by bools."""
+        return self.chooses and kind_of(types[-1]) == "bool"
 
     @property
     def reads_texels(self) -> bool:

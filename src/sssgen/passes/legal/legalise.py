@@ -345,7 +345,7 @@ class _Legaliser(Transformer):
 
     def legal(self, expr: ir.Expr) -> ir.Expr:
         """A node whose operands are legal already."""
-        nested = not self.capabilities.ternary and chooses_nested(expr)
+        nested = not self.capabilities.constant_choices and chooses_nested(expr)
         if self.integers is None or not (nested or kind_of(expr.type) in ("int", "uint")):
             return self.expressible(expr)
         parts = self.integers.parts(expr)
@@ -405,13 +405,12 @@ class _Legaliser(Transformer):
         types = [arg.type for arg in call.args]
         text = self.text(call.name, tuple(types))
         row = BUILTINS[call.name]
-        if self.language in row.not_constant:
-            if self.current is None:
-                raise Unsupported(_NOT_CONSTANT, call.span)
-            if types[-1] == Vector("bool", components(call.type)):
-                number = self.number_of(call)  # naga crashes on `select` of constants that are made of vectors
-                if number is not None:
-                    return number
+        if self.current is None and self.language in row.not_constant:
+            raise Unsupported(_NOT_CONSTANT, call.span)
+        if not self.capabilities.constant_choices and isinstance(call.type, Vector) and row.is_choice(types):
+            number = self.number_of(call)
+            if number is not None:
+                return number
         if text.startswith("op:"):
             if len(call.args) == 1:
                 return ir.Unary(call.type, text[3:], call.args[0], call.span)

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from sssgen.ir import constant_arithmetic as arithmetic
 from sssgen.ir.constant_evaluation import Value, combined
 from sssgen.ir.constant_expressions import constant_numbers
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Binary, Construct, Expr, Global, Intrinsic, Literal, Local, Select, Unary
 from sssgen.ir.types import Vector, kind_of
 from sssgen.ir.walk import operands, subexpressions
@@ -75,10 +76,10 @@ def is_wider(expr: Expr, parts: Sequence[Value], numbers: Value) -> bool:
 
 
 def chooses_nested(expr: Expr) -> bool:
-    """Whether an expression chooses between vectors made of vectors: naga cannot compute that of constants."""
+    """Whether an expression chooses between vectors made of vectors."""
     if not isinstance(expr.type, Vector) or not isinstance(expr, Select | Intrinsic):
         return False
-    if isinstance(expr, Intrinsic) and (expr.name != "mix" or kind_of(expr.args[2].type) != "bool"):
+    if isinstance(expr, Intrinsic) and not BUILTINS[expr.name].is_choice([arg.type for arg in expr.args]):
         return False
     return any(
         isinstance(part, Construct) and any(isinstance(arg.type, Vector) for arg in part.args)
