@@ -7,7 +7,7 @@ by its polyfill, whose statements are executed here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.constant_evaluation import Value, combined
@@ -15,8 +15,7 @@ from sssgen.ir.constant_expressions import constant_numbers, literal
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of
 from sssgen.ir.walk import operands
-
-Polyfill = Callable[[str, Sequence[Type]], ir.Module]
+from sssgen.passes.legal.builtin_forms import Polyfill
 
 
 class _NotConstant(Exception):
@@ -40,6 +39,11 @@ class ConstantCalls:
             return self.evaluated(expr, {}, {})
         except (_NotConstant, KeyError):
             return None
+
+    def literals(self, expr: ir.Expr) -> ir.Expr | None:
+        """The value of an expression as literals and constructors; None where it is not constant."""
+        value = self.value(expr)
+        return None if value is None else _as_literals(expr.type, value, expr.span)
 
     def evaluated(self, expr: ir.Expr, local: Mapping[str, Value], functions: Mapping[str, ir.Function]) -> Value:
         """The value with these values of variables and these functions. Raises _NotConstant, KeyError."""
@@ -87,13 +91,13 @@ class ConstantCalls:
         return None
 
 
-def as_literals(type_: Type, value: Value, span: ir.Span) -> ir.Expr:
+def _as_literals(type_: Type, value: Value, span: ir.Span) -> ir.Expr:
     """A value as literals and constructors."""
     if isinstance(type_, Struct):
-        parts = [as_literals(field.type, part, span) for field, part in zip(type_.fields, value, strict=True)]
+        parts = [_as_literals(field.type, part, span) for field, part in zip(type_.fields, value, strict=True)]
         return ir.Construct(type_, tuple(parts), span)
     if isinstance(type_, Array):
-        return ir.Construct(type_, tuple([as_literals(type_.element, part, span) for part in value]), span)
+        return ir.Construct(type_, tuple([_as_literals(type_.element, part, span) for part in value]), span)
     if isinstance(type_, Matrix):
         return ir.Construct(type_, tuple([ir.Literal(Scalar("float"), number, span) for number in value]), span)
     assert isinstance(type_, Scalar | Vector) and len(value) == components(type_)

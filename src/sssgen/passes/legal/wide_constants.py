@@ -12,10 +12,9 @@ from collections.abc import Sequence
 from sssgen.ir import constant_arithmetic as arithmetic
 from sssgen.ir.constant_evaluation import Value, combined
 from sssgen.ir.constant_expressions import constant_numbers
-from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.nodes import Binary, Construct, Expr, Global, Intrinsic, Literal, Local, Select, Unary
-from sssgen.ir.types import Vector, kind_of
-from sssgen.ir.walk import operands, subexpressions
+from sssgen.ir.nodes import Binary, Construct, Expr, Global, Intrinsic, Literal, Local, Unary
+from sssgen.ir.types import kind_of
+from sssgen.ir.walk import operands
 
 _INTEGERS = ("int", "uint")
 
@@ -73,16 +72,3 @@ def is_wider(expr: Expr, parts: Sequence[Value], numbers: Value) -> bool:
     else:
         return isinstance(expr, Intrinsic) and kind == "int" and -0x80000000 in numbers
     return exact is None or tuple(exact) != numbers
-
-
-def chooses_nested(expr: Expr) -> bool:
-    """Whether an expression chooses between vectors made of vectors."""
-    if not isinstance(expr.type, Vector) or not isinstance(expr, Select | Intrinsic):
-        return False
-    if isinstance(expr, Intrinsic) and not BUILTINS[expr.name].is_choice([arg.type for arg in expr.args]):
-        return False
-    return any(
-        isinstance(part, Construct) and any(isinstance(arg.type, Vector) for arg in part.args)
-        for operand in operands(expr)
-        for part in subexpressions(operand)
-    )
