@@ -37,14 +37,14 @@ def compiles(module: Module, assert_compiles: Callable[[Source], None]) -> None:
 def subject_of(text: str) -> Subject:
     """The functions of `shader_programs.source` that show outputs."""
     module = load_text(text, "fuzzed.sss")
-    shown = [function for function in module.functions if function.name.endswith(SHOWS)]
-    probes = tuple(Probe(one.name, one.name, one.params, one.result) for one in shown)
+    functions = [function for function in module.functions if function.name.endswith(SHOWS)]
+    probes = tuple(Probe(function.name, function.name, function.params, function.result) for function in functions)
     return Subject("fuzzed", module, probes, {})
 
 
 @cache
 def arguments() -> Inputs:
-    """Arguments for `shader_programs.SHOWN`."""
+    """Arguments for `shader_programs.INPUTS`."""
     rng = np.random.default_rng(7)
 
     def eighths() -> Array:

@@ -200,12 +200,12 @@ def _mesh(path: Path) -> None:
 
 
 def _volumes(kind: str) -> Callable[[], list[bytes]]:
-    def made() -> list[bytes]:
+    def contents() -> list[bytes]:
         types = (np.uint8, np.uint16, np.float16, np.float32)
-        volumes = [np.ones((2, 3, 4), one) for one in types]
-        return [encoded(one, kind) for one in volumes]
+        volumes = [np.ones((2, 3, 4), dtype) for dtype in types]
+        return [encoded(volume, kind) for volume in volumes]
 
-    return made
+    return contents
 
 
 def _baked() -> list[bytes]:
@@ -218,13 +218,13 @@ def _lights() -> list[bytes]:
 
 
 def _meshes(kind: str) -> Callable[[], list[bytes]]:
-    def made() -> list[bytes]:
+    def contents() -> list[bytes]:
         import trimesh
 
         exported = trimesh.creation.box().export(file_type=kind)
         return [exported.encode() if isinstance(exported, str) else exported]
 
-    return made
+    return contents
 
 
 FRONT_ENDS = {

@@ -101,7 +101,7 @@ class Case:
         for lane in range(LANES):
             values = {name: lanes[lane] for name, lanes in self.uniforms.items()}
             try:
-                self.expected[lane] = interpreter.run([one[lane] for one in arguments()], values)
+                self.expected[lane] = interpreter.run([argument[lane] for argument in arguments()], values)
                 self.valid[lane] = True
             except Undefined as reason:
                 self.reasons[str(reason)] += 1
@@ -125,7 +125,7 @@ class Case:
         result = np.moveaxis(result, -1, 0).astype(np.float64)
         if result.shape != self.expected.shape:
             return f"a result of the shape {result.shape}"
-        values = [one[lane] for one in arguments()]
+        values = [argument[lane] for argument in arguments()]
         return f"lane {lane} {values}: {result[lane].tolist()}, expected {self.expected[lane].tolist()}"
 
 
@@ -155,7 +155,7 @@ class Runner:
 
     def failures(self, cases: Sequence[Case]) -> list[tuple[Case, Failure]]:
         """What is wrong with programs that can stand in one text."""
-        found: list[tuple[Case, Failure]] = []
+        failures: list[tuple[Case, Failure]] = []
         try:
             module = self.timed("parse", load_glsl_text, "".join(case.text for case in cases), "fuzzed.glsl").module
         except Exception as error:
@@ -164,12 +164,12 @@ class Runner:
             half = (len(cases) + 1) // 2
             return self.failures(cases[:half]) + self.failures(cases[half:])
         for target in self.targets:
-            found += self.of_target(target, module, cases)
-        return found
+            failures += self.of_target(target, module, cases)
+        return failures
 
     def failure(self, target: str, error: Exception) -> Failure:
         if isinstance(error, SssgenError):
-            message = "; ".join(one.message for one in error.diagnostics[:2])
+            message = "; ".join(diagnostic.message for diagnostic in error.diagnostics[:2])
             if "Assertion `" in message:
                 return Failure(target, "tool", message)
             driver = re.match(r"(?:gl|gl-es|webgpu|hlsl|browser)\S*: ", message)
@@ -183,14 +183,18 @@ class Runner:
             if len(cases) == 1:
                 return [(cases[0], self.failure(target, error))]
             half = (len(cases) + 1) // 2
-            return [one for part in (cases[:half], cases[half:]) for one in self.of_target(target, module, part)]
-        found = []
+            return [
+                failure for part in (cases[:half], cases[half:]) for failure in self.of_target(target, module, part)
+            ]
+        failures = []
         for index, (case, result) in enumerate(zip(cases, results, strict=True)):
             lanes = case.wrong_lanes(result)
             if lanes:
                 is_text = target == "numpy" or any(self.is_wrong_alone(target, module, cases, index, n) for n in lanes)
-                found.append((case, Failure(target, "wrong" if is_text else "tool", case.difference(result, lanes[0]))))
-        return found
+                failures.append(
+                    (case, Failure(target, "wrong" if is_text else "tool", case.difference(result, lanes[0])))
+                )
+        return failures
 
     def is_wrong_alone(self, target: str, module: Module, cases: Sequence[Case], index: int, lane: int) -> bool:
         """Whether a lane of a case is wrong, too, where all lanes have its arguments."""
@@ -223,7 +227,7 @@ class Runner:
     def call(self, case: Case, params: Sequence[Any], renames: dict[str, str]) -> Call:
         args = [lanes_last(type_, lanes) for type_, lanes in zip(INPUTS, arguments(), strict=True)]
         for param in params[len(INPUTS) :]:
-            type_ = next(one.type for one in case.program.variables if one.name == param.name)
+            type_ = next(variable.type for variable in case.program.variables if variable.name == param.name)
             args.append(lanes_last(type_, case.uniforms[param.name]))
         entry = case.program.entry
         result = BY_NAME["vec4" if case.program.smooth else "ivec4"]

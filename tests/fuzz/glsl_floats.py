@@ -49,13 +49,13 @@ class Expressions(Integers):
         if leaf is not None:
             return Bound(leaf, LIMIT, EIGHTHS)
         numbers = (0.0, 0.5, 1.0, 1.5, 2.0, 0.125, 3.0, 0.25, 7.5, 10.0, 16.0, 63.875)
-        one = self.float_literal(self.random.choice(numbers))
+        number = self.float_literal(self.random.choice(numbers))
         if size := vector_size(type_):
             if self.chance(40):
-                return Bound(Node("construct", type_, [one], type_), LIMIT, EIGHTHS)
+                return Bound(Node("construct", type_, [number], type_), LIMIT, EIGHTHS)
             rest = [self.float_literal(self.random.choice(numbers)) for _ in range(size - 1)]
-            return Bound(Node("construct", type_, [one, *rest], type_), LIMIT, EIGHTHS)
-        return Bound(one, LIMIT, EIGHTHS)
+            return Bound(Node("construct", type_, [number, *rest], type_), LIMIT, EIGHTHS)
+        return Bound(number, LIMIT, EIGHTHS)
 
     def float_literal(self, number: float) -> Node:
         texts = [repr(number), repr(number), f"{number}f", f"{number:e}"]
@@ -77,7 +77,7 @@ class Expressions(Integers):
             types = [type_, type_]
             if size > 1 and self.chance(30):
                 types[self.random.randrange(2)] = "float"
-            a, b = (self.exact(one, inner) for one in types)
+            a, b = (self.exact(operand_type, inner) for operand_type in types)
             if op == "*":
                 if a.limit * b.limit * 2.0 ** (a.places + b.places) > 1 << 22:
                     a, b = Bound(self.fit(a), LIMIT, EIGHTHS), Bound(self.fit(b), LIMIT, EIGHTHS)
@@ -163,7 +163,8 @@ class Expressions(Integers):
             )
         factors = [self.matrix(size, depth - 1), self.exact(type_, depth)]
         factors = [
-            Bound(self.fit(one), MATRIX_LIMIT if matrix_size(one.node.type) else LIMIT, EIGHTHS) for one in factors
+            Bound(self.fit(factor), MATRIX_LIMIT if matrix_size(factor.node.type) else LIMIT, EIGHTHS)
+            for factor in factors
         ]
         if self.chance(40):
             factors.reverse()
@@ -191,9 +192,9 @@ class Expressions(Integers):
         if rule < 52:
             return leaf._replace(node=Node("unary", type_, [leaf.node], "-"))
         if rule < 60:
-            other_size = self.random.choice([one for one in (2, 3, 4) if one != size])
-            made = self.matrix_leaf(other_size)
-            return Bound(Node("construct", type_, [made], type_), MATRIX_LIMIT, 1)
+            other_size = self.random.choice([candidate for candidate in (2, 3, 4) if candidate != size])
+            matrix = self.matrix_leaf(other_size)
+            return Bound(Node("construct", type_, [matrix], type_), MATRIX_LIMIT, 1)
         if rule < 70 and (shared := self.shared(type_, depth)) is not None:
             return Bound(shared, MATRIX_LIMIT, 1)
         factor = self.matrix_leaf(size)

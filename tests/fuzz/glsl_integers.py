@@ -30,16 +30,16 @@ class Integers(Scoped):
         if leaf is not None:
             return leaf
         kind_, size = kind(type_), vector_size(type_)
-        one = literal("bool", self.chance(50)) if kind_ == "bool" else self.integer_literal(kind_)
+        number = literal("bool", self.chance(50)) if kind_ == "bool" else self.integer_literal(kind_)
         if not size:
-            return one
+            return number
         if self.chance(40):
-            return Node("construct", type_, [one], type_)
+            return Node("construct", type_, [number], type_)
         rest = [
             literal("bool", self.chance(50)) if kind_ == "bool" else self.integer_literal(kind_)
             for _ in range(size - 1)
         ]
-        return Node("construct", type_, [one, *rest], type_)
+        return Node("construct", type_, [number, *rest], type_)
 
     def count(self, type_: str) -> Node:
         """A shift's count."""
@@ -61,11 +61,11 @@ class Integers(Scoped):
         if kind_ == "uint" and self.chance(60):
             return binary("|", type_, self.integer(type_, 1), literal(kind_, 1))
         low = binary("&", type_, self.integer(type_, 1), literal(kind_, self.random.choice((1, 7, 15, 255))))
-        made = binary("+", type_, low, literal(kind_, self.random.choice((1, 2, 3))))
+        value = binary("+", type_, low, literal(kind_, self.random.choice((1, 2, 3))))
         return (
-            Node("unary", type_, [binary("+", type_, made, literal(kind_, 1))], "-")
+            Node("unary", type_, [binary("+", type_, value, literal(kind_, 1))], "-")
             if kind_ == "int" and self.chance(30)
-            else made
+            else value
         )
 
     def integer(self, type_: str, depth: int) -> Node:
@@ -83,7 +83,7 @@ class Integers(Scoped):
                 types[self.random.randrange(2)] = kind_
             elif kind_ == "uint" and self.chance(12):
                 types[self.random.randrange(2)] = vector("int", size)
-            return binary(op, type_, *(self.integer(one, inner) for one in types))
+            return binary(op, type_, *(self.integer(operand_type, inner) for operand_type in types))
         if rule < 48:
             left = self.integer(type_, inner)
             if self.chance(50) and kind_ == "int":
@@ -143,8 +143,8 @@ class Integers(Scoped):
             name = self.random.choice(("bitCount", "findLSB", "findMSB"))
             return call(name, type_, self.integer(vector(self.random.choice(("int", "uint")), size), depth))
         if rule == 10 and not self.constant:
-            made = self.exact(vector("float", size), depth)
-            safe = binary("+", made.node.type, call("abs", made.node.type, self.fit(made)), literal("float", 1.0))
+            value = self.exact(vector("float", size), depth)
+            safe = binary("+", value.node.type, call("abs", value.node.type, self.fit(value)), literal("float", 1.0))
             return call("floatBitsToInt" if kind_ == "int" else "floatBitsToUint", type_, safe)
         if rule == 11 and type_ == "uint" and not self.quiet and not self.constant and self.chance(self.effects * 2):
             place = self.target("uint", pure=True)
@@ -187,8 +187,8 @@ class Integers(Scoped):
             return self.exact_source(from_, size, depth)
         source = vector(from_, size)
         if from_ == "float":
-            made = self.fit(self.exact(source, depth))
-            return call("abs", source, made) if kind_ == "uint" else made
+            value = self.fit(self.exact(source, depth))
+            return call("abs", source, value) if kind_ == "uint" else value
         return self.boolean(source, depth) if from_ == "bool" else self.integer(source, depth)
 
     def exact_source(self, from_: str, size: int, depth: int) -> Node:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from glsl_builtins import WRITES, computed, writing
-from glsl_places import UNSET, Place, each, element_at, inside, known, load, store
+from glsl_places import UNSET, Place, each, element_at, inside, load, require_defined, store
 from glsl_tree import COMPONENTS, NONE, Function, Macro, Node, Program
 from glsl_values import Undefined, Value, construct, exact, kind, matrix_size, operation, vector_size, wrapped, zero
 
@@ -54,7 +54,7 @@ class Interpreter:
     def returned(self, function: Function, outcome: tuple[int, Any]) -> Value:
         if outcome[0] != RETURN and function.result != "void":
             raise Undefined("no return")
-        return known(outcome[1])
+        return require_defined(outcome[1])
 
     def count(self) -> None:
         self.steps += 1
@@ -99,8 +99,8 @@ class Interpreter:
     def _name(self, node: Node) -> Run:
         shared, slot = self.find(node.data)
         if shared:
-            return lambda frame: known(self.globals[slot])
-        return lambda frame: known(frame[slot])
+            return lambda frame: require_defined(self.globals[slot])
+        return lambda frame: require_defined(frame[slot])
 
     def _brackets(self, node: Node) -> Run:
         return self.expression(node.parts[0])
@@ -202,8 +202,8 @@ class Interpreter:
             types = [type_.partition("[")[0]] * len(node.parts)
         else:
             values = [(part.type, self.expression(part)) for part in node.parts]
-            return lambda frame: construct(type_, [(one, value(frame)) for one, value in values])
-        parts = [self.as_type(part, one) for part, one in zip(node.parts, types, strict=True)]
+            return lambda frame: construct(type_, [(part_type, value(frame)) for part_type, value in values])
+        parts = [self.as_type(part, target_type) for part, target_type in zip(node.parts, types, strict=True)]
         return lambda frame: tuple([part(frame) for part in parts])
 
     _list = _construct
@@ -264,11 +264,11 @@ class Interpreter:
     def overload(self, node: Node) -> tuple[Function, Run, int]:
         """The function with exactly the arguments' types, else the only one of its name."""
         types = [part.type for part in node.parts]
-        named = [one for one in self.functions[node.data] if len(one[0].params) == len(types)]
-        for one in named:
-            if [param.type for param in one[0].params] == types:
-                return one
-        return named[0]
+        candidates = [candidate for candidate in self.functions[node.data] if len(candidate[0].params) == len(types)]
+        for candidate in candidates:
+            if [param.type for param in candidate[0].params] == types:
+                return candidate
+        return candidates[0]
 
     def _swizzle(self, node: Node) -> Run:
         value = self.expression(node.parts[0])
@@ -280,14 +280,14 @@ class Interpreter:
 
     def _member(self, node: Node) -> Run:
         value, index = self.expression(node.parts[0]), self.field(node)
-        return lambda frame: known(value(frame)[index])
+        return lambda frame: require_defined(value(frame)[index])
 
     def field(self, node: Node) -> int:
         return [name for _, name in self.program.structs[node.parts[0].type]].index(node.data)
 
     def _index(self, node: Node) -> Run:
         value, index = self.expression(node.parts[0]), self.expression(node.parts[1])
-        return lambda frame: known(element_at(value(frame), index(frame)))
+        return lambda frame: require_defined(element_at(value(frame), index(frame)))
 
     def _length(self, node: Node) -> Run:
         type_ = node.parts[0].type
@@ -319,11 +319,11 @@ class Interpreter:
     # Statements
 
     def statements(self, nodes: list[Node]) -> Run:
-        runs = [self.statement(node) for node in nodes]
+        steps = [self.statement(node) for node in nodes]
 
         def run(frame: list[Any]) -> tuple[int, Any]:
-            for one in runs:
-                outcome = one(frame)
+            for step in steps:
+                outcome = step(frame)
                 if outcome[0]:
                     return outcome
             return NEXT, None

@@ -24,13 +24,13 @@ def each(function: Callable[[Any], Any], value: Value) -> Value:
     return function(value)
 
 
-def known(value: Value) -> Value:
+def require_defined(value: Value) -> Value:
     """A value that has no unset part."""
     if value is UNSET:
         raise Undefined("a variable without a value")
     if isinstance(value, tuple):
         for part in value:
-            known(part)
+            require_defined(part)
     return value
 
 
@@ -54,7 +54,7 @@ def load(place: Place) -> Value:
     value = frame[slot]
     for part in path:
         value = part_of(value, part)
-    return known(value)
+    return require_defined(value)
 
 
 def part_of(value: Value, part: Any) -> Value:
@@ -79,8 +79,8 @@ def replaced(old: Value, path: tuple[Any, ...], value: Value) -> Value:
         raise Undefined("a part of a variable without a value")
     new = list(old)
     if isinstance(part, tuple):
-        for index, one in zip(part, value, strict=True):
-            new[index] = one
+        for index, number in zip(part, value, strict=True):
+            new[index] = number
     else:
         new[part] = replaced(element_at(old, part), rest, value)
     return tuple(new)

@@ -61,7 +61,7 @@ class Programs(Expressions):
     def type(self, simple: bool = False) -> str:
         types = list(TYPES_OF_VARIABLES) + ([] if simple else [name for name in self.program.structs for _ in range(4)])
         if simple:
-            types = [one for one in types if "[" not in one]
+            types = [type_ for type_ in types if "[" not in type_]
         return self.random.choice(types)
 
     def struct(self) -> None:
@@ -107,9 +107,9 @@ class Programs(Expressions):
         name = self.file_name(MACROS)
         type_ = self.random.choice(("int", "uint"))
         if self.chance(50):
-            known, self.constants = self.constants, set()  # where the macro is used, a name may mean something else
+            constants, self.constants = self.constants, set()  # where the macro is used, a name may mean something else
             body = self.constant_value(type_)
-            self.constants = known
+            self.constants = constants
             body = body if self.chance(30) and body.kind == "literal" else Node("brackets", type_, [body])
             params: list[str] = []
         else:
@@ -131,7 +131,9 @@ class Programs(Expressions):
         result = self.random.choice(("int", "int", "uint", "float", "bool", "void", self.type()))
         params = self.parameters(self.random.randint(0, 4))
         types = [param.type for param in params]
-        if any(one.name == name and [param.type for param in one.params] == types for one in self.callable):
+        if any(
+            function.name == name and [param.type for param in function.params] == types for function in self.callable
+        ):
             name = self.new_name(FUNCTIONS)
         self.used_globals.add(name)
         self.scopes[0][name] = Symbol(name, "", False)
@@ -197,7 +199,7 @@ class Programs(Expressions):
 
     def unset_variables(self) -> list[Node]:
         """Assignments to the variables at file scope that have no value."""
-        made = []
+        assignments = []
         for variable in self.program.variables:
             if variable.value is None and not variable.qualifier:
                 self.quiet += 1
@@ -208,13 +210,13 @@ class Programs(Expressions):
                 if self.visible()[variable.name].type != variable.type or variable.name in self.scopes[-1]:
                     continue
                 target = Node("name", variable.type, [], variable.name)
-                made.append(Node("do_expression", parts=[Node("assign", variable.type, [target, value], "=")]))
-        return made
+                assignments.append(Node("do_expression", parts=[Node("assign", variable.type, [target, value], "=")]))
+        return assignments
 
     def digest(self) -> Node:
         """Four numbers of everything in scope."""
         terms: list[list[Node]] = [[], [], [], []]
-        symbols = [one for one in self.visible().values() if one.type]
+        symbols = [symbol for symbol in self.visible().values() if symbol.type]
         self.random.shuffle(symbols)
         for number, symbol in enumerate(symbols[:8]):
             node = Node("name", symbol.type, [], symbol.name)
@@ -238,23 +240,23 @@ class Programs(Expressions):
         if type_ in ("uint", "bool"):
             return [Node("construct", "int", [node], "int")]
         if type_ in self.program.structs:
-            inner = [Node("member", one, [node], name) for one, name in self.program.structs[type_]]
+            inner = [Node("member", part_type, [node], name) for part_type, name in self.program.structs[type_]]
         elif "[" in type_:
-            one, length = element(type_)
-            inner = [Node("index", one, [node, literal("int", index)]) for index in range(length)]
+            part_type, length = element(type_)
+            inner = [Node("index", part_type, [node, literal("int", index)]) for index in range(length)]
         elif size := matrix_size(type_):
             inner = [Node("index", f"vec{size}", [node, literal("int", index)]) for index in range(size)]
         else:
             inner = [Node("swizzle", kind(type_), [node], letter) for letter in "xyzw"[: vector_size(type_)]]
-        return [part for one in inner for part in self.scalars(one)]
+        return [part for child in inner for part in self.scalars(child)]
 
     # Statements
 
     def statements(self, count: int, depth: int) -> list[Node]:
-        made: list[Node] = []
+        nodes: list[Node] = []
         for _ in range(count):
-            made += self.statement(depth)
-        return made
+            nodes += self.statement(depth)
+        return nodes
 
     def block(self, depth: int) -> Node:
         self.scopes.append({})
@@ -278,8 +280,8 @@ class Programs(Expressions):
             return [self.declaration(self.type(), 2)]
         if rule < 66 and (jump := self.jump()) is not None:
             return [jump]
-        if rule < 72 and (made := self.call_statement()) is not None:
-            return [made]
+        if rule < 72 and (call := self.call_statement()) is not None:
+            return [call]
         return [self.store()]
 
     def store(self) -> Node:
@@ -294,12 +296,12 @@ class Programs(Expressions):
             if kind_ in ("int", "uint") and "[" not in type_ and type_ not in self.program.structs and self.chance(15):
                 step = Node("step", type_, [place], (self.random.choice(("++", "--")), self.chance(50)))
                 return Node("do_expression", parts=[step])
-            made = self.assignment(place, 2)
+            expression = self.assignment(place, 2)
             if self.chance(6):
                 other = self.target("int")
                 if other is not None:
-                    made = Node("comma", "int", [made, self.assignment(other, 1)])
-            return Node("do_expression", parts=[made])
+                    expression = Node("comma", "int", [expression, self.assignment(other, 1)])
+            return Node("do_expression", parts=[expression])
         return Node("empty")
 
     def declaration(self, type_: str, depth: int) -> Node:
@@ -325,11 +327,13 @@ class Programs(Expressions):
 
     def call_statement(self) -> Node | None:
         visible = self.visible()
-        found = [one for one in self.callable if visible.get(one.name, Symbol("", "x", False)).type == ""]
-        if not found:
+        functions = [
+            function for function in self.callable if visible.get(function.name, Symbol("", "x", False)).type == ""
+        ]
+        if not functions:
             return None
-        made = self.call_of(self.random.choice(found), 2)
-        return None if made is None else Node("do_expression", parts=[made])
+        call = self.call_of(self.random.choice(functions), 2)
+        return None if call is None else Node("do_expression", parts=[call])
 
     def jump(self) -> Node | None:
         options = ["return"]
@@ -384,26 +388,26 @@ class Programs(Expressions):
             step = Node("assign", type_, [counter, literal(type_, 1)], "+=")
         outer = self.loops, self.switches
         self.loops, self.switches = self.loops + 1, 0
-        made: list[Node]
+        nodes: list[Node]
         if form < 62:
             if self.chance(20) and (place := self.target("int")) is not None:
                 step = Node("comma", "int", [step, self.assignment(place, 1)])
             body = self.block(depth)
-            made = [Node("for", parts=[start, test, step, body])]
+            nodes = [Node("for", parts=[start, test, step, body])]
         elif form < 72:
             body = self.block(depth)
             leave = Node("if", parts=[Node("unary", "bool", [Node("brackets", "bool", [test])], "!"), Node("break")])
             first = [leave, Node("do_expression", parts=[step])]
             body = Node("block", parts=first + (body.parts if body.kind == "block" else [body]))
-            made = [start, Node("for", parts=[Node(NONE), Node(NONE), Node(NONE), body])]
+            nodes = [start, Node("for", parts=[Node(NONE), Node(NONE), Node(NONE), body])]
         else:
             test = binary("<", "bool", Node("step", type_, [counter], ("++", self.chance(50))), count)
             test = test if self.chance(70) else binary("&&", "bool", test, self.boolean("bool", 1))
             body = self.block(depth)
-            made = [start, Node("while", parts=[test, body]) if form < 88 else Node("do", parts=[body, test])]
+            nodes = [start, Node("while", parts=[test, body]) if form < 88 else Node("do", parts=[body, test])]
         self.loops, self.switches = outer
         self.scopes.pop()
-        return made if made[0].kind == "for" else [Node("block", parts=made)]
+        return nodes if nodes[0].kind == "for" else [Node("block", parts=nodes)]
 
     def do_once(self, depth: int) -> Node:
         outer = self.loops, self.switches
@@ -450,7 +454,7 @@ class Programs(Expressions):
                 Node(
                     "case",
                     parts=stmts,
-                    data=[None if one is None else self.label(type_, one - offset) for one in group],
+                    data=[None if label is None else self.label(type_, label - offset) for label in group],
                 )
             )
         self.scopes.pop()

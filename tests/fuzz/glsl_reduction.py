@@ -90,21 +90,23 @@ def _edits(node: Node) -> Iterator[Callable[[Node], None]]:
         start = 1 if node.kind == "switch" else 0
         for length in (4, 2, 1):
             for first in range(start, len(node.parts) - length + 1):
-                yield lambda one, first=first, length=length: one.parts.__delitem__(slice(first, first + length))
+                yield lambda target, first=first, length=length: target.parts.__delitem__(slice(first, first + length))
     if node.kind == "if" and len(node.parts) == 3:
-        yield lambda one: one.parts.__delitem__(2)
+        yield lambda target: target.parts.__delitem__(2)
     if node.kind in STATEMENTS and node.kind != "case":
         for part in node.parts:
             bodies = part.parts if part.kind == "case" else [part] if part.kind in STATEMENTS else []
             if bodies and node.kind != "block":
-                yield lambda one, bodies=bodies: _become(one, Node("block", parts=[copied(body) for body in bodies]))
+                yield lambda target, bodies=bodies: _become(
+                    target, Node("block", parts=[copied(body) for body in bodies])
+                )
         if node.kind == "block" and len(node.parts) == 1:
-            yield lambda one: _become(one, one.parts[0])
+            yield lambda target: _become(target, target.parts[0])
         return
     if node.kind in (NONE, "case") or not node.type:
         return
     for simpler in _simpler(node):
-        yield lambda one, simpler=simpler: _become(one, copied(simpler))
+        yield lambda target, simpler=simpler: _become(target, copied(simpler))
 
 
 def _simpler(node: Node) -> Iterator[Node]:
@@ -114,11 +116,11 @@ def _simpler(node: Node) -> Iterator[Node]:
     if "[" not in node.type:
         kind_, size_ = kind(node.type), vector_size(node.type) or matrix_size(node.type)
         numbers = {"int": (1, "1"), "uint": (1, "1u"), "bool": (True, "true"), "float": (1.0, "1.0")}
-        one = Node("literal", kind_, [], numbers[kind_])
+        number = Node("literal", kind_, [], numbers[kind_])
         if node.type in ("int", "uint", "bool", "float", "~float"):
-            yield one
+            yield number
         elif size_ and node.kind != "construct":
-            yield Node("construct", node.type, [one], node.type)
+            yield Node("construct", node.type, [number], node.type)
     for part in _nodes(node):
         if part is not node and part.type == node.type and part.kind != "hole":
             yield part

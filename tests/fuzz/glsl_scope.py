@@ -87,10 +87,10 @@ class Scoped(ABC):
     # Names
 
     def visible(self) -> dict[str, Symbol]:
-        found: dict[str, Symbol] = {}
+        symbols: dict[str, Symbol] = {}
         for scope in self.scopes:
-            found |= scope
-        return found
+            symbols |= scope
+        return symbols
 
     def new_name(self, names: tuple[str, ...] = ()) -> str:
         """A name that is free in the innermost scope; it may hide one outside."""
@@ -131,9 +131,13 @@ class Scoped(ABC):
         while node.type != wanted or (vector_size(wanted) and self.chance(15)):
             type_ = node.type
             if type_ in self.program.structs:
-                fields = [(one, name) for one, name in self.program.structs[type_] if self.reaches(one, wanted)]
-                one, name = self.random.choice(fields)
-                node = Node("member", one, [node], name)
+                fields = [
+                    (part_type, name)
+                    for part_type, name in self.program.structs[type_]
+                    if self.reaches(part_type, wanted)
+                ]
+                part_type, name = self.random.choice(fields)
+                node = Node("member", part_type, [node], name)
             elif "[" in type_:
                 inner, length = element(type_)
                 node = Node("index", inner, [node, self.index(length)])
@@ -174,15 +178,15 @@ class Scoped(ABC):
 
     def leaf(self, type_: str) -> Node | None:
         """A part of a variable in scope."""
-        found = [
+        symbols = [
             symbol for symbol in self.visible().values()
             if symbol.type and self.reaches(symbol.type, type_) and (not self.constant or not symbol.writable)
         ]  # fmt: skip
         if self.constant:
-            found = [symbol for symbol in found if symbol.name in self.constants]
-        if not found:
+            symbols = [symbol for symbol in symbols if symbol.name in self.constants]
+        if not symbols:
             return None
-        symbol = self.random.choice(found)
+        symbol = self.random.choice(symbols)
         self.quiet += self.chance(80)
         quiet, node = self.quiet, Node("name", symbol.type, [], symbol.name)
         node = self.part_of(node, type_, write=False)
@@ -194,10 +198,14 @@ class Scoped(ABC):
 
     def target(self, type_: str, pure: bool = False) -> Node | None:
         """A place of that type that can be written."""
-        found = [one for one in self.visible().values() if one.type and one.writable and self.reaches(one.type, type_)]
-        if not found:
+        symbols = [
+            symbol
+            for symbol in self.visible().values()
+            if symbol.type and symbol.writable and self.reaches(symbol.type, type_)
+        ]
+        if not symbols:
             return None
-        symbol = self.random.choice(found)
+        symbol = self.random.choice(symbols)
         self.quiet += pure
         node = self.part_of(Node("name", symbol.type, [], symbol.name), type_, write=True)
         self.quiet -= pure
@@ -232,14 +240,19 @@ class Scoped(ABC):
             return leaf
         if depth > 0 and not self.constant and self.chance(20):
             return Node("choice", type_, [self.boolean("bool", 1), self.whole(type_, 0), self.whole(type_, 0)])
-        made = self.called(type_, depth) if self.chance(25) else None
-        if made is not None:
-            return made
+        call_ = self.called(type_, depth) if self.chance(25) else None
+        if call_ is not None:
+            return call_
         if "[" in type_:
             inner, length = element(type_)
             spelled = f"{inner}[]" if self.chance(30) else type_
             return Node("construct", type_, [self.stored(inner, depth - 1) for _ in range(length)], spelled)
-        return Node("construct", type_, [self.stored(one, depth - 1) for one, _ in self.program.structs[type_]], type_)
+        return Node(
+            "construct",
+            type_,
+            [self.stored(part_type, depth - 1) for part_type, _ in self.program.structs[type_]],
+            type_,
+        )
 
     # What all kinds share
 
@@ -277,14 +290,14 @@ class Scoped(ABC):
     def called(self, type_: str, depth: int) -> Node | None:
         """A call of a function that returns the type."""
         visible = self.visible()
-        found = [
-            one for one in self.callable
-            if one.result == type_ and visible.get(one.name, Symbol("", "", False)).type == ""
-            and (not self.quiet or all(param.direction in ("", "in", "const in") for param in one.params))
+        functions = [
+            function for function in self.callable
+            if function.result == type_ and visible.get(function.name, Symbol("", "", False)).type == ""
+            and (not self.quiet or all(param.direction in ("", "in", "const in") for param in function.params))
         ]  # fmt: skip
-        if not found or depth < 1 or self.constant:
+        if not functions or depth < 1 or self.constant:
             return None
-        return self.call_of(self.random.choice(found), depth)
+        return self.call_of(self.random.choice(functions), depth)
 
     def call_of(self, function: Function, depth: int) -> Node | None:
         """A call; places of `out` parameters are often the same."""
@@ -292,9 +305,11 @@ class Scoped(ABC):
         places: list[Node] = []
         for param in function.params:
             if param.direction in ("out", "inout"):
-                same = [one for one in places if one.type == param.type]
+                candidates = [place for place in places if place.type == param.type]
                 place = (
-                    self.random.choice(same) if same and self.chance(35) else self.target(param.type, self.chance(60))
+                    self.random.choice(candidates)
+                    if candidates and self.chance(35)
+                    else self.target(param.type, self.chance(60))
                 )
                 if place is None:
                     return None
@@ -348,10 +363,10 @@ class Scoped(ABC):
 
     def from_macro(self, type_: str, depth: int) -> Node | None:
         """A use of a macro; its arguments have no effects, as they may be repeated."""
-        found: list[Macro] = [one for one in self.program.macros.values() if one.body.type == type_]
-        if not found:
+        macros: list[Macro] = [macro for macro in self.program.macros.values() if macro.body.type == type_]
+        if not macros:
             return None
-        macro = self.random.choice(found)
+        macro = self.random.choice(macros)
         self.quiet += 1
         args = [self.integer(type_, depth - 1) for _ in macro.params]
         self.quiet -= 1

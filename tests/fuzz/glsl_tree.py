@@ -182,7 +182,7 @@ def statement(node: Node, pad: str = "    ") -> str:
         cases = "".join(statement(case, inner) for case in parts[1:])
         return f"{pad}switch ({expression(parts[0])}) {{\n{cases}{pad}}}\n"
     if kind == "case":
-        labels = "".join(f"{pad}{'default' if one is None else f'case {expression(one)}'}:\n" for one in data)
+        labels = "".join(f"{pad}{'default' if label is None else f'case {expression(label)}'}:\n" for label in data)
         return labels + lines(parts, inner)
     if kind == "return" and parts:
         return f"{pad}return {expression(parts[0])};\n"
@@ -247,8 +247,10 @@ def copied(node: Node) -> Node:
 
 def copied_program(program: Program) -> Program:
     """A copy whose declarations and trees can be changed."""
-    variables = [replace(one, value=one.value and copied(one.value)) for one in program.variables]
-    functions = [replace(one, params=list(one.params), body=copied(one.body)) for one in program.functions]
+    variables = [replace(variable, value=variable.value and copied(variable.value)) for variable in program.variables]
+    functions = [
+        replace(function, params=list(function.params), body=copied(function.body)) for function in program.functions
+    ]
     return replace(
         program,
         structs=dict(program.structs),

@@ -199,7 +199,7 @@ def operation(op: str, type_: str, left: str, right: str) -> Callable[[Value, Va
 
     if op == "*" and (matrix_size(left) or matrix_size(right)):
         return lambda a, b: product(a, b, bool(matrix_size(left)), bool(matrix_size(right)))
-    if not any(vector_size(one) or matrix_size(one) for one in (left, right)):
+    if not any(vector_size(operand) or matrix_size(operand) for operand in (left, right)):
         return scalar
     return lambda a, b: componentwise(scalar, a, b)
 

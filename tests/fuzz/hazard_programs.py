@@ -205,7 +205,7 @@ START = """\
     one = a;
     three = k2;
 """
-KNOWN = [("a", "float"), ("b", "float"), ("p", "vec2"), ("d", "vec3"), ("u", "vec3"), ("e", "vec4"), ("k2", "mat2"),
+VARIABLES = [("a", "float"), ("b", "float"), ("p", "vec2"), ("d", "vec3"), ("u", "vec3"), ("e", "vec4"), ("k2", "mat2"),
          ("k3", "mat3"), ("k4", "mat4"), ("n", "int"), ("h", "uint"), ("s", "float"), ("t", "float"), ("v", "vec3"),
          ("q", "vec4"), ("m2", "mat2"), ("m3", "mat3"), ("i", "int"), ("w", "uint"), ("item", "Item"),
          ("two", "vec3")]  # fmt: skip
@@ -243,7 +243,7 @@ PACKED = {"float": "vec4(result)", "vec2": "vec4(result, result)", "vec3": "vec4
           "mat2": "vec4(result[0], result[1])"}  # fmt: skip
 """The type of a result → what shows it."""
 LEAVES = {"bool": "(n > 2)", "ivec2": "ivec2(n, i)", "bvec2": "bvec2(n > 2, b < 1.0)"}
-AID_KNOWN = [("x", "float"), ("y", "vec3"), ("z", "mat2")]
+AID_VARIABLES = [("x", "float"), ("y", "vec3"), ("z", "mat2")]
 AID_LEAVES = {
     "int": "int(x)", "uint": "uint(y.x)", "vec2": "y.xy", "vec4": "vec4(y, x)", "mat3": "mat3(z)", "mat4": "mat4(z)",
     "bool": "(x > 1.0)", "bvec2": "bvec2(x > 1.0, y.x < 2.0)", "ivec2": "ivec2(y.xy)",
@@ -263,7 +263,7 @@ class HazardPrograms(ShaderPrograms):
 
     def __init__(self, random: Random, size: int = 3) -> None:
         super().__init__(random, size)
-        self.known, self.places = list(KNOWN), list(PLACES)
+        self.variables, self.places = list(VARIABLES), list(PLACES)
         self.leaves = LEAVES
         self.aid = ""
 
@@ -285,15 +285,19 @@ class HazardPrograms(ShaderPrograms):
 
     def of_aid(self) -> str:
         """What the helper returns: an expression of its parameters alone."""
-        self.known, self.leaves, self.rules = AID_KNOWN, AID_LEAVES, AID_RULES
+        self.variables, self.leaves, self.rules = AID_VARIABLES, AID_LEAVES, AID_RULES
         text = self.expr("float", 2)
-        self.known, self.leaves, self.rules = list(KNOWN), LEAVES, RULES
+        self.variables, self.leaves, self.rules = list(VARIABLES), LEAVES, RULES
         return text
 
     def expr(self, type_: str, depth: int = 3) -> str:
         if type_ in LITERALS:
             return self.random.choice(LITERALS[type_])
-        names = [name for name, known in self.known if known == (type_.lower() if type_.isupper() else type_)]
+        names = [
+            name
+            for name, variable_type in self.variables
+            if variable_type == (type_.lower() if type_.isupper() else type_)
+        ]
         if type_.isupper() or ((depth <= 0 or self.chance(20)) and names):
             leaf = self.random.choice(names) if names else self.leaves[type_.lower()]
             return self.sized(leaf) if type_ in SIZED and self.chance(40) else leaf
@@ -351,5 +355,5 @@ def source(random: Random, count: int, size: int = 3) -> str:
     Each has up to `size` statements in a block.
     """
     sizes = [random.randint(1, size) for _ in range(count)]
-    programs = [HazardPrograms(random, one).program(f"program_{number}") for number, one in enumerate(sizes)]
+    programs = [HazardPrograms(random, size).program(f"program_{number}") for number, size in enumerate(sizes)]
     return "\n".join([HELPERS, *programs])

@@ -30,7 +30,7 @@ BATCH = 16
 """The programs in one text."""
 DEEPEST = 80
 """Programs with as many brackets inside each other are left out: the transpiler refuses them from 100 levels on."""
-SHOWN = 3
+REDUCTIONS_PER_TITLE = 3
 """How many programs with the same fault are reduced and written."""
 
 
@@ -55,7 +55,7 @@ class Outcome(NamedTuple):
 
 
 _runner: Runner | None = None
-_written: Counter[str] = Counter()
+_failure_counts: Counter[str] = Counter()
 
 
 def batch(seed: int, number: int) -> list[Case]:
@@ -87,12 +87,12 @@ def run(job: Job) -> Outcome:
         excused.update(case.reasons)
         excused["programs without results"] += not case.is_useful
     cases = [case for case in cases if case.is_useful]
-    found = _runner.failures(cases)
-    for case, failure in found:
-        _written[title(failure)] += 1
-        if job.folder and _written[title(failure)] <= SHOWN:
+    failures = _runner.failures(cases)
+    for case, failure in failures:
+        _failure_counts[title(failure)] += 1
+        if job.folder and _failure_counts[title(failure)] <= REDUCTIONS_PER_TITLE:
             _runner.timed("reduce", write, job, case, failure, _runner)
-    return Outcome(job, len(cases), excused, [failure for _, failure in found], dict(_runner.seconds))
+    return Outcome(job, len(cases), excused, [failure for _, failure in failures], dict(_runner.seconds))
 
 
 def title(failure: Failure) -> str:
@@ -121,9 +121,9 @@ def write(job: Job, case: Case, failure: Failure, runner: Runner) -> None:
             return False
         if not candidate.is_useful:
             return False
-        for _, found in small.failures([candidate]):
-            if title(found) == title(failure):
-                last[0] = found
+        for _, candidate_failure in small.failures([candidate]):
+            if title(candidate_failure) == title(failure):
+                last[0] = candidate_failure
                 return True
         return False
 

@@ -15,7 +15,7 @@ from random import Random
 
 PARAMETERS = "float a, float b, vec3 d, int n, uint h, bool f, out vec2 o, inout ivec2 g, inout float t, out Pair made"
 """a and b are exact; the rest is anything."""
-SHOWN = "float a, float b, vec3 d, int n, uint h, bool f, ivec2 g, float t"
+INPUTS = "float a, float b, vec3 d, int n, uint h, bool f, ivec2 g, float t"
 
 HELPERS = """
 struct Pair { float first; vec2 second; int count; };
@@ -179,7 +179,7 @@ START = """\
     o = vec2(0.0);
     made = pair;
 """
-KNOWN = [
+VARIABLES = [
     ("a", "exact"), ("b", "exact"), ("e", "exact"), ("n", "int"), ("k", "int"), ("h", "uint"), ("w", "uint"), ("f",
     "bool"),
     ("g", "ivec2"), ("t", "float"), ("o", "vec2"), ("v", "vec3"), ("q", "vec4"), ("m", "mat2"), ("pair", "Pair"),
@@ -208,7 +208,7 @@ class ShaderPrograms:
     def __init__(self, random: Random, size: int = 4) -> None:
         self.random = random
         self.size = size
-        self.known = list(KNOWN)
+        self.variables = list(VARIABLES)
         self.places = PLACES + STORES
         self.names = 0
         self.loops: list[bool] = []
@@ -219,10 +219,10 @@ class ShaderPrograms:
         body = START + self.block(1, self.size) + f"    return {self.kept(self.result)};\n"
         return f"{self.result} {name}({PARAMETERS}) {{\n{body}}}\n"
 
-    def shown(self, name: str) -> str:
+    def output_functions(self, name: str) -> str:
         """Functions without out parameters that show what the program gives: its result, floats, whole numbers."""
         start = (
-            f"({SHOWN}) {{ vec2 o; Pair made; {self.result} result = {name}(a, b, d, n, h, f, o, g, t, made); return "
+            f"({INPUTS}) {{ vec2 o; Pair made; {self.result} result = {name}(a, b, d, n, h, f, o, g, t, made); return "
         )
         return (
             f"{self.result} {name}_result{start}result; }}\n"
@@ -236,7 +236,7 @@ class ShaderPrograms:
     # Expressions
 
     def expr(self, type_: str, depth: int = 3) -> str:
-        names = [name for name, known in self.known if known == type_.lower()]
+        names = [name for name, variable_type in self.variables if variable_type == type_.lower()]
         if type_.isupper():
             return self.random.choice(names)
         if depth == 0 or self.chance(20):
@@ -253,9 +253,9 @@ class ShaderPrograms:
 
     def block(self, indent: int, size: int) -> str:
         """Up to `size` statements; their declarations are local to the block."""
-        known, places = list(self.known), list(self.places)
+        variables, places = list(self.variables), list(self.places)
         text = "".join(self.statement(indent, size) for _ in range(self.random.randint(1, size)))
-        self.known, self.places = known, places
+        self.variables, self.places = variables, places
         return text
 
     def statement(self, indent: int, size: int) -> str:
@@ -288,7 +288,7 @@ class ShaderPrograms:
         if self.chance(30):
             text = f"{pad}{spelled} {name};\n{pad}if ({self.expr('bool', 2)}) {name} = {self.kept(type_)}; "
             text += f"else {name} = {self.kept(type_, 1)};\n"
-        self.known.append((name, type_))
+        self.variables.append((name, type_))
         self.places.append((type_, name))
         return text
 
@@ -322,11 +322,11 @@ class ShaderPrograms:
         return self.loop(start, f"{pad}    {name} += 1;\n{pad}}}\n", (name, "int"), False, indent, size)
 
     def loop(self, start: str, end: str, counter: tuple[str, str], continues: bool, indent: int, size: int) -> str:
-        self.known.append(counter)
+        self.variables.append(counter)
         self.loops.append(continues)
         body = self.block(indent + 1, size - 1)
         self.loops.pop()
-        self.known.remove(counter)
+        self.variables.remove(counter)
         return f"{start}{body}{end}"
 
 
@@ -335,5 +335,5 @@ def source(random: Random, count: int, size: int = 4) -> str:
     parts = [HELPERS]
     for number in range(count):
         programs = ShaderPrograms(random, size)
-        parts += [programs.program(f"program_{number}"), programs.shown(f"program_{number}")]
+        parts += [programs.program(f"program_{number}"), programs.output_functions(f"program_{number}")]
     return "\n".join(parts)

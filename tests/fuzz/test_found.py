@@ -10,7 +10,7 @@ from agreement import Oracle, compiles
 from sssgen.harness.backends import Backend
 from sssgen.harness.compilers import Source
 
-FOUND = {
+FAULTS = {
     "HLSL gave a literal the type of the count": "int least_whole(uint h) { return -8 >> h; }",
     "NumPy gave a literal the type of the count": "int some_whole(uint h) { return (7 >> h) - 20; }",
     "a literal that is a uint, shifted by an int": "uint large_whole(int n) { return 4294967295u >> n; }",
@@ -19,20 +19,20 @@ FOUND = {
 }
 
 
-@pytest.mark.parametrize("title", FOUND)
+@pytest.mark.parametrize("title", FAULTS)
 @pytest.mark.parametrize("name", ["gl", "webgpu", "hlsl"])
 def test_shifts(backend: Callable[[str], Backend], name: str, title: str) -> None:
-    assert Oracle(FOUND[title]).differences(backend(name)) == []
+    assert Oracle(FAULTS[title]).differences(backend(name)) == []
 
 
-@pytest.mark.parametrize("title", FOUND)
+@pytest.mark.parametrize("title", FAULTS)
 def test_earlier_failures_compile(assert_compiles: Callable[[Source], None], title: str) -> None:
-    compiles(Oracle(FOUND[title]).subject.module, assert_compiles)
+    compiles(Oracle(FAULTS[title]).subject.module, assert_compiles)
 
 
 def test_a_sign_is_shifted_in() -> None:
     """By hand, as the oracle itself was wrong."""
-    (shifted,) = Oracle(FOUND["NumPy gave a literal the type of the count"]).right.values()
+    (shifted,) = Oracle(FAULTS["NumPy gave a literal the type of the count"]).right.values()
     assert set(shifted.tolist()) <= {(7 >> count) - 20 for count in range(32)}
-    (shifted,) = Oracle(FOUND["HLSL gave a literal the type of the count"]).right.values()
+    (shifted,) = Oracle(FAULTS["HLSL gave a literal the type of the count"]).right.values()
     assert set(shifted.tolist()) <= {-8 >> count for count in range(32)}

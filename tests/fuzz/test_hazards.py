@@ -45,9 +45,9 @@ def test_many_hazard_programs_are_finite(
 def test_a_fault_is_seen(backend: Callable[[str], Backend]) -> None:
     """A value of which the range pass knows nothing wrong, but that is infinite, is a fault with its inputs."""
     text = f"{HELPERS}mat4 program_0({PARAMETERS}) {{ return mat4(a / b); }}\n"
-    found, (values,) = run(text, 1, backend("numpy-f32"), guards="none")
+    count, (values,) = run(text, 1, backend("numpy-f32"), guards="none")
     assert not np.isfinite(values).all()
-    (fault,) = found.faults
+    (fault,) = count.faults
     assert "program_0 at {'float a':" in fault and "numpy-f32" in fault
 
 

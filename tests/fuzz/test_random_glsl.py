@@ -20,38 +20,38 @@ FEW, MANY = 4, 140
 @pytest.fixture(scope="module")
 def runners() -> Iterator[dict[str, Runner]]:
     """One runner per target; its back ends end with the tests."""
-    found = {target: Runner((target,)) for target in TARGETS}
-    yield found
-    for runner in found.values():
+    runners = {target: Runner((target,)) for target in TARGETS}
+    yield runners
+    for runner in runners.values():
         runner.close()
 
 
 def failures(runner: Runner, seed: int, batches: int) -> list[str]:
-    found = []
+    messages = []
     for number in range(batches):
         cases = [case for case in random_glsl.batch(seed, number) if case.is_useful]
         assert len(cases) > random_glsl.BATCH // 2
         for case, failure in runner.failures(cases):
             if failure.kind != "tool":
-                found.append(
+                messages.append(
                     f"{random_glsl.title(failure)}, batch {number} of seed {seed}\n{failure.message}\n{case.text}"
                 )
-    return found
+    return messages
 
 
 @pytest.mark.parametrize("target", TARGETS)
 def test_random_programs(backend: Callable[[str], Backend], runners: dict[str, Runner], target: str) -> None:
     backend(target)  # skips where it is missing
-    found = failures(runners[target], 20, FEW)
-    assert not found, "\n\n".join(found[:3])
+    messages = failures(runners[target], 20, FEW)
+    assert not messages, "\n\n".join(messages[:3])
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("target", TARGETS)
 def test_many_random_programs(backend: Callable[[str], Backend], runners: dict[str, Runner], target: str) -> None:
     backend(target)
-    found = failures(runners[target], 21, MANY)
-    assert not found, "\n\n".join(found[:3])
+    messages = failures(runners[target], 21, MANY)
+    assert not messages, "\n\n".join(messages[:3])
 
 
 def program_of(value: Node) -> Program:
@@ -78,16 +78,16 @@ def test_a_wrong_program_is_found(runners: dict[str, Runner]) -> None:
     case = Case(program_of(SUM))
     assert runners["numpy"].failures([case]) == []
     case.text = source(program_of(Node("binary", "int", [Node("binary", "int", [A, B], "*"), B], "*")))
-    (found,) = runners["numpy"].failures([case])
-    assert found[1].kind == "wrong"
+    (failure,) = runners["numpy"].failures([case])
+    assert failure[1].kind == "wrong"
 
 
 def test_an_invalid_program_is_found_in_its_batch(runners: dict[str, Runner]) -> None:
     cases = [case for case in random_glsl.batch(22, 0) if case.is_useful]
     cases[3].text = cases[3].text.replace("return ", "return undeclared + ", 1)
-    (found,) = runners["numpy"].failures(cases)
-    assert found[0] is cases[3]
-    assert found[1].kind == "refused"
+    (failure,) = runners["numpy"].failures(cases)
+    assert failure[0] is cases[3]
+    assert failure[1].kind == "refused"
 
 
 def test_a_program_is_reduced() -> None:
