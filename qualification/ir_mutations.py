@@ -55,7 +55,7 @@ _UNWRAPPED = frozenset({"abs", "fract", "floor", "normalize", "sign", "transpose
 class Mutation(NamedTuple):
     """A change of one node."""
 
-    what: str
+    change: str
     line: int
     node: Expr | Stmt
     replacement: Expr | Block
@@ -64,15 +64,15 @@ class Mutation(NamedTuple):
 def mutations(function: Function) -> list[Mutation]:
     """All changes of a function's body."""
     body = function.body or ()
-    found: list[Mutation] = []
+    mutations: list[Mutation] = []
     seen: set[int] = set()
     for expr in all_expressions(body):
         if id(expr) not in seen:
             seen.add(id(expr))
-            found += [Mutation(what, expr.span.line, expr, new) for what, new in _changed(expr)]
+            mutations += [Mutation(change, expr.span.line, expr, new) for change, new in _changed(expr)]
     for stmt in statements(body):
-        found += [Mutation(what, stmt.span.line, stmt, new) for what, new in _restated(stmt)]
-    return found
+        mutations += [Mutation(change, stmt.span.line, stmt, new) for change, new in _restated(stmt)]
+    return mutations
 
 
 def mutated(function: Function, mutation: Mutation) -> Function:

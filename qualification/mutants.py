@@ -32,7 +32,7 @@ class Mutant(NamedTuple):
     site: Site
     witness: Witness | None
     """None: no input was found that needs the guard."""
-    seen: dict[str, str]
+    faults: dict[str, str]
     """Back end → the fault: `non-finite`, `another value`, or '' where none shows."""
 
 
@@ -40,17 +40,21 @@ def mutants(specimen: Specimen, machines: Machines) -> Iterable[Mutant]:
     """Each guard of a technique, removed."""
     for site in sites(specimen):
         if not site.proven:
-            shown = witness(specimen, site)
-            seen = {name: _seen(shown, site, backend) for name, backend in machines.here.items()} if shown else {}
-            yield Mutant(specimen, site, shown, seen)
+            evidence = witness(specimen, site)
+            faults = (
+                {name: _fault(evidence, site, backend) for name, backend in machines.backends.items()}
+                if evidence
+                else {}
+            )
+            yield Mutant(specimen, site, evidence, faults)
 
 
-def _seen(shown: Witness, site: Site, backend: Backend) -> str:
+def _fault(evidence: Witness, site: Site, backend: Backend) -> str:
     """The fault of the witness's inputs without the guard, compared with the result with it."""
-    subject, change = shown.specimen.subject, only(site.what, site.place, "drop")
+    subject, change = evidence.specimen.subject, only(site.operation, site.place, "drop")
     try:
-        right = evaluated(subject, shown.more, backend, "auto")
-        got = evaluated(subject, shown.more, backend, "auto", change)
+        right = evaluated(subject, evidence.more, backend, "auto")
+        got = evaluated(subject, evidence.more, backend, "auto", change)
     except SssgenError as error:
         return error.diagnostics[0].message
     values = [(got[name], right[name]) for name in right if right[name].dtype.kind == "f"]

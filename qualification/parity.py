@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from qualification.parity_inputs import FEW, MAX, MIN, Case, cases, evaluated, textures, widened
+from qualification.parity_inputs import MAX, MIN, TEXTURE_LANES, Case, cases, evaluated, textures, widened
 from sssgen.harness.backends import DRIVERS, Array, Backend, Call, Text
 from sssgen.harness.backends.call_program import grid
 from sssgen.ir import signatures
@@ -123,8 +123,8 @@ def _written(name: str, params: tuple[Type, ...], dialect: str) -> bool:
 def run(backend: Backend, chosen: Sequence[Case]) -> list[Array]:
     """The results of the cases, by programs of functions `case_N`."""
     results: list[Array | None] = [None] * len(chosen)
-    for few in (True, False):
-        numbers = [number for number, case in enumerate(chosen) if (case.lanes == FEW) == few]
+    for is_small in (True, False):
+        numbers = [number for number, case in enumerate(chosen) if (case.lanes == TEXTURE_LANES) == is_small]
         for batch in _batches(numbers, chosen):
             for number, got in zip(batch, _program(backend, [chosen[number] for number in batch]), strict=True):
                 results[number] = got

@@ -22,7 +22,7 @@ from sssgen.ir.types import BY_NAME, INT, Matrix, Sampler, Scalar, Type, Vector,
 from sssgen.targets import numpy_runtime as runtime
 from sssgen.targets.runtime.numpy_textures import Texture
 
-FEW = 12
+TEXTURE_LANES = 12
 """Lanes of the texture reads and derivatives."""
 
 MIN, MAX = 2.0**-126, float(np.finfo(np.float32).max)
@@ -98,7 +98,7 @@ class Case(NamedTuple):
 
     @property
     def lanes(self) -> int:
-        return max((int(arg.shape[-1]) for arg in self.args if not isinstance(arg, str)), default=FEW)
+        return max((int(arg.shape[-1]) for arg in self.args if not isinstance(arg, str)), default=TEXTURE_LANES)
 
     @property
     def constant(self) -> tuple[int, ...]:
@@ -108,7 +108,7 @@ class Case(NamedTuple):
 
 @cache
 def cases(lanes: int) -> tuple[Case, ...]:
-    """Every overload, over that many lanes; texture reads and derivatives over `FEW`.
+    """Every overload, over that many lanes; texture reads and derivatives over `TEXTURE_LANES`.
 
     The table's test vectors stand in the first lanes.
     """
@@ -120,7 +120,7 @@ def cases(lanes: int) -> tuple[Case, ...]:
             elif row.kind == "fetch":
                 args = reads(row, params)
             else:
-                args = _drawn(row, params, lanes)
+                args = _arguments(row, params, lanes)
             all_cases.append(Case(row.name, params, result, args))
     return tuple(all_cases)
 
@@ -164,8 +164,8 @@ def widened(args: tuple[Any, ...]) -> tuple[Any, ...]:
 # Drawing
 
 
-def _drawn(row: Builtin, params: tuple[Type, ...], lanes: int) -> tuple[Array, ...]:
-    """Test vectors, and numbers from the domain: those that fall out of it are drawn again."""
+def _arguments(row: Builtin, params: tuple[Type, ...], lanes: int) -> tuple[Array, ...]:
+    """Test vectors, and numbers from the domain: those that fall out of it are replaced."""
     rng = np.random.default_rng([7, zlib.crc32(f"{row.name}({', '.join(map(spell, params))})".encode())])
     vectors = _vectors(row, params)
     parts = [tuple(arg[..., inside(row, vectors)] for arg in vectors)]
@@ -206,8 +206,8 @@ def _column(row: Builtin, index: int, type_: Type, count: int, rng: np.random.Ge
         edges = np.array([sign * number for number in INTEGERS for sign in (1, -1)], np.int64)
         edges = edges[(edges >= info.min) & (edges <= info.max)]
         low = -9 if kind == "int" else 0
-        drawn = [_each(edges, third, rng), rng.integers(low, 10, third), rng.integers(info.min, info.max, rest)]
-        integers: Array = np.concatenate(drawn, axis=-1).astype(DTYPES[kind])
+        parts = [_choices(edges, third, rng), rng.integers(low, 10, third), rng.integers(info.min, info.max, rest)]
+        integers: Array = np.concatenate(parts, axis=-1).astype(DTYPES[kind])
         return integers
     low_end, high_end = samples.interval(index) or (-MAX, MAX)
     edges = np.append(EDGES, [low_end, high_end]).astype(np.float32)
@@ -217,7 +217,7 @@ def _column(row: Builtin, index: int, type_: Type, count: int, rng: np.random.Ge
     even = rng.uniform(max(low_end, -8.0), min(high_end, 8.0), third)
     sizes = 2.0 ** rng.uniform(-40.0, min(40.0, np.log2(max(abs(low_end), abs(high_end)))), rest)
     signs = np.where(rng.random(rest) < 0.5, 1.0 if high_end > 0.0 else -1.0, -1.0 if low_end < 0.0 else 1.0)
-    value = np.concatenate([_each(edges, third, rng), even, np.maximum(signs * sizes, low_end)], axis=-1)
+    value = np.concatenate([_choices(edges, third, rng), even, np.maximum(signs * sizes, low_end)], axis=-1)
     value = value.astype(np.float32)
     if index in samples.unit:
         with np.errstate(invalid="ignore"):
@@ -227,7 +227,7 @@ def _column(row: Builtin, index: int, type_: Type, count: int, rng: np.random.Ge
     return value.astype(np.float32)
 
 
-def _each(edges: Array, size: tuple[int, ...], rng: np.random.Generator) -> Array:
+def _choices(edges: Array, size: tuple[int, ...], rng: np.random.Generator) -> Array:
     """All edges equally often."""
     return rng.permutation(np.resize(edges, int(np.prod(size)))).reshape(size)
 
@@ -292,8 +292,8 @@ def reads(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
     assert isinstance(sampler, Sampler)
     name = TEXTURES[spell(sampler)]
     texture = textures()[name]
-    layer = rng.integers(0, 3, FEW)
-    reference = (rng.integers(40, 216, FEW) + 0.5) / 256.0  # between the texels, which are multiples of 1/256
+    layer = rng.integers(0, 3, TEXTURE_LANES)
+    reference = (rng.integers(40, 216, TEXTURE_LANES) + 0.5) / 256.0  # between the texels, which are multiples of 1/256
     linear, slopes = _over_the_image(texture)
     gradients = sum(isinstance(type_, Vector) and type_.kind == "float" for type_ in params) == 3
     constants = row.constants(params)
@@ -307,9 +307,9 @@ def reads(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
         last_int = type_ == INT and INT not in params[index + 1 :]
         value: Array
         if index in constants:
-            value = CONSTANTS[spell(type_)][..., None] * np.ones(FEW, np.int32)
+            value = CONSTANTS[spell(type_)][..., None] * np.ones(TEXTURE_LANES, np.int32)
         elif isinstance(type_, Vector) and type_.kind == "int":
-            value = np.concatenate([rng.integers(0, 2, (texture.axes, FEW)), [layer]])[: type_.size]
+            value = np.concatenate([rng.integers(0, 2, (texture.axes, TEXTURE_LANES)), [layer]])[: type_.size]
             for offset in offsets:  # the texel that is read lies inside
                 value[: components(offset)] -= CONSTANTS[spell(offset)][..., None]
         elif index == 1 and isinstance(type_, Vector):
@@ -318,15 +318,15 @@ def reads(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
         elif isinstance(type_, Vector):
             value = slopes[index - params.index(type_, 2)]
         elif last_int and kind_of(params[1]) == "int":
-            value = np.full(FEW, min(1, len(texture.levels) - 1))
+            value = np.full(TEXTURE_LANES, min(1, len(texture.levels) - 1))
         elif type_ == INT:
             value = layer
         elif sampler.shadow and components(params[1]) < texture.axes + texture.layers + texture.compare:
             value = reference
         elif row.uniform_flow:
-            value = np.full(FEW, 1.0 if offsets else 0.5)  # a bias
+            value = np.full(TEXTURE_LANES, 1.0 if offsets else 0.5)  # a bias
         else:
-            value = rng.uniform(0.0, 3.0, FEW)  # a level
+            value = rng.uniform(0.0, 3.0, TEXTURE_LANES)  # a level
             value = np.floor(value) if offsets else value  # SwiftShader mistakes those between
         args.append(value.astype(DTYPES[kind_of(type_)]))
     return tuple(args)
@@ -334,14 +334,14 @@ def reads(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
 
 def _over_the_image(texture: Texture) -> tuple[Array, Array]:
     """A coordinate that moves by two texels a pixel, (axes, lanes), and its two slopes, (2, axes, lanes)."""
-    width = grid(FEW).width
-    x, y = np.arange(FEW) % width - 2.0, np.arange(FEW) // width - 0.5
+    width = grid(TEXTURE_LANES).width
+    x, y = np.arange(TEXTURE_LANES) % width - 2.0, np.arange(TEXTURE_LANES) // width - 0.5
     sizes = np.array(texture.size()).reshape(-1, 1)
-    steps = np.zeros((2, texture.axes, FEW))
+    steps = np.zeros((2, texture.axes, TEXTURE_LANES))
     steps[0, 0], steps[1, 1] = 2.0 / sizes[0], 2.0 / sizes[1]
     coord = steps[0] * x + steps[1] * y + 0.3
     if texture.dim == "Cube":
-        coord, steps = np.array([coord[0], np.full(FEW, 2.0), coord[1]]), 4.0 * steps[:, [0, 2, 1]]
+        coord, steps = np.array([coord[0], np.full(TEXTURE_LANES, 2.0), coord[1]]), 4.0 * steps[:, [0, 2, 1]]
     return coord, steps
 
 
@@ -350,8 +350,8 @@ def over_the_image(row: Builtin, params: tuple[Type, ...]) -> tuple[Any, ...]:
 
     The coarse and the fine derivatives of anything else are an implementation's own.
     """
-    width = grid(FEW).width
-    x, y = np.arange(FEW) % width - 2.0, np.arange(FEW) // width - 0.5
+    width = grid(TEXTURE_LANES).width
+    x, y = np.arange(TEXTURE_LANES) % width - 2.0, np.arange(TEXTURE_LANES) // width - 0.5
     slope = 0.5 * x - 0.25 * y
     args = [slope * np.arange(1, components(type_) + 1)[:, None] for type_ in params]
-    return tuple(arg.reshape(*shape_of(params[0]), FEW).astype(np.float32) for arg in args)
+    return tuple(arg.reshape(*shape_of(params[0]), TEXTURE_LANES).astype(np.float32) for arg in args)

@@ -60,15 +60,15 @@ class Result(NamedTuple):
     file: str
     function: str
     mutation: Mutation
-    found: bool
+    detected: bool
     """By the comparison as for another driver."""
-    found_here: bool
+    detected_here: bool
     """By the comparison as for the same driver."""
     differs: bool
     """Whether it changes any result."""
 
     def __str__(self) -> str:
-        return f"{self.file}:{self.mutation.line} {self.function}: {self.mutation.what}"
+        return f"{self.file}:{self.mutation.line} {self.function}: {self.mutation.change}"
 
 
 class Original:
@@ -101,13 +101,13 @@ class Original:
         limits = []
         for values, textures in self.rounds:
             lanes = np.arange(next(iter(values.values())).shape[-1])
-            given = self.program, self.keys, values, textures, lanes, DRAWS
-            limits.append((noise(*given, granted=False), noise(*given, granted=True)))
+            arguments = self.program, self.keys, values, textures, lanes, DRAWS
+            limits.append((noise(*arguments, granted=False), noise(*arguments, granted=True)))
         return limits
 
-    def found(self, program: Program) -> tuple[bool, bool]:
+    def detection(self, program: Program) -> tuple[bool, bool]:
         """Whether verify finds the change: in another driver, and here."""
-        found = [False, False]
+        detected = [False, False]
         for (values, textures), expected, limits in zip(self.rounds, self.expected, self.limits, strict=True):
             wanted, undefined, endless = expected
             got, _, hangs = self.results(program, values, textures)
@@ -118,8 +118,8 @@ class Original:
                 error = np.where(defined, errors(left, right), 0.0)
                 for place, kind in enumerate((1, 0)):
                     limit = limits[kind][index]
-                    found[place] |= not explained(error, limit).all()
-        return found[0], found[1]
+                    detected[place] |= not explained(error, limit).all()
+        return detected[0], detected[1]
 
     # Independently of verify's inputs
 
@@ -244,9 +244,9 @@ def results(original: Original, each: int, random: Random) -> Iterator[Result]:
     every = mutations(original.function)
     for mutation in random.sample(every, min(each, len(every))):
         program = Program(changed(original, mutation))
-        found, found_here = original.found(program)
-        differs = found or found_here or original.differs(program)
-        yield Result(original.path.name, original.function.key, mutation, found, found_here, differs)
+        detected, detected_here = original.detection(program)
+        differs = detected or detected_here or original.differs(program)
+        yield Result(original.path.name, original.function.key, mutation, detected, detected_here, differs)
 
 
 def in_driver(original: Original, mutation: Mutation, gl: Any) -> bool:
@@ -292,8 +292,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         total += part
         print(_line(path.name, part), flush=True)
         for result in part:
-            if result.differs and not result.found:
-                print(f"    not found: {result}{' (found in the same driver)' if result.found_here else ''}")
+            if result.differs and not result.detected:
+                print(f"    not found: {result}{' (found in the same driver)' if result.detected_here else ''}")
     print(_line("total", total))
     if options.gl and sample:
         gl = get("gl")
@@ -309,10 +309,10 @@ def _is_plain(path: Path) -> bool:
 
 def _line(title: str, part: list[Result]) -> str:
     differing = [result for result in part if result.differs]
-    found, here = sum(result.found for result in differing), sum(result.found_here for result in differing)
-    share = f"{found / len(differing):.2%} ({here / len(differing):.2%} in the same driver)" if differing else "–"
+    detected, here = sum(result.detected for result in differing), sum(result.detected_here for result in differing)
+    share = f"{detected / len(differing):.2%} ({here / len(differing):.2%} in the same driver)" if differing else "–"
     equivalent = len(part) - len(differing)
-    return f"{title:24} {len(part)} changes, {equivalent} equivalent, {found} of {len(differing)} found: {share}"
+    return f"{title:24} {len(part)} changes, {equivalent} equivalent, {detected} of {len(differing)} found: {share}"
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
         as_published(erratum, backends.get("gl"))       # wrong, as theory predicts
         as_corrected(erratum, backends.get("gl"))          # within the bounds of `erratum.right`
 
-docs/errata.md says it in words, docs/stability.md shows it; `UNSHOWN` has what no number can show,
+docs/errata.md says it in words, docs/stability.md shows it; `TEXT_ERRATA` has what no number can show,
 `OPEN` what ours does not keep either.
 """
 
@@ -16,11 +16,11 @@ from qualification.errata.erratum import Erratum, Measure, Right, as_corrected, 
 from qualification.errata.lobes import ALISAVAKIS, UNITY_ICE
 from qualification.errata.marches import DISTANCE_FIELDS
 from qualification.errata.parallax import SUBSURFACE_PARALLAX
-from qualification.errata.unshown import UNSHOWN, Unshown
+from qualification.errata.text_errata import TEXT_ERRATA, TextErratum
 
 __all__ = [
-    "BACKENDS", "CHAPTERS", "ERRATA", "OPEN", "UNSHOWN", "Erratum", "Measure", "Right", "Unshown", "as_corrected",
-    "as_published", "holds", "shows",
+    "BACKENDS", "CHAPTERS", "ERRATA", "OPEN", "TEXT_ERRATA", "Erratum", "Measure", "Right", "TextErratum",
+    "as_corrected", "as_published", "holds", "shows",
 ]  # fmt: skip
 
 BACKENDS = ("numpy-f32", "gl", "webgpu", "hlsl", "browser")

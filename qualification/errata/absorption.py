@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from qualification.errata.erratum import Erratum, Measure, about, each
+from qualification.errata.erratum import Erratum, Measure, about, flat_result
 
 _CLEAR: dict[str, Any] = {"d": 0.0, "attenuation_color": [(0.0, 0.5, 1.0)]}
 _OPAQUE: dict[str, Any] = {**_CLEAR, "attenuation_distance": 0.0}
@@ -40,9 +40,9 @@ ABSORPTION = (
         "GPU Gems 16",
         "A lit point .1 m in front of the surface in the coarse depth map, `sigma_t` 5: exp(5 · .1). `sssgen`: a "
         "thickness of 0, and so a transmittance of 1",
-        Measure("depth_map_absorption", (_BEFORE_THE_MAP,), each),
+        Measure("depth_map_absorption", (_BEFORE_THE_MAP,), flat_result),
         (math.exp(0.5),),
-        Measure("depth_map_thickness", (_BEFORE_THE_MAP,), each),
+        Measure("depth_map_thickness", (_BEFORE_THE_MAP,), flat_result),
         (about(0.0, 0.0),),
     ),
 )

@@ -20,7 +20,7 @@ Figures: TypeAlias = tuple[float, ...]
 NONE: Mapping[str, str] = MappingProxyType({})
 
 
-def each(outputs: Outputs) -> Figures:
+def flat_result(outputs: Outputs) -> Figures:
     """Every number of the result, lane by lane."""
     return tuple(float(value) for value in np.ravel(outputs["result"]))
 
@@ -31,7 +31,7 @@ class Measure(NamedTuple):
     technique: str
     runs: tuple[Mapping[str, Any], ...]
     """The inputs of each evaluation, as `evaluate` takes them; the figures stand one behind another."""
-    made: Callable[[Outputs], Figures] = each
+    figures: Callable[[Outputs], Figures] = flat_result
     bind: Mapping[str, str] = NONE
     """Slot → function."""
 
@@ -54,12 +54,12 @@ class Erratum(NamedTuple):
     name: str
     source: str
     """The short name of the source."""
-    shown: str
+    demonstration: str
     """The inputs, and the meaning of the figures."""
     published: Measure
     theory: Figures
     """The result of the formula as published, which may be NaN or infinite; () where it is undefined."""
-    mended: Measure
+    correction: Measure
     right: tuple[Right, ...]
     """The correct result, as the bounds that ours keeps."""
     everywhere: bool = True
@@ -75,13 +75,13 @@ def as_published(erratum: Erratum, backend: Backend) -> Figures:
 
 def as_corrected(erratum: Erratum, backend: Backend) -> Figures:
     """The figures of ours, as it is emitted. Raises SssgenError where the back end refuses."""
-    return _figures(erratum.mended, backend, "auto")
+    return _figures(erratum.correction, backend, "auto")
 
 
 def _figures(measure: Measure, backend: Backend, guards: str) -> Figures:
     chosen = subject_of(measure.technique, tuple(sorted(measure.bind.items())))
     every = (evaluate(chosen, inputs, backend, guards) for inputs in measure.runs)
-    return tuple(figure + 0.0 for outputs in every for figure in measure.made(outputs))  # + 0: no -0
+    return tuple(figure + 0.0 for outputs in every for figure in measure.figures(outputs))  # + 0: no -0
 
 
 def shows(erratum: Erratum, figures: Figures) -> bool:

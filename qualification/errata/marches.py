@@ -54,7 +54,7 @@ def _ours(slab: float, steps: int, *, scale: float = 1.0, **more: Any) -> dict[s
     return _slab(slab, scale=scale, view_steps=steps, light_steps=steps, **more)
 
 
-def _one(outputs: Outputs) -> Figures:
+def _figure(outputs: Outputs) -> Figures:
     return (float(np.ravel(outputs["result"])[0]),)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from qualification.parity import BACKENDS, FULL, Figure, cases, measure
-from qualification.parity_inputs import FEW
+from qualification.parity_inputs import TEXTURE_LANES
 from sssgen.harness import backends
 from sssgen.ir.intrinsics import BUILTINS, Builtin
 from sssgen.ir.types import kind_of
@@ -40,8 +40,8 @@ def page() -> str:
         "`tests/qualification/test_parity_intrinsics.py` checks the limits on every back end.",
         "",
         f"Measured: {len(chosen)} overloads of {len(BUILTINS)} builtins on {lanes} sets of arguments per back end,",
-        f"{FULL} per overload ({FEW} for texture reads and derivatives). A third are edge cases: zeros, powers of two "
-        "and",
+        f"{FULL} per overload ({TEXTURE_LANES} for texture reads and derivatives). "
+        "A third are edge cases: zeros, powers of two and",
         "their neighbours, integers, halves, fractions of pi, the ends of the domains, equal arguments; a third are",
         "distributed uniformly in value, a third uniformly in magnitude, from 2^-40 to 2^40. The seeds are fixed, so a",
         "device always gives the same figures.",

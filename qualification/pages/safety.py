@@ -77,9 +77,9 @@ def counts(rows: list[Safety]) -> list[str]:
 
 def guards(removed: list[Mutant]) -> list[str]:
     """The table of guards: the input that needs each, and the failure without it."""
-    failing = sum(any(mutant.seen.values()) for mutant in removed)
+    failing = sum(any(mutant.faults.values()) for mutant in removed)
     needed = sum(mutant.witness is not None for mutant in removed)
-    by_specification = [mutant for mutant in removed if mutant.witness and not any(mutant.seen.values())]
+    by_specification = [mutant for mutant in removed if mutant.witness and not any(mutant.faults.values())]
     lines = [
         "## Each guard removed",
         "",
@@ -96,13 +96,11 @@ def guards(removed: list[Mutant]) -> list[str]:
         "|---" * (4 + len(BACKENDS)) + "|",
     ]
     for mutant in removed:
-        cells = [mutant.seen.get(name, "").replace("another value", "other") or "–" for name in BACKENDS]
+        cells = [mutant.faults.get(name, "").replace("another value", "other") or "–" for name in BACKENDS]
         trial = mutant.witness.trial if mutant.witness else "none found"
-        place = f"{mutant.site.place.rsplit(':', 1)[0]}"
+        place = f"{mutant.specimen.title} ({mutant.site.place.rsplit(':', 1)[0]})"
         problem = mutant.site.guard.problem
-        lines.append(
-            f"| {mutant.site.what} | {mutant.specimen.title} ({place}) | {problem} | {trial} | {' | '.join(cells)} |"
-        )
+        lines.append(f"| {mutant.site.operation} | {place} | {problem} | {trial} | {' | '.join(cells)} |")
     return [*lines, ""]
 
 
@@ -149,7 +147,11 @@ def main() -> None:
         removed = [mutant for specimen in chosen for mutant in mutants(specimen, machines)]
         rows = [safety(specimen.subject) for specimen in chosen]
         lines = [*introduction(), *counts(rows), *guards(removed), *dangers(chosen, machines)]
-        lines += ["## Measured on", "", *(f"- `{name}`: {backend.device()}" for name, backend in machines.here.items())]
+        lines += [
+            "## Measured on",
+            "",
+            *(f"- `{name}`: {backend.device()}" for name, backend in machines.backends.items()),
+        ]
     PAGE.write_text("\n".join(lines).rstrip("\n") + "\n", encoding="utf-8")
     print(f"wrote {PAGE.name}: {len(removed)} guards, {len(dangerous.ROWS)} rows")
 

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
-from qualification.errata import BACKENDS, CHAPTERS, OPEN, UNSHOWN, Erratum, Right, as_corrected, as_published, maps
+from qualification.errata import BACKENDS, CHAPTERS, OPEN, TEXT_ERRATA, Erratum, Right, as_corrected, as_published, maps
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
 from sssgen.harness.render.scene_render import render
@@ -237,7 +237,7 @@ def errata() -> list[str]:
 
 def without_figures() -> list[str]:
     """The errata that cannot be measured."""
-    rows = (f"| {erratum.source} | {erratum.said} | {erratum.reason} |" for erratum in UNSHOWN)
+    rows = (f"| {erratum.source} | {erratum.claim} | {erratum.reason} |" for erratum in TEXT_ERRATA)
     return ["## Errata without figures", "", "| Source | Erratum | Reason |", "|---|---|---|", *rows, ""]
 
 
@@ -270,7 +270,7 @@ def row(erratum: Erratum) -> str:
     """One erratum with its figures on every back end of this machine."""
     cells = [
         f"{erratum.source}: {erratum.name}",
-        erratum.shown,
+        erratum.demonstration,
         figures_text(erratum.theory) if erratum.theory else "undefined",
         _by_backend({backend.name: figures_text(as_published(erratum, backend)) for backend in present()}),
         _by_backend({backend.name: figures_text(as_corrected(erratum, backend)) for backend in present()}),

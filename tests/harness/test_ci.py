@@ -18,7 +18,7 @@ from sssgen.harness.backends import Backend
 from sssgen.harness.backends.isolated import Isolated
 from sssgen.harness.testing import junit
 from sssgen.harness.testing.outcome import Outcome
-from sssgen.harness.testing.project_run import Case, Ran, Run, cases
+from sssgen.harness.testing.project_run import Case, CaseResult, Run, cases
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.file_writer import write_files
 
@@ -155,9 +155,9 @@ def test_a_back_end_that_dies_fails_one_case(backend: Callable[[str], Backend]) 
 def test_the_report_is_valid_xml_for_any_message() -> None:
     message = "a\x00b\x1b[31m <&> ]]> \ud800 \ufffe\nsecond line"
     results = [
-        Ran(Case("compile", "odd \x01 <name>.toml"), Outcome("failed", message, message), 0.25),
-        Ran(Case("render", "scene.toml", ("gl",)), Outcome("skipped", "gl is missing"), 0.5),
-        Ran(Case("eval", "half.eval.json"), Outcome("passed", "good", "more"), 1.0),
+        CaseResult(Case("compile", "odd \x01 <name>.toml"), Outcome("failed", message, message), 0.25),
+        CaseResult(Case("render", "scene.toml", ("gl",)), Outcome("skipped", "gl is missing"), 0.5),
+        CaseResult(Case("eval", "half.eval.json"), Outcome("passed", "good", "more"), 1.0),
     ]
     top = ET.fromstring(junit.document(results))
     suite = top.find("testsuite")

@@ -131,7 +131,7 @@ def test_outcomes_of_branches_and_comparisons() -> None:
     outcomes = Outcomes(3)
     Run(program, 3, {}, outcomes).result("f(int)", {"n": np.array([6, 5, 1], np.int32)})
     own = branches(program.module, "f(int)")
-    assert [(one.line, one.what) for one in own] == [(2, "if"), (2, "else"), (4, "? yes"), (4, ": no")]
+    assert [(one.line, one.outcome) for one in own] == [(2, "if"), (2, "else"), (4, "? yes"), (4, ": no")]
     assert [outcomes.branches[one.key].tolist() for one in own] == [
         [True, False, False], [False, True, True], [False] * 3, [True] * 3,
     ]  # fmt: skip

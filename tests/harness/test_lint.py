@@ -95,7 +95,7 @@ def test_examples_are_optional(hazards: str, capsys: pytest.CaptureFixture[str])
 
 def test_a_material_is_analysed_as_a_whole() -> None:
     """In a chain each quantity is in its range; a single function accepts any number."""
-    alone = {(entry.site.what, entry.verdict) for entry in lint("thickness_from_thinness")}
+    alone = {(entry.site.operation, entry.verdict) for entry in lint("thickness_from_thinness")}
     assert ("thickness", MAY_FAIL) in alone
     chained = lint("paper_lantern", with_examples=False)
     assert all(entry.guarded for entry in chained)
@@ -122,7 +122,9 @@ technique = "lobe_normalized"
     path.write_text(text.format(fixed="distortion = { value = 0.0, fixed = true }"))
     # the direction of the light may still be 0
     assert [
-        entry.site.what for entry in lint(str(path), False) if "lobe" in entry.site.place and entry.verdict != PROVEN
+        entry.site.operation
+        for entry in lint(str(path), False)
+        if "lobe" in entry.site.place and entry.verdict != PROVEN
     ] == ["normalize"]
 
 

@@ -8,7 +8,6 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from drawn_stages import BACKENDS, CORNER, drawn, module_of
 from sssgen.harness.backends import Backend
 from sssgen.ir.nodes import NOWHERE, Variable
 from sssgen.ir.types import VEC2
@@ -16,6 +15,7 @@ from sssgen.passes.stage.stage_interface import Slot
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.printers.hlsl_entry import semantic
+from stage_drawing import BACKENDS, CORNER, draw_stages, module_of
 
 NEW, OLD = "#version 330\n", "#version 120\n"
 
@@ -98,7 +98,7 @@ EQUAL = {
 def test_equal_declarations(case: str, together: bool, backend: Callable[[str], Backend]) -> None:
     before, after, expected = EQUAL[case]
     for name in BACKENDS:
-        color = drawn(before, after, backend(name), together)
+        color = draw_stages(before, after, backend(name), together)
         np.testing.assert_allclose(color, expected, atol=1e-4, err_msg=name)
 
 
@@ -124,7 +124,7 @@ SUBSETS = {
 def test_subsets_with_the_other_stage(case: str, backend: Callable[[str], Backend]) -> None:
     before, after, expected = SUBSETS[case]
     for name in ("gl", "hlsl", "webgpu"):
-        color = drawn(before, after, backend(name), together=True)
+        color = draw_stages(before, after, backend(name), together=True)
         np.testing.assert_allclose(color, expected, atol=1e-4, err_msg=name)
 
 
@@ -135,7 +135,7 @@ def test_locations_under_other_names(backend: Callable[[str], Backend]) -> None:
     )
     after = fragment("layout(location = 5) in vec2 a; layout(location = 3) in vec2 c;", "vec4(a, c)")
     for name in ("gl", "hlsl", "webgpu"):
-        np.testing.assert_allclose(drawn(before, after, backend(name)), (2.0, 2.0, 1.0, 1.0), err_msg=name)
+        np.testing.assert_allclose(draw_stages(before, after, backend(name)), (2.0, 2.0, 1.0, 1.0), err_msg=name)
     warnings = transpile(module_of(after, "a.frag"), "glsl-es-300", "a", keep=True).warnings
     assert [warning.message.partition(",")[0] for warning in warnings] == ["'a' has a location", "'c' has a location"]
 

@@ -25,7 +25,7 @@ from sssgen.harness.render.scene_render import render
 from sssgen.harness.scenes import scene_loading
 from sssgen.harness.stress import boundaries, energy, jumps
 from sssgen.harness.stress import dangerous_inputs as dangerous
-from sssgen.harness.stress.contract_inputs import contract, drawn
+from sssgen.harness.stress.contract_inputs import contract, sample_inputs
 from sssgen.harness.stress.result_checks import faults_of, non_finite
 from sssgen.harness.stress.stress_run import Fault, Machines, Settings, exact, stress
 from sssgen.harness.stress.subject import Specimen, specimens, technique
@@ -215,8 +215,8 @@ def test_a_jump_of_a_back_end_alone() -> None:
 def test_a_back_end_with_wrong_results(monkeypatch: pytest.MonkeyPatch) -> None:
     """An error of 0.001 is a failure in a row of the table, and only a remark on random inputs."""
     off = Machines(["numpy-f32"])
-    right = off.here["numpy-f32"]
-    off.here["numpy-f32"] = wrong = copy.copy(right)
+    right = off.backends["numpy-f32"]
+    off.backends["numpy-f32"] = wrong = copy.copy(right)
     monkeypatch.setattr(wrong, "run", lambda *inputs: [value + 1e-3 for value in right.run(*inputs)])
     (column,) = stress(technique("beer_lambert"), off, Settings(100)).columns
     results = {(fault.trial, fault.counts) for fault in column.faults if fault.kind == "disagreement"}
@@ -226,7 +226,7 @@ def test_a_back_end_with_wrong_results(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_back_end_may_not_jump_on_a_path() -> None:
     """A jump of a back end is a fault unless the oracle has a jump within a step."""
     specimen = technique("transmittance_from_thinness")
-    inputs = drawn(specimen, 10, np.random.default_rng(0))
+    inputs = sample_inputs(specimen, 10, np.random.default_rng(0))
     trial = Trial("", specimen, inputs, path=True)
     leap = np.where(np.arange(10) < 5, 0.2, 0.9)
     late = {"result": np.where(np.arange(10) < 6, 0.2, 0.9)}
@@ -240,7 +240,7 @@ def test_a_back_end_may_not_jump_on_a_path() -> None:
 def test_random_inputs_are_in_the_contract_and_reach_its_ends() -> None:
     """All inputs are in the contract; the ends and 0 occur; directions have all lengths up to 1."""
     specimen = technique("lobe_normalized")
-    inputs = drawn(specimen, 1 << 16, np.random.default_rng(1))
+    inputs = sample_inputs(specimen, 1 << 16, np.random.default_rng(1))
     for name, value in inputs.values.items():
         ends = contract(specimen, name)
         low, high = np.float32(ends.low), np.float32(ends.high)
@@ -257,7 +257,7 @@ def test_random_inputs_are_in_the_contract_and_reach_its_ends() -> None:
 
 def test_random_inputs_are_the_same_for_a_seed() -> None:
     specimen = technique("thickness_map")
-    first, again, other = (drawn(specimen, 64, np.random.default_rng(seed)) for seed in (1, 1, 2))
+    first, again, other = (sample_inputs(specimen, 64, np.random.default_rng(seed)) for seed in (1, 1, 2))
     assert np.array_equal(first.values["uv"], again.values["uv"])
     assert not np.array_equal(first.values["uv"], other.values["uv"])
 

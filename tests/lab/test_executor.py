@@ -272,7 +272,7 @@ def test_distributed_stress_gives_the_same_results(
     settings = Settings(samples=500)
     with Machines(names) as machines:
         rows = [stress(specimen, machines, settings) for specimen in chosen]
-        alone = Report(settings, {"numpy-f32": machines.here["numpy-f32"].device()}, machines.missing, rows)
+        alone = Report(settings, {"numpy-f32": machines.backends["numpy-f32"].device()}, machines.missing, rows)
     shared = run_stress(chosen, names, settings, scheduler, None if scheduler else 2)
     assert without_times(shared) == without_times(alone)
     assert len(shared.rows) == len(chosen) > 2 and [*shared.missing] == missing

@@ -93,7 +93,7 @@ def test_assumptions_are_removed(mode: str) -> None:
 
 def test_only_unproven_sites_are_guarded() -> None:
     source = "float f(float x) { return sqrt(x) + sqrt(x * x) + sqrt(abs(x)) + sqrt(exp(min(x, 1.0))); }"
-    assert [site.proven for site in guarded(source).sites if site.what == "sqrt"].count(False) == 1
+    assert [site.proven for site in guarded(source).sites if site.operation == "sqrt"].count(False) == 1
     assert body(source).count("max(") == 1 and "\n".join(lines(source, "all")).count("max(") == 4
 
 

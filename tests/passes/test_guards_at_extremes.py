@@ -38,7 +38,7 @@ def guards_of(source: str) -> list[str]:
     """The operations of `f` that are not proven safe."""
     module = module_of(source)
     key = next(function.key for function in module.functions if function.name == "f")
-    return [site.what for site in analyse(module, [key], chained=False).sites if not site.proven]
+    return [site.operation for site in analyse(module, [key], chained=False).sites if not site.proven]
 
 
 MATRICES = {

@@ -198,7 +198,7 @@ def test_a_clamped_quantity_does_not_bound_its_argument() -> None:
     """deep(x) >= 0 always holds; x may still be negative."""
     text = "thickness deep(float x) { return thickness(x); }\nfloat f(float x) { %s return 0.0; }"
     sites = analyse(module_of(text % "if (float(deep(x)) >= 0.0) { return sqrt(x); }"), ["f(float)"]).sites
-    assert not next(site for site in sites if site.what == "sqrt").proven
+    assert not next(site for site in sites if site.operation == "sqrt").proven
 
 
 def test_a_call_that_moves_the_index_of_its_own_out_argument() -> None:
@@ -223,7 +223,7 @@ def verdicts(body: str, params: str = "float x, float y", head: str = "") -> dic
     module = module_of(f"{head}\nfloat f({params}) {{ {body} }}")
     results: dict[str, bool] = {}
     for site in analyse(module, [module.functions[-1].key]).sites:
-        results[site.what] = results.get(site.what, True) and site.proven
+        results[site.operation] = results.get(site.operation, True) and site.proven
     return results
 
 
@@ -358,12 +358,14 @@ def test_loop_counters_are_below_the_count() -> None:
 def test_only_entry_points_have_unknown_arguments() -> None:
     text = "float inner(float v) { return sqrt(v); }\nfloat f(float x) { return inner(x * x); }"
     module = module_of(text)
-    assert all(site.proven for site in analyse(module, ["f(float)"]).sites if site.what == "sqrt")
-    assert not all(site.proven for site in analyse(module, ["f(float)", "inner(float)"]).sites if site.what == "sqrt")
+    assert all(site.proven for site in analyse(module, ["f(float)"]).sites if site.operation == "sqrt")
+    assert not all(
+        site.proven for site in analyse(module, ["f(float)", "inner(float)"]).sites if site.operation == "sqrt"
+    )
 
 
 def test_a_count_that_may_be_negative_keeps_its_sign() -> None:
     """One guard serves all calls of a function."""
     text = "float part(int k) { return 8.0 / float(k); }\nfloat f(int n) { return part(max(n, 0)) + part(-4); }"
-    (site,) = [site for site in analyse(module_of(text), ["f(int)"]).sites if site.what == "/"]
+    (site,) = [site for site in analyse(module_of(text), ["f(int)"]).sites if site.operation == "/"]
     assert not site.proven and site.guard.text != "max(y, 1.0)"

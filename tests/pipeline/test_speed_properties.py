@@ -14,7 +14,7 @@ import pytest
 from sssgen.cli import main as cli
 from sssgen.ir.types import Sampler, kind_of
 from sssgen.material.material_loading import examples, load_material, parse_material
-from sssgen.material.model import Material, Stage
+from sssgen.material.model import Material, TechniqueUse
 from sssgen.pipeline import compiler, emitted_cache, pass_list, programs
 from sssgen.support import cache
 from sssgen.targets import assemble as emit
@@ -134,7 +134,7 @@ def edited(material: Material, number: int) -> Material:
     return material._replace(stages=tuple([_edited(stage, number) for stage in material.stages]))
 
 
-def _edited(stage: Stage, number: int) -> Stage:
+def _edited(stage: TechniqueUse, number: int) -> TechniqueUse:
     values = dict(stage.values)
     for uniform in stage.technique.uniforms:
         if uniform.name in stage.fixed or isinstance(uniform.type, Sampler):

@@ -33,7 +33,7 @@ def assert_guards_needed(name: str) -> None:
     for site in sites(specimen):
         if not site.proven:
             assert witness(specimen, site) is not None, (
-                f"{name}: no input needs the guard of {site.what} at {site.place}"
+                f"{name}: no input needs the guard of {site.operation} at {site.place}"
             )
 
 

@@ -35,7 +35,7 @@ def _all_results(original: Original) -> list[Result]:
 
 def test_each_change_is_a_single_one(original: Original) -> None:
     every = mutations(original.function)
-    assert len(every) > 40 and len({one.what for one in every}) > 20
+    assert len(every) > 40 and len({one.change for one in every}) > 20
     for one in every:
         assert mutated(original.function, one) is not original.function
 
@@ -43,14 +43,14 @@ def test_each_change_is_a_single_one(original: Original) -> None:
 def test_changes_of_the_result_are_found(all_results: list[Result]) -> None:
     differing = [one for one in all_results if one.differs]
     assert len(differing) > 40
-    missed = [str(one) for one in differing if not one.found]
+    missed = [str(one) for one in differing if not one.detected]
     assert len(missed) <= 0.02 * len(differing), missed
 
 
 def test_equivalent_changes_are_no_findings(all_results: list[Result]) -> None:
-    equivalent = {one.mutation.what for one in all_results if not one.differs}
+    equivalent = {one.mutation.change for one in all_results if not one.differs}
     assert "swapped operands of <" not in equivalent
-    assert not equivalent or all(not one.found for one in all_results if not one.differs)
+    assert not equivalent or all(not one.detected for one in all_results if not one.differs)
 
 
 def test_inputs_that_see_nothing_find_nothing(original: Original) -> None:
@@ -61,7 +61,7 @@ def test_inputs_that_see_nothing_find_nothing(original: Original) -> None:
     expected, original.expected = original.expected, [original.results(original.program, *one) for one in blind]
     original.__dict__.pop("limits", None)
     try:
-        shares = [one.found for one in results(original, 1000, Random(0)) if one.differs]
+        shares = [one.detected for one in results(original, 1000, Random(0)) if one.differs]
         assert 0.0 < sum(shares) < 0.95 * len(shares)
     finally:
         original.rounds, original.expected = seeing, expected

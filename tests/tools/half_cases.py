@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from qualification.parity import Case, cases, oracle
-from qualification.parity_inputs import FEW, evaluated, widened
+from qualification.parity_inputs import TEXTURE_LANES, evaluated, widened
 from sssgen.harness.backends import Array
 from sssgen.harness.evaluate.evaluation import shape_of
 from sssgen.ir.intrinsics import BUILTINS, Samples
@@ -55,7 +55,9 @@ differ from those for f32. All other builtins have the limits of the table, whic
 @cache
 def half_cases() -> tuple[Case, ...]:
     """The cases of every overload with a float parameter or result."""
-    return tuple(case._replace(args=_args(case)) for case in cases(FEW) if _has_floats((*case.params, case.result)))
+    return tuple(
+        case._replace(args=_args(case)) for case in cases(TEXTURE_LANES) if _has_floats((*case.params, case.result))
+    )
 
 
 def wrong_lanes(case: Case, actual: Array) -> str:

@@ -28,7 +28,7 @@ from sssgen.lang.syntax.parser import parse
 from sssgen.material import library
 from sssgen.material.library import TECHNIQUES
 from sssgen.material.slots import find
-from sssgen.passes.link import LinkStage, link
+from sssgen.passes.link import LinkInput, link
 from sssgen.pipeline.compiler import transpile
 from sssgen.targets.runtime.numpy_textures import Texture
 from sssgen.targets.runtime.numpy_values import precision
@@ -101,7 +101,7 @@ def _technique(name: str, slots: tuple[tuple[str, str], ...]) -> Technique:
     module, function = _function(name)
     declared = {declaration.name: declaration for declaration in module.functions if declaration.body is None}
     bound = {slot: _bound(text, declared[slot]) for slot, text in slots}
-    linked = link([LinkStage(function.name, "", module, function, bound, {}, frozenset())])
+    linked = link([LinkInput(function.name, "", module, function, bound, {}, frozenset())])
     compiled = transpile(linked.module, "numpy", function.name)
     namespace: dict[str, Any] = {}
     exec(compiled.files[f"{function.name}_functions.py"], namespace)

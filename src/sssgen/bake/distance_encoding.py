@@ -21,11 +21,11 @@ def encode(distance: Distances, inside: npt.NDArray[np.bool_], reach: float, enc
     texels = np.empty(distance.shape, encoding.dtype)
     for layer in range(len(distance)):  # layer by layer, because the intermediate values are float64
         value = stored(np.where(inside[layer], -1.0, 1.0) * distance[layer], reach)
-        texels[layer] = np.rint(value * encoding.one) if encoding.dtype.kind == "u" else value
+        texels[layer] = np.rint(value * encoding.unit) if encoding.dtype.kind == "u" else value
     return texels
 
 
 def error_at_texels(reach: float, encoding: Encoding, diagonal: float) -> float:
     """The largest error of a decoded distance up to `reach`: half a step plus the rounding of the distances."""
-    step = 1.0 / encoding.one if encoding.dtype.kind == "u" else 0.5 * float(np.finfo(encoding.dtype).eps)
+    step = 1.0 / encoding.unit if encoding.dtype.kind == "u" else 0.5 * float(np.finfo(encoding.dtype).eps)
     return reach * step + 2.0**-23 * diagonal

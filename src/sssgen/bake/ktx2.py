@@ -49,7 +49,7 @@ def _descriptor(encoding: Encoding) -> bytes:
     if np.issubdtype(encoding.dtype, np.floating):
         channel, bounds = _SAMPLE_FLOAT | _SAMPLE_SIGNED, struct.pack("<2f", -1.0, 1.0)
     else:
-        channel, bounds = 0, struct.pack("<2I", 0, encoding.one)
+        channel, bounds = 0, struct.pack("<2I", 0, encoding.unit)
     sample = struct.pack("<HBB4x", 0, bits - 1, channel) + bounds
     colors = struct.pack("<4B", _MODEL_RGBSDA, _PRIMARIES_UNSPECIFIED, _TRANSFER_LINEAR, 0)
     planes = struct.pack("<4B8B", 0, 0, 0, 0, encoding.dtype.itemsize, 0, 0, 0, 0, 0, 0, 0)  # blocks of 1 × 1 × 1 texel

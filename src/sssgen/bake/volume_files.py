@@ -34,7 +34,7 @@ def encoded(texels: npt.NDArray[Any], format: str) -> bytes:
         case "ktx2":
             return ktx2_bytes(texels, encoding)
         case "exr-slices":
-            return images.exr_bytes(sheet(texels)[..., None] / np.float32(encoding.one))
+            return images.exr_bytes(sheet(texels)[..., None] / np.float32(encoding.unit))
         case "npy":
             buffer = io.BytesIO()
             np.save(buffer, texels[..., None], allow_pickle=False)
@@ -72,9 +72,9 @@ def _details(texels: npt.NDArray[Any], encoding: Encoding, format: str) -> dict[
     """The entries of `layout` that depend on the format."""
     match format:
         case "dds":
-            return {"pixel_format": encoding.dxgi_name, "one": encoding.one}
+            return {"pixel_format": encoding.dxgi_name, "one": encoding.unit}
         case "ktx2":
-            return {"pixel_format": encoding.vulkan_name, "orientation": ORIENTATION, "one": encoding.one}
+            return {"pixel_format": encoding.vulkan_name, "orientation": ORIENTATION, "one": encoding.unit}
         case "exr-slices":
             columns, rows = columns_and_rows(*texels.shape)
             return {
@@ -92,5 +92,5 @@ def _details(texels: npt.NDArray[Any], encoding: Encoding, format: str) -> dict[
                 "byte_order": "little",
                 "axes": ["z", "y", "x", "channel"] if format == "npy" else ["z", "y", "x"],
                 "order": "x is fastest, then y, then z; all ascend",
-                "one": encoding.one,
+                "one": encoding.unit,
             }

@@ -50,7 +50,7 @@ def run(arguments: Namespace) -> int:
     from sssgen.lab.scene import measured_scene
 
     scenes = [measured_scene.load(name) for name in arguments.SCENE or chart.DEFAULTS]
-    names = [one.name for one in scenes]
+    names = [scene.name for scene in scenes]
     for name in names:
         if names.count(name) > 1:
             raise failure(f"two scenes are called '{name}'", "a scene is called as its file: rename one")

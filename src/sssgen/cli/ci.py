@@ -8,7 +8,7 @@ from collections import Counter
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.harness.testing import junit
 from sssgen.harness.testing import project_run as ci
-from sssgen.harness.testing.project_run import Case, Ran
+from sssgen.harness.testing.project_run import Case, CaseResult
 from sssgen.support.diagnostics import visible
 
 WORDS = {"passed": "ok  ", "failed": "FAIL", "skipped": "skip"}
@@ -37,7 +37,7 @@ def run(arguments: Namespace) -> int:
     if arguments.junit:
         junit.write(arguments.junit, [])  # an error here is reported before the run, which takes minutes
     width = max(len(case.name) for case in cases)
-    results: list[Ran] = []
+    results: list[CaseResult] = []
     try:
         with ci.Run(arguments.update, flip) as check:
             for case in cases:
@@ -47,13 +47,13 @@ def run(arguments: Namespace) -> int:
     finally:
         if arguments.junit:
             junit.write(arguments.junit, results)
-    count = Counter(ran.outcome.state for ran in results)
+    count = Counter(result.outcome.state for result in results)
     good = not count["failed"] and count["passed"] > 0
     if arguments.json:
-        print_json({"ok": good, "cases": [_as_json(ran) for ran in results]})
+        print_json({"ok": good, "cases": [_as_json(result) for result in results]})
     else:
         counts = [f"{count[state]} {state}" for state in ("passed", "failed", "skipped") if count[state]]
-        print(f"\n{len(results)} cases in {sum(ran.seconds for ran in results):.1f} s: {', '.join(counts)}")
+        print(f"\n{len(results)} cases in {sum(result.seconds for result in results):.1f} s: {', '.join(counts)}")
         if not good and not count["failed"]:
             print("nothing was checked")
     return OK if good else CHECK_FAILED
@@ -75,18 +75,20 @@ def _limit(flip: float | None) -> float | None:
     return check_limit(flip)
 
 
-def _print(ran: Ran, width: int) -> None:
-    case, outcome = ran.case, ran.outcome
+def _print(result: CaseResult, width: int) -> None:
+    case, outcome = result.case, result.outcome
     name = f"{visible(case.name):{width}}"
-    print(f"{WORDS[outcome.state]} {case.kind:7} {name} {ran.seconds:6.2f} s  {visible(outcome.message)}", flush=True)
+    print(
+        f"{WORDS[outcome.state]} {case.kind:7} {name} {result.seconds:6.2f} s  {visible(outcome.message)}", flush=True
+    )
     if outcome.state == "failed":
         for line in outcome.detail.split("\n") if outcome.detail else []:
             print(f"       {visible(line)}")
 
 
-def _as_json(ran: Ran) -> dict[str, object]:
-    case: Case = ran.case
+def _as_json(result: CaseResult) -> dict[str, object]:
+    case: Case = result.case
     return {
-        "kind": case.kind, "file": case.path, "backends": list(case.backends), "outcome": ran.outcome.state,
-        "seconds": round(ran.seconds, 3), "message": ran.outcome.message, "detail": ran.outcome.detail,
+        "kind": case.kind, "file": case.path, "backends": list(case.backends), "outcome": result.outcome.state,
+        "seconds": round(result.seconds, 3), "message": result.outcome.message, "detail": result.outcome.detail,
     }  # fmt: skip

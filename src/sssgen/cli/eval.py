@@ -55,7 +55,7 @@ def run(arguments: Namespace) -> int:
 
     fit = fitted(chosen, values)
     if len(names) == 1:
-        return _one(chosen, fit, names[0], arguments.json, arguments.guards)
+        return _report(chosen, fit, names[0], arguments.json, arguments.guards)
     return _several(chosen, fit, names, arguments.json, not sampled, arguments.guards)
 
 
@@ -85,7 +85,7 @@ def _backends(text: str, precision: str | None) -> list[str]:
     return names
 
 
-def _one(subject: Any, fit: Any, name: str, as_json: bool, guards: str) -> int:
+def _report(subject: Any, fit: Any, name: str, as_json: bool, guards: str) -> int:
     from sssgen.harness.backends import needed
     from sssgen.harness.evaluate.evaluation import run as evaluated
 

@@ -118,7 +118,7 @@ def _stressed(subjects: list[Specimen], names: list[str], settings: Settings) ->
                 progress(index + done / settings.samples, len(subjects), f"{title}: {what}")
 
             rows.append(stress(specimen, machines, settings, report))
-        devices = {name: backend.device() for name, backend in machines.here.items()}
+        devices = {name: backend.device() for name, backend in machines.backends.items()}
     return Report(settings, devices, machines.missing, rows)
 
 

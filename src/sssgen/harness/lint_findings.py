@@ -48,9 +48,9 @@ class Finding(NamedTuple):
     def message(self) -> str:
         """The message of the diagnostic."""
         if self.verdict == PROVEN:
-            return f"{self.site.what}: proven safe"
+            return f"{self.site.operation}: proven safe"
         unseen = "not proven, and no input was found that fails" if self.searched else "not proven"
-        return f"{self.site.what}: {self.site.guard.problem}{f' ({unseen})' if self.verdict == UNKNOWN else ''}"
+        return f"{self.site.operation}: {self.site.guard.problem}{f' ({unseen})' if self.verdict == UNKNOWN else ''}"
 
     @property
     def severity(self) -> str:
@@ -65,8 +65,8 @@ class Finding(NamedTuple):
     def render(self) -> str:
         """For a terminal: the place, the ranges found, an example, the remedy."""
         lines = [self.diagnostic().render()]
-        if self.site.found:
-            lines.append(f"  found: {self.with_operands(self.site.found)}")
+        if self.site.range_text:
+            lines.append(f"  found: {self.with_operands(self.site.range_text)}")
         if self.example:
             lines.append(f"  example: {self.example}")
         if self.verdict != PROVEN:
@@ -96,8 +96,8 @@ class Finding(NamedTuple):
             self.with_operands(remedy(self.site, FLOAT32)) if self.verdict != PROVEN else ""
         ).as_json() | {
             "verdict": self.verdict,
-            "operation": site.what,
-            "found": self.with_operands(site.found),
+            "operation": site.operation,
+            "found": self.with_operands(site.range_text),
             "example": self.example or None,
             "guarded": self.guarded and self.verdict != PROVEN,
         }
@@ -156,7 +156,7 @@ def _stages(name: str) -> list[Any]:
 
 def _findings(sites: list[Site], specimens: list[Any], guarded: bool = True) -> list[Finding]:
     findings = []
-    for site in sorted(sites, key=lambda site: (site.node.span, site.what)):
+    for site in sorted(sites, key=lambda site: (site.node.span, site.operation)):
         if site.proven:
             findings.append(Finding(site, PROVEN))
             continue
@@ -172,7 +172,9 @@ def _example(site: Site, specimens: list[Any]) -> str:
     from sssgen.harness.stress.guard_witness import sites, witness
 
     for specimen in specimens:
-        if any((own.what, own.place) == (site.what, site.place) and not own.proven for own in sites(specimen)):
+        if any(
+            (own.operation, own.place) == (site.operation, site.place) and not own.proven for own in sites(specimen)
+        ):
             shown = witness(specimen, site)
             if shown is not None:
                 return shown.command

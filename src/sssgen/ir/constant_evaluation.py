@@ -95,14 +95,14 @@ def _constructed(construct: ir.Construct, values: Sequence[Value]) -> Value | No
 
 def _matrix(size: int, source: Type, numbers: list[Number | None]) -> Value | None:
     """A matrix of a number (its diagonal) or of another matrix, with the rest as in the identity matrix."""
-    given = source.size if isinstance(source, Matrix) else 0
+    source_size = source.size if isinstance(source, Matrix) else 0
     result: list[Number] = []
     for column in range(size):
         for row in range(size):
             number: Number | None = float(row == column)
-            if max(row, column) < given:
-                number = numbers[column * given + row]
-            elif not given and row == column:
+            if max(row, column) < source_size:
+                number = numbers[column * source_size + row]
+            elif not source_size and row == column:
                 number = numbers[0]
             if number is None:
                 return None

@@ -60,7 +60,7 @@ def of_name(param: Param, format: Format = FLOAT32) -> Contract | None:
     return None
 
 
-def made(quantity: str, param: Param | None, format: Format = FLOAT32) -> Contract | None:
+def of_result(quantity: str, param: Param | None, format: Format = FLOAT32) -> Contract | None:
     """The contract that a result or an out parameter is clamped to, as others rely on it, or None."""
     contract = of_quantity(quantity, format)
     if contract is None and param is not None:

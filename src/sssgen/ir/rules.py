@@ -135,10 +135,10 @@ def constructs(type: Type, args: Sequence[Type]) -> bool:
     return pieces and sum(map(components, args)) == components(type)
 
 
-def _same_shape(one: Type, other: Type) -> bool:
-    if isinstance(one, Vector) and isinstance(other, Vector):
-        return one.size == other.size
-    return isinstance(one, Scalar) and isinstance(other, Scalar)
+def _same_shape(first: Type, second: Type) -> bool:
+    if isinstance(first, Vector) and isinstance(second, Vector):
+        return first.size == second.size
+    return isinstance(first, Scalar) and isinstance(second, Scalar)
 
 
 def is_type(type: Type) -> bool:
@@ -153,7 +153,7 @@ def is_type(type: Type) -> bool:
         return flat and 1 <= type.length <= 65536 and is_type(type.element)
     if isinstance(type, Struct):
         names = sorted(field.name for field in type.fields)
-        unique = bool(names) and all(one != two for one, two in pairwise(names))
+        unique = bool(names) and all(name != next_name for name, next_name in pairwise(names))
         return unique and all(is_type(f.type) and not isinstance(f.type, Sampler | Void) for f in type.fields)
     if isinstance(type, Sampler):
         return type.dim in ("2D", "3D", "Cube")

@@ -91,7 +91,7 @@ class _Printer:
 
     def struct(self, struct: StructDecl) -> str:
         assert isinstance(struct.type, Struct)
-        fields = [f"    {spell(one.type)} {one.name}{_colon(one.quantity)};\n" for one in struct.type.fields]
+        fields = [f"    {spell(field.type)} {field.name}{_colon(field.quantity)};\n" for field in struct.type.fields]
         head = f"{_doc(struct.doc)}struct{self.at(struct.span)} {struct.type.name}"
         return f"{head} {{\n{''.join(fields)}}}\n"
 
@@ -115,8 +115,8 @@ class _Printer:
 
     def function(self, function: Function) -> str:
         params = [
-            f"{one.direction}{self.at(one.span)} {spell(one.type)} {one.name}{_colon(one.quantity)}"
-            for one in function.params
+            f"{param.direction}{self.at(param.span)} {spell(param.type)} {param.name}{_colon(param.quantity)}"
+            for param in function.params
         ]
         at, declared = self.at(function.span), f"{spell(function.result)} {function.name}({', '.join(params)})"
         body = " slot" if function.body is None else f" {self.block(function.body, 0)}"

@@ -371,7 +371,7 @@ class _Reader:
         elif kind == "name" and self.peek() == "(":
             expr = self.inferred(Intrinsic(VOID, text, self.list("(", ")"), NOWHERE), text)
         elif kind == "name":
-            expr = Local(self.known(self.locals, text), text, NOWHERE)
+            expr = Local(self.type_of(self.locals, text), text, NOWHERE)
         else:
             raise self.fail(f"an expression is expected here, not '{text}'", 1)
         expr = expr._replace(span=self.span())
@@ -418,12 +418,12 @@ class _Reader:
 
     def of_module(self, name: str) -> Expr:
         if self.peek() != "(":
-            return Global(self.known(self.globals, name), name, NOWHERE)
+            return Global(self.type_of(self.globals, name), name, NOWHERE)
         args = self.list("(", ")")
         key = function_key(name, [arg.type for arg in args])
-        return Call(self.known(self.results, key), key, args, NOWHERE)
+        return Call(self.type_of(self.results, key), key, args, NOWHERE)
 
-    def known(self, among: dict[str, Type], name: str) -> Type:
+    def type_of(self, among: dict[str, Type], name: str) -> Type:
         if name not in among:
             raise self.fail(f"'{name}' is not declared", 1)
         return among[name]

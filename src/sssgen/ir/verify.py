@@ -120,7 +120,7 @@ class _Verifier:
             + [(constant.name, constant.span) for constant in whole.constants]
             + [(uniform.name, uniform.span) for uniform in whole.uniforms]
             + [(variable.name, variable.span) for variable in whole.variables]
-            + list({one.name: (one.name, one.span) for one in whole.functions}.values()),
+            + list({function.name: (function.name, function.span) for function in whole.functions}.values()),
             "is declared twice in the module",
         )
         self.unique([(function.key, function.span) for function in whole.functions], "is defined twice")

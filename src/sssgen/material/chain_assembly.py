@@ -77,7 +77,7 @@ TAKEN = frozenset(
 that a shell declares are reserved by its descriptor."""
 
 
-class ChainStage(NamedTuple):
+class ChainFunction(NamedTuple):
     """A stage with its linked function."""
 
     role: str
@@ -103,7 +103,7 @@ class Chain(NamedTuple):
     surface: Struct | None
 
 
-def assemble(module: Module, stages: Sequence[ChainStage], lit: bool, opaque: bool = False) -> Chain:
+def assemble(module: Module, stages: Sequence[ChainFunction], lit: bool, opaque: bool = False) -> Chain:
     """Adds the entries; an opaque material has no alpha. Raises LinkError for a value that nothing supplies."""
     if not lit:
         entry = _color_entry(stages, opaque)
@@ -148,7 +148,7 @@ def assemble(module: Module, stages: Sequence[ChainStage], lit: bool, opaque: bo
     return Chain(module._replace(structs=(*module.structs, declared), functions=functions), entries, struct)
 
 
-def _per_light(stages: Sequence[ChainStage]) -> list[bool]:
+def _per_light(stages: Sequence[ChainFunction]) -> list[bool]:
     """Which stages depend on the light."""
     late: set[str] = set(PER_LIGHT)
     result = []
@@ -161,13 +161,13 @@ def _per_light(stages: Sequence[ChainStage]) -> list[bool]:
     return result
 
 
-def _written(stage: ChainStage) -> set[str]:
+def _written(stage: ChainFunction) -> set[str]:
     names = {_value_name(param) for param in stage.function.params if param.direction != "in"}
     result = _result_name(stage)
     return names | {result} if result else names
 
 
-def _result_name(stage: ChainStage) -> str:
+def _result_name(stage: ChainFunction) -> str:
     """The name of the value that a stage's result becomes."""
     if stage.function.result == VOID:
         return ""
@@ -178,7 +178,7 @@ def _value_name(param: Param) -> str:
     return param.quantity if param.quantity in QUANTITIES else param.name
 
 
-def _color_entry(stages: Sequence[ChainStage], opaque: bool) -> Entry:
+def _color_entry(stages: Sequence[ChainFunction], opaque: bool) -> Entry:
     """The entry of an unlit material: all stages in order; those that need a hit are inside its `if`."""
     body = _Body("evaluate_color")
     for stage in stages:
@@ -213,7 +213,7 @@ class _Body:
         self.inputs[name] = type_
         self.values[name] = _Value(type_, False)
 
-    def add(self, stage: ChainStage) -> None:
+    def add(self, stage: ChainFunction) -> None:
         """Adds the call of one stage."""
         function, span = stage.function, stage.span
         self.span = span
@@ -239,7 +239,7 @@ class _Body:
                 if param.direction == "out":
                     self.values[param.name] = _Value(param.type, True)
 
-    def argument(self, param: Param, stage: ChainStage, target: list[Stmt], waits: bool) -> Expr:
+    def argument(self, param: Param, stage: ChainFunction, target: list[Stmt], waits: bool) -> Expr:
         """The argument for a parameter."""
         name = _value_name(param)
         if param.direction == "out":
@@ -254,7 +254,7 @@ class _Body:
             return Local(param.type, name, stage.span)
         return value
 
-    def read(self, name: str, param: Param, stage: ChainStage) -> Expr:
+    def read(self, name: str, param: Param, stage: ChainFunction) -> Expr:
         """A value of the chain, as an expression."""
         span = stage.span
         if name in self.values:
@@ -388,6 +388,6 @@ def constant(type_: Type, values: tuple[float, ...], span: Span) -> Expr:
     return Construct(type_, literals[:1] if len(set(values)) == 1 else literals, span)
 
 
-def _missing(name: str, param: Param, stage: ChainStage) -> str:
+def _missing(name: str, param: Param, stage: ChainFunction) -> str:
     value = f"a {name}" if param.quantity in QUANTITIES else f"'{name}'"
     return f"{stage.technique} reads {value}, which no stage before it gives"

@@ -9,7 +9,7 @@ from sssgen.ir.nodes import Function, Span, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import baked, library, roles, slots
 from sssgen.material.library import Technique
-from sssgen.material.model import ALPHA_MODES, SHADINGS, Binding, Material, Stage, wrong_name
+from sssgen.material.model import ALPHA_MODES, SHADINGS, Binding, Material, TechniqueUse, wrong_name
 from sssgen.material.values import WrongValue, read_texture, read_value
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean
 from sssgen.support.toml_source import Document, parse
@@ -125,7 +125,7 @@ class _Reader:
 
     # Stages
 
-    def section(self, section: str, content: Any) -> list[Stage]:
+    def section(self, section: str, content: Any) -> list[TechniqueUse]:
         """The stages of one section: a table, or an array of tables."""
         if not isinstance(content, dict | list):
             return []
@@ -144,7 +144,7 @@ class _Reader:
                 stages.append(stage)
         return stages
 
-    def stage(self, section: str, path: tuple[str | int, ...], table: dict[str, Any]) -> Stage | None:
+    def stage(self, section: str, path: tuple[str | int, ...], table: dict[str, Any]) -> TechniqueUse | None:
         """One stage; None if its technique is unknown."""
         technique = self.technique(section, path, table)
         if technique is None:
@@ -156,7 +156,7 @@ class _Reader:
         for binding in bindings.values():
             names, _ = slots.needs(binding.module, binding.function)
             uniforms |= {uniform.span: uniform for uniform in binding.module.uniforms if uniform.name in names}
-        stage = Stage(technique, {}, frozenset(), {}, bindings, span)
+        stage = TechniqueUse(technique, {}, frozenset(), {}, bindings, span)
         key_of: dict[Span, str] = {}
         for key, raw in table.items():
             if key in ("technique", "bind"):
@@ -228,7 +228,9 @@ class _Reader:
             message = f"'{technique.name}' does not read '{key}'"
         self.document.error(self.document.place(*path).key, message, hint)
 
-    def parameter(self, stage: Stage, uniform: Uniform, path: tuple[str | int, ...], raw: object) -> Stage:
+    def parameter(
+        self, stage: TechniqueUse, uniform: Uniform, path: tuple[str | int, ...], raw: object
+    ) -> TechniqueUse:
         """The stage with one more parameter: `key = value` or `key = { value = …, fixed = true }`."""
         error, place = self.document.error, self.document.place
         fixed = False
@@ -265,7 +267,9 @@ class _Reader:
             self.share(stage, uniform, path, value)
         return stage
 
-    def baked(self, stage: Stage, uniforms: list[Uniform], path: tuple[str | int, ...], table: dict[str, Any]) -> Stage:
+    def baked(
+        self, stage: TechniqueUse, uniforms: list[Uniform], path: tuple[str | int, ...], table: dict[str, Any]
+    ) -> TechniqueUse:
         """The stage with the parameters of its baked textures, except those that it sets itself."""
         for uniform in uniforms:
             if uniform.name not in stage.textures:
@@ -298,7 +302,7 @@ class _Reader:
                     stage = stage._replace(values={**stage.values, other.name: components})
         return stage
 
-    def share(self, stage: Stage, uniform: Uniform, path: tuple[str | int, ...], value: object) -> None:
+    def share(self, stage: TechniqueUse, uniform: Uniform, path: tuple[str | int, ...], value: object) -> None:
         """Checks that all stages agree about a parameter that they share.
 
         Those of included files and of bound functions are shared.

@@ -19,7 +19,7 @@ class Binding(NamedTuple):
     function: Function
 
 
-class Stage(NamedTuple):
+class TechniqueUse(NamedTuple):
     """One technique of the chain, with its settings in the material."""
 
     technique: Technique
@@ -43,7 +43,7 @@ class Material(NamedTuple):
     doc: str
     shading: str
     """lit or unlit"""
-    stages: tuple[Stage, ...]
+    stages: tuple[TechniqueUse, ...]
     """In the order they run (the roles' order, then the file's)."""
     file: str
     """The path of its file."""

@@ -132,9 +132,17 @@ def candidates(slot: Function) -> list[str]:
             continue
         with contextlib.suppress(SssgenError):  # a file with errors is reported when it is used
             module = library.load_path(path).module
-            own = [one for one in module.functions if one.span.file == library.shown_name(path) and fits(slot, one)]
-            offered = [one.name for one in own if one.name == name or any(param.quantity for param in one.params)]
-            names += [name if one == name else f"{name}:{one}" for one in offered]
+            own = [
+                function
+                for function in module.functions
+                if function.span.file == library.shown_name(path) and fits(slot, function)
+            ]
+            function_names = [
+                function.name
+                for function in own
+                if function.name == name or any(param.quantity for param in function.params)
+            ]
+            names += [name if other == name else f"{name}:{other}" for other in function_names]
     return names
 
 

@@ -57,12 +57,12 @@ class _Counter:
             if isinstance(constant.value, ir.Literal)
         }
         self.distance_functions = distance_functions
-        self.known: dict[str, Cost] = {}
+        self.costs: dict[str, Cost] = {}
 
     def function(self, key: str) -> Cost:
-        if key not in self.known:
-            self.known[key] = self.block(self.functions[key].body or ())
-        return self.known[key]
+        if key not in self.costs:
+            self.costs[key] = self.block(self.functions[key].body or ())
+        return self.costs[key]
 
     def block(self, block: ir.Block) -> Cost:
         total = Cost()

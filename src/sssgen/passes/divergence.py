@@ -139,9 +139,9 @@ class CallContext(NamedTuple):
     """The parameters that vary."""
 
 
-def joined(one: CallContext | None, other: CallContext) -> CallContext:
+def joined(first: CallContext | None, second: CallContext) -> CallContext:
     """Both sites taken together."""
-    return other if one is None else CallContext(one.uniform and other.uniform, one.varying | other.varying)
+    return second if first is None else CallContext(first.uniform and second.uniform, first.varying | second.varying)
 
 
 class Divergence:

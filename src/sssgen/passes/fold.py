@@ -63,7 +63,7 @@ def fold(module: Module, fixed: Mapping[str, tuple[float, ...]] = {}) -> Module:
     for constant in module.constants:
         value = folder.expression(constant.value)
         constants.append(constant if value is constant.value else constant._replace(value=value))
-        substituted = folder.known(value)
+        substituted = folder.with_constants(value)
         if isinstance(substituted, Literal) or constant_numbers(substituted) is not None:
             folder.constants[constant.name] = substituted
     functions = tuple([folder.function(function) for function in module.functions])
@@ -149,7 +149,7 @@ class _Folder(Transformer):
         """Whether a loop's condition is false with the value that `init` sets."""
         if init.value is None or (isinstance(init, Assign) and (init.op or not isinstance(init.target, Local))):
             return False
-        start = self.known(init.value)
+        start = self.with_constants(init.value)
         if constant_numbers(start) is None:
             return False
         name = init.name if isinstance(init, Declare) else init.target.name  # type: ignore[union-attr]  # a Local
@@ -157,12 +157,12 @@ class _Folder(Transformer):
         def change(node: Expr) -> Expr:
             return start if type(node) is Local and node.name == name else node
 
-        first = self.known(self.expression(rewrite(condition, change)))
+        first = self.with_constants(self.expression(rewrite(condition, change)))
         return isinstance(first, Literal) and not first.value
 
     # Conditions
 
-    def known(self, expr: Expr) -> Expr:
+    def with_constants(self, expr: Expr) -> Expr:
         """The expression with the values of module constants substituted and folded."""
 
         def change(node: Expr) -> Expr:
@@ -178,7 +178,7 @@ class _Folder(Transformer):
     def settled(self, condition: Expr) -> Expr:
         if isinstance(condition, Literal) or not self.constants:
             return condition
-        substituted = self.known(condition)
+        substituted = self.with_constants(condition)
         if substituted is condition or isinstance(substituted, Literal):
             return substituted
         if isinstance(condition, Binary) and condition.op in ("&&", "||"):

@@ -123,7 +123,7 @@ class _Guarder(Transformer):
         args = operands(node)
         if isinstance(node, ir.Intrinsic) and guard.replaces in ("x", "y", "z"):
             guard = _of_whole_call(guard, node)
-        name = guard.function or f"safe_{site.what}"
+        name = guard.function or f"safe_{site.operation}"
         types = [arg.type for arg in args]
         module, letters = self.source(guard, name, types, node.type, self.format, site.limits)
         passed = (node,) if guard.replaces == "result" else tuple([args["xyz".index(letter)] for letter in letters])
@@ -231,17 +231,21 @@ def poisoned(plain: ir.Expr, safe: ir.Expr, guard: Guard) -> ir.Expr:
     return ir.Intrinsic(plain.type, "mix", (ir.Construct(plain.type, (nan,), span), plain, same), span)
 
 
-def _close(one: ir.Expr, other: ir.Expr, roughly: bool) -> ir.Expr:
+def _close(first: ir.Expr, second: ir.Expr, roughly: bool) -> ir.Expr:
     """Whether two values are equal, per component; `roughly`: except for rounding."""
-    size, span = components(one.type), one.span
+    size, span = components(first.type), first.span
     result = vector_of("bool", size)
     if not roughly:
         return (
-            ir.Binary(BOOL, "==", one, other, span) if size == 1 else ir.Intrinsic(result, "equal", (one, other), span)
+            ir.Binary(BOOL, "==", first, second, span)
+            if size == 1
+            else ir.Intrinsic(result, "equal", (first, second), span)
         )
-    difference = ir.Intrinsic(one.type, "abs", (ir.Binary(one.type, "-", one, other, span),), span)
-    part = ir.Binary(one.type, "*", ir.Intrinsic(one.type, "abs", (one,), span), ir.Literal(FLOAT, 1e-3, span), span)
-    limit = ir.Intrinsic(one.type, "max", (part, ir.Literal(FLOAT, 1e-6, span)), span)
+    difference = ir.Intrinsic(first.type, "abs", (ir.Binary(first.type, "-", first, second, span),), span)
+    part = ir.Binary(
+        first.type, "*", ir.Intrinsic(first.type, "abs", (first,), span), ir.Literal(FLOAT, 1e-3, span), span
+    )
+    limit = ir.Intrinsic(first.type, "max", (part, ir.Literal(FLOAT, 1e-6, span)), span)
     if size == 1:
         return ir.Binary(BOOL, "<=", difference, limit, span)
     return ir.Intrinsic(result, "lessThanEqual", (difference, limit), span)

@@ -139,17 +139,17 @@ class _Hoister(Transformer):
         function: Function,
         site: CallContext,
         flow: Divergence,
-        known: Mapping[str, Summary],
+        summaries: Mapping[str, Summary],
         notes: dict[Note, None],
     ) -> None:
         super().__init__()
-        self.source, self.flow, self.known, self.notes = function, flow, known, notes
+        self.source, self.flow, self.summaries, self.notes = function, flow, summaries, notes
         self.taken = set(declared(function))
         self.depth = 0
         """How many blocks enclose the current statement."""
         self.depths = {param.name: 1 for param in function.params}
         """How many enclose each variable's declaration."""
-        self.shared = known[function.key].reads
+        self.shared = summaries[function.key].reads
         self.region = None if site.uniform else _Region((), False)
 
     def run(self) -> Function:
@@ -263,7 +263,7 @@ class _Hoister(Transformer):
         return names
 
     def written(self, call: Call) -> set[str]:
-        summary = self.known[call.function]
+        summary = self.summaries[call.function]
         targets = [written_root(call.args[index]) for index in summary.outs]
         return {qualified_name(target) for target in targets if target is not None}.union(
             map("${}".format, summary.writes)
@@ -297,7 +297,7 @@ class _Hoister(Transformer):
         if isinstance(expr, Global):
             return None if qualified_name(expr) in region.changed else expr
         if isinstance(expr, Call):
-            called = self.known[expr.function]
+            called = self.summaries[expr.function]
             if not called.pure or not region.changed.isdisjoint(map("${}".format, called.reads)):
                 return None
         return self.over(expr, [self.before(operand) for operand in operands(expr)])
@@ -369,7 +369,7 @@ class _Hoister(Transformer):
             return None
         if isinstance(expr, Local):
             return expr if expr.name in region.available else region.starts.get(expr.name)
-        if isinstance(expr, Call) and not self.known[expr.function].pure:
+        if isinstance(expr, Call) and not self.summaries[expr.function].pure:
             return None
         parts = [self.start(operand) for operand in operands(expr)]
         if isinstance(expr, Binary) and expr.op in ("+", "-"):

@@ -76,14 +76,14 @@ class Calls:
 
     def __init__(self, functions: Functions, shared: Mapping[str, Effects] = _NOTHING) -> None:
         self.functions, self.shared = functions, shared
-        self.known: dict[str, bool] = {}
+        self.effects: dict[str, bool] = {}
 
     def change(self, key: str) -> bool:
         """Whether a function writes through its parameters, or a module variable."""
-        changes = self.known.get(key)
+        changes = self.effects.get(key)
         if changes is None:
             by_parameter = any(param.direction != "in" for param in self.functions[key].params)
-            changes = self.known[key] = by_parameter or bool(self.shared.get(key, NONE).writes)
+            changes = self.effects[key] = by_parameter or bool(self.shared.get(key, NONE).writes)
         return changes
 
     def changing(self, function: Function) -> bool:
@@ -263,7 +263,7 @@ class _Lifter(Transformer):
     def meet_each_other(self, call: Call) -> bool:
         """Whether two out arguments of a call may share a component."""
         places = self.places(call)
-        return any(may_overlap(one, other) for index, one in enumerate(places) for other in places[:index])
+        return any(may_overlap(place, earlier) for index, place in enumerate(places) for earlier in places[:index])
 
     def overlaps(self, call: Call) -> bool:
         """Whether an out argument may be read or written in another way, too, during the call."""
@@ -332,7 +332,8 @@ class _Lifter(Transformer):
             return False
         parts = operands(expr)
         return any(
-            self.late(part) or not self.written(part).isdisjoint(name for one in parts[:index] for name in _read(one))
+            self.late(part)
+            or not self.written(part).isdisjoint(name for earlier in parts[:index] for name in _read(earlier))
             for index, part in enumerate(parts)
         )
 

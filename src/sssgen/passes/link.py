@@ -20,7 +20,7 @@ from sssgen.passes.struct_types import rename_structs
 Bound = tuple[Module, Function]
 
 
-class LinkStage(NamedTuple):
+class LinkInput(NamedTuple):
     """One stage of a chain, as the linker sees it."""
 
     technique: str
@@ -57,7 +57,7 @@ class LinkError(Exception):
         self.message, self.span = message, span
 
 
-def link(stages: Sequence[LinkStage], taken: Collection[str] = ()) -> Linked:
+def link(stages: Sequence[LinkInput], taken: Collection[str] = ()) -> Linked:
     """Links the stages; no struct, uniform, constant or function gets a name that is `taken`.
 
     Raises LinkError for an unbound slot or two structs of one name.
@@ -88,10 +88,10 @@ class _Linker:
         self.modules: dict[int, tuple[Module, Module]] = {}
         """By its id: a module with structs of taken names, and the same without."""
 
-    def stage(self, index: int, stage: LinkStage) -> Function:
+    def stage(self, index: int, stage: LinkInput) -> Function:
         return self.function(stage.function, stage.module, index, stage)
 
-    def function(self, function: Function, module: Module, index: int, stage: LinkStage) -> Function:
+    def function(self, function: Function, module: Module, index: int, stage: LinkInput) -> Function:
         """The linked instance of a function as this stage uses it."""
         if module.variables:
             variable = module.variables[0]
@@ -141,7 +141,7 @@ class _Linker:
         if first.type != struct.type:
             raise LinkError(f"two different structs are called '{struct.type.name}'", struct.span)
 
-    def global_name(self, name: str, module: Module, index: int, stage: LinkStage) -> str:
+    def global_name(self, name: str, module: Module, index: int, stage: LinkInput) -> str:
         """The name that a uniform or constant of `module` has in the linked module."""
         for uniform in module.uniforms:
             if uniform.name == name:
@@ -161,7 +161,7 @@ class _Linker:
             self.constants[linked_name] = constant._replace(name=linked_name, value=value)
         return self.global_names[constant.span]
 
-    def uniform(self, uniform: Uniform, index: int, stage: LinkStage) -> str:
+    def uniform(self, uniform: Uniform, index: int, stage: LinkInput) -> str:
         """A technique's own uniforms are the stage's; those of shared files and bound functions are common."""
         own = uniform.span.file == stage.function.span.file
         identity = (uniform.span, index if own else None)

@@ -196,7 +196,7 @@ class _Namer:
             overloads.setdefault(function.name, []).append((key, function))
         result: dict[str, str] = {}
         for name, functions in overloads.items():
-            if len(functions) > 1 and (self.mangle_overloads or self.confused([one for _, one in functions])):
+            if len(functions) > 1 and (self.mangle_overloads or self.confused([function for _, function in functions])):
                 types = [[_word(param.type) for param in function.params] for _, function in functions]
                 for count in range(1, max(map(len, types)) + 1):
                     spelled = ["_".join([name, *words[:count]]) for words in types]

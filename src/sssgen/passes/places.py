@@ -13,14 +13,14 @@ _Step = Set[int | str] | None
 """The parts that one step of a place selects: components, elements, a field; None: any of them."""
 
 
-def may_overlap(one: Expr, other: Expr) -> bool:
+def may_overlap(first: Expr, second: Expr) -> bool:
     """Whether an assignment to one place may change the other; an index that is not a literal may be any."""
-    root, other_root = written_root(one), written_root(other)
-    if root is None or other_root is None or root.name != other_root.name:
+    first_root, second_root = written_root(first), written_root(second)
+    if first_root is None or second_root is None or first_root.name != second_root.name:
         return False
-    if isinstance(root, Global) != isinstance(other_root, Global):
+    if isinstance(first_root, Global) != isinstance(second_root, Global):
         return False
-    pairs = zip(_steps(one), _steps(other), strict=False)
+    pairs = zip(_steps(first), _steps(second), strict=False)
     return not any(left is not None and right is not None and left.isdisjoint(right) for left, right in pairs)
 
 

@@ -22,7 +22,7 @@ def only(module: Module, roots: Iterable[str]) -> Module:
         if key not in reached:
             reached.add(key)
             pending += callees(functions[key])
-    return module._replace(functions=tuple([one for key, one in functions.items() if key in reached]))
+    return module._replace(functions=tuple([function for key, function in functions.items() if key in reached]))
 
 
 def used(module: Module, is_stage: bool) -> Module:

@@ -53,7 +53,7 @@ def undefined_constants(module: Module) -> list[Undefined]:
             if isinstance(stmt, Assign) and stmt.op:
                 checked = Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span)
                 checker.binary(checked, None, checker.value(stmt.value))
-    return list(checker.found.values())
+    return list(checker.undefined.values())
 
 
 class _Checker:
@@ -61,7 +61,7 @@ class _Checker:
 
     def __init__(self) -> None:
         self.constants: dict[str, Value | None] = {}
-        self.found: dict[Span, Undefined] = {}
+        self.undefined: dict[Span, Undefined] = {}
 
     def value(self, expr: Expr) -> Value | None:
         """The value of a constant; None for anything else."""
@@ -110,7 +110,7 @@ class _Checker:
         return arithmetic.builtin(expr.name, args, [arg.type for arg in expr.args], expr.type)
 
     def wrong(self, message: str, expr: Expr) -> Value | None:
-        self.found.setdefault(expr.span, Undefined(message, expr.span))
+        self.undefined.setdefault(expr.span, Undefined(message, expr.span))
         return None
 
 

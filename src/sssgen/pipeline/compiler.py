@@ -14,7 +14,7 @@ from sssgen.ir.nodes import Module, Uniform
 from sssgen.ir.types import kind_of
 from sssgen.lang.loader import key_of
 from sssgen.material import library
-from sssgen.material.model import Material, Stage
+from sssgen.material.model import Material, TechniqueUse
 from sssgen.pipeline.emitted_cache import installation
 from sssgen.support import cache
 from sssgen.support.diagnostics import Diagnostic
@@ -184,7 +184,7 @@ def _stored_program(
     return program
 
 
-def _bare(stage: Stage, fixed: set[str]) -> Stage:
+def _bare(stage: TechniqueUse, fixed: set[str]) -> TechniqueUse:
     """A stage without the values that no pass reads."""
     modules = [stage.technique.module, *(binding.module for binding in stage.bindings.values())]
     uniforms = [uniform for module in modules for uniform in module.uniforms]

@@ -6,15 +6,15 @@ from typing import NamedTuple
 
 from sssgen.ir.nodes import Module, Span
 from sssgen.material import library
-from sssgen.material.model import Material, Stage
-from sssgen.passes.link import LinkStage
+from sssgen.material.model import Material, TechniqueUse
+from sssgen.passes.link import LinkInput
 from sssgen.targets.descriptor import Target
 
 
-class TargetStage(NamedTuple):
+class TargetTechnique(NamedTuple):
     """A stage of the chain for a target."""
 
-    link: LinkStage
+    link: LinkInput
     span: Span
     """The place that names it."""
     number: int
@@ -23,26 +23,26 @@ class TargetStage(NamedTuple):
     """Whether its technique is documented to glow: its light needs no lamp."""
 
 
-def stages_for(material: Material, target: Target) -> list[TargetStage]:
+def stages_for(material: Material, target: Target) -> list[TargetTechnique]:
     """The material's stages without what the engine does, with the lighting that the target adds."""
     stages = [
-        TargetStage(_link_stage(stage), stage.span, number, stage.technique.attributes.glows)
+        TargetTechnique(_link_input(stage), stage.span, number, stage.technique.attributes.glows)
         for number, stage in enumerate(material.stages)
     ]
     lit = material.shading == "lit"
     if lit and target.lighting and all(stage.link.role != "lighting" for stage in stages):
         technique = library.load(target.lighting)
-        added = LinkStage(technique.name, "lighting", technique.module, technique.function, {}, {}, frozenset())
-        stages.append(TargetStage(added, technique.function.span, len(stages)))
+        added = LinkInput(technique.name, "lighting", technique.module, technique.function, {}, {}, frozenset())
+        stages.append(TargetTechnique(added, technique.function.span, len(stages)))
     engine = {"lighting"} if lit and not target.lighting else set()
     engine |= {"output"} if target.engine_encodes else set()
     return [stage for stage in stages if stage.link.role not in engine]
 
 
-def _link_stage(stage: Stage) -> LinkStage:
+def _link_input(stage: TechniqueUse) -> LinkInput:
     technique = stage.technique
     bindings = {name: (binding.module, binding.function) for name, binding in stage.bindings.items()}
-    return LinkStage(
+    return LinkInput(
         technique.name, technique.role, technique.module, technique.function, bindings, stage.values, stage.fixed
     )
 

@@ -63,7 +63,7 @@ def make_library(
 def _check_partner(kind: str, other: str) -> None:
     """Raises SssgenError where these are not two stages of one program."""
     if {kind, other} != {"vertex", "fragment"}:
-        kinds = [f"a {one} shader" if one else "no whole shader" for one in (kind, other)]
+        kinds = [f"a {stage} shader" if stage else "no whole shader" for stage in (kind, other)]
         hint = "give a vertex shader with a fragment shader, each with a main()"
         raise failure(f"these are not two stages of one program: {kinds[0]} and {kinds[1]}", hint)
 

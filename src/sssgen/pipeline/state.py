@@ -14,7 +14,7 @@ from sssgen.passes.guards import Guarded
 from sssgen.passes.hoist import Note
 from sssgen.passes.ranges.sites import Site
 from sssgen.passes.stage.stage_interface import Stage
-from sssgen.pipeline.material_stages import TargetStage
+from sssgen.pipeline.material_stages import TargetTechnique
 from sssgen.targets.descriptor import Target
 
 
@@ -43,7 +43,7 @@ class State:
 
     roots: list[str] = field(default_factory=list)
     """The keys of the functions from which all others are reached."""
-    stages: list[TargetStage] = field(default_factory=list)
+    stages: list[TargetTechnique] = field(default_factory=list)
     linked: tuple[Function, ...] = ()
     """The function of each stage in `module`."""
     fixed: Mapping[str, tuple[float, ...]] = field(default_factory=dict)

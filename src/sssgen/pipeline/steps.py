@@ -9,7 +9,7 @@ from sssgen.ir.nodes import Module
 from sssgen.lang.polyfills import guard as guard_source
 from sssgen.lang.polyfills import polyfill
 from sssgen.lang.source_lines import source_line
-from sssgen.material.chain_assembly import TAKEN, ChainStage, assemble
+from sssgen.material.chain_assembly import TAKEN, ChainFunction, assemble
 from sssgen.passes.conversions import drop_conversions
 from sssgen.passes.cost import cost_of
 from sssgen.passes.fold import fold
@@ -67,7 +67,7 @@ def assemble_chain(state: State) -> Module:
     material = state.material
     assert material is not None
     stages = [
-        ChainStage(stage.link.role, stage.link.technique, function, stage.span, stage.glows)
+        ChainFunction(stage.link.role, stage.link.technique, function, stage.span, stage.glows)
         for stage, function in zip(state.stages, state.linked, strict=True)
     ]
     chain = assemble(state.module, stages, material.shading == "lit", material.alpha_mode == "opaque")

@@ -58,7 +58,7 @@ def find() -> str:
         "/Applications/Chromium.app/Contents/MacOS/Chromium",
         *(rf"{root}\Google\Chrome\Application\chrome.exe" for root in roots if root),
     ]
-    return next((found for place in places if (found := shutil.which(place))), "")
+    return next((path for place in places if (path := shutil.which(place))), "")
 
 
 class Page:

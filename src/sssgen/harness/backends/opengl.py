@@ -101,12 +101,14 @@ class OpenGL(DrawingBackend):
             for member in [name for name in program if is_loose(program[name])]:
                 name = self.owner(member, textures)
                 elements = [f"{member}[{index}]" for index in range(program[member].array_length)]
-                some = next((element for element in elements if element in textures), "")
-                bound = [name] if name else [one if one in textures else some for one in elements] if some else []
+                default = next((element for element in elements if element in textures), "")
+                bound = [name] if name else []
+                if default and not name:
+                    bound = [element if element in textures else default for element in elements]
                 if bound:
                     units = [next(unit) for _ in bound]
-                    for number, one in zip(units, bound, strict=True):
-                        textures[one].use(number)
+                    for number, texture in zip(units, bound, strict=True):
+                        textures[texture].use(number)
                     program[member].value = units[0] if name else tuple(units)
                 elif member in drawing.values:
                     _write(program[member], drawing.values[member])
@@ -125,8 +127,8 @@ class OpenGL(DrawingBackend):
             data = frame.read(components=4, dtype=kind)
             return np.frombuffer(data, dtype).reshape(height, width, 4)
         finally:
-            for one in resources:
-                one.release()
+            for resource in resources:
+                resource.release()
 
     def bind_blocks(self, program: Any, blocks: Mapping[str, Block], keep: Any) -> None:
         """Binds the uniform blocks that the program has."""

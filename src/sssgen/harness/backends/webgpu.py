@@ -167,7 +167,7 @@ class WebGPU(DrawingBackend):
 
 
 _SNAKE = [
-    {"format": one["format"], "offset": one["offset"], "shader_location": one["shaderLocation"]}
-    for one in ATTRIBUTE_PLAN
+    {"format": attribute["format"], "offset": attribute["offset"], "shader_location": attribute["shaderLocation"]}
+    for attribute in ATTRIBUTE_PLAN
 ]
 """The attributes in wgpu's spelling."""

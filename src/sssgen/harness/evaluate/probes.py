@@ -17,7 +17,7 @@ from sssgen.material import library, slots
 from sssgen.material.slots import find, needs
 from sssgen.passes.fold import fold
 from sssgen.passes.hoist import hoist
-from sssgen.passes.link import LinkError, LinkStage, link
+from sssgen.passes.link import LinkError, LinkInput, link
 from sssgen.passes.prune import prune
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.support.diagnostics import did_you_mean, failure
@@ -67,11 +67,11 @@ def subject(name: str, bind: Mapping[str, str] | None = None) -> Subject:
     """
     module, function, role = _technique(name)
     bound = _bound(name, module, function, bind or {})
-    probes = of_stages(name, [LinkStage(function.name, role, module, function, bound, {}, frozenset())])
+    probes = of_stages(name, [LinkInput(function.name, role, module, function, bound, {}, frozenset())])
     return probes._replace(chained=not _is_function(name))
 
 
-def of_stages(name: str, stages: Sequence[LinkStage]) -> Subject:
+def of_stages(name: str, stages: Sequence[LinkInput]) -> Subject:
     """The probes of linked techniques, in one module."""
     try:
         linked = link(list(stages))

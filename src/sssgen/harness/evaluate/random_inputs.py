@@ -132,11 +132,11 @@ def _ends(subject: Subject, uniform: Uniform) -> tuple[float | str, ...]:
 def _within(rng: np.random.Generator, size: tuple[int, ...], low: float, high: float) -> Array:
     """Numbers over a range, some at its ends. A range over several powers of ten is drawn by its logarithm."""
     if low > 0.0 and high >= 100.0 * low:
-        drawn = np.exp(rng.uniform(np.log(low), np.log(high), size))
+        samples = np.exp(rng.uniform(np.log(low), np.log(high), size))
     else:
-        drawn = rng.uniform(low, high, size)
+        samples = rng.uniform(low, high, size)
     chance = rng.random(size)
-    numbers: Array = np.where(chance < 0.5 * ENDS, low, np.where(chance > 1.0 - 0.5 * ENDS, high, drawn))
+    numbers: Array = np.where(chance < 0.5 * ENDS, low, np.where(chance > 1.0 - 0.5 * ENDS, high, samples))
     return numbers
 
 

@@ -21,12 +21,12 @@ SUFFIXES = (".dds", ".ktx2")
 
 
 class Encoding(NamedTuple):
-    """A format of stored texels. `dtype` is the type of a channel; `one` is the stored number that means 1.0."""
+    """A format of stored texels. `dtype` is the type of a channel; `unit` is the stored number that means 1.0."""
 
     name: str
     dtype: np.dtype[Any]
     channels: int
-    one: int
+    unit: int
     dxgi: int
     dxgi_name: str
     vulkan: int
@@ -156,6 +156,6 @@ def _texels(file: BinaryIO, offset: int, encoding: Encoding, size: tuple[int, in
     stored = np.frombuffer(file.read(length), encoding.dtype).reshape(*size, encoding.channels)
     with np.errstate(invalid="ignore"):  # NaN stays NaN, also a signalling one
         texels = stored.astype(np.float64)
-    if encoding.one != 1:
-        texels /= encoding.one
+    if encoding.unit != 1:
+        texels /= encoding.unit
     return texels

@@ -21,7 +21,7 @@ from sssgen.lang.syntax.parser import parse
 from sssgen.material import library, slots
 from sssgen.material.values import WrongValue, read_value
 from sssgen.passes.fold import fold
-from sssgen.passes.link import LinkStage, link
+from sssgen.passes.link import LinkInput, link
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.targets.runtime.numpy_values import precision
@@ -71,7 +71,7 @@ class Distance(Geometry):
         """The function on points (3, n). Raises SssgenError."""
         module, function = find_function(self.technique, self.folder)
         values = _values(self.technique, uniforms_of(module, function), self.parameters)
-        linked = link([LinkStage(function.name, "", module, function, {}, values, frozenset(values))])
+        linked = link([LinkInput(function.name, "", module, function, {}, values, frozenset(values))])
         compiled = transpile(fold(linked.module, linked.fixed), "numpy", function.name)
         namespace: dict[str, Any] = {}
         exec(compiled.files[f"{function.name}_functions.py"], namespace)

@@ -24,14 +24,14 @@ _PLAIN: dict[str, Any] = {
 _OF_QUANTITY = {"thickness": 0.1, "thinness": 0.5, "transmittance": 0.5}
 
 
-def plain(specimen: Specimen, lanes: int, given: dict[str, Any] | None = None) -> Inputs:
-    """Defaults for uniforms, a lit surface for parameters; values in `given`, lanes last, replace those of such inputs.
+def plain(specimen: Specimen, lanes: int, overrides: dict[str, Any] | None = None) -> Inputs:
+    """Defaults for uniforms, a lit surface for parameters; `overrides`, lanes last, replaces the values of such inputs.
 
-    A texture in `given` has its uniform's name as the key.
+    A texture in `overrides` has its uniform's name as the key.
     """
     values: dict[str, Array] = {}
     textures: dict[str, Texture] = {}
-    changes = given or {}
+    changes = overrides or {}
     for name, param in specimen.subject.params.items():
         if isinstance(param.type, Sampler):
             hints = [hint.removeprefix("default_") for hint, _ in specimen.subject.uniforms[name].hints]

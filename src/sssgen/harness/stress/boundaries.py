@@ -10,7 +10,15 @@ import numpy as np
 
 from sssgen.harness.backends import Array
 from sssgen.harness.evaluate.evaluation import Inputs, shape_of
-from sssgen.harness.stress.contract_inputs import contract, drawn, fixed, is_direction, opaque, texture, whole_range
+from sssgen.harness.stress.contract_inputs import (
+    contract,
+    fixed,
+    is_direction,
+    opaque,
+    sample_inputs,
+    texture,
+    whole_range,
+)
 from sssgen.harness.stress.subject import Specimen
 from sssgen.harness.stress.trial import BEYOND, BOUNDARY, Trial
 from sssgen.ir.formats import FLOAT32, Format
@@ -132,7 +140,7 @@ def _chosen(names: Sequence[str], edges: dict[str, Array], name: str) -> Array:
 
 def _mixed(specimen: Specimen, edges: dict[str, Array], rng: np.random.Generator, format: Format) -> Inputs:
     """Boundary values of all inputs; in a fifth of the lanes an input has a random value instead."""
-    random = drawn(specimen, MIXED, rng, format).values
+    random = sample_inputs(specimen, MIXED, rng, format).values
     mixture: dict[str, Array] = {}
     for name, edge_values in edges.items():
         edge = edge_values[..., rng.integers(0, edge_values.shape[-1], MIXED)]

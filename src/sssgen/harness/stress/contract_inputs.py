@@ -20,13 +20,13 @@ from sssgen.ir.vector_ranges import LENGTH, Contract
 from sssgen.targets.runtime.numpy_textures import Texture
 
 TINY = 1e-45
-"""The smallest number drawn: float32's smallest subnormal."""
+"""The smallest random number: float32's smallest subnormal."""
 ORDINARY = 2.0
 """In a wide range half of the numbers are at most this large."""
 TEXELS = 16
 
 
-def drawn(specimen: Specimen, lanes: int, rng: np.random.Generator, format: Format = FLOAT32) -> Inputs:
+def sample_inputs(specimen: Specimen, lanes: int, rng: np.random.Generator, format: Format = FLOAT32) -> Inputs:
     """`lanes` random inputs of the contract; integers and textures are the same for all lanes, as in a draw call."""
     values: dict[str, Array] = {}
     textures: dict[str, Texture] = {}
@@ -111,16 +111,16 @@ def numbers(size: tuple[int, ...], ends: Contract, rng: np.random.Generator) -> 
     share = (bits >> np.uint32(8)).astype(np.float32) * np.float32(2.0**-24)
     kind = bits & np.uint32(7)
     first, last = (max(low, -ORDINARY), min(high, ORDINARY)) if high - low > 1e3 else (low, high)
-    drawn: Array = np.float32(first) + share * np.float32(last - first)
+    samples: Array = np.float32(first) + share * np.float32(last - first)
     small = kind >= 5
     negative = low < 0.0 and (high <= 0.0 or (bits[small] & np.uint32(8)) != 0)
     smallest, largest = np.log2(max(low, TINY)), np.log2(max(abs(low), abs(high), TINY))
     sizes = np.exp2(smallest + share[small].astype(np.float64) * (largest - smallest))
-    drawn[small] = np.where(negative, -sizes, sizes)
+    samples[small] = np.where(negative, -sizes, sizes)
     special = kind == 7
     values = _special(low, high)
-    drawn[special] = values[(bits[special] >> np.uint32(8)) % np.uint32(len(values))]
-    return np.clip(drawn, np.float32(low), np.float32(high), out=drawn)
+    samples[special] = values[(bits[special] >> np.uint32(8)) % np.uint32(len(values))]
+    return np.clip(samples, np.float32(low), np.float32(high), out=samples)
 
 
 def _special(low: float, high: float) -> Array:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from sssgen.harness.evaluate.evaluation import Inputs
-from sssgen.harness.stress.contract_inputs import contract, drawn
+from sssgen.harness.stress.contract_inputs import contract, sample_inputs
 from sssgen.harness.stress.result_checks import growing_input
 from sssgen.harness.stress.subject import Specimen
 from sssgen.harness.stress.trial import ENERGY, Trial
@@ -22,7 +22,7 @@ def trials(specimen: Specimen, seed: int, format: Format = FLOAT32) -> Iterator[
     if not name:
         return
     rng = np.random.default_rng([seed, 4])
-    thin = drawn(specimen, PAIRS, rng, format)
+    thin = sample_inputs(specimen, PAIRS, rng, format)
     highest = contract(specimen, name, format).high
     ordinary = rng.random(PAIRS) < 0.8
     first = np.where(ordinary, rng.random(PAIRS) * 4.0, thin.values[name])

@@ -17,7 +17,7 @@ from sssgen.harness.evaluate.evaluation import Inputs
 from sssgen.harness.evaluate.evaluation import run as evaluated
 from sssgen.harness.stress import boundaries
 from sssgen.harness.stress import dangerous_inputs as dangerous
-from sssgen.harness.stress.contract_inputs import drawn
+from sssgen.harness.stress.contract_inputs import sample_inputs
 from sssgen.harness.stress.result_checks import non_finite
 from sssgen.harness.stress.shrink import lane, line, shrunk
 from sssgen.harness.stress.subject import Specimen
@@ -55,7 +55,7 @@ def sites(specimen: Specimen) -> list[Site]:
 
 def witness(specimen: Specimen, site: Site, seed: int = 0) -> Witness | None:
     """The simplest input found that needs the guard of this operation, on NumPy in float32; None if none was found."""
-    poison = only(site.what, site.place, "poison")
+    poison = only(site.operation, site.place, "poison")
     for trial in _trials(specimen, seed):
         broken = _broken(trial.specimen, trial.inputs, poison)
         for output, lanes in broken.items():
@@ -81,9 +81,9 @@ def _fails(specimen: Specimen, change: Callable[[Site], str], output: str, input
 
 
 @cache
-def only(what: str, place: str, change: str) -> Callable[[Site], str]:
+def only(operation: str, place: str, change: str) -> Callable[[Site], str]:
     """What to do with each guard: `change` for the one named, `keep` for all others."""
-    return lambda site: change if (site.what, site.place) == (what, place) else "keep"
+    return lambda site: change if (site.operation, site.place) == (operation, place) else "keep"
 
 
 def _trials(specimen: Specimen, seed: int) -> Iterator[Trial]:
@@ -92,7 +92,7 @@ def _trials(specimen: Specimen, seed: int) -> Iterator[Trial]:
     every = [*rows, *boundaries.trials(specimen, seed)]
     yield from (trial for trial in every if trial.counts or trial.name == BEYOND)
     rng = np.random.default_rng([seed, 4])
-    yield Trial(RANDOM, specimen, drawn(specimen, SAMPLES, rng, FLOAT32))
+    yield Trial(RANDOM, specimen, sample_inputs(specimen, SAMPLES, rng, FLOAT32))
 
 
 def _broken(specimen: Specimen, inputs: Inputs, change: Callable[[Site], str]) -> dict[str, Array]:

@@ -19,7 +19,7 @@ from sssgen.harness.evaluate.evaluation import Inputs
 from sssgen.harness.evaluate.evaluation import run as evaluated
 from sssgen.harness.stress import boundaries, energy, jumps
 from sssgen.harness.stress import dangerous_inputs as dangerous
-from sssgen.harness.stress.contract_inputs import drawn
+from sssgen.harness.stress.contract_inputs import sample_inputs
 from sssgen.harness.stress.result_checks import JUMP, KINDS, OutputFaults, faults_of
 from sssgen.harness.stress.shrink import lane, line, shrunk
 from sssgen.harness.stress.subject import Specimen
@@ -109,11 +109,11 @@ class Machines:
     """The back ends, each but NumPy in its own process; a context manager that ends them."""
 
     def __init__(self, names: Sequence[str]) -> None:
-        self.here: dict[str, Backend] = {}
+        self.backends: dict[str, Backend] = {}
         self.missing: dict[str, str] = {}
         for name in names:
             try:
-                self.here[name] = started(name)
+                self.backends[name] = started(name)
             except CompilerMissing as reason:
                 self.missing[name] = str(reason)
             except SssgenError as error:
@@ -125,7 +125,7 @@ class Machines:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
     ) -> None:
-        for backend in self.here.values():
+        for backend in self.backends.values():
             if (close := getattr(backend, "close", None)) is not None:
                 close()
 
@@ -136,7 +136,7 @@ Progress = Callable[[str, int], None]
 
 def stress(specimen: Specimen, machines: Machines, settings: Settings, progress: Progress = lambda *_: None) -> Row:
     """All trials of one technique on all back ends."""
-    gathered = [_Gathered(name, backend, specimen, settings) for name, backend in machines.here.items()]
+    gathered = [_Gathered(name, backend, specimen, settings) for name, backend in machines.backends.items()]
     for trial in _trials(specimen, settings):
         progress(trial.name, 0)
         reference = _Reference(trial, settings)
@@ -163,7 +163,9 @@ def _trials(specimen: Specimen, settings: Settings) -> Iterator[Trial]:
     yield from boundaries.trials(specimen, settings.seed, settings.format)
     yield from energy.trials(specimen, settings.seed, settings.format)
     rng = np.random.default_rng([settings.seed, 2])
-    yield Trial(RANDOM, specimen, drawn(specimen, min(COMPARED, settings.samples), rng, settings.format), compared=True)
+    yield Trial(
+        RANDOM, specimen, sample_inputs(specimen, min(COMPARED, settings.samples), rng, settings.format), compared=True
+    )
 
 
 def _random(specimen: Specimen, settings: Settings) -> Iterator[Trial]:
@@ -171,7 +173,7 @@ def _random(specimen: Specimen, settings: Settings) -> Iterator[Trial]:
     for number, first in enumerate(range(0, settings.samples, CHUNK)):
         rng = np.random.default_rng([settings.seed, 3, number])
         lanes = min(CHUNK, settings.samples - first)
-        yield Trial(RANDOM, specimen, drawn(specimen, lanes, rng, settings.format))
+        yield Trial(RANDOM, specimen, sample_inputs(specimen, lanes, rng, settings.format))
 
 
 def evaluate(specimen: Specimen, inputs: Inputs, backend: Backend, settings: Settings) -> dict[str, Array]:

@@ -11,7 +11,7 @@ from sssgen.ir.nodes import Param
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
 from sssgen.material.model import Material
-from sssgen.passes.link import LinkStage
+from sssgen.passes.link import LinkInput
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 
 
@@ -102,7 +102,7 @@ def stages(material: Material) -> list[Specimen]:
     for stage in material.stages:
         chosen = stage.technique
         bound = {slot: (binding.module, binding.function) for slot, binding in stage.bindings.items()}
-        link = LinkStage(chosen.name, chosen.role, chosen.module, chosen.function, bound, stage.values, frozenset())
+        link = LinkInput(chosen.name, chosen.role, chosen.module, chosen.function, bound, stage.values, frozenset())
         probes = of_stages(chosen.name, [link])
         bind = {
             slot: _shown(bound_function.function.span.file, bound_function.function.name)

@@ -47,7 +47,7 @@ def against_oracle(
     return outputs, Outcome("failed", f"{backend.name} deviates by {apart.largest:.2g}, more than {tolerance:g}", where)
 
 
-def known(oracle: Mapping[str, Array], wanted: Mapping[str, Any], tolerance: float) -> Outcome:
+def against_numbers(oracle: Mapping[str, Array], wanted: Mapping[str, Any], tolerance: float) -> Outcome:
     """Compares the oracle's outputs with given numbers. Raises SssgenError for an unknown output or another shape."""
     for name, numbers in wanted.items():
         if name not in oracle:

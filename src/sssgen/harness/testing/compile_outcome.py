@@ -20,7 +20,7 @@ def compiled(material: str, targets: str | Iterable[str] = "all") -> Outcome:
     `targets` is "all", names with commas between them, or a list. For "all" one available compiler is enough; a target
     that is named needs a compiler. Raises SssgenError for an invalid material and unknown targets.
     """
-    names = chosen(targets)
+    names = target_names(targets)
     shaders = of_material(material, names)
     report = check.run(shaders)
     if diagnostics := [diagnostic for result in report.results for diagnostic in _diagnostics(result)]:
@@ -37,16 +37,16 @@ def compiled(material: str, targets: str | Iterable[str] = "all") -> Outcome:
     return Outcome("passed", f"{message}; not compiled: {', '.join(unread)}", _how(report, unread))
 
 
-def chosen(targets: str | Iterable[str]) -> list[str]:
+def target_names(targets: str | Iterable[str]) -> list[str]:
     """The named targets without duplicates; none for "all". Raises SssgenError for unknown targets."""
     listed = targets.split(",") if isinstance(targets, str) else targets
     names = list(dict.fromkeys(name.strip() for name in listed))
     if "all" in names:
         return []
-    known = all_targets()
+    available = all_targets()
     for name in names or [""]:
-        if name not in known:
-            hint = did_you_mean(name, known) or f"targets: {', '.join(known)}, or all"
+        if name not in available:
+            hint = did_you_mean(name, available) or f"targets: {', '.join(available)}, or all"
             raise failure(f"unknown target '{name}'", hint)
         if not readers(name):
             raise failure(f"no supported compiler reads {name}", "name other targets")

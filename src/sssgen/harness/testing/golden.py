@@ -61,7 +61,7 @@ def compared(
         return Outcome("failed", message, _written({paths[0]: actual}))
     golden = _color(images.read(path))
     if golden.shape != actual.shape:
-        sizes = [f"{one.shape[1]} × {one.shape[0]}" for one in (actual, golden)]
+        sizes = [f"{picture.shape[1]} × {picture.shape[0]}" for picture in (actual, golden)]
         message = f"the picture has {sizes[0]} pixels, and the golden one, {shown}, has {sizes[1]}"
         return Outcome("failed", message, _written({paths[0]: actual}))
     difference = compare(actual, golden)

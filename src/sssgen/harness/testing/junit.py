@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 from collections import Counter
 from collections.abc import Sequence
 
-from sssgen.harness.testing.project_run import Ran
+from sssgen.harness.testing.project_run import CaseResult
 from sssgen.support.diagnostics import visible
 from sssgen.support.file_writer import write_files
 from sssgen.support.paths import posix
@@ -15,31 +15,31 @@ from sssgen.support.paths import posix
 SUITE = "sssgen ci"
 
 
-def write(path: str, results: Sequence[Ran]) -> None:
+def write(path: str, results: Sequence[CaseResult]) -> None:
     """Writes the report atomically. Raises SssgenError where it cannot be written."""
     folder, name = os.path.split(path)
     write_files(folder, {name: document(results)})
 
 
-def document(results: Sequence[Ran]) -> bytes:
+def document(results: Sequence[CaseResult]) -> bytes:
     """The report: one suite, one test case for each case, in UTF-8."""
-    count = Counter(ran.outcome.state for ran in results)
+    count = Counter(result.outcome.state for result in results)
     counts = {
         "name": SUITE, "tests": str(len(results)), "failures": str(count["failed"]), "errors": "0",
-        "skipped": str(count["skipped"]), "time": f"{sum(ran.seconds for ran in results):.3f}",
+        "skipped": str(count["skipped"]), "time": f"{sum(result.seconds for result in results):.3f}",
     }  # fmt: skip
     top = ET.Element("testsuites", counts)
     suite = ET.SubElement(top, "testsuite", counts)
-    for ran in results:
-        suite.append(_case(ran))
+    for result in results:
+        suite.append(_case(result))
     ET.indent(top)
     text: bytes = ET.tostring(top, "utf-8", xml_declaration=True)
     return text + b"\n"
 
 
-def _case(ran: Ran) -> ET.Element:
-    case, outcome = ran.case, ran.outcome
-    facts = {"classname": case.kind, "name": case.name, "file": posix(case.path), "time": f"{ran.seconds:.3f}"}
+def _case(result: CaseResult) -> ET.Element:
+    case, outcome = result.case, result.outcome
+    facts = {"classname": case.kind, "name": case.name, "file": posix(case.path), "time": f"{result.seconds:.3f}"}
     element = ET.Element("testcase", {key: _clean(value) for key, value in facts.items()})
     message = {"message": _clean(outcome.message)}
     if outcome.state == "failed":

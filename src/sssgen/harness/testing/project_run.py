@@ -56,7 +56,7 @@ class Case(NamedTuple):
         return f"{posix(self.path)}{on}"
 
 
-class Ran(NamedTuple):
+class CaseResult(NamedTuple):
     """A case and its outcome."""
 
     case: Case
@@ -136,7 +136,7 @@ class Run:
         if self.started is not None:
             self.started.close()
 
-    def __call__(self, case: Case) -> Ran:
+    def __call__(self, case: Case) -> CaseResult:
         """Checks a case. Raises nothing: an error is the outcome."""
         start = perf_counter()
         try:
@@ -147,7 +147,7 @@ class Run:
             outcome = lacking(f"the package '{error.name}'", install_hint("render"))
         except Exception as error:  # the other cases are checked nevertheless
             outcome = Outcome("failed", f"internal error, a bug of sssgen: {type(error).__name__}: {error}")
-        return Ran(case, outcome, perf_counter() - start)
+        return CaseResult(case, outcome, perf_counter() - start)
 
     def _compile(self, case: Case) -> Outcome:
         return compiled(case.path)
@@ -176,7 +176,7 @@ class Run:
         from sssgen.harness.evaluate.input_files import read
         from sssgen.harness.evaluate.probes import subject
         from sssgen.harness.evaluate.random_inputs import samples
-        from sssgen.harness.testing.agreement import against_oracle, check_tolerance, known
+        from sssgen.harness.testing.agreement import against_numbers, against_oracle, check_tolerance
 
         content, folder = _read(case.path), [os.path.dirname(case.path)]
         tolerance = check_tolerance(content.get("tolerance", GOAL))
@@ -188,7 +188,7 @@ class Run:
             inputs = samples(chosen, content["samples"], content.get("seed", 0)) | inputs
         fit = fitted(chosen, inputs)
         oracle = run(chosen, fit, get("numpy"))
-        outcome = known(oracle, content.get("outputs", {}), tolerance)
+        outcome = against_numbers(oracle, content.get("outputs", {}), tolerance)
         if outcome.state == "failed":
             return outcome
         outcomes: dict[str, Outcome] = {}

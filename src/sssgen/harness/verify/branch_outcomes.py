@@ -34,7 +34,7 @@ class Branch(NamedTuple):
     """An outcome of a branch, in the text."""
 
     line: int
-    what: str
+    outcome: str
     """`if`, `else`, `? yes`, `: no`, `loop body`, `loop end`."""
     key: tuple[int, bool]
     """The id of its node, and the value of the condition."""
@@ -88,11 +88,13 @@ def branches(module: Module, key: str) -> list[Branch]:
     """The branches of one function, without those whose condition is a constant."""
     function = next(function for function in module.functions if function.key == key)
     constants = {constant.name for constant in module.constants}
-    found: list[Branch] = []
+    outcomes: list[Branch] = []
 
     def add(node: object, condition: Expr | None, yes: str, no: str, span: Span) -> None:
         if condition is not None and not _constant(condition, constants):
-            found.extend([Branch(span.line, what, (id(node), value)) for what, value in ((yes, True), (no, False))])
+            outcomes.extend(
+                [Branch(span.line, outcome, (id(node), value)) for outcome, value in ((yes, True), (no, False))]
+            )
 
     for stmt in statements(function.body or ()):
         if isinstance(stmt, If):
@@ -102,7 +104,7 @@ def branches(module: Module, key: str) -> list[Branch]:
     for part in all_expressions(function.body or ()):
         if isinstance(part, Select):
             add(part, part.condition, "? yes", ": no", part.span)
-    return sorted(found, key=lambda branch: branch.line)
+    return sorted(outcomes, key=lambda branch: branch.line)
 
 
 def _constant(expr: Expr, constants: set[str]) -> bool:

@@ -17,27 +17,35 @@ import numpy as np
 from sssgen.harness.backends import Array
 from sssgen.harness.verify.branch_outcomes import Outcomes, Site
 from sssgen.harness.verify.lane_interpreter import ROUNDS, Program, Run
-from sssgen.harness.verify.plain_inputs import Numbers, Source, as_integers, drawn, joined, suggested, taken
+from sssgen.harness.verify.plain_inputs import (
+    Numbers,
+    Source,
+    as_integers,
+    draw_inputs,
+    joined,
+    select_lanes,
+    suggested,
+)
 from sssgen.ir.types import kind_of
 
 WORK = 60_000
 """How many operations on 2000 lanes a search runs at most, after the first run."""
 SITES, BRACKETS = 64, 3
 """How many comparisons are searched, and from how many pairs of inputs."""
-FEW = 200
+MIN_ROUNDS = 200
 """Inputs that bound loops may be large where the loops still take no more rounds, or no more than twice those of small
 numbers."""
 STEPS = 34
 """Steps of a bisection: a float has 32 bits."""
-AWAY = (1, 2**6, 2**11, 2**16, 2**19)
+BOUNDARY_DISTANCES = (1, 2**6, 2**11, 2**16, 2**19)
 """Distances of further inputs from a boundary, in units in the last place: next to it rounding may decide."""
 CLIMBS, CLIMBERS = 6, 16
 """Rounds of changing inputs that come near, and how many for each comparison."""
-UNDEFINED = 0.05
+UNDEFINED_SHARE = 0.05
 """The largest share of inputs for which the result is undefined."""
-FOUND = 0.5
+SEARCH_SHARE = 0.5
 """The share of inputs that the search chose, those for outcomes included."""
-EACH = 6
+INPUTS_PER_OUTCOME = 6
 """How many inputs are chosen for each outcome."""
 
 
@@ -47,7 +55,7 @@ class Sampled(NamedTuple):
     values: dict[str, Array]
     run: Run
     outcomes: Outcomes
-    drawn: int
+    random_count: int
     """How many of the first lanes were drawn at random; the search found the others."""
 
 
@@ -60,25 +68,25 @@ class Search:
         self.program, self.key, self.sources, self.textures, self.seed = program, key, sources, textures, seed
         self.numbers: Numbers = suggested(program.module)
         self.rng = np.random.default_rng([seed, 1])
-        self.spent = 0.0
+        self.work = 0.0
         self.limit = ROUNDS
 
-    def found(self, samples: int) -> Sampled:
+    def inputs(self, samples: int) -> Sampled:
         """Many inputs, those of the search included."""
-        values = drawn(self.sources, 2 * samples, self.numbers, self.seed)
+        values = draw_inputs(self.sources, 2 * samples, self.numbers, self.seed)
         first = self.run(values)
-        self.limit = max(FEW, 2 * first.run.rounds)
+        self.limit = max(MIN_ROUNDS, 2 * first.run.rounds)
         if any(source.bounds_loops for source in self.sources):
             free = [source._replace(bounds_loops=False) for source in self.sources]
-            large = self.run(drawn(free, samples, self.numbers, self.seed))
-            values = joined([values, taken(large.values, ~large.run.endless)])
+            large = self.run(draw_inputs(free, samples, self.numbers, self.seed))
+            values = joined([values, select_lanes(large.values, ~large.run.endless)])
             first = self.run(values)
-        self.spent = 0.0
+        self.work = 0.0
         parts = [values]
         if first.outcomes.distances:
             parts += [self.boundaries(first), self.nearer(first)]
         parts = [part for part in parts if part]
-        return self.run(joined(parts))._replace(drawn=first.drawn) if len(parts) > 1 else first
+        return self.run(joined(parts))._replace(random_count=first.random_count) if len(parts) > 1 else first
 
     def run(self, values: dict[str, Array]) -> Sampled:
         """Runs inputs."""
@@ -86,7 +94,7 @@ class Search:
         outcomes = Outcomes(lanes)
         run = Run(self.program, lanes, {**self.textures, **values}, outcomes, limit=self.limit)
         run.result(self.key, {**self.textures, **values})
-        self.spent += run.work * (1.0 + lanes / 2000.0) / 2.0
+        self.work += run.work * (1.0 + lanes / 2000.0) / 2.0
         return Sampled(values, run, outcomes, lanes)
 
     def rounds(self, sampled: Sampled, count: int, lanes: int) -> list[dict[str, Array]]:
@@ -94,13 +102,13 @@ class Search:
 
         With several rounds each has four times as many lanes as requested, of which some may be chosen.
         """
-        order = chosen(sampled, max(lanes, 4 * count) if count > 1 else lanes, self.seed)
+        order = select_inputs(sampled, max(lanes, 4 * count) if count > 1 else lanes, self.seed)
         if count == 1 or not len(order):
-            return [taken(sampled.values, order)]
+            return [select_lanes(sampled.values, order)]
         rounds = []
         for number in range(count):
             others = np.resize(np.roll(order, -number * lanes), 4 * lanes)
-            values = taken(sampled.values, others)
+            values = select_lanes(sampled.values, others)
             for source in self.sources:
                 if source.uniform:
                     value = values[source.name]
@@ -127,7 +135,7 @@ class Search:
         near, far = low, high
         for _ in range(STEPS):
             middle = {name: value + (high[name] - value) // 2 for name, value in low.items()}
-            if self.spent > WORK or all((middle[name] == value).all() for name, value in low.items()):
+            if self.work > WORK or all((middle[name] == value).all() for name, value in low.items()):
                 break
             sampled = self.run(self.decoded(middle))
             distances = self.at(sampled, sites)
@@ -135,7 +143,7 @@ class Search:
             low = {name: np.where(under, middle[name], value) for name, value in low.items()}
             high = {name: np.where(under, value, middle[name]) for name, value in high.items()}
         parts = [low, high]
-        for step in AWAY:
+        for step in BOUNDARY_DISTANCES:
             parts.append({name: _towards(value, far[name], step) for name, value in high.items()})
             parts.append({name: _towards(value, near[name], step) for name, value in low.items()})
         return joined([self.decoded(part) for part in parts])
@@ -147,7 +155,7 @@ class Search:
         names = [source.name for source in self.sources]
         sites = [site for site, *_ in starts]
         below, above = (np.array([start[index] for start in starts]) for index in (1, 2))
-        low, high = taken(values, below), taken(values, above)
+        low, high = select_lanes(values, below), select_lanes(values, above)
         if len(names) == 1:
             return sites, low, high
         tried = [self.rng.permutation(len(names))[:6] for _ in starts]
@@ -166,7 +174,7 @@ class Search:
                 else:
                     better = distances < 0.0
                     low = {name: np.where(better, mixed[name], value) for name, value in low.items()}
-            if self.spent > WORK / 2:
+            if self.work > WORK / 2:
                 break
         return sites, low, high
 
@@ -194,10 +202,10 @@ class Search:
                 lanes += [int(lane) for lane in np.resize(order[: min(CLIMBERS, len(reached))], CLIMBERS)]
         if not sites:
             return {}
-        best = taken(first.values, np.array(lanes))
+        best = select_lanes(first.values, np.array(lanes))
         nearest = np.abs(self.at(self.run(best), sites))
         for number in range(CLIMBS):
-            if self.spent > WORK:
+            if self.work > WORK:
                 break
             changed = self.changed(best, number)
             distances = self.at(self.run(changed), sites)
@@ -209,7 +217,7 @@ class Search:
     def changed(self, values: dict[str, Array], number: int) -> dict[str, Array]:
         """Inputs with one source changed: another random one, or a step of any size."""
         lanes = next(value.shape[-1] for value in values.values())
-        fresh = drawn(self.sources, lanes, self.numbers, self.seed + 1000 + number)
+        fresh = draw_inputs(self.sources, lanes, self.numbers, self.seed + 1000 + number)
         chosen = self.rng.integers(0, len(self.sources), lanes)
         coded = self.coded(values)
         result = {}
@@ -262,20 +270,20 @@ def _decoded(code: Array, kind: str) -> Array:
     return floats
 
 
-def chosen(sampled: Sampled, count: int, seed: int) -> Array:
+def select_inputs(sampled: Sampled, count: int, seed: int) -> Array:
     """The lanes of `count` inputs: for each outcome some, then others as they were drawn."""
     rng = np.random.default_rng([seed, 2])
     lanes = sampled.outcomes.lanes
     defined = ~(sampled.run.undefined | sampled.run.endless)
     reached = [*sampled.outcomes.branches.values(), *sampled.outcomes.cases.values()]
-    each = max(1, min(EACH, count // (2 * max(len(reached), 1))))
+    each = max(1, min(INPUTS_PER_OUTCOME, count // (2 * max(len(reached), 1))))
     order = rng.permutation(lanes)
     picked: dict[int, None] = {}
     for mask in sorted(reached, key=lambda mask: int((mask & defined).sum())):
         for lane in order[(mask & defined)[order]][:each]:
             picked[int(lane)] = None
-    found = [int(lane) for lane in order if lane >= sampled.drawn and defined[lane]]
-    picked = dict.fromkeys([*list(picked), *found][: max(len(picked), int(FOUND * count))][:count])
+    search_lanes = [int(lane) for lane in order if lane >= sampled.random_count and defined[lane]]
+    picked = dict.fromkeys([*list(picked), *search_lanes][: max(len(picked), int(SEARCH_SHARE * count))][:count])
     rest = [int(lane) for lane in range(lanes) if defined[lane] and lane not in picked]
     undefined = [int(lane) for lane in np.flatnonzero(sampled.run.undefined & ~sampled.run.endless)]
     room = count - len(picked)
@@ -283,8 +291,8 @@ def chosen(sampled: Sampled, count: int, seed: int) -> Array:
     if not defined.any():
         result = undefined[:count]
     elif len(result) + 0 < count or undefined:
-        few = undefined[: max(0, min(int(UNDEFINED * count), count - len(picked)))]
-        result = [*result[: count - len(few)], *few]
+        extra = undefined[: max(0, min(int(UNDEFINED_SHARE * count), count - len(picked)))]
+        result = [*result[: count - len(extra)], *extra]
     if not result:
         return np.zeros(0, np.int64)
     return np.resize(np.array(result, np.int64), count) if len(result) < count else np.array(result[:count], np.int64)

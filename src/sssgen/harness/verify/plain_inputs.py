@@ -58,7 +58,7 @@ class Source(NamedTuple):
     """A number, vector or matrix among a function's inputs."""
 
     name: str
-    shown: str
+    author_name: str
     """The author's name of it, which `RANGES` may know."""
     type: Type
     bounds_loops: bool = False
@@ -115,9 +115,9 @@ INTEGER_EXTREMES = np.array(
 )
 
 
-def drawn(sources: Sequence[Source], lanes: int, numbers: Numbers, seed: int) -> dict[str, Array]:
+def draw_inputs(sources: Sequence[Source], lanes: int, numbers: Numbers, seed: int) -> dict[str, Array]:
     """`lanes` values of each source, lanes last; floats are exact in float32."""
-    names = " ".join([f"{source.shown} {source.type}" for source in sources])
+    names = " ".join([f"{source.author_name} {source.type}" for source in sources])
     rng = np.random.default_rng([seed, crc32(names.encode())])
     pattern = rng.choice(len(SHARES), lanes, p=SHARES)
     chosen = rng.integers(0, max(len(sources), 1), lanes)
@@ -125,11 +125,11 @@ def drawn(sources: Sequence[Source], lanes: int, numbers: Numbers, seed: int) ->
     values: dict[str, Array] = {}
     for position, source in enumerate(sources):
         shape = (*shape_of(source.type), lanes)
-        values[source.name] = _drawn(source, shape, rng, numbers, (pattern, chosen == position, exponent))
+        values[source.name] = _draw_source(source, shape, rng, numbers, (pattern, chosen == position, exponent))
     return values
 
 
-def _drawn(
+def _draw_source(
     source: Source, shape: tuple[int, ...], rng: np.random.Generator, numbers: Numbers,
     lanes: tuple[Array, Array, Array],
 ) -> Array:  # fmt: skip
@@ -137,7 +137,7 @@ def _drawn(
     kind = kind_of(source.type)
     if kind == "bool":
         return rng.random(shape) < 0.5
-    if kind == "float" and (ends := RANGES.get(source.shown)):
+    if kind == "float" and (ends := RANGES.get(source.author_name)):
         return single(np.where(rng.random(shape) < 0.9, rng.uniform(*ends, shape), _extreme(source, shape, rng)))
     if source.bounds_loops:
         few = rng.integers(-1, LOOPS, shape)
@@ -183,7 +183,7 @@ def _integers(shape: tuple[int, ...], rng: np.random.Generator, exponent: Array)
 
 
 def _extreme(source: Source, shape: tuple[int, ...], rng: np.random.Generator) -> Array:
-    return rng.choice(EXTREMES.get(source.shown, RANGES[source.shown]), shape)
+    return rng.choice(EXTREMES.get(source.author_name, RANGES[source.author_name]), shape)
 
 
 def single(value: Array) -> Array:
@@ -205,7 +205,7 @@ def joined(parts: Iterable[dict[str, Array]]) -> dict[str, Array]:
     return {name: np.concatenate([part[name] for part in parts], axis=-1) for name in parts[0]}
 
 
-def taken(values: dict[str, Array], lanes: Array) -> dict[str, Array]:
+def select_lanes(values: dict[str, Array], lanes: Array) -> dict[str, Array]:
     """Some of the lanes."""
     return {name: value[..., lanes] for name, value in values.items()}
 

@@ -37,7 +37,7 @@ class Leaf(NamedTuple):
     path: str
     """The part that it sets, such as `local_light.color` or `weights[2]`; '' for none."""
     type: Type
-    shown: str
+    author_name: str
     """The same for the author: without the prefix."""
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from sssgen.harness.backends import Array
 from sssgen.harness.evaluate.deviation import GOAL, MARGIN, errors
 from sssgen.harness.verify.lane_interpreter import Program, Run, Value
-from sssgen.harness.verify.plain_inputs import taken
+from sssgen.harness.verify.plain_inputs import select_lanes
 from sssgen.harness.verify.rounded_floats import rounded, seeded, with_error
 from sssgen.targets import numpy_runtime as rt
 
@@ -80,7 +80,7 @@ def noise(
 
     It is infinite where rounding makes an operation undefined.
     """
-    chosen = dict(values) if program.neighbours else taken(dict(values), lanes)
+    chosen = dict(values) if program.neighbours else select_lanes(dict(values), lanes)
     count = next(value.shape[-1] for value in chosen.values())
     repeats = 1 if program.neighbours else max(1, min(draws, CHUNK // max(count, 1)))
     repeated = {name: np.tile(value, repeats) for name, value in chosen.items()}

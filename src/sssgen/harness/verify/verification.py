@@ -29,10 +29,10 @@ from sssgen.harness.backends import call_program as calls
 from sssgen.harness.backends.isolated import Isolated, isolated
 from sssgen.harness.evaluate.deviation import GOAL, errors
 from sssgen.harness.verify.branch_outcomes import Outcomes, branches
-from sssgen.harness.verify.input_search import Search, chosen
+from sssgen.harness.verify.input_search import Search, select_inputs
 from sssgen.harness.verify.lane_interpreter import Program, Run
 from sssgen.harness.verify.loop_inputs import loop_inputs
-from sssgen.harness.verify.plain_inputs import Source, picture, taken
+from sssgen.harness.verify.plain_inputs import Source, picture, select_lanes
 from sssgen.harness.verify.plain_probes import TEXTURES, Leaf, Probe, Probed, probed
 from sssgen.harness.verify.rounding_noise import explained, noise
 from sssgen.harness.verify.stage_variables import MAIN, Plain, plain
@@ -176,7 +176,7 @@ class Case:
         leaves = [leaf for probe in self.case.probes[:1] for leaf in probe.leaves]
         leaves += [Leaf(name, name, param.type, name) for name, param in self.uniforms().items()]
         return {
-            leaf.name: picture(leaf.shown, leaf.type, self.seed)
+            leaf.name: picture(leaf.author_name, leaf.type, self.seed)
             for leaf in leaves
             if isinstance(leaf.type, Sampler) and leaf.type in TEXTURES
         }
@@ -185,18 +185,18 @@ class Case:
         """The inputs of all rounds."""
         bounding = loop_inputs(self.program.module, self.key)
         leaves = [leaf for leaf in self.case.probes[0].leaves if not isinstance(leaf.type, Sampler)]
-        sources = [Source(leaf.name, leaf.shown, leaf.type, leaf.name in bounding) for leaf in leaves]
+        sources = [Source(leaf.name, leaf.author_name, leaf.type, leaf.name in bounding) for leaf in leaves]
         uniforms = [
             Source(name, name, param.type, name in bounding, True)
             for name, param in self.uniforms().items()
             if not isinstance(param.type, Sampler)
         ]
         search = Search(self.program, self.key, [*sources, *uniforms], self.textures, self.seed)
-        sampled = search.found(samples)
+        sampled = search.inputs(samples)
         rounds = ROUNDS if uniforms else 1
         lanes = -(-samples // rounds // 4) * 4  # derivatives need whole quads
         picked = [
-            taken(round_, chosen(search.run(round_), lanes, self.seed)) if rounds > 1 else round_
+            select_lanes(round_, select_inputs(search.run(round_), lanes, self.seed)) if rounds > 1 else round_
             for round_ in search.rounds(sampled, rounds, lanes)
         ]
         return [Inputs(values, self.textures) for values in picked if next(iter(values.values())).shape[-1]]
@@ -244,7 +244,7 @@ class Case:
             undefined.append(run.undefined | run.endless)
             reached |= {key for key, mask in outcomes.branches.items() if mask.any()}
         own = branches(self.program.module, self.case.function.key)
-        never = tuple([f"line {one.line} ({one.what})" for one in own if one.key not in reached])
+        never = tuple([f"line {branch.line} ({branch.outcome})" for branch in own if branch.key not in reached])
         return np.concatenate(undefined), Coverage(len(own) - len(never), len(own), never)
 
     def comparison(
@@ -282,7 +282,7 @@ class Case:
         for inputs in self.inputs:
             count = next(iter(inputs.values.values())).shape[-1]
             if lane < count:
-                names = {leaf.name: leaf.shown for leaf in self.case.probes[0].leaves}
+                names = {leaf.name: leaf.author_name for leaf in self.case.probes[0].leaves}
                 shown = [
                     f"{names.get(name, name)} = {_shown(value[..., lane])}"
                     for name, value in inputs.values.items()

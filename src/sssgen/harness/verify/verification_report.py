@@ -38,7 +38,7 @@ class Comparison(NamedTuple):
 class Coverage(NamedTuple):
     """Which branches of a function the inputs take."""
 
-    taken: int = 0
+    reached: int = 0
     outcomes: int = 0
     """Each `if`, `?:` and loop counts twice."""
     never: tuple[str, ...] = ()
@@ -70,11 +70,13 @@ class Row(NamedTuple):
         cells = [self.comparisons[name].cell if name in self.comparisons else "" for name in names]
         excluded = [f"{self.undefined} undefined"] * bool(self.undefined)
         excluded += [
-            f"{one.excluded} ill-conditioned in {name}" for name, one in self.comparisons.items() if one.excluded
+            f"{comparison.excluded} ill-conditioned in {name}"
+            for name, comparison in self.comparisons.items()
+            if comparison.excluded
         ]
         row = "".join([f"{cell:>9}" for cell in cells])
         lanes = f"{self.lanes}" + (f" but for {', '.join(excluded)}" if excluded else "")
-        branches = f"; branches {self.branches.taken} of {self.branches.outcomes}" if self.branches.outcomes else ""
+        branches = f"; branches {self.branches.reached} of {self.branches.outcomes}" if self.branches.outcomes else ""
         return f"{row}   {lanes}{branches}"
 
     def as_json(self) -> dict[str, Any]:
@@ -84,16 +86,18 @@ class Row(NamedTuple):
             return row | {"not_run": self.reason}
         texts = {
             name: {
-                "deviation": one.deviation if one.deviation is not None and np.isfinite(one.deviation) else None,
-                "ok": one.ok,
-                "excluded": one.excluded,
+                "deviation": comparison.deviation
+                if comparison.deviation is not None and np.isfinite(comparison.deviation)
+                else None,
+                "ok": comparison.ok,
+                "excluded": comparison.excluded,
             }
-            | ({"at": one.at} if one.at else {})
-            | ({"error": one.error} if one.error else {})
-            for name, one in self.comparisons.items()
+            | ({"at": comparison.at} if comparison.at else {})
+            | ({"error": comparison.error} if comparison.error else {})
+            for name, comparison in self.comparisons.items()
         }
-        taken, outcomes, never = self.branches
-        branches = {"outcomes": outcomes, "taken": taken, "never": list(never)}
+        reached, outcomes, never = self.branches
+        branches = {"outcomes": outcomes, "taken": reached, "never": list(never)}
         return row | {"lanes": self.lanes, "undefined": self.undefined, "branches": branches, "texts": texts}
 
 

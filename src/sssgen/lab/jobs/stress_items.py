@@ -54,7 +54,7 @@ def stress_item(
     with _running:
         machines = _machines(names)
         row = stress(specimen, machines, settings)
-        return row, {name: backend.device() for name, backend in machines.here.items()}, machines.missing
+        return row, {name: backend.device() for name, backend in machines.backends.items()}, machines.missing
 
 
 @functools.cache

@@ -90,8 +90,8 @@ class _Converter:
         self.function, self.functions = function, functions
         self.facts = Uniformity(function, constants, functions)
         self.names = set(declared(function)) | constants | {other.name for other in functions.values()}
-        self.made: set[str] = set()
-        """The masks and results that this pass has made."""
+        self.temporaries: set[str] = set()
+        """The masks and results that this pass adds."""
         self.depths = {param.name: 0 if param.direction == "in" else _OUTSIDE for param in function.params}
         """The frame that each variable belongs to."""
         self.frames = [_Frame(None)]
@@ -109,7 +109,7 @@ class _Converter:
         self.block(function.body or ())
         if self.result and not (self.out and isinstance(self.out[-1], Return)):
             self.out.append(Return(Local(function.result, self.result, function.span), function.span))
-        body = renumber(tidy(tuple(self.out), self.made, self.functions), self.made, self.names)
+        body = renumber(tidy(tuple(self.out), self.temporaries, self.functions), self.temporaries, self.names)
         return separate(function._replace(body=settle(body, function, self.functions)))
 
     # Names
@@ -117,7 +117,7 @@ class _Converter:
     def new(self, name: str) -> str:
         name = fresh(name, self.names)
         self.names.add(name)
-        self.made.add(name)
+        self.temporaries.add(name)
         return name
 
     def mask(self, value: Expr, name: str = "mask") -> Mask:

@@ -22,7 +22,7 @@ def own_reads(stmt: Stmt, functions: Functions | None = None) -> Iterable[str]:
 
     With `functions`, what a call only writes does not count as read.
     """
-    found = []
+    names = []
     for expr in expressions(stmt):
         parts = list(subexpressions(expr))
         if isinstance(stmt, Assign) and expr is stmt.target and not stmt.op and isinstance(expr, Local):
@@ -31,8 +31,8 @@ def own_reads(stmt: Stmt, functions: Functions | None = None) -> Iterable[str]:
             params = functions[expr.function].params
             read = [arg for arg, param in zip(expr.args, params, strict=True) if param.direction != "out"]
             parts = [part for arg in read for part in subexpressions(arg)]
-        found += [part.name for part in parts if isinstance(part, Local)]
-    return found
+        names += [part.name for part in parts if isinstance(part, Local)]
+    return names
 
 
 def reads_of(block: Block, functions: Functions | None = None) -> list[str]:

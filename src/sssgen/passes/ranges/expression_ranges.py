@@ -115,7 +115,7 @@ class ExpressionRanges(CallRanges):
         if op == "+":
             return a + b
         # a compiler may fuse a product into the sum, which then is not the rounded product that was compared
-        products = any(self.numbers.definitions[one][0] in ("*", "squares") for one in (m, n))
+        products = any(self.numbers.definitions[number][0] in ("*", "squares") for number in (m, n))
         fused = self.format.epsilon * (a.size + b.size) if products else 0.0
         if m == n:
             return Range(-fused, fused)
@@ -141,8 +141,8 @@ class ExpressionRanges(CallRanges):
                 vectors.total_length(left.length, right.length), 0.0, slack * (left.length.high + right.length.high)
             )
         if op == "*" and 1 in (len(left.parts), len(right.parts)) and len(left.parts) != len(right.parts):
-            one, vector = (left, right) if len(left.parts) == 1 else (right, left)
-            scale = length_of(one.parts)
+            scalar, vector = (left, right) if len(left.parts) == 1 else (right, left)
+            scale = length_of(scalar.parts)
             return widened(scale * vector.length, 8.0 * self.format.epsilon) if vector.length.high < INF else ANY
         return ANY
 
@@ -191,7 +191,7 @@ class ExpressionRanges(CallRanges):
             elif node.op == ">>" and b.low == b.high and 0.0 <= b.low < 32.0 and a.low >= 0.0:
                 part = Range(float(int(a.low) >> int(b.low)), float(int(a.high) >> int(b.low)))
             elif node.op == "&" and max(a.low, b.low) >= 0.0:  # one of them masks the sign
-                part = Range(0.0, min(one.high for one in (a, b) if one.low >= 0.0))
+                part = Range(0.0, min(factor.high for factor in (a, b) if factor.low >= 0.0))
             parts.append(part)
             numbers.append(self.numbers.fresh())
         return self.computed(node, parts, numbers)

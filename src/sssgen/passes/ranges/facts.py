@@ -77,9 +77,9 @@ class Numbers:
         return Sum(terms, left_sum.constant - right_sum.constant, left_sum.slack + right_sum.slack)
 
 
-def _added(one: Terms, two: Terms, sign: float) -> Terms:
-    factors = dict(one)
-    for number, factor in two:
+def _added(first: Terms, second: Terms, sign: float) -> Terms:
+    factors = dict(first)
+    for number, factor in second:
         factors[number] = factors.get(number, 0.0) + sign * factor
     return tuple(sorted((number, factor) for number, factor in factors.items() if factor))
 

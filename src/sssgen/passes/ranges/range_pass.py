@@ -161,7 +161,7 @@ class RangeAnalysis(CallSummaries):
         """A function's result: a quantity is kept in its range."""
         value = self.expr(expr)
         quantity = self.frames[-1].function.quantity
-        contract = contracts.made(quantity, None, self.format) if kind_of(expr.type) == "float" else None
+        contract = contracts.of_result(quantity, None, self.format) if kind_of(expr.type) == "float" else None
         return value if contract is None else self.bounded(expr, value, quantity, contract)
 
     def assign(self, stmt: ir.Assign) -> None:
@@ -188,7 +188,7 @@ class RangeAnalysis(CallSummaries):
 
     def output_contract(self, param: ir.Param) -> Contract | None:
         """The contract that an out parameter is kept to."""
-        return contracts.made(param.quantity, param if self.chained else None, self.format)
+        return contracts.of_result(param.quantity, param if self.chained else None, self.format)
 
     def compound_of(self, stmt: ir.Assign) -> ir.Binary:
         """The operation of `target op= value`, the same node each time."""

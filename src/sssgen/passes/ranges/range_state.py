@@ -162,32 +162,32 @@ class AnalysisState:
 
     # Joins
 
-    def joined(self, one: Value, two: Value, at_one: Facts, at_two: Facts) -> Value:
+    def joined(self, first: Value, second: Value, first_facts: Facts, second_facts: Facts) -> Value:
         """A value that comes from either of two ways."""
-        if one is two:
-            return one
+        if first is second:
+            return first
         parts, numbers = [], []
-        for a, b, m, n in zip(one.parts, two.parts, one.numbers, two.numbers, strict=True):
+        for a, b, m, n in zip(first.parts, second.parts, first.numbers, second.numbers, strict=True):
             if m == n:
                 numbers.append(m)
                 parts.append(a.joined(b))
                 continue
             numbers.append(self.numbers.fresh())
-            a = a.met(at_one.ranges[m]) if m in at_one.ranges else a
-            b = b.met(at_two.ranges[n]) if n in at_two.ranges else b
+            a = a.met(first_facts.ranges[m]) if m in first_facts.ranges else a
+            b = b.met(second_facts.ranges[n]) if n in second_facts.ranges else b
             parts.append(a.joined(b))
-        length = one.length.joined(two.length)
-        return Value(tuple(parts), tuple(numbers), length.met(length_of(parts)) if parts else length, one.texel)
+        length = first.length.joined(second.length)
+        return Value(tuple(parts), tuple(numbers), length.met(length_of(parts)) if parts else length, first.texel)
 
-    def join(self, one: State, two: State) -> State:
-        if one is two:
-            return one
+    def join(self, first: State, second: State) -> State:
+        if first is second:
+            return first
         env = {  # what has another number of parts is a variable of the same name in another block
-            name: self.joined(value, two.env[name], one.facts, two.facts)
-            for name, value in one.env.items()
-            if name in two.env and len(two.env[name].parts) == len(value.parts)
+            name: self.joined(value, second.env[name], first.facts, second.facts)
+            for name, value in first.env.items()
+            if name in second.env and len(second.env[name].parts) == len(value.parts)
         }
-        return State(env, one.facts.joined(two.facts))
+        return State(env, first.facts.joined(second.facts))
 
     def join_all(self, states: Iterable[State | None]) -> State | None:
         joined: State | None = None

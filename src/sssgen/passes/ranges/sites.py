@@ -35,7 +35,7 @@ class Site(NamedTuple):
     """One operation with a domain."""
 
     node: ir.Expr
-    what: str
+    operation: str
     """The operator or builtin, or `overflow`, `texel`, a quantity's name, `int`, `index`."""
     proven: bool
     guard: Guard
@@ -62,10 +62,10 @@ class Site(NamedTuple):
         return f"{span.file}:{span.line}:{span.column}"
 
     @property
-    def found(self) -> str:
+    def range_text(self) -> str:
         """The ranges, for people."""
         if self.guard.replaces == "result" or not self.args:
-            return f"{_shown(self.args[0])}" if self.args and self.what != "texel" else ""
+            return f"{_shown(self.args[0])}" if self.args and self.operation != "texel" else ""
         return ", ".join([f"{letter} in {_shown(arg)}" for letter, arg in zip("xyz", self.args, strict=False)])
 
 
@@ -77,7 +77,7 @@ def _shown(range: Range) -> str:
 def report(sites: Sequence[Site], guarded: Sequence[Site]) -> dict[str, Any]:
     """For the reflection: how many sites are proven safe, and each site that has a guard."""
     rows = [
-        {"at": site.place, "operation": site.what, "reason": site.guard.problem, "found": site.found}
+        {"at": site.place, "operation": site.operation, "reason": site.guard.problem, "found": site.range_text}
         for site in guarded
     ]
     return {"proven": sum(site.proven for site in sites), "guarded": rows}

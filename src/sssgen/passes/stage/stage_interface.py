@@ -123,7 +123,7 @@ def _slots(variables: Sequence[Variable]) -> tuple[Slot, ...]:
     numbered = [variable for variable in variables if not variable.builtin or variable.builtin in COLORS]
     stated = [variable._replace(location=0) if variable.builtin in COLORS else variable for variable in numbered]
     placed = locations(stated, {}, by_name=False)
-    return _in_order(variables, [slot for one in numbered for slot in _slots_of(one, placed[one.name])])
+    return _in_order(variables, [slot for variable in numbered for slot in _slots_of(variable, placed[variable.name])])
 
 
 def _matched_slots(variables: Sequence[Variable], kind: str, matching: Matching) -> tuple[Slot, ...]:

@@ -62,11 +62,11 @@ def _parts(variable: Variable, type_: Type, path: tuple[int, ...]) -> list[Part]
     return [part for index in range(count) for part in _parts(variable, element, (*path, index))]
 
 
-def output_of(given: Variable, outputs: Sequence[Variable]) -> Variable | None:
+def output_of(input_: Variable, outputs: Sequence[Variable]) -> Variable | None:
     """The output of the vertex shader that a fragment shader's input receives."""
     for output in outputs:
-        same = output.name == given.name if given.location < 0 else output.location == given.location
-        if same and (output.location < 0) == (given.location < 0):
+        matches = output.name == input_.name if input_.location < 0 else output.location == input_.location
+        if matches and (output.location < 0) == (input_.location < 0):
             return output
     return None
 
@@ -75,10 +75,10 @@ def interpolated_alike(vertex: Module, fragment: Module) -> Module:
     """The vertex shader with the interpolation of the fragment shader, which decides on it in GLSL 4.40."""
     words = {}
     outputs = varyings(vertex, "vertex")
-    for given in varyings(fragment, "fragment"):
-        output = output_of(given, outputs)
+    for input_ in varyings(fragment, "fragment"):
+        output = output_of(input_, outputs)
         if output is not None:
-            words[output.name] = given.interpolation
+            words[output.name] = input_.interpolation
     variables = [
         variable._replace(interpolation=words.get(variable.name, variable.interpolation))
         for variable in vertex.variables
@@ -91,13 +91,13 @@ def mismatches(vertex: Module, fragment: Module) -> list[tuple[str, Span]]:
     outputs = varyings(vertex, "vertex")
     read = set[str]().union(*[mentions(function)[0] for function in fragment.functions])
     wrong = []
-    for given in varyings(fragment, "fragment"):
-        output = output_of(given, outputs)
-        if output is None and given.name in read:
-            message = f"the vertex shader does not write '{given.name}', which the fragment shader reads"
-            wrong.append((message, given.span))
-        elif output is not None and output.type != given.type:
-            written, expected = (with_article(spell(variable.type)) for variable in (output, given))
-            message = f"the vertex shader writes '{given.name}' as {written}, but the fragment shader reads {expected}"
-            wrong.append((message, given.span))
+    for input_ in varyings(fragment, "fragment"):
+        output = output_of(input_, outputs)
+        if output is None and input_.name in read:
+            message = f"the vertex shader does not write '{input_.name}', which the fragment shader reads"
+            wrong.append((message, input_.span))
+        elif output is not None and output.type != input_.type:
+            written, expected = (with_article(spell(variable.type)) for variable in (output, input_))
+            message = f"the vertex shader writes '{input_.name}' as {written}, but the fragment shader reads {expected}"
+            wrong.append((message, input_.span))
     return wrong

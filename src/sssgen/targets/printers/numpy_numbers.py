@@ -131,7 +131,7 @@ _STEPPED = 1 << 30
 
 def _steppers(function: ir.Function) -> set[str]:
     """The int variables that start from small literals and only change by small ones."""
-    found = {stmt.name for stmt in statements(function.body or ()) if isinstance(stmt, ir.Declare) and stmt.type == INT}
+    names = {stmt.name for stmt in statements(function.body or ()) if isinstance(stmt, ir.Declare) and stmt.type == INT}
 
     def small(expr: ir.Expr, name: str, largest: int) -> bool:
         if isinstance(expr, ir.Select):
@@ -144,15 +144,15 @@ def _steppers(function: ir.Function) -> set[str]:
 
     for stmt in statements(function.body or ()):
         if isinstance(stmt, ir.Declare) and stmt.value is not None and not small(stmt.value, stmt.name, 1 << 20):
-            found.discard(stmt.name)
+            names.discard(stmt.name)
         elif isinstance(stmt, ir.Assign) and isinstance(stmt.target, ir.Local):
             name = stmt.target.name
             if stmt.op not in ("", "+", "-") or not small(stmt.value, name, 256 if stmt.op else 1 << 20):
-                found.discard(name)
+                names.discard(name)
         for expr in expressions(stmt):
             if isinstance(expr, ir.Call):
-                found -= {arg.name for arg in expr.args if isinstance(arg, ir.Local)}
-    return found
+                names -= {arg.name for arg in expr.args if isinstance(arg, ir.Local)}
+    return names
 
 
 def nonzero(expr: ir.Expr) -> bool:

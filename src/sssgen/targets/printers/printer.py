@@ -294,8 +294,8 @@ class Printer:
             return self.declare(stmt)
         if isinstance(stmt, ir.Assign):
             target = self.target_of(stmt.target)
-            one = isinstance(stmt.value, ir.Literal) and stmt.value.value == 1 and stmt.value.type in (INT, UINT)
-            if one and stmt.op in ("+", "-") and isinstance(stmt.target.type, Scalar):
+            is_one = isinstance(stmt.value, ir.Literal) and stmt.value.value == 1 and stmt.value.type in (INT, UINT)
+            if is_one and stmt.op in ("+", "-") and isinstance(stmt.target.type, Scalar):
                 return f"{target}{stmt.op * 2}"
             return f"{target} {stmt.op}= {self.expr(stmt.value)}"
         if isinstance(stmt, ir.Return):

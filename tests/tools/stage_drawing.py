@@ -29,7 +29,7 @@ def module_of(text: str, name: str) -> Module:
     return load_glsl_text(text, name).module
 
 
-def drawn(vertex: str, fragment: str, backend: Backend, together: bool = False) -> Any:
+def draw_stages(vertex: str, fragment: str, backend: Backend, together: bool = False) -> Any:
     """The colour of the first pixel; `together`: each stage is translated with the other one."""
     modules = module_of(vertex, "a.vert"), module_of(fragment, "a.frag")
     partners = modules[::-1] if together else (None, None)
