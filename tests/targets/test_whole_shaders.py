@@ -64,7 +64,7 @@ def test_glsl_is_unchanged() -> None:
 
 def test_unsupported_stage_inputs_are_refused() -> None:
     point = 'variable in vec2 gl_PointCoord [builtin("gl_PointCoord")]\n' + OLD
-    with pytest.raises(SssgenError, match="is given no gl_PointCoord"):
+    with pytest.raises(SssgenError, match="has no gl_PointCoord"):
         transpile(read_module(point), "wgsl", "x", keep=True)
     function = "function float f() {\n    set $g *= 2.0;\n    return $g;\n}\n"
     loose = f"uniform float u = (1.0)\nvariable private float g = $u\n{function}"

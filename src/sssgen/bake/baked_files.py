@@ -113,7 +113,7 @@ def _check_place(path: str) -> None:
     while folder and not os.path.exists(folder):
         folder = os.path.dirname(folder)
     if folder and not os.path.isdir(folder):
-        raise failure("cannot write the file: this is not a folder", "choose another one, with -o", posix(folder))
+        raise failure("cannot write the file: this is not a folder", "choose another folder with -o", posix(folder))
 
 
 def _write(path: str, data: bytes, facts: Mapping[str, Any], beside: Mapping[str, str] | None = None) -> list[str]:

@@ -63,7 +63,7 @@ def _add_output(parser: ArgumentParser, help: str) -> None:
 
 
 def _add_size(parser: ArgumentParser) -> None:
-    parser.add_argument("--size", default="512", metavar="N|WxH", help="of the map, in texels (default: 512)")
+    parser.add_argument("--size", default="512", metavar="N|WxH", help="the size of the map in texels (default: 512)")
 
 
 def _add_bits(parser: ArgumentParser) -> None:
@@ -300,8 +300,8 @@ KINDS = {
     ),
     "thickness": Kind(
         "the thickness of a body below each texel of its texture coordinates",
-        "The exact lengths inside the mesh along rays. Bind it to thickness_texture of thickness_map, or, for\n"
-        "--mode transmittance, to transmittance_texture of transmittance_map.",
+        "The map has the exact lengths inside the mesh along rays. Bind it to thickness_texture of thickness_map,\n"
+        "or, for --mode transmittance, to transmittance_texture of transmittance_map.",
         _thickness_options,
         _thickness,
     ),

@@ -22,7 +22,7 @@ def add_options(parser: ArgumentParser) -> None:
         "examples:\n"
         "  sssgen chart cube torus -o charts\n"
         "  sssgen chart my/scene.toml --role thickness --json\n"
-        "[medium] of a scene states the medium of its body. Without a scene: all of examples/lab."
+        "[medium] of a scene states the medium of its body. Without a scene, it charts all of examples/lab."
     )
     parser.add_argument("SCENE", nargs="*", help="a scene's .toml file, or one of examples/lab")
     parser.add_argument("-o", "--output", metavar="DIR", help="the folder for PNG, SVG, HTML, CSV and JSON")
@@ -53,7 +53,9 @@ def run(arguments: Namespace) -> int:
     names = [scene.name for scene in scenes]
     for name in names:
         if names.count(name) > 1:
-            raise failure(f"two scenes are called '{name}'", "a scene is called as its file: rename one")
+            raise failure(
+                f"two scenes are called '{name}'", "a scene has the name of its file: rename one of the files"
+            )
     record = chart.chart_record(scenes, settings)
     if arguments.cost == "gpu":
         from sssgen.lab.gpu.chart_times import by_gpu, with_gpu_cost

@@ -28,9 +28,9 @@ def add_options(parser: ArgumentParser) -> None:
         "-t",
         metavar="T,T|all",
         action="append",
-        help="only these targets; the language of a shader whose file name does not determine it",
+        help="check only these targets; also the language of a shader whose file name does not determine it",
     )
-    parser.add_argument("--compiler", metavar="NAME", action="append", help="only this compiler; repeatable")
+    parser.add_argument("--compiler", metavar="NAME", action="append", help="use only this compiler; repeatable")
     parser.add_argument("--unity-includes", metavar="DIR", help="the folder of Unity's own headers")
 
 

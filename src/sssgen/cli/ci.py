@@ -24,7 +24,12 @@ def add_options(parser: ArgumentParser) -> None:
     )
     add = parser.add_argument
     add("DIR", help="the folder of your materials and scenes")
-    add("--backend", "-b", metavar="NAME", help="one or several, with commas (default: gl for scenes, all for numbers)")
+    add(
+        "--backend",
+        "-b",
+        metavar="NAME",
+        help="one or several back ends, separated by commas (default: gl for scenes, all for numbers)",
+    )
     add("--update", action="store_true", help="write the golden pictures instead of comparing with them")
     add("--flip", type=float, metavar="X", help="the largest mean of FLIP that passes (default: 0.005)")
     add("--junit", metavar="FILE", help="write a report in JUnit's XML")

@@ -37,7 +37,7 @@ def add_options(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--trace", action="store_true", help="also write the IR after each pass to DIR/NAME.TARGET.trace/NN-PASS.ir"
     )
-    parser.add_argument("--templates", metavar="DIR", help="a folder of templates that take precedence over ours")
+    parser.add_argument("--templates", metavar="DIR", help="a folder of templates that replace those of sssgen")
 
 
 def run(arguments: Namespace) -> int:

@@ -29,7 +29,7 @@ def add_options(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("TECHNIQUE", help="a name from `sssgen list techniques`, a .sss file, or FILE:FUNCTION")
     add("--inputs", "-i", metavar="FILE", help="the inputs, as JSON; - reads them from the standard input")
-    add("--samples", type=int, metavar="N", help="draw N random values, in its range, for each input without a value")
+    add("--samples", type=int, metavar="N", help="for each input without a value, draw N random values in its range")
     add_seed(parser, "the seed of the random inputs")
     add(
         "--backend", "-b", metavar="NAME", default="numpy",
@@ -37,7 +37,11 @@ def add_options(parser: ArgumentParser) -> None:
     )  # fmt: skip
     add("--bind", action="append", default=[], metavar="SLOT=FUNCTION", help="a function for a slot, or FILE:FUNCTION")
     add_guards(parser)
-    add("--precision", choices=("f64", "f32", "f16"), help="numpy's precision (default: f64); webgpu has f16, too")
+    add(
+        "--precision",
+        choices=("f64", "f32", "f16"),
+        help="the precision of numpy (default: f64); f16 also applies to webgpu",
+    )
 
 
 def run(arguments: Namespace) -> int:

@@ -12,11 +12,14 @@ from sssgen.support.diagnostics import Diagnostic, SssgenError
 def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
         "examples:\n  sssgen lint ice\n  sssgen lint mine.glsl --json\n"
-        "Exit status 1: a plain function may fail. What is emitted for a material has guards."
+        "Exit status 1: an operation of a plain function may fail. The shaders that emit writes for materials have "
+        "guards."
     )
     parser.add_argument("NAME", nargs="+", help="a technique, a material's .toml file, an example, or a GLSL file")
-    parser.add_argument("--all", action="store_true", help="list the operations that are proven safe, too")
-    parser.add_argument("--no-examples", action="store_true", help="do not search for inputs that fail: faster")
+    parser.add_argument("--all", action="store_true", help="also list the operations that are proven safe")
+    parser.add_argument(
+        "--no-examples", action="store_true", help="do not search for inputs that fail, which is faster"
+    )
 
 
 def run(arguments: Namespace) -> int:

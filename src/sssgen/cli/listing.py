@@ -17,7 +17,7 @@ LISTS = ("techniques", "targets", "materials")
 
 def add_options(parser: ArgumentParser) -> None:
     parser.add_argument("KIND", choices=LISTS, help="techniques, targets or materials")
-    parser.add_argument("--role", metavar="R", help="only the techniques of this role")
+    parser.add_argument("--role", metavar="R", help="list only the techniques of this role")
 
 
 def run(arguments: Namespace) -> int:

@@ -61,7 +61,7 @@ def add_workers(parser: argparse.ArgumentParser) -> None:
     """Where the command's work items run: `--processes` and `--scheduler`."""
     parser.add_argument("--processes", type=_processes, metavar="N", help="distribute the work over N processes")
     parser.add_argument(
-        "--scheduler", default="", metavar="ADDRESS", help="distribute it over a Dask cluster: tcp://HOST:8786"
+        "--scheduler", default="", metavar="ADDRESS", help="distribute the work over a Dask cluster: tcp://HOST:8786"
     )
 
 

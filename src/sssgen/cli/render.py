@@ -24,8 +24,8 @@ def add_options(parser: ArgumentParser) -> None:
     add("-o", "--output", metavar="FILE", help="a .png or .exr file (default: SCENE's name with .png)")
     add("--backend", "-b", metavar="NAME", default=PREFERRED, help=f"{', '.join(BACKENDS)} (default: {PREFERRED})")
     add_guards(parser)
-    add("--size", metavar="WxH", help="in pixels (default: the scene's size)")
-    add("--time", type=float, metavar="T", help="in seconds (default: the scene's time)")
+    add("--size", metavar="WxH", help="the size in pixels (default: the scene's size)")
+    add("--time", type=float, metavar="T", help="the time in seconds (default: the scene's time)")
     add(
         "--compare",
         nargs=2,

@@ -28,11 +28,11 @@ def add_options(parser: ArgumentParser) -> None:
         "examples:\n"
         "  sssgen stress lobe_normalized\n"
         "  sssgen stress wax.toml --backend gl,webgpu --samples 1000000 -o stress.md\n"
-        "Without a name: every technique of the library except the published baselines."
+        "Without a name, it tests every technique of the library except the published baselines."
     )
     add = parser.add_argument
     add("NAME", nargs="*", help="a technique, a .sss file, a material's .toml file, or an example")
-    add("--backend", "-b", metavar="NAME", help=f"default: {','.join(DEFAULT)}; one, several, or all")
+    add("--backend", "-b", metavar="NAME", help=f"one back end, several, or all (default: {','.join(DEFAULT)})")
     add("--samples", type=int, default=10_000, metavar="N", help="the number of random inputs (default: 10000)")
     add_seed(parser, "the seed of the random inputs")
     add(
@@ -40,9 +40,9 @@ def add_options(parser: ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME",
-        help="only this row of the table of dangerous inputs; repeatable",
+        help="run only this row of the table of dangerous inputs; repeatable",
     )
-    add("--precision", choices=("f32", "f16"), help="f16: numpy and webgpu in half precision (default: f32)")
+    add("--precision", choices=("f32", "f16"), help="f16 runs numpy and webgpu in half precision (default: f32)")
     add_guards(parser)
     add("-o", "--output", metavar="REPORT", help="a .md or .json file to write the report to")
     add_workers(parser)

@@ -57,7 +57,7 @@ def add_options(parser: ArgumentParser) -> None:
         "--with",
         dest="partner",
         metavar="FILE",
-        help="the other stage: what the vertex shader passes to the fragment shader then agrees in both",
+        help="the file of the other stage, so that both stages agree on the values between them",
     )
     add("--prune", action="store_true", help="omit functions that the file itself never calls")
     add_guards(parser, default="none")

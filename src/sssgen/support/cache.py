@@ -1,6 +1,6 @@
-"""The cache folder. It holds what one process computed and another one can use; losing it costs time only.
+"""The cache folder. It contains results that another process can use; if it is lost, they are computed again.
 
-Three things are in it, and each one is there because a measurement asked for it (docs/architecture.md, Speed): the
+It contains three things, each for a measured gain of time (docs/architecture.md, Speed): the
 checked IR of each source file, the program of each material before its values are filled in, and the files of each
 `sssgen emit` command. Jinja keeps its compiled templates in the same folder.
 

@@ -136,5 +136,5 @@ def _advice(error: OSError) -> str:
     if isinstance(error, PermissionError):
         return "choose a folder with write permission, with -o"
     if isinstance(error, FileExistsError | NotADirectoryError):
-        return "a file has the name of the folder: choose another one, with -o"
+        return "a file has the name of the folder: choose another folder with -o"
     return ""

@@ -128,9 +128,13 @@ def _within(shader: Shader, messages: list[Message]) -> list[Message]:
 def _headers(folder: str) -> str:
     path = Path(folder).expanduser()
     if not path.is_dir():
-        raise failure("no such folder of Unity's headers", f"it holds {unity.HEADERS}", posix(folder))
+        raise failure(
+            "no such folder of Unity's headers", f"name the folder that contains {unity.HEADERS}", posix(folder)
+        )
     if not unity.holds_headers(path):
-        raise failure("the folder has none of Unity's headers", f"it holds {unity.HEADERS}", posix(folder))
+        raise failure(
+            "the folder has none of Unity's headers", f"name the folder that contains {unity.HEADERS}", posix(folder)
+        )
     return str(path.resolve())
 
 

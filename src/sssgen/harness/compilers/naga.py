@@ -50,7 +50,7 @@ def find() -> Naga:
     try:
         adapter = wgpu.gpu.request_adapter_sync(power_preference="low-power")
         if str(adapter.info["backend_type"]).lower().startswith("opengl"):  # it lacks what WebGPU promises
-            raise CompilerMissing("only OpenGL is there")
+            raise CompilerMissing("only OpenGL is available")
         features: Any = sorted({"shader-f16"} & set(adapter.features))
         return Naga(adapter.request_device_sync(required_features=features), str(adapter.info["device"]))
     except Exception as error:

@@ -1,4 +1,4 @@
-"""Inputs that show why a guard is there: with NaN in place of what the guard would change, the result is NaN.
+"""Inputs that show why a guard is needed: with NaN in place of what the guard would change, the result is NaN.
 
 A shading language may compute anything outside a builtin's domain; NaN represents all of it. A guard that no input of
 the stress test reaches is reported as unknown.

@@ -1,7 +1,7 @@
 """The candidates of a chart: every technique of the library at several settings, and the published baselines.
 
 The settings are the technique's counts (steps, taps, rays), which trade speed for accuracy, over their `hint_range`;
-its other parameters are fitted. A new technique of the library is charted without further changes.
+its other parameters are fitted. Charts include a new technique of the library without further changes.
 """
 
 from __future__ import annotations
@@ -197,7 +197,7 @@ def quantity_read(technique: Technique) -> str:
 
 
 def of_role(role: str) -> list[Technique]:
-    """The charted techniques of a role, the published ones last."""
+    """The techniques of a role that charts show; the published techniques are last."""
     loaded = [library.load(name) for name in library.index()]
     techniques = [technique for technique in loaded if technique.role == role and not technique.attributes.uncharted]
     return sorted(techniques, key=lambda technique: is_published(technique))

@@ -108,7 +108,7 @@ def interface(
     outputs = [variable for variable in module.variables if variable.storage == "out"]
     for variable in inputs:
         if variable.builtin and variable.builtin not in builtins:
-            raise Unsupported(f"a {kind} shader of this target is given no {variable.builtin}", variable.span)
+            raise Unsupported(f"a {kind} shader of this target has no {variable.builtin}", variable.span)
     outputs = [
         output for output in outputs if not output.builtin or output.builtin in builtins or output.builtin in COLORS
     ]

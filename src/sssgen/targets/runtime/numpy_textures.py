@@ -62,7 +62,7 @@ class Texture:
         self.layers, self.kind, self.compare = layers, kind, compare
         self.dim = dim or {3: "2D", 4: "3D"}.get(data.ndim - layers, "")
         if data.ndim - layers != {"2D": 3, "3D": 4, "Cube": 4}.get(self.dim) or not 1 <= data.shape[-1] <= 4:
-            raise ValueError(f"data of shape {data.shape} is no {self.dim or 'texture'}: see Texture")
+            raise ValueError(f"data of shape {data.shape} does not fit a {self.dim or 'texture'}: see Texture")
         if self.dim == "Cube" and (data.shape[-4] != 6 or data.shape[-3] != data.shape[-2]):
             raise ValueError(f"a cube has 6 square faces, not {data.shape[:-1]}")
         if filter not in ("linear", "nearest") or wrap not in ("repeat", "clamp", "mirror"):
