@@ -45,8 +45,8 @@ def evaluations(count: int) -> None:
     for backend in backends.available():
         cells = [cell(backend, name, count) for name in TECHNIQUES]
         print(f"{backend.name:14} " + "  ".join(f"{text:>34}" for text in cells))
-    for name, how in backends.missing():
-        print(f"{name:14} missing: {how}")
+    for name, instruction in backends.missing():
+        print(f"{name:14} missing: {instruction}")
 
 
 def cell(backend: backends.Backend, name: str, count: int) -> str:

@@ -53,8 +53,8 @@ def _fault(evidence: Witness, site: Site, backend: Backend) -> str:
     """The fault of the witness's inputs without the guard, compared with the result with it."""
     subject, change = evidence.specimen.subject, only(site.operation, site.place, "drop")
     try:
-        right = evaluated(subject, evidence.more, backend, "auto")
-        got = evaluated(subject, evidence.more, backend, "auto", change)
+        right = evaluated(subject, evidence.failing_inputs, backend, "auto")
+        got = evaluated(subject, evidence.failing_inputs, backend, "auto", change)
     except SssgenError as error:
         return error.diagnostics[0].message
     values = [(got[name], right[name]) for name in right if right[name].dtype.kind == "f"]

@@ -68,8 +68,8 @@ def _passed(report: Report, shaders: list[Shader]) -> bool:
 def _print(report: Report, shaders: list[Shader]) -> None:
     for name, version in report.versions.items():
         print(f"{name:8} {visible(version)}")
-    for name, how in report.missing.items():
-        print(f"{name:8} not found: {visible(how)}")
+    for name, instruction in report.missing.items():
+        print(f"{name:8} not found: {visible(instruction)}")
     print()
     cells: dict[tuple[str, str], list[Result]] = {}
     for result in report.results:

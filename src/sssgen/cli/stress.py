@@ -114,8 +114,8 @@ def _stressed(subjects: list[Specimen], names: list[str], settings: Settings) ->
         rows = []
         for index, specimen in enumerate(subjects):
 
-            def report(what: str, done: int, index: int = index, title: str = specimen.title) -> None:
-                progress(index + done / settings.samples, len(subjects), f"{title}: {what}")
+            def report(task: str, done: int, index: int = index, title: str = specimen.title) -> None:
+                progress(index + done / settings.samples, len(subjects), f"{title}: {task}")
 
             rows.append(stress(specimen, machines, settings, report))
         devices = {name: backend.device() for name, backend in machines.backends.items()}

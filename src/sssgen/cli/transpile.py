@@ -177,7 +177,7 @@ def _translate(
         if trace is not None:
             trace.write(os.path.dirname(arguments.output) or ".")
     renamed = [
-        {"from": old, "to": new, "why": _why(old, target)}
+        {"from": old, "to": new, "why": _rename_reason(old, target)}
         for old, new in compiled.reflection.get("renames", {}).items()
         if _concerns(old, new, loaded, compiled.files)
     ]
@@ -207,7 +207,7 @@ def _bare(old: str) -> str:
     return old.partition("(")[0].rpartition(".")[2]
 
 
-def _why(old: str, target: str) -> str:
+def _rename_reason(old: str, target: str) -> str:
     """Why a name was changed, in a few words."""
     bare = _bare(old)
     if "(" in old:

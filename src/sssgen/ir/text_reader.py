@@ -200,13 +200,13 @@ class _Reader:
                 doc = [self.string()] if self.take("doc") else []
                 while self.tokens[self.next][0] == "text":
                     doc.append(self.string())
-                what = self.kind("name")
-                if what not in declarations:
-                    raise self.fail(f"a declaration is expected here, not '{what}'", 1)
-                read = getattr(self, what)
-                declarations[what].append(read("\n".join(doc), self.span()))
-                if what == "function" and not self.take("slot"):
-                    bodies[len(declarations[what]) - 1] = self.next
+                keyword = self.kind("name")
+                if keyword not in declarations:
+                    raise self.fail(f"a declaration is expected here, not '{keyword}'", 1)
+                read = getattr(self, keyword)
+                declarations[keyword].append(read("\n".join(doc), self.span()))
+                if keyword == "function" and not self.take("slot"):
+                    bodies[len(declarations[keyword]) - 1] = self.next
                     self.skip_block()
             functions: list[Function] = declarations["function"]  # type: ignore[assignment]  # what `function` returns
             for index, start in bodies.items():
@@ -306,39 +306,39 @@ class _Reader:
         return tuple(stmts)
 
     def stmt(self) -> Stmt:
-        what = self.name()
+        keyword = self.name()
         span = self.span()
         stmt: Stmt
-        if what == "if":
+        if keyword == "if":
             condition = self.expr()
             self.expect("then")
             then = self.block()
             return If(condition, then, self.block() if self.take("else") else (), span)
-        if what == "while":
+        if keyword == "while":
             condition = self.expr()
             self.expect("do")
             return While(condition, self.block(), span)
-        if what == "for":
+        if keyword == "for":
             return self.loop(span)
-        if what == "var":
+        if keyword == "var":
             type_, name = self.type(), self.name()
             stmt = Declare(name, type_, self.expr() if self.take("=") else None, span)
             self.locals[name] = type_
-        elif what == "set":
+        elif keyword == "set":
             target, op = self.expr(), self.kind("op")
             if op[-1] != "=" or op in ("==", "!=", "<=", ">="):
                 raise self.fail(f"an assignment is expected here, not '{op}'", 1)
             stmt = Assign(target, op[:-1], self.expr(), span)
-        elif what == "call":
+        elif keyword == "call":
             stmt = Evaluate(self.expr(), span)
-        elif what == "assume":
+        elif keyword == "assume":
             stmt = Assume(self.expr(), span)
-        elif what == "return":
+        elif keyword == "return":
             stmt = Return(None if self.peek() == ";" else self.expr(), span)
-        elif what in _JUMPS:
-            stmt = _JUMPS[what](span)
+        elif keyword in _JUMPS:
+            stmt = _JUMPS[keyword](span)
         else:
-            raise self.fail(f"a statement is expected here, not '{what}'", 1)
+            raise self.fail(f"a statement is expected here, not '{keyword}'", 1)
         self.expect(";")
         return stmt
 
@@ -428,11 +428,11 @@ class _Reader:
             raise self.fail(f"'{name}' is not declared", 1)
         return among[name]
 
-    def inferred(self, expr: Expr, what: str) -> Expr:
+    def inferred(self, expr: Expr, subject: str) -> Expr:
         """The expression with the type that follows from its operands."""
         type_ = inferred(expr)
         if type_ is None:
-            raise self.fail(f"{what} is not defined for these operands", 1)
+            raise self.fail(f"{subject} is not defined for these operands", 1)
         return expr._replace(type=type_)
 
     def list(self, opening: str, closing: str) -> tuple[Expr, ...]:

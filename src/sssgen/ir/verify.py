@@ -323,9 +323,9 @@ class _Verifier:
         self.expression(expr)
         self.same(expr.type, BOOL, expr.span, "a condition")
 
-    def same(self, actual: Type, wanted: Type, span: Span, what: str) -> None:
+    def same(self, actual: Type, wanted: Type, span: Span, subject: str) -> None:
         if actual != wanted:
-            self.report(span, f"{what} is {_a_type(wanted)}, but gets {_a_type(actual)}")
+            self.report(span, f"{subject} is {_a_type(wanted)}, but gets {_a_type(actual)}")
 
     # Expressions
 
@@ -337,8 +337,8 @@ class _Verifier:
             inner = inner.value
         variable = isinstance(inner, Local) or (isinstance(inner, Global) and inner.name in self.written)
         if not variable or isinstance(target.type, Sampler):
-            what = f"{with_article(type(inner).__name__)} of type {_name(target.type)}"
-            self.report(target.span, f"{what} cannot be assigned to")
+            place = f"{with_article(type(inner).__name__)} of type {_name(target.type)}"
+            self.report(target.span, f"{place} cannot be assigned to")
 
     def expression(self, expr: Expr, nothing: bool = False) -> None:
         """An expression and its operands; with `nothing` it may be a call without a result."""
@@ -371,10 +371,10 @@ class _Verifier:
         else:
             wanted = inferred(node)
             if wanted is None:
-                yield f"{_what(node)} is not defined for {_names(operands(node))}"
+                yield f"{_operation(node)} is not defined for {_names(operands(node))}"
             elif wanted != node.type:
                 types = _names(operands(node))
-                yield f"{_what(node)} of {types} is {_a_type(wanted)}, not {_a_type(node.type)}"
+                yield f"{_operation(node)} of {types} is {_a_type(wanted)}, not {_a_type(node.type)}"
             elif isinstance(node, Index) and isinstance(node.index, Literal):
                 elements = element_type(node.value.type)
                 if elements is not None and not 0 <= node.index.value < elements[1]:
@@ -429,7 +429,7 @@ def _names(args: Iterable[Expr]) -> str:
     return f"({', '.join(_name(arg.type) for arg in args)})"
 
 
-def _what(node: Expr) -> str:
+def _operation(node: Expr) -> str:
     """A short name of a node, for messages."""
     if isinstance(node, Unary | Binary):
         return f"'{node.op}'"

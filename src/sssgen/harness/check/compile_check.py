@@ -155,7 +155,7 @@ def as_json(report: Report) -> dict[str, Any]:
     """The report for programs."""
     return {
         "compilers": [{"name": name, "version": version} for name, version in report.versions.items()],
-        "missing": [{"name": name, "how": how} for name, how in report.missing.items()],
+        "missing": [{"name": name, "how": instruction} for name, instruction in report.missing.items()],
         "results": [
             {
                 "file": result.shader.name,

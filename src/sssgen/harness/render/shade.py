@@ -26,5 +26,5 @@ def shade(backend: Backend, compiled: Compiled, shell: Shell, size: tuple[int, i
         return unity_values.shade(compiled, shell, backend, size, points)
     assert isinstance(backend, DrawingBackend)
     triangles = None if points is None else pixel_mesh.triangles(size)
-    drawn = backend.draw(drawing(compiled, shell, size, points, triangles))
-    return drawn[::-1] if backend.top_first else drawn
+    picture = backend.draw(drawing(compiled, shell, size, points, triangles))
+    return picture[::-1] if backend.top_first else picture

@@ -26,9 +26,9 @@ def trials(specimen: Specimen, seed: int, format: Format = FLOAT32) -> Iterator[
     highest = contract(specimen, name, format).high
     ordinary = rng.random(PAIRS) < 0.8
     first = np.where(ordinary, rng.random(PAIRS) * 4.0, thin.values[name])
-    grown = first * (1.0 + np.exp2(-20.0 * rng.random(PAIRS))) + np.where(ordinary, 1e-6, 0.0)
+    increased = first * (1.0 + np.exp2(-20.0 * rng.random(PAIRS))) + np.where(ordinary, 1e-6, 0.0)
     values = {
         key: np.concatenate([value, value], -1) if value.shape[-1] > 1 else value for key, value in thin.values.items()
     }
-    values[name] = np.minimum(np.concatenate([first, grown]), highest).astype(np.float32)
+    values[name] = np.minimum(np.concatenate([first, increased]), highest).astype(np.float32)
     yield Trial(ENERGY, specimen, Inputs(values, thin.textures, 2 * PAIRS), grows=name)

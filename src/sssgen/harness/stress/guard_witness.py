@@ -28,7 +28,7 @@ from sssgen.pipeline.programs import library_sites
 
 SAMPLES = 20_000
 """Random inputs, tried after the rows of the table and the boundary values."""
-MORE = 64
+MAX_FAILING_LANES = 64
 """Inputs of a trial that a witness keeps."""
 
 
@@ -43,7 +43,7 @@ class Witness(NamedTuple):
     """The `sssgen eval` line that computes it without guards."""
     specimen: Specimen
     """The technique with the functions that the trial bound to its slots."""
-    more: Inputs
+    failing_inputs: Inputs
     """Some of the inputs of the trial."""
 
 
@@ -57,27 +57,27 @@ def witness(specimen: Specimen, site: Site, seed: int = 0) -> Witness | None:
     """The simplest input found that needs the guard of this operation, on NumPy in float32; None if none was found."""
     poison = only(site.operation, site.place, "poison")
     for trial in _trials(specimen, seed):
-        broken = _broken(trial.specimen, trial.inputs, poison)
-        for output, lanes in broken.items():
+        lanes_by_output = _failing_lanes(trial.specimen, trial.inputs, poison)
+        for output, lanes in lanes_by_output.items():
             if lanes.any():
                 start = lane(trial.inputs, int(np.argmax(lanes)))
                 small = shrunk(trial.specimen, start, partial(_fails, trial.specimen, poison, output))
                 command = line(trial.specimen, small, "numpy-f32").replace(
                     "sssgen eval", "sssgen eval --guards none", 1
                 )
-                return Witness(trial.name, small, output, command, trial.specimen, _some(trial.inputs, lanes))
+                return Witness(trial.name, small, output, command, trial.specimen, _failing_inputs(trial.inputs, lanes))
     return None
 
 
-def _some(inputs: Inputs, lanes: Array) -> Inputs:
+def _failing_inputs(inputs: Inputs, lanes: Array) -> Inputs:
     """The first of the lanes that fail."""
-    failing = np.flatnonzero(lanes)[:MORE]
+    failing = np.flatnonzero(lanes)[:MAX_FAILING_LANES]
     values = {name: value if value.shape[-1] == 1 else value[..., failing] for name, value in inputs.values.items()}
     return Inputs(values, inputs.textures, len(failing))
 
 
 def _fails(specimen: Specimen, change: Callable[[Site], str], output: str, inputs: Inputs) -> Array:
-    return _broken(specimen, inputs, change)[output]
+    return _failing_lanes(specimen, inputs, change)[output]
 
 
 @cache
@@ -95,16 +95,20 @@ def _trials(specimen: Specimen, seed: int) -> Iterator[Trial]:
     yield Trial(RANDOM, specimen, sample_inputs(specimen, SAMPLES, rng, FLOAT32))
 
 
-def _broken(specimen: Specimen, inputs: Inputs, change: Callable[[Site], str]) -> dict[str, Array]:
+def _failing_lanes(specimen: Specimen, inputs: Inputs, change: Callable[[Site], str]) -> dict[str, Array]:
     """The lanes of each output that are NaN or infinite with the change, but finite with every guard."""
     numpy = get("numpy-f32")
     with np.errstate(all="ignore"):
         changed = evaluated(specimen.subject, inputs, numpy, "auto", change)
-        broken = {name: _lanes(value, inputs.lanes) for name, value in changed.items() if value.dtype.kind == "f"}
-        if any(bad.any() for bad in broken.values()):
+        lanes_by_output = {
+            name: _lanes(value, inputs.lanes) for name, value in changed.items() if value.dtype.kind == "f"
+        }
+        if any(bad.any() for bad in lanes_by_output.values()):
             guarded = evaluated(specimen.subject, inputs, numpy, "auto")
-            broken = {name: bad & ~_lanes(guarded[name], inputs.lanes) for name, bad in broken.items()}
-    return broken
+            lanes_by_output = {
+                name: bad & ~_lanes(guarded[name], inputs.lanes) for name, bad in lanes_by_output.items()
+            }
+    return lanes_by_output
 
 
 def _lanes(value: Array, count: int) -> Array:

@@ -45,8 +45,8 @@ def non_finite(value: Array) -> Array:
         8: (np.uint64, 0x7FF << 52),
     }
     dtype, mask = masks[value.dtype.itemsize]
-    broken: Array = (np.ascontiguousarray(value).view(dtype) & dtype(mask)) == dtype(mask)
-    return broken
+    failing: Array = (np.ascontiguousarray(value).view(dtype) & dtype(mask)) == dtype(mask)
+    return failing
 
 
 def faults_of(
@@ -58,10 +58,10 @@ def faults_of(
         if value.dtype.kind != "f":
             continue
         lanes = np.broadcast_to(value, (trial.inputs.lanes, *value.shape[1:]) if value.ndim else (trial.inputs.lanes,))
-        broken = _any(non_finite(lanes))
-        faults.append(OutputFaults("non-finite", name, broken))
+        failing = _any(non_finite(lanes))
+        faults.append(OutputFaults("non-finite", name, failing))
         for kind, test in _TESTS.items():
-            faults.append(OutputFaults(kind, name, test(trial, name, lanes, oracle) & ~broken))
+            faults.append(OutputFaults(kind, name, test(trial, name, lanes, oracle) & ~failing))
     return [fault for fault in faults if fault.bad.any()]
 
 

@@ -90,10 +90,11 @@ def concave(specimen: Specimen) -> Iterator[Trial]:
     if not _measures(specimen) or not lit or specimen.quantity("result") != "thickness":
         return
     if ring := _bound(specimen, "torus"):
-        many, few = np.array([128], np.int32), np.array([64], np.int32)
+        large_count, small_count = np.array([128], np.int32), np.array([64], np.int32)
         changes = {
             "P": (-1.25, 0, 0), "P_object": (-1.25, 0, 0), "L": (1, 0, 0), "L_object": (1, 0, 0),
-            "V_object": (-1, 0, 0), "reach": 4.0, "steps": many, "view_steps": few, "light_steps": few,
+            "V_object": (-1, 0, 0), "reach": 4.0, "steps": large_count, "view_steps": small_count,
+            "light_steps": small_count,
             "box_min": (-1.3, -0.3, -1.3), "box_max": (1.3, 0.3, 1.3),
         }  # fmt: skip
         yield Trial("", ring, plain(ring, 4, changes), expected={"result": np.ones(1)}, tolerance=0.02)

@@ -44,7 +44,7 @@ def as_json(report: Report) -> dict[str, Any]:
         "guards": settings.guards,
         "backends": [
             *({"name": name, "device": device} for name, device in report.devices.items()),
-            *({"name": name, "missing": how} for name, how in report.missing.items()),
+            *({"name": name, "missing": instruction} for name, instruction in report.missing.items()),
         ],
         "rows": [
             {"name": row.name, "inputs": row.inputs, "requires": row.requires, "elsewhere": row.elsewhere}
@@ -113,7 +113,9 @@ def _numbers(value: Array) -> Any:
 def summary(report: Report) -> list[str]:
     """The run in a few lines: devices, what is missing, a line for each technique."""
     lines = [f"{name:10} {visible(device)}" for name, device in report.devices.items()]
-    lines += [f"{name:10} not here: {visible(' '.join(how.split()))}" for name, how in report.missing.items()]
+    lines += [
+        f"{name:10} not here: {visible(' '.join(instruction.split()))}" for name, instruction in report.missing.items()
+    ]
     width = max((len(row.specimen.title) for row in report.rows), default=0)
     columns = list(report.devices)
     lines += ["", " ".join([" " * width, *(f"{name:>10}" for name in columns)])]
@@ -187,7 +189,7 @@ def as_markdown(report: Report) -> str:
     lines += ["", "Deviation: the largest difference to float64 that rounding does not explain. Jump: the largest"]
     lines += ["change for a small step of an input where the oracle's own is small.", "", "## Back ends", ""]
     lines += [f"- {name}: {device}" for name, device in report.devices.items()]
-    lines += [f"- {name}: not here: {' '.join(how.split())}" for name, how in report.missing.items()]
+    lines += [f"- {name}: not here: {' '.join(instruction.split())}" for name, instruction in report.missing.items()]
     fault_lines = [line for row in report.rows for line in faults(row, beyond=True)]
     lines += ["", "## Faults", "", *(["```text", *fault_lines, "```"] if fault_lines else ["None."])]
     lines += ["", "## Dangerous inputs", "", "| Row | Input | Asked |", "|---|---|---|"]

@@ -8,7 +8,7 @@ from sssgen.harness.check import compile_check as check
 from sssgen.harness.check.compile_check import Report, Result
 from sssgen.harness.check.shader_files import of_material
 from sssgen.harness.compilers import Message, errors, readers
-from sssgen.harness.testing.outcome import Outcome, lacking
+from sssgen.harness.testing.outcome import Outcome, missing_part
 from sssgen.ir.spans import Span
 from sssgen.pipeline.compiler import all_targets
 from sssgen.support.diagnostics import Diagnostic, did_you_mean, failure
@@ -30,11 +30,11 @@ def compiled(material: str, targets: str | Iterable[str] = "all") -> Outcome:
     read = {result.source.language for result in report.results}
     unread = sorted({source.language for shader in shaders for source in shader.sources} - read)
     if not read or (names and unread):
-        return lacking(f"a compiler for {', '.join(unread)}", _how(report, unread))
+        return missing_part(f"a compiler for {', '.join(unread)}", _instructions(report, unread))
     message = f"{len(read)} targets by {', '.join(report.versions)}: {len(report.results)} compilations"
     if not unread:
         return Outcome("passed", message)
-    return Outcome("passed", f"{message}; not compiled: {', '.join(unread)}", _how(report, unread))
+    return Outcome("passed", f"{message}; not compiled: {', '.join(unread)}", _instructions(report, unread))
 
 
 def target_names(targets: str | Iterable[str]) -> list[str]:
@@ -53,7 +53,7 @@ def target_names(targets: str | Iterable[str]) -> list[str]:
     return names
 
 
-def _how(report: Report, languages: list[str]) -> str:
+def _instructions(report: Report, languages: list[str]) -> str:
     """How to install the missing compilers of these languages."""
     compilers = dict.fromkeys(name for language in languages for name in readers(language))
     return "; ".join(f"{name}: {report.missing[name]}" for name in compilers if name in report.missing)

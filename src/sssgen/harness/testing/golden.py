@@ -54,7 +54,7 @@ def compared(
     check_limit(limit)
     path = _path(folder, name)
     actual, shown = _rounded(picture), posix(path)
-    paths = [os.path.join(_failures(folder), f"{name}{label}.{what}.png") for what in ("actual", "difference")]
+    paths = [os.path.join(_failures(folder), f"{name}{label}.{kind}.png") for kind in ("actual", "difference")]
     _clear(paths)  # of an earlier run
     if not os.path.isfile(path):
         message = f"there is no golden picture {shown}: {update} writes it"

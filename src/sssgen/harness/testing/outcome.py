@@ -27,9 +27,9 @@ def in_ci() -> bool:
     return os.environ.get("CI", "") not in ("", "0", "false")
 
 
-def lacking(what: str, how: str) -> Outcome:
-    """The outcome where `what` is missing; `how` tells how to install it. Skipped; with CI set, failed."""
-    return Outcome("failed" if in_ci() else "skipped", f"{what} is missing: {' '.join(how.split())}")
+def missing_part(part: str, instruction: str) -> Outcome:
+    """The outcome where `part` is missing; `instruction` tells how to install it. Skipped; with CI set, failed."""
+    return Outcome("failed" if in_ci() else "skipped", f"{part} is missing: {' '.join(instruction.split())}")
 
 
 def beside(text: str, folders: Sequence[str]) -> str:

@@ -23,7 +23,7 @@ from time import perf_counter
 from typing import Any, Literal, NamedTuple
 
 from sssgen.harness.testing.compile_outcome import compiled
-from sssgen.harness.testing.outcome import Outcome, beside, lacking
+from sssgen.harness.testing.outcome import Outcome, beside, missing_part
 from sssgen.material.library import ROLES
 from sssgen.support import json_source
 from sssgen.support.diagnostics import SssgenError, failure
@@ -86,8 +86,8 @@ def cases(folder: str, backends: Sequence[str] = ()) -> list[Case]:
 
 def _files(folder: str) -> Iterator[str]:
     if not os.path.isdir(folder):
-        what = "this is not a folder" if os.path.exists(folder) else "there is no such folder"
-        raise failure(what, "name the folder of your materials and scenes", posix(folder))
+        message = "this is not a folder" if os.path.exists(folder) else "there is no such folder"
+        raise failure(message, "name the folder of your materials and scenes", posix(folder))
 
     def refuse(error: OSError) -> None:
         raise failure(f"cannot read the folder: {error.strerror}", file=posix(error.filename or folder))
@@ -144,7 +144,7 @@ class Run:
         except SssgenError as error:
             outcome = _failed(error)
         except ImportError as error:
-            outcome = lacking(f"the package '{error.name}'", install_hint("render"))
+            outcome = missing_part(f"the package '{error.name}'", install_hint("render"))
         except Exception as error:  # the other cases are checked nevertheless
             outcome = Outcome("failed", f"internal error, a bug of sssgen: {type(error).__name__}: {error}")
         return CaseResult(case, outcome, perf_counter() - start)
@@ -162,7 +162,7 @@ class Run:
         try:
             backend = self._backends().get(name)
         except CompilerMissing as reason:
-            return lacking(f"the back end {name}", str(reason))
+            return missing_part(f"the back end {name}", str(reason))
         picture = render(load(case.path), backend).encoded
         if self.update and case.first:
             return golden.updated(picture, folder, stem(case.path))
@@ -197,7 +197,7 @@ class Run:
                 outcomes[name] = against_oracle(chosen, fit, self._backends().get(name), tolerance, oracle)[1]
             except CompilerMissing as reason:
                 if case.backends:
-                    outcomes[name] = lacking(f"the back end {name}", str(reason))
+                    outcomes[name] = missing_part(f"the back end {name}", str(reason))
             except SssgenError as error:  # the other back ends run nevertheless
                 outcomes[name] = Outcome("failed", f"{name} failed", str(error))
         return _summary(outcomes)

@@ -237,12 +237,12 @@ def _backend(started: Started, name: str) -> Backend:
     """The back end. Skips the test without it; with CI set the test fails."""
     __tracebackhide__ = True
     from sssgen.harness.compilers import CompilerMissing
-    from sssgen.harness.testing.outcome import lacking
+    from sssgen.harness.testing.outcome import missing_part
 
     try:
         return _guarded(lambda: started.get(name))
     except CompilerMissing as reason:
-        outcome = lacking(f"the back end {name}", str(reason))
+        outcome = missing_part(f"the back end {name}", str(reason))
     _end(outcome)
     raise AssertionError(outcome)
 
@@ -252,13 +252,13 @@ def _need(module: str) -> None:
     __tracebackhide__ = True
     from importlib import import_module
 
-    from sssgen.harness.testing.outcome import lacking
+    from sssgen.harness.testing.outcome import missing_part
     from sssgen.support.extras import install_hint
 
     try:
         import_module(module)
     except ImportError as error:
-        outcome = lacking(f"the package '{error.name}'", install_hint("render"))
+        outcome = missing_part(f"the package '{error.name}'", install_hint("render"))
     else:
         return
     _end(outcome)

@@ -58,7 +58,7 @@ class Outcomes:
             seen = self.branches.get((id(node), value))
             self.branches[id(node), value] = lanes if seen is None else seen | lanes
 
-    def compared(self, node: object, which: int, left: Array, right: Array | float, active: Array) -> None:
+    def compared(self, node: object, comparison: int, left: Array, right: Array | float, active: Array) -> None:
         """Two numbers were compared in the active lanes."""
         if isinstance(left, np.ndarray) and left.dtype.kind == "b":
             return
@@ -70,7 +70,7 @@ class Outcomes:
         if len(difference) > 4:
             return
         for component, (values, close) in enumerate(zip(difference, near, strict=True)):
-            site = (id(node), which, component)
+            site = (id(node), comparison, component)
             case = np.sign(values) * np.where(np.abs(values) <= close, 1.0, 2.0)
             for side in (-2.0, -1.0, 0.0, 1.0, 2.0):
                 lanes = active & (case == side)

@@ -200,9 +200,9 @@ class Run:
                 return left & ~self.stopped
             self.loops.append([np.zeros_like(active), np.zeros_like(active)])
             through = self.block(body, active)
-            broken, continued = self.loops.pop()
-            left = left | broken
-            active = (through | continued) & ~self.stopped
+            breaks, continues = self.loops.pop()
+            left = left | breaks
+            active = (through | continues) & ~self.stopped
             if step is not None and active.any():
                 self.active = active
                 self.statement(step, active)
@@ -331,9 +331,9 @@ class Run:
         name = expr.name
         row = BUILTINS[name]
         if self.outcomes is not None and name in CASES:
-            for which, (left, right) in enumerate(CASES[name]):
+            for comparison, (left, right) in enumerate(CASES[name]):
                 other = right if isinstance(right, float) else args[right]
-                self.outcomes.compared(expr, which, args[left], other, self.active)
+                self.outcomes.compared(expr, comparison, args[left], other, self.active)
         if row.defined is not None and (name != "abs" or kind_of(expr.type) == "int"):
             self.require(np.asarray(row.defined(rt, *args)))
         if row.kind == "fetch" and len(args) > 1 and np.asarray(args[1]).dtype.kind == "f":

@@ -140,10 +140,10 @@ def _draw_source(
     if kind == "float" and (ends := RANGES.get(source.author_name)):
         return single(np.where(rng.random(shape) < 0.9, rng.uniform(*ends, shape), _extreme(source, shape, rng)))
     if source.bounds_loops:
-        few = rng.integers(-1, LOOPS, shape)
+        small_numbers = rng.integers(-1, LOOPS, shape)
         if kind == "float":
-            return single(np.where(rng.random(shape) < 0.5, few, rng.uniform(-2.0, LOOPS, shape)))
-        return few.clip(0).astype(np.uint32) if kind == "uint" else few.astype(np.int32)
+            return single(np.where(rng.random(shape) < 0.5, small_numbers, rng.uniform(-2.0, LOOPS, shape)))
+        return small_numbers.clip(0).astype(np.uint32) if kind == "uint" else small_numbers.astype(np.int32)
     if kind == "float":
         ordinary, scaled, wild = _floats(shape, rng, exponent)
         near, extremes = numbers.floats, FLOAT_EXTREMES

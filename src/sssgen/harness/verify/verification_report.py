@@ -111,8 +111,8 @@ class Report(NamedTuple):
     @property
     def ok(self) -> bool:
         """Whether a function ran, and all that ran pass."""
-        ran = [row for row in self.rows if not row.reason]
-        return bool(ran) and all(row.ok for row in ran)
+        executed_rows = [row for row in self.rows if not row.reason]
+        return bool(executed_rows) and all(row.ok for row in executed_rows)
 
     def as_json(self) -> dict[str, Any]:
         """The report for programs."""
@@ -136,5 +136,5 @@ class Report(NamedTuple):
                     yield f"    {name} {comparison.at}"
             if row.branches.never:
                 yield f"    never taken: {', '.join(row.branches.never)}"
-        for name, how in self.missing.items():
-            yield f"{name} is missing: {how}"
+        for name, instruction in self.missing.items():
+            yield f"{name} is missing: {instruction}"

@@ -263,9 +263,9 @@ def _warm_up(frame: _TimedFrame, programs: Sequence[_LinkedProgram], sample: flo
     """Draws until clocks and caches have settled, then chooses the draws per timer query."""
     for program in programs:
         frame.time(program)  # some drivers compile at the first draw
-    spent = 0.0
-    while spent < (0.0 if frame.device.software else WARM_UP):
-        spent += sum(frame.time(program) for program in programs)
+    elapsed = 0.0
+    while elapsed < (0.0 if frame.device.software else WARM_UP):
+        elapsed += sum(frame.time(program) for program in programs)
     for program in programs:
         once = min(frame.time(program) for _ in range(2))
         program.draws = int(np.clip(np.ceil(sample / max(once, 1e-6)), 1, MOST_DRAWS))

@@ -118,21 +118,21 @@ class Expander:
         self.numbering = Numbering()
         self.count = 0
         self.limit = 0
-        self.held: _Item | None = None  # a macro's name at the end of the last tokens: its arguments may follow
+        self.pending: _Item | None = None  # a macro's name at the end of the last tokens: its arguments may follow
 
     def expand(self, tokens: Sequence[Token]) -> list[Token]:
         """The tokens with their macros expanded; the last may be held back for the next call or for `rest`.
 
         Raises TooMuch at the use of a macro that grows without end.
         """
-        held, macros = self.held, self.macros
-        if not tokens or (held is None and macros.keys().isdisjoint([token[1] for token in tokens])):
+        pending, macros = self.pending, self.macros
+        if not tokens or (pending is None and macros.keys().isdisjoint([token[1] for token in tokens])):
             return list(tokens)
         out: list[Token] = []
         index = 0
-        if held is not None:
-            self.held = None
-            index = self._use(held, tokens, 0, out)
+        if pending is not None:
+            self.pending = None
+            index = self._use(pending, tokens, 0, out)
         while index < len(tokens):
             token = tokens[index]
             index += 1
@@ -144,8 +144,8 @@ class Expander:
 
     def rest(self) -> list[Token]:
         """The token that was held back, if there is one."""
-        held, self.held = self.held, None
-        return [held[0]] if held is not None else []
+        pending, self.pending = self.pending, None
+        return [pending[0]] if pending is not None else []
 
     def condition(self, tokens: Sequence[Token]) -> list[Token]:
         """The tokens of an #if: the operand of `defined` is not expanded, and `kept` is expanded, too."""
@@ -158,7 +158,7 @@ class Expander:
         stream = _Stream([item], tokens, index)
         items = self._run(stream, 0)
         if items and stream.index == len(tokens) and self._takes_arguments(items[-1]):
-            self.held = items.pop()
+            self.pending = items.pop()
         out += [token for token, _ in items]
         return stream.index
 

@@ -387,7 +387,7 @@ class _Run:
                 self.depth -= 1
         self.depth_at = len(self.tokens)
         ends = not self.tokens or self.tokens[-1].type in ("SEMICOLON", "RBRACE")
-        return self.depth == 0 and ends and self.expander.held is None
+        return self.depth == 0 and ends and self.expander.pending is None
 
     def join(self, text: str, place: Span) -> Token:
         """The token that `##` makes of two."""

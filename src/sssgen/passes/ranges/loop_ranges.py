@@ -35,7 +35,7 @@ class LoopRanges(ExpressionRanges):
         # the first iteration alone, as what it adds keeps sums away from 0; of a short loop, all iterations
         for _ in range(int(trips) if trips <= _UNROLLED else 1):
             frame, after, left = self.iteration(stmt, state.copy(), trips)
-            ways += [left, *frame.broken]
+            ways += [left, *frame.break_states]
             if after is None:
                 return self.join_all(ways)
             state = after
@@ -81,15 +81,15 @@ class LoopRanges(ExpressionRanges):
             # a wider attempt finds all that a narrower one finds, so each may record sites
             loop, after, left = self.iteration(stmt, head, trips + 1.0)
             if after is None:
-                return [left, *loop.broken]
+                return [left, *loop.break_states]
             new_ranges = {
-                name: self.grown(entry.env[name].parts, loop.added.get(name, {}), trips, sums[name])
+                name: self.growth(entry.env[name].parts, loop.added.get(name, {}), trips, sums[name])
                 if sums[name]
                 else self.at_end(after, name, ranges[name])
                 for name in ranges
             }
             if all(a.within(b) for name in ranges for a, b in zip(new_ranges[name], ranges[name], strict=True)):
-                return [left, *loop.broken]
+                return [left, *loop.break_states]
             ranges = {
                 name: tuple([
                     self.wider(old, new, attempt) for old, new in zip(ranges[name], new_ranges[name], strict=True)
@@ -99,7 +99,7 @@ class LoopRanges(ExpressionRanges):
         anything = Range(-self.format.largest, self.format.largest)
         ranges = {name: (anything,) * len(parts) for name, parts in ranges.items()}
         loop, _, left = self.iteration(stmt, self.head(entry, ranges, numbers), trips + 1.0)
-        return [left, *loop.broken]
+        return [left, *loop.break_states]
 
     def head(self, entry: State, ranges: dict[str, tuple[Range, ...]], numbers: dict[str, list[int]]) -> State:
         """The state at the start of a later iteration."""
@@ -114,7 +114,7 @@ class LoopRanges(ExpressionRanges):
         parts = [p.met(facts[n]) if n in facts else p for p, n in zip(value.parts, value.numbers, strict=True)]
         return tuple([part.joined(old) for part, old in zip(parts, before, strict=True)])
 
-    def grown(
+    def growth(
         self, start: tuple[Range, ...], added: dict[int, tuple[list[Range], float]], trips: float, kind: str
     ) -> tuple[Range, ...]:
         """The ranges of a sum after any number of iterations."""

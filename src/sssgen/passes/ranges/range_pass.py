@@ -148,7 +148,7 @@ class RangeAnalysis(CallSummaries):
         elif isinstance(stmt, ir.For | ir.While):
             return self.loop(stmt)
         elif isinstance(stmt, ir.Break):
-            self.loops[-1].broken.append(self.state)
+            self.loops[-1].break_states.append(self.state)
             return None
         elif isinstance(stmt, ir.Continue):
             self.loops[-1].continued.append(self.state)
@@ -198,15 +198,15 @@ class RangeAnalysis(CallSummaries):
             self.compounds[id(stmt)] = operation
         return operation
 
-    def bounded(self, node: ir.Expr, value: Value, what: str, contract: Contract) -> Value:
+    def bounded(self, node: ir.Expr, value: Value, operation: str, contract: Contract) -> Value:
         """A value that others rely on, kept within its contract."""
         limits = (contract.low, min(contract.high, 1.0) if contract.high == contracts.ONE else contract.high)
         inside = all(part.low >= contract.low and part.high <= contract.high for part in value.parts)
-        self.note(node, what, inside, BOUNDS, (hull_of(value.parts),), limits)
+        self.note(node, operation, inside, BOUNDS, (hull_of(value.parts),), limits)
         if inside:
             return value
-        held = tuple([rounded(clip(part, contract.low, contract.high), self.format) for part in value.parts])
-        return self.value(held, tuple([self.numbers.fresh() for _ in held]))
+        parts = tuple([rounded(clip(part, contract.low, contract.high), self.format) for part in value.parts])
+        return self.value(parts, tuple([self.numbers.fresh() for _ in parts]))
 
     def branch(self, stmt: ir.If) -> State | None:
         condition = self.expr(stmt.condition)

@@ -52,7 +52,7 @@ class Loop:
 
     def __init__(self, trips: float) -> None:
         self.trips = trips
-        self.broken: list[State] = []
+        self.break_states: list[State] = []
         self.continued: list[State] = []
         self.added: dict[str, dict[int, tuple[list[Range], float]]] = {}
         """A variable → each statement that adds to it: the ranges added, and how often in one iteration."""
@@ -141,24 +141,24 @@ class AnalysisState:
         kind = kind_of(node.type)
         if kind != "float":
             limits = self.limits(kind)
-            held = [part if part.low >= limits.low and part.high <= limits.high else limits for part in parts]
-            return self.value(tuple(held), tuple(numbers))
-        held = [rounded(part, self.format) for part in parts]
+            bounded = [part if part.low >= limits.low and part.high <= limits.high else limits for part in parts]
+            return self.value(tuple(bounded), tuple(numbers))
+        bounded = [rounded(part, self.format) for part in parts]
         largest = self.format.largest
-        over = [part for part in held if part.low < -largest or part.high > largest]
+        over = [part for part in bounded if part.low < -largest or part.high > largest]
         if over:
             self.note(node, "overflow", False, SUMS if _is_sum(node) else OVERFLOW, tuple(over[:1]))
-            held = [clip(part, -largest, largest) for part in held]
-        return self.value(tuple(held), tuple(numbers), length)
+            bounded = [clip(part, -largest, largest) for part in bounded]
+        return self.value(tuple(bounded), tuple(numbers), length)
 
     def note(
-        self, node: ir.Expr, what: str, proven: bool, guard: Any, args: tuple[Range, ...],
+        self, node: ir.Expr, operation: str, proven: bool, guard: Any, args: tuple[Range, ...],
         limits: tuple[float, float] = (0.0, 0.0),
     ) -> None:  # fmt: skip
         """Records what was found about an operation; a second visit widens it."""
-        site = Site(node, what, proven, guard, args, limits)
-        earlier = self.sites.get((id(node), what))
-        self.sites[id(node), what] = site if earlier is None else earlier.joined(site)
+        site = Site(node, operation, proven, guard, args, limits)
+        earlier = self.sites.get((id(node), operation))
+        self.sites[id(node), operation] = site if earlier is None else earlier.joined(site)
 
     # Joins
 
