@@ -54,10 +54,10 @@ def _fault(evidence: Witness, site: Site, backend: Backend) -> str:
     subject, change = evidence.specimen.subject, only(site.operation, site.place, "drop")
     try:
         right = evaluated(subject, evidence.failing_inputs, backend, "auto")
-        got = evaluated(subject, evidence.failing_inputs, backend, "auto", change)
+        actual = evaluated(subject, evidence.failing_inputs, backend, "auto", change)
     except SssgenError as error:
         return error.diagnostics[0].message
-    values = [(got[name], right[name]) for name in right if right[name].dtype.kind == "f"]
+    values = [(actual[name], right[name]) for name in right if right[name].dtype.kind == "f"]
     if any(_non_finite(left) for left, _ in values):
         return "non-finite"
     return "another value" if any(_apart(left, other) > CHANGED for left, other in values) else ""
@@ -67,5 +67,5 @@ def _non_finite(value: Array) -> bool:
     return bool(non_finite(np.ascontiguousarray(value)).any())
 
 
-def _apart(got: Array, right: Array) -> float:
-    return float(errors(np.atleast_1d(got), np.atleast_1d(right)).max())
+def _apart(actual: Array, right: Array) -> float:
+    return float(errors(np.atleast_1d(actual), np.atleast_1d(right)).max())

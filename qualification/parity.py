@@ -91,8 +91,8 @@ def measure(backend: Backend, chosen: Sequence[Case]) -> dict[str, Figure]:
     """A figure for each builtin that the back end's target has."""
     supported_cases = [case for case in chosen if supported(case, backend)]
     results_by_name: dict[str, list[tuple[Case, Array]]] = {}
-    for case, got in zip(supported_cases, run(backend, supported_cases), strict=True):
-        results_by_name.setdefault(case.name, []).append((case, got))
+    for case, actual in zip(supported_cases, run(backend, supported_cases), strict=True):
+        results_by_name.setdefault(case.name, []).append((case, actual))
     return {name: _figure(results) for name, results in results_by_name.items()}
 
 
@@ -126,9 +126,9 @@ def run(backend: Backend, chosen: Sequence[Case]) -> list[Array]:
     for is_small in (True, False):
         numbers = [number for number, case in enumerate(chosen) if (case.lanes == TEXTURE_LANES) == is_small]
         for batch in _batches(numbers, chosen):
-            for number, got in zip(batch, _program(backend, [chosen[number] for number in batch]), strict=True):
-                results[number] = got
-    return [got for got in results if got is not None]
+            for number, actual in zip(batch, _program(backend, [chosen[number] for number in batch]), strict=True):
+                results[number] = actual
+    return [actual for actual in results if actual is not None]
 
 
 def _batches(numbers: Sequence[int], chosen: Sequence[Case]) -> Iterator[list[int]]:
@@ -196,7 +196,7 @@ def _floats(arg: object) -> bool:
 
 def _figure(results: Sequence[tuple[Case, Array]]) -> Figure:
     row = results[0][0].row
-    lanes_of_cases = [_lanes(case, got) for case, got in results]
+    lanes_of_cases = [_lanes(case, actual) for case, actual in results]
     ulp = np.concatenate([lanes.ulp[lanes.measured] for lanes in lanes_of_cases])
     absolute = np.concatenate([lanes.absolute[lanes.measured] for lanes in lanes_of_cases])
     beyond = ulp > row.ulp
@@ -224,20 +224,20 @@ def _badness(row: Builtin, lanes: _Lanes) -> Array:
     return np.where(lanes.measured, size + 1e30 * wrong, 1e29 * lanes.flushed)
 
 
-def _lanes(case: Case, got: Array) -> _Lanes:
+def _lanes(case: Case, actual: Array) -> _Lanes:
     """The errors of one overload, lane by lane."""
     exact = kind_of(case.result) != "float"
-    got = np.broadcast_to(got, (*got.shape[:-1], case.lanes))
-    wanted: Array = np.broadcast_to(oracle(case), got.shape)
-    tiny = _any_lane(wanted, case.lanes)
+    actual = np.broadcast_to(actual, (*actual.shape[:-1], case.lanes))
+    expected: Array = np.broadcast_to(oracle(case), actual.shape)
+    tiny = _any_lane(expected, case.lanes)
     for arg in case.args:
         tiny |= _any_lane(arg, case.lanes)
-    error = _error(got, wanted, exact)
-    ulp, absolute = _in_ulp(case, error, wanted, exact)
+    error = _error(actual, expected, exact)
+    ulp, absolute = _in_ulp(case, error, expected, exact)
     wrong = np.zeros(case.lanes, bool)
     if tiny.any():
-        flushed = np.broadcast_to(oracle(case, flush=True), got.shape)
-        least, most = _in_ulp(case, np.minimum(error, _error(got, flushed, exact)), wanted, exact)
+        flushed = np.broadcast_to(oracle(case, flush=True), actual.shape)
+        least, most = _in_ulp(case, np.minimum(error, _error(actual, flushed, exact)), expected, exact)
         wrong = tiny & (least > case.row.ulp) & ~(most <= max(case.row.absolute, 0.0 if exact else TINY))
         wrong &= _each_lane(np.isfinite(flushed), case.lanes)
         if case.row.inside:
@@ -245,20 +245,20 @@ def _lanes(case: Case, got: Array) -> _Lanes:
     measured = ~tiny
     if not exact:
         with np.errstate(over="ignore"):
-            measured &= _each_lane(np.isfinite(wanted.astype(np.float32)), case.lanes)
+            measured &= _each_lane(np.isfinite(expected.astype(np.float32)), case.lanes)
     return _Lanes(ulp, absolute, measured, wrong)
 
 
-def _error(got: Array, wanted: Array, exact: bool) -> Array:
+def _error(actual: Array, expected: Array, exact: bool) -> Array:
     """The absolute error of each component: 0 or infinity for what is compared exactly."""
     if exact:
-        return np.where(got == wanted.astype(got.dtype), 0.0, np.inf)
+        return np.where(actual == expected.astype(actual.dtype), 0.0, np.inf)
     with np.errstate(all="ignore"):
-        apart = np.where(got == wanted, 0.0, np.abs(got.astype(np.float64) - wanted))
+        apart = np.where(actual == expected, 0.0, np.abs(actual.astype(np.float64) - expected))
     return np.nan_to_num(apart, nan=np.inf, posinf=np.inf)
 
 
-def _in_ulp(case: Case, error: Array, wanted: Array, exact: bool) -> tuple[Array, Array]:
+def _in_ulp(case: Case, error: Array, expected: Array, exact: bool) -> tuple[Array, Array]:
     """(in ulp, absolute), lane by lane, of components' errors."""
     error = error.reshape(-1, case.lanes).max(axis=0)
     if exact or case.row.ulp == 0.0:
@@ -266,7 +266,7 @@ def _in_ulp(case: Case, error: Array, wanted: Array, exact: bool) -> tuple[Array
     if case.row.size:
         size = evaluated(case.row.size, widened(case.args))
     else:
-        size = np.abs(wanted).reshape(-1, case.lanes).max(axis=0)
+        size = np.abs(expected).reshape(-1, case.lanes).max(axis=0)
     with np.errstate(all="ignore"):
         unit = np.spacing(np.minimum(np.nan_to_num(size), MAX).astype(np.float32))
         return np.where(error == 0.0, 0.0, error / unit), error
@@ -285,7 +285,7 @@ def _each_lane(good: Array, lanes: int) -> Array:
     return np.asarray(good.reshape(-1, lanes).all(axis=0))
 
 
-def _described(case: Case, got: Array, lane: int) -> str:
+def _described(case: Case, actual: Array, lane: int) -> str:
     args = ", ".join(arg if isinstance(arg, str) else str(arg[..., lane].tolist()) for arg in case.args)
-    wanted = np.broadcast_to(oracle(case), got.shape)[..., lane]
-    return f"{case.title} at {args}: {got[..., lane].tolist()} is not {wanted.tolist()}"
+    expected = np.broadcast_to(oracle(case), actual.shape)[..., lane]
+    return f"{case.title} at {args}: {actual[..., lane].tolist()} is not {expected.tolist()}"

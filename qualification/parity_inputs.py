@@ -169,15 +169,15 @@ def _arguments(row: Builtin, params: tuple[Type, ...], lanes: int) -> tuple[Arra
     rng = np.random.default_rng([7, zlib.crc32(f"{row.name}({', '.join(map(spell, params))})".encode())])
     vectors = _vectors(row, params)
     parts = [tuple(arg[..., inside(row, vectors)] for arg in vectors)]
-    wanted = lanes - parts[0][0].shape[-1]
+    expected = lanes - parts[0][0].shape[-1]
     for _ in range(32):
         pool = [_column(row, index, type_, max(4 * lanes, 256), rng) for index, type_ in enumerate(params)]
         pool = [arg if index == 0 else _mixed(arg, rng) for index, arg in enumerate(pool)]
         _repeat(pool, params, rng)
-        chosen = rng.permutation(np.flatnonzero(inside(row, tuple(pool))))[: max(wanted, 0)]
+        chosen = rng.permutation(np.flatnonzero(inside(row, tuple(pool))))[: max(expected, 0)]
         parts.append(tuple(arg[..., chosen] for arg in pool))
-        wanted -= len(chosen)
-        if wanted <= 0:
+        expected -= len(chosen)
+        if expected <= 0:
             return tuple(np.concatenate(column, axis=-1)[..., :lanes] for column in zip(*parts, strict=True))
     raise ValueError(f"{row.name}: too few arguments fall into its domain")
 

@@ -74,7 +74,7 @@ def excess(case: Case, backend: str, measured: Deviation, lanes: int) -> str:
     limit = limits(case.technique, backend)
     title = " ".join([case.technique, *("=".join(pair) for pair in case.bind)])
     if not measured.largest <= limit.largest:
-        where = f"{measured.output}[{measured.lane}] is {measured.got.tolist()}, not {measured.wanted.tolist()}"
+        where = f"{measured.output}[{measured.lane}] is {measured.actual.tolist()}, not {measured.expected.tolist()}"
         return f"{title} on {backend}: {measured.largest:.2g} where at most {limit.largest:g} is right: {where}"
     share = limit.bound_share if case.bind else limit.share
     if measured.excluded > share * lanes + 3:  # a few lanes vary at random

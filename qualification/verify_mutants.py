@@ -108,13 +108,13 @@ class Original:
     def detection(self, program: Program) -> tuple[bool, bool]:
         """Whether verify finds the change: in another driver, and here."""
         detected = [False, False]
-        for (values, textures), expected, limits in zip(self.rounds, self.expected, self.limits, strict=True):
-            wanted, undefined, endless = expected
-            got, _, hangs = self.results(program, values, textures)
+        for (values, textures), outputs, limits in zip(self.rounds, self.expected, self.limits, strict=True):
+            expected, undefined, endless = outputs
+            actual, _, hangs = self.results(program, values, textures)
             defined = ~(undefined | endless)
             if (defined & hangs).any():
                 return True, True
-            for index, (left, right) in enumerate(zip(got, wanted, strict=True)):
+            for index, (left, right) in enumerate(zip(actual, expected, strict=True)):
                 error = np.where(defined, errors(left, right), 0.0)
                 for place, kind in enumerate((1, 0)):
                     limit = limits[kind][index]
@@ -157,12 +157,12 @@ class Original:
     def differs(self, program: Program) -> bool:
         """Whether a defined lane of many others differs by more than rounding."""
         textures = self.rounds[0][1]
-        for values, (wanted, undefined, endless) in self.dense:
-            got, _, hangs = self.results(program, values, textures)
+        for values, (expected, undefined, endless) in self.dense:
+            actual, _, hangs = self.results(program, values, textures)
             defined = ~(undefined | endless)
             if (defined & hangs).any():
                 return True
-            for index, (left, right) in enumerate(zip(got, wanted, strict=True)):
+            for index, (left, right) in enumerate(zip(actual, expected, strict=True)):
                 error = np.where(defined, errors(left, right), 0.0)
                 lanes = np.flatnonzero(error > GOAL)[:256]
                 if len(lanes):
@@ -254,15 +254,17 @@ def in_driver(original: Original, mutation: Mutation, gl: Any) -> bool:
     case = original.case
     case.machines = {"gl": gl}
     module = case.module
-    wanted = case.all_rounds(case.original)
+    expected = case.all_rounds(case.original)
     undefined, _ = case.analysis()
-    finite = [np.isfinite(value).reshape(len(value), -1).all(axis=1) for value in wanted.values()]
+    finite = [np.isfinite(value).reshape(len(value), -1).all(axis=1) for value in expected.values()]
     try:
         case.module, case.texts = changed(original, mutation), {}
-        got = case.result("glsl")
+        actual = case.result("glsl")
     finally:
         case.module, case.texts = module, {}
-    return isinstance(got, str) or not case.comparison("glsl", got, wanted, np.all(finite, axis=0) & ~undefined).ok
+    return (
+        isinstance(actual, str) or not case.comparison("glsl", actual, expected, np.all(finite, axis=0) & ~undefined).ok
+    )
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -87,10 +87,10 @@ def _figures(measure: Measure, backend: Backend, guards: str) -> Figures:
 def shows(erratum: Erratum, figures: Figures) -> bool:
     """Whether figures of the published technique agree with theory."""
     return len(figures) == len(erratum.theory) and all(
-        math.isclose(got, wanted, rel_tol=erratum.tolerance, abs_tol=erratum.tolerance)
-        or (math.isnan(got) and math.isnan(wanted))
-        or (math.isinf(wanted) and not math.isfinite(got))
-        for got, wanted in zip(figures, erratum.theory, strict=True)
+        math.isclose(actual, expected, rel_tol=erratum.tolerance, abs_tol=erratum.tolerance)
+        or (math.isnan(actual) and math.isnan(expected))
+        or (math.isinf(expected) and not math.isfinite(actual))
+        for actual, expected in zip(figures, erratum.theory, strict=True)
     )
 
 

@@ -152,7 +152,7 @@ def test_a_planted_nan_is_caught_and_shrunk(
     if name != "numpy-f32" and not faults:
         pytest.skip(f"{name} has a number for sqrt(-7)")
     fault = next(fault for fault in faults if fault.kind == "non-finite")
-    assert non_finite(fault.got).any() and fault.inputs.lanes == 1
+    assert non_finite(fault.actual).any() and fault.inputs.lanes == 1
     values = {key: value.ravel().tolist() for key, value in fault.inputs.values.items()}
     assert values == {"a": [10.0], "b": [0.0, 0.0, 1.0], "d": [0.0]}
     assert shlex.split(fault.command)[1] == '{"a": 10.0, "b": [0.0, 0.0, 1.0], "d": 0.0}'

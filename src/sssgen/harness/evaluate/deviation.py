@@ -35,12 +35,12 @@ class Deviation(NamedTuple):
     """The largest deviation of all outputs, over all lanes that are not excluded, and its place."""
 
     largest: float
-    """|got - wanted| over the larger of |wanted| and 1, both over a value's components; infinite where one is NaN and
-    the other is not."""
+    """|actual - expected| over the larger of |expected| and 1, both over a value's components; infinite where one is
+    NaN and the other is not."""
     output: str
     lane: int
-    got: Array
-    wanted: Array
+    actual: Array
+    expected: Array
     excluded: int
     """The number of lanes beyond the goal that rounding explains."""
     furthest: float
@@ -69,7 +69,7 @@ class Row(NamedTuple):
         if self.deviation is None:
             return f"{'missing' if self.missing else 'FAILED'}: {self.error}"
         worst = self.deviation
-        where = f" at {worst.output}[{worst.lane}]: {worst.got.tolist()}" if worst.largest > GOAL else ""
+        where = f" at {worst.output}[{worst.lane}]: {worst.actual.tolist()}" if worst.largest > GOAL else ""
         where += " (half precision, to which the goal does not apply)" if where and self.name in HALF else ""
         excluded = f", {worst.excluded} ill-conditioned lanes excluded, up to {worst.furthest:.2g}"
         return f"{worst.largest:8.2g}{where}{excluded if worst.excluded else ''}  ({self.device})"
@@ -87,20 +87,22 @@ class Row(NamedTuple):
 
 
 def deviation(
-    got: Mapping[str, Array], wanted: Mapping[str, Array], rounding: Callable[[], Mapping[str, Array]] | None = None
+    actual: Mapping[str, Array],
+    expected: Mapping[str, Array],
+    rounding: Callable[[], Mapping[str, Array]] | None = None,
 ) -> Deviation:
     """The largest deviation of outputs, lanes first, from the oracle's.
 
     `rounding` returns the rounding deviation of each output; it is called only where a lane is beyond the goal. Without
     it no lane is excluded.
     """
-    each = {name: _apart(got[name], right) for name, right in wanted.items()}
+    each = {name: _apart(actual[name], right) for name, right in expected.items()}
     excluded = {name: np.zeros(len(lanes), np.bool_) for name, lanes in each.items()}
     if rounding is not None and any((lanes > GOAL).any() for lanes in each.values()):
         limits = rounding()
         excluded = {name: (lanes > GOAL) & (lanes <= MARGIN * limits[name]) for name, lanes in each.items()}
     worst = Deviation(-1.0, "", 0, np.zeros(()), np.zeros(()), 0, 0.0)
-    for name, right in wanted.items():
+    for name, right in expected.items():
         left = np.where(excluded[name], 0.0, each[name])
         lane = int(np.argmax(left))
         if left[lane] > worst.largest:
@@ -108,8 +110,8 @@ def deviation(
                 largest=float(left[lane]),
                 output=name,
                 lane=lane,
-                got=np.asarray(np.atleast_1d(got[name])[lane]),
-                wanted=np.asarray(np.atleast_1d(right)[lane]),
+                actual=np.asarray(np.atleast_1d(actual[name])[lane]),
+                expected=np.asarray(np.atleast_1d(right)[lane]),
             )
     count = int(np.any([*excluded.values()], axis=0).sum())
     furthest = max((float(each[name][lanes].max()) for name, lanes in excluded.items() if lanes.any()), default=0.0)
@@ -125,15 +127,15 @@ def rounding_deviation(
     rng = np.random.default_rng(0)
     for _ in range(DRAWS):
         near = inputs._replace(values={name: _moved(value, rng) for name, value in inputs.values.items()})
-        right, got = run(subject, near, exact, guards), run(subject, near, rounded, guards)
+        right, actual = run(subject, near, exact, guards), run(subject, near, rounded, guards)
         for name, value in right.items():
-            apart = np.maximum(_apart(value, oracle[name]), _apart(got[name], value))
+            apart = np.maximum(_apart(value, oracle[name]), _apart(actual[name], value))
             largest[name] = np.maximum(largest[name], apart)
     return largest
 
 
-def _apart(got: Array, wanted: Array) -> Array:
-    return errors(np.atleast_1d(got), np.atleast_1d(wanted))
+def _apart(actual: Array, expected: Array) -> Array:
+    return errors(np.atleast_1d(actual), np.atleast_1d(expected))
 
 
 def _moved(value: Array, rng: np.random.Generator) -> Array:
@@ -144,11 +146,11 @@ def _moved(value: Array, rng: np.random.Generator) -> Array:
     return moved
 
 
-def errors(got: Array, wanted: Array) -> Array:
+def errors(actual: Array, expected: Array) -> Array:
     """The deviation of each lane, (lanes,)."""
-    lanes = len(wanted)
-    a = got.reshape(lanes, -1).astype(np.float64)
-    b = wanted.reshape(lanes, -1).astype(np.float64)
+    lanes = len(expected)
+    a = actual.reshape(lanes, -1).astype(np.float64)
+    b = expected.reshape(lanes, -1).astype(np.float64)
     with np.errstate(invalid="ignore"):
         apart = np.where((a == b) | (np.isnan(a) & np.isnan(b)), 0.0, np.abs(a - b))
     apart = np.where(np.isnan(apart), np.inf, apart).max(axis=1)

@@ -144,21 +144,20 @@ def _value(name: str, type_: Type, raw: Any) -> Array:
         raise failure(
             f"input '{name}' is an array of {spell(type_.element)}: techniques with arrays cannot be evaluated"
         )
-    shape, wanted = shape_of(type_), spell(type_)
+    shape, expected = shape_of(type_), spell(type_)
     try:
         array = np.asarray(raw)
     except ValueError:
-        raise failure(f"input '{name}': its rows have different lengths", f"a list of {wanted}") from None
+        raise failure(f"input '{name}': its rows have different lengths", f"a list of {expected}") from None
     if array.dtype.kind not in "fiub" or (kind_of(type_) == "bool") != (array.dtype.kind == "b"):
         raise failure(
-            f"input '{name}' is not of type {wanted}", "true or false" if kind_of(type_) == "bool" else "numbers"
+            f"input '{name}' is not of type {expected}", "true or false" if kind_of(type_) == "bool" else "numbers"
         )
     if array.shape[array.ndim - len(shape) :] != shape or array.ndim > len(shape) + 1 or array.ndim < len(shape):
         each = ("a number", f"{components(type_)} numbers", f"{components(type_)} numbers in columns")[len(shape)]
-        raise failure(
-            f"input '{name}' has the shape {'×'.join(map(str, array.shape)) or 'of one number'}, not that of {wanted}",
-            f"{each}, or a list of them",
-        )
+        actual = "×".join(map(str, array.shape)) or "of one number"
+        message = f"input '{name}' has the shape {actual}, not that of {expected}"
+        raise failure(message, f"{each}, or a list of them")
     if array.ndim > len(shape) and not len(array):
         raise failure(f"input '{name}' is an empty list")
     if array.dtype.kind == "f" and not np.isfinite(array).all():
@@ -168,7 +167,7 @@ def _value(name: str, type_: Type, raw: Any) -> Array:
     if kind in ("int", "uint"):
         info = np.iinfo(DTYPES[kind])
         if (array != np.floor(array)).any() or (array < info.min).any() or (array > info.max).any():
-            raise failure(f"input '{name}' is not of type {wanted}", f"whole numbers from {info.min} to {info.max}")
+            raise failure(f"input '{name}' is not of type {expected}", f"whole numbers from {info.min} to {info.max}")
     elif kind == "float":
         with np.errstate(over="ignore"):
             array = array.astype(np.float32)

@@ -50,12 +50,12 @@ def largest(specimen: Specimen, run: Run, oracle: Run) -> tuple[float, str, Inpu
     worst: tuple[float, str, Inputs | None] = (0.0, "", None)
     for name, (before, first, second, behind) in _walks(specimen):
         exact = [oracle(inputs) for inputs in (before, first, second, behind)]
-        got = [run(inputs) for inputs in (first, second)]
-        for output, value in got[0].items():
+        actual = [run(inputs) for inputs in (first, second)]
+        for output, value in actual[0].items():
             if value.dtype.kind != "f" or not value.ndim:
                 continue
             own = np.max([_apart(a[output], b[output]) for a, b in pairwise(exact)], axis=0)
-            moved = np.where(own < 0.1 * JUMP, _apart(value, got[1][output]), 0.0)
+            moved = np.where(own < 0.1 * JUMP, _apart(value, actual[1][output]), 0.0)
             worst_lane = int(np.argmax(moved))
             if moved[worst_lane] > worst[0]:
                 worst = float(moved[worst_lane]), name, lane(first, worst_lane)

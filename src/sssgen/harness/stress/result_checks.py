@@ -122,8 +122,8 @@ def steps(value: Array) -> Array:
 def _wrong(trial: Trial, output: str, value: Array, _: Mapping[str, Array] | None) -> Array:
     if output not in trial.expected:
         return _none(value)
-    wanted = np.broadcast_to(trial.expected[output], value.shape)
-    return errors(value, wanted) > trial.tolerance
+    expected = np.broadcast_to(trial.expected[output], value.shape)
+    return errors(value, expected) > trial.tolerance
 
 
 def growing_input(specimen: Specimen) -> str:

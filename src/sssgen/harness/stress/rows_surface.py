@@ -157,6 +157,6 @@ def eight_bits(specimen: Specimen) -> Iterator[Trial]:
         fine[name] = Texture(texels.astype(np.float16), dim=_dim(specimen, name))
         coarse[name] = Texture((np.round(texels * 255.0) / 255.0).astype(np.float16), dim=_dim(specimen, name))
     places = _swept_texels(specimen, 512)
-    wanted: dict[str, Array] = run(specimen.subject, plain(specimen, 512, {**places, **fine}), get("numpy"))
+    expected: dict[str, Array] = run(specimen.subject, plain(specimen, 512, {**places, **fine}), get("numpy"))
     step = (2.0 if specimen.role == "distance" else 1.0) * (0.5 / 255.0 + 2.0**-11)
-    yield Trial("", specimen, plain(specimen, 512, {**places, **coarse}), expected=wanted, tolerance=1.01 * step)
+    yield Trial("", specimen, plain(specimen, 512, {**places, **coarse}), expected=expected, tolerance=1.01 * step)

@@ -92,7 +92,7 @@ def _fault(fault: Fault) -> dict[str, Any]:
         "counts": fault.counts,
         "lanes": fault.lanes,
         "of": fault.of,
-        "got": _numbers(fault.got),
+        "got": _numbers(fault.actual),
         "inputs": _inputs(fault.inputs),
         "eval": fault.command,
     }
@@ -152,8 +152,8 @@ def faults(row: Row, beyond: bool = False) -> Iterator[str]:
                 by_kind.setdefault(key, []).append((column.backend, fault))
     for (trial, kind, output, counts), same_faults in by_kind.items():
         fault = same_faults[0][1]
-        got = np.array2string(fault.got, precision=7, separator=", ")
-        where = f"{output} is {got} in {fault.lanes} of {fault.of}, on {', '.join(name for name, _ in same_faults)}"
+        actual = np.array2string(fault.actual, precision=7, separator=", ")
+        where = f"{output} is {actual} in {fault.lanes} of {fault.of}, on {', '.join(name for name, _ in same_faults)}"
         yield f"{row.specimen.title}: {trial}: {kind}: {where}{'' if counts else ', not counted'}"
         if command := next((fault.command for _, fault in same_faults if fault.command), ""):
             yield f"  {command}"

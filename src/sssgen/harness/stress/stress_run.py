@@ -66,7 +66,7 @@ class Fault(NamedTuple):
     """The number of lanes that failed, and of those tried."""
     inputs: Inputs
     """The first that failed."""
-    got: Array
+    actual: Array
     command: str = ""
     """The command that shows the simplest input found; '' if none was searched for."""
 
@@ -252,19 +252,19 @@ class _Gathered:
             self.faults[key] = earlier._replace(lanes=earlier.lanes + count)
             return
         first = int(np.argmax(faults.bad))
-        got = np.array(value[first] if value.ndim else value)
+        actual = np.array(value[first] if value.ndim else value)
         self.trials[key] = trial
         self.faults[key] = Fault(
-            trial.name, faults.kind, faults.output, counts, count, trial.inputs.lanes, lane(trial.inputs, first), got
+            trial.name, faults.kind, faults.output, counts, count, trial.inputs.lanes, lane(trial.inputs, first), actual
         )
 
     def compare(self, trial: Trial, outputs: Mapping[str, Array], reference: _Reference) -> Iterator[OutputFaults]:
         """The lanes where finite outputs deviate from the oracle's by more than rounding explains."""
-        for name, wanted in reference.outputs.items():
-            got = outputs[name]
-            if got.dtype.kind != "f" or not got.ndim:
+        for name, expected in reference.outputs.items():
+            actual = outputs[name]
+            if actual.dtype.kind != "f" or not actual.ndim:
                 continue
-            apart = errors(got, wanted)
+            apart = errors(actual, expected)
             apart[~np.isfinite(apart)] = 0.0  # reported as non-finite
             bad = apart > GOAL
             if bad.any():

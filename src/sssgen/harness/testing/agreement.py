@@ -43,24 +43,24 @@ def against_oracle(
     excluded = f", {apart.excluded} ill-conditioned lanes by up to {apart.furthest:.2g}" if apart.excluded else ""
     if apart.largest <= tolerance:
         return outputs, Outcome("passed", f"{backend.name} deviates by {apart.largest:.2g} at most{excluded}")
-    where = f"{apart.output}[{apart.lane}] is {apart.got.tolist()}; float64 gives {apart.wanted.tolist()}"
+    where = f"{apart.output}[{apart.lane}] is {apart.actual.tolist()}; float64 gives {apart.expected.tolist()}"
     return outputs, Outcome("failed", f"{backend.name} deviates by {apart.largest:.2g}, more than {tolerance:g}", where)
 
 
-def against_numbers(oracle: Mapping[str, Array], wanted: Mapping[str, Any], tolerance: float) -> Outcome:
+def against_numbers(oracle: Mapping[str, Array], expected: Mapping[str, Any], tolerance: float) -> Outcome:
     """Compares the oracle's outputs with given numbers. Raises SssgenError for an unknown output or another shape."""
-    for name, numbers in wanted.items():
+    for name, numbers in expected.items():
         if name not in oracle:
             raise failure(f"there is no output '{name}'", f"outputs: {', '.join(oracle)}")
-        got = np.atleast_1d(oracle[name])
+        actual = np.atleast_1d(oracle[name])
         try:
-            right = np.broadcast_to(np.asarray(numbers, np.float64), got.shape)
+            right = np.broadcast_to(np.asarray(numbers, np.float64), actual.shape)
         except (ValueError, TypeError):
-            shape = "×".join(map(str, got.shape))
+            shape = "×".join(map(str, actual.shape))
             raise failure(f"output '{name}' cannot be compared with these numbers", f"its shape is {shape}") from None
-        apart = errors(got, right)
+        apart = errors(actual, right)
         lane = int(np.argmax(apart))
         if not apart[lane] <= tolerance:
-            where = f"{name}[{lane}] is {got[lane].tolist()}, and {right[lane].tolist()} was given"
+            where = f"{name}[{lane}] is {actual[lane].tolist()}, and {right[lane].tolist()} was given"
             return Outcome("failed", f"the oracle deviates by {apart[lane]:.2g}, more than {tolerance:g}", where)
-    return Outcome("passed", f"{len(wanted)} outputs as given")
+    return Outcome("passed", f"{len(expected)} outputs as given")

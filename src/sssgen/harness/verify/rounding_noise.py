@@ -91,11 +91,11 @@ def noise(
         if granted:  # compilers may compute constants in higher precision
             other = Run(program, count, {**textures, **chosen}, exact_literals=True)
             largest = _apart(_first(other.result(key, {**textures, **chosen})), exact)
-        wanted = np.concatenate([exact] * repeats)
+        expected = np.concatenate([exact] * repeats)
         for draw in range(-(-draws // repeats)):
             with seeded(1000 * seed + draw):
-                got, undefined = result(GrantedRun if granted else RoundedRun, program, key, repeated, textures)
-            moved = np.where(undefined, np.inf, _apart(got, wanted)).reshape(repeats, count).max(axis=0)
+                actual, undefined = result(GrantedRun if granted else RoundedRun, program, key, repeated, textures)
+            moved = np.where(undefined, np.inf, _apart(actual, expected)).reshape(repeats, count).max(axis=0)
             largest = np.maximum(largest, moved)
         results.append(largest[lanes] if program.neighbours else largest)
     return results

@@ -248,13 +248,13 @@ class Case:
         return np.concatenate(undefined), Coverage(len(own) - len(never), len(own), never)
 
     def comparison(
-        self, name: str, got: Mapping[str, Array], wanted: Mapping[str, Array], defined: Array
+        self, name: str, actual: Mapping[str, Array], expected: Mapping[str, Array], defined: Array
     ) -> Comparison:
         """The largest deviation of the defined lanes, without those whose deviation is explained by rounding."""
-        for output, right in wanted.items():
-            if got[output].shape != right.shape:
-                return Comparison(None, error=f"{output} has the shape {got[output].shape}, not {right.shape}")
-        each = {output: np.where(defined, errors(got[output], right), 0.0) for output, right in wanted.items()}
+        for output, right in expected.items():
+            if actual[output].shape != right.shape:
+                return Comparison(None, error=f"{output} has the shape {actual[output].shape}, not {right.shape}")
+        each = {output: np.where(defined, errors(actual[output], right), 0.0) for output, right in expected.items()}
         beyond = np.any([error > GOAL for error in each.values()], axis=0)
         unexplained = beyond.copy()
         for draws in DRAWS_EACH:
@@ -272,7 +272,7 @@ class Case:
         for output, error in each.items():
             lane = int(np.argmax(np.where(left, error, 0.0)))
             if left[lane] and error[lane] > (comparison.deviation or 0.0):
-                shown = f"{_shown(got[output][lane])}, the author's text gives {_shown(wanted[output][lane])}"
+                shown = f"{_shown(actual[output][lane])}, the author's text gives {_shown(expected[output][lane])}"
                 at = f"{output}[{lane}]: {shown}{self.shown_inputs(lane)}"
                 comparison = comparison._replace(deviation=float(error[lane]), at=at)
         return comparison
