@@ -54,7 +54,7 @@ ROWS = (
     ),
     DangerousRow("long-vectors", "|L| > 255 in half precision", "normalised without overflow", light.long_vectors),
     DangerousRow(
-        "quantities", "thickness, thinness, transmittance < 0, > 1", "finite; clamped where it is made",
+        "quantities", "thickness, thinness, transmittance < 0, > 1", "finite; the technique clamps its result",
         light.wrong_quantities,
     ),
     DangerousRow(
@@ -85,25 +85,28 @@ ROWS = (
     DangerousRow(
         "seams", "a seam in the texture coordinates, a jump of derivatives", "finite", surface.seams, alike=False,
     ),
-    DangerousRow("lipschitz", "a field that is not a distance", "each tap clamped", field.not_lipschitz),
+    DangerousRow("lipschitz", "a field that is not a distance", "each tap is clamped", field.not_lipschitz),
     DangerousRow(
         "medial-axis", "across the medial axis", "no jump; a change of the slope is documented", field.medial_axis,
     ),
     DangerousRow("hit-offset", "a hit a little inside", "at least 0, as on the surface", field.hit_offset),
     DangerousRow("grazing-march", "a march from the surface itself, grazing", "no jump", field.grazing_march),
     DangerousRow(
-        "flat-box", "a flat bounding box, or one above 0", "padded; its lowest corner subtracted", field.flat_box,
+        "flat-box", "a flat bounding box, or one above 0", "the box is padded, and its lowest corner is subtracted",
+        field.flat_box,
     ),
     DangerousRow(
-        "meshes", "open, non-manifold, self-intersecting, inverted meshes", "signed by winding, or refused", None,
+        "meshes", "open, non-manifold, self-intersecting, inverted meshes", "signed by the winding number, or refused",
+        None,
         "a scene's mesh: the sign is that of the winding number, and an invalid mesh is rejected with a message",
     ),
     DangerousRow("concave", "concave bodies, gaps", "the sum of the intervals inside", field.concave),
-    DangerousRow("eight-bits", "an 8-bit distance or thickness", "half a step off at most", surface.eight_bits),
+    DangerousRow("eight-bits", "an 8-bit distance or thickness", "an error of at most half a step", surface.eight_bits),
     DangerousRow("coinciding", "two points in one place: an axis' ends, a cell's site", "finite", field.coinciding),
     DangerousRow("few-steps", "steps of 0 and 1, or larger than the body", "at least one step", field.few_steps),
     DangerousRow(
-        "fast-math", "NaN tests under fast-math", "tests of bits: no NaN comes through", surface.fast_math, alike=False,
+        "fast-math", "NaN tests under fast-math", "the tests read the bits: no NaN remains",
+        surface.fast_math, alike=False,
     ),
 )  # fmt: skip
 
