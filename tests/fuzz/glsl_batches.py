@@ -16,8 +16,10 @@ from glsl_interpreter import Interpreter
 from glsl_programs import INPUTS
 from glsl_tree import Program, source
 from glsl_values import Undefined, kind, matrix_size, vector_size
+from hlsl_in_vulkan import HLSLInVulkan
 from sssgen.harness.backends import Backend, Call, Text
 from sssgen.harness.backends.isolated import isolated
+from sssgen.harness.compilers import CompilerMissing
 from sssgen.ir.nodes import Module
 from sssgen.ir.types import BY_NAME
 from sssgen.lang.plain_glsl import load_glsl_text
@@ -33,6 +35,8 @@ TOLERANCE = 1e-3
 """For results that may be rounded, relative to the larger of their size and 1."""
 TARGETS = ("numpy", "gl", "gl-es", "webgpu", "hlsl")
 """The back ends of the five targets."""
+VULKAN = "hlsl-vulkan"
+"""The second way to run HLSL, where the first one computes something wrong."""
 EXTREMES = {
     "int": (0, 1, -1, 2, 3, 7, -8, 31, 32, 100, 255, -256, 65535, 65536, 1 << 24, (1 << 24) + 1, -(1 << 30), 1 << 30,
             0x55555555, 2147483646, 2147483647, -2147483647, -2147483648),
@@ -49,9 +53,10 @@ class Failure(NamedTuple):
     target: str
     kind: str
     """`wrong`, `invalid` (a compiler refuses the text), `refused` (the transpiler does), `crash`; `tool`: a fault of
-    what runs the text: spirv-cross ends with an assertion, or a driver computes a lane of the same text right where all
-    lanes have its arguments, and wrong among others (llvmpipe's control flow)."""
+    what runs the text: spirv-cross ends with an assertion, or `cause`."""
     message: str
+    cause: str = ""
+    """Why the text is right although its results are wrong; '' where nothing shows it."""
 
 
 def drawn(type_: str, random: Random) -> Value:
@@ -139,7 +144,7 @@ class Runner:
 
     def backend(self, name: str) -> Backend:
         if name not in self.backends:
-            self.backends[name] = isolated(name, SECONDS)
+            self.backends[name] = HLSLInVulkan(name) if name == VULKAN else isolated(name, SECONDS)
         return self.backends[name]
 
     def close(self) -> None:
@@ -190,11 +195,35 @@ class Runner:
         for index, (case, result) in enumerate(zip(cases, results, strict=True)):
             lanes = case.wrong_lanes(result)
             if lanes:
-                is_text = target == "numpy" or any(self.is_wrong_alone(target, module, cases, index, n) for n in lanes)
-                failures.append(
-                    (case, Failure(target, "wrong" if is_text else "tool", case.difference(result, lanes[0])))
-                )
+                cause = self.fault_of_tools(target, module, cases, index, lanes)
+                message = case.difference(result, lanes[0])
+                failures.append((case, Failure(target, "tool" if cause else "wrong", message, cause)))
         return failures
+
+    def fault_of_tools(
+        self, target: str, module: Module, cases: Sequence[Case], index: int, lanes: Sequence[int]
+    ) -> str:
+        """What shows that wrong results of a case are no fault of the text; '' if nothing does.
+
+        - A driver computes each lane right where all lanes have its arguments (llvmpipe's control flow).
+        - Vulkan computes all lanes right from the SPIR-V that the same compiler makes of the same HLSL. So the compiler
+          reads the text as it is meant, and what remains of the first way is at fault: spirv-cross, or OpenGL's GLSL.
+          Another compiler of HLSL would show less: where the language leaves an order open, each may take its own.
+        """
+        if target == "numpy":
+            return ""
+        if not any(self.is_wrong_alone(target, module, cases, index, lane) for lane in lanes):
+            return "divergent lanes"
+        if target == "hlsl" and self.is_right_in_vulkan(module, cases, index):
+            return "right in Vulkan"
+        return ""
+
+    def is_right_in_vulkan(self, module: Module, cases: Sequence[Case], index: int) -> bool:
+        """Whether Vulkan computes all lanes of a case right; not where Vulkan is missing or fails."""
+        try:
+            return not cases[index].wrong_lanes(self.results(VULKAN, module, cases)[index])
+        except (SssgenError, CompilerMissing):
+            return False
 
     def is_wrong_alone(self, target: str, module: Module, cases: Sequence[Case], index: int, lane: int) -> bool:
         """Whether a lane of a case is wrong, too, where all lanes have its arguments."""

@@ -97,14 +97,8 @@ def run(job: Job) -> Outcome:
 
 def title(failure: Failure) -> str:
     """The kind of fault: messages without their numbers and names."""
-    lane = failure.message.startswith("lane ")
-    message = (
-        "divergent lanes"
-        if lane and failure.kind == "tool"
-        else ""
-        if lane
-        else re.sub(r"'[^']*'|`[^`]*`|\d+", "…", failure.message)[:80]
-    )
+    is_lane = failure.message.startswith("lane ")
+    message = failure.cause if is_lane else re.sub(r"'[^']*'|`[^`]*`|\d+", "…", failure.message)[:80]
     return f"{failure.target} {failure.kind} {message}".strip()
 
 

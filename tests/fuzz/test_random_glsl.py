@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import pytest
 
 import random_glsl
-from glsl_batches import TARGETS, Case, Runner
+from glsl_batches import TARGETS, VULKAN, Case, Failure, Runner
 from glsl_programs import INPUTS
 from glsl_reduction import reduced, size
 from glsl_tree import Function, Node, Parameter, Program, source
+from hlsl_in_vulkan import HLSLInVulkan
+from skips import or_skip
 from sssgen.harness.backends import Backend
+from sssgen.support import diagnostics
 
 FEW, MANY = 4, 140
 """Batches in a test run, and in a long one: 64 and 2,240 programs."""
@@ -80,6 +84,53 @@ def test_a_wrong_program_is_found(runners: dict[str, Runner]) -> None:
     case.text = source(program_of(Node("binary", "int", [Node("binary", "int", [A, B], "*"), B], "*")))
     (failure,) = runners["numpy"].failures([case])
     assert failure[1].kind == "wrong"
+
+
+class WrongNumbers:
+    """A back end that adds 1 to every result of another one."""
+
+    def __init__(self, backend: Backend) -> None:
+        self.backend = backend
+        self.target = backend.target
+
+    def run(self, *args: Any) -> list[Any]:
+        return [result + 1 for result in self.backend.run(*args)]
+
+
+@pytest.fixture
+def in_vulkan() -> Iterator[HLSLInVulkan]:
+    backend = or_skip(HLSLInVulkan, VULKAN)
+    yield backend
+    backend.close()
+
+
+def hlsl_failure(case: Case, first: object, second: object) -> Failure:
+    """The only failure of a case, with these two ways to run HLSL."""
+    runner = Runner(("hlsl",))
+    runner.backends.update({"hlsl": first, VULKAN: second})
+    ((_, failure),) = runner.failures([case])
+    return failure
+
+
+def test_hlsl_that_vulkan_computes_right_is_right(backend: Callable[[str], Backend], in_vulkan: HLSLInVulkan) -> None:
+    """So a fault of spirv-cross or OpenGL is not counted as one of the text."""
+    failure = hlsl_failure(Case(program_of(SUM)), WrongNumbers(backend("hlsl")), in_vulkan)
+    assert (failure.kind, failure.cause) == ("tool", "right in Vulkan")
+
+
+def test_hlsl_that_both_compute_wrong_is_wrong(backend: Callable[[str], Backend], in_vulkan: HLSLInVulkan) -> None:
+    case = Case(program_of(SUM))
+    case.text = source(program_of(Node("binary", "int", [Node("binary", "int", [A, B], "*"), B], "*")))
+    assert hlsl_failure(case, backend("hlsl"), in_vulkan).kind == "wrong"
+
+
+def test_hlsl_is_wrong_where_vulkan_shows_nothing(backend: Callable[[str], Backend]) -> None:
+    class Failing(WrongNumbers):
+        def run(self, *args: Any) -> list[Any]:
+            raise diagnostics.failure("the device was lost")
+
+    first = WrongNumbers(backend("hlsl"))
+    assert hlsl_failure(Case(program_of(SUM)), first, Failing(first.backend)).kind == "wrong"
 
 
 def test_an_invalid_program_is_found_in_its_batch(runners: dict[str, Runner]) -> None:

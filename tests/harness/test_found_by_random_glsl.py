@@ -54,6 +54,21 @@ CASES = {
         "int g(inout float y) { y += 5.0; return 2; }"
         "float f(float x) { switch (g(x)) { case 1: case 2: x *= 2.0; } return x; }", 12.0,
     ),
+    "an array that is made of itself": (
+        "int g(ivec3 c[2]) { c = ivec3[2](c[c[1].y & 1], ivec3(1)); return c[1].y; }"
+        "float f(float x) { return x + float(g(ivec3[2](ivec3(-2, 3, 8), ivec3(15)))); }", 2.0,
+    ),
+    "a value from before a loop that writes what it was read from": (
+        "float f(float x) { vec2 o = vec2(x, 8.0); float g = o[1];"
+        "for (int i = 0; i != 3 && g > 3.0; i++) o.y *= 0.25; return o[int(x) & 1]; }", 0.125,
+    ),
+    "a loop inside of its own condition": (
+        "float f(float x) { bool b = x > 0.0; if (b) for (int i = 0; i != 2 && b; i++) x *= 8.0; return x; }", 64.0,
+    ),
+    "a loop with a condition that is always true": (
+        "float f(float x) { bool b = x > 0.0; for (int i = 0; b == b && i != 2; i++) x *= 8.0; if (b == b) x++;"
+        "return x; }", 65.0,
+    ),
 }  # fmt: skip
 
 

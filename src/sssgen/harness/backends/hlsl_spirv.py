@@ -12,6 +12,7 @@ from typing import Any
 
 from sssgen.harness.backends.backend_interface import ATTRIBUTES, Drawing, Stage, Text, refused
 from sssgen.harness.backends.opengl import _HEADS, _SCREEN, OpenGL
+from sssgen.harness.backends.spirv_rewriting import rewritten
 from sssgen.harness.compilers import CompilerMissing, Message, dxc, glslang
 
 _ENDINGS = {
@@ -95,13 +96,18 @@ def compiled(text: str, entry: str, stage: str, compiler: str) -> tuple[bytes, s
     )
 
 
+_GLSL = ("--version", "430", "--no-es", "--force-temporary")
+"""Temporaries: else spirv-cross moves a read that stands before a loop into the loop's condition, although the loop
+writes the variable."""
+
+
 @lru_cache(64)
 def cross_compiled(module: bytes, *options: str) -> tuple[str, str]:
     """GLSL from SPIR-V by spirv-cross (with `options`, another language), or nothing and the log."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "in.spv"
-        path.write_bytes(module)
-        completed = _process([_tools()["spirv-cross"], str(path), *(options or ("--version", "430", "--no-es"))], b"")
+        path.write_bytes(rewritten(module))
+        completed = _process([_tools()["spirv-cross"], str(path), *(options or _GLSL)], b"")
     return ("", completed.stderr.decode(errors="replace")) if completed.returncode else (completed.stdout.decode(), "")
 
 

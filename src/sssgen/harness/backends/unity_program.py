@@ -42,14 +42,14 @@ class UnityProgram(HLSL):
         return super().draw(drawing._replace(blocks=blocks, textures=textures, values={}))
 
     def glsl(self, stage: Stage, kind: str) -> str:
-        text = self.spirv_cross(stage, kind, "--version", "430", "--no-es")
+        text = self.spirv_cross(stage, kind)
         return _BINDING.sub("layout(", text).replace("layout() ", "")
 
     def messages(self, log: str) -> list[Message]:
         return [unity.located(message, "forward pass") for message in super().messages(log)]
 
     def spirv_cross(self, stage: Stage, kind: str, *options: str) -> str:
-        """The output of spirv-cross for a stage."""
+        """The output of spirv-cross for a stage: GLSL, or another language with `options`."""
         origin = stage.text._replace(text="")  # messages have lines of the .shader file
         module, log = compiled(_aligned(stage.text.text), stage.entry, kind, self.compiler)
         if not module:
