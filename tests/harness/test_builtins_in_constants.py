@@ -104,9 +104,31 @@ def test_builtins_of_constants(backend: Callable[[str], Backend], name: str, qua
     assert not wrong, "\n".join(wrong)
 
 
-def test_a_choice_of_constants_made_of_vectors(backend: Callable[[str], Backend]) -> None:
+CHOICES = {
+    "mix(vec3(vec2(1.0), 3.0), vec3(4.0), bvec3(true, false, false))": 2.0 + 4.0 + 3.0,
+    "mix(A, B, bvec3(false, true, K))": 2.0 + 1.0 + 5.0,
+    "K ? A : B": 2.0 + 1.0 + 3.0,
+    "ONE > 2.0 ? A : B * 2.0": 2.0 + 10.0 + 10.0,
+    "ONE > 2.0 ? vec3(A.xy, 1.0) : B": 2.0 + 5.0 + 5.0,
+    "K ? C : B": 2.0 + 1.0 + 3.0,
+    "D": 2.0 + 1.0 + 3.0,
+    "x > 1.0 ? A : B": 2.0 + 1.0 + 3.0,
+}
+
+
+@pytest.mark.parametrize("value", CHOICES)
+def test_a_choice_of_constants_made_of_vectors(backend: Callable[[str], Backend], value: str) -> None:
     """naga crashed on `select` of these."""
-    text = (
-        "float f(float x) { vec3 y = mix(vec3(vec2(1.0), 3.0), vec3(4.0), bvec3(true, false, false)); return x + y.z; }"
-    )
-    check_results(text, 5.0, backend, (2.0,))
+    text = f"""
+        const vec3 A = vec3(vec2(1.0), 3.0);
+        const vec3 B = vec3(5.0);
+        const bool K = true;
+        const float ONE = 1.0;
+        const vec3 D = K ? A : B;
+        float f(float x) {{
+            const vec3 C = vec3(vec2(1.0), 3.0);
+            vec3 y = {value};
+            return x + y.x + y.z;
+        }}
+    """
+    check_results(text, CHOICES[value], backend, (2.0,))

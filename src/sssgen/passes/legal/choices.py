@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.nodes import Call, Construct, Expr, Intrinsic, Select
+from sssgen.ir.nodes import Call, Construct, Expr, Global, Intrinsic, Select
 from sssgen.ir.types import Array, Struct, Vector
 from sssgen.ir.walk import operands, subexpressions
 from sssgen.passes.capabilities import Capabilities
@@ -24,13 +24,14 @@ def _is_costly(expr: Expr) -> bool:
 
 
 def chooses_nested(expr: Expr) -> bool:
-    """Whether an expression chooses between vectors made of vectors."""
+    """Whether an expression chooses between vectors made of vectors, as a constant at file scope may be."""
     if not isinstance(expr.type, Vector) or not isinstance(expr, Select | Intrinsic):
         return False
     if isinstance(expr, Intrinsic) and not BUILTINS[expr.name].is_choice([arg.type for arg in expr.args]):
         return False
     return any(
-        isinstance(part, Construct) and any(isinstance(arg.type, Vector) for arg in part.args)
+        isinstance(part, Global)
+        or (isinstance(part, Construct) and any(isinstance(arg.type, Vector) for arg in part.args))
         for operand in operands(expr)
         for part in subexpressions(operand)
     )
