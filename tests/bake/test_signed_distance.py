@@ -35,7 +35,7 @@ def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def decode(texels: npt.NDArray[Any], reach: float, name: str) -> Array:
     """The distances that texels encode, as the technique distance_texture reads them."""
-    result: Array = (2.0 * texels.astype(np.float64) / ENCODINGS[name].one - 1.0) * reach
+    result: Array = (2.0 * texels.astype(np.float64) / ENCODINGS[name].unit - 1.0) * reach
     return result
 
 
@@ -416,7 +416,7 @@ def sampled(result: Volume, points: Array) -> Array:
 
 
 def texture(result: Volume) -> Texture:
-    texels = result.texels.astype(np.float64) / ENCODINGS[result.facts["encoding"]].one
+    texels = result.texels.astype(np.float64) / ENCODINGS[result.facts["encoding"]].unit
     return Texture(texels[..., None], "linear", "clamp")
 
 

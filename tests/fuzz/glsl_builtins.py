@@ -124,6 +124,13 @@ def _unpacked(unpack: Callable[[int], float], size: int) -> Callable[[int], Valu
     return lambda n: tuple(unpack(n >> (size * i) & ((1 << size) - 1)) for i in range(32 // size))
 
 
+def _signed(number: float) -> float:
+    """A number whose bits are compared. Raises Undefined for 0, whose sign implementations need not keep."""
+    if number == 0.0:
+        raise Undefined("the sign of a zero")
+    return number
+
+
 COMPONENTWISE: dict[str, Callable[..., Any]] = {
     "abs": _absolute, "sign": _sign, "min": min, "max": max, "clamp": _clamp, "floor": lambda x: float(math.floor(x)),
     "ceil": lambda x: float(math.ceil(x)), "trunc": lambda x: float(math.trunc(x)),
@@ -134,8 +141,8 @@ COMPONENTWISE: dict[str, Callable[..., Any]] = {
     "greaterThanEqual": lambda a, b: a >= b, "equal": lambda a, b: a == b, "notEqual": lambda a, b: a != b,
     "not": lambda a: not a, "isnan": lambda x: False, "isinf": lambda x: False,
     "bitCount": lambda x: (x & 0xFFFFFFFF).bit_count(),
-    "findLSB": _lowest, "findMSB": _highest, "floatBitsToInt": lambda x: wrapped("int", bits_of(x)),
-    "floatBitsToUint": bits_of, "intBitsToFloat": lambda n: exact(float_of(n)),
+    "findLSB": _lowest, "findMSB": _highest, "floatBitsToInt": lambda x: wrapped("int", bits_of(_signed(x))),
+    "floatBitsToUint": lambda x: bits_of(_signed(x)), "intBitsToFloat": lambda n: exact(float_of(n)),
     "uintBitsToFloat": lambda n: exact(float_of(n)),
 }  # fmt: skip
 WHOLE: dict[str, Callable[..., Any]] = {
@@ -143,7 +150,7 @@ WHOLE: dict[str, Callable[..., Any]] = {
     "matrixCompMult": lambda a, b: componentwise(lambda x, y: exact(x * y), a, b),
     "outerProduct": lambda c, r: tuple(tuple(exact(x * y) for x in c) for y in r), "reflect": _reflected,
     "faceforward": lambda n, i, r: n if _dot(r, i) < 0.0 else componentwise(lambda x: 0.0 - x, n),
-    "packHalf2x16": _parts(_half, 16), "unpackHalf2x16": _unpacked(_of_half, 16),
+    "packHalf2x16": _parts(lambda x: _half(_signed(x)), 16), "unpackHalf2x16": _unpacked(_of_half, 16),
 }  # fmt: skip
 SMOOTH: dict[str, Callable[..., Any]] = {
     "sin": math.sin, "cos": math.cos, "tan": math.tan, "asin": math.asin, "acos": math.acos,

@@ -25,6 +25,10 @@ CASES = {
         "float f(float x) { float z = 1.0; vec3 v = vec3(x, g(x), z--); return v.x * 100.0 + v.y * 10.0 + v.z; }",
         111.0,
     ),
+    "an index with an out argument": (
+        "float f(float x) { uint i = 3u; int a[2] = int[2](5, 6); int w = a[usubBorrow(2u, i, i) & 1u]--;"
+        "return float(1000u * i) + float(100 * w + 10 * a[0] + a[1]); }", 1655.0,
+    ),
     "a second gl": ("struct M { int a; }; float f(float gl) { { M gl = M(4), b = gl; return float(b.a); } }", 4.0),
     "a constant that another one needs": (
         "struct S { int x; }; const S w = S(4); const int A = w.x;"

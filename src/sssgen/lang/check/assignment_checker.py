@@ -81,14 +81,14 @@ class AssignmentChecker:
             return ir.Assign(self.fixed_place(target.expr, source, start), op, source, span)
         if assignment.value is not None:
             right = expressions.check(assignment.value)
-            before = len(context.function.prelude)
-            target = target._replace(expr=self.fixed_place(target.expr, right.expr, start))
-            start += len(context.function.prelude) - before
         elif isinstance(type_, Scalar | Vector | Matrix) and type_.kind != "bool":
             number = FLOAT if type_.kind == "float" else Scalar(type_.kind)
             right = Typed(ir.Literal(number, 1.0 if number == FLOAT else 1, span))
         else:
             raise context.fail(span, f"'{op * 2}' is not defined for {a_type(type_)}")
+        before = len(context.function.prelude)
+        target = target._replace(expr=self.fixed_place(target.expr, right.expr, start))
+        start += len(context.function.prelude) - before
         value = right.expr
         if context.plain and op not in ("<<", ">>") and operator_type(op, type_, value.type) != type_:
             value = as_kind(value, kind_of(type_)) if converts(value.type, type_, whole=False) else value
