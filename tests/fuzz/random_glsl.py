@@ -26,6 +26,8 @@ from glsl_programs import programs
 from glsl_reduction import reduced
 from glsl_tree import Program
 
+TRIALS = 3000
+"""The most programs that a reduction tries."""
 BATCH = 16
 """The programs in one text."""
 DEEPEST = 80
