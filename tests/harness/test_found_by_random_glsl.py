@@ -29,6 +29,15 @@ CASES = {
         "float f(float x) { uint i = 3u; int a[2] = int[2](5, 6); int w = a[usubBorrow(2u, i, i) & 1u]--;"
         "return float(1000u * i) + float(100 * w + 10 * a[0] + a[1]); }", 1655.0,
     ),
+    "a place with an index that another argument writes": (
+        "void g(out int n, out float y) { n = 1; y = 5.0; }"
+        "float f(float x) { int i = 0; float a[2] = float[2](x, 2.0); g(i, a[i]); return 10.0 * a[0] + a[1]; }", 52.0,
+    ),
+    "a place with an index that an earlier argument's call changes": (
+        "float g(inout int n) { n++; return 4.0; } void h(float x, inout int n, out float y) { n = 0; y = x; }"
+        "float f(float x) { int i = 0; float a[2] = float[2](x, 2.0); h(g(i), i, a[i]); return 10.0 * a[0] + a[1]; }",
+        14.0,
+    ),
     "a second gl": ("struct M { int a; }; float f(float gl) { { M gl = M(4), b = gl; return float(b.a); } }", 4.0),
     "a constant that another one needs": (
         "struct S { int x; }; const S w = S(4); const int A = w.x;"

@@ -123,6 +123,8 @@ class CallChecker:
 
     def call_function(self, name: str, signature: Signature, args: list[Typed], call: s.CallOf) -> Typed:
         """A call of one of the file's own functions."""
+        outs = [index for index, direction in enumerate(signature.directions) if direction != "in"]
+        self.expressions.fix_outs(args, outs)
         values: list[ir.Expr] = []
         for index, (arg, written) in enumerate(zip(args, call.args, strict=True)):
             type_, direction = signature.types[index], signature.directions[index]

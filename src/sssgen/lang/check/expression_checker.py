@@ -137,6 +137,22 @@ class ExpressionChecker:
                 values[index] = Typed(function.temporary("before", typed.expr, start), typed.quantity)
             start += len(function.prelude) - count
 
+    def fix_outs(self, args: list[Typed], outs: Sequence[int]) -> None:
+        """Stores the indices of the places at the positions `outs` that the call itself may change.
+
+        They are evaluated once, before the call; drivers evaluate them again when the values are copied out.
+        """
+        prelude = self.context.function.prelude
+        written = {root_name(args[index].expr) for index in outs}
+        for index in outs:
+            before = len(prelude)
+            place = self.fixed_place(args[index].expr, written, calls=True, start=before)
+            if len(prelude) > before:
+                args[index] = args[index]._replace(expr=place)
+                evaluated = args[: index + 1]
+                self.store_earlier(evaluated, before, outs)
+                args[: index + 1] = evaluated
+
     def fixed_place(self, target: ir.Expr, written: set[str], calls: bool, start: int) -> ir.Expr:
         """A place to write to, with every index stored in a variable that later statements change.
 
