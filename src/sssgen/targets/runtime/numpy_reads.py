@@ -16,9 +16,10 @@ def _level(level: Value) -> int:
 
 
 def textureSize(texture: Texture, level: Value) -> Value:
-    """The level is the same in all lanes."""
+    """The size of each lane's level, (k, n); a level that does not exist, undefined in GLSL, is the nearest one."""
     count = (len(texture.levels[0]),) if texture.layers else ()
-    return np.array((*texture.size(_level(level)), *count), np.int32)[:, None]
+    sizes = np.array([(*texture.size(index), *count) for index in range(len(texture.levels))], np.int32)
+    return sizes[np.clip(np.ravel(level), 0, len(sizes) - 1)].T
 
 
 def textureQueryLevels(texture: Texture) -> Value:
