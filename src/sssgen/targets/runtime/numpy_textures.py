@@ -138,7 +138,9 @@ class Texture:
         return np.stack([texels[channel] for texels in corners]).astype(coord.dtype)
 
     def fetch(self, place: Array, level: int = 0) -> Array:
-        """The texels, (4, n), at integer places (2, n) or (3, n), one more for a layer; 0 outside."""
+        """The texels, (4, n), at integer places (2, n) or (3, n), one more for a layer; 0 outside of what exists."""
+        if not 0 <= level < len(self.levels):
+            return np.zeros_like(self.fetch(place))
         count = (len(self.levels[0]),) if self.layers else ()
         size = np.array((*self.size(level), *count)).reshape(-1, 1)
         inside = ((place >= 0) & (place < size)).all(axis=0)
