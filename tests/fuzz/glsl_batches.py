@@ -175,7 +175,8 @@ class Runner:
     def failure(self, target: str, error: Exception) -> Failure:
         if isinstance(error, SssgenError):
             message = "; ".join(diagnostic.message for diagnostic in error.diagnostics[:2])
-            if "Assertion `" in message:
+            if "Assertion `" in message or "spirv-val: error" in message:
+                # the compiler accepted the text, and failed itself, or made SPIR-V that breaks its rules
                 return Failure(target, "tool", message)
             driver = re.match(r"(?:gl|gl-es|webgpu|hlsl|browser)\S*: ", message)
             return Failure(target, "invalid" if driver else "refused", message)

@@ -93,7 +93,8 @@ def run(job: Job) -> Outcome:
     for case, failure in failures:
         _failure_counts[title(failure)] += 1
         if job.folder and _failure_counts[title(failure)] <= REDUCTIONS_PER_TITLE:
-            _runner.timed("reduce", write, job, case, failure, _runner)
+            with suppress(RecursionError):  # Python's stack ends in copies of very deep programs
+                _runner.timed("reduce", write, job, case, failure, _runner)
     return Outcome(job, len(cases), excused, [failure for _, failure in failures], dict(_runner.seconds))
 
 

@@ -38,6 +38,11 @@ CASES = {
         "float f(float x) { int i = 0; float a[2] = float[2](x, 2.0); h(g(i), i, a[i]); return 10.0 * a[0] + a[1]; }",
         14.0,
     ),
+    "an out argument of one of two overloads": (
+        "float g(mat4 a, out bool b, inout vec2 c) { return 0.0; }"
+        "float g(out int before, out uint n, ivec2 old) { before = 1; return 1.0; }"
+        "float f(float x) { ivec2 a = ivec2(7, 8); uint n; g(a.t, n, a++); return float(10 * a.x + a.y); }", 81.0,
+    ),
     "a second gl": ("struct M { int a; }; float f(float gl) { { M gl = M(4), b = gl; return float(b.a); } }", 4.0),
     "a constant that another one needs": (
         "struct S { int x; }; const S w = S(4); const int A = w.x;"

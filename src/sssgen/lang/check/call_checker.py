@@ -35,6 +35,8 @@ class CallChecker:
         self.expressions = expressions
         self.constructors = ConstructorChecker(expressions)
         self.add_function = add_function
+        self.out_positions: dict[int, tuple[s.CallOf, set[int]]] = {}
+        """By the call's id: a call inside a call would be checked again and again. The call keeps its id taken."""
         expressions.methods[s.CallOf] = self.call
 
     def call(self, call: s.CallOf) -> Typed:
@@ -48,7 +50,7 @@ class CallChecker:
         if struct is not None and (name not in context.functions or struct is not context.structs.get(name)):
             return self.constructors.construct_parts(struct, call)
         overloads = context.functions.get(name, ())
-        args = self.expressions.operands(call.args, self.outs(name, overloads, len(call.args)))
+        args = self.expressions.operands(call.args, self.outs(name, overloads, call))
         types = tuple([arg.expr.type for arg in args])
         exact = next((signature for signature in overloads if signature.types == types), None)
         if exact is not None:
@@ -66,12 +68,26 @@ class CallChecker:
         known = [*context.functions, *context.structs, *(() if context.plain else q.QUANTITIES), *BUILTINS]
         raise context.unknown(callee.span, "function", name, known)
 
-    def outs(self, name: str, overloads: Sequence[Signature], count: int) -> set[int]:
-        """The positions of the out arguments in a call with this number of arguments."""
+    def outs(self, name: str, overloads: Sequence[Signature], call: s.CallOf) -> set[int]:
+        """The positions of the out arguments in a call."""
         if not overloads:
             return out_builtins.out_positions(name) if self.context.plain else set()
-        directions = [signature.directions for signature in overloads if len(signature.directions) == count]
-        return {index for index, each in enumerate(zip(*directions, strict=True)) if "in" not in each}
+        if id(call) not in self.out_positions:
+            fitting = [signature for signature in overloads if len(signature.directions) == len(call.args)]
+            places = {tuple(direction != "in" for direction in signature.directions) for signature in fitting}
+            if len(places) > 1:
+                places = {tuple(direction != "in" for direction in self.by_types(fitting, call).directions)}
+            outs = {index for each in places for index, is_out in enumerate(each) if is_out}
+            self.out_positions[id(call)] = call, outs
+        return self.out_positions[id(call)][1]
+
+    def by_types(self, overloads: Sequence[Signature], call: s.CallOf) -> Signature:
+        """The overload that fits a call best; its arguments are checked for their types only."""
+        check = self.expressions.check
+        types = tuple([self.expressions.with_prelude(part, check)[0].expr.type for part in call.args])
+        viable = [signature for signature in overloads if signature.types == types]
+        viable = viable or [signature for signature in overloads if _is_viable(signature, types)] or [*overloads]
+        return min(viable, key=lambda signature: _conversion_cost(signature, types))
 
     def glsl_builtin(self, name: str, args: list[Typed], call: s.CallOf) -> Typed | None:
         """A builtin that only plain GLSL has: one with a name of an old version, or with out parameters; else None."""
