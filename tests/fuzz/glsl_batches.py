@@ -178,6 +178,8 @@ class Runner:
             if "Assertion `" in message or "spirv-val: error" in message:
                 # the compiler accepted the text, and failed itself, or made SPIR-V that breaks its rules
                 return Failure(target, "tool", message)
+            if re.fullmatch(r"nested more than \d+ levels deep", message):
+                return Failure(target, "limit", message)  # macros nest more than the brackets of the text show
             driver = re.match(r"(?:gl|gl-es|webgpu|hlsl|browser)\S*: ", message)
             return Failure(target, "invalid" if driver else "refused", message)
         return Failure(target, "crash", f"{type(error).__name__}: {error}")

@@ -80,7 +80,7 @@ def run(job: Job) -> Outcome:
     """Runs a batch in this process, whose back ends stay."""
     global _runner
     if _runner is None:
-        sys.setrecursionlimit(10_000)
+        sys.setrecursionlimit(30_000)
         _runner = Runner(job.targets)
     _runner.seconds.clear()
     cases = _runner.timed("generate and interpret", batch, job.seed, job.number)
@@ -89,7 +89,13 @@ def run(job: Job) -> Outcome:
         excused.update(case.reasons)
         excused["programs without results"] += not case.is_useful
     cases = [case for case in cases if case.is_useful]
-    failures = _runner.failures(cases)
+    failures = []
+    try:
+        failures = _runner.failures(cases)
+    except RecursionError:
+        excused["batches that exhaust Python's stack in a comparison"] += 1
+    excused["programs beyond the limit of nesting"] += sum(failure.kind == "limit" for _, failure in failures)
+    failures = [(case, failure) for case, failure in failures if failure.kind != "limit"]
     for case, failure in failures:
         _failure_counts[title(failure)] += 1
         if job.folder and _failure_counts[title(failure)] <= REDUCTIONS_PER_TITLE:
