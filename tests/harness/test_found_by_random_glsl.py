@@ -43,6 +43,14 @@ CASES = {
         "float g(out int before, out uint n, ivec2 old) { before = 1; return 1.0; }"
         "float f(float x) { ivec2 a = ivec2(7, 8); uint n; g(a.t, n, a++); return float(10 * a.x + a.y); }", 81.0,
     ),
+    "members with the names of structs": (
+        "struct A { float x; }; struct B { int A[3]; A b; };"
+        "float f(float x) { B s = B(int[3](1, 2, 3), A(x)); return s.b.x + float(s.A[2]); }", 4.0,
+    ),
+    "a choice between numbers by a constant": (
+        "const bvec3 c = bvec3(true); float f(float x) { float q = mix(mix(0.125, 0.0, c.t), 1.0, 0.5); return q; }",
+        0.5,
+    ),
     "a second gl": ("struct M { int a; }; float f(float gl) { { M gl = M(4), b = gl; return float(b.a); } }", 4.0),
     "a constant that another one needs": (
         "struct S { int x; }; const S w = S(4); const int A = w.x;"

@@ -38,6 +38,8 @@ class Capabilities(NamedTuple):
     """Overloads may differ in a vec4 and a mat2 alone."""
     matrix_scalar_arithmetic: bool = False
     """`-M` and componentwise `/`, `+` and `-` of matrices and scalars exist; `M * s` exists in every language."""
+    member_types: bool = False
+    """A struct's member may have the name of a struct that later members have as their type."""
     mixed_bits: bool = False
     """Shifts and bitwise operators take operands of different sizes and signs."""
     mixed_columns: bool = False

@@ -44,6 +44,7 @@ def rename(
     matrix_overloads: bool = True,
     loop_scope: bool = True,
     reserved_at_file_scope: Container[str] = (),
+    member_types: bool = True,
 ) -> tuple[Module, dict[str, str]]:
     """The module with legal names, and what was renamed, as old → new.
 
@@ -51,13 +52,14 @@ def rename(
     `reserved_at_file_scope` those that only local names may have.
     `uniform_name` gives a uniform's name in the target's style. With `mangle_overloads` each function of an
     overloaded name gets its parameters' types into its name; without `matrix_overloads` those of a name whose overloads
-    differ in a vec4 and a mat2 alone; `loop_scope` as in `rename_locals`. In the result, overloads that got different
+    differ in a vec4 and a mat2 alone; `loop_scope` as in `rename_locals`; without `member_types` no
+    member has a struct's name. In the result, overloads that got different
     names are listed under their key (as in `box(vec3)`), local names under `function.name`, members under
     `struct.name`.
     """
     return _Namer(
         module, reserved, uniform_name, mangle_overloads, reserved_folded, matrix_overloads, loop_scope,
-        reserved_at_file_scope,
+        reserved_at_file_scope, member_types,
     ).run()  # fmt: skip
 
 
@@ -72,13 +74,14 @@ class _Namer:
         matrix_overloads: bool,
         loop_scope: bool,
         reserved_at_file_scope: Container[str],
+        member_types: bool,
     ) -> None:
         self.module = module
         self.keyed = [(function.key, function) for function in module.functions]
         self.reserved, self.reserved_folded = reserved, reserved_folded
         self.reserved_at_file_scope = reserved_at_file_scope
         self.uniform_name, self.mangle_overloads = uniform_name, mangle_overloads
-        self.matrix_overloads, self.loop_scope = matrix_overloads, loop_scope
+        self.matrix_overloads, self.loop_scope, self.member_types = matrix_overloads, loop_scope, member_types
         self.legality: dict[str, bool] = {}
         """Whether a name is legal."""
         self.renamed: dict[str, str] = {}
@@ -216,14 +219,15 @@ class _Namer:
 
     def name_structs(self, names: Mapping[tuple[str, str], str]) -> None:
         """Finds the structs that change: by name, by a member's name, or by a member's type."""
+        types = set() if self.member_types else {name for (kind, _), name in names.items() if kind == "struct"}
         for declaration in self.module.structs:
             struct = declaration.type
             assert isinstance(struct, Struct)
-            members = {field.name for field in struct.fields}
+            members = {field.name for field in struct.fields} | types
             fields = []
             for field in struct.fields:
                 new = field.name
-                if not self.legal(new):
+                if not self.legal(new) or new in types:
                     new = self.member(new, members)
                     self.renamed[f"{struct.name}.{field.name}"] = new
                     self.members[names["struct", struct.name], field.name] = new

@@ -229,6 +229,7 @@ def make_names_legal(state: State) -> Module:
         target.capabilities.matrix_overloads,
         target.capabilities.loop_scope,
         BUILTINS if target.names.builtins else (),
+        target.capabilities.member_types,
     )
     names = zip(module.uniforms, state.module.uniforms, strict=True)
     state.source_names = {new.name: old.name for new, old in names}

@@ -201,11 +201,7 @@ class LegalExpressions(Transformer):
         text = self.builtins.text(call.name, types)
         if self.current is None and not self.builtins.is_constant(call.name):
             raise Unsupported(_NOT_CONSTANT, call.span)
-        if (
-            not self.capabilities.constant_choices
-            and isinstance(call.type, Vector)
-            and BUILTINS[call.name].is_choice(types)
-        ):
+        if not self.capabilities.constant_choices and BUILTINS[call.name].is_choice(types):
             number = self.constant_calls.literals(call)
             if number is not None:
                 return number
