@@ -31,6 +31,7 @@ LIGHT = {FLOAT32.name: 1e9, "half": 1000.0}
 INTEGERS = {"int": (-(2.0**31), 2.0**31 - 1.0), "uint": (0.0, 2.0**32 - 1.0), "bool": (0.0, 1.0)}
 
 _UNIT = {"thinness", "transmittance"}
+_LENGTHS = {"thickness", "view_thickness"}
 _FRACTIONS = {"alpha", "metallic", "roughness", "occlusion"}
 _COLORS = {"albedo", "light_color", "emission", "color", "translucency"}
 _FRAME = {"N", "V", "L", "T", "B", "normal"}
@@ -72,7 +73,7 @@ def of_result(quantity: str, param: Param | None, format: Format = FLOAT32) -> C
 
 def from_outside(param: Param, format: Format = FLOAT32, chained: bool = True) -> Contract:
     """The contract of an argument from outside: a quantity may be any number, as nothing has clamped it."""
-    if param.quantity == "thickness":
+    if param.quantity in _LENGTHS:
         return _around(format.largest)
     if param.quantity in _UNIT:
         return _around(POSITION[format.name])
@@ -88,7 +89,7 @@ def of_quantity(quantity: str, format: Format = FLOAT32) -> Contract | None:
         return Contract(-LENGTH, LENGTH, LENGTH)
     if quantity in _UNIT:
         return Contract(0.0, ONE)
-    if quantity == "thickness":
+    if quantity in _LENGTHS:
         return Contract(0.0, THICKNESS[format.name])
     if quantity.endswith("_position"):
         return _around((UV if quantity == "uv_position" else POSITION)[format.name])

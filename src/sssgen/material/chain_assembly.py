@@ -38,13 +38,13 @@ from sssgen.ir.nodes import (
 )
 from sssgen.ir.transform import rewrite, rewrite_block
 from sssgen.ir.types import BOOL, FLOAT, VEC2, VEC3, VEC4, VOID, Field, Struct, Type
+from sssgen.lang.check.quantities import SCALARS
 from sssgen.passes.link import LinkError
-
-QUANTITIES = ("thickness", "thinness", "transmittance")
 
 INPUTS: dict[str, Type] = {
     "uv": VEC2, "P": VEC3, "N": VEC3, "V": VEC3, "T": VEC3, "B": VEC3, "L": VEC3,
     "P_object": VEC3, "N_object": VEC3, "V_object": VEC3, "L_object": VEC3,
+    "pixel": VEC2, "eye_distance": FLOAT,
     "time": FLOAT, "light_color": VEC3, "ray_origin": VEC3, "ray_direction": VEC3,
 }  # fmt: skip
 """The inputs that a shell can supply."""
@@ -175,7 +175,7 @@ def _result_name(stage: ChainFunction) -> str:
 
 
 def _value_name(param: Param) -> str:
-    return param.quantity if param.quantity in QUANTITIES else param.name
+    return param.quantity if param.quantity in SCALARS else param.name
 
 
 def _color_entry(stages: Sequence[ChainFunction], opaque: bool) -> Entry:
@@ -389,5 +389,5 @@ def constant(type_: Type, values: tuple[float, ...], span: Span) -> Expr:
 
 
 def _missing(name: str, param: Param, stage: ChainFunction) -> str:
-    value = f"a {name}" if param.quantity in QUANTITIES else f"'{name}'"
+    value = f"a {name}" if param.quantity in SCALARS else f"'{name}'"
     return f"{stage.technique} reads {value}, which no stage before it gives"

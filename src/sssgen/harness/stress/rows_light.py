@@ -12,6 +12,7 @@ from sssgen.harness.stress.contract_inputs import outside
 from sssgen.harness.stress.subject import Specimen
 from sssgen.harness.stress.trial import Trial
 from sssgen.ir.formats import FLOAT16
+from sssgen.lang.check.quantities import SCALARS
 
 AXES = [(0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0.6, 0, 0.8), (-0.6, 0, -0.8)]
 _EPS = 2.0**-21
@@ -73,10 +74,9 @@ def long_vectors(specimen: Specimen) -> Iterator[Trial]:
 
 def wrong_quantities(specimen: Specimen) -> Iterator[Trial]:
     """Thickness, thinness and transmittance below 0 and above 1."""
-    quantities = ("thickness", "thinness", "transmittance")
     textures = samplers(specimen)
     params = specimen.subject.params.items()
-    names = [name for name, param in params if param.quantity in quantities and name not in textures]
+    names = [name for name, param in params if param.quantity in SCALARS and name not in textures]
     if names:
         values = [-1e6, -1.0, -1e-6, -0.0, 0.0, 0.5, 1.0, 1.0 + 1e-6, 2.0, 1e6]
         choices: dict[str, list[Any]] = {**scalars(specimen)}

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
-from sssgen.ir.nodes import Uniform
+from sssgen.ir.nodes import Function, Uniform
 from sssgen.ir.types import Sampler, kind_of
 from sssgen.lab.measure.measured_chain import MaterialSection
 from sssgen.lab.scene.scene_body import Body
@@ -44,6 +44,8 @@ class Candidate(NamedTuple):
     techniques: tuple[str, ...]
     """The chain's techniques, in order; empty for a chart's point without the role"""
     baseline: bool = False
+    path: str = ""
+    """The function of the length inside the body from a point in it, for techniques with a slot for it"""
 
     def stages(self, body: Body) -> tuple[MaterialSection, ...]:
         """The chain's stages, bound to a scene's body."""
@@ -53,17 +55,30 @@ class Candidate(NamedTuple):
         technique = load(name)
         section = "thickness" if technique.role == "conversion" else technique.role
         uniforms = {uniform.name for uniform in technique.uniforms}
-        fixed = tuple((key, value) for key, value in self.settings if key in uniforms)
         bind: list[tuple[str, str]] = []
         body_values: list[tuple[str, object]] = []
-        for slot in technique.slots:
+        waiting = list(technique.slots)
+        while waiting:
+            slot = waiting.pop()
+            if is_path(slot):
+                bind.append((slot.name, self.path))
+                bound = load(self.path.partition(":")[0])
+                uniforms |= {uniform.name for uniform in bound.uniforms}
+                waiting += bound.slots
+                continue
             in_world = slot.params[0].quantity == "world_position"
             bind.append((slot.name, body.function if in_world else slots.body("texture", slot.params[0].quantity)))
             body_values += body.parameters.items() if in_world else ()
+        fixed = tuple((key, value) for key, value in self.settings if key in uniforms)
         values: dict[str, object] = dict(fixed)
         for key, value in body_values:
             values.setdefault(key, value)
         return MaterialSection(section, path_of(name), tuple(values.items()), tuple(values), tuple(bind))
+
+
+def is_path(slot: Function) -> bool:
+    """Whether a slot takes the length inside the body from a point in it, towards a light."""
+    return len(slot.params) == 2 and slot.quantity == "thickness"
 
 
 def load(name: str) -> Technique:

@@ -49,13 +49,19 @@ class Free(NamedTuple):
 
 
 class Factor(NamedTuple):
-    """A parameter to which the output is proportional; an emitted chain includes the fitted scale in it."""
+    """A parameter in which the output is linear; an emitted chain includes the fitted scale in it."""
 
     name: str
     components: int
     largest: float
     """The largest scale that its range allows"""
     default: tuple[float, ...]
+    weights: bool = False
+    """Whether each component weights a term of its own, the same for all channels"""
+
+    def settings(self) -> list[dict[str, Any]]:
+        """The parameter's values for the terms of the output: for weights each component alone, otherwise none."""
+        return [{self.name: unit} for unit in np.eye(self.components)] if self.weights else [{}]
 
 
 class Fitted(NamedTuple):
@@ -86,7 +92,7 @@ def fit(chains: Sequence[Chain | None], problems: Sequence[Problem]) -> Fitted:
     thinned = [problem.thinned(LANES) for problem in problems]
     compiled = [chain for chain in chains if chain is not None]
     if not compiled:
-        return _with_best_scales({}, [np.zeros_like(problem.target) for problem in thinned], thinned, None)
+        return _with_best_scales({}, [np.zeros((1, *problem.target.shape)) for problem in thinned], thinned, None)
     of_scene = {name for problem in thinned for part in problem.parts for name in part.values}
     free, factor = free_parameters(compiled[0], of_scene, thinned[0])
     results = [_fit_from(compiled, thinned, free, start, factor) for start in _starts(free)]
@@ -99,13 +105,22 @@ def _fit_from(
     """The result of one search, which begins at the coordinates `start`."""
     optimize = need("scipy.optimize", "scipy", "chart")
 
+    settings = factor.settings() if factor is not None else [{}]
+
     def values_of(parameters: Mapping[str, Any]) -> list[Array]:
-        return [_finite(problem.values(chain, parameters)) for chain, problem in zip(chains, problems, strict=True)]
+        return [
+            np.stack([_finite(problem.values(chain, {**parameters, **setting})) for setting in settings])
+            for chain, problem in zip(chains, problems, strict=True)
+        ]
 
     def residual(x: Array) -> Array:
         values = values_of(_named(free, x))
         fitted = _with_best_scales({}, values, problems, factor)
-        return np.concatenate([_residual(fitted, *pair).ravel() for pair in zip(values, problems, strict=True)])
+        weights = np.array(fitted.parameters[factor.name]) if factor is not None and factor.weights else np.ones(1)
+        return np.concatenate([
+            _residual(fitted, np.tensordot(weights, terms, 1), problem).ravel()
+            for terms, problem in zip(values, problems, strict=True)
+        ])  # fmt: skip
 
     x = start
     if len(start):
@@ -137,20 +152,26 @@ def _with_best_scales(
 ) -> Fitted:
     """The best scales of the values and of the Lambert reflection, all at least 0, for these parameters.
 
-    Each channel has its own scale only if the factor is a colour, because otherwise an artist cannot set it.
+    `values` has the terms of each problem, (terms, channels, lanes). Each channel has its own scale only if the factor
+    is a colour, because otherwise an artist cannot set it.
     """
     nnls = need("scipy.optimize", "scipy", "chart").nnls
     channels = len(problems[0].target)
-    per_channel = factor is not None and factor.components == 3 and problems[0].role != "coordinates"
-    columns: list[list[Array]] = [[] for _ in range((channels if per_channel else 1) + channels)]
+    weighted = factor is not None and factor.weights
+    per_channel = (
+        factor is not None and factor.components == 3 and not weighted and problems[0].role != "coordinates"
+    )
+    count = channels if per_channel else len(values[0])
+    columns: list[list[Array]] = [[] for _ in range(count + channels)]
     targets = []
     for value, problem in zip(values, problems, strict=True):
         for channel in range(channels):
             weight = 1.0 / np.sqrt((problem.target[channel] ** 2 + EPSILON) * problem.target.size)
             zeros = np.zeros_like(weight)
-            scaled, matte = value[channel] * weight, problem.lambert[channel] * weight
+            matte = problem.lambert[channel] * weight
             for index, column in enumerate(columns[:-channels]):
-                column.append(scaled if not per_channel or index == channel else zeros)
+                term = value[0 if per_channel else index, channel] * weight
+                column.append(term if not per_channel or index == channel else zeros)
             for index, column in enumerate(columns[-channels:]):
                 column.append(matte if index == channel else zeros)
             targets.append(problem.target[channel] * weight)
@@ -164,6 +185,9 @@ def _with_best_scales(
     scale = best[:-channels] if per_channel else np.repeat(best[:1], channels)
     albedo = tuple(map(float, best[-channels:]))
     error, name = float(np.sqrt(squared_error / len(problems))), factor.name if factor else ""
+    if factor is not None and weighted:  # the weights are the parameter itself
+        parameters = {**parameters, name: tuple(float(np.float32(part)) for part in best[:-channels])}
+        scale, name = np.ones(channels), ""
     return Fitted(parameters, tuple(map(float, scale)), albedo, error, name)
 
 
@@ -186,8 +210,9 @@ def free_parameters(chain: Chain, of_scene: set[str], problem: Problem) -> tuple
         if len(default) != components(type_):
             continue
         if is_factor(chain, uniform, problem):
-            largest = np.inf if uniform["color"] else high / default[0]
-            factors.append(Factor(name, len(default), float(largest), default))
+            weights = len(default) > 1 and not uniform["color"] and is_sum(chain, uniform, problem)
+            largest = np.inf if uniform["color"] else high if weights else high / default[0]
+            factors.append(Factor(name, len(default), float(largest), default, weights))
             continue
         logarithmic = low > 0.0 and high >= 50.0 * low
         if low == 0.0 and high >= 4.0 and uniform["unit"] in ("m", "1/m"):
@@ -209,6 +234,16 @@ def is_factor(chain: Chain, uniform: Mapping[str, Any], problem: Problem) -> boo
     if not np.isfinite(values).all() or not values.any():
         return False
     return bool(np.allclose(doubled, 2.0 * values, rtol=1e-6, atol=1e-12))
+
+
+def is_sum(chain: Chain, uniform: Mapping[str, Any], problem: Problem) -> bool:
+    """Whether the output is a sum of terms, each weighted with a component of the parameter."""
+    name, default = uniform["technique_name"], np.array(uniform["default"])
+    small = problem.thinned(40)
+    with np.errstate(all="ignore"):
+        terms = [small.values(chain, {name: part * unit}) for part, unit in zip(default, np.eye(len(default)))]
+        whole = small.values(chain, {name: default})
+    return bool(np.allclose(sum(terms), whole, rtol=1e-6, atol=1e-12))
 
 
 def _component(value: Array) -> Any:

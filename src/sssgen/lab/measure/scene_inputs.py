@@ -14,7 +14,7 @@ import numpy as np
 from sssgen.harness.backends import Array
 from sssgen.harness.evaluate.evaluation import half
 from sssgen.harness.scenes.light_view import directional_view
-from sssgen.lab.reference.inside_lengths import intervals, thickness
+from sssgen.lab.reference.inside_lengths import first_exit, intervals, thickness
 from sssgen.lab.scene import scene_body as body
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.view_points import points
@@ -54,7 +54,11 @@ def of_scene(scene: MeasuredScene) -> SceneInputs:
     values = {
         name: np.array(value)[:, None] if isinstance(value, list) else value for name, value in parameters.items()
     }
+    if scene.medium is not None:
+        extinction, albedo = (np.array(value)[:, None] for value in (scene.medium.extinction, scene.medium.albedo))
+        values |= {"extinction": extinction, "scattering_albedo": albedo, "mean_free_path": 1.0 / extinction.mean()}
     textures = {
+        "back_face_map": Texture(back_faces(scene)[..., None], "nearest", "clamp"),
         "distance_map": half(Texture(distances.values(geometry), wrap="clamp")),
         "thickness_texture": ideal(chord / longest),
         "thinness_texture": ideal(1.0 - chord / longest),
@@ -87,6 +91,16 @@ def mean_chord(scene: MeasuredScene) -> Array:
     origins = np.tile(visible.inputs["P"].T, (RAYS, 1))
     mean: Array = thickness(scene.geometry, origins, np.ascontiguousarray(directions)).reshape(RAYS, -1).mean(axis=0)
     return mean
+
+
+def back_faces(scene: MeasuredScene) -> Array:
+    """The distance from the eye to the nearest back face, for each pixel of a measured point; otherwise 0."""
+    visible = points(scene)
+    origins = np.ascontiguousarray(visible.inputs["P"].T)
+    picture = np.zeros(visible.valid.shape)
+    length = first_exit(scene.geometry, origins, np.ascontiguousarray(-visible.inputs["V"].T))
+    picture[visible.valid] = np.linalg.norm(origins - visible.origin, axis=1) + length
+    return picture
 
 
 def _depth_map(scene: MeasuredScene, towards: Array) -> tuple[dict[str, Any], dict[str, Texture]]:

@@ -18,6 +18,10 @@ BISECTION_STEPS = 80
 """Bisection steps: enough for the last bit."""
 
 
+SURFACE = 1e-4
+"""Intervals that begin within this part of the points' extent begin at the surface."""
+
+
 def thickness(geometry: Geometry, origins: Array, directions: Array) -> Array:
     """The length inside the body from `origins` along unit `directions`, (n, 3) each, in world space: (n,).
 
@@ -26,6 +30,17 @@ def thickness(geometry: Geometry, origins: Array, directions: Array) -> Array:
     starts, rays = _to_object(geometry, origins, directions)
     parts = np.maximum(intervals(geometry, starts, rays), 0.0)
     length: Array = geometry.scale * (parts[..., 1] - parts[..., 0]).sum(axis=1)
+    return length
+
+
+def first_exit(geometry: Geometry, origins: Array, directions: Array) -> Array:
+    """The length from surface points into the body to the first exit, as `thickness`; 0 if the ray does not enter."""
+    starts, rays = _to_object(geometry, origins, directions)
+    size = float(np.ptp(origins, axis=0).max(initial=0.0)) or 1.0
+    least = SURFACE * size / geometry.scale
+    parts = np.maximum(intervals(geometry, starts, rays), 0.0)
+    entered = (parts[..., 0] < least) & (parts[..., 1] > least)
+    length: Array = geometry.scale * np.where(entered, parts[..., 1], 0.0).max(axis=1)
     return length
 
 

@@ -76,6 +76,8 @@ def points(scene: MeasuredScene) -> Points:
         "P": position, "N": normal, "V": -ray, "T": tangent[:3], "B": np.cross(normal.T, tangent[:3].T).T * tangent[3],
         "P_object": to_object[:3, :3] @ position + to_object[:3, 3:],
         "N_object": rotation @ normal, "V_object": rotation @ -ray,
+        "pixel": np.stack(np.nonzero(keep.reshape(height, width))[::-1]) + 0.5,
+        "eye_distance": np.linalg.norm(position - origin[:, None], axis=0),
         "uv": uv, "time": np.zeros(1),
     }  # fmt: skip
     return Points(keep.reshape(height, width), inputs, model, origin)

@@ -13,11 +13,13 @@ from sssgen.lang.check.suggested_conversions import suggested_conversions
 
 SPACES = ("world", "object", "tangent", "uv")
 
-QUANTITIES: dict[str, Type] = {"thickness": FLOAT, "thinness": FLOAT, "transmittance": FLOAT}
+SCALARS = ("thickness", "view_thickness", "thinness", "transmittance")
+"""`view_thickness` is the length inside the body along the eye's ray, from the surface to the ray's first exit;
+`thickness` is a length towards the light, or along the normal."""
+
+QUANTITIES: dict[str, Type] = dict.fromkeys(SCALARS, FLOAT)
 for _space in SPACES:
     QUANTITIES[f"{_space}_position"] = QUANTITIES[f"{_space}_direction"] = VEC2 if _space == "uv" else VEC3
-
-SCALARS = ("thickness", "thinness", "transmittance")
 
 _TEXEL = "texel of "
 
@@ -42,7 +44,7 @@ def words(quantity: str) -> str:
 
 def space(quantity: str) -> str:
     """The space of a position or direction, else ''."""
-    return quantity.split("_")[0] if "_" in quantity else ""
+    return quantity.split("_")[0] if quantity not in SCALARS and "_" in quantity else ""
 
 
 def texel_of(quantity: str) -> str:
@@ -94,9 +96,9 @@ def of_operator(op: str, left: str, right: str, scaling: bool = False) -> str:
         return scaled if scaling else ""
     if not left or not right:
         return ""
-    if op == "+" and left != right and "_" in left and "_" in right:
+    if op == "+" and left != right and space(left) and space(right):
         return f"{space(left)}_position"
-    if op == "-" and left.endswith("_position") and right != left and "_" in right:
+    if op == "-" and left.endswith("_position") and right != left and space(right):
         return left
     if left != right:
         raise Mixup(f"'{op}' cannot combine {words(left)} and {words(right)}", conversion(right, left))
