@@ -100,7 +100,10 @@ def technique(name: str, **slots: str) -> Technique:
 def _technique(name: str, slots: tuple[tuple[str, str], ...]) -> Technique:
     module, function = _function(name)
     declared = {declaration.name: declaration for declaration in module.functions if declaration.body is None}
-    bound = {slot: _bound(text, declared[slot]) for slot, text in slots}
+    bound: dict[str, tuple[Module, Function]] = {}
+    for slot, text in slots:  # the slots of a bound function come after it
+        bound[slot] = _bound(text, declared[slot])
+        declared |= {other.name: other for other in bound[slot][0].functions if other.body is None}
     linked = link([LinkInput(function.name, "", module, function, bound, {}, frozenset())])
     compiled = transpile(linked.module, "numpy", function.name)
     namespace: dict[str, Any] = {}

@@ -125,7 +125,9 @@ def _check_quantity(technique: Technique, quantity: str, sources: dict[str, str]
     if quantity in sources:
         return
     for source in reversed(list(sources)):
-        name = suggested_conversions()[source, quantity]
+        name = suggested_conversions().get((source, quantity))
+        if name is None:  # a length along the eye's ray is not a length towards the light
+            continue
         hint = f"add a conversion stage after '{sources[source]}': [[thickness]] technique = \"{name}\""
         report(span, f"'{technique.name}' takes {words(quantity)}, but the chain has {words(source)}", hint)
         return

@@ -19,9 +19,6 @@ Needs = tuple[frozenset[str], tuple[Function, ...]]
 _needs_of: dict[int, tuple[Module, Function, Needs]] = {}
 _CACHE_SIZE = 4096
 
-SLOT_ROLES = ("distance", "thickness")
-"""The roles whose functions are offered for slots."""
-
 
 def needs(module: Module, function: Function) -> Needs:
     """The names of the globals that a function reads and the slots it calls, itself or through others."""
@@ -131,7 +128,7 @@ def candidates(slot: Function) -> list[str]:
     """The library's functions that fit a slot, as a material writes them."""
     names: list[str] = []
     for name, path in library.index().items():
-        if library.folder_of(path) not in SLOT_ROLES:
+        if library.folder_of(path) != ("thickness" if slot.quantity else "distance"):
             continue
         with contextlib.suppress(SssgenError):  # a file with errors is reported when it is used
             module = library.load_path(path).module

@@ -32,7 +32,8 @@ TEXELS = 16
 """Texels along each side of a texture."""
 
 RANGES = {
-    "uv_position": (-1.0, 2.0), "world_position": (-2.0, 2.0), "object_position": (-1.0, 1.0), "thickness": (0.0, 2.0), "view_thickness": (0.0, 2.0),
+    "uv_position": (-1.0, 2.0), "world_position": (-2.0, 2.0), "object_position": (-1.0, 1.0), "thickness": (0.0, 2.0),
+    "view_thickness": (0.0, 2.0),
     "thinness": (0.0, 1.0), "transmittance": (0.0, 1.0), "time": (0.0, 60.0), "light_color": (0.0, 4.0),
 }  # fmt: skip
 """The ranges of parameters, by quantity or name; all others have 0 to 1."""

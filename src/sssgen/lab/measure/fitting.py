@@ -158,9 +158,7 @@ def _with_best_scales(
     nnls = need("scipy.optimize", "scipy", "chart").nnls
     channels = len(problems[0].target)
     weighted = factor is not None and factor.weights
-    per_channel = (
-        factor is not None and factor.components == 3 and not weighted and problems[0].role != "coordinates"
-    )
+    per_channel = factor is not None and factor.components == 3 and not weighted and problems[0].role != "coordinates"
     count = channels if per_channel else len(values[0])
     columns: list[list[Array]] = [[] for _ in range(count + channels)]
     targets = []
@@ -241,7 +239,7 @@ def is_sum(chain: Chain, uniform: Mapping[str, Any], problem: Problem) -> bool:
     name, default = uniform["technique_name"], np.array(uniform["default"])
     small = problem.thinned(40)
     with np.errstate(all="ignore"):
-        terms = [small.values(chain, {name: part * unit}) for part, unit in zip(default, np.eye(len(default)))]
+        terms = [small.values(chain, {name: default * unit}) for unit in np.eye(len(default))]
         whole = small.values(chain, {name: default})
     return bool(np.allclose(sum(terms), whole, rtol=1e-6, atol=1e-12))
 

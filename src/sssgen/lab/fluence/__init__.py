@@ -1,1 +1,0 @@
-"""Fluence inside a body: traced for many light directions, factored into few volumes."""

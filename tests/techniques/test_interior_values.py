@@ -1,0 +1,98 @@
+"""The length along the eye's ray, and light scattered inside a body, compared with closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from oracle import Array, close, rng, technique, unit, units
+from sssgen.targets.runtime.numpy_textures import Texture
+
+RADIUS = 0.7
+
+
+def seen_ball(count: int) -> tuple[Array, Array, Array]:
+    """Points on a ball, directions to an eye that sees them, and the lengths of the eye's rays inside."""
+    normal = units(count, 3)
+    view = unit(normal + 0.9 * units(count, 4))
+    return RADIUS * normal, view, 2.0 * RADIUS * np.einsum("nc,nc->n", normal, view)
+
+
+def test_the_march_along_the_eyes_ray_ends_at_the_first_exit() -> None:
+    place, view, length = seen_ball(300)
+    march = technique("march_view", body_distance="sphere")
+    errors = [np.abs(march(P=place, V=view, radius=RADIUS, steps=steps) - length).max() for steps in (4, 16, 64)]
+    assert errors[0] > 2.0 * errors[1] > 4.0 * errors[2], errors
+    assert errors[2] < 2e-3
+    slabs = "float slabs(world_position p) { return min(abs(p.y + 0.2) - 0.2, abs(p.y + 1.0) - 0.3); }"
+    close(technique("march_view", body_distance=slabs)(P=np.zeros(3), V=np.array([0.0, 1.0, 0.0])), 0.4, atol=1e-9)
+
+
+def test_the_back_faces_give_the_length_along_the_eyes_ray() -> None:
+    depth = rng().uniform(1.0, 3.0, (4, 5))
+    x, y = rng().integers(0, 5, 50), rng().integers(0, 4, 50)
+    pixel = np.stack([x, y], axis=1) + 0.5
+    own = rng().uniform(0.5, 3.5, 50)
+    result = technique("back_face_thickness")(pixel=pixel, eye_distance=own, back_face_map=Texture(depth[..., None]))
+    close(result, np.maximum(depth[y, x] - own, 0.0))
+    assert (result == 0.0).any() and (result > 0.0).any()
+
+
+def test_a_balls_mean_chord_gives_the_length_along_the_eyes_ray() -> None:
+    place, view, length = seen_ball(200)
+    result = technique("view_thickness_from_chord")(d=4.0 / 3.0 * RADIUS, N=place / RADIUS, V=view)
+    close(result[length > 0.1], length[length > 0.1], rtol=1e-9)
+    assert result.min() >= 0.04 * RADIUS * 0.99  # the smallest cosine is 0.02
+
+
+def test_the_path_from_a_lights_depth_map() -> None:
+    turn = np.array([[0.0, 1.0, 0.0, 0.5], [-1.0, 0.0, 0.0, 0.5], [0.0, 0.0, 1.0, 2.0], [0.0, 0.0, 0.0, 1.0]])
+    place = rng().uniform(-0.4, 0.4, (50, 3))
+    path = technique("depth_map_path")
+    result = path(P=place, L=np.zeros(3), light_matrix=turn, light_depth_map=Texture(np.full((4, 4, 1), 1.9)))
+    close(result, np.maximum(place[:, 2] + 2.0 - 1.9, 0.0), atol=1e-12)
+
+
+def inside_ball(place: Array, towards: Array) -> Array:
+    """The length inside the ball from points in it."""
+    along = np.einsum("nc,nc->n", place, towards)
+    result: Array = -along + np.sqrt(np.maximum(along**2 + RADIUS**2 - (place**2).sum(axis=1), 0.0))
+    return result
+
+
+@pytest.mark.parametrize("mean_free_path", [0.05, 0.4])
+def test_the_interior_sample(mean_free_path: float) -> None:
+    place, view, length = seen_ball(200)
+    light = units(200, 5)
+    depth = np.minimum(np.log(2.0) * mean_free_path, 0.5 * length)
+    path = inside_ball(place - depth[:, None] * view, light)
+    lit = technique("interior_sample", light_path="march_light", body_distance="sphere")
+    values = {"radius": RADIUS, "steps": 128, "reach": 1.5, "mean_free_path": mean_free_path, "reach_of_light": 4.0}
+    result = lit(d=length, P=place, V=view, L=light, subsurface_color=(0.5, 1.0, 0.25), **values)
+    expected = (1.0 - np.exp(-length / mean_free_path)) * np.exp(-path / (4.0 * mean_free_path))
+    close(result, expected[:, None] * (0.5, 1.0, 0.25), atol=6e-3)
+
+
+def test_the_first_octave_is_single_scattering() -> None:
+    """The integral over the eye's ray of a slab that the light crosses along the normal has a closed form.
+
+    Through one sample it is exact where the light's path is the same for the whole ray: for a light that is
+    perpendicular to the eye's ray, at the depth of the ray.
+    """
+    sigma, albedo = np.array([2.0, 4.0, 8.0]), np.array([0.9, 0.6, 0.3])
+    constant = "thickness fixed_length(world_position p, world_direction l) { return thickness(0.3); }"
+    length = np.linspace(0.0, 2.0, 9)
+    zeros = np.zeros((9, 3))
+    result = technique("interior_octaves", light_path=constant)(
+        d=length, P=zeros, V=zeros, L=zeros, extinction=sigma, scattering_albedo=albedo, octaves=(1.0, 0.0, 0.0, 0.0),
+        mean_free_path=3.0 / sigma.sum(),
+    )  # fmt: skip
+    depth = np.linspace(0.0, 1.0, 20001)[:, None, None] * length[:, None]
+    scattered = albedo * sigma * np.exp(-sigma * depth) * np.exp(-sigma * 0.3) / 4.0
+    close(result, np.trapezoid(scattered, axis=0, dx=1.0) * length[:, None] / 20000, rtol=1e-6, atol=1e-12)
+    mixed = technique("interior_octaves", light_path=constant)(
+        d=np.array([1e9]), P=zeros[:1], V=zeros[:1], L=zeros[:1], extinction=sigma, scattering_albedo=albedo,
+        octaves=(0.0, 1.0, 2.0, 3.0), mean_free_path=0.2,
+    )  # fmt: skip
+    octaves = sum(share * np.exp(-0.3 * sigma / 2**j) for j, share in enumerate((0.0, 1.0, 2.0, 3.0)))
+    close(mixed[0], 0.25 * albedo * octaves, rtol=1e-9)
