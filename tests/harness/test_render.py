@@ -36,11 +36,13 @@ uniform sampler2D marks : source_color, default_white;
 role: surface
 */
 void probe(uv_position uv, world_position P, world_direction V, world_direction N, object_position P_object, float time,
+    vec2 screen_uv, float eye_distance,
     out vec3 albedo, out float alpha, out vec3 emission) {
     albedo = texture(marks, uv).rgb * shade;
     alpha = P_object.y > 0.6 ? 0.25 : 1.0;
     vec2 turned = turn * vec2(0.01, 0.02);
     emission = 0.25 + 0.25 * vec3(N.x, dot(N, V), P.y) + vec3(turned, time * 0.01) + mixed * 0.05 * float(steps);
+    emission += vec3(0.2 * screen_uv.x, 0.2 * abs(screen_uv.y - 0.5), 0.02 * eye_distance);
 }
 """
 

@@ -38,12 +38,14 @@ role: surface
 */
 void probe(uv_position uv, world_position P, world_direction V, world_direction N, world_direction T, world_direction B,
     object_position P_object, object_direction V_object, object_direction N_object, float time,
+    vec2 screen_uv, float eye_distance,
     out vec3 albedo, out float alpha, out vec3 emission) {
     albedo = vec3(0.5) * shade;
     alpha = P_object.y > 0.6 ? 0.25 : 1.0;
     vec2 turned = turn * vec2(0.01, 0.02);
     emission = 0.25 + 0.25 * vec3(N.x, dot(N, V), P.y) + vec3(turned, time * 0.01) + mixed * 0.05 * float(steps);
     emission += 0.2 * texture(marks, uv).rgb + 0.05 * T + 0.04 * B + 0.03 * V_object + 0.02 * N_object;
+    emission += vec3(0.2 * screen_uv, 0.02 * eye_distance);
 }
 """
 OWN_LIGHTING = """

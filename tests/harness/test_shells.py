@@ -32,21 +32,22 @@ BRIGHT = 1e8
 """More than the lights of these tests can give."""
 
 INPUTS = "world_direction V, world_direction N, world_direction T, world_direction B, object_direction V_object, "
-INPUTS += "object_direction N_object"
+INPUTS += "object_direction N_object, vec2 screen_uv, float eye_distance"
 LIT = f"""
 /** Shows what a shell gives a surface.
 role: surface
 */
 void shown({INPUTS}, inout tangent_direction normal, out vec3 emission) {{
-    emission = 0.5 + 0.1 * vec3(V + N + T + B + vec3(V_object) + vec3(N_object));
+    emission = 0.5 + 0.1 * vec3(V + N + T + B + vec3(V_object) + vec3(N_object) + vec3(screen_uv, eye_distance));
 }}
 """
 THROUGH = """
 /** Shows what a shell gives a light.
 role: translucency
 */
-vec3 through(world_direction V, world_direction N, world_direction L, object_direction L_object) {
-    return 0.5 + 0.1 * vec3(V + N + L + vec3(L_object));
+vec3 through(world_direction V, world_direction N, world_direction L, object_direction L_object, vec2 screen_uv,
+    float eye_distance) {
+    return 0.5 + 0.1 * vec3(V + N + L + vec3(L_object)) + vec3(screen_uv, eye_distance);
 }
 """
 UNLIT = f"""
@@ -54,7 +55,8 @@ UNLIT = f"""
 role: lighting
 */
 vec3 unlit({INPUTS}, world_direction L, object_direction L_object) {{
-    return 0.5 + 0.1 * vec3(V + N + T + B + vec3(V_object) + vec3(N_object) + L + vec3(L_object));
+    return 0.5 + 0.1 * vec3(V + N + T + B + vec3(V_object) + vec3(N_object) + L + vec3(L_object))
+        + vec3(screen_uv, eye_distance);
 }}
 """
 RAYS = """
@@ -222,9 +224,11 @@ def test_hostile_ports_of_a_graph(
     (text,) = (
         text for file, text in compiled_shell("unlit", "unity-shadergraph").files.items() if file.endswith(".hlsl")
     )
-    ports = re.findall(r"^    float3 (\w+),$", text.partition("void Unlit_float(")[2].partition(") {")[0], re.MULTILINE)
-    assert {"V", "N"} <= set(ports)
-    call = f"float4 color; Unlit_float({', '.join('v' for _ in ports)}, color); return color.rgb;"
+    ports = re.findall(
+        r"^    (float\d) (\w+),$", text.partition("void Unlit_float(")[2].partition(") {")[0], re.MULTILINE
+    )
+    assert {("float3", "V"), ("float3", "N"), ("float2", "screen_uv")} <= set(ports)
+    call = f"float4 color; Unlit_float({', '.join(f'({type})v' for type, _ in ports)}, color); return color.rgb;"
     text += f"\nfloat3 called(float3 v) {{ {call} }}\n"
     lanes = np.array([[0.0, 0.0, 0.3], [0.0, 1e-25, 0.4], [0.0, 0.0, 0.5]])
     (result,) = machine.run(Text(text), [Call("called", (VEC3,), VEC3, (lanes,))])

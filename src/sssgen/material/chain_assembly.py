@@ -44,7 +44,7 @@ from sssgen.passes.link import LinkError
 INPUTS: dict[str, Type] = {
     "uv": VEC2, "P": VEC3, "N": VEC3, "V": VEC3, "T": VEC3, "B": VEC3, "L": VEC3,
     "P_object": VEC3, "N_object": VEC3, "V_object": VEC3, "L_object": VEC3,
-    "pixel": VEC2, "eye_distance": FLOAT,
+    "screen_uv": VEC2, "eye_distance": FLOAT,
     "time": FLOAT, "light_color": VEC3, "ray_origin": VEC3, "ray_direction": VEC3,
 }  # fmt: skip
 """The inputs that a shell can supply."""

@@ -32,6 +32,7 @@ struct sssgen_varyings {{
     float3 worldBitangent : TEXCOORD4;
     float4 color : COLOR0;
     UNITY_SHADOW_COORDS(5)
+    float4 screenPos : TEXCOORD6;
 {varyings}
 }};
 sssgen_varyings sssgen_vertex(appdata_full v) {{
@@ -45,6 +46,7 @@ sssgen_varyings sssgen_vertex(appdata_full v) {{
     i.worldTangent = UnityObjectToWorldDir(v.tangent.xyz);
     i.worldBitangent = cross(i.worldNormal, i.worldTangent) * v.tangent.w * unity_WorldTransformParams.w;
     i.color = v.color;
+    i.screenPos = ComputeScreenPos(i.pos);
 {carried}
     return i;
 }}
@@ -96,7 +98,7 @@ _INPUTS = {
     "worldPos": "i.worldPos",
     "worldNormal": "i.worldNormal",
     "worldRefl": "reflect(-worldViewDir, i.worldNormal)",
-    "screenPos": "ComputeScreenPos(i.pos)",
+    "screenPos": "i.screenPos",
     "color": "i.color",
     "facing": "1.0",
     "internalSurfaceTtoW0": "half3(i.worldTangent.x, i.worldBitangent.x, i.worldNormal.x)",
@@ -143,7 +145,7 @@ def entries(code: str, pragma: str) -> str:
     supplied = [name for name in names if not (name == "worldNormal" and "internalSurfaceTtoW0" in names)]
     inputs = [f"    surfIN.{name} = {value};" for name in supplied if (value := _input(name))]
     inputs += [f"    surfIN.{name} = i.custom_{name};" for _, name in custom]
-    varyings = [f"    {kind} custom_{name} : TEXCOORD{6 + k};" for k, (kind, name) in enumerate(custom)]
+    varyings = [f"    {kind} custom_{name} : TEXCOORD{7 + k};" for k, (kind, name) in enumerate(custom)]
     carried = [f"    i.custom_{name} = custom.{name};" for _, name in custom]
     return (
         "".join(f"float4 {texture}_ST;\n" for texture in textures)

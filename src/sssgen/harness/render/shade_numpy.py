@@ -67,7 +67,12 @@ def _inputs(shell: Shell, size: tuple[int, int], points: Array | None, rows: sli
         x, y = np.meshgrid(np.arange(width), np.arange(rows.start, rows.stop))
         uv = np.stack([(x.ravel() + 0.5) / width, (y.ravel() + 0.5) / height])
         far = inverse(shell.view_projection) @ np.stack([*(2.0 * uv - 1.0), np.ones(x.size), np.ones(x.size)])
-        inputs |= {"uv": uv, "ray_origin": np.broadcast_to(eye, (3, x.size)), "P": np.broadcast_to(eye, (3, x.size))}
+        inputs |= {
+            "uv": uv,
+            "screen_uv": uv,
+            "ray_origin": np.broadcast_to(eye, (3, x.size)),
+            "P": np.broadcast_to(eye, (3, x.size)),
+        }
         inputs |= {"ray_direction": _unit(far[:3] - eye * far[3])}
     else:
         data = points.reshape(height, width, 12)[rows].reshape(-1, 12).T.astype(np.float64)
@@ -79,6 +84,8 @@ def _inputs(shell: Shell, size: tuple[int, int], points: Array | None, rows: sli
         inputs |= {"B": np.cross(normal, tangent, axis=0) * handedness}
         inputs |= {"P_object": data[0:3], "V_object": _unit(world_to_object[:3, :3] @ inputs["V"])}
         inputs |= {"N_object": _unit(model[:3, :3].T @ normal)}
+        clip = shell.view_projection @ np.concatenate([position, np.ones((1, position.shape[1]))])
+        inputs |= {"screen_uv": 0.5 * clip[:2] / clip[3] + 0.5, "eye_distance": np.linalg.norm(eye - position, axis=0)}
     return {name: value.astype(dtype) for name, value in inputs.items()}
 
 

@@ -103,6 +103,7 @@ def _engine(shell: Shell, size: tuple[int, int]) -> dict[str, Array]:
         "_ProjectionParams": np.array([1.0, 0.1, 100.0, 0.01]),
         "_ScreenParams": screen,
         "_ScaledScreenParams": screen,
+        "_ScaleBiasRt": np.array([-1.0, 1.0, 0.0, 0.0]),  # screen-space uv count from the bottom
     }
     for channel, ambient in zip("rgb", shell.ambient, strict=True):
         values[f"unity_SHA{channel}"] = np.array([0.0, 0.0, 0.0, ambient])

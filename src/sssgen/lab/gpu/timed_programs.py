@@ -62,6 +62,7 @@ _VARYINGS = {
     "v_normal": ("vec3", "timing_normal.xyz + offset"),
     "v_tangent": ("vec4", "timing_tangent + vec4(vec3(offset), 0.0)"),
     "v_uv": ("vec2", "vec2(timing_place.w, timing_normal.w) + offset"),
+    "v_clip": ("vec3", "vec3(2.0 * gl_FragCoord.xy / vec2(textureSize(timing_places, 0)) - 1.0 + offset, 1.0)"),
 }
 """The varyings of emitted fragment stages: type, and GLSL expression in the timing pass."""
 
@@ -75,6 +76,8 @@ _INPUTS = {
     "T": ("v_tangent.xyz", ("v_tangent",)),
     "B": ("cross(v_normal, v_tangent.xyz)", ("v_normal", "v_tangent")),
     "time": ("timing_time", ()),
+    "screen_uv": ("0.5 * v_clip.xy + 0.5", ("v_clip",)),
+    "eye_distance": ("distance(timing_eye, v_position)", ("v_position",)),
     "ray_origin": ("timing_eye", ()),
     "ray_direction": ("normalize(v_position - timing_eye)", ("v_position",)),
 }

@@ -72,11 +72,13 @@ def points(scene: MeasuredScene) -> Points:
     model = scene.geometry.to_world()
     to_object = scene.geometry.to_object()
     rotation = to_object[:3, :3] * scene.geometry.scale
+    x, y = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
+    screen = np.stack([x.ravel(), y.ravel()], axis=1)
     inputs = {
         "P": position, "N": normal, "V": -ray, "T": tangent[:3], "B": np.cross(normal.T, tangent[:3].T).T * tangent[3],
         "P_object": to_object[:3, :3] @ position + to_object[:3, 3:],
         "N_object": rotation @ normal, "V_object": rotation @ -ray,
-        "pixel": np.stack(np.nonzero(keep.reshape(height, width))[::-1]) + 0.5,
+        "screen_uv": screen[keep].T,
         "eye_distance": np.linalg.norm(position - origin[:, None], axis=0),
         "uv": uv, "time": np.zeros(1),
     }  # fmt: skip
