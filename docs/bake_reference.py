@@ -13,7 +13,8 @@ from sssgen.harness.scenes.geometry import Mesh
 from sssgen.harness.scenes.light_view import point_view
 from sssgen.harness.scenes.scene import Scene
 from sssgen.harness.scenes.scene_loading import load
-from sssgen.lab.reference.inside_lengths import intervals, thickness
+from sssgen.harness.scenes.inside_intervals import intervals
+from sssgen.lab.reference.inside_lengths import thickness
 from sssgen.targets.texture_import import import_settings
 
 SIZE = 1024

@@ -12,7 +12,8 @@ import pytest
 
 from folders import MESHES
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
-from sssgen.lab.reference.inside_lengths import intervals, merged, thickness
+from sssgen.harness.scenes.inside_intervals import intervals, merged
+from sssgen.lab.reference.inside_lengths import thickness
 
 Array = npt.NDArray[np.float64]
 

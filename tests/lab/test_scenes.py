@@ -13,6 +13,7 @@ import pytest
 
 from sssgen.cli.main import main
 from sssgen.harness.evaluate.evaluation import half
+from sssgen.harness.scenes.bounds import bounds, placed_corners
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.harness.scenes.scene_loading import parse_scene
 from sssgen.lab.measure import scene_references as references
@@ -210,7 +211,7 @@ def test_bodies_without_a_transform_are_bound_directly(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("shape", [*SOLIDS, Distance("sphere", parameters={"radius": 0.4}, reach=1.0)], ids=repr)
 def test_bounds_hold_the_body_and_its_texture_reads_the_distance(shape: Geometry) -> None:
-    low, high = body.bounds(shape)
+    low, high = bounds(shape)
     at = np.random.default_rng(4).uniform(low - 1.0, high + 1.0, (4000, 3))
     inside = shape.distance(at) < 0.0
     assert inside.sum() > 20
@@ -229,7 +230,7 @@ def test_bounds_hold_the_body_and_its_texture_reads_the_distance(shape: Geometry
 def test_placed_corners_hold_the_body() -> None:
     for shape in SOLIDS:
         placed = replace(shape, **ASKEW)
-        corners = body.placed_corners(placed)
+        corners = placed_corners(placed)
         at = np.random.default_rng(4).uniform(-3.0, 3.0, (3000, 3))
         inwards = placed.to_object()
         inside = at[placed.distance(at @ inwards[:3, :3].T + inwards[:3, 3]) < 0.0]

@@ -101,6 +101,8 @@ def of_uniform(uniform: Uniform, format: Format = FLOAT32) -> Contract:
     type_ = uniform.type.element if isinstance(uniform.type, Array) else uniform.type
     hints: Mapping[str, tuple[float | str, ...]] = dict(uniform.hints)
     if isinstance(type_, Sampler):
+        if "drawn" in hints:
+            return Contract(0.0, THICKNESS[format.name])
         return Contract(0.0, 1.0, finite="holds" not in hints)
     kind = kind_of(type_)
     if "hint_range" in hints:

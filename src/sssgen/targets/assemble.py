@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from sssgen.ir.drawn import DRAWN
 from sssgen.ir.nodes import Function, Local, Module, Param, Span, Uniform
 from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.passes.stage.stage_interface import Stage
@@ -209,7 +210,14 @@ def _header(target: Target, program: Program) -> list[str]:
     origin = "the material" if program.entries else "the source"
     notice = f"Made by sssgen for {target.title}. Change {origin} and emit it again rather than this file."
     head = ["", *map(comment_text, about.head)] if about.head else []
-    return [comment_text(line) for line in textwrap.wrap(description, 100)] + [notice, *head]
+    drawn = [line for uniform in program.module.uniforms for line in textwrap.wrap(_drawn(uniform), 100)]
+    return [comment_text(line) for line in (*textwrap.wrap(description, 100), notice, *drawn)] + head
+
+
+def _drawn(uniform: Uniform) -> str:
+    """How the program supplies a texture that it draws itself, or ''."""
+    _, views = _hint(uniform, "drawn")
+    return f"{uniform.name}: {DRAWN[views[0]]}." if views and isinstance(uniform.type, Sampler) else ""
 
 
 def _entry(target: Target, printer: Printer, kind: str, function: Function, inputs: tuple[str, ...]) -> dict[str, Any]:

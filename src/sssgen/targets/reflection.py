@@ -129,6 +129,7 @@ def _described(uniform: Uniform) -> dict[str, Any]:
         "unit": hints.get("unit", (None,))[0],
         "color": "source_color" in hints,
         "aliases": list(hints.get("alias", ())),
+        "drawn": hints.get("drawn", (None,))[0],
         "doc": " ".join(uniform.doc.split()),
     }
 

@@ -17,16 +17,21 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.harness.backends import Array, Backend
+from sssgen.harness.evaluate.evaluation import half
 from sssgen.harness.pictures.images import decode_srgb, encode_srgb
 from sssgen.harness.render import pixel_mesh
 from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.render.shade import shade
 from sssgen.harness.render.shell_values import Shell
+from sssgen.harness.scenes.drawn_views import back_faces
+from sssgen.harness.scenes.geometry import Geometry, Hits
 from sssgen.harness.scenes.scene import Scene
 from sssgen.harness.scenes.scene_reader import MAX_COUNT
+from sssgen.ir.drawn import BACK_FACES
 from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.support.diagnostics import failure
+from sssgen.targets.runtime.numpy_textures import Texture
 
 LARGEST = 8192
 """The largest number of samples along a side: the largest picture that every driver supports."""
@@ -100,13 +105,26 @@ def _surface(
     wider = dataclasses.replace(scene.camera, field_of_view=2.0 * math.degrees(math.atan(half_angle)))
     origin, directions = wider.rays(*padded)
     hits = scene.geometry.hits(origin, directions)
+    screens = {
+        texture["source_name"]: _back_face_map(scene.geometry, hits, origin, directions, padded)
+        for texture in compiled.reflection["textures"]
+        if texture["drawn"] == BACK_FACES and texture["source_name"] not in shell.textures
+    }
     points = pixel_mesh.vertices(hits, origin, directions, shell.model, padded)
     far = float(np.linalg.norm(points[:, :3] @ shell.model[:3, :3].T + shell.model[:3, 3] - origin, axis=1).max())
     deep = dataclasses.replace(scene, camera=dataclasses.replace(wider, near=1e-3 * far, far=2.0 * far))
-    shell = dataclasses.replace(shell, view_projection=_matrix(deep, backend, padded[0] / padded[1]))
+    matrix = _matrix(deep, backend, padded[0] / padded[1])
+    shell = dataclasses.replace(shell, view_projection=matrix, screens=screens)
     inner = slice(edge, edge + height), slice(edge, edge + width)
     picture = shade(backend, compiled, shell, padded, points)
     return picture[inner], hits.hit.reshape(padded[1], padded[0])[inner]
+
+
+def _back_face_map(geometry: Geometry, hits: Hits, origin: Array, directions: Array, size: tuple[int, int]) -> Texture:
+    """The distance from the eye to the nearest back face in each pixel, row 0 at the bottom."""
+    distance = np.zeros(len(directions))
+    distance[hits.hit] = back_faces(geometry, origin, directions[hits.hit])
+    return half(Texture(distance.reshape(size[1], size[0], 1), wrap="clamp"))
 
 
 def _matrix(scene: Scene, backend: Backend, aspect: float) -> Array:

@@ -11,8 +11,11 @@ import numpy as np
 from sssgen.harness.evaluate import input_files as inputs
 from sssgen.harness.evaluate.evaluation import half
 from sssgen.harness.render.shell_values import Shell
+from sssgen.harness.scenes.drawn_views import light_depth
 from sssgen.harness.scenes.geometry import Geometry
+from sssgen.harness.scenes.light_view import LightView
 from sssgen.harness.scenes.scene import DistanceTexture, Picture, Scene, placement
+from sssgen.ir.drawn import DISTANT, LIGHT_VIEWS
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import with_article
 from sssgen.material import baked
@@ -29,7 +32,8 @@ def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) ->
     positions = [
         [*light.position, 1.0] if light.position else [*(light.direction or ()), 0.0] for light in scene.lights
     ]
-    parameters = _parameters(scene, material, reflection)
+    views = _light_views(scene, material, reflection, positions)
+    parameters = _parameters(scene, material, reflection, views)
     if any(uniform["source_name"] == "aspect" for uniform in reflection["uniforms"]):  # of a camera in the chain
         parameters.setdefault("aspect", (scene.size[0] / scene.size[1],))
     return Shell(
@@ -41,14 +45,44 @@ def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) ->
         light_colors=np.array([light.color for light in scene.lights], float).reshape(-1, 3),
         model=scene.geometry.to_world() if scene.geometry else np.eye(4),
         parameters=parameters,
-        textures=_textures(scene, material, reflection),
+        textures=_textures(scene, material, reflection, views),
     )
 
 
-def _parameters(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
+def _light_views(
+    scene: Scene, material: Material, reflection: Mapping[str, Any], lights: list[list[float]]
+) -> dict[str, tuple[LightView, Texture]]:
+    """The depth maps that the program draws, by the hint `drawn`: of the first light that the map is for.
+
+    A texture of the scene or of the material is not drawn. Raises SssgenError without such a light.
+    """
+    views: dict[str, tuple[LightView, Texture]] = {}
+    for texture in reflection["textures"]:
+        drawn = texture["drawn"]
+        if drawn not in LIGHT_VIEWS or drawn in views or scene.geometry is None or _file(scene, material, texture):
+            continue
+        light = next((light for light in lights if not (light[3] and drawn == DISTANT)), None)
+        if light is None:
+            hint = "add [[light]] with a direction" if drawn == DISTANT else "add [[light]]"
+            file = scene.document.reporter.file
+            raise failure(f"'{texture['source_name']}' is drawn from a light, and the scene has none", hint, file)
+        view, depth = light_depth(scene.geometry, np.array(light))
+        views[drawn] = view, half(Texture(depth[..., None], wrap="clamp"))
+    return views
+
+
+def _parameters(
+    scene: Scene,
+    material: Material,
+    reflection: Mapping[str, Any],
+    views: Mapping[str, tuple[LightView, Texture]],
+) -> dict[str, tuple[float, ...]]:
     """The scene's values for the material's uniforms, with the same checks as in a material."""
     uniforms = {uniform["source_name"]: uniform for uniform in reflection["uniforms"]}
     document, values = scene.document, _baked_parameters(scene, material, reflection)
+    for name, uniform in uniforms.items():
+        if uniform["drawn"] in views:
+            values[name] = (*views[uniform["drawn"]][0].matrix.T.ravel(),)
     for name, raw in scene.parameters.items():
         place = document.place("parameters", name)
         if name not in uniforms:
@@ -123,8 +157,13 @@ def _uniform(material: Material, entry: Mapping[str, Any]) -> Uniform:
     return next(uniform for uniform in own if uniform.name == entry["technique_name"])
 
 
-def _textures(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, Texture]:
-    """The scene's textures; for the others those that the material suggests."""
+def _textures(
+    scene: Scene,
+    material: Material,
+    reflection: Mapping[str, Any],
+    views: Mapping[str, tuple[LightView, Texture]],
+) -> dict[str, Texture]:
+    """The scene's textures; for the others those that the material suggests, or that the program draws."""
     entries = {texture["source_name"]: texture for texture in reflection["textures"]}
     document, textures = scene.document, {}
     for name in scene.textures:
@@ -138,7 +177,10 @@ def _textures(scene: Scene, material: Material, reflection: Mapping[str, Any]) -
             if scene.geometry is None:
                 raise failure(f"texture '{name}' is the distance to the scene's geometry, but the scene has none")
             textures[name] = half(Texture(chosen.values(scene.geometry), wrap="clamp"))
-        elif file := _file(scene, material, texture):
+        elif not (file := _file(scene, material, texture)):
+            if texture["drawn"] in views:
+                textures[name] = views[texture["drawn"]][1]
+        else:
             wrap = getattr(chosen, "wrap", "") or str(texture["import"]["wrap"])
             textures[name] = _picture(file, wrap, texture)
     return textures

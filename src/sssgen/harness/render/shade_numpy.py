@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from sssgen.harness.backends import Array
-from sssgen.harness.evaluate.evaluation import default_texture
-from sssgen.harness.render.shell_values import Shell, inverse
+from sssgen.harness.render.shell_values import Shell, bound_texture, inverse
 from sssgen.ir.types import BY_NAME, Matrix, Vector, kind_of
 from sssgen.pipeline.compiler import Compiled
 from sssgen.targets.runtime.numpy_values import grid, precision
@@ -53,8 +52,7 @@ def _namespace(compiled: Compiled, shell: Shell, dtype: str) -> dict[str, Any]:
             value = np.asarray(parameter).reshape(*([-1] if length else []), *size, 1).astype(kind)
             names[uniform["name"]] = value if size or length else value[0]
     for texture in compiled.reflection["textures"]:
-        bound = shell.textures.get(texture["source_name"])
-        names[texture["name"]] = bound or default_texture(texture["type"], texture["default"])
+        names[texture["name"]] = bound_texture(texture, shell)
     return names
 
 

@@ -41,6 +41,8 @@ class Shell:
     """The material's uniforms by the name in the reflection's `source_name`; the others have their defaults."""
     textures: Mapping[str, Texture] = field(default_factory=dict)
     """Likewise; a missing texture is one texel of its default."""
+    screens: Mapping[str, Texture] = field(default_factory=dict)
+    """Likewise, textures that cover the screen; row 0 is at the bottom."""
 
 
 def inverse(matrix: Array) -> Array:
@@ -81,13 +83,20 @@ def _stages(compiled: Compiled, reflection: Mapping[str, Any]) -> tuple[Stage, S
 
 def textures(reflection: Mapping[str, Any], shell: Shell) -> dict[str, Bound]:
     """The material's textures, by the names in its text."""
+    top_first = reflection["conventions"].get("framebuffer_y") == "down"
     return {
-        texture["name"]: Bound(
-            shell.textures.get(texture["source_name"]) or default_texture(texture["type"], texture["default"]),
-            _texture_place(texture.get("binding", {})),
-        )
+        texture["name"]: Bound(bound_texture(texture, shell, top_first), _texture_place(texture.get("binding", {})))
         for texture in reflection["textures"]
     }
+
+
+def bound_texture(texture: Mapping[str, Any], shell: Shell, top_first: bool = False) -> Texture:
+    """The texture for an entry of the reflection; `top_first`: the first row of the framebuffer is at the top."""
+    name = texture["source_name"]
+    if (screen := shell.screens.get(name)) is not None:
+        texels = screen.levels[0]
+        return Texture(texels[::-1] if top_first else texels, screen.filter, screen.wrap)
+    return shell.textures.get(name) or default_texture(texture["type"], texture["default"])
 
 
 def _texture_place(binding: Mapping[str, Any]) -> Place:

@@ -13,8 +13,10 @@ import numpy as np
 
 from sssgen.harness.backends import Array
 from sssgen.harness.evaluate.evaluation import half
+from sssgen.harness.scenes.bounds import placed_corners
+from sssgen.harness.scenes.inside_intervals import intervals
 from sssgen.harness.scenes.light_view import directional_view
-from sssgen.lab.reference.inside_lengths import first_exit, intervals, thickness
+from sssgen.lab.reference.inside_lengths import first_exit, thickness
 from sssgen.lab.scene import scene_body as body
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.view_points import points
@@ -106,7 +108,7 @@ def back_faces(scene: MeasuredScene) -> Array:
 def _depth_map(scene: MeasuredScene, towards: Array) -> tuple[dict[str, Any], dict[str, Texture]]:
     """The light's orthographic view: matrices for the techniques, and the depth of the first surface."""
     geometry = scene.geometry
-    view = directional_view(body.placed_corners(geometry), towards, (DEPTH_MAP, DEPTH_MAP))
+    view = directional_view(placed_corners(geometry), towards, (DEPTH_MAP, DEPTH_MAP))
     to_object = geometry.to_object()
     origins = view.origins @ to_object[:3, :3].T + to_object[:3, 3]
     directions = view.directions @ to_object[:3, :3].T * geometry.scale

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sssgen.harness.scenes.bounds import placed_corners
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Geometry, Slab
 from sssgen.harness.scenes.scene import Light
@@ -14,7 +15,6 @@ from sssgen.lab.jobs.executor import Item
 from sssgen.lab.measure.problem import LightReference
 from sssgen.lab.reference.transport import radiance_along
 from sssgen.lab.reference.transport_mitsuba import Light as Beam
-from sssgen.lab.scene import scene_body as body
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.media import Medium
 from sssgen.lab.scene.view_points import points
@@ -67,7 +67,7 @@ def training(scene: MeasuredScene) -> list[MeasuredScene]:
     Sizes are powers of two, so that scenes with the same medium share them.
     """
     assert scene.medium is not None
-    corners = body.placed_corners(scene.geometry)
+    corners = placed_corners(scene.geometry)
     size = 2.0 ** round(float(np.log2(max(np.ptp(corners, axis=0).max(), 1e-6))))
     result = []
     for part in (size, 0.4 * size):

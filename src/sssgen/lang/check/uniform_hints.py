@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from sssgen.ir.drawn import DRAWN
 from sssgen.ir.nodes import Span
 from sssgen.ir.rules import FLOAT_MAX
-from sssgen.ir.types import VEC3, VEC4, Sampler, Type, kind_of
+from sssgen.ir.types import VEC3, VEC4, Matrix, Sampler, Type, kind_of
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.context import CheckContext
 from sssgen.lang.syntax import tree as s
@@ -27,6 +28,7 @@ HINTS = {
     "normal_map": (0, 0, str, True),
     "repeat_disable": (0, 0, str, True),
     "holds": (1, 1, str, True),
+    "drawn": (1, 1, str, None),
 }
 
 
@@ -60,8 +62,19 @@ def check_hints(
             if quantity not in q.SCALARS:
                 known = f"it can hold {', '.join(q.SCALARS)}"
                 raise context.fail(span, f"a texture cannot hold '{quantity}'", known)
+        if name == "drawn":
+            _check_drawn(context, span, str(hint.args[0]), type_)
         hints[name] = hint.args
     return tuple(hints.items()), quantity
+
+
+def _check_drawn(context: CheckContext, span: Span, view: str, type_: Type) -> None:
+    if view not in DRAWN:
+        raise context.fail(
+            span, f"a program cannot draw '{view}'", did_you_mean(view, DRAWN) or f"one of: {', '.join(DRAWN)}"
+        )
+    if type_ != Matrix(4) and not (isinstance(type_, Sampler) and type_.dim == "2D"):
+        raise context.fail(span, "drawn is for a sampler2D, and for the mat4 of the view in which it is drawn")
 
 
 def _check_range(

@@ -1,0 +1,46 @@
+"""The textures that a program draws of the body (ir/drawn.py), cast on the CPU."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sssgen.harness.scenes.bounds import placed_corners
+from sssgen.harness.scenes.geometry import Geometry
+from sssgen.harness.scenes.inside_intervals import in_object_space, intervals
+from sssgen.harness.scenes.light_view import LightView, directional_view, point_view
+from sssgen.harness.scenes.placed import Array
+
+BLOCK = 1 << 15
+"""The number of rays that are cast at once."""
+TEXELS = 512
+"""Width and height of a light's depth map."""
+
+
+def back_faces(geometry: Geometry, origin: Array, directions: Array) -> Array:
+    """The distance from the eye at `origin` (3,) to the nearest back face along each ray, (n,); 0 without one."""
+    nearest = _nearest(geometry, np.broadcast_to(origin, directions.shape), directions, 1)
+    result: Array = np.where(np.isfinite(nearest), nearest, 0.0)
+    return result
+
+
+def light_depth(geometry: Geometry, light: Array) -> tuple[LightView, Array]:
+    """The view of a light, (4,): w = 1 where it is, w = 0 the unit direction towards it; and its map, (rows, columns).
+
+    Raises SssgenError for a light at the body.
+    """
+    corners, size = placed_corners(geometry), (TEXELS, TEXELS)
+    view = point_view(corners, light[:3], size) if light[3] else directional_view(corners, light[:3], size)
+    nearest = _nearest(geometry, view.origins, view.directions, 0)
+    depth = np.where(np.isfinite(nearest), nearest * view.slopes, view.far)
+    return view, depth.reshape(TEXELS, TEXELS)
+
+
+def _nearest(geometry: Geometry, origins: Array, directions: Array, side: int) -> Array:
+    """The distance to the nearest entry (side 0) or exit (1) in front of each origin, (n,); inf without one."""
+    nearest = np.full(len(directions), np.inf)
+    for start in range(0, len(directions), BLOCK):
+        part = slice(start, start + BLOCK)
+        ends = geometry.scale * intervals(geometry, *in_object_space(geometry, origins[part], directions[part]))
+        ahead = (ends[..., 0] < ends[..., 1]) & (ends[..., side] > 0.0)
+        nearest[part] = np.where(ahead, ends[..., side], np.inf).min(axis=1, initial=np.inf)
+    return nearest

@@ -1,0 +1,166 @@
+"""Textures that a program draws of the body: `sssgen render` supplies them, and shells and reflection say how."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lamp_scene import largest_difference
+from sssgen.harness import backends
+from sssgen.harness.backends import Backend
+from sssgen.harness.render.scene_render import Rendered, render
+from sssgen.harness.scenes.drawn_views import TEXELS, back_faces, light_depth
+from sssgen.harness.scenes.geometry import Ball, Box, Geometry, Mesh, Torus, Union
+from sssgen.harness.scenes.scene_loading import parse_scene
+from sssgen.material.material_loading import load_material
+from sssgen.pipeline.compiler import all_targets, compile
+from sssgen.support.diagnostics import SssgenError
+
+SHOWN = """
+thickness light_path(world_position P, world_direction L);
+
+/** Shows the length along the eye's ray, and the length towards the light from half of it.
+role: translucency
+*/
+vec3 shown(view_thickness d, world_position P, world_direction V, world_direction L)
+{
+    return vec3(0.25 * d, 0.25 * light_path(world_position(P - 0.5 * d * V), L), 0.2);
+}
+"""
+MATERIAL = """
+[material]
+name = "shown"
+shading = "lit"
+[thickness]
+technique = "back_face_thickness"
+[[surface]]
+technique = "base_color"
+tint = [0.0, 0.0, 0.0, 1.0]
+[translucency]
+technique = "shown.sss"
+bind = { light_path = "depth_map_path" }
+"""
+RADIUS, EYE = 0.8, (0.4, 0.9, 3.0)
+HEAD = f'material = "shown.toml"\nsamples = 1\n[camera]\nposition = {list(EYE)}\n'
+LIGHT = "[[light]]\ndirection = [1.0, 2.0, -0.5]\ncolor = [1.0, 1.0, 1.0]\n"
+BALL = f'[geometry]\nkind = "ball"\nradius = {0.5 * RADIUS}\nscale = 2.0\nrotation = [10, 20, 30]\n'
+TORUS = '[geometry]\nkind = "torus"\nmajor = 0.7\nminor = 0.3\nrotation = [50, 20, 10]\nposition = [0.2, -0.3, 0.0]\n'
+SIZE = (48, 36)
+DRAWING = ["gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity", "unity-urp"]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with the material."""
+    (tmp_path / "shown.sss").write_text(SHOWN, encoding="utf-8")
+    (tmp_path / "shown.toml").write_text(MATERIAL, encoding="utf-8")
+    return tmp_path
+
+
+def picture(text: str, folder: Path, machine: Backend) -> Rendered:
+    return render(parse_scene(HEAD + text, folder / "scene.toml"), machine, SIZE)
+
+
+def test_a_ball_in_closed_form(folder: Path) -> None:
+    """The chord of the eye's ray, and the way to the light from its middle; the maps have 11 bits and 512 texels."""
+    scene = parse_scene(HEAD + BALL + LIGHT, folder / "scene.toml")
+    result = render(scene, backends.get("numpy"), SIZE)
+    origin, rays = scene.camera.rays(*SIZE)
+    middle = origin + (-rays @ origin)[:, None] * rays
+    half = np.sqrt(np.maximum(RADIUS**2 - (middle * middle).sum(axis=1), 0.0))
+    towards = np.array([1.0, 2.0, -0.5]) / np.linalg.norm([1.0, 2.0, -0.5])
+    along = middle @ towards
+    ahead = np.sqrt(np.maximum(along**2 + RADIUS**2 - (middle * middle).sum(axis=1), 0.0)) - along
+    expected = 0.25 * np.stack([2.0 * half, ahead], axis=1).reshape(SIZE[1], SIZE[0], 2)[::-1]
+    unlit = (middle - half[:, None] * rays) @ towards < 0.0  # elsewhere is a highlight
+    inner = ((half > 0.3 * RADIUS) & unlit).reshape(SIZE[1], SIZE[0])[::-1]
+    assert inner.sum() > 30
+    np.testing.assert_allclose(result.linear[inner][:, :2], expected[inner], atol=2e-3)
+
+
+@pytest.mark.parametrize("name", DRAWING)
+def test_every_back_end_reads_the_same_texels(name: str, backend: Callable[[str], Backend], folder: Path) -> None:
+    """Whichever way the rows of its framebuffer are counted."""
+    result = picture(TORUS + LIGHT, folder, backend(name))
+    oracle = picture(TORUS + LIGHT, folder, backends.get("numpy"))
+    assert largest_difference(result, oracle) < 1.0
+    assert oracle.linear[..., 0].max() > 0.1 and oracle.linear[..., 1].max() > 0.05
+    assert np.abs(oracle.linear - oracle.linear[::-1]).max() > 0.1
+
+
+SHAPES = {
+    "ball": Ball(radius=0.7, position=(0.1, 0.0, 0.2), scale=1.3),
+    "torus": Torus(major=0.7, minor=0.3, rotation=(50.0, 20.0, 10.0)),
+    "two boxes": Union((Box(position=(-0.7, 0.0, 0.0), scale=0.5), Box(position=(0.7, 0.0, 0.3), scale=0.6))),
+}
+
+
+@pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
+@pytest.mark.parametrize("light", [(0.6, 0.0, 0.8, 0.0), (2.0, 1.0, 2.5, 1.0)], ids=["from afar", "point"])
+def test_a_light_sees_the_surface(shape: Geometry, light: tuple[float, ...]) -> None:
+    """The depth at the texel of a point that the light sees is the point's own depth, and the view contains the body."""
+    view, depth = light_depth(shape, np.array(light))
+    hits = [
+        shape.hits(start, ray[None]) for start, ray in zip(view.origins[::997], view.directions[::997], strict=True)
+    ]
+    seen = np.array([hit.hit[0] for hit in hits])
+    assert seen.mean() > 0.1
+    np.testing.assert_array_equal(depth.ravel()[::997] == view.far, ~seen)
+    assert (depth[[0, -1]] == view.far).all() and (depth[:, [0, -1]] == view.far).all()
+    for number, hit in enumerate(hits):
+        if hit.hit[0]:
+            u, v, z, w = view.matrix @ [*hit.position[0], 1.0]
+            row, column = divmod(997 * number, TEXELS)
+            np.testing.assert_allclose([u / w, v / w], [(column + 0.5) / TEXELS, (row + 0.5) / TEXELS], atol=1e-6)
+            assert depth[row, column] == pytest.approx(z, abs=1e-6)
+
+
+def test_the_nearest_back_face() -> None:
+    """The first exit and not the last; 0 for a ray that misses, or that leaves the body behind the eye."""
+    shape = SHAPES["two boxes"]
+    rays = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    np.testing.assert_allclose(back_faces(shape, np.array([-3.0, 0.1, 0.1]), rays), [2.55, 0.0], atol=1e-12)
+    np.testing.assert_allclose(back_faces(shape, np.array([3.0, 0.1, 0.1]), rays), [0.0, 0.0])
+
+
+def test_an_open_mesh_has_no_back_face(tmp_path: Path) -> None:
+    """Its view thickness is 0, and not an error."""
+    text = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3\nf 1 3 4\n"
+    (tmp_path / "sheet.obj").write_text(text, encoding="utf-8")
+    ray = np.array([[0.1, 0.2, -3.0]]) / np.linalg.norm([0.1, 0.2, -3.0])
+    distance = back_faces(Mesh(path=str(tmp_path / "sheet.obj")), np.array([0.0, 0.0, 3.0]), ray)
+    np.testing.assert_array_equal(distance, [0.0])
+
+
+def test_a_light_that_is_missing(folder: Path) -> None:
+    lamp = "[[light]]\nposition = [1.0, 2.0, 3.0]\ncolor = [1.0, 1.0, 1.0]\n"
+    for lights, hint in (("", "direction"), (lamp, "direction")):
+        with pytest.raises(SssgenError, match=rf"light_depth_map.* drawn from a light[^$]*{hint}"):
+            picture(BALL + lights, folder, backends.get("numpy"))
+
+
+def test_a_texture_of_the_scene_is_not_drawn(folder: Path) -> None:
+    """Neither back faces nor the light's view."""
+    np.save(folder / "far.npy", np.full((4, 4, 1), 50.0, np.float32))
+    files = '[textures]\nback_face_map = "far.npy"\n'
+    result = picture(BALL + LIGHT + files, folder, backends.get("numpy"))
+    assert result.linear[SIZE[1] // 2, SIZE[0] // 2, 0] > 10.0
+
+
+@pytest.mark.parametrize("target", all_targets())
+@pytest.mark.parametrize("form", ["shader", "functions"])
+def test_shells_and_reflection_say_how(target: str, form: str, folder: Path) -> None:
+    compiled = compile(load_material(str(folder / "shown.toml")), target, form=form)
+    drawn = {texture["source_name"]: texture["drawn"] for texture in compiled.reflection["textures"]}
+    assert drawn["back_face_map"] == "back_faces" and drawn["light_depth_map"] == "distant_light_depth"
+    assert drawn["base_color_texture"] is None
+    names = {texture["source_name"]: texture["name"] for texture in compiled.reflection["textures"]}
+    for name, text in compiled.files.items():
+        if not name.endswith(".json"):
+            mark = "# " if target == "numpy" else "// "
+            comment = " ".join(line.removeprefix(mark) for line in text.splitlines() if line.startswith(mark))
+            assert f"{names['back_face_map']}: draw the translucent body alone with its front faces culled" in comment
+            assert f"{names['light_depth_map']}: draw the translucent body alone from the light, which" in comment
