@@ -101,7 +101,7 @@ SHAPES = {
 @pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
 @pytest.mark.parametrize("light", [(0.6, 0.0, 0.8, 0.0), (2.0, 1.0, 2.5, 1.0)], ids=["from afar", "point"])
 def test_a_light_sees_the_surface(shape: Geometry, light: tuple[float, ...]) -> None:
-    """The depth at the texel of a point that the light sees is the point's own depth, and the view contains the body."""
+    """The depth at the texel of a point that the light sees is the point's depth, and the view contains the body."""
     view, depth = light_depth(shape, np.array(light))
     hits = [
         shape.hits(start, ray[None]) for start, ray in zip(view.origins[::997], view.directions[::997], strict=True)

@@ -97,7 +97,6 @@ uniform thickness m : unit("m"), alias("depth", d), hint_range(0.0, 1.0) = 0.5;
 uniform world_direction n = vec3(0.0, 0.0, 1.0);
 uniform sampler2D o : holds(thickness), default_gray;
 uniform sampler2D drawn_map : drawn(light_depth);
-uniform mat4 drawn_view : drawn("light_depth") = mat4(1.0);
 uniform sampler3D p;
 uniform samplerCube q : default_black, normal_map;
 uniform ivec2 r = ivec2(1.9, true);
@@ -121,7 +120,6 @@ uniform float m : thickness = (0.5) [unit("m"), alias("depth", "d"), hint_range(
 uniform vec3 n : world_direction = (0.0, 0.0, 1.0)
 uniform sampler2D o : thickness [holds("thickness"), default_gray()]
 uniform sampler2D drawn_map [drawn("light_depth")]
-uniform mat4 drawn_view = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0) [drawn("light_depth")]
 uniform sampler3D p
 uniform samplerCube q [default_black(), normal_map()]
 uniform ivec2 r = (1.0, 1.0)

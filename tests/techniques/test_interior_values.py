@@ -31,9 +31,10 @@ def test_the_march_along_the_eyes_ray_ends_at_the_first_exit() -> None:
 def test_the_back_faces_give_the_length_along_the_eyes_ray() -> None:
     depth = rng().uniform(1.0, 3.0, (4, 5))
     x, y = rng().integers(0, 5, 50), rng().integers(0, 4, 50)
-    pixel = np.stack([x, y], axis=1) + 0.5
+    place = (np.stack([x, y], axis=1) + 0.5) / [5.0, 4.0]
     own = rng().uniform(0.5, 3.5, 50)
-    result = technique("back_face_thickness")(pixel=pixel, eye_distance=own, back_face_map=Texture(depth[..., None]))
+    faces = Texture(depth[..., None])
+    result = technique("back_face_thickness")(screen_uv=place, eye_distance=own, back_face_map=faces)
     close(result, np.maximum(depth[y, x] - own, 0.0))
     assert (result == 0.0).any() and (result > 0.0).any()
 
