@@ -16,11 +16,11 @@ from qualification.errata.erratum import Erratum, Measure, Right, as_corrected, 
 from qualification.errata.lobes import ALISAVAKIS, UNITY_ICE
 from qualification.errata.marches import DISTANCE_FIELDS
 from qualification.errata.parallax import SUBSURFACE_PARALLAX
-from qualification.errata.text_errata import TEXT_ERRATA, TextErratum
+from qualification.errata.text_errata import TEXT_ERRATA, WITHOUT_ERRATA, TextErratum
 
 __all__ = [
-    "BACKENDS", "CHAPTERS", "ERRATA", "OPEN", "TEXT_ERRATA", "Erratum", "Measure", "Right", "TextErratum",
-    "as_corrected", "as_published", "holds", "shows",
+    "BACKENDS", "CHAPTERS", "ERRATA", "OPEN", "TEXT_ERRATA", "WITHOUT_ERRATA", "Erratum", "Measure", "Right",
+    "TextErratum", "as_corrected", "as_published", "holds", "shows",
 ]  # fmt: skip
 
 BACKENDS = ("numpy-f32", "gl", "webgpu", "hlsl", "browser")

@@ -13,6 +13,7 @@ from qualification.errata import (
     ERRATA,
     OPEN,
     TEXT_ERRATA,
+    WITHOUT_ERRATA,
     Erratum,
     Right,
     as_corrected,
@@ -76,8 +77,10 @@ def test_predicted_errors_equal_the_published_figures() -> None:
 
 
 def test_every_published_source_has_errata() -> None:
-    baselines = {technique.name for technique in library.load_all() if "baselines" in str(technique.path)}
-    assert baselines == {erratum.published.technique for erratum in (*ERRATA, *OPEN)} & baselines
+    baselines = {name for name, path in library.index().items() if library.folder_of(path) == "baselines"}
+    wrong = {erratum.published.technique for erratum in (*ERRATA, *OPEN)} & baselines
+    assert baselines == wrong | set(WITHOUT_ERRATA)
+    assert not wrong & set(WITHOUT_ERRATA)
     assert not {erratum.correction.technique for erratum in ERRATA} & baselines
     assert {"Cheap SSS", "Alisavakis", "3D Distance Fields", "Unity ice", "Subsurface Parallax"} <= set(CHAPTERS)
     assert len({(erratum.source, erratum.name) for erratum in ERRATA}) == len(ERRATA)

@@ -16,6 +16,7 @@ from sssgen.harness.evaluate.evaluation import half
 from sssgen.harness.scenes.bounds import placed_corners
 from sssgen.harness.scenes.inside_intervals import intervals
 from sssgen.harness.scenes.light_view import directional_view
+from sssgen.lab.reference.curvature import normal_curvature
 from sssgen.lab.reference.inside_lengths import first_exit, thickness
 from sssgen.lab.scene import scene_body as body
 from sssgen.lab.scene.measured_scene import MeasuredScene
@@ -26,6 +27,8 @@ RAYS = 32
 """Inward rays per point for the mean chord."""
 DEPTH_MAP = 256
 """Width and height of a light's depth map, in texels."""
+CURVATURE_STEP = 0.02
+"""The length over which curvatures are measured, relative to the longest side of the body."""
 
 
 @dataclass(eq=False)
@@ -59,6 +62,7 @@ def of_scene(scene: MeasuredScene) -> SceneInputs:
     if scene.medium is not None:
         extinction, albedo = (np.array(value)[:, None] for value in (scene.medium.extinction, scene.medium.albedo))
         values |= {"extinction": extinction, "scattering_albedo": albedo, "mean_free_path": 1.0 / extinction.mean()}
+    values["mean_curvature"] = np.maximum(principal_curvatures(scene).mean(axis=0), 0.0)
     textures = {
         "back_face_map": Texture(back_faces(scene)[..., None], "nearest", "clamp"),
         "distance_map": half(Texture(distances.values(geometry), wrap="clamp")),
@@ -93,6 +97,17 @@ def mean_chord(scene: MeasuredScene) -> Array:
     origins = np.tile(visible.inputs["P"].T, (RAYS, 1))
     mean: Array = thickness(scene.geometry, origins, np.ascontiguousarray(directions)).reshape(RAYS, -1).mean(axis=0)
     return mean
+
+
+def principal_curvatures(scene: MeasuredScene) -> Array:
+    """The normal curvatures along T and B, (2, n). Their mean is the mean curvature, as T and B are perpendicular."""
+    visible = points(scene)
+    corners = placed_corners(scene.geometry)
+    step = CURVATURE_STEP * float(np.ptp(corners, axis=0).max())
+    tangent = visible.inputs["T"]
+    other = np.cross(visible.inputs["N"].T, tangent.T).T
+    positions = visible.inputs["P"]
+    return np.stack([normal_curvature(scene.geometry, positions, axis, step) for axis in (tangent, other)])
 
 
 def back_faces(scene: MeasuredScene) -> Array:
