@@ -15,7 +15,8 @@ from sssgen.cli.main import main
 from sssgen.harness.backends import Backend
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
-from sssgen.lab.chart.record import checked, hypervolume, to_csv, to_json
+from sssgen.lab.chart.picked_material import stages_of
+from sssgen.lab.chart.record import checked, hypervolume, hypervolumes, to_csv, to_json
 from sssgen.lab.gpu import chart_times as chart_gpu
 from sssgen.lab.jobs import executor
 from sssgen.lab.jobs import work_items as work
@@ -25,6 +26,7 @@ from sssgen.lab.measure import measurement as measure
 from sssgen.lab.measure import scene_references as references
 from sssgen.lab.scene import measured_scene
 from sssgen.lab.scene.measured_scene import MeasuredScene
+from sssgen.lab.scene.scene_body import Body, body
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError
 
@@ -55,6 +57,10 @@ def few_candidates(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(references, "TRAINING_SIDE", 8)
     monkeypatch.setattr(measured_scene, "SIDE", 8)
     lengths, lights, whole = candidates.thickness, candidates.translucency, candidates.materials
+    views, stored_views = candidates.view_thickness, ("back_face_thickness", "march_view, 3 steps")
+    monkeypatch.setattr(
+        candidates, "view_thickness", lambda: [candidate for candidate in views() if candidate.label in stored_views]
+    )
     stored_lengths = ("constant_thickness", "march_light, 4 steps", "march_light, 6 steps")
     stored = (
         "none",
@@ -62,15 +68,18 @@ def few_candidates(monkeypatch: pytest.MonkeyPatch) -> None:
         "wrap_lighting",
         "march_light → absorption_tint",
         "constant_thickness → absorption_tint",
+        "march_view → interior_octaves",
     )
     monkeypatch.setattr(
         candidates, "thickness", lambda: [candidate for candidate in lengths() if candidate.label in stored_lengths]
     )
     monkeypatch.setattr(
-        candidates, "translucency", lambda: [candidate for candidate in lights() if candidate.name in stored]
+        candidates,
+        "translucency",
+        lambda *paths: [candidate for candidate in lights(*paths) if candidate.name in stored],
     )
     monkeypatch.setattr(
-        candidates, "materials", lambda inputs: [candidate for candidate in whole(inputs) if candidate.name in stored]
+        candidates, "materials", lambda *inputs: [candidate for candidate in whole(*inputs) if candidate.name in stored]
     )
 
 
@@ -157,6 +166,7 @@ def test_a_record_is_valid_and_complete() -> None:
     roles = {(point["scene"], point["role"]) for point in record["points"]}
     assert roles == {
         ("cube", "thickness"),
+        ("cube", "view_thickness"),
         ("cube", "translucency"),
         ("cube", "material"),
         ("inlay_plate", "coordinates"),
@@ -198,7 +208,7 @@ def test_hypervolumes_of_the_library_and_of_the_baselines() -> None:
         point(1.0, 0.9, False, "none"),
         point(100.0, 0.05, False),
     ]
-    (result,) = chart.hypervolumes(points)
+    (result,) = hypervolumes(points)
     assert result["reference_point"] == pytest.approx([110.0, 1.0])
     assert result["ours"] == pytest.approx(hypervolume(points[1:], [110.0, 1.0]))
     assert result["baselines"] == pytest.approx(hypervolume([points[0], points[2]], [110.0, 1.0]))
@@ -208,14 +218,14 @@ def test_hypervolumes_of_the_library_and_of_the_baselines() -> None:
 def test_more_expensive_settings_are_used_while_they_lower_the_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.undo()  # restores the complete list of candidates
     chains = {candidate.label: list(candidate.techniques) for candidate in candidates.thickness()}
-    errors = {"march_light, 1 steps": 0.5, "march_light, 2 steps": 0.46, "march_light, 4 steps": 0.3,
+    errors = {"march_light, 2 steps": 0.5, "march_light, 3 steps": 0.46, "march_light, 4 steps": 0.3,
               "march_light, 8 steps": 0.31, "march_light, 16 steps": 0.2, "constant_thickness": 0.9}  # fmt: skip
     points = [
-        {"label": label, "chain": chains[label], "training_error": error, "cost": {"value": cost}}
+        {"role": "thickness", "label": label, "chain": chains[label], "training_error": error, "cost": {"value": cost}}
         for cost, (label, error) in enumerate(errors.items())
     ]
-    labels = [candidate.label for candidate in chart.useful_thickness(points)]
-    assert labels == ["march_light, 1 steps", "march_light, 4 steps", "march_light, 16 steps", "constant_thickness"]
+    labels = [candidate.label for candidate in chart.useful_lengths(points, candidates.thickness())]
+    assert labels == ["march_light, 2 steps", "march_light, 4 steps", "march_light, 16 steps", "constant_thickness"]
 
 
 def test_failures_are_named() -> None:
@@ -244,15 +254,21 @@ def test_equal_scenes_are_measured_once(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_every_technique_with_a_reference_is_a_candidate(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.undo()
-    lengths = candidates.thickness()
-    whole = candidates.materials([length for length in lengths if not length.settings or length.settings[0][1] == 4])
-    for role, result in (("thickness", lengths), ("translucency", candidates.translucency()),
+    lengths, views = (
+        [length for length in every if not length.settings or length.settings[0][1] == 4]
+        for every in (candidates.thickness(), candidates.view_thickness())
+    )
+    paths = list(filter(candidates.fits_path, lengths))
+    whole = candidates.materials(lengths, views, paths)
+    for role, result in (("thickness", [*candidates.thickness(), *candidates.view_thickness()]),
+                        ("translucency", candidates.translucency()),
                         ("coordinates", candidates.coordinates())):  # fmt: skip
         assert {candidate.name for candidate in result} - {"none"} == {
             technique.name for technique in candidates.of_role(role)
         }
-        assert len({(candidate.techniques, candidate.settings) for candidate in result}) == len(result)
-        assert len({candidate.label for candidate in result}) == len(result)
+        keys = {(one.techniques, one.settings, one.path, one.path_settings) for one in result}
+        assert len(keys) == len(result)
+        assert len({(candidate.role, candidate.label) for candidate in result}) == len(result)
         for candidate in result:
             assert candidate.baseline == any(candidates.load(name).baseline for name in candidate.techniques)
     assert {candidate.name for candidate in whole if candidate.baseline} == set(candidates.published())
@@ -264,6 +280,76 @@ def test_every_technique_with_a_reference_is_a_candidate(monkeypatch: pytest.Mon
             technique = candidates.load(name)
             assert candidates.quantity_read(technique) in ("", inputs), candidate.label
             inputs = technique.function.quantity or inputs
+
+
+def test_a_technique_that_measures_inside_has_every_view_and_every_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.undo()
+    views = [view for view in candidates.view_thickness() if view.settings in ((), (("steps", 4),))]
+    paths = [path for path in filter(candidates.fits_path, candidates.thickness()) if path.settings != (("steps", 4),)]
+    inside = [whole for whole in candidates.materials([], views, paths) if whole.path]
+    by_path = {(whole.path, whole.path_settings) for whole in inside}
+    assert by_path == {(path.name, path.settings) for path in paths} and len(by_path) > 10
+    for technique in ("interior_sample", "interior_octaves"):
+        chains = {whole.techniques for whole in inside if whole.techniques[-1] == technique}
+        assert chains == {(*view.techniques[:-1], technique) for view in views}
+        # conversions of lengths along the eye's ray only follow lengths without a direction
+        firsts = {chain[0] for chain in chains}
+        assert {"back_face_thickness", "march_view", "thickness_map"} <= firsts and "march_light" not in firsts
+    assert len({whole.label for whole in inside}) == len(inside)
+    (one,) = (
+        whole for whole in inside if whole.label == "march_view, 4 steps → interior_octaves by march_light, 8 steps"
+    )
+    assert (dict(one.settings), one.path, dict(one.path_settings)) == ({"steps": 4}, "march_light", {"steps": 8})
+    # the counts of the two marches are apart, and the body sets the reach of both
+    view, light = one.stages(Body("sphere", span=1.5))
+    assert dict(view.values) == {"steps": 4, "reach": 1.5} and dict(light.values) == {"steps": 8, "reach": 1.5}
+    assert light.bind == (("light_path", "march_light"), ("body_distance", "sphere"))
+
+
+def test_dearer_lengths_with_the_same_requirements_are_used_while_they_lower_the_error(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.undo()
+    rigid, depth = ["rigid"], ["depth-map"]
+    rows = [("march_light, 4 steps", 0.5, rigid), ("march_light_traced, 4 steps", 0.2, rigid),
+            ("march_light, 16 steps", 0.19, rigid), ("depth_map_path", 0.6, depth),
+            ("constant_thickness", 0.1, [])]  # fmt: skip
+    points = [
+        {
+            "role": "thickness", "label": label, "chain": [label], "training_error": error, "requires": requires,
+            "cost": {"value": cost},
+        }
+        for cost, (label, error, requires) in enumerate(rows)
+    ]  # fmt: skip
+    # constant_thickness is no function of a point
+    labels = [path.label for path in chart.useful_paths(points)]
+    assert labels == ["march_light, 4 steps", "march_light_traced, 4 steps", "depth_map_path"]
+
+
+def test_a_record_restores_its_candidates() -> None:
+    record = json.loads(to_json(chart.chart_record([cube()], settings())))
+    (point,) = (
+        point
+        for point in record["points"]
+        if point["name"] == "march_view → interior_octaves" and point["path_settings"] == {"steps": 6}
+    )
+    assert point["label"] == "march_view, 3 steps → interior_octaves by march_light, 6 steps"
+    candidate = chart.candidate_of(point)
+    assert (candidate.path, dict(candidate.path_settings)) == ("march_light", {"steps": 6})
+    assert (point["requires"], point["bytes"]) == (["rigid"], 0)
+    row = next(line for line in to_csv(record).splitlines() if point["label"] in line)
+    assert ",march_light," in row and ",rigid,0," in row
+    # the material of the point has the medium's parameters, and binds the path
+    shape = body(cube().geometry)
+    stages = stages_of(point, shape, cube().medium)
+    values = dict(stages[-1].values)
+    assert values["steps"] == 6 and values["reach"] == shape.span and dict(stages[0].values)["steps"] == 3
+    assert values["extinction"] == pytest.approx(list(cube().medium.extinction))  # type: ignore[union-attr]
+    assert values["scattering_albedo"] == pytest.approx(list(cube().medium.albedo))  # type: ignore[union-attr]
+    assert ("light_path", "march_light") in stages[-1].bind
+    for name, wrong in (("requires", ["sunshine"]), ("bytes", -1), ("path", 3)):
+        with pytest.raises(SssgenError, match=name if name != "requires" else "requires 'sunshine'"):
+            checked({**record, "points": [{**point, name: wrong}]})
 
 
 # --- costs on a GPU, computed from fixed times ---
@@ -341,7 +427,10 @@ def test_the_fit_command_shows_parameters(tmp_path: Path, capsys: pytest.Capture
         (["chart", "cube", "--samples", "many"], "many"),
         (["chart", "cube", "--seed", "-1"], "--seed -1 is negative"),
         (["chart", "cube", "--role", "thicknes"], "did you mean 'thickness'"),
-        (["chart", "cube", "--role", "colour"], "roles: coordinates, thickness, translucency, material"),
+        (
+            ["chart", "cube", "--role", "colour"],
+            "roles: coordinates, thickness, view_thickness, ",
+        ),
         (["chart", "cube", "cube"], "two scenes are called 'cube'"),
         (["chart", "ice.toml"], "does not describe the medium of its body"),
         (["fit", "cube", "wrap_lightning"], "did you mean 'wrap_lighting'"),
@@ -374,6 +463,8 @@ def test_materials_select_their_thickness_technique(monkeypatch: pytest.MonkeyPa
     for role in ("material", "coordinates,material", "translucency"):
         assert main(["chart", "cube", "--role", role]) == 0
     assert [inputs.roles for inputs in requests] == [
-        ("thickness", "material"), ("thickness", "coordinates", "material"), ("translucency",),
+        ("thickness", "view_thickness", "material"),
+            ("coordinates", "thickness", "view_thickness", "material"),
+            ("translucency",),
     ]  # fmt: skip
     assert [inputs.samples for inputs in requests] == [512] * 3

@@ -11,9 +11,10 @@ import numpy.typing as npt
 import pytest
 
 from folders import MESHES
+from sssgen.harness.scenes.drawn_views import back_faces
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.harness.scenes.inside_intervals import intervals, merged
-from sssgen.lab.reference.inside_lengths import thickness
+from sssgen.lab.reference.inside_lengths import first_exit, thickness
 
 Array = npt.NDArray[np.float64]
 
@@ -166,6 +167,19 @@ def test_a_union_counts_overlaps_once_and_no_gaps() -> None:
     assert chord(nested, (0.0, 9.0, -9.0), Z) == pytest.approx(3.0)
 
 
+def test_a_ray_leaves_a_union_where_no_part_continues() -> None:
+    parts = (
+        Box(size=(1.0, 1.0, 1.0)),
+        Box(size=(1.0, 1.0, 1.0), position=(0.7, 0.0, 0.0)),
+        Ball(0.2, position=(3, 0, 0)),
+    )
+    origin, way = np.array([[-0.5, 0.1, 0.0], [-0.5, 2.0, 0.0]]), np.array([[1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    # the overlap from 0.2 to 0.5 has no exit, the gap before the ball has one, and the second ray does not enter
+    assert first_exit(Union(parts), origin, way) == pytest.approx([1.7, 0.0])
+    assert first_exit(Union(parts, scale=2.0), 2.0 * origin, way) == pytest.approx([3.4, 0.0])
+    assert back_faces(Union(parts), np.array([-2.0, 0.1, 0.0]), way[:1]) == pytest.approx([3.2])
+
+
 def test_merged_intervals_are_disjoint_sorted_and_cover_the_same() -> None:
     generator = np.random.default_rng(7)
     ends = np.sort(generator.uniform(0.0, 1.0, (300, 5, 2)), axis=2)
@@ -176,6 +190,10 @@ def test_merged_intervals_are_disjoint_sorted_and_cover_the_same() -> None:
         inside = ((before[:, :1] <= at) & (at < before[:, 1:])).any(axis=0)
         again = ((after[:, :1] <= at) & (at < after[:, 1:])).sum(axis=0)
         assert (again == inside).all()
+        filled = after[after[:, 0] < after[:, 1]]
+        assert (filled[1:, 0] > filled[:-1, 1]).all()
+    touching = np.array([[[0.0, 1.0], [1.0, 2.0], [3.0, 4.0]]])
+    assert merged(touching).tolist() == [[[0.0, 2.0], [0.0, 0.0], [3.0, 4.0]]]
 
 
 # --- transforms ---

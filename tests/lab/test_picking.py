@@ -16,7 +16,9 @@ from processes import HANG
 from sssgen.cli.main import main
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
-from sssgen.lab.chart.picking import Pick, allowed, chosen, limit_of, pick
+from sssgen.lab.chart.engine_conditions import Conditions, by_bytes, under
+from sssgen.lab.chart.picking import Pick, allowed, chosen, cost_of, limit_of, pick
+from sssgen.lab.chart.record import hypervolumes, on_fronts
 from sssgen.lab.jobs import executor
 from sssgen.lab.measure import candidates
 from sssgen.lab.scene import measured_scene
@@ -148,6 +150,69 @@ def test_a_scene_without_points() -> None:
         pick(RECORD, "ball", 0.5, None)
 
 
+# --- conditions ---
+
+
+BAKED = point(("thickness_map", "view_thickness_from_chord", "interior_sample"), 45.0, 0.2, path="depth_map_path",
+              requires=["bake", "depth-map"], bytes=1000)  # fmt: skip
+DRAWN = point(("back_face_thickness", "interior_sample"), 70.0, 0.25, path="depth_map_path",
+              requires=["depth-map", "back-faces"], bytes=0)  # fmt: skip
+VOLUME = point(("march_view", "interior_sample"), 30.0, 0.22, path="march_light",
+               requires=["bake", "rigid"], bytes=5000)  # fmt: skip
+STILL = point(("march_view", "interior_octaves"), 20.0, 0.21, path="march_light",
+              requires=["bake", "rigid", "fixed-light"], bytes=400)  # fmt: skip
+CHOICES: dict[str, Any] = {"points": [NONE, WRAP, BAKED, DRAWN, VOLUME, STILL]}
+
+
+@pytest.mark.parametrize(
+    ("conditions", "expected", "option"),
+    [
+        (Conditions(), STILL, ""),
+        (Conditions(light="moving"), VOLUME, "--light moving"),
+        (Conditions(light="moving", max_bytes=4999), BAKED, "--light moving"),
+        (Conditions(max_bytes=399), DRAWN, "--max-bytes 399"),
+        (Conditions(max_bytes=400), STILL, ""),
+        (Conditions(body="deforming"), BAKED, "--body deforming"),
+        (Conditions(without=("bake",)), DRAWN, "--without bake"),
+        (Conditions(body="deforming", max_bytes=0), DRAWN, "--body deforming"),
+        (Conditions(without=("depth-map",), light="moving"), VOLUME, "--light moving"),
+    ],
+)
+def test_a_pick_needs_only_what_the_engine_has(conditions: Conditions, expected: Any, option: str) -> None:
+    result = pick(CHOICES, "cube", 0.4, None, conditions)
+    assert result.chain is expected and result.met
+    assert (result.excluded, result.excluded_by) == ((STILL, option) if option else (None, ""))
+
+
+def test_without_a_chain_within_the_limit_the_nearest_usable_one_is_picked() -> None:
+    conditions = Conditions(without=("depth-map", "bake"))
+    result = pick(CHOICES, "cube", 0.4, None, conditions)
+    assert (result.chain, result.met, result.excluded) == (WRAP, False, STILL)
+    message = reasons(pick(CHOICES, "cube", 0.4, None))
+    assert message["light path"] == ("march_light", "the best chain with another one has the error 0.24")
+
+
+def test_conditions_that_leave_nothing() -> None:
+    with pytest.raises(SssgenError, match="no technique is left") as caught:
+        pick({"points": [NONE, BAKED, VOLUME]}, "cube", 0.4, None, Conditions(without=("depth-map",), body="deforming"))
+    assert caught.value.diagnostics[0].hint == "omit --without depth-map or --body deforming"
+
+
+def test_a_chart_under_conditions_has_other_fronts_and_volumes() -> None:
+    points = [{"baseline": False, **one} for one in CHOICES["points"]]
+    record = {"points": on_fronts(points), "hypervolume": hypervolumes(points), "cost": "static", "cost_unit": "x"}
+    assert [one["front"] for one in record["points"]] == [True, False, True, False, False, True]
+    changed = under(record, Conditions(body="deforming"))
+    fronts = {one["name"]: one["front"] for one in changed["points"]}
+    assert fronts == {"none": True, WRAP["name"]: True, BAKED["name"]: True, DRAWN["name"]: False}
+    assert changed["hypervolume"][0]["ours"] < record["hypervolume"][0]["ours"]
+    assert changed["conditions"]["body"] == "deforming" and under(record, Conditions()) == record
+    drawn = by_bytes(record)
+    assert [one["cost"]["value"] for one in drawn["points"]] == [1, 1, 1000, 1, 5000, 400]
+    assert [one["cost"]["static"] for one in drawn["points"]] == [cost_of(one) for one in points]
+    assert {one["name"] for one in drawn["points"] if one["front"]} == {DRAWN["name"], STILL["name"], BAKED["name"]}
+
+
 # --- the command ---
 
 
@@ -228,6 +293,10 @@ def test_the_picked_chain_is_emitted(stored_chart: str, tmp_path: Path, capsys: 
         (["--max-cost", "inf"], "--max-cost inf is not a limit"),
         ([], "required"),
         (["--max-cost", "3", "--max-error", "1"], "not allowed"),
+        (["--max-cost", "3", "--max-bytes", "-1"], "0 or more; 0 bakes nothing"),
+        (["--max-cost", "3", "--light", "movin"], "did you mean 'moving'"),
+        (["--max-cost", "3", "--body", "soft"], "choose from: rigid, deforming"),
+        (["--max-cost", "3", "--without", "depthmap"], "did you mean 'depth-map'"),
         (["--max-cost", "3", "--samples", "1"], "--samples 1 is not a number of samples"),
         (["--max-cost", "99", "--emit", "out", "--target", "wgls"], "did you mean 'wgsl'"),
     ],

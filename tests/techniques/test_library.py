@@ -18,10 +18,11 @@ from sssgen.ir.types import Matrix, Sampler, Scalar
 from sssgen.lang.check.quantities import SCALARS
 from sssgen.lang.check.suggested_conversions import suggested_conversions
 from sssgen.lang.loader import load_file
-from sssgen.material import library
+from sssgen.material import attributes, library
 from sssgen.material.library import Technique
 from sssgen.material.material_loading import parse_material
 from sssgen.material.model import Material
+from sssgen.material.requirements import DRAWN, baked_textures, is_baked, requirements, texel_bytes
 from sssgen.material.slots import candidates
 from sssgen.pipeline.compiler import FORMS, Compiled
 from sssgen.pipeline.compiler import compile as compile_material
@@ -34,7 +35,17 @@ NAMES = sorted(library.index())
 # Documented
 
 SECTIONS = {"summary", "role", "formula", "source", "units"}
-STRUCTURED = {"role", "formula", "superseded_by", "suggested", "legend", "shape", "sets", "deviation_bounds"}
+STRUCTURED = {
+    "role",
+    "formula",
+    "superseded_by",
+    "suggested",
+    "legend",
+    "shape",
+    "sets",
+    "requires",
+    "deviation_bounds",
+}
 """Sections that need no sentence."""
 
 
@@ -68,6 +79,11 @@ WRONG_ATTRIBUTES = {
     ),
     "suggested: thickness to thinnes": ("unknown quantity 'thinnes'", "did you mean 'thinness'?"),
     "suggested: thickness to thinness": ("'f' does not convert thickness to thinness", ""),
+    "requires: depth-mop": ("unknown requirement 'depth-mop'", "did you mean 'depth-map'?"),
+    "requires: sunshine": (
+        "unknown requirement 'sunshine'",
+        "requirements: bake, depth-map, back-faces, rigid, fixed-light",
+    ),
     "sets: tint": ("'tint' is not a setting", "write, for example, `sets: albedo by tint`"),
     "sets: albedo by tint": ("'f' does not write 'albedo'", ""),
     "superseded_by: beer_lambert": ("superseded_by is for baselines", "write `baseline: TEXT`, too"),
@@ -92,6 +108,37 @@ def test_attributes_are_checked(attributes: str, tmp_path: Path) -> None:
         library.load(str(tmp_path / "f.sss"))
     (result,) = caught.value.diagnostics
     assert (result.message, result.hint) == WRONG_ATTRIBUTES[attributes]
+
+
+def test_baked_textures_state_their_size_and_pictures_who_draws_them() -> None:
+    for technique in library.load_all():
+        for uniform in technique.uniforms:
+            hints = dict(uniform.hints)
+            assert is_baked(uniform) <= ("texel_bytes" in hints), f"{technique.name}: {uniform.name}"
+            if isinstance(uniform.type, Sampler) and "repeat_disable" in hints and not is_baked(uniform):
+                assert "drawn" in hints or technique.attributes.requires, f"{technique.name}: {uniform.name}"
+    assert set(DRAWN.values()) == {"depth-map", "back-faces"} <= set(attributes.REQUIREMENTS)
+
+
+def test_requirements_follow_from_declarations(tmp_path: Path) -> None:
+    def required(text: str) -> tuple[tuple[str, ...], int]:
+        stages = parse_material(f'[material]\nname = "one"\n{text}', str(tmp_path / "one.toml")).stages
+        return requirements(stages), sum(texel_bytes(texture) for texture in baked_textures(stages))
+
+    light = '[[translucency]]\ntechnique = "{}"\n'
+    inside = light.format("interior_sample") + 'bind = {{ light_path = "{}"{} }}\n'
+    length = '[[thickness]]\ntechnique = "{}"\n'
+    body = ', body_distance = "{}"'
+    assert required(light.format("wrap_lighting")) == ((), 0)
+    mapped = length.format("thickness_map") + '[[thickness]]\ntechnique = "view_thickness_from_chord"\n'
+    assert required(mapped + inside.format("depth_map_path", "")) == (("bake", "depth-map"), 1)
+    faces = length.format("back_face_thickness")
+    assert required(faces + inside.format("depth_map_path", "")) == (("depth-map", "back-faces"), 0)
+    assert required(faces + inside.format("march_light", body.format("sphere"))) == (("back-faces", "rigid"), 0)
+    texture = body.format("distance_texture_world")
+    marched = length.format("march_view") + 'bind = { body_distance = "distance_texture_world" }\n'
+    # two marches read the same volume, which counts once
+    assert required(marched + inside.format("march_light", texture)) == (("bake", "rigid"), 2)
 
 
 UNBOUNDED = {

@@ -6,6 +6,7 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from sssgen.cli.engine_options import add_condition_options, conditions_of
 from sssgen.cli.options import add_seed, add_workers
 from sssgen.cli.output import OK, print_json
 from sssgen.support.diagnostics import did_you_mean, failure
@@ -22,14 +23,17 @@ def add_options(parser: ArgumentParser) -> None:
         "examples:\n"
         "  sssgen chart cube torus -o charts\n"
         "  sssgen chart my/scene.toml --role thickness --json\n"
+        "  sssgen chart cube --body deforming --without bake --cost bytes\n"
         "[medium] of a scene states the medium of its body. Without a scene, it charts all of examples/lab."
     )
     parser.add_argument("SCENE", nargs="*", help="a scene's .toml file, or one of examples/lab")
     parser.add_argument("-o", "--output", metavar="DIR", help="the folder for PNG, SVG, HTML, CSV and JSON")
-    parser.add_argument("--role", metavar="R,R", help="coordinates, thickness, translucency, material (default: all)")
+    parser.add_argument("--role", metavar="R,R", help="some of the charts, such as thickness,material (default: all)")
     parser.add_argument(
-        "--cost", choices=("static", "gpu"), default="static", help="counted operations (default), or time on the GPU"
-    )
+        "--cost", choices=("static", "gpu", "bytes"), default="static",
+        help="counted operations (default), time on the GPU, or bytes baked",
+    )  # fmt: skip
+    add_condition_options(parser)
     add_reference_options(parser)
 
 
@@ -44,9 +48,10 @@ def add_reference_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Measures, draws, and prints the Pareto fronts."""
-    settings = settings_of(arguments)
+    settings, conditions = settings_of(arguments), conditions_of(arguments)
     from sssgen.lab.chart import charting as chart
     from sssgen.lab.chart import drawing
+    from sssgen.lab.chart.engine_conditions import by_bytes, under
     from sssgen.lab.scene import measured_scene
 
     scenes = [measured_scene.load(name) for name in arguments.SCENE or chart.DEFAULTS]
@@ -60,7 +65,11 @@ def run(arguments: Namespace) -> int:
     if arguments.cost == "gpu":
         from sssgen.lab.gpu.chart_times import by_gpu, with_gpu_cost
 
-        record = by_gpu(with_gpu_cost(record, scenes))
+        record = by_gpu(with_gpu_cost(under(record, conditions), scenes))
+    elif arguments.cost == "bytes":
+        record = by_bytes(under(record, conditions))
+    else:
+        record = under(record, conditions)
     files = drawing.write(record, arguments.output) if arguments.output else []
     if arguments.json:
         print_json({"ok": True, "files": files, **record})
@@ -85,8 +94,7 @@ def settings_of(arguments: Namespace) -> Settings:
         if role not in candidates.ROLES:
             hint = did_you_mean(role, candidates.ROLES) or f"roles: {', '.join(candidates.ROLES)}"
             raise failure(f"no chart has the role '{role}'", hint)
-    if "material" in roles and "thickness" not in roles:
-        roles = ("thickness", *roles)
+    roles = candidates.complete(roles)
     return Settings(arguments.samples, arguments.seed, roles, arguments.scheduler, arguments.processes, ProgressBar)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from sssgen.cli.chart import add_reference_options, settings_of
 from sssgen.cli.emit import chosen_targets
+from sssgen.cli.engine_options import add_condition_options, conditions_of
 from sssgen.cli.options import add_targets
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.material.material_loading import parse_material
@@ -26,6 +27,7 @@ def add_options(parser: ArgumentParser) -> None:
         "examples:\n"
         "  sssgen pick cube --max-error 0.5\n"
         "  sssgen pick my/scene.toml --max-cost 300 --emit out --target wgsl\n"
+        "  sssgen pick cube --max-error 0.3 --light moving --body deforming --without depth-map\n"
         "The scene is measured first, unless its chart is in the cache."
     )
     parser.add_argument("SCENE", help="a scene's .toml file, or one of examples/lab")
@@ -33,6 +35,7 @@ def add_options(parser: ArgumentParser) -> None:
     limits.add_argument("--max-error", type=float, metavar="E", help="the largest relative error, such as 0.3")
     limits.add_argument("--max-cost", type=float, metavar="C", help="the largest static cost, in operations")
     parser.add_argument("--emit", metavar="DIR", help="write the material and its shaders to this folder")
+    add_condition_options(parser)
     add_targets(parser, default="glsl-330")
     add_reference_options(parser)
 
@@ -43,14 +46,14 @@ def run(arguments: Namespace) -> int:
         value = getattr(arguments, name)
         if value is not None and not 0.0 < value < float("inf"):
             raise failure(f"--{name.replace('_', '-')} {value:g} is not a limit", "a number above 0")
-    settings = settings_of(arguments)
+    settings, conditions = settings_of(arguments), conditions_of(arguments)
     from sssgen.lab.chart import charting as chart
     from sssgen.lab.chart.picking import pick
     from sssgen.lab.scene import measured_scene
 
     scene = measured_scene.load(arguments.SCENE)
     record = chart.chart_record([scene], settings)
-    picked = pick(record, scene.name, arguments.max_error, arguments.max_cost)
+    picked = pick(record, scene.name, arguments.max_error, arguments.max_cost, conditions)
     files = _emitted(scene, picked, arguments.emit, arguments.target) if arguments.emit else []
     if arguments.json:
         fields = {**picked._asdict(), "roles": [role._asdict() for role in picked.roles]}
@@ -89,6 +92,11 @@ def shown(scene: MeasuredScene, picked: Pick, max_error: float | None, max_cost:
     main = picked.chain or picked.coordinates
     assert main is not None
     lines.append(f"  picked        {_point(main)}")
+    if main.get("requires"):
+        baked = f"; {main['bytes']:,} bytes baked".replace(",", " ") if main.get("bytes") else ""
+        lines.append(f"  requires      {', '.join(main['requires'])}{baked}")
+    if picked.excluded is not None:
+        lines.append(f"  excluded      by {picked.excluded_by}: {_point(picked.excluded)}")
     for title, point in (("next cheaper", picked.cheaper), ("next better", picked.better)):
         lines.append(f"  {title:13} {_point(point) if point is not None else 'none'}")
     return "\n".join(lines)

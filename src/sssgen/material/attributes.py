@@ -15,10 +15,14 @@ from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 TEXTS = ("role", "formula", "source", "units", "limits", "corrects", "baseline", "uncharted", "glows", "legend")
 """Attributes of free text; `role` is checked by the library."""
 
-ATTRIBUTES = (*TEXTS, "superseded_by", "suggested", "shape", "sets", "deviation", "deviation_bounds")
+ATTRIBUTES = (*TEXTS, "superseded_by", "suggested", "shape", "sets", "requires", "deviation", "deviation_bounds")
 
 SHAPES = ("box", "sphere", "torus", "texture")
 """The values of `shape`, the body that a distance function describes."""
+
+REQUIREMENTS = ("bake", "depth-map", "back-faces", "rigid", "fixed-light")
+"""What `requires` can name: a texture baked from the body; the light's depth map; a picture of the body's back faces
+from the eye; a body that keeps its shape; a light that does not move relative to the body."""
 
 BOUNDS = ("largest", "share", "bound_share")
 """What `deviation_bounds` can bound."""
@@ -47,6 +51,8 @@ class Attributes(NamedTuple):
     """The body whose distance it gives, one of `SHAPES`."""
     sets: Mapping[str, str] = {}
     """Value of the surface → the uniform that is its value, as long as textures have their defaults."""
+    requires: tuple[str, ...] = ()
+    """What the engine has to provide, where declarations do not show it: of `REQUIREMENTS`."""
     deviation: str = ""
     """Why back ends may deviate from the reference by more than the goal."""
     deviation_bounds: Mapping[str, Mapping[str, float]] = {}
@@ -91,6 +97,7 @@ def read(texts: Mapping[str, str], shown: str) -> Attributes:
         legend=texts.get("legend", ""),
         shape=shape,
         sets=_settings(texts["sets"], shown) if "sets" in texts else {},
+        requires=_requirements(texts["requires"], shown) if "requires" in texts else (),
         deviation=texts.get("deviation", ""),
         deviation_bounds=bounds,
     )
@@ -116,6 +123,15 @@ def _settings(text: str, shown: str) -> dict[str, str]:
             raise failure(f"'{item.strip()}' is not a setting", "write, for example, `sets: albedo by tint`", shown)
         settings[match[1]] = match[2]
     return settings
+
+
+def _requirements(text: str, shown: str) -> tuple[str, ...]:
+    """`depth-map, fixed-light`."""
+    names = tuple(name.strip() for name in text.split(","))
+    for name in names:
+        if name not in REQUIREMENTS:
+            raise _wrong(f"unknown requirement '{name}'", name, REQUIREMENTS, "requirements", shown)
+    return names
 
 
 def _bounds(text: str, shown: str) -> dict[str, dict[str, float]]:

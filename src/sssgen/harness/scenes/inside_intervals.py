@@ -109,15 +109,19 @@ def _(geometry: Union, origins: Array, directions: Array) -> Array:
 
 
 def merged(parts: Array) -> Array:
-    """Overlapping intervals (n, k, 2) as disjoint ones."""
+    """Intervals (n, k, 2) that overlap or touch as one; the others are empty. They do not touch, and are in order."""
     order = np.argsort(parts[..., 0], axis=1, kind="stable")
     parts = np.take_along_axis(parts, order[..., None], axis=1)
     result = np.zeros_like(parts)
-    reached = np.full(len(parts), -np.inf)
+    rows = np.arange(len(parts))
+    current, reached = np.zeros(len(parts), int), np.full(len(parts), -np.inf)
     for k in range(parts.shape[1]):
-        low, high = np.maximum(parts[:, k, 0], reached), parts[:, k, 1]
-        more = (low < high) & (parts[:, k, 0] < parts[:, k, 1])
-        result[:, k] = np.where(more[:, None], np.stack([low, high], axis=1), 0.0)
+        low, high = parts[:, k, 0], parts[:, k, 1]
+        more = (low < high) & (high > reached)
+        begins = more & (low > reached)
+        current = np.where(begins, k, current)
+        result[rows, current, 0] = np.where(begins, low, result[rows, current, 0])
+        result[rows, current, 1] = np.where(more, high, result[rows, current, 1])
         reached = np.where(more, high, reached)
     return result
 

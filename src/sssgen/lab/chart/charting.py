@@ -15,7 +15,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from sssgen.lab.chart.record import FORMAT, front, hypervolume
+from sssgen.lab.chart.record import FORMAT, hypervolumes, on_fronts
 from sssgen.lab.jobs.executor import Failure, Item, Progress, run
 from sssgen.lab.jobs.work_items import code_stamp
 from sssgen.lab.measure import candidates
@@ -23,6 +23,7 @@ from sssgen.lab.measure import scene_references as references
 from sssgen.lab.measure.candidates import Candidate
 from sssgen.lab.measure.fitting import Fitted
 from sssgen.lab.measure.measurement import View
+from sssgen.lab.measure.problem import LENGTHS
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError, failure
@@ -64,6 +65,7 @@ def chart_record(scenes: Sequence[MeasuredScene], settings: Settings) -> dict[st
 
     Raises SssgenError for scenes that cannot be measured, and for missing packages.
     """
+    settings = settings._replace(roles=candidates.complete(settings.roles))
     by_key = {scene.key: cached(scene, settings) for scene in scenes}
     new = [scene for scene in {scene.key: scene for scene in scenes}.values() if by_key[scene.key] is None]
     if new:
@@ -71,7 +73,7 @@ def chart_record(scenes: Sequence[MeasuredScene], settings: Settings) -> dict[st
             by_key[scene.key] = entry
             cache.write(settings.cache_name(scene), json.dumps(entry).encode())
     results = [result for scene in scenes if (result := by_key[scene.key])]
-    points = _on_fronts([point for result in results for point in result["points"]])
+    points = on_fronts([point for result in results for point in result["points"]])
     return {
         "format": FORMAT, "record": conditions(settings), "cost": "static",
         "cost_unit": "weighted operations",
@@ -96,7 +98,7 @@ def _measured(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[
     for role in settings.roles:
         if role == "material":
             continue
-        jobs = [(scene, candidate) for scene in scenes for candidate in _candidates(role, scene)]
+        jobs = [(scene, candidate) for scene in scenes for candidate in _candidates(role, scene, points[scene.key])]
         for scene, point in _points(jobs, views, settings, {}):
             points[scene.key].append(point)
     if "material" in settings.roles:
@@ -104,8 +106,12 @@ def _measured(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[
         before: dict[tuple[str, tuple[str, ...], Any], Mapping[str, tuple[float, ...]]] = {}
         for scene in scenes:
             if scene.medium is not None:
-                lengths = useful_thickness([point for point in points[scene.key] if point["role"] == "thickness"])
-                jobs += [(scene, candidate) for candidate in candidates.materials(lengths)]
+                whole = candidates.materials(
+                    useful_lengths(points[scene.key], candidates.thickness()),
+                    useful_lengths(points[scene.key], candidates.view_thickness(), by_requirements),
+                    useful_paths(points[scene.key]),
+                )
+                jobs += [(scene, candidate) for candidate in whole]
                 before |= {
                     (scene.key, *key): values for key, values in distance_function_parameters(points[scene.key]).items()
                 }
@@ -114,13 +120,16 @@ def _measured(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[
     return [{"scene": _description(scene, views[scene.key]), "points": points[scene.key]} for scene in scenes]
 
 
-def _candidates(role: str, scene: MeasuredScene) -> list[Candidate]:
-    """The candidates of a role that apply to a scene."""
+def _candidates(role: str, scene: MeasuredScene, measured: Sequence[Mapping[str, Any]]) -> list[Candidate]:
+    """The candidates of a role that apply to a scene; `measured` has its points of the roles before."""
     if role == "coordinates":
         return candidates.coordinates() if scene.inlay is not None else []
     if scene.medium is None:
         return []
-    return candidates.thickness() if role == "thickness" else candidates.translucency()
+    if role == "translucency":
+        charted = any(point["role"] == "thickness" for point in measured)
+        return candidates.translucency(useful_paths(measured) if charted else None)
+    return candidates.thickness() if role == "thickness" else candidates.view_thickness()
 
 
 Before = Mapping[tuple[str, tuple[str, ...], Any], Mapping[str, tuple[float, ...]]]
@@ -223,7 +232,10 @@ def remeasured(
 def candidate_of(point: Mapping[str, Any]) -> Candidate:
     """The candidate of a point."""
     settings, chain = tuple(point["settings"].items()), tuple(point["chain"])
-    return Candidate(point["role"], point["name"], point["label"], settings, chain, point["baseline"])
+    path, path_settings = point.get("path", ""), tuple(point.get("path_settings", {}).items())
+    return Candidate(
+        point["role"], point["name"], point["label"], settings, chain, point["baseline"], path, path_settings
+    )
 
 
 def fitted_of(point: Mapping[str, Any]) -> Fitted:
@@ -257,14 +269,14 @@ def _results(items: Sequence[Item], settings: Settings) -> list[Any]:
 def distance_function_parameters(
     points: Sequence[dict[str, Any]],
 ) -> dict[tuple[tuple[str, ...], Any], dict[str, tuple[float, ...]]]:
-    """The fitted parameters of the thickness techniques that evaluate a distance function: by technique and settings.
+    """The fitted parameters of the lengths that evaluate a distance function: by technique and settings.
 
     Complete chains use them unchanged, because fitting them again in each chain would take hours.
     """
     parameters: dict[tuple[tuple[str, ...], Any], dict[str, tuple[float, ...]]] = {}
     best: dict[tuple[tuple[str, ...], Any], float] = {}
     for point in points:
-        technique = candidates.load(point["chain"][0]) if point["role"] == "thickness" else None
+        technique = candidates.load(point["chain"][0]) if point["role"] in LENGTHS else None
         if technique is None or not technique.slots:
             continue
         key = (technique.name,), tuple(point["settings"].items())
@@ -274,22 +286,42 @@ def distance_function_parameters(
     return parameters
 
 
-def useful_thickness(points: Sequence[dict[str, Any]]) -> list[Candidate]:
-    """The thickness candidates for complete chains: each technique's cheapest setting, and those that lower the error.
+def by_chain(point: Mapping[str, Any]) -> tuple[str, ...]:
+    """The key of a chain's settings."""
+    return tuple(point["chain"])
+
+
+def by_requirements(point: Mapping[str, Any]) -> tuple[str, ...]:
+    """The key of the lengths that require the same data, so that only cost and error decide between them."""
+    return tuple(point["requires"])
+
+
+def useful_paths(points: Sequence[Mapping[str, Any]]) -> list[Candidate]:
+    """The useful thicknesses among those that can be measured from a point inside the body."""
+    return useful_lengths(points, list(filter(candidates.fits_path, candidates.thickness())), by_requirements)
+
+
+def useful_lengths(
+    points: Sequence[Mapping[str, Any]],
+    lengths: Sequence[Candidate],
+    group_of: Callable[[Mapping[str, Any]], tuple[str, ...]] = by_chain,
+) -> list[Candidate]:
+    """Those of `lengths` for complete chains: in each group the cheapest one, and dearer ones that lower the error.
 
     The training error decides, not the error on the scene.
     """
-    by_label = {candidate.label: candidate for candidate in candidates.thickness()}
-    chains: dict[tuple[str, ...], list[dict[str, Any]]] = {}
+    by_label = {(candidate.role, candidate.label): candidate for candidate in lengths}
+    groups: dict[tuple[str, ...], list[Mapping[str, Any]]] = {}
     for point in points:
-        chains.setdefault(tuple(point["chain"]), []).append(point)
+        if (point["role"], point["label"]) in by_label:
+            groups.setdefault(group_of(point), []).append(point)
     chosen = []
-    for group in chains.values():
+    for group in groups.values():
         best = float("inf")
         for point in sorted(group, key=lambda point: float(point["cost"]["value"])):
             if point["training_error"] < WORTHWHILE * best:
                 best = point["training_error"]
-                chosen.append(by_label[point["label"]])
+                chosen.append(by_label[point["role"], point["label"]])
     return chosen
 
 
@@ -300,30 +332,6 @@ def _description(scene: MeasuredScene, views: _Views) -> dict[str, Any]:
         entry["medium"] = {"name": medium.name, "albedo": list(medium.albedo), "extinction": list(medium.extinction)}
         entry["fitted_to"] = [view.name for view in views.training]
     return entry
-
-
-def _on_fronts(points: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The points; `front` is whether a point is on the front of its scene and role."""
-    groups: dict[tuple[str, str], list[dict[str, Any]]] = {}
-    for point in points:
-        groups.setdefault((point["scene"], point["role"]), []).append(point)
-    best = {id(point) for group in groups.values() for point in front(group)}
-    return [{**point, "front": id(point) in best} for point in points]
-
-
-def hypervolumes(points: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The hypervolumes of our points and of all baselines together, for each scene and role."""
-    volumes = []
-    for scene, role in dict.fromkeys((point["scene"], point["role"]) for point in points):
-        group = [point for point in points if (point["scene"], point["role"]) == (scene, role)]
-        reference_point = [1.1 * max(float(point["cost"]["value"]) for point in group), 1.0]
-        ours = [point for point in group if not point["baseline"]]
-        baselines = [point for point in group if point["baseline"] or point["name"] == "none"]
-        volumes.append({
-            "scene": scene, "role": role, "reference_point": reference_point,
-            "ours": hypervolume(ours, reference_point), "baselines": hypervolume(baselines, reference_point),
-        })  # fmt: skip
-    return volumes
 
 
 def conditions(settings: Settings) -> dict[str, Any]:

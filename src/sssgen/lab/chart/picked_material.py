@@ -14,6 +14,7 @@ from sssgen.lab.chart.picking import Pick
 from sssgen.lab.measure.candidates import load
 from sssgen.lab.measure.measured_chain import MaterialSection, material_text
 from sssgen.lab.scene.measured_scene import MeasuredScene
+from sssgen.lab.scene.media import Medium
 from sssgen.lab.scene.scene_body import Body, body
 from sssgen.material import library
 from sssgen.material.slots import needs
@@ -26,7 +27,7 @@ def material_files(scene: MeasuredScene, picked: Pick, name: str) -> dict[str, s
     if picked.coordinates is not None and picked.coordinates["name"] != "none":
         stages += _coordinates(scene, picked.coordinates, shape)
     if picked.chain is not None:
-        stages += stages_of(picked.chain, shape)
+        stages += stages_of(picked.chain, shape, scene.medium)
     matte = picked.chain["matte"] if picked.chain is not None else [1.0, 1.0, 1.0]
     stages += [_surface("albedo", [*matte, 1.0]), _surface("roughness", 1.0)]
     doc = f"Picked for the scene {scene.name}: {scene.title}."
@@ -41,11 +42,20 @@ def _surface(name: str, value: object) -> MaterialSection:
     return MaterialSection("surface", technique, ((uniform, value),))
 
 
-def stages_of(point: Mapping[str, Any], shape: Body) -> list[MaterialSection]:
-    """The stages of a point with its fitted parameters; counts are constants, all others are adjustable."""
+def stages_of(point: Mapping[str, Any], shape: Body, medium: Medium | None = None) -> list[MaterialSection]:
+    """The stages of a point with its fitted parameters and those of the medium.
+
+    Counts, and what the body sets, are constants; all others are adjustable.
+    """
     candidate = candidate_of(point)
-    stages = zip(candidate.techniques, candidate.stages(shape), strict=True)
-    return [_with_values(stage, _fitted(load(name), point)) for name, stage in stages]
+    known = medium.parameters if medium is not None else {}
+    stages = []
+    for name, stage in zip(candidate.techniques, candidate.stages(shape), strict=True):
+        bound = [load(candidate.path)] if any(function == candidate.path for _, function in stage.bind) else []
+        for technique in (load(name), *bound):
+            stage = _with_values(stage, _fitted(technique, point, known))
+        stages.append(stage)
+    return stages
 
 
 def _coordinates(scene: MeasuredScene, point: Mapping[str, Any], shape: Body) -> list[MaterialSection]:
@@ -66,14 +76,16 @@ def _with_values(stage: MaterialSection, values: Mapping[str, object]) -> Materi
     )
 
 
-def _fitted(technique: Any, point: Mapping[str, Any]) -> dict[str, object]:
-    """A technique's fitted parameters; the factor includes the scale."""
+def _fitted(technique: Any, point: Mapping[str, Any], known: Mapping[str, object]) -> dict[str, object]:
+    """A technique's fitted parameters, and those that the scene knows; the factor includes the scale."""
     values: dict[str, object] = {}
     names, _ = needs(technique.module, technique.function)
     for uniform in technique.uniforms:
         if uniform.name not in names or kind_of(uniform.type) != "float":
             continue
-        if uniform.name in point["parameters"]:
+        if uniform.name in known:
+            values[uniform.name] = _clamped(uniform, known[uniform.name])
+        elif uniform.name in point["parameters"]:
             value = point["parameters"][uniform.name]
             values[uniform.name] = _clamped(uniform, value[0] if components(uniform.type) == 1 else list(value))
         elif uniform.name == point["factor"]:

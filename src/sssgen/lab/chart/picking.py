@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from sssgen.lab.chart.engine_conditions import EVERYTHING, Conditions, usable
 from sssgen.lab.chart.record import front
 from sssgen.lab.measure.candidates import is_constant, is_published, load, needs
 from sssgen.support.diagnostics import failure
@@ -39,6 +40,10 @@ class Pick(NamedTuple):
     """The cheapest of the more accurate points"""
     met: bool
     """Whether the choice is within the limit; if not, it is the nearest point"""
+    excluded: Point | None = None
+    """The point that would have been picked if the engine had everything; None if that is the same"""
+    excluded_by: str = ""
+    """The option that excludes it"""
 
 
 def limit_of(point: Point) -> float:
@@ -52,10 +57,17 @@ def cost_of(point: Point) -> float:
     return float(point["cost"]["value"])
 
 
-def pick(record: Mapping[str, Any], scene: str, max_error: float | None, max_cost: float | None) -> Pick:
+def pick(
+    record: Mapping[str, Any],
+    scene: str,
+    max_error: float | None,
+    max_cost: float | None,
+    conditions: Conditions = EVERYTHING,
+) -> Pick:
     """The choice for a scene of a chart's record; one of the limits is None. Raises SssgenError without points."""
     points = [point for point in record["points"] if point["scene"] == scene and allowed(point)]
-    materials = [point for point in points if point["role"] == "material"]
+    everything = [point for point in points if point["role"] == "material"]
+    materials = usable(everything, conditions)
     shifts = [point for point in points if point["role"] == "coordinates"]
     if not materials and not shifts:
         raise failure(f"the chart has no point of the scene '{scene}'", "chart it first: sssgen chart")
@@ -67,7 +79,18 @@ def pick(record: Mapping[str, Any], scene: str, max_error: float | None, max_cos
     cheaper = max((point for point in front_points if cost_of(point) < cost_of(main)), key=cost_of, default=None)
     better = min((point for point in front_points if limit_of(point) < limit_of(main)), key=cost_of, default=None)
     roles = (_coordinates(shift, shifts), *_light(chain, materials))
-    return Pick(scene, chain, shift, roles, cheaper, better, chain_met and shift_met)
+    excluded, option = _excluded(everything, main, max_error, max_cost, conditions)
+    met = chain_met and shift_met
+    return Pick(scene, chain, shift, roles, cheaper, better, met, excluded, option)
+
+
+def _excluded(
+    points: Sequence[Point], main: Point, max_error: float | None, max_cost: float | None, conditions: Conditions
+) -> tuple[Point | None, str]:
+    """The point that is picked without the conditions, and the option that excludes it; None, '' if it is `main`."""
+    best, _ = chosen(points, max_error, max_cost)
+    option = conditions.missing(best) if best is not None else ""
+    return (best, option) if option else (None, "")
 
 
 def allowed(point: Point) -> bool:
@@ -121,6 +144,11 @@ def _light(chain: Point | None, materials: Sequence[Point]) -> list[Role]:
     names = chain["chain"]
     light = names[-1]
     roles = [Role("translucency", light, f"without transmitted light the error is {without:.3g}")]
+    if path := chain.get("path", ""):
+        inside = [point for point in materials if point.get("path") and point["path"] != path]
+        other = min(map(limit_of, inside), default=None)
+        why = f"the best chain with another one has the error {other:.3g}" if other is not None else needs(load(path))
+        roles = [Role("light path", path, why), *roles]
     first = next((name for name in names if load(name).role == "thickness"), "")
     if not first:
         best = min(materials, key=limit_of)

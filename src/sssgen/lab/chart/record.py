@@ -13,12 +13,13 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, TypeGuard
 
+from sssgen.material.attributes import REQUIREMENTS
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 
 FORMAT = 1
 """The version of the record's format."""
 
-ROLES = ("coordinates", "thickness", "translucency", "material")
+ROLES = ("coordinates", "thickness", "view_thickness", "translucency", "material")
 """Points of the same role are compared; in the order of the charts."""
 
 COSTS = {"value": "cost", "operations": "operations", "transcendentals": "transcendentals", "fetches": "fetches"}
@@ -89,6 +90,13 @@ def _point_faults(point: dict[str, Any], scenes: Sequence[Any]) -> Iterator[str]
     for name in ("name", "label"):
         if not (isinstance(point.get(name), str) and point[name]):
             yield f"'{name}' is missing"
+    if not isinstance(point.get("path", ""), str) or not isinstance(point.get("path_settings", {}), dict):
+        yield "'path' is a name, and 'path_settings' has its counts"
+    unknown = [name for name in point.get("requires", ()) if name not in REQUIREMENTS]
+    if unknown:
+        yield f"it requires {unknown[0]!r}, which is none of {', '.join(REQUIREMENTS)}"
+    if not (_is_number(point.get("bytes", 0)) and point.get("bytes", 0) >= 0):
+        yield "'bytes' is not a number of bytes"
     for name, parts in (("cost", COSTS), ("error", ERRORS)):
         numbers = point.get(name)
         if not isinstance(numbers, dict):
@@ -147,6 +155,30 @@ def hypervolume(points: Iterable[Point], reference_point: Sequence[float]) -> fl
     return area
 
 
+def on_fronts(points: Sequence[Point]) -> list[dict[str, Any]]:
+    """The points; `front` is whether a point is on the front of its scene and role."""
+    groups: dict[tuple[str, str], list[Point]] = {}
+    for point in points:
+        groups.setdefault((point["scene"], point["role"]), []).append(point)
+    best = {id(point) for group in groups.values() for point in front(group)}
+    return [{**point, "front": id(point) in best} for point in points]
+
+
+def hypervolumes(points: Sequence[Point]) -> list[dict[str, Any]]:
+    """The hypervolumes of our points and of all baselines together, for each scene and role."""
+    volumes = []
+    for scene, role in dict.fromkeys((point["scene"], point["role"]) for point in points):
+        group = [point for point in points if (point["scene"], point["role"]) == (scene, role)]
+        reference_point = [1.1 * max(float(point["cost"]["value"]) for point in group), 1.0]
+        ours = [point for point in group if not point["baseline"]]
+        baselines = [point for point in group if point["baseline"] or point["name"] == "none"]
+        volumes.append({
+            "scene": scene, "role": role, "reference_point": reference_point,
+            "ours": hypervolume(ours, reference_point), "baselines": hypervolume(baselines, reference_point),
+        })  # fmt: skip
+    return volumes
+
+
 def _log(value: float) -> float:
     return math.log10(max(value, LEAST))
 
@@ -171,6 +203,7 @@ def to_csv(record: Record) -> str:
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     columns = ["scene", "role", "name", "label", "baseline", "front", "failed", "chain", "settings", "parameters"]
+    columns += ["path", "path_settings", "requires", "bytes"]
     columns += [f"cost_{name}" for name in COSTS] + [f"error_{name}" for name in ERRORS]
     writer.writerow([*columns, "implementation"])
     for point in record["points"]:
@@ -178,6 +211,8 @@ def to_csv(record: Record) -> str:
         row += [int(bool(point.get(name))) for name in ("baseline", "front")]
         row += [point.get("failed", ""), " + ".join(point.get("chain", []))]
         row += [_compact(point.get(name, {})) for name in ("settings", "parameters")]
+        row += [point.get("path", ""), _compact(point.get("path_settings", {}))]
+        row += [" + ".join(point.get("requires", [])), point.get("bytes", "")]
         row += [point["cost"].get(name) for name in COSTS] + [point["error"].get(name) for name in ERRORS]
         writer.writerow([*row, _compact(point.get("implementation", {}))])
     return file.getvalue()

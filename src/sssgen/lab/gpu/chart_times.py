@@ -102,7 +102,7 @@ def _timed(
             with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                 file.write(text)
         chains: list[tuple[str, Sequence[MaterialSection]]] = [(EMPTY, ())]
-        chains += [(str(number), stages_of(point, shape)) for number, point in enumerate(points)]
+        chains += [(str(number), stages_of(point, shape, measured.medium)) for number, point in enumerate(points)]
         plain = MaterialSection("surface", library.setter("albedo")[0])
         for name, stages in chains:
             surface = [] if any(stage.section == "surface" for stage in stages) else [plain]

@@ -20,8 +20,11 @@ from sssgen.lang.check.quantities import SCALARS
 from sssgen.material import library, slots
 from sssgen.material.library import Technique
 
-ROLES = ("coordinates", "thickness", "translucency", "material")
+ROLES = ("coordinates", "thickness", "view_thickness", "translucency", "material")
 """The roles that have a reference. A surface's look (masks, waves, colours) is the artist's choice: it has no error."""
+
+VIEW = "view_thickness"
+"""The quantity of the length along the eye's ray, and the role of the techniques that give it."""
 
 COUNTS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
 """The values of a technique's counts: those up to its default, and the next larger one."""
@@ -36,7 +39,7 @@ class Candidate(NamedTuple):
     """A point of a chart before it is measured."""
 
     role: str
-    """coordinates, thickness, translucency or material"""
+    """One of ROLES"""
     name: str
     """The technique; for a material its chain, or the baseline's name"""
     label: str
@@ -46,6 +49,8 @@ class Candidate(NamedTuple):
     baseline: bool = False
     path: str = ""
     """The function of the length inside the body from a point in it, for techniques with a slot for it"""
+    path_settings: tuple[tuple[str, int], ...] = ()
+    """The counts of `path`, which may have the same names as those of the chain"""
 
     def stages(self, body: Body) -> tuple[MaterialSection, ...]:
         """The chain's stages, bound to a scene's body."""
@@ -54,7 +59,8 @@ class Candidate(NamedTuple):
     def _stage(self, name: str, body: Body) -> MaterialSection:
         technique = load(name)
         section = "thickness" if technique.role == "conversion" else technique.role
-        uniforms = {uniform.name for uniform in technique.uniforms}
+        fixed = _counts(technique, self.settings)
+        spans = _spans(technique)
         bind: list[tuple[str, str]] = []
         body_values: list[tuple[str, object]] = []
         waiting = list(technique.slots)
@@ -63,17 +69,28 @@ class Candidate(NamedTuple):
             if is_path(slot):
                 bind.append((slot.name, self.path))
                 bound = load(self.path.partition(":")[0])
-                uniforms |= {uniform.name for uniform in bound.uniforms}
+                fixed |= _counts(bound, self.path_settings)
+                spans += _spans(bound)
                 waiting += bound.slots
                 continue
             in_world = slot.params[0].quantity == "world_position"
             bind.append((slot.name, body.function if in_world else slots.body("texture", slot.params[0].quantity)))
             body_values += body.parameters.items() if in_world else ()
-        fixed = tuple((key, value) for key, value in self.settings if key in uniforms)
-        values: dict[str, object] = dict(fixed)
+        values: dict[str, object] = {**fixed, **dict.fromkeys(spans, body.span)}
         for key, value in body_values:
             values.setdefault(key, value)
         return MaterialSection(section, path_of(name), tuple(values.items()), tuple(values), tuple(bind))
+
+
+def _counts(technique: Technique, settings: Sequence[tuple[str, int]]) -> dict[str, object]:
+    """The settings that are a technique's own."""
+    names = {uniform.name for uniform in technique.uniforms}
+    return {key: value for key, value in settings if key in names}
+
+
+def _spans(technique: Technique) -> list[str]:
+    """The parameters that the scene's body sets: lengths that span it."""
+    return [uniform.name for uniform in technique.uniforms if "spans_body" in dict(uniform.hints)]
 
 
 def is_path(slot: Function) -> bool:
@@ -110,29 +127,107 @@ def thickness() -> list[Candidate]:
     """The techniques of a thickness, each converted to a length."""
     result = []
     for technique in of_role("thickness"):
-        for to_length in routes(technique.function.quantity, "thickness"):
-            for counts in settings(technique):
-                chain = (technique.name, *to_length, "shown_thickness")
-                legends = [load(name).attributes.legend for name in to_length]
-                text = ", ".join([label(technique.name, counts), *filter(None, legends)])
-                result.append(Candidate("thickness", technique.name, text, counts, chain, technique.baseline))
+        if technique.function.quantity != VIEW:
+            for to_length in routes(technique.function.quantity, "thickness"):
+                result += _suppliers("thickness", technique, to_length)
     return result
 
 
-def translucency() -> list[Candidate]:
-    """The techniques of translucency, after the exact thickness, and the candidate without one."""
+def view_thickness() -> list[Candidate]:
+    """The techniques of the length along the eye's ray: its own, and maps and constants with a conversion."""
+    result = []
+    for technique in of_role("thickness"):
+        quantity = technique.function.quantity
+        if quantity == VIEW:
+            result += _suppliers(VIEW, technique, ())
+        elif not _is_directed(technique):
+            for to_length in routes(quantity, "thickness"):
+                for to_view in routes("thickness", VIEW):
+                    result += _suppliers(VIEW, technique, (*to_length, *to_view))
+    return result
+
+
+def _is_directed(technique: Technique) -> bool:
+    """Whether a thickness depends on more than the place on the surface, such as a direction towards a light."""
+    return any(param.quantity != "uv_position" for param in technique.function.params)
+
+
+def _suppliers(role: str, technique: Technique, conversions: tuple[str, ...]) -> list[Candidate]:
+    """The candidates of a length: a technique at each setting, and conversions."""
+    chain = (technique.name, *conversions, f"shown_{role}")
+    legends = [load(name).attributes.legend for name in conversions]
+    return [
+        Candidate(
+            role, technique.name, ", ".join([label(technique.name, counts), *filter(None, legends)]), counts, chain,
+            technique.baseline,
+        )
+        for counts in settings(technique)
+    ]  # fmt: skip
+
+
+def fits_path(candidate: Candidate) -> bool:
+    """Whether a candidate of thickness is a function that measures from a point inside the body, too."""
+    if candidate.role != "thickness" or len(candidate.techniques) != 2:
+        return False
+    return any(
+        candidate.name in slots.candidates(slot)
+        for technique in of_role("translucency")
+        for slot in technique.slots
+        if is_path(slot)
+    )
+
+
+def default_paths() -> list[Candidate]:
+    """The functions of a length from a point inside the body, with the default counts."""
+    result = []
+    for candidate in filter(fits_path, thickness()):
+        default = {uniform.name: uniform.default for uniform in load(candidate.name).uniforms}
+        if all(count == int(default[name][0]) for name, count in candidate.settings):
+            result.append(candidate)
+    return result
+
+
+def translucency(paths: Sequence[Candidate] | None = None) -> list[Candidate]:
+    """The techniques of translucency after the exact lengths, and the candidate without one.
+
+    A technique that measures from a point inside the body does so with each of `paths`.
+    """
     result = [Candidate("translucency", "none", "none", (), ())]
     for technique in of_role("translucency"):
         needed = quantity_read(technique)
-        for route in routes("thickness", needed) if needed else [()]:
-            thickness_chain = ("exact_thickness", *route) if needed else ()
-            chain, baseline = (*thickness_chain, technique.name), technique.baseline
-            result.append(Candidate("translucency", technique.name, technique.name, (), chain, baseline))
+        exact = VIEW if needed == VIEW else "thickness"
+        for route in routes(exact, needed) if needed else [()]:
+            lengths = (f"exact_{exact}", *route) if needed else ()
+            chain, baseline = (*lengths, technique.name), technique.baseline
+            whole = Candidate("translucency", technique.name, technique.name, (), chain, baseline)
+            result += _with_paths(whole, technique, default_paths() if paths is None else paths)
     return result
 
 
-def materials(lengths: Sequence[Candidate]) -> list[Candidate]:
-    """Complete chains: each thickness in `lengths` with each translucency, the published chains, the empty chain."""
+def _with_paths(candidate: Candidate, technique: Technique, paths: Sequence[Candidate]) -> list[Candidate]:
+    """The candidate with each path for the slot of its last technique; the candidate itself if there is no slot."""
+    slot = next((slot for slot in technique.slots if is_path(slot)), None)
+    if slot is None:
+        return [candidate]
+    fitting = slots.candidates(slot)
+    return [
+        candidate._replace(
+            label=f"{candidate.label} by {label(path.name, path.settings)}",
+            path=path.name,
+            path_settings=path.settings,
+        )
+        for path in paths
+        if path.name in fitting
+    ]
+
+
+def materials(
+    lengths: Sequence[Candidate], views: Sequence[Candidate] = (), paths: Sequence[Candidate] = ()
+) -> list[Candidate]:
+    """Complete chains: each translucency with each length that it reads, the published chains, the empty chain.
+
+    `lengths` are thicknesses, `views` lengths along the eye's ray, `paths` lengths from a point inside the body.
+    """
     result = [Candidate("material", "none", "no translucency", (), ())]
     for name, chain in published().items():
         result.append(Candidate("material", name, name, (), chain, True))
@@ -141,7 +236,15 @@ def materials(lengths: Sequence[Candidate]) -> list[Candidate]:
             continue
         needed = quantity_read(light)
         if not needed:
-            result.append(Candidate("material", light.name, light.name, (), (light.name,)))
+            alone = Candidate("material", light.name, light.name, (), (light.name,))
+            result += _with_paths(alone, light, paths)
+            continue
+        if needed == VIEW:
+            for view in views:
+                chain = (*view.techniques[:-1], light.name)
+                text = " → ".join((label(chain[0], view.settings), *chain[1:]))
+                whole = Candidate("material", " → ".join(chain), text, view.settings, chain)
+                result += _with_paths(whole, light, paths)
             continue
         for length in lengths:
             first = load(length.techniques[0])
@@ -151,10 +254,12 @@ def materials(lengths: Sequence[Candidate]) -> list[Candidate]:
             for route in _conversions(first.function.quantity, to_length, needed):
                 chain = (first.name, *route, light.name)
                 text = " → ".join((label(first.name, length.settings), *route, light.name))
-                result.append(Candidate("material", " → ".join(chain), text, length.settings, chain))
-    unique: dict[tuple[tuple[str, ...], Any], Candidate] = {}
+                whole = Candidate("material", " → ".join(chain), text, length.settings, chain)
+                result += _with_paths(whole, light, paths)
+    unique: dict[tuple[Any, ...], Candidate] = {}
     for candidate in result:  # the published chain of several equal ones comes first
-        unique.setdefault((candidate.techniques, candidate.settings), candidate)
+        key = (candidate.techniques, candidate.settings, candidate.path, candidate.path_settings)
+        unique.setdefault(key, candidate)
     return list(unique.values())
 
 
@@ -190,10 +295,10 @@ def needs(technique: Technique) -> str:
     """The data that a technique needs besides its parameters, as text; '' for none."""
     parts = []
     for slot in technique.slots:
-        texture = slot.params[0].quantity != "world_position"
-        parts.append(
-            "the body as a distance texture (sssgen bake sdf)" if texture else "the body as a distance function"
-        )
+        if not is_path(slot):
+            in_world = slot.params[0].quantity == "world_position"
+            as_texture = "texture (sssgen bake sdf)"
+            parts.append(f"the body as a distance {'function' if in_world else as_texture}")
     for uniform in technique.uniforms:
         if isinstance(uniform.type, Sampler) and not technique.slots:
             holds = dict(uniform.hints).get("holds")
@@ -204,6 +309,12 @@ def needs(technique: Technique) -> str:
 def is_constant(technique: Technique) -> bool:
     """Whether a thickness technique has the same value at every point."""
     return technique.role == "thickness" and not technique.function.params and not needs(technique)
+
+
+def complete(roles: Sequence[str]) -> tuple[str, ...]:
+    """The roles with those whose results they need, in order: whole chains use the charted lengths."""
+    needed = {"thickness", VIEW} if "material" in roles else set()
+    return tuple(role for role in ROLES if role in {*roles, *needed})
 
 
 def quantity_read(technique: Technique) -> str:
@@ -230,7 +341,9 @@ def settings(technique: Technique) -> list[tuple[tuple[str, int], ...]]:
         return [()]
     default = int(counts[0].default[0])
     largest = next((count for count in COUNTS if count > default), COUNTS[-1])
-    values = [count for count in COUNTS if count <= largest and all(_within(uniform, count) for uniform in counts)]
+    # a single step over the whole body ends outside of it
+    least = 2 if _spans(technique) else 1
+    values = [count for count in COUNTS if least <= count <= largest and all(_within(part, count) for part in counts)]
     return [tuple((uniform.name, count) for uniform in counts) for count in values]
 
 

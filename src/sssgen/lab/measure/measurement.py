@@ -16,13 +16,16 @@ from sssgen.lab.measure import fitting
 from sssgen.lab.measure.candidates import PROBES, Candidate, converged_counts, load
 from sssgen.lab.measure.fitting import Fitted
 from sssgen.lab.measure.measured_chain import Chain, material_of
+from sssgen.lab.measure.needed_data import NeededData, needed_data
 from sssgen.lab.measure.problem import (
+    LENGTHS,
     LightReference,
     Problem,
     coordinates_problem,
     material_problem,
     thickness_problem,
     translucency_problem,
+    view_thickness_problem,
 )
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.scene_body import Body, body
@@ -68,6 +71,8 @@ def _problem_of(role: str, view: View, summed: bool) -> Problem | None:
         return coordinates_problem(view.scene)
     if role == "thickness":
         return thickness_problem(view.scene)
+    if role == "view_thickness":
+        return view_thickness_problem(view.scene)
     if role == "translucency":
         return translucency_problem(view.scene, view.references)
     return material_problem(view.scene, view.references, summed)
@@ -132,6 +137,7 @@ def measure_candidate(candidate: Candidate, fitted: Fitted, views: Sequence[View
         chain = chain_of(candidate, shape, folder)
         outputs = [_values(chain, fitted, problem) for problem in problems]
         cost = static_cost(chain)
+        data = needed_data(chain.material.stages, views[0].scene) if chain is not None else NeededData()
         implementation = {
             kind: difference(_values(variant, fitted, problems[0]), outputs[0])
             for kind, variant in _variants(candidate, shape, folder)
@@ -157,9 +163,11 @@ def measure_candidate(candidate: Candidate, fitted: Fitted, views: Sequence[View
     return {
         "role": candidate.role, "name": candidate.name, "label": candidate.label, "baseline": candidate.baseline,
         "settings": dict(candidate.settings), "chain": list(candidate.techniques),
+        "path": candidate.path, "path_settings": dict(candidate.path_settings),
         "parameters": {name: list(value) for name, value in fitted.parameters.items()},
         "scale": list(fitted.scale), "matte": list(fitted.matte), "factor": fitted.factor,
         "training_error": fitted.error,
+        "requires": list(data.requires), "bytes": data.bytes,
         "cost": {"value": float(max(cost.weight, 1)), **cost._asdict(), "gpu_ms": None},
         "error": error, "views": view_errors, "implementation": implementation,
         "failed": f"{not_finite} of {lanes} points are not finite" if not_finite else "",
@@ -170,7 +178,7 @@ def _variants(candidate: Candidate, shape: Body, folder: str) -> Iterator[tuple[
     """The chain in float32, and with its counts at their maxima: errors of the implementation, not of the model."""
     if candidate.techniques:
         yield "float32", chain_of(candidate, shape, folder, np.float32)
-    if candidate.settings and candidate.role == "thickness":
+    if candidate.settings and candidate.role in LENGTHS:
         yield "counts", chain_of(candidate._replace(settings=converged_counts(candidate)), shape, folder)
 
 

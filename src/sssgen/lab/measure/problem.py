@@ -21,6 +21,8 @@ from sssgen.targets.runtime.numpy_textures import Texture
 
 UV_RANGE = 32.0
 """The probe shown_uv divides texture coordinates by this. Here they are lengths in depths of the inlay."""
+LENGTHS = ("thickness", "view_thickness")
+"""The roles whose value is a length."""
 DEPTH_MAP = "light_depth_map"
 """The texture that differs between lights."""
 WHITE = 0.8
@@ -74,7 +76,7 @@ class Problem:
         values = np.concatenate(outputs, axis=1)
         if self.summed:
             values = values.reshape(len(values), len(self.parts), -1).sum(axis=1)
-        if self.role == "thickness":
+        if self.role in LENGTHS:
             values = values[:1]
         return values[:, self.keep] * self.gain
 
@@ -159,13 +161,32 @@ def thickness_problem(scene: MeasuredScene) -> Problem:
     visible = points(scene)
     parts = tuple(_part(scene, visible, direction, np.ones((3, 1))) for direction in _directions(scene))
     exact = np.concatenate([np.asarray(part.values["exact_length"]) for part in parts])[None]
-    keep = np.flatnonzero(exact[0] > 1e-4 * max(float(exact.max(initial=0.0)), 1e-12))
+    keep = _measurable(exact)
     if not len(keep):
         raise failure(f"no light passes through the body of '{scene.name}'", "light it from behind, too")
+    return _lengths_problem("thickness", parts, exact, keep)
+
+
+def view_thickness_problem(scene: MeasuredScene) -> Problem:
+    """The length along the eye's ray up to its first exit, relative to its mean, where it is not 0."""
+    part = _part(scene, points(scene), _directions(scene)[0], np.ones((3, 1)))
+    exact = np.asarray(part.values["exact_view_length"])[None]
+    keep = _measurable(exact)
+    if not len(keep):
+        raise failure(f"no ray of the eye enters the body of '{scene.name}'", "move the camera")
+    return _lengths_problem("view_thickness", (part,), exact, keep)
+
+
+def _measurable(exact: Array) -> Array:
+    """The lanes whose length is not a rounding error."""
+    return np.flatnonzero(exact[0] > 1e-4 * max(float(exact.max(initial=0.0)), 1e-12))
+
+
+def _lengths_problem(role: str, parts: tuple[Part, ...], exact: Array, keep: Array) -> Problem:
     gain = 1.0 / float(exact[:, keep].mean())
     target = gain * exact[:, keep]
     zeros = np.zeros_like(target)
-    return Problem("thickness", parts, False, target, zeros, zeros, keep, gain)
+    return Problem(role, parts, False, target, zeros, zeros, keep, gain)
 
 
 def translucency_problem(scene: MeasuredScene, references: Sequence[LightReference]) -> Problem | None:

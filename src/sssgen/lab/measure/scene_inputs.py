@@ -60,11 +60,15 @@ def of_scene(scene: MeasuredScene) -> SceneInputs:
         name: np.array(value)[:, None] if isinstance(value, list) else value for name, value in parameters.items()
     }
     if scene.medium is not None:
-        extinction, albedo = (np.array(value)[:, None] for value in (scene.medium.extinction, scene.medium.albedo))
-        values |= {"extinction": extinction, "scattering_albedo": albedo, "mean_free_path": 1.0 / extinction.mean()}
+        values |= {
+            name: np.array(value)[:, None] if isinstance(value, list) else value
+            for name, value in scene.medium.parameters.items()
+        }
+    exact_view = view_lengths(scene)
+    values["exact_view_length"] = exact_view
     values["mean_curvature"] = np.maximum(principal_curvatures(scene).mean(axis=0), 0.0)
     textures = {
-        "back_face_map": Texture(back_faces(scene)[..., None], "nearest", "clamp"),
+        "back_face_map": Texture(back_faces(scene, exact_view)[..., None], "nearest", "clamp"),
         "distance_map": half(Texture(distances.values(geometry), wrap="clamp")),
         "thickness_texture": ideal(chord / longest),
         "thinness_texture": ideal(1.0 - chord / longest),
@@ -110,13 +114,18 @@ def principal_curvatures(scene: MeasuredScene) -> Array:
     return np.stack([normal_curvature(scene.geometry, positions, axis, step) for axis in (tangent, other)])
 
 
-def back_faces(scene: MeasuredScene) -> Array:
+def view_lengths(scene: MeasuredScene) -> Array:
+    """The exact length inside the body along the eye's ray, up to its first exit: (n,)."""
+    visible = points(scene)
+    origins, rays = (np.ascontiguousarray(part.T) for part in (visible.inputs["P"], -visible.inputs["V"]))
+    return first_exit(scene.geometry, origins, rays)
+
+
+def back_faces(scene: MeasuredScene, lengths: Array) -> Array:
     """The distance from the eye to the nearest back face, for each pixel of a measured point; otherwise 0."""
     visible = points(scene)
-    origins = np.ascontiguousarray(visible.inputs["P"].T)
     picture = np.zeros(visible.valid.shape)
-    length = first_exit(scene.geometry, origins, np.ascontiguousarray(-visible.inputs["V"].T))
-    picture[visible.valid] = np.linalg.norm(origins - visible.origin, axis=1) + length
+    picture[visible.valid] = np.linalg.norm(visible.inputs["P"].T - visible.origin, axis=1) + lengths
     return picture
 
 

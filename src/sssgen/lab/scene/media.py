@@ -17,6 +17,8 @@ Spectrum = tuple[float, float, float]
 _KEYS = ("reduced_scattering", "absorption", "ior", "measured", "source")
 _FILE = os.path.join(os.path.dirname(__file__), "media.toml")
 _COEFFICIENT = (0.0, 1e6)
+CLEAR = 1e-6
+"""A smaller mean extinction per world unit counts as this, so that the mean free path is finite."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,16 @@ class Medium:
         """σs / σt, the share of the light that is not absorbed in a collision; 0 in empty space."""
         red, green, blue = (s / t if t > 0.0 else 0.0 for s, t in zip(self.scattering, self.extinction, strict=True))
         return red, green, blue
+
+    @property
+    def parameters(self) -> dict[str, object]:
+        """The medium's parameters by their names in techniques, as TOML values."""
+        mean = sum(self.extinction) / 3.0
+        return {
+            "extinction": [*self.extinction],
+            "scattering_albedo": [*self.albedo],
+            "mean_free_path": 1.0 / max(mean, CLEAR),
+        }
 
     def matched(self) -> Medium:
         """The same medium with a boundary without reflection and refraction."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -35,10 +35,30 @@ class Body:
     """The files that it refers to, for the material's folder: name → text"""
     parameters: Mapping[str, object] = field(default_factory=dict)
     """The function's own parameters"""
+    span: float = 0.0
+    """A length in world space that no straight way between two points of the body exceeds"""
 
 
 def body(geometry: Geometry) -> Body:
     """The body's distance function in world space. Raises SssgenError for a shape without one."""
+    return replace(_body(geometry), span=span(geometry))
+
+
+def span(geometry: Geometry) -> float:
+    """The largest distance of two points of a shape in world space; for other shapes the diagonal of its box."""
+    if isinstance(geometry, Ball):
+        longest = 2.0 * geometry.radius
+    elif isinstance(geometry, Torus):
+        longest = 2.0 * (geometry.major + geometry.minor)
+    elif isinstance(geometry, Capsule):
+        longest = geometry.length + 2.0 * geometry.radius
+    else:
+        low, high = bounds(geometry)
+        longest = float(np.linalg.norm(high - low))
+    return geometry.scale * longest
+
+
+def _body(geometry: Geometry) -> Body:
     if isinstance(geometry, Mesh):
         return Body(slots.body("texture", "world_position"))
     if isinstance(geometry, Distance):

@@ -20,6 +20,7 @@ HINTS = {
     "bound_range": (2, 2, float, False),
     "source_color": (0, 0, str, None),
     "unit": (1, 1, str, False),
+    "spans_body": (0, 0, str, False),
     "alias": (1, 8, str, None),
     "default_white": (0, 0, str, True),
     "default_black": (0, 0, str, True),
@@ -29,6 +30,7 @@ HINTS = {
     "repeat_disable": (0, 0, str, True),
     "holds": (1, 1, str, True),
     "drawn": (1, 1, str, None),
+    "texel_bytes": (1, 1, float, True),
 }
 
 
@@ -57,6 +59,8 @@ def check_hints(
             _check_range(context, span, hint.args, type_, default, uniform.value is not None)
         if name in ("sample_range", "bound_range"):
             _check_part(context, name, span, hint.args, type_, hints.get("hint_range"))
+        if name == "texel_bytes" and not (float(hint.args[0]).is_integer() and 1.0 <= float(hint.args[0]) <= 64.0):
+            raise context.fail(span, "texel_bytes takes a whole number from 1 to 64")
         if name == "holds":
             quantity = str(hint.args[0])
             if quantity not in q.SCALARS:

@@ -1,0 +1,38 @@
+"""What the engine offers, as options of `chart` and `pick`: `--max-bytes`, `--light`, `--body`, `--without`."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from typing import TYPE_CHECKING
+
+from sssgen.support.diagnostics import failure
+
+if TYPE_CHECKING:
+    from sssgen.lab.chart.engine_conditions import Conditions
+
+
+def add_condition_options(parser: ArgumentParser) -> None:
+    """The options; by default the engine has everything, the light is fixed and the body is rigid."""
+    add = parser.add_argument
+    add("--max-bytes", type=int, metavar="N", help="the largest sum of the baked textures of a chain")
+    add(
+        "--light", choices=("fixed", "moving"), default="fixed",
+        help="whether the light moves relative to the body (default: fixed)",
+    )  # fmt: skip
+    add(
+        "--body", choices=("rigid", "deforming"), default="rigid",
+        help="whether the body keeps its shape (default: rigid)",
+    )  # fmt: skip
+    add(
+        "--without", choices=("bake", "depth-map", "back-faces"), action="append", default=[],
+        help="what the engine does not provide; may be repeated",
+    )  # fmt: skip
+
+
+def conditions_of(arguments: Namespace) -> Conditions:
+    """The conditions of the options. Raises SssgenError."""
+    from sssgen.lab.chart.engine_conditions import Conditions
+
+    if arguments.max_bytes is not None and arguments.max_bytes < 0:
+        raise failure(f"--max-bytes {arguments.max_bytes} is not a number of bytes", "0 or more; 0 bakes nothing")
+    return Conditions(arguments.max_bytes, arguments.light, arguments.body, tuple(dict.fromkeys(arguments.without)))

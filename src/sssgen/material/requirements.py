@@ -1,0 +1,83 @@
+"""What a technique requires besides its parameters: a bake, the light's depth map, back faces, a rigid body.
+
+Most of it follows from declarations: a texture that `holds` a quantity is baked; a volume is baked for a body that
+keeps its shape, and a distance function describes such a body; `drawn` names a picture that the engine draws. A
+technique states the rest: `requires: fixed-light`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from sssgen.ir.drawn import BACK_FACES, LIGHT_VIEWS
+from sssgen.ir.nodes import Function, Module, Uniform
+from sssgen.ir.types import Sampler
+from sssgen.material import attributes
+from sssgen.material.attributes import REQUIREMENTS
+from sssgen.material.model import TechniqueUse
+from sssgen.material.slots import needs
+from sssgen.support.diagnostics import SssgenError
+
+DRAWN = {BACK_FACES: "back-faces", **dict.fromkeys(LIGHT_VIEWS, "depth-map")}
+"""A picture that the engine draws → the requirement."""
+TEXEL_BYTES = 4
+"""The bytes of a baked texel without the hint `texel_bytes`: four channels of 8 bits."""
+
+
+def requirements(uses: Iterable[TechniqueUse]) -> tuple[str, ...]:
+    """What the techniques of a material require, with the functions that are bound to them; in a fixed order."""
+    found: set[str] = set()
+    for use in uses:
+        for module, function in _functions(use):
+            found.update(_declared(function))
+            textures = [uniform for uniform in _read(module, function) if isinstance(uniform.type, Sampler)]
+            volume = any(_is_volume(uniform) for uniform in textures)
+            slots = needs(module, function)[1]
+            found.update(DRAWN[str(view)] for texture in textures for view in dict(texture.hints).get("drawn", ()))
+            found.update({"bake"} if any(map(is_baked, textures)) else ())
+            found.update({"rigid"} if volume or any(map(_is_distance, slots)) else ())
+    return tuple(name for name in REQUIREMENTS if name in found)
+
+
+def baked_textures(uses: Iterable[TechniqueUse]) -> list[Uniform]:
+    """The baked textures that the techniques read, each once."""
+    read = [uniform for use in uses for module, function in _functions(use) for uniform in _read(module, function)]
+    return list({uniform.name: uniform for uniform in read if is_baked(uniform)}.values())
+
+
+def is_baked(uniform: Uniform) -> bool:
+    """Whether a texture is baked from the body: a volume, or a map that holds a quantity."""
+    return isinstance(uniform.type, Sampler) and (bool(uniform.quantity) or _is_volume(uniform))
+
+
+def texel_bytes(uniform: Uniform) -> int:
+    """The bytes of a texel of a baked texture."""
+    return int(float(dict(uniform.hints).get("texel_bytes", (TEXEL_BYTES,))[0]))
+
+
+def _is_volume(uniform: Uniform) -> bool:
+    return isinstance(uniform.type, Sampler) and uniform.type.dim == "3D"
+
+
+def _is_distance(slot: Function) -> bool:
+    """Whether a slot takes the body as a distance function: a number at a position."""
+    return len(slot.params) == 1 and not slot.quantity
+
+
+def _functions(use: TechniqueUse) -> Iterator[tuple[Module, Function]]:
+    yield use.technique.module, use.technique.function
+    for binding in use.bindings.values():
+        yield binding.module, binding.function
+
+
+def _read(module: Module, function: Function) -> Iterator[Uniform]:
+    names = needs(module, function)[0]
+    return (uniform for uniform in module.uniforms if uniform.name in names)
+
+
+def _declared(function: Function) -> tuple[str, ...]:
+    """The attribute `requires` of a function; a user's distance function needs no attributes at all."""
+    try:
+        return attributes.read(attributes.sections(function.doc), "").requires
+    except SssgenError:
+        return ()
