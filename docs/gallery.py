@@ -45,6 +45,9 @@ CAPTIONS = {
     "flat below the flat top, distorted below the round edges.",
     "ice_inlay": "Subsurface parallax and the lobe of GDC 2011 in one material: refracted parallax places the leaves "
     "below the surface of the ice, and the light of the low sun passes through around them.",
+    "jade_ring": "Light that is scattered inside the body, on jade. The program draws the back faces from the eye and "
+    "a depth map from the light for each frame: nothing is baked, and the ring needs no texture coordinates. Its "
+    "diffuse reflection is small, because the scattered light contains the light that enters in front.",
 }
 """A caption for the picture of each example, in the order of the page."""
 
@@ -55,6 +58,7 @@ ALTERNATIVE_TEXTS = {
     "ice": "A broken sheet of blue ice with bright facets, snow at its foot and holes near its top",
     "resin_inlay": "A square tile of walnut with an inlaid compass rose, under glossy resin with round edges",
     "ice_inlay": "Autumn leaves in a round disc of ice, with the sun behind it",
+    "jade_ring": "A thick ring of green jade with bright edges towards the light behind it",
 }
 """The alternative text of each picture."""
 
@@ -105,7 +109,8 @@ def page(
         *_paragraph(
             "The number of pixels that differ by more than 1/255, out of 307,200 in the full size with one sample "
             "each. There float32 and float64 decide differently: `jelly_cubes` finds its surface itself, and a ray at "
-            "the edge of a cube, a tile or a shadow can fall on either side."
+            "the edge of a cube, a tile or a shadow can fall on either side. `jade_ring` reads its depth map between "
+            "two texels at the edge that the light sees, where drivers interpolate with different weights."
         ),
         f"| Scene | {' | '.join(f'`{backend.name}`' for backend in present)} |",
         f"|---|{'---|' * len(present)}",

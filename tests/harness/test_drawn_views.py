@@ -126,6 +126,21 @@ def test_the_nearest_back_face() -> None:
     np.testing.assert_allclose(back_faces(shape, np.array([3.0, 0.1, 0.1]), rays), [0.0, 0.0])
 
 
+def test_the_first_exit_of_a_ring() -> None:
+    """The distance is 0 there and below 0 everywhere before it."""
+    shape, eye = Torus(major=0.8, minor=0.3), np.array([0.3, 1.5, 2.5])
+    target = np.random.default_rng(3).uniform(-1.0, 1.0, (500, 3)) * [1.0, 0.2, 1.0]
+    rays = (target - eye) / np.linalg.norm(target - eye, axis=1, keepdims=True)
+    hits = shape.hits(eye, rays)
+    rays, entry = rays[hits.hit], np.linalg.norm(hits.position[hits.hit] - eye, axis=1)
+    leaves = back_faces(shape, eye, rays)
+    assert len(rays) > 200 and (leaves > entry).all()
+    assert np.abs(shape.distance(eye + leaves[:, None] * rays)).max() < 1e-9
+    for part in np.linspace(0.02, 0.98, 25):
+        way = entry + part * (leaves - entry)
+        assert (shape.distance(eye + way[:, None] * rays) < 0.0).all()
+
+
 def test_an_open_mesh_has_no_back_face(tmp_path: Path) -> None:
     """Its view thickness is 0, and not an error."""
     text = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3\nf 1 3 4\n"

@@ -196,6 +196,18 @@ def test_merged_intervals_are_disjoint_sorted_and_cover_the_same() -> None:
     assert merged(touching).tolist() == [[[0.0, 2.0], [0.0, 0.0], [3.0, 4.0]]]
 
 
+@pytest.mark.parametrize("shape", BODIES, ids=repr)
+def test_intervals_end_at_the_surface(shape: Geometry) -> None:
+    """No interval ends inside the body, so that the first end is the first exit."""
+    origins, ways = rays_through(shape, 400)
+    ends = intervals(shape, origins, ways)
+    filled = ends[..., 0] < ends[..., 1]
+    assert filled.any(axis=1).sum() > 50
+    for side in (0, 1):
+        at = (origins[:, None] + ends[..., side, None] * ways[:, None])[filled & (ends[..., side] > 0.0)]
+        assert np.abs(shape.distance(at)).max() < 1e-4
+
+
 # --- transforms ---
 
 

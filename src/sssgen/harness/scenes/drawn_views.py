@@ -26,12 +26,15 @@ def back_faces(geometry: Geometry, origin: Array, directions: Array) -> Array:
 def light_depth(geometry: Geometry, light: Array) -> tuple[LightView, Array]:
     """The view of a light, (4,): w = 1 where it is, w = 0 the unit direction towards it; and its map, (rows, columns).
 
+    A texel without a surface has the depth of the body's end, as a larger step would be blurred differently by filters.
     Raises SssgenError for a light at the body.
     """
     corners, size = placed_corners(geometry), (TEXELS, TEXELS)
     view = point_view(corners, light[:3], size) if light[3] else directional_view(corners, light[:3], size)
     nearest = _nearest(geometry, view.origins, view.directions, 0)
-    depth = np.where(np.isfinite(nearest), nearest * view.slopes, view.far)
+    end = float((corners @ view.matrix[2, :3] + view.matrix[2, 3]).max())
+    view = view._replace(far=end)
+    depth = np.where(np.isfinite(nearest), nearest * view.slopes, end)
     return view, depth.reshape(TEXELS, TEXELS)
 
 

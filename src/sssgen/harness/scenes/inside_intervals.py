@@ -99,7 +99,7 @@ def _(geometry: Torus, origins: Array, directions: Array) -> Array:
     points = closest[:, None] + centres[..., None] * directions[:, None]
     inside = geometry.distance(points.reshape(-1, 3)).reshape(centres.shape) < 0.0
     ends = np.stack([roots[:, :-1], roots[:, 1:]], axis=-1) + middle[:, None, None]
-    return np.where(inside[..., None], ends, 0.0)
+    return merged(np.where(inside[..., None], ends, 0.0))  # the middle of complex roots divides an interval
 
 
 @intervals.register
@@ -154,7 +154,7 @@ def _(geometry: Mesh, origins: Array, directions: Array) -> Array:
     rank = np.arange(len(rays)) - first[rays]
     begins = np.where(starts, 0.0, np.roll(t, 1))
     result[rays[inside], rank[inside]] = np.stack([begins, t], axis=1)[inside]
-    return result
+    return merged(result)
 
 
 @intervals.register
