@@ -290,6 +290,26 @@ def test_seed_4_corrected_is_exact_on_a_plane_and_nearly_on_a_ball() -> None:
     assert 1e-3 < ball["parallax_refracted"] < ball["none"]
 
 
+@pytest.mark.parametrize("name", ["inlay_ball", "inlay_torus"])
+def test_parallax_by_curvature_is_more_accurate_on_curved_bodies_at_little_cost(name: str) -> None:
+    """At a tenth of the radius: less than a twentieth of the error at less than twice the cost."""
+    scene = small(name)
+    plate = View("plate", replace(references.plate(scene), size=SIZE))
+    points = {}
+    for option in candidates.coordinates():
+        if option.name.startswith("parallax_"):
+            fit = measure.fit_candidate(option, [plate])
+            points[option.name] = measure.measure_candidate(option, fit, [View("own", scene)])
+    for flat, curved in (
+        ("parallax_refracted", "parallax_curved"),
+        ("parallax_refracted", "parallax_curved_map"),
+        ("parallax_orthonormal", "parallax_curved_orthonormal"),
+    ):
+        assert points[curved]["error"]["value"] < 0.05 * points[flat]["error"]["value"]
+        assert points[curved]["cost"]["value"] < 2.0 * points[flat]["cost"]["value"]
+        assert points[flat]["error"]["value"] > 0.05
+
+
 @pytest.mark.slow
 def test_light_transport_ranks_the_techniques() -> None:
     # with references by light transport, exact thickness with a lobe is better than no chain and the Unity ice lobe

@@ -38,7 +38,7 @@ VIEWS = ("own", "held out")
 LIT = frozenset(("translucency", "material"))
 """The roles whose reference is light transport."""
 
-DEFAULTS = ("cube", "torus", "bracket", "capsule", "mouse", "inlay_plate", "inlay_ball")
+DEFAULTS = ("cube", "torus", "bracket", "capsule", "mouse", "inlay_plate", "inlay_ball", "inlay_torus")
 """The default scenes of a chart."""
 
 

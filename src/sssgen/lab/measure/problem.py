@@ -70,7 +70,7 @@ class Problem:
         for part in self.parts if chain.reads(DEPTH_MAP) else [self._merged]:
             chain.set({**part.values, **parameters}, part.textures)
             if self.role == "coordinates":
-                outputs.append(UV_RANGE * (chain.surface(part.inputs, "albedo")[:2] - 0.5))
+                outputs.append(UV_RANGE * (chain.surface(part.inputs, "albedo")[:2] - 0.5) - part.inputs["uv"])
             else:
                 outputs.append(chain.run(part.inputs, [part.light])[0] * part.color)
         values = np.concatenate(outputs, axis=1)
@@ -241,14 +241,16 @@ def coordinates_problem(scene: MeasuredScene) -> Problem:
         raise failure(
             f"no ray meets the inlay of '{scene.name}'", "reduce its depth: it is larger than the body's thickness"
         )
-    inputs = {**visible.inputs, "uv": np.zeros_like(visible.inputs["uv"])}
     assert scene.inlay is not None
-    # uv is 0 at each point and its unit is one depth, so the output is the offset in depths
+    # the unit of uv is one depth, so its change is the offset in depths
     values = {
         **scene.inlay.parameters, "uv_per_unit": np.full((2, 1), 1.0 / inlay.depth),
         "depth 1": 1.0, "eta": scene.inlay.outside_ior / scene.inlay.ior,
     }  # fmt: skip
-    part = Part(inputs, {}, values, {}, np.ones((3, 1)))
+    curvature = scene_inputs.curvature_of(scene)
+    part = Part(
+        {**visible.inputs, **curvature.inputs}, {}, values | curvature.values, curvature.textures, np.ones((3, 1))
+    )
     target = inlay.offset[:, keep] / inlay.depth
     zeros = np.zeros_like(target)
     return Problem("coordinates", (part,), False, target, zeros, zeros, keep)

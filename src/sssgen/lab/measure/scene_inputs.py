@@ -46,13 +46,8 @@ def of_scene(scene: MeasuredScene) -> SceneInputs:
     geometry, visible = scene.geometry, points(scene)
     distances = body.distance_texture(geometry)
     chord = mean_chord(scene)
-    # one texel per point, without filtering, so that the bake has no error
-    texels = (np.arange(visible.count) + 0.5) / visible.count
     longest = max(float(chord.max(initial=0.0)), 1e-9)
     typical = max(float(np.median(chord)), 1e-9) if visible.count else 1.0
-
-    def ideal(values: Array) -> Texture:
-        return Texture(values[None, :, None], "nearest", "clamp")
 
     # one lane for all points, so that a vector of three components does not become three lanes
     parameters = body.texture_parameters(geometry, distances) | {"stored_range": distances.range}
@@ -70,11 +65,31 @@ def of_scene(scene: MeasuredScene) -> SceneInputs:
     textures = {
         "back_face_map": Texture(back_faces(scene, exact_view)[..., None], "nearest", "clamp"),
         "distance_map": half(Texture(distances.values(geometry), wrap="clamp")),
-        "thickness_texture": ideal(chord / longest),
-        "thinness_texture": ideal(1.0 - chord / longest),
-        "transmittance_texture": ideal(np.exp(-chord / typical)),
+        "thickness_texture": _ideal((chord / longest)[..., None]),
+        "thinness_texture": _ideal((1.0 - chord / longest)[..., None]),
+        "transmittance_texture": _ideal(np.exp(-chord / typical)[..., None]),
     }
-    return SceneInputs(values, textures, {"uv": np.stack([texels, np.full(visible.count, 0.5)])})
+    return SceneInputs(values, textures, {"uv": _texels(visible.count)})
+
+
+@lru_cache(48)
+def curvature_of(scene: MeasuredScene) -> SceneInputs:
+    """The normal curvatures along T and B, as a parameter of each point and as a map."""
+    curvatures = principal_curvatures(scene)
+    largest = max(float(np.abs(curvatures).max(initial=0.0)), 1e-9)
+    values = {"curvature": curvatures, "curvature_range": largest}
+    textures = {"curvature_texture": _ideal(0.5 + 0.5 * curvatures.T / largest)}
+    return SceneInputs(values, textures, {"uv": _texels(curvatures.shape[1])})
+
+
+def _texels(count: int) -> Array:
+    """The places of the points in ideal maps, (2, n)."""
+    return np.stack([(np.arange(count) + 0.5) / count, np.full(count, 0.5)])
+
+
+def _ideal(values: Array) -> Texture:
+    """A map with one texel per point, without filtering, so that the bake has no error; values are (n, channels)."""
+    return Texture(values[None], "nearest", "clamp")
 
 
 @lru_cache(192)
