@@ -16,6 +16,7 @@ from measured_views import SIZE, candidate, chain, small, synthetic_view
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Box, Union
 from sssgen.harness.scenes.scene import Light
+from sssgen.harness.scenes.scene_loading import parse_scene
 from sssgen.lab.measure import (
     candidates,
     problem,
@@ -35,6 +36,8 @@ from sssgen.lab.measure.measured_chain import Chain, MaterialSection, material_o
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.measure.problem import Problem
 from sssgen.lab.reference.inside_lengths import thickness
+from sssgen.lab.scene import measured_scene
+from sssgen.lab.scene.environment import Environment
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.media import Medium
 from sssgen.lab.scene.view_points import points
@@ -51,11 +54,15 @@ pytestmark = pytest.mark.usefixtures("no_cache")
 # --- chains ---
 
 
+def from_afar(x: float, y: float, z: float) -> Light:
+    return Light(None, (x, y, z), (1.0, 1.0, 1.0))
+
+
 def test_a_chain_computes_its_formula(tmp_path: Path) -> None:
     names = (("thickness", "constant_thickness"), ("thickness", "beer_lambert"), ("translucency", "lobe_gdc2011"))
     built = Chain(material_of([MaterialSection(*section) for section in names], str(tmp_path)))
     surface = points(small("torus"))
-    light = surface.light((0.6, 0.0, -0.8))
+    light = surface.light(from_afar(0.6, 0.0, -0.8))
     color = np.array([0.9, 0.5, 0.2])
     built.set(
         {
@@ -84,7 +91,7 @@ def test_separate_lights_sum_and_emission_counts_once(tmp_path: Path) -> None:
         )
     )
     surface = points(small("torus"))
-    lights = [surface.light((0.0, 0.0, 1.0)), surface.light((0.0, 0.6, -0.8))]
+    lights = [surface.light(from_afar(0.0, 0.0, 1.0)), surface.light(from_afar(0.0, 0.6, -0.8))]
     first, second = built.run(surface.inputs, lights)
     assert built.run(surface.inputs, lights[:1])[0] == pytest.approx(first)
     assert built.run(surface.inputs, lights[1:])[0] == pytest.approx(second + np.array([[0.25], [0.0], [0.0]]))
@@ -396,3 +403,88 @@ def test_cost_counts_steps_and_no_output(tmp_path: Path) -> None:
     assert measure.static_cost(None).weight == 0.0
     march = chain(candidate("march_light", "shown_thickness", settings=(("steps", 8),)), view, tmp_path)
     assert 8 <= measure.static_cost(march).distance_evaluations <= 12
+
+
+# --- lights and surfaces of scenes ---
+
+
+def test_references_with_a_surface_are_traced_for_all_lights_at_once() -> None:
+    scene = small("capsule")
+    assert scene.medium is not None and len(scene.lights) == 2
+    refracting = replace(scene, medium=replace(scene.medium, ior=1.4))
+    lamp = replace(scene, lights=(Light((0.5, 1.5, -2.0), None, (1.0, 1.0, 1.0)),))
+    assert [len(references.items([case])) for case in (scene, refracting, lamp)] == [2, 1, 1]
+    results = [references.traced(case, 16, 0) for case in (refracting, lamp)]
+    by_scene = references.by_scene([refracting, lamp], results)
+    assert [len(by_scene[case.key]) for case in (refracting, lamp)] == [2, 1]
+    for mean, error in (*results[0], *results[1]):
+        assert mean.shape == (3, points(refracting).count) and mean.max() > 0.0 and (error > 0.0).any()
+
+
+def test_a_point_light_has_its_direction_and_fall_off_at_each_point() -> None:
+    place = (0.4, 1.2, -2.5)
+    scene = replace(small("cube"), lights=(Light(place, None, (1.0, 0.5, 0.25)),))
+    visible = points(scene)
+    count = visible.count
+    whole = problem.material_problem(scene, [(np.ones((3, count)), np.zeros((3, count)))], summed=True)
+    (part,) = whole.parts
+    way = np.array(place)[:, None] - visible.inputs["P"]
+    distance = np.linalg.norm(way, axis=0)
+    assert part.light["L"] == pytest.approx(way / distance)
+    assert part.color == pytest.approx(np.array([[1.0], [0.5], [0.25]]) / distance**2)
+    facing = np.maximum(np.einsum("cn,cn->n", visible.inputs["N"], way / distance), 0.0)
+    assert whole.lambert / whole.gain == pytest.approx(part.color * facing)  # the cube has no shadow on itself
+    # its depth map and the exact length agree away from edges
+    depths = whole.thinned(10).parts
+    assert depths and np.isfinite(part.values["exact_length"]).all()
+    matrix = part.values["light_matrix"][..., 0].T
+    projected = matrix @ np.vstack([visible.inputs["P"], np.ones(count)])
+    assert (projected[:2] / projected[3] > 0.0).all() and (projected[:2] / projected[3] < 1.0).all()
+    far_light = Light((40.0 * place[0], 40.0 * place[1], 40.0 * place[2]), None, (1.0, 1.0, 1.0))
+    x, y, z = np.array(place) / np.linalg.norm(place)
+    near, far = (
+        scene_inputs.of_light(scene, light).values["exact_length"] for light in (far_light, from_afar(x, y, z))
+    )
+    assert near == pytest.approx(far, abs=0.05)
+
+
+def test_an_environment_is_many_lights_with_its_total() -> None:
+    for environment in (Environment((0.5, 0.25, 1.0)), Environment((2.0, 2.0, 2.0))):
+        lights = environment.lights()
+        assert len(lights) == 32
+        # under an even sky a Lambert surface shows the sky: the sum over the lights of E cos / π is L
+        directions, colors = (np.array([getattr(light, key) for light in lights]) for key in ("direction", "color"))
+        for normal in (np.array([0.0, 1.0, 0.0]), np.array([0.6, -0.8, 0.0])):
+            shown = (np.maximum(directions @ normal, 0.0)[:, None] * colors).sum(axis=0)
+            assert shown == pytest.approx(np.array(environment.color), rel=0.03)
+        assert colors.sum(axis=0) == pytest.approx(4.0 * np.array(environment.color), rel=1e-6)
+
+
+def test_a_picture_of_the_surroundings_has_its_directions(tmp_path: Path) -> None:
+    pixels = np.zeros((64, 128, 3))
+    pixels[:4] = [3.0, 0.0, 0.0]  # up
+    pixels[30:34, 62:66] = [0.0, 5.0, 0.0]  # +x
+    pixels[30:34, 94:98] = [0.0, 0.0, 7.0]  # +z
+    np.save(tmp_path / "sky.npy", np.flipud(pixels))
+    text = '[medium]\nior = 1.3\n[geometry]\nkind = "ball"\n[environment]\nfile = "sky.npy"\nintensity = 2\n'
+    scene = measured_scene.of_scene(parse_scene(text, tmp_path / "s.toml"), "s.toml")
+    assert scene.environment is not None and scene.lit_by == ["picture of the surroundings"]
+    light = scene.environment.sky()(np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]]))
+    assert light == pytest.approx(np.array([[6.0, 0.0, 0.0], [0.0, 10.0, 0.0], [0.0, 0.0, 14.0], [0.0, 0.0, 0.0]]))
+    for light_from in scene.environment.lights():
+        assert light_from.direction is not None
+        axis = np.argmax(light_from.color)
+        assert light_from.direction[{0: 1, 1: 0, 2: 2}[int(axis)]] > 0.97
+    np.save(tmp_path / "sky.npy", pixels)
+    assert measured_scene.of_scene(parse_scene(text, tmp_path / "s.toml"), "s.toml") != scene
+
+
+def test_an_environment_is_part_of_whole_materials() -> None:
+    scene = replace(small("cube"), environment=Environment((1.0, 1.0, 1.0)), lights=())
+    count = points(scene).count
+    reference = (np.full((3, count), 0.5), np.full((3, count), 0.01))
+    whole = problem.material_problem(scene, [reference], summed=True)
+    assert len(whole.parts) == 32 and whole.target.shape == (3, count)
+    # a convex body does not shadow itself: its Lambert light is that of the sky
+    assert whole.lambert / whole.gain == pytest.approx(1.0, rel=0.05)
+    assert problem.translucency_problem(scene, [reference]) is None

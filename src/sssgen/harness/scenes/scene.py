@@ -108,7 +108,9 @@ class Scene:
     `document.place("parameters", "power").value`, then raise them with `document.reporter.check()`"""
     title: str = ""
     measured: Mapping[str, Any] = field(default_factory=dict)
-    """The physical description, as the tables of the file: `medium` and `inlay`; the lab reads them"""
+    """The physical description, as the tables of the file: `medium`, `inlay`, `environment`; the lab reads them"""
+    folder: str = ""
+    """The folder of the scene's file, to which the names of files are relative"""
 
     @property
     def places(self) -> dict[str, Span]:

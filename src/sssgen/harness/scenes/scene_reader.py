@@ -18,7 +18,7 @@ from sssgen.support.diagnostics import SssgenError, did_you_mean
 from sssgen.support.paths import posix
 from sssgen.support.toml_source import Document, Path
 
-MEASURED = ("title", "medium", "inlay")
+MEASURED = ("title", "medium", "inlay", "environment")
 """Keys that describe the physical scene: for measuring materials, not for drawing."""
 
 _KEYS = (
@@ -80,7 +80,8 @@ class _Reader:
             self.textures(top.content.get("textures", {}), "geometry" in top.content),
             self.document,
             top.text("title", ""),
-            {key: top.content[key] for key in ("medium", "inlay") if key in top.content},
+            {key: top.content[key] for key in MEASURED[1:] if key in top.content},
+            self.folder,
         )
 
     def material(self, top: Table) -> str:

@@ -127,6 +127,8 @@ def _candidates(role: str, scene: MeasuredScene, measured: Sequence[Mapping[str,
     if scene.medium is None:
         return []
     if role == "translucency":
+        if not scene.lights:  # no point faces away from an environment
+            return []
         charted = any(point["role"] == "thickness" for point in measured)
         return candidates.translucency(useful_paths(measured) if charted else None)
     return candidates.thickness() if role == "thickness" else candidates.view_thickness()
@@ -330,6 +332,8 @@ def _description(scene: MeasuredScene, views: _Views) -> dict[str, Any]:
     entry: dict[str, Any] = {"name": scene.name, "title": scene.title, "key": scene.key}
     if (medium := scene.medium) is not None:
         entry["medium"] = {"name": medium.name, "albedo": list(medium.albedo), "extinction": list(medium.extinction)}
+        entry["medium"] |= {"ior": medium.ior, "roughness": medium.roughness}
+        entry["lights"] = scene.lit_by
         entry["fitted_to"] = [view.name for view in views.training]
     return entry
 

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.harness.backends import Array
+from sssgen.harness.scenes.scene import Light
 from sssgen.lab.measure import scene_inputs
 from sssgen.lab.measure.measured_chain import Chain
 from sssgen.lab.reference import inlay_refraction as refraction
@@ -41,7 +42,7 @@ class Part(NamedTuple):
     values: dict[str, Any]
     textures: dict[str, Texture]
     color: Array
-    """(3, 1): the factor of the light's contribution"""
+    """(3, 1) or (3, n): the factor of the light's contribution"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,13 +154,15 @@ def _lanes_of(part: Part, lanes: Array, count: int) -> Part:
             for name, value in values.items()
         }
 
-    return part._replace(inputs=selected(part.inputs), light=selected(part.light), values=selected(part.values))
+    color = part.color[:, lanes] if part.color.shape[1] == count else part.color
+    inputs, light, values = selected(part.inputs), selected(part.light), selected(part.values)
+    return part._replace(inputs=inputs, light=light, values=values, color=color)
 
 
 def thickness_problem(scene: MeasuredScene) -> Problem:
     """Thickness towards each light, relative to its mean, where the light passes through the body."""
     visible = points(scene)
-    parts = tuple(_part(scene, visible, direction, np.ones((3, 1))) for direction in _directions(scene))
+    parts = tuple(_part(scene, visible, light, np.ones((3, 1))) for light in _lights(scene))
     exact = np.concatenate([np.asarray(part.values["exact_length"]) for part in parts])[None]
     keep = _measurable(exact)
     if not len(keep):
@@ -169,7 +172,7 @@ def thickness_problem(scene: MeasuredScene) -> Problem:
 
 def view_thickness_problem(scene: MeasuredScene) -> Problem:
     """The length along the eye's ray up to its first exit, relative to its mean, where it is not 0."""
-    part = _part(scene, points(scene), _directions(scene)[0], np.ones((3, 1)))
+    part = _part(scene, points(scene), _lights(scene)[0], np.ones((3, 1)))
     exact = np.asarray(part.values["exact_view_length"])[None]
     keep = _measurable(exact)
     if not len(keep):
@@ -192,7 +195,10 @@ def _lengths_problem(role: str, parts: tuple[Part, ...], exact: Array, keep: Arr
 def translucency_problem(scene: MeasuredScene, references: Sequence[LightReference]) -> Problem | None:
     """The transmitted light at points that face away from a light; None without such points."""
     visible = points(scene)
-    parts = [_part(scene, visible, direction, np.ones((3, 1))) for direction in _directions(scene)]
+    parts = [_part(scene, visible, light, np.ones((3, 1))) for light in scene.lights]
+    references = references[: len(parts)]  # an environment shines on every point
+    if not parts:
+        return None
     facing = np.concatenate([np.einsum("cn,cn->n", visible.inputs["N"], part.light["L"]) for part in parts])
     keep = np.flatnonzero(facing <= 0.0)
     target, noise = (np.concatenate(arrays, axis=1)[:, keep] for arrays in zip(*references, strict=True))
@@ -204,16 +210,24 @@ def translucency_problem(scene: MeasuredScene, references: Sequence[LightReferen
 
 
 def material_problem(scene: MeasuredScene, references: Sequence[LightReference], summed: bool) -> Problem:
-    """All light that leaves the surface; the sum over the lights if `summed`, otherwise light by light."""
+    """All light that leaves the surface; the sum over the lights if `summed`, otherwise light by light.
+
+    An environment is the last reference; for a technique it is a number of lights from afar, which are summed.
+    """
     visible = points(scene)
     parts, lit, colored = [], [], []
-    for light, direction, (mean, error) in zip(scene.lights, _directions(scene), references, strict=True):
+    for light, (mean, error) in zip(scene.lights, references, strict=False):
         color = np.array(light.color)[:, None] if summed else np.ones((3, 1))
-        part = _part(scene, visible, direction, color)
-        facing = np.maximum(np.einsum("cn,cn->n", visible.inputs["N"], part.light["L"]), 0.0)
+        part, lambert = _lit(scene, visible, light, color)
         parts.append(part)
-        lit.append(color * facing * _unshadowed(scene, visible, direction))
+        lit.append(lambert)
         colored.append((color * mean, color * error))
+    if scene.environment is not None and summed:
+        for light in scene.environment.lights():
+            part, lambert = _lit(scene, visible, light, np.array(light.color)[:, None])
+            parts.append(part)
+            lit.append(lambert)
+        colored.append(references[-1])
     if summed:
         target = np.sum([mean for mean, _ in colored], axis=0)
         noise = np.sqrt(np.sum([error**2 for _, error in colored], axis=0))
@@ -256,20 +270,29 @@ def coordinates_problem(scene: MeasuredScene) -> Problem:
     return Problem("coordinates", (part,), False, target, zeros, zeros, keep)
 
 
-def _part(scene: MeasuredScene, visible: Points, direction: tuple[float, float, float], color: Array) -> Part:
-    body, light = scene_inputs.of_scene(scene), scene_inputs.of_light(scene, direction)
+def _part(scene: MeasuredScene, visible: Points, light: Light, color: Array) -> Part:
+    """A light in a view; `color` without the fall-off of a point light."""
+    of_body, of_light = scene_inputs.of_scene(scene), scene_inputs.of_light(scene, light)
+    distance = visible.towards(light)[1]
     return Part(
-        {**visible.inputs, **body.inputs}, visible.light(direction), {**body.values, **light.values},
-        {**body.textures, **light.textures}, color,
+        {**visible.inputs, **of_body.inputs}, visible.light(light), {**of_body.values, **of_light.values},
+        {**of_body.textures, **of_light.textures}, color if light.position is None else color / distance**2,
     )  # fmt: skip
 
 
-def _unshadowed(scene: MeasuredScene, visible: Points, direction: tuple[float, float, float]) -> Array:
-    """1 where the body does not shadow the point from the light, otherwise 0: (n,)."""
+def _lights(scene: MeasuredScene) -> Sequence[Light]:
+    """The lights of a scene; if it has none, those of its environment."""
+    return scene.environment.lights() if scene.environment is not None and not scene.lights else scene.lights
+
+
+def _lit(scene: MeasuredScene, visible: Points, light: Light, color: Array) -> tuple[Part, Array]:
+    """A light in a view, and what a white Lambert surface reflects of it: (3, n)."""
+    part = _part(scene, visible, light, color)
+    towards, distance = visible.towards(light)
+    facing = np.maximum(np.einsum("cn,cn->n", visible.inputs["N"], towards), 0.0)
     origins = np.ascontiguousarray((visible.inputs["P"] + 1e-4 * visible.inputs["N"]).T)
-    directions = np.broadcast_to(np.array(direction), origins.shape).copy()
-    return (thickness(scene.geometry, origins, directions) < 1e-3).astype(float)
-
-
-def _directions(scene: MeasuredScene) -> list[tuple[float, float, float]]:
-    return [light.direction for light in scene.lights if light.direction is not None]
+    ways = np.ascontiguousarray(towards.T)
+    shadow = thickness(scene.geometry, origins, ways)
+    if light.position is not None:
+        shadow = shadow - thickness(scene.geometry, np.ascontiguousarray(origins + distance[:, None] * ways), ways)
+    return part, part.color * facing * (shadow < 1e-3)

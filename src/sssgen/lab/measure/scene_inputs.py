@@ -15,7 +15,8 @@ from sssgen.harness.backends import Array
 from sssgen.harness.evaluate.evaluation import half
 from sssgen.harness.scenes.bounds import placed_corners
 from sssgen.harness.scenes.inside_intervals import intervals
-from sssgen.harness.scenes.light_view import directional_view
+from sssgen.harness.scenes.light_view import directional_view, point_view
+from sssgen.harness.scenes.scene import Light
 from sssgen.lab.reference.curvature import normal_curvature
 from sssgen.lab.reference.inside_lengths import first_exit, thickness
 from sssgen.lab.scene import scene_body as body
@@ -93,12 +94,14 @@ def _ideal(values: Array) -> Texture:
 
 
 @lru_cache(192)
-def of_light(scene: MeasuredScene, direction: tuple[float, float, float]) -> SceneInputs:
-    """The inputs that depend on a directional light: the exact thickness towards it, and its depth map."""
+def of_light(scene: MeasuredScene, light: Light) -> SceneInputs:
+    """The inputs that depend on a light: the exact thickness towards it, and its depth map."""
     geometry, visible = scene.geometry, points(scene)
-    towards = np.broadcast_to(np.array(direction), (visible.count, 3)).copy()
+    towards = np.ascontiguousarray(visible.towards(light)[0].T)
     exact = thickness(geometry, np.ascontiguousarray(visible.inputs["P"].T), towards)
-    values, textures = _depth_map(scene, np.array(direction))
+    if light.position is not None:  # what is behind the light does not count
+        exact = exact - thickness(geometry, np.broadcast_to(light.position, towards.shape).copy(), towards)
+    values, textures = _depth_map(scene, light)
     return SceneInputs(values | {"exact_length": exact}, textures)
 
 
@@ -144,18 +147,25 @@ def back_faces(scene: MeasuredScene, lengths: Array) -> Array:
     return picture
 
 
-def _depth_map(scene: MeasuredScene, towards: Array) -> tuple[dict[str, Any], dict[str, Texture]]:
-    """The light's orthographic view: matrices for the techniques, and the depth of the first surface."""
+def _depth_map(scene: MeasuredScene, light: Light) -> tuple[dict[str, Any], dict[str, Texture]]:
+    """The light's view: matrices for the techniques, and the depth of the first surface.
+
+    Raises SssgenError for a point light beside the body: its map must show the whole body.
+    """
     geometry = scene.geometry
-    view = directional_view(placed_corners(geometry), towards, (DEPTH_MAP, DEPTH_MAP))
+    corners, size = placed_corners(geometry), (DEPTH_MAP, DEPTH_MAP)
+    if light.position is not None:
+        view = point_view(corners, np.array(light.position), size)
+    else:
+        view = directional_view(corners, np.array(light.direction), size)
     to_object = geometry.to_object()
     origins = view.origins @ to_object[:3, :3].T + to_object[:3, 3]
     directions = view.directions @ to_object[:3, :3].T * geometry.scale
     inside = intervals(geometry, origins, directions)
     filled = inside[..., 1] > inside[..., 0]
-    first = np.where(filled, inside[..., 0], np.inf).min(axis=1) * geometry.scale
+    first = np.where(filled, inside[..., 0], np.inf).min(axis=1) * geometry.scale * view.slopes
     depth = np.where(np.isfinite(first), first, view.far).reshape(DEPTH_MAP, DEPTH_MAP)
-    depth_only = np.zeros((4, 4))  # for a directional light the depth is the distance
+    depth_only = np.zeros((4, 4))  # the depth is the distance from the plane of the light
     depth_only[2], depth_only[3, 3] = view.matrix[2], 1.0
     matrices = {"light_matrix": view.matrix, "light_texture": view.matrix, "light_view": depth_only}
     values = {name: matrix.T[..., None] for name, matrix in matrices.items()}

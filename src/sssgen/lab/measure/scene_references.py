@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from sssgen.harness.scenes.geometry import Ball, Geometry, Slab
 from sssgen.harness.scenes.scene import Light
 from sssgen.lab.jobs.executor import Item
 from sssgen.lab.measure.problem import LightReference
+from sssgen.lab.reference.eye_paths import Eye, readings
+from sssgen.lab.reference.first_light import Lamp
 from sssgen.lab.reference.transport import radiance_along
 from sssgen.lab.reference.transport_mitsuba import Light as Beam
 from sssgen.lab.scene.measured_scene import MeasuredScene
@@ -39,24 +42,51 @@ def transport(scene: MeasuredScene, light: int, samples: int, seed: int) -> tupl
     return result.mean.T.astype(np.float32), result.error.T.astype(np.float32)
 
 
-def items(scenes: Sequence[MeasuredScene], samples: int = SAMPLES, seed: int = 0) -> list[Item]:
-    """The work items of the references, one per light, in order; scenes without a medium have none."""
+def traced(scene: MeasuredScene, samples: int, seed: int) -> list[LightReference]:
+    """The references of all lights of a scene at once, as `transport`; that of its environment is the last.
+
+    Readings of a point light are those of an irradiance of 1 at distance 1, those of an environment are π L.
+    """
+    assert scene.medium is not None
+    inputs = points(scene).inputs
+    eye = Eye(*(np.ascontiguousarray(part.T) for part in (inputs["P"], inputs["N"], -inputs["V"])))
+    lamps = [Lamp(light.direction, light.position) for light in scene.lights]
+    sky = scene.environment.sky() if scene.environment is not None else None
+    result = readings(scene.geometry, scene.medium, eye, lamps, sky, samples, seed)
     return [
-        Item(
-            "sssgen.lab.measure.scene_references:transport", (scene, light, samples, seed), f"reference of {scene.name}"
-        )
-        for scene in scenes
-        if scene.medium is not None
-        for light in range(len(scene.lights))
+        (mean.T.astype(np.float32), error.T.astype(np.float32))
+        for mean, error in zip(result.mean, result.error, strict=True)
     ]
 
 
-def by_scene(scenes: Sequence[MeasuredScene], results: Sequence[LightReference]) -> dict[str, list[LightReference]]:
+def by_eye_paths(scene: MeasuredScene) -> bool:
+    """Whether the references are traced from the eye for all lights at once, and not by Mitsuba light by light."""
+    medium = scene.medium
+    other_lights = scene.environment is not None or any(light.position is not None for light in scene.lights)
+    return medium is not None and (medium.ior != 1.0 or other_lights)
+
+
+def items(scenes: Sequence[MeasuredScene], samples: int = SAMPLES, seed: int = 0) -> list[Item]:
+    """The work items of the references in order: one per scene or one per light. Scenes without a medium have none."""
+    result = []
+    for scene in scenes:
+        label = f"reference of {scene.name}"
+        if by_eye_paths(scene):
+            result.append(Item("sssgen.lab.measure.scene_references:traced", (scene, samples, seed), label))
+        elif scene.medium is not None:
+            function = "sssgen.lab.measure.scene_references:transport"
+            result += [Item(function, (scene, light, samples, seed), label) for light in range(len(scene.lights))]
+    return result
+
+
+def by_scene(scenes: Sequence[MeasuredScene], results: Sequence[Any]) -> dict[str, list[LightReference]]:
     """The results of `items` by their scenes' keys."""
     references: dict[str, list[LightReference]] = {}
     remaining = iter(results)
     for scene in scenes:
-        if scene.medium is not None:
+        if by_eye_paths(scene):
+            references[scene.key] = next(remaining)
+        elif scene.medium is not None:
             references[scene.key] = [next(remaining) for _ in scene.lights]
     return references
 

@@ -1,7 +1,7 @@
 """Measured scenes: scenes with a physical description, so that materials can be measured on them.
 
-Their files have `[medium]`, the medium of the body, or `[inlay]`, a picture below a clear surface. Their lights are
-directional.
+Their files have `[medium]`, the medium of the body, or `[inlay]`, a picture below a clear surface. They are lit by
+lights and by an `[environment]`.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from sssgen.harness.scenes.scene_loading import load as load_scene
 from sssgen.harness.scenes.toml_table import NOT_NEGATIVE, POSITIVE, Table
 from sssgen.lab.jobs.result_store import encoded
 from sssgen.lab.scene import media
+from sssgen.lab.scene.environment import Environment, read_environment
 from sssgen.lab.scene.media import Medium
 from sssgen.support import cache
 from sssgen.support.diagnostics import did_you_mean, failure
@@ -63,11 +64,20 @@ class MeasuredScene:
     size: tuple[int, int] = (SIDE, SIDE)
     contents: str = ""
     """A digest of the files that the geometry is read from"""
+    environment: Environment | None = None
 
     @cached_property
     def key(self) -> str:
         """A digest of the scene."""
         return cache.digest(encoded(self.__getstate__()))
+
+    @property
+    def lit_by(self) -> list[str]:
+        """The kinds of the scene's lights, in their order."""
+        kinds = ["point" if light.position is not None else "from afar" for light in self.lights]
+        if self.environment is not None:
+            kinds.append("picture of the surroundings" if self.environment.file else "even surroundings")
+        return list(dict.fromkeys(kinds))
 
     def __getstate__(self) -> dict[str, Any]:
         return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
@@ -116,11 +126,12 @@ def of_scene(scene: Scene, path: str) -> MeasuredScene:
         raise failure("the scene has no geometry to measure", "add [geometry]", file)
     medium = _medium(scene) if "medium" in scene.measured else None
     inlay = _inlay(scene) if "inlay" in scene.measured else None
+    environment = read_environment(scene) if "environment" in scene.measured else None
     for number, light in enumerate(scene.lights):
-        if light.direction is None and medium is not None:
+        if light.position is not None and medium is not None and inside(scene.geometry, light.position):
             span = document.place("light", number, "position").value
-            document.error(span, "only directional lights can be measured", "write direction = […] towards the light")
-    if medium is not None and not scene.lights:
+            document.error(span, "the light is inside the body", "move it out: only light that enters is measured")
+    if medium is not None and not scene.lights and environment is None:
         document.error(document.place().key, "the scene has no light", "add [[light]] with direction = […]")
     document.reporter.check()
     width, height = scene.size
@@ -129,7 +140,13 @@ def of_scene(scene: Scene, path: str) -> MeasuredScene:
     name = stem(path)
     title = scene.title or name.replace("_", " ").capitalize()
     geometry, camera, lights = scene.geometry, scene.camera, scene.lights
-    return MeasuredScene(name, title, geometry, camera, lights, medium, inlay, size, contents(geometry))
+    return MeasuredScene(name, title, geometry, camera, lights, medium, inlay, size, contents(geometry), environment)
+
+
+def inside(geometry: Geometry, position: tuple[float, float, float]) -> bool:
+    """Whether a point in world space is inside a shape."""
+    to_object = geometry.to_object()
+    return bool(geometry.distance((to_object[:3, :3] @ np.array(position) + to_object[:3, 3])[None])[0] <= 0.0)
 
 
 def contents(geometry: Geometry) -> str:
@@ -146,16 +163,23 @@ def contents(geometry: Geometry) -> str:
 
 
 def _medium(scene: Scene) -> Medium | None:
-    keys = ("preset", "unit_mm", "absorption", "scattering", "anisotropy")
+    keys = ("preset", "unit_mm", "absorption", "scattering", "anisotropy", "ior", "roughness")
     table = Table(scene.document, ("medium",), scene.measured["medium"], keys)
+    # the presets have measured indices, but a scene without this key has no boundary
+    ior, roughness = table.number("ior", 1.0, (1.0, 3.0)), table.number("roughness", 0.0, (0.0, 1.0))
+    if roughness > 0.0 and ior == 1.0:
+        table.error("roughness", "a surface that does not refract has no roughness", "add ior, 1.4 say")
     if "preset" in table.content:
         for key in ("absorption", "scattering", "anisotropy"):
             if key in table.content:
                 table.error(key, f"a preset has its own {key}", "give a preset, or the coefficients")
         name = table.text("preset", "", media.media())
         unit = table.number("unit_mm", 10.0, POSITIVE)
-        # without the boundary, because the engine computes its reflection
-        return media.preset(name, unit).matched() if name in media.media() else None
+        return (
+            dataclasses.replace(media.preset(name, unit), ior=ior, roughness=roughness)
+            if name in media.media()
+            else None
+        )
     absorption: Any = table.vector("absorption", (0.0, 0.0, 0.0), NOT_NEGATIVE)
     scattering: Any = table.vector("scattering", (5.0, 5.0, 5.0), NOT_NEGATIVE)
     anisotropy = table.number("anisotropy", 0.0, (-0.95, 0.95))
@@ -163,7 +187,7 @@ def _medium(scene: Scene) -> Medium | None:
         table.error("scattering", "this medium does not scatter", "a measured medium needs scattering above 0")
     if "unit_mm" in table.content:
         table.error("unit_mm", "coefficients are given per world unit", "leave unit_mm out, or name a preset")
-    return Medium("custom", absorption, scattering, anisotropy, 1.0, "the scene")
+    return Medium("custom", absorption, scattering, anisotropy, ior, "the scene", roughness)
 
 
 def _inlay(scene: Scene) -> Inlay:

@@ -35,6 +35,8 @@ class Medium:
     ior: float = 1.0
     """Refractive index relative to the outside; 1 for a boundary without reflection and refraction"""
     source: str = ""
+    roughness: float = 0.0
+    """Of the boundary, 0 to 1: 0 is smooth; the alpha of GGX is its square. Without effect if `ior` is 1"""
 
     def __post_init__(self) -> None:
         for coefficient in (*self.absorption, *self.scattering):
@@ -45,6 +47,8 @@ class Medium:
             raise failure(message, "it is between -1 and 1; 0 is isotropic scattering")
         if not 1.0 <= self.ior <= 10.0:
             raise failure(f"the medium '{self.name}' has the refractive index {self.ior:g}", "it is from 1 to 10")
+        if not 0.0 <= self.roughness <= 1.0:
+            raise failure(f"the medium '{self.name}' has the roughness {self.roughness:g}", "it is from 0 to 1")
 
     @property
     def extinction(self) -> Spectrum:
@@ -70,7 +74,7 @@ class Medium:
 
     def matched(self) -> Medium:
         """The same medium with a boundary without reflection and refraction."""
-        return replace(self, ior=1.0)
+        return replace(self, ior=1.0, roughness=0.0)
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ import numpy as np
 
 from sssgen.harness.backends import Array
 from sssgen.harness.scenes.placed import Bools
+from sssgen.harness.scenes.scene import Light
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.support.diagnostics import failure
 
@@ -37,17 +38,21 @@ class Points:
         """n"""
         return int(self.inputs["P"].shape[1])
 
-    def light(self, direction: tuple[float, float, float]) -> dict[str, Array]:
-        """L, L_object and light_color of a white directional light: (3, n)."""
-        towards = np.array(direction)[:, None]
+    def towards(self, light: Light) -> tuple[Array, Array]:
+        """The unit directions towards a light, (3, n), and its distances, (n,): infinite for a directional light."""
+        if light.position is None:
+            assert light.direction is not None
+            return np.broadcast_to(np.array(light.direction)[:, None], (3, self.count)), np.full(self.count, np.inf)
+        way = np.array(light.position)[:, None] - self.inputs["P"]
+        distance = np.maximum(np.linalg.norm(way, axis=0), 1e-12)
+        return way / distance, distance
+
+    def light(self, light: Light) -> dict[str, Array]:
+        """L, L_object and light_color of a white light of irradiance 1 at each point: (3, n)."""
+        towards, _ = self.towards(light)
         in_object = np.linalg.inv(self.model)[:3, :3] @ towards
-        in_object /= np.linalg.norm(in_object)
-        shape = (3, self.count)
-        return {
-            "L": np.broadcast_to(towards, shape),
-            "L_object": np.broadcast_to(in_object, shape),
-            "light_color": np.ones(shape),
-        }
+        in_object /= np.linalg.norm(in_object, axis=0)
+        return {"L": towards, "L_object": in_object, "light_color": np.ones((3, self.count))}
 
     def picture(self, values: Array, background: float = 0.0) -> Array:
         """Values (k, n) as a picture (height, width, k), row 0 at the top."""
