@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,10 +17,11 @@ from folders import EXAMPLES
 from lamp_scene import BALL, LAMP, SIZE, largest_difference
 from sssgen.cli.main import main
 from sssgen.harness import backends
-from sssgen.harness.backends import Backend, Text
+from sssgen.harness.backends import Array, Backend, Text
 from sssgen.harness.backends.isolated import isolated
 from sssgen.harness.backends.unity_backend import UnityHLSL
 from sssgen.harness.pictures import images
+from sssgen.harness.render import unity_values
 from sssgen.harness.render.scene_render import Rendered, render
 from sssgen.harness.scenes.scene import Scene
 from sssgen.harness.scenes.scene_loading import parse_scene
@@ -169,6 +171,39 @@ def test_the_lantern_equals_glsl_approximately(unity: UnityHLSL) -> None:
     result, gl = picture_of(described, unity).encoded, picture_of(described, backends.get("gl")).encoded
     assert np.corrcoef(result.ravel(), gl.ravel())[0, 1] > 0.99
     assert result.mean() == pytest.approx(gl.mean(), rel=0.02)
+
+
+def test_shadows_on_transmitted_light(backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) -> None:
+    """In URP the shadow of another body takes the transmitted light, and the body's own does not.
+
+    The stand-in's shadow map has one plane, and everything behind it is in shadow.
+    """
+    machine = backend("unity-urp")
+    assert isinstance(machine, UnityHLSL)
+    if machine.unity.real:
+        pytest.skip("Unity's shadow map is a texture")
+    ball, light = '[geometry]\nkind = "ball"\n', "[[light]]\ndirection = [0.0, 0.0, -1.0]\ncolor = [0.9, 0.8, 0.7]\n"
+    described = scene(f'material = "paper_lantern"\nsamples = 1\n{ball}{light}')
+    engine = unity_values._engine
+
+    def brightest(plane: float, offset: float) -> float:
+        """`plane`: its distance towards the light."""
+        to_shadow = np.zeros((4, 4))
+        to_shadow[2] = [0.0, 0.0, 1.0, 0.5 + plane]  # above 0.5, behind the plane
+
+        def with_shadow(*arguments: Any) -> dict[str, Array]:
+            own = {"_MainLightWorldToShadow": to_shadow.T, "_MainLightShadowParams": np.array([1.0, 0.0, 0.0, 0.0])}
+            return engine(*arguments) | own | {"_TransmissionShadowOffset": np.array(offset)}
+
+        monkeypatch.setattr(unity_values, "_engine", with_shadow)
+        return float(picture_of(described, machine).linear.max())
+
+    lit = brightest(-9.0, 0.0)
+    assert lit > 0.1
+    own, other = 0.0, 5.0
+    assert brightest(own, 0.0) == brightest(other, 0.0) == lit
+    assert brightest(own, 2.5) == lit
+    assert brightest(other, 2.5) == 0.0
 
 
 @pytest.mark.parametrize("name", UNITY)

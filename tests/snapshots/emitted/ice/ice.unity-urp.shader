@@ -33,6 +33,7 @@ Shader "sssgen/Ice (URP)" {
         _Scale ("Scale", Range(0, 20)) = 2
         _Ambient ("Ambient", Range(0, 1)) = 0.12
         _Power ("Power", Range(1, 32)) = 6
+        _TransmissionShadowOffset ("Transmission shadow offset", Float) = 0
     }
     SubShader {
         Tags {
@@ -72,6 +73,7 @@ Shader "sssgen/Ice (URP)" {
             float _Scale;  // Strength of the glow towards the light
             float _Ambient;  // Glow that does not depend on the direction
             float _Power;  // How narrow the glow around the light is: the larger, the smaller the spot
+            float _TransmissionShadowOffset;  // Towards the light, at least the size of the body; 0: no shadows of other bodies
         CBUFFER_END
 
         TEXTURE2D(_BaseColorTexture); SAMPLER(sampler_BaseColorTexture);
@@ -392,9 +394,16 @@ Shader "sssgen/Ice (URP)" {
                 surfaceData.emission = surface.emission;
                 float4 color = UniversalFragmentPBR(inputData, surfaceData);
 
-                // Without shadow: light that comes through entered on the far side, in the object's own shadow.
+                // Without the object's own shadow: light that comes through entered on the far side. The shadow map is read
+                // beyond the object, where only the shadows of others are.
                 Light light = GetMainLight();
                 float3 light_color = light.color * light.distanceAttenuation;
+            #if !defined(_MAIN_LIGHT_SHADOWS_SCREEN)
+                if (_TransmissionShadowOffset > 0.0) {
+                    float3 beyond = input.positionWS + light.direction * _TransmissionShadowOffset;
+                    light_color *= MainLightRealtimeShadow(TransformWorldToShadowCoord(beyond));
+                }
+            #endif
                 color.rgb += evaluate_translucency(surface, V, N, light.direction) * light_color;
             #if defined(_ADDITIONAL_LIGHTS)
                 uint light_count = GetAdditionalLightsCount();
