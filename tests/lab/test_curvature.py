@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from sssgen.harness.scenes.camera import Camera
@@ -49,3 +50,27 @@ def test_flat_sides_have_no_curvature() -> None:
     inner = np.sort(np.abs(visible.inputs["P_object"]), axis=0)[1] < 0.45
     assert inner.sum() > 30
     assert principal_curvatures(scene)[:, inner] == pytest.approx(np.zeros((2, inner.sum())), abs=1e-9)
+
+
+def test_the_derivatives_of_a_parametrised_ring_give_its_curvatures() -> None:
+    """The formulas of docs/materials.md: those of a ring, and those of a mesh by the derivatives along u and v."""
+    major, minor, step = 0.5, 0.2, 1e-5
+    u, v = np.random.default_rng(3).uniform(0.0, 2.0 * np.pi, (2, 50))  # along the ring, around the tube
+
+    def place(u: npt.NDArray[np.float64], v: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        return np.stack(
+            [(major + minor * np.cos(v)) * np.cos(u), minor * np.sin(v), (major + minor * np.cos(v)) * np.sin(u)]
+        )
+
+    def normal(u: npt.NDArray[np.float64], v: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        return np.stack([np.cos(v) * np.cos(u), np.sin(v), np.cos(v) * np.sin(u)])
+
+    expected = np.cos(v) / (major + minor * np.cos(v)), np.full(50, 1.0 / minor)
+    for (du, dv), by_formula in zip(((step, 0.0), (0.0, step)), expected, strict=True):
+        position = (place(u + du, v + dv) - place(u - du, v - dv)) / (2.0 * step)
+        turned = (normal(u + du, v + dv) - normal(u - du, v - dv)) / (2.0 * step)
+        tangent = position / np.linalg.norm(position, axis=0)
+        by_derivatives = (turned * tangent).sum(axis=0) / np.linalg.norm(position, axis=0)
+        assert by_derivatives == pytest.approx(by_formula, abs=1e-6)
+        measured = normal_curvature(Torus(major, minor), place(u, v), tangent, 1e-3)
+        assert measured == pytest.approx(by_formula, abs=1e-3)

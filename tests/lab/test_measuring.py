@@ -171,22 +171,31 @@ def test_lights_without_matter_in_their_way_give_no_thickness_problem() -> None:
         problem.thickness_problem(lit)
 
 
-def test_lights_in_one_call_equal_separate_calls(cube: View, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("names", "values"),
+    [
+        (("exact_thickness", "beer_lambert", "lobe_gdc2011"), {"power": 2.0}),
+        (("preintegrated_skin",), {"millimetres_per_unit": 3.0}),  # reads a curvature of each point, for every light
+    ],
+)
+def test_lights_in_one_call_equal_separate_calls(
+    cube: View, tmp_path: Path, names: tuple[str, ...], values: dict[str, float]
+) -> None:
     scene = small("capsule")
     fit_problem = problem.translucency_problem(scene, synthetic_view(scene).references)
     assert fit_problem is not None and len(fit_problem.parts) == 2
-    built = chain(candidate("exact_thickness", "beer_lambert", "lobe_gdc2011"), View("own", scene), tmp_path)
-    together = fit_problem.values(built, {"power": 2.0})
+    built = chain(candidate(*names), View("own", scene), tmp_path)
+    together = fit_problem.values(built, values)
     alone = []
     for part in fit_problem.parts:
-        built.set({**part.values, "power": 2.0}, part.textures)
+        built.set({**part.values, **values}, part.textures)
         alone.append(built.run(part.inputs, [part.light])[0])
     assert together == pytest.approx(np.concatenate(alone, axis=1)[:, fit_problem.keep] * fit_problem.gain)
     # the thinned problem has the values of some of the lanes
     thinned = fit_problem.thinned(10)
     assert thinned.target.shape == (3, 10)
     chosen = [int(np.flatnonzero((fit_problem.target == lane[:, None]).all(axis=0))[0]) for lane in thinned.target.T]
-    assert thinned.values(built, {"power": 2.0}) == pytest.approx(together[:, chosen])
+    assert thinned.values(built, values) == pytest.approx(together[:, chosen])
 
 
 def test_colours_of_all_lights_are_added() -> None:

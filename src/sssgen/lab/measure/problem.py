@@ -102,7 +102,11 @@ class Problem:
             return {name: _concatenated([values[name] for values in groups], counts) for name in names}
 
         first = self.parts[0]
-        shared = {name for name in first.values if all(part.values[name] is first.values[name] for part in self.parts)}
+        shared = {
+            name
+            for name, value in first.values.items()
+            if all(part.values[name] is value for part in self.parts) and np.shape(value)[-1:] != (counts[0],)
+        }  # a value of each point, such as a curvature, is repeated for each part
         values = merged([part.values for part in self.parts], first.values.keys() - shared)
         return Part(
             merged([part.inputs for part in self.parts], first.inputs.keys()),
