@@ -173,6 +173,23 @@ def test_the_lantern_equals_glsl_approximately(unity: UnityHLSL) -> None:
     assert result.mean() == pytest.approx(gl.mean(), rel=0.02)
 
 
+def test_places_on_the_screen_for_each_light(unity: UnityHLSL, tmp_path: Path) -> None:
+    """A technique that runs once per light has the fragment's place on the screen and its distance from the eye."""
+    text = (
+        "/** Shows both.\nrole: translucency\n*/\nvec3 shown(world_direction L, vec2 screen_uv, float eye_distance) {\n"
+    )
+    text += "    return vec3(screen_uv, 0.1 * eye_distance) + 0.0 * L.x;\n}\n"
+    (tmp_path / "shown.sss").write_text(text, encoding="utf-8")
+    material = '[material]\nname = "shown"\nshading = "lit"\n[translucency]\ntechnique = "shown.sss"\n'
+    (tmp_path / "shown.toml").write_text(material, encoding="utf-8")
+    camera = "[camera]\nposition = [0.5, 1.0, 4.0]\n"
+    light = "[[light]]\ndirection = [0.5, -0.2, -1.0]\ncolor = [0.9, 0.8, 0.7]\n"
+    described = scene(f'material = "shown.toml"\nsamples = 1\n{BALL}{camera}{light}', tmp_path)
+    oracle = picture_of(described, backends.get("numpy"))
+    assert largest_difference(picture_of(described, unity), oracle) < 0.3
+    assert np.ptp(oracle.linear[oracle.covered == 1.0], axis=0).min() > 0.02
+
+
 def test_shadows_on_transmitted_light(backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) -> None:
     """In URP the shadow of another body takes the transmitted light, and the body's own does not.
 

@@ -63,8 +63,8 @@ RAYS = """
 /** Shows what a shell gives a raymarched material.
 role: lighting
 */
-vec3 rays(world_direction ray_direction) {
-    return 0.5 + 0.1 * ray_direction;
+vec3 rays(world_direction ray_direction, vec2 screen_uv) {
+    return 0.5 + 0.1 * ray_direction + vec3(screen_uv, 0.0);
 }
 """
 EMPTY = """
