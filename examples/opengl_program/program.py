@@ -30,6 +30,9 @@ class Shader:
         self.program = context.program(vertex_shader=vertex, fragment_shader=fragment)
         self.textures: dict[str, Any] = {}
         self.encoded = reflection["color"] == "encoded"
+        # what the program draws for each frame: from the eye, or in the view of a light that a matrix describes
+        self.drawn = {entry["drawn"]: entry["name"] for entry in reflection["textures"]}
+        self.drawn_matrices = {entry["drawn"]: entry["name"] for entry in reflection["uniforms"]}
         for uniform in reflection["uniforms"]:
             self.put(uniform["name"], uniform["default"])
         for texture in reflection["textures"]:
@@ -108,6 +111,65 @@ def view(shader: Shader, eye: Any, target: Any, aspect: float, lights: Any, ambi
         shader.put(name, value)
 
 
+DISTANCE_VERTEX = """#version 330 core
+layout(location = 0) in vec3 position;
+uniform mat4 to_clip;
+out vec3 v_position;
+void main() {
+    v_position = position;
+    gl_Position = to_clip * vec4(position, 1.0);
+}
+"""
+DISTANCE_FRAGMENT = """#version 330 core
+uniform vec4 origin;  // w = 1: where the eye is; w = 0: the direction towards the light, whose plane is at REACH
+in vec3 v_position;
+out float result;
+void main() {
+    result = origin.w == 1.0 ? distance(origin.xyz, v_position) : REACH - dot(origin.xyz, v_position);
+}
+""".replace("REACH", "2.0")
+
+
+def distances(
+    context: moderngl.Context, size: tuple[int, int], to_clip: Any, origin: Any, culled: str, empty: float
+) -> moderngl.Texture:
+    """A texture of the sphere's distances: the nearest of the faces that are not culled, elsewhere `empty`."""
+    texture, screen = context.texture(size, 1, dtype="f4"), context.fbo
+    texture.repeat_x = texture.repeat_y = False
+    target = context.framebuffer(texture, context.depth_renderbuffer(size))
+    program = context.program(vertex_shader=DISTANCE_VERTEX, fragment_shader=DISTANCE_FRAGMENT)
+    program["to_clip"].write(np.ascontiguousarray(to_clip.T, "f4").tobytes())
+    program["origin"].value = tuple(origin)
+    vertices, triangles = sphere()
+    buffers = [context.buffer(np.asarray(data, kind).tobytes()) for data, kind in ((vertices, "f4"), (triangles, "i4"))]
+    target.use()
+    target.clear(red=empty)
+    context.enable(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+    context.cull_face = culled
+    context.vertex_array(program, [(buffers[0], "3f 36x", "position")], buffers[1]).render()
+    context.disable(moderngl.CULL_FACE)
+    screen.use()
+    return texture
+
+
+def draw_inputs(shader: Shader, eye: Any, to_clip: Any, towards: Any, size: tuple[int, int]) -> None:
+    """Draws the textures that the material needs from this eye, and from a light from afar."""
+    if "back_faces" in shader.drawn:
+        texture = distances(shader.context, size, to_clip, (*eye, 1.0), "front", 0.0)
+        shader.textures[shader.drawn["back_faces"]] = texture
+    for kind in ("light_depth", "distant_light_depth"):
+        if kind in shader.drawn:
+            towards = np.asarray(towards) / np.linalg.norm(towards)
+            side = np.cross([0.0, 1.0, 0.0], towards) / np.linalg.norm(np.cross([0.0, 1.0, 0.0], towards))
+            seen, to_light = np.identity(4), np.identity(4)
+            seen[:3, :3] = np.array([side, np.cross(towards, side), -towards]) / [[1.1], [1.1], [2.0]]  # to clip space
+            to_light[:2, :3], to_light[:2, 3] = 0.5 * seen[:2, :3], 0.5
+            to_light[2, :3], to_light[2, 3] = -towards, 2.0
+            texture = distances(shader.context, (512, 512), seen, (*towards, 0.0), "back", 4.0)
+            shader.textures[shader.drawn[kind]] = texture
+            shader.put(shader.drawn_matrices[kind], to_light.T)
+
+
 def load(context: moderngl.Context, stem: str) -> Shader:
     """The shader of `out/NAME`: out/NAME.glsl-330.vert, .frag and .reflection.json."""
     paths = [Path(f"{stem}.glsl-330.{end}") for end in ("vert", "frag", "reflection.json")]
@@ -115,6 +177,7 @@ def load(context: moderngl.Context, stem: str) -> Shader:
         name = Path(stem).name
         sys.exit(f"there is no {paths[0]}: sssgen emit {name} --target glsl-330 -o {Path(stem).parent}")
     texts = [path.read_text("utf-8") for path in paths]
+    context.gc_mode = "auto"  # what a frame makes is freed after it
     shader = Shader(context, texts[0], texts[1], json.loads(texts[2]))
     if "thickness_texture" in shader.textures:  # here a program would load a picture: thin, with thick ribs
         rows = np.where(np.arange(512) * 12 % 512 < 36, 255, 64).astype(np.uint8)
@@ -126,7 +189,11 @@ def frame(shader: Shader, turn: float, size: tuple[int, int]) -> None:
     """One picture: the sphere, a lamp behind it that goes around with `turn`, and the sky above the eye."""
     lamp = (1.6 * np.sin(turn), 0.6, -1.6 * np.cos(turn), 1.0)
     lights = [(lamp, (2.4, 2.2, 1.9)), ((1.0, 2.0, 2.0, 0.0), (0.15, 0.15, 0.2))]
-    view(shader, (0.0, 0.6, 3.4), (0.0, 0.0, 0.0), size[0] / size[1], lights, (0.05, 0.05, 0.06))
+    if "distant_light_depth" in shader.drawn:  # a light from afar, the one whose depth map is drawn
+        lights = [((*(np.array(lamp[:3]) / np.linalg.norm(lamp[:3])), 0.0), (2.4, 2.2, 1.9))]
+    eye, target = (0.0, 0.6, 3.4), (0.0, 0.0, 0.0)
+    view(shader, eye, target, size[0] / size[1], lights, (0.05, 0.05, 0.06))
+    draw_inputs(shader, eye, camera(eye, target, size[0] / size[1]), lights[0][0][:3], size)
     shader.context.enable(moderngl.DEPTH_TEST)
     if not shader.encoded:  # the shader's colours are linear
         shader.context.enable_direct(FRAMEBUFFER_SRGB)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from folders import EXAMPLES
 from lamp_scene import largest_difference
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
@@ -148,6 +151,28 @@ def test_an_open_mesh_has_no_back_face(tmp_path: Path) -> None:
     ray = np.array([[0.1, 0.2, -3.0]]) / np.linalg.norm([0.1, 0.2, -3.0])
     distance = back_faces(Mesh(path=str(tmp_path / "sheet.obj")), np.array([0.0, 0.0, 3.0]), ray)
     np.testing.assert_array_equal(distance, [0.0])
+
+
+def test_an_opengl_program_draws_the_same(backend: Callable[[str], Backend], tmp_path: Path) -> None:
+    """The example program draws both textures as the shell's comment says, by rasterising a mesh of triangles."""
+    gl, size = backend("gl"), 160
+    for name, text in compile(load_material("jade_ring"), "glsl-330").files.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    arguments = [str(tmp_path / "jade_ring"), str(tmp_path / "picture.ppm")]
+    program = f"import sys; sys.path.insert(0, {str(EXAMPLES / 'opengl_program')!r})\nimport program\n"
+    program += f"program.to_picture(*{arguments}, ({size}, {size}))"
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=120)
+    head, _, texels = (tmp_path / "picture.ppm").read_bytes().partition(b" 255\n")
+    assert head == f"P6 {size} {size}".encode()
+    drawn = np.frombuffer(texels, np.uint8).reshape(size, size, 3)
+    text = f'material = "jade_ring"\nsamples = 1\nsize = [{size}, {size}]\nambient = [0.05, 0.05, 0.06]\n'
+    text += '[geometry]\nkind = "ball"\n[camera]\nposition = [0.0, 0.6, 3.4]\n[[light]]\ncolor = [2.4, 2.2, 1.9]\n'
+    text += f"direction = [{1.6 * np.sin(0.4)}, 0.6, {-1.6 * np.cos(0.4)}]\n"
+    expected = render(parse_scene(text, tmp_path / "scene.toml"), gl)
+    inner = expected.covered == 1.0
+    difference = np.abs(255.0 * expected.encoded - drawn).max(axis=2)[inner]
+    assert np.median(difference) < 1.0 and np.percentile(difference, 95.0) < 2.0
+    assert np.ptp(drawn[inner], axis=0).min() > 100
 
 
 def test_a_light_that_is_missing(folder: Path) -> None:

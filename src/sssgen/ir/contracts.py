@@ -56,6 +56,8 @@ def of_name(param: Param, format: Format = FLOAT32) -> Contract | None:
         return Contract(-LENGTH, LENGTH, LENGTH)
     if param.name in _FRACTIONS and param.type == FLOAT:
         return Contract(0.0, 1.0)
+    if param.name == "eye_distance" and param.type == FLOAT:
+        return Contract(0.0, THICKNESS[format.name])
     if param.name in _COLORS and param.type == VEC3:
         return Contract(0.0, LIGHT[format.name] if param.name == "light_color" else COLOR[format.name])
     return None
