@@ -406,6 +406,18 @@ def test_the_chart_command_writes_and_lists_its_files(tmp_path: Path, capsys: py
     assert all(f"{name}" in capsys.readouterr().out for name in ["inlay_plate, coordinates"])
 
 
+def test_a_chart_of_bytes_or_of_a_device(capsys: pytest.CaptureFixture[str]) -> None:
+    expected = ["chart", "inlay_plate", "--samples", "8", "--processes", "1", "--json"]
+    assert main([*expected, "--cost", "bytes", "--max-bytes", "0"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["cost_unit"] == "bytes baked" and report["conditions"]["max_bytes"] == 0
+    assert {point["cost"]["value"] for point in report["points"]} == {1}
+    assert main([*expected, "--device", "llvmpipe"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["cost_unit"] == "ns per pixel on llvmpipe, predicted"
+    assert all(point["cost"]["static"] >= 1.0 for point in report["points"])
+
+
 def test_the_fit_command_shows_parameters(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["fit", "cube", "wrap_lighting", "--samples", "8", "--processes", "1"]) == 0
     output = capsys.readouterr().out
@@ -427,6 +439,7 @@ def test_the_fit_command_shows_parameters(tmp_path: Path, capsys: pytest.Capture
         (["chart", "cube", "--samples", "1000000"], "is not a number of samples"),
         (["chart", "cube", "--samples", "many"], "many"),
         (["chart", "cube", "--seed", "-1"], "--seed -1 is negative"),
+        (["chart", "cube", "--device", "llvmpipe", "--cost", "bytes"], "are two costs"),
         (["chart", "cube", "--role", "thicknes"], "did you mean 'thickness'"),
         (
             ["chart", "cube", "--role", "colour"],

@@ -19,6 +19,7 @@ from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.engine_conditions import Conditions, by_bytes, under
 from sssgen.lab.chart.picking import Pick, allowed, chosen, cost_of, limit_of, pick
 from sssgen.lab.chart.record import hypervolumes, on_fronts
+from sssgen.lab.gpu import device_costs
 from sssgen.lab.jobs import executor
 from sssgen.lab.measure import candidates
 from sssgen.lab.scene import measured_scene
@@ -260,6 +261,16 @@ def test_a_cached_chart_is_not_measured_again(
     assert json.loads(capsys.readouterr().out)["ok"] is False
 
 
+def test_a_pick_for_a_device_has_its_costs(stored_chart: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("--max-error", "0.01", "--json") == 0
+    static = json.loads(capsys.readouterr().out)["coordinates"]
+    options = ["--light", "moving", "--body", "deforming", "--without", "bake", "--without", "depth-map"]
+    assert run("--max-error", "0.01", "--device", "llvmpipe", *options, "--json") == 0
+    picked = json.loads(capsys.readouterr().out)["coordinates"]
+    assert picked["label"] == static["label"] and picked["cost"]["static"] == static["cost"]["value"]
+    assert picked["cost"]["value"] == device_costs.load("llvmpipe").predicted(static["cost"])
+
+
 def test_another_number_of_samples_is_another_chart(stored_chart: str, monkeypatch: pytest.MonkeyPatch) -> None:
     calls = []
     real = executor.run
@@ -293,6 +304,8 @@ def test_the_picked_chain_is_emitted(stored_chart: str, tmp_path: Path, capsys: 
         (["--max-cost", "inf"], "--max-cost inf is not a limit"),
         ([], "required"),
         (["--max-cost", "3", "--max-error", "1"], "not allowed"),
+        (["--max-cost", "3", "--device", "llvmpip"], "did you mean 'llvmpipe'"),
+        (["--max-cost", "3", "--device", "gtx"], "devices: llvmpipe"),
         (["--max-cost", "3", "--max-bytes", "-1"], "0 or more; 0 bakes nothing"),
         (["--max-cost", "3", "--light", "movin"], "did you mean 'moving'"),
         (["--max-cost", "3", "--body", "soft"], "choose from: rigid, deforming"),

@@ -16,6 +16,7 @@ LAZY_IMPORTS = {
     "sssgen.cli.chart": HELP,
     "sssgen.cli.ci": EXTRA,
     "sssgen.cli.emit": EMIT,
+    "sssgen.cli.engine_options": HELP,
     "sssgen.cli.eval": HELP,
     "sssgen.cli.fit": HELP,
     "sssgen.cli.lint": HELP,

@@ -6,7 +6,7 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from sssgen.cli.engine_options import add_condition_options, conditions_of
+from sssgen.cli.engine_options import add_condition_options, conditions_of, device_of
 from sssgen.cli.options import add_seed, add_workers
 from sssgen.cli.output import OK, print_json
 from sssgen.support.diagnostics import did_you_mean, failure
@@ -48,7 +48,9 @@ def add_reference_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Measures, draws, and prints the Pareto fronts."""
-    settings, conditions = settings_of(arguments), conditions_of(arguments)
+    settings, conditions, device = settings_of(arguments), conditions_of(arguments), device_of(arguments)
+    if device is not None and arguments.cost != "static":
+        raise failure(f"--device and --cost {arguments.cost} are two costs", "give one of them")
     from sssgen.lab.chart import charting as chart
     from sssgen.lab.chart import drawing
     from sssgen.lab.chart.engine_conditions import by_bytes, under
@@ -62,7 +64,11 @@ def run(arguments: Namespace) -> int:
                 f"two scenes are called '{name}'", "a scene has the name of its file: rename one of the files"
             )
     record = chart.chart_record(scenes, settings)
-    if arguments.cost == "gpu":
+    if device is not None:
+        from sssgen.lab.gpu.device_costs import by_device
+
+        record = by_device(under(record, conditions), device)
+    elif arguments.cost == "gpu":
         from sssgen.lab.gpu.chart_times import by_gpu, with_gpu_cost
 
         record = by_gpu(with_gpu_cost(under(record, conditions), scenes))

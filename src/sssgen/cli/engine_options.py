@@ -1,4 +1,4 @@
-"""What the engine offers, as options of `chart` and `pick`: `--max-bytes`, `--light`, `--body`, `--without`."""
+"""What the engine offers, as options of `chart` and `pick`: `--max-bytes`, `--light`, `--body` and so on."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from sssgen.support.diagnostics import failure
 
 if TYPE_CHECKING:
     from sssgen.lab.chart.engine_conditions import Conditions
+    from sssgen.lab.gpu.device_costs import Device
 
 
 def add_condition_options(parser: ArgumentParser) -> None:
@@ -27,6 +28,16 @@ def add_condition_options(parser: ArgumentParser) -> None:
         "--without", choices=("bake", "depth-map", "back-faces"), action="append", default=[],
         help="what the engine does not provide; may be repeated",
     )  # fmt: skip
+    add("--device", metavar="NAME", help="costs are nanoseconds predicted for this device, or for its .toml file")
+
+
+def device_of(arguments: Namespace) -> Device | None:
+    """The device of the options, if any. Raises SssgenError."""
+    if arguments.device is None:
+        return None
+    from sssgen.lab.gpu import device_costs
+
+    return device_costs.load(arguments.device)
 
 
 def conditions_of(arguments: Namespace) -> Conditions:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from sssgen.cli.chart import add_reference_options, settings_of
 from sssgen.cli.emit import chosen_targets
-from sssgen.cli.engine_options import add_condition_options, conditions_of
+from sssgen.cli.engine_options import add_condition_options, conditions_of, device_of
 from sssgen.cli.options import add_targets
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.material.material_loading import parse_material
@@ -33,7 +33,9 @@ def add_options(parser: ArgumentParser) -> None:
     parser.add_argument("SCENE", help="a scene's .toml file, or one of examples/lab")
     limits = parser.add_mutually_exclusive_group(required=True)
     limits.add_argument("--max-error", type=float, metavar="E", help="the largest relative error, such as 0.3")
-    limits.add_argument("--max-cost", type=float, metavar="C", help="the largest static cost, in operations")
+    limits.add_argument(
+        "--max-cost", type=float, metavar="C", help="the largest cost, in operations, or in ns with --device"
+    )
     parser.add_argument("--emit", metavar="DIR", help="write the material and its shaders to this folder")
     add_condition_options(parser)
     add_targets(parser, default="glsl-330")
@@ -46,13 +48,17 @@ def run(arguments: Namespace) -> int:
         value = getattr(arguments, name)
         if value is not None and not 0.0 < value < float("inf"):
             raise failure(f"--{name.replace('_', '-')} {value:g} is not a limit", "a number above 0")
-    settings, conditions = settings_of(arguments), conditions_of(arguments)
+    settings, conditions, device = settings_of(arguments), conditions_of(arguments), device_of(arguments)
     from sssgen.lab.chart import charting as chart
     from sssgen.lab.chart.picking import pick
     from sssgen.lab.scene import measured_scene
 
     scene = measured_scene.load(arguments.SCENE)
     record = chart.chart_record([scene], settings)
+    if device is not None:
+        from sssgen.lab.gpu.device_costs import by_device
+
+        record = by_device(record, device)
     picked = pick(record, scene.name, arguments.max_error, arguments.max_cost, conditions)
     files = _emitted(scene, picked, arguments.emit, arguments.target) if arguments.emit else []
     if arguments.json:
@@ -109,5 +115,5 @@ def _point(point: Mapping[str, Any]) -> str:
     low, high = error["low"], error["high"]
     return (
         f"{point['label']}: error {error['value']:.3g} ({low:.3g} to {high:.3g}), within {limit_of(point):.3g} "
-        f"on every measured view; cost {cost_of(point):.0f}"
+        f"on every measured view; cost {cost_of(point):.4g}"
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from sssgen.lab.chart.record import hypervolumes, on_fronts
+from sssgen.lab.chart.record import fronts_of
 from sssgen.support.diagnostics import failure
 
 Point = Mapping[str, Any]
@@ -60,7 +60,7 @@ def under(record: Mapping[str, Any], conditions: Conditions) -> dict[str, Any]:
     if conditions == EVERYTHING:
         return dict(record)
     kept = usable(record["points"], conditions)
-    return fronts_again({**record, "points": kept, "conditions": conditions._asdict()})
+    return fronts_of({**record, "points": kept, "conditions": conditions._asdict()})
 
 
 def by_bytes(record: Mapping[str, Any]) -> dict[str, Any]:
@@ -69,10 +69,4 @@ def by_bytes(record: Mapping[str, Any]) -> dict[str, Any]:
         {**point, "cost": {**point["cost"], "static": point["cost"]["value"], "value": max(point.get("bytes", 0), 1)}}
         for point in record["points"]
     ]
-    return fronts_again({**record, "points": points, "cost": "bytes", "cost_unit": "bytes baked"})
-
-
-def fronts_again(record: Mapping[str, Any]) -> dict[str, Any]:
-    """The record with the fronts and hypervolumes of the points that it has now."""
-    points = on_fronts(record["points"])
-    return {**record, "points": points, "hypervolume": hypervolumes(points)}
+    return fronts_of({**record, "points": points, "cost": "bytes", "cost_unit": "bytes baked"})

@@ -179,6 +179,12 @@ def hypervolumes(points: Sequence[Point]) -> list[dict[str, Any]]:
     return volumes
 
 
+def fronts_of(record: Record) -> dict[str, Any]:
+    """The record with the fronts and hypervolumes of the points that it has now."""
+    points = on_fronts(record["points"])
+    return {**record, "points": points, "hypervolume": hypervolumes(points)}
+
+
 def _log(value: float) -> float:
     return math.log10(max(value, LEAST))
 
