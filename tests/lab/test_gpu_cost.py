@@ -146,11 +146,12 @@ def test_evaluations_add_up() -> None:
     assert np.abs(often - 8.0 * once).max() > 1e-4  # each evaluation is at another place
 
 
-def test_a_material_has_its_scene_s_colours(opengl: Backend) -> None:
+@pytest.mark.parametrize("name", ["paper_lantern", "jade_ring"])
+def test_a_material_has_its_scene_s_colours(opengl: Backend, name: str) -> None:
     """The timing pass stretches the visible points over the picture, so only the mean is compared."""
-    scene = render.with_samples(scene_loading.load("paper_lantern"), 1)
+    scene = render.with_samples(scene_loading.load(name), 1)
     points = gpu_programs.surface_points(scene, SIZE)
-    result = gpu_cost.picture(gpu_programs.of_material("lantern", scene.material, scene, points), SIZE)[..., :3]
+    result = gpu_cost.picture(gpu_programs.of_material(name, scene.material, scene, points), SIZE)[..., :3]
     picture = render.render(scene, opengl, size=SIZE)
     mean = picture.linear[picture.covered == 1.0].mean(axis=0) / scene.exposure
     np.testing.assert_allclose(result.mean(axis=(0, 1)), mean, rtol=0.25)

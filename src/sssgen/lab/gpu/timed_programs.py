@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -22,11 +23,14 @@ import numpy as np
 from sssgen.harness.backends import Array
 from sssgen.harness.evaluate import probes
 from sssgen.harness.evaluate import random_inputs as samples
+from sssgen.harness.evaluate.evaluation import half
 from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.render.shell_values import drawing
 from sssgen.harness.scenes.camera import Camera
+from sssgen.harness.scenes.drawn_views import back_faces
 from sssgen.harness.scenes.geometry import Ball, Geometry
 from sssgen.harness.scenes.scene import Scene
+from sssgen.ir.drawn import BACK_FACES
 from sssgen.ir.types import Sampler
 from sssgen.lab.gpu.gpu_timing import ROUNDS, SIZE, Program, ProgramTimes, measure
 from sssgen.material.material_loading import load_material
@@ -129,7 +133,7 @@ def _rays(camera: Camera, size: tuple[int, int]) -> Points:
 
 def _visible_points(geometry: Geometry, camera: Camera, size: tuple[int, int]) -> Points | None:
     """The hit points by rows, each resampled to the full width; None without a hit."""
-    tiles = math.ceil(math.sqrt(size[0] * size[1] / MOST_RAYS))
+    tiles = _tiles(size)
     width, height = (math.ceil(side / tiles) for side in size)
     origin, directions = camera.rays(width, height)
     hits = geometry.hits(origin, directions)
@@ -144,6 +148,11 @@ def _visible_points(geometry: Geometry, camera: Camera, size: tuple[int, int]) -
         index[y] = row * width + columns[np.arange(width) * len(columns) // width]
     index = np.tile(index, (tiles, tiles))[: size[1], : size[0]]
     return _points(hits.position[index], hits.normal[index], hits.tangent[index], hits.uv[index])
+
+
+def _tiles(size: tuple[int, int]) -> int:
+    """The number of equal tiles along each side of a picture."""
+    return math.ceil(math.sqrt(size[0] * size[1] / MOST_RAYS))
 
 
 def _points(position: Array, normal: Array, tangent: Array, uv: Array) -> Points:
@@ -162,7 +171,9 @@ def of_material(
     material = material if isinstance(material, Material) else load_material(material)
     compiled = compile(material, TARGET, guards=guards)
     height, width = points.position.shape[:2]
-    program = drawing(compiled, shell_of(scene, material, compiled.reflection), (width, height), None, None)
+    shell = shell_of(scene, material, compiled.reflection)
+    shell = replace(shell, screens=_screens(scene, compiled.reflection, points))
+    program = drawing(compiled, shell, (width, height), None, None)
     text = program.fragment.text.text
     varyings = [varying for varying in _VARYINGS if re.search(rf"^in \w+ {varying};$", text, re.MULTILINE)]
     text = re.sub(r"^(?:in|out) (\w+ (?:v_\w+|fragment_color);)$", r"\1", text, flags=re.MULTILINE)
@@ -174,6 +185,21 @@ def of_material(
     uniforms = {**program.values, "timing_evaluations": evaluations}
     main = _main(varyings)
     return Program(name, text + main, uniforms, {**textures, **_bound(points)}, floor + main, evaluations)
+
+
+def _screens(scene: Scene, reflection: Mapping[str, Any], points: Points) -> dict[str, Texture]:
+    """The textures that the program draws over the screen, for the points in it: as large as a real one."""
+    names = [texture["source_name"] for texture in reflection["textures"] if texture["drawn"] == BACK_FACES]
+    if not names or scene.geometry is None:
+        return {}
+    height, width = points.position.shape[:2]
+    tiles = _tiles((width, height))
+    tile = points.position[: math.ceil(height / tiles), : math.ceil(width / tiles), :3].astype(np.float64)
+    eye = np.array(scene.camera.position)
+    rays = tile.reshape(-1, 3) - eye
+    distance = back_faces(scene.geometry, eye, rays / np.linalg.norm(rays, axis=1, keepdims=True))
+    picture = np.tile(distance.reshape(tile.shape[:2]), (tiles, tiles))[:height, :width, None]
+    return dict.fromkeys(names, half(Texture(picture, wrap="clamp")))
 
 
 def of_technique(
