@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -13,8 +14,12 @@ import pytest
 from folders import EXAMPLES
 from lamp_scene import largest_difference
 from sssgen.harness import backends
-from sssgen.harness.backends import Backend
+from sssgen.harness.backends import Backend, Drawing, Text
+from sssgen.harness.backends.unity_backend import UnityHLSL
+from sssgen.harness.render import pixel_mesh, unity_values
 from sssgen.harness.render.scene_render import Rendered, render
+from sssgen.harness.render.shell_values import Shell
+from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.drawn_views import TEXELS, back_faces, light_depth
 from sssgen.harness.scenes.geometry import Ball, Box, Geometry, Mesh, Torus, Union
 from sssgen.harness.scenes.scene_loading import parse_scene
@@ -151,6 +156,33 @@ def test_an_open_mesh_has_no_back_face(tmp_path: Path) -> None:
     ray = np.array([[0.1, 0.2, -3.0]]) / np.linalg.norm([0.1, 0.2, -3.0])
     distance = back_faces(Mesh(path=str(tmp_path / "sheet.obj")), np.array([0.0, 0.0, 3.0]), ray)
     np.testing.assert_array_equal(distance, [0.0])
+
+
+@pytest.mark.parametrize("name", ["unity", "unity-urp"])
+def test_unitys_pass_writes_the_distance(name: str, backend: Callable[[str], Backend], folder: Path) -> None:
+    """The pass of the emitted shader that draws the back faces, alone, on a mesh with one vertex per pixel."""
+    machine = backend(name)
+    assert isinstance(machine, UnityHLSL)
+    files = compile(load_material(str(folder / "shown.toml")), machine.target.name).files
+    (text,) = [text for file, text in files.items() if file.endswith(".shader")]
+    head, *passes = re.split(r"^(?=        Pass \{$)", text, flags=re.MULTILINE)
+    (drawn,) = [part for part in passes if '"BackFaceDistance"' in part]
+    assert "Cull Front" in drawn and "ZTest" not in drawn and "ZWrite" not in drawn  # the nearest is kept by default
+    drawn += "" if drawn is passes[-1] else passes[-1][passes[-1].rindex("    FallBack") :]
+    shader = Text(head.partition("        CGPROGRAM")[0] + drawn)
+    camera, (width, height) = Camera(position=EYE), SIZE
+    origin, rays = camera.rays(*SIZE)
+    hits = Ball(radius=3.5).hits(origin, rays)  # the eye is inside, so there is a hit in each pixel
+    points = pixel_mesh.vertices(hits, origin, rays, np.eye(4), SIZE)
+    matrix = camera.view_projection(width / height, zero_to_one=True)
+    values = unity_values._engine(Shell(matrix, EYE), SIZE)
+    vertex, fragment = (machine.forward(shader, stage, ()) for stage in ("vertex", "fragment"))
+    mesh = {"vertices": points, "triangles": pixel_mesh.triangles(SIZE)}
+    picture = machine.whole.draw(Drawing(SIZE, fragment, vertex, floats=True, values=values, **mesh))
+    expected = np.linalg.norm(hits.position - origin, axis=1).reshape(height, width)
+    inner = slice(1, -1), slice(1, -1)
+    np.testing.assert_allclose(picture[..., 0][inner], expected[inner], rtol=1e-5)
+    assert np.ptp(expected) > 0.05
 
 
 def test_an_opengl_program_draws_the_same(backend: Callable[[str], Backend], tmp_path: Path) -> None:

@@ -282,6 +282,7 @@ def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:
                 "doc": " ".join(uniform.doc.split()),
                 "label": source.replace("_", " ").capitalize(),
                 "holds": uniform.quantity,
+                "drawn": (_hint(uniform, "drawn")[1] or ("",))[0],
                 "binding": 1 + 2 * len(textures),
                 "sampler_binding": 2 + 2 * len(textures),
             }
