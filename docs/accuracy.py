@@ -38,6 +38,7 @@ ROLES = {
     "material": "Whole materials",
     "translucency": "Translucency, after the exact thickness",
     "thickness": "Thickness in the light's direction",
+    "view_thickness": "Length along the eye's ray",
     "coordinates": "Parallax",
 }
 Record = Mapping[str, Any]
@@ -228,7 +229,7 @@ def implementation(record: Record) -> str:
     """The errors of float32 and of finite counts, without the error of the model."""
     errors: dict[str, dict[str, list[float]]] = {}
     for point in record["points"]:
-        if point["role"] in ("thickness", "translucency", "coordinates") and not point["failed"]:
+        if point["role"] in ("thickness", "view_thickness", "translucency", "coordinates") and not point["failed"]:
             for kind, apart in point.get("implementation", {}).items():
                 if apart is not None:
                     errors.setdefault(point["label"], {}).setdefault(kind, []).append(float(apart))
