@@ -97,3 +97,30 @@ def test_the_first_octave_is_single_scattering() -> None:
     )  # fmt: skip
     octaves = sum(share * np.exp(-0.3 * sigma / 2**j) for j, share in enumerate((0.0, 1.0, 2.0, 3.0)))
     close(mixed[0], 0.25 * albedo * octaves, rtol=1e-9)
+
+
+@pytest.mark.parametrize("ior", [1.0, 1.3, 1.8])
+@pytest.mark.parametrize(
+    ("name", "refracted"),
+    [("interior_sample", "interior_sample_refracted"), ("interior_octaves", "interior_octaves_refracted")],
+)
+def test_a_refracting_surface_bends_the_eyes_ray_and_lets_a_share_through(
+    name: str, refracted: str, ior: float
+) -> None:
+    place, view, length = seen_ball(200)
+    normal, light = place / RADIUS, units(200, 5)
+    path = (
+        "thickness height(world_position p, world_direction l) { return thickness(2.0 + dot(p, vec3(0.5, 0.7, 0.3))); }"
+    )
+    cosine = np.einsum("nc,nc->n", normal, view)
+    # Snell's law by angles: the ray stays in the plane of normal and view
+    side = view - cosine[:, None] * normal
+    sine = np.linalg.norm(side, axis=1) / ior
+    bent = np.sqrt(1.0 - sine**2)[:, None] * normal + side / ior
+    least = ((ior - 1.0) / (ior + 1.0)) ** 2
+    share = (1.0 - least) * (1.0 - (1.0 - cosine) ** 5)
+    values = {"mean_free_path": 0.3, "P": place, "L": light, "d": length}
+    straight = technique(name, light_path=path)(V=bent, **values)
+    result = technique(refracted, light_path=path)(V=view, N=normal, ior=ior, **values)
+    close(result, share[:, None] * straight, rtol=1e-9)
+    assert np.linalg.norm(bent, axis=1) == pytest.approx(1.0)

@@ -99,6 +99,7 @@ def _measured(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[
         if role == "material":
             continue
         jobs = [(scene, candidate) for scene in scenes for candidate in _candidates(role, scene, points[scene.key])]
+        jobs = [job for job in jobs if _applies(*job)]
         for scene, point in _points(jobs, views, settings, {}):
             points[scene.key].append(point)
     if "material" in settings.roles:
@@ -111,7 +112,7 @@ def _measured(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[
                     useful_lengths(points[scene.key], candidates.view_thickness(), by_requirements),
                     useful_paths(points[scene.key]),
                 )
-                jobs += [(scene, candidate) for candidate in whole]
+                jobs += [(scene, candidate) for candidate in whole if _applies(scene, candidate)]
                 before |= {
                     (scene.key, *key): values for key, values in distance_function_parameters(points[scene.key]).items()
                 }
@@ -132,6 +133,12 @@ def _candidates(role: str, scene: MeasuredScene, measured: Sequence[Mapping[str,
         charted = any(point["role"] == "thickness" for point in measured)
         return candidates.translucency(useful_paths(measured) if charted else None)
     return candidates.thickness() if role == "thickness" else candidates.view_thickness()
+
+
+def _applies(scene: MeasuredScene, candidate: Candidate) -> bool:
+    """Whether a candidate is charted on a scene: refraction only where the body refracts."""
+    matched = scene.medium is not None and scene.medium.ior == 1.0
+    return candidate.role == "coordinates" or not matched or not candidates.refracts(candidate)
 
 
 Before = Mapping[tuple[str, tuple[str, ...], Any], Mapping[str, tuple[float, ...]]]

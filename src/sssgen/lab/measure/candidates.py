@@ -29,6 +29,9 @@ VIEW = "view_thickness"
 COUNTS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
 """The values of a technique's counts: those up to its default, and the next larger one."""
 
+INDEX = "ior"
+"""The parameter for the refractive index of a medium."""
+
 PROBES = os.path.join(os.path.dirname(__file__), "probes")
 
 PUBLISHED = os.path.join(os.path.dirname(__file__), "published.toml")
@@ -320,6 +323,11 @@ def complete(roles: Sequence[str]) -> tuple[str, ...]:
 def quantity_read(technique: Technique) -> str:
     """The scalar quantity that a technique reads, or ''."""
     return next((param.quantity for param in technique.function.params if param.quantity in SCALARS), "")
+
+
+def refracts(candidate: Candidate) -> bool:
+    """Whether a technique of the chain has the refractive index: without refraction, one that has not is the same."""
+    return any(uniform.name == INDEX for name in candidate.techniques for uniform in load(name).uniforms)
 
 
 def of_role(role: str) -> list[Technique]:

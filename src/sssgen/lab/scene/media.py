@@ -67,6 +67,7 @@ class Medium:
         """The medium's parameters by their names in techniques, as TOML values."""
         mean = sum(self.extinction) / 3.0
         return {
+            "ior": self.ior,
             "extinction": [*self.extinction],
             "scattering_albedo": [*self.albedo],
             "mean_free_path": 1.0 / max(mean, CLEAR),
