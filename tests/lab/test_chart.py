@@ -488,12 +488,11 @@ def test_refraction_is_charted_where_the_body_refracts() -> None:
     scene = cube()
     assert scene.medium is not None
     refracting = replace(scene, medium=replace(scene.medium, ior=1.4))
-    paths = [candidate for candidate in candidates.thickness() if candidates.fits_path(candidate)][:1]
-    inside = candidates.translucency(paths)
-    found = [candidate for candidate in inside if candidates.refracts(candidate)]
-    assert {candidate.techniques[-1] for candidate in found} >= {"interior_octaves_refracted"}
-    for candidate in found:
-        assert not chart._applies(scene, candidate) and chart._applies(refracting, candidate)
-    plain = next(candidate for candidate in inside if candidate.name == "wrap_lighting")
-    assert chart._applies(scene, plain) and chart._applies(refracting, plain)
+    chain = ("exact_view_thickness", "interior_octaves_refracted")
+    bent, plain = (
+        candidates.Candidate("translucency", names[-1], names[-1], (), names, False, "march_light")
+        for names in (chain, ("wrap_lighting",))
+    )
+    assert [chart._applies(case, bent) for case in (scene, refracting)] == [False, True]
+    assert [chart._applies(case, plain) for case in (scene, refracting)] == [True, True]
     assert all(chart._applies(scene, candidate) for candidate in candidates.coordinates())
