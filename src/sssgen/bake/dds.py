@@ -25,10 +25,10 @@ _DDSCAPS2_VOLUME = 0x200000
 
 
 def dds_bytes(texels: npt.NDArray[Any], encoding: Encoding) -> bytes:
-    """The file of (depth, height, width) texels of that encoding; the first texel is at texture coordinates 0."""
-    depth, height, width = texels.shape
+    """The file of (depth, height, width[, channels]) texels of that encoding; the first is at coordinates 0."""
+    depth, height, width = texels.shape[:3]
     flags = _DDSD_CAPS | _DDSD_HEIGHT | _DDSD_WIDTH | _DDSD_PITCH | _DDSD_PIXELFORMAT | DDSD_DEPTH
-    pitch = width * encoding.dtype.itemsize
+    pitch = width * encoding.channels * encoding.dtype.itemsize
     pixel_format = (32, DDPF_FOURCC, b"DX10", 0, 0, 0, 0, 0)  # the format itself is in the second header
     capabilities = (_DDSCAPS_TEXTURE | _DDSCAPS_COMPLEX, _DDSCAPS2_VOLUME, 0, 0)
     head = DDS_HEADER.pack(b"DDS ", 124, flags, height, width, pitch, depth, 1, *pixel_format, *capabilities)

@@ -24,37 +24,54 @@ ORIENTATION = "ruo"
 
 _MODEL_RGBSDA, _PRIMARIES_UNSPECIFIED, _TRANSFER_LINEAR = 1, 0, 1
 _SAMPLE_FLOAT, _SAMPLE_SIGNED = 0x80, 0x40
+_CHANNELS = (0, 1, 2, 15)
+"""The numbers of red, green, blue and alpha."""
 _DESCRIPTOR_VERSION = 2
 
 
 def ktx2_bytes(texels: npt.NDArray[Any], encoding: Encoding) -> bytes:
-    """The file of (depth, height, width) texels of that encoding; the first texel is at texture coordinates 0."""
-    depth, height, width = texels.shape
-    texel = encoding.dtype.itemsize
+    """The file of (depth, height, width[, channels]) texels of that encoding; the first is at coordinates 0."""
+    depth, height, width = texels.shape[:3]
+    texel = encoding.channels * encoding.dtype.itemsize
     descriptor = _descriptor(encoding)
     keys = _key_values({"KTXorientation": ORIENTATION, "KTXwriter": f"sssgen {VERSION}"})
     descriptor_at = KTX2_HEADER.size + KTX2_LEVEL.size
     keys_at = descriptor_at + len(descriptor)
     end = keys_at + len(keys)
     padding = -end % math.lcm(texel, 4)
-    form = (encoding.vulkan, texel, width, height, depth, 0, 1, 1, 0)  # layers, faces, levels, supercompression
+    form = (
+        encoding.vulkan,
+        encoding.dtype.itemsize,
+        width,
+        height,
+        depth,
+        0,
+        1,
+        1,
+        0,
+    )  # layers, faces, levels, supercompression
     head = KTX2_HEADER.pack(KTX2_IDENTIFIER, *form, descriptor_at, len(descriptor), keys_at, len(keys), 0, 0)
     level = KTX2_LEVEL.pack(end + padding, texels.nbytes, texels.nbytes)
     return head + level + descriptor + keys + bytes(padding) + texels.tobytes()
 
 
 def _descriptor(encoding: Encoding) -> bytes:
-    """The data format descriptor of one channel, red; a distance is not a colour, so it has no primaries."""
+    """The data format descriptor of red, or of red to alpha; the numbers are no colours, so there are no primaries."""
     bits = 8 * encoding.dtype.itemsize
     if np.issubdtype(encoding.dtype, np.floating):
-        channel, bounds = _SAMPLE_FLOAT | _SAMPLE_SIGNED, struct.pack("<2f", -1.0, 1.0)
+        flags, bounds = _SAMPLE_FLOAT | _SAMPLE_SIGNED, struct.pack("<2f", -1.0, 1.0)
     else:
-        channel, bounds = 0, struct.pack("<2I", 0, encoding.unit)
-    sample = struct.pack("<HBB4x", 0, bits - 1, channel) + bounds
+        flags, bounds = 0, struct.pack("<2I", 0, encoding.unit)
+    samples = b"".join(
+        struct.pack("<HBB4x", index * bits, bits - 1, flags | channel) + bounds
+        for index, channel in enumerate(_CHANNELS[: encoding.channels])
+    )
     colors = struct.pack("<4B", _MODEL_RGBSDA, _PRIMARIES_UNSPECIFIED, _TRANSFER_LINEAR, 0)
-    planes = struct.pack("<4B8B", 0, 0, 0, 0, encoding.dtype.itemsize, 0, 0, 0, 0, 0, 0, 0)  # blocks of 1 × 1 × 1 texel
-    block = struct.pack("<IHH", 0, _DESCRIPTOR_VERSION, 8 + len(colors) + len(planes) + len(sample))
-    block += colors + planes + sample
+    planes = struct.pack(
+        "<4B8B", 0, 0, 0, 0, encoding.channels * encoding.dtype.itemsize, 0, 0, 0, 0, 0, 0, 0
+    )  # blocks of 1 × 1 × 1 texel
+    block = struct.pack("<IHH", 0, _DESCRIPTOR_VERSION, 8 + len(colors) + len(planes) + len(samples))
+    block += colors + planes + samples
     return struct.pack("<I", 4 + len(block)) + block
 
 

@@ -1,4 +1,4 @@
-"""Baked volumes of one channel as files, in formats that engines and tools read."""
+"""Baked volumes of one or four channels as files, in formats that engines and tools read."""
 
 from __future__ import annotations
 
@@ -22,9 +22,10 @@ FORMATS = {"npy": ".npy", "dds": ".dds", "ktx2": ".ktx2", "exr-slices": ".exr", 
 def encoded(texels: npt.NDArray[Any], format: str) -> bytes:
     """The file of a volume; texels are little-endian.
 
-    `texels` is (depth, height, width) = z, y, x ascending; uint8 and uint16 are normalised to 0..1, float16 and
-    float32 are stored unchanged. For `raw+json` the caller writes the JSON, with `layout`. Raises SssgenError for an
-    unknown format, another type or shape, and a volume that is too large for a sheet of slices.
+    `texels` is (depth, height, width) = z, y, x ascending, with a fourth axis for four channels; uint8 and uint16 are
+    normalised to 0..1, float16 and float32 are stored unchanged. For `raw+json` the caller writes the JSON, with
+    `layout`. Raises SssgenError for an unknown format, another type or shape, and a volume that is too large for a
+    sheet of slices.
     """
     encoding = _encoding(texels, format)
     texels = np.ascontiguousarray(texels, encoding.dtype)
@@ -34,10 +35,12 @@ def encoded(texels: npt.NDArray[Any], format: str) -> bytes:
         case "ktx2":
             return ktx2_bytes(texels, encoding)
         case "exr-slices":
+            if texels.ndim == 4:
+                raise failure("a sheet of slices has one channel", "use npy, dds, ktx2 or raw+json")
             return images.exr_bytes(sheet(texels)[..., None] / np.float32(encoding.unit))
         case "npy":
             buffer = io.BytesIO()
-            np.save(buffer, texels[..., None], allow_pickle=False)
+            np.save(buffer, texels if texels.ndim == 4 else texels[..., None], allow_pickle=False)
             return buffer.getvalue()
         case _:
             return texels.tobytes()
@@ -49,7 +52,7 @@ def layout(texels: npt.NDArray[Any], format: str) -> dict[str, Any]:
     `size` is in texels; `one` is the stored number for 1.0. Raises SssgenError as `encoded` does.
     """
     encoding = _encoding(texels, format)
-    depth, height, width = texels.shape
+    depth, height, width = texels.shape[:3]
     common = {"format": format, "encoding": encoding.name, "size": {"x": width, "y": height, "z": depth}}
     return common | _details(texels, encoding, format)
 
@@ -59,12 +62,18 @@ def _encoding(texels: npt.NDArray[Any], format: str) -> Encoding:
     if format not in FORMATS:
         hint = did_you_mean(format, FORMATS) or f"there are {', '.join(FORMATS)}"
         raise failure(f"'{format}' is not a format of volumes", hint)
-    if texels.ndim != 3 or 0 in texels.shape:
-        raise failure(f"an array of shape {texels.shape} is not a volume", "(depth, height, width)")
+    if texels.ndim not in (3, 4) or 0 in texels.shape:
+        raise failure(
+            f"an array of shape {texels.shape} is not a volume", "(depth, height, width), or (depth, height, width, 4)"
+        )
     dtype = texels.dtype.newbyteorder("<")
-    encoding = next((encoding for encoding in ENCODINGS if encoding.dtype == dtype and encoding.channels == 1), None)
+    channels = texels.shape[3] if texels.ndim == 4 else 1
+    encoding = next(
+        (encoding for encoding in ENCODINGS if encoding.dtype == dtype and encoding.channels == channels), None
+    )
     if encoding is None:
-        raise failure(f"texels of type {texels.dtype} have no file format", "use uint8, uint16, float16 or float32")
+        message = f"{channels} channels of type {texels.dtype} have no file format"
+        raise failure(message, "use one of uint8, uint16, float16 or float32, or four of uint8")
     return encoding
 
 
@@ -76,7 +85,7 @@ def _details(texels: npt.NDArray[Any], encoding: Encoding, format: str) -> dict[
         case "ktx2":
             return {"pixel_format": encoding.vulkan_name, "orientation": ORIENTATION, "one": encoding.unit}
         case "exr-slices":
-            columns, rows = columns_and_rows(*texels.shape)
+            columns, rows = columns_and_rows(*texels.shape[:3])
             return {
                 "dtype": "float32",
                 "channel": "Y",
@@ -90,7 +99,7 @@ def _details(texels: npt.NDArray[Any], encoding: Encoding, format: str) -> dict[
             return {
                 "dtype": encoding.dtype.name,
                 "byte_order": "little",
-                "axes": ["z", "y", "x", "channel"] if format == "npy" else ["z", "y", "x"],
+                "axes": ["z", "y", "x", "channel"] if format == "npy" or texels.ndim == 4 else ["z", "y", "x"],
                 "order": "x is fastest, then y, then z; all ascend",
                 "one": encoding.unit,
             }

@@ -191,6 +191,52 @@ def _depth(arguments: Namespace) -> Result:
     return paths, facts, lines if facts["covered"] else ["warning: no ray of the light hits the mesh"]
 
 
+def _fluence_options(parser: ArgumentParser) -> None:
+    add = parser.add_argument
+    add("BODY", metavar="SCENE|MESH", help="a scene with [medium], or a mesh, for which --medium names the medium")
+    _add_output(parser, "a .npy, .dds or .ktx2; the names of several files are made of it")
+    add("--medium", default="", metavar="NAME", help="the medium of a mesh: a name of `sssgen list media`")
+    add("--unit-mm", type=float, default=10.0, metavar="U", help="millimetres in a unit of the mesh (default: 10)")
+    add("--rank", type=int, default=8, metavar="K", help="numbers in a voxel, for any distant light: 4 or 8 (default)")
+    add("--light", metavar="LIGHT", help="one light that is fixed to the body: a .json with direction, or X,Y,Z")
+    add("--voxels", type=int, default=24, metavar="N", help="voxels along the longest side (default: 24)")
+    add("--photons", type=int, default=6000, metavar="N", help="for each direction and channel (default: 6000)")
+    add("--format", metavar="F", help="npy, dds, ktx2 or raw+json (default: from FILE's suffix)")
+    add_seed(parser, "the seed of the photons")
+    add_workers(parser)
+
+
+def _fluence(arguments: Namespace) -> Result:
+    from sssgen.bake import bake_light, fluence
+    from sssgen.bake import baked_files as output
+    from sssgen.lab.fluence.fluence_field import Settings
+
+    format = output.volume_format(arguments.output, arguments.format)
+    output.check_apart(arguments.output, [arguments.BODY, arguments.light or ""])
+    scene = fluence.body(arguments.BODY, arguments.medium, arguments.unit_mm)
+    light = bake_light.read(arguments.light) if arguments.light else None
+    settings = Settings(arguments.voxels, photons=arguments.photons, seed=arguments.seed)
+    with ProgressBar() as bar:
+        baked = fluence.bake(scene, arguments.rank, light, settings, arguments.scheduler, arguments.processes, bar)
+    paths = []
+    for part in baked.parts:
+        facts = {**baked.facts, "texture": part.texture}
+        if part.texels.ndim == 4:
+            path = fluence.part_path(arguments.output, part.suffix)
+            paths += output.write_volume(path, part.texels, format, facts)
+        else:
+            path = fluence.part_path(arguments.output, part.suffix, ".exr")
+            paths += output.write_picture(path, part.texels[::-1], {**facts, "import": import_settings(wrap="clamp")})
+    x, y, z = baked.facts["texels"]
+    lines = [
+        f"{x} × {y} × {z} voxels, {baked.facts['directions']} directions, {baked.facts['photons']} photons for each",
+        f"standard error of a voxel {baked.facts['error']['standard_error']:.2g} of the mean, before it is averaged",
+    ]
+    if baked.facts["opaque_voxels"]:
+        lines.append("warning: a voxel is opaque in one channel: use more voxels, or a smaller --unit-mm")
+    return paths, baked.facts, lines
+
+
 def _voronoi_options(parser: ArgumentParser) -> None:
     add = parser.add_argument
     _add_output(parser, "a .png (16 bit), .exr or .npy")
@@ -310,6 +356,13 @@ KINDS = {
         "Bind it to light_depth_map of the technique depth_map_thickness.",
         _depth_options,
         _depth,
+    ),
+    "fluence": Kind(
+        "the light inside a body, as volumes for any distant light, or for one",
+        "Bind the files to the textures of fluence_factored_8, fluence_factored_4 or fluence_fixed,\n"
+        "as their JSON says.",
+        _fluence_options,
+        _fluence,
     ),
     "voronoi": Kind("cells, as in cracked ice: a map of thickness or height", "", _voronoi_options, _voronoi),
     "normal": Kind("the normal map of a height or thickness map", "", _normal_options, _normal),

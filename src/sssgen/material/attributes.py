@@ -12,7 +12,19 @@ from typing import NamedTuple
 from sssgen.lang.check.quantities import SCALARS
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 
-TEXTS = ("role", "formula", "source", "units", "limits", "corrects", "baseline", "uncharted", "glows", "legend")
+TEXTS = (
+    "role",
+    "formula",
+    "source",
+    "units",
+    "limits",
+    "corrects",
+    "baseline",
+    "uncharted",
+    "glows",
+    "legend",
+    "calibrated",
+)
 """Attributes of free text; `role` is checked by the library."""
 
 ATTRIBUTES = (*TEXTS, "superseded_by", "suggested", "shape", "sets", "requires", "deviation", "deviation_bounds")
@@ -43,6 +55,8 @@ class Attributes(NamedTuple):
     """It measures nothing, so that charts cannot compare it with a reference."""
     glows: bool = False
     """Its light is not a factor on a lamp's colour: it is added once, to the emission."""
+    calibrated: bool = False
+    """Its light has the right scale and colour without a fit: the data that it reads contain them."""
     suggested: tuple[str, str] | None = None
     """(source, target): error messages suggest it where this conversion is missing."""
     legend: str = ""
@@ -93,6 +107,7 @@ def read(texts: Mapping[str, str], shown: str) -> Attributes:
         superseded_by=superseded_by,
         uncharted="uncharted" in texts,
         glows="glows" in texts,
+        calibrated="calibrated" in texts,
         suggested=_conversion(texts["suggested"], shown) if "suggested" in texts else None,
         legend=texts.get("legend", ""),
         shape=shape,

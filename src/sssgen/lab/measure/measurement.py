@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -84,6 +85,8 @@ def fit_candidate(candidate: Candidate, training: Sequence[View], before: Parame
     `before` has the parameters of its first technique, if they have been fitted: then that technique is evaluated only
     once, and the rest of the chain is fitted to its output.
     """
+    if candidate.techniques and load(candidate.techniques[-1]).attributes.calibrated:
+        return Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), math.nan)
     solvable = [
         (view, problem) for view in training if (problem := problem_of(candidate.role, view, summed=False)) is not None
     ]

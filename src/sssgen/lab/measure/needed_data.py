@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler
+from sssgen.lab.measure import fluence_inputs
 from sssgen.lab.measure.scene_inputs import of_scene
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.material import requirements
@@ -34,6 +35,8 @@ def needed_data(stages: Sequence[TechniqueUse], scene: MeasuredScene) -> NeededD
 def _texels(uniform: Uniform, scene: MeasuredScene) -> int:
     """The texels of a baked texture: a volume's as the scene has it."""
     assert isinstance(uniform.type, Sampler)
+    if texels := fluence_inputs.texels(uniform.name, scene):
+        return texels
     if uniform.type.dim != "3D":
         return MAP_SIDE * MAP_SIDE
     return math.prod(of_scene(scene).textures[uniform.name].size())

@@ -11,7 +11,7 @@ import numpy as np
 
 from sssgen.harness.backends import Array
 from sssgen.harness.scenes.scene import Light
-from sssgen.lab.measure import scene_inputs
+from sssgen.lab.measure import fluence_inputs, scene_inputs
 from sssgen.lab.measure.measured_chain import Chain
 from sssgen.lab.reference import inlay_refraction as refraction
 from sssgen.lab.reference.inside_lengths import thickness
@@ -277,10 +277,12 @@ def coordinates_problem(scene: MeasuredScene) -> Problem:
 def _part(scene: MeasuredScene, visible: Points, light: Light, color: Array) -> Part:
     """A light in a view; `color` without the fall-off of a point light."""
     of_body, of_light = scene_inputs.of_scene(scene), scene_inputs.of_light(scene, light)
+    computed = fluence_inputs.of_light(scene, light)
     distance = visible.towards(light)[1]
     return Part(
         {**visible.inputs, **of_body.inputs}, visible.light(light), {**of_body.values, **of_light.values},
-        {**of_body.textures, **of_light.textures}, color if light.position is None else color / distance**2,
+        scene_inputs.SceneTextures({**of_body.textures, **of_light.textures}, computed),
+        color if light.position is None else color / distance**2,
     )  # fmt: skip
 
 

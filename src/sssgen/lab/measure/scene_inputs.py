@@ -5,6 +5,7 @@ Maps are ideal: each point reads its own texel, which has the exact value. So a 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
@@ -32,6 +33,19 @@ CURVATURE_STEP = 0.02
 """The length over which curvatures are measured, relative to the longest side of the body."""
 
 
+class SceneTextures(dict[str, Texture]):
+    """Textures by their names in techniques; those that take long to compute are computed when one is read."""
+
+    def __init__(self, textures: Mapping[str, Texture], computed: Mapping[str, Callable[[], Texture]]) -> None:
+        super().__init__(textures)
+        self.computed = computed
+
+    def get(self, name: str, default: Any = None) -> Any:
+        if name not in self and name in self.computed:
+            self[name] = self.computed[name]()
+        return super().get(name, default)
+
+
 @dataclass(eq=False)
 class SceneInputs:
     """Parameters and textures by their names in techniques; inputs that replace those of the points."""
@@ -55,6 +69,7 @@ def of_scene(scene: MeasuredScene) -> SceneInputs:
     values = {
         name: np.array(value)[:, None] if isinstance(value, list) else value for name, value in parameters.items()
     }
+    values["world_to_volume"] = _to_box(geometry.to_object(), distances.box_min, distances.box_max).T[..., None]
     if scene.medium is not None:
         values |= {
             name: np.array(value)[:, None] if isinstance(value, list) else value
@@ -103,6 +118,15 @@ def of_light(scene: MeasuredScene, light: Light) -> SceneInputs:
         exact = exact - thickness(geometry, np.broadcast_to(light.position, towards.shape).copy(), towards)
     values, textures = _depth_map(scene, light)
     return SceneInputs(values | {"exact_length": exact}, textures)
+
+
+def _to_box(to_object: Array, low: Sequence[float], high: Sequence[float]) -> Array:
+    """World space to a box in object space, (4, 4): 0 to 1 inside."""
+    matrix = np.eye(4)
+    size = np.subtract(high, low)
+    matrix[:3] = to_object[:3] / size[:, None]
+    matrix[:3, 3] -= np.array(low) / size
+    return matrix
 
 
 def mean_chord(scene: MeasuredScene) -> Array:

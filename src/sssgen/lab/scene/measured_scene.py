@@ -88,6 +88,10 @@ class MeasuredScene:
     def __hash__(self) -> int:
         return hash(self.key)
 
+    def body_alone(self) -> MeasuredScene:
+        """The same body, equal for all views and lights."""
+        return dataclasses.replace(self, name="body", title="body", camera=Camera(), lights=(), environment=None)
+
     def held_out(self) -> MeasuredScene:
         """The scene from another side, for a view that no fit uses."""
         turn = np.radians(HELD_OUT)

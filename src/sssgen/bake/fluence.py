@@ -1,0 +1,138 @@
+"""Fluence volumes of a body: the files for fluence_factored_4, fluence_factored_8 and fluence_fixed.
+
+The light is traced through the body with its boundary (see `sssgen.lab.fluence`); the JSON states its standard error.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.bake import memory_check as memory
+from sssgen.bake.bake_light import BakeLight
+from sssgen.harness.scenes.camera import Camera
+from sssgen.harness.scenes.geometry import Mesh
+from sssgen.lab.fluence import fluence_field
+from sssgen.lab.fluence import fluence_volumes as volumes
+from sssgen.lab.fluence.fluence_field import Field, Settings
+from sssgen.lab.jobs.executor import Progress
+from sssgen.lab.scene import measured_scene, media
+from sssgen.lab.scene.measured_scene import MeasuredScene
+from sssgen.support import cache
+from sssgen.support.diagnostics import failure
+from sssgen.support.paths import posix, stem
+from sssgen.targets.texture_import import import_settings
+
+RANKS = (4, 8)
+OPAQUE = 3.0
+"""The optical depth of a voxel above which light does not reach from one voxel to the next: the bake warns."""
+BYTES = 3 * 4 * 4
+"""Bytes of memory for each voxel and direction: three channels, in float64 and float32, and their averages."""
+
+
+class Part(NamedTuple):
+    """One texture of a bake."""
+
+    suffix: str
+    """Of the file's name, before its ending"""
+    texels: npt.NDArray[Any]
+    """(z, y, x, 4) bytes, or the table (height, width, 3)"""
+    texture: str
+    """Its name in the technique"""
+
+
+class Baked(NamedTuple):
+    """The textures of a bake, and their facts for the JSON files."""
+
+    parts: list[Part]
+    facts: dict[str, Any]
+
+
+def body(path: str, medium: str, unit_mm: float) -> MeasuredScene:
+    """The scene of a .toml file with [medium], or a mesh with a medium by name. Raises SssgenError."""
+    if path.endswith(".toml"):
+        if medium:
+            raise failure("the scene has its own medium", "leave --medium out", posix(path))
+        return measured_scene.load(path).body_alone()
+    if not medium:
+        raise failure("a mesh has no medium", "name one with --medium", posix(path))
+    geometry = Mesh(path=path)
+    name = stem(path)
+    preset = media.preset(medium, unit_mm)
+    contents = measured_scene.contents(geometry)
+    return MeasuredScene(name, name, geometry, Camera(), (), preset, None, contents=contents).body_alone()
+
+
+def bake(
+    scene: MeasuredScene, rank: int, light: BakeLight | None, settings: Settings, scheduler: str = "",
+    processes: int | None = None, progress: Progress = lambda *_: None,
+) -> Baked:  # fmt: skip
+    """The fluence as `rank` numbers a voxel for lights from afar, or for one `light`. Raises SssgenError."""
+    if scene.medium is None:
+        raise failure(f"'{scene.name}' has no medium", "add [medium] to the scene")
+    if rank not in RANKS:
+        raise failure(f"there is no technique of rank {rank}", f"ranks: {', '.join(map(str, RANKS))}")
+    if light is not None and not light.afar:
+        raise failure("the light has a position", 'a fluence volume is baked for a light from afar: {"direction": …}')
+    if not 4 <= settings.voxels <= 128:
+        raise failure(f"{settings.voxels} voxels are not between 4 and 128", "24 to 32 are enough")
+    if not 2 <= settings.photons <= 10**7:
+        raise failure(f"{settings.photons} photons are not between 2 and 10,000,000", "some thousands are enough")
+    grid = fluence_field.grid_in_box(scene, settings.voxels)
+    memory.check(grid.voxels * settings.side**2 * BYTES, "use fewer voxels")
+    if light is None:
+        traced = fluence_field.field(scene, settings, scheduler, processes, progress)
+        return Baked(_factored(traced, rank), _facts(scene, settings, traced) | {"rank": rank})
+    traced = fluence_field.of_light(scene, light.place, settings, scheduler, processes, progress)
+    stored = volumes.fixed(traced)
+    facts = _facts(scene, settings, traced) | {"light": light.facts()}
+    facts["parameters"]["fluence_scale"] = [float(value) for value in stored.scale]
+    filled = np.concatenate([stored.texels, np.full((*stored.texels.shape[:3], 1), 255, np.uint8)], axis=3)
+    return Baked([Part("", filled, "fluence_volume")], facts)
+
+
+def _factored(traced: Field, rank: int) -> list[Part]:
+    stored = volumes.factored(traced, rank)
+    latents = [
+        Part(
+            f"_latents_{number + 1}", np.ascontiguousarray(stored.latents[..., 4 * number : 4 * number + 4]),
+            f"fluence_latents_{rank}_{number + 1}",
+        )
+        for number in range(rank // 4)
+    ]  # fmt: skip
+    return [*latents, Part("_table", stored.table, f"fluence_table_{rank}")]
+
+
+def _facts(scene: MeasuredScene, settings: Settings, traced: Field) -> dict[str, Any]:
+    medium = scene.medium
+    assert medium is not None
+    voxel = float(((traced.grid.high - traced.grid.low) / np.array(traced.grid.shape)).max()) * scene.geometry.scale
+    matrix = np.eye(4)
+    size = traced.grid.high - traced.grid.low
+    matrix[[0, 1, 2], [0, 1, 2]] = 1.0 / size
+    matrix[:3, 3] = -traced.grid.low / size
+    return {
+        "kind": "fluence", "holds": None,
+        "body": {"key": cache.digest(repr((scene.geometry, scene.contents)).encode()), "scale": scene.geometry.scale},
+        "medium": {
+            "name": medium.name, "extinction": [*medium.extinction], "albedo": [*medium.albedo],
+            "anisotropy": medium.anisotropy, "ior": medium.ior,
+        },
+        "texels": list(traced.grid.shape), "voxel": voxel,
+        "box_min": traced.grid.low.tolist(), "box_max": traced.grid.high.tolist(),
+        "photons": settings.photons, "directions": len(traced.directions), "seed": settings.seed,
+        "error": {"standard_error": traced.noise, "relative_to": "the mean value, before the factors average it"},
+        "opaque_voxels": bool(max(medium.extinction) * voxel > OPAQUE),
+        "object_to_volume": matrix.tolist(),
+        "parameters": dict(medium.parameters),
+        "import": import_settings("3D", "clamp", mipmaps=False),
+    }  # fmt: skip
+
+
+def part_path(path: str, suffix: str, ending: str = "") -> str:
+    """The path of a part's file: `wax.dds` with the suffix `_latents_1` is `wax_latents_1.dds`."""
+    base, own = os.path.splitext(path)
+    return f"{base}{suffix}{ending or own}"

@@ -1,0 +1,1 @@
+"""Fluence inside a body: traced for many light directions, factored into few volumes."""

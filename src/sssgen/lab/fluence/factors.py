@@ -1,0 +1,46 @@
+"""A field of voxels and light directions as a sum of few products: T(voxel, l) ~ sum_k U_k(voxel) V_k(l).
+
+Truncated singular values minimise the absolute error; dark voxels, which a relative error counts as much as bright
+ones, are lost. So rounds of alternating least squares with weights follow (Gabriel and Zamir, Lower rank approximation
+of matrices by least squares with any choice of weights, Technometrics 1979).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+ROUNDS = 6
+RIDGE = 1e-6
+"""The weight of the factors' own squares, relative to the mean weight of a row: it keeps the equations solvable."""
+
+
+def factors(field: Array, rank: int, floor: float, smooth: Array) -> tuple[Array, Array]:
+    """U (voxels, rank) and V (rank, columns) for a field (voxels, columns) that is at least 0.
+
+    The error of a value T counts relative to sqrt(T^2 + floor^2), where T is that of `smooth`, the field with less
+    noise: weights of noisy values would prefer those that are too small.
+    """
+    rank = min(rank, *field.shape)
+    weight = 1.0 / (smooth**2 + floor**2)
+    scaled = field * np.sqrt(weight.mean(axis=1, keepdims=True))
+    right: Array = np.linalg.svd(scaled, full_matrices=False)[2][:rank]
+    left: Array = np.zeros((len(field), rank))
+    for _ in range(ROUNDS):
+        left = _solved(right, field, weight)
+        right = _solved(left.T, field.T, weight.T).T
+    return left, right
+
+
+def _solved(basis: Array, field: Array, weight: Array) -> Array:
+    """The coefficients (rows, rank) of `basis` (rank, columns) that fit each row of the field best."""
+    rank = len(basis)
+    pairs = (basis[:, None] * basis[None]).reshape(rank * rank, -1)
+    matrices = (weight @ pairs.T).reshape(-1, rank, rank)
+    trace = np.trace(matrices, axis1=1, axis2=2)[:, None, None] / rank
+    solution: Array = np.linalg.solve(matrices + RIDGE * trace * np.eye(rank), ((weight * field) @ basis.T)[..., None])[
+        ..., 0
+    ]
+    return solution

@@ -1,0 +1,157 @@
+"""Light tracing: the multiply scattered fluence in a body's voxels, for light from afar from many directions.
+
+For each direction, photons start on a rectangle across the body. They cross the surface (with Fresnel's reflection and
+refraction if the medium has a refractive index), collide and scatter; each collision after the first counts in its
+voxel. The estimate of a voxel is π times the mean radiance for an irradiance of 1 on a plane that faces the light:
+the collision estimator, fluence = weight / (extinction · volume), divided by 4.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.harness.scenes.mesh_rays import MeshRays
+from sssgen.lab.fluence.voxels import Grid
+
+Array = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+FAINT = 1e-3
+"""The weight below which Russian roulette ends most photons."""
+SURVIVAL = 0.1
+STEP = 1e-5
+"""The distance from a crossed surface at which a photon continues, in sizes of the body: above float32's rounding."""
+
+
+class Medium(NamedTuple):
+    """A medium in one channel."""
+
+    extinction: float
+    albedo: float
+    anisotropy: float = 0.0
+    ior: float = 1.0
+
+
+class Body(NamedTuple):
+    """A closed mesh: vertices (v, 3), and faces (f, 3), counter-clockwise seen from outside."""
+
+    vertices: Array
+    faces: Indices
+
+    @property
+    def size(self) -> float:
+        return float(np.ptp(self.vertices, axis=0).max())
+
+
+class Tracer:
+    """Traces photons through one body; calls of `trace` are independent."""
+
+    def __init__(self, body: Body, grid: Grid) -> None:
+        self.body, self.grid = body, grid
+        self.rays = MeshRays(body.vertices, body.faces)
+        first, second, third = np.moveaxis(body.vertices[body.faces], 1, 0)
+        normal = np.cross(second - first, third - first)
+        self.normals: Array = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+
+    def trace(self, medium: Medium, towards: Array, photons: int, rng: np.random.Generator) -> Array:
+        """The estimates, (directions, voxels), of `photons` photons for each direction (d, 3) towards a light."""
+        grid = self.grid
+        number = np.repeat(np.arange(len(towards)), photons)
+        position, areas = self._start(towards, photons, rng)
+        direction = np.repeat(-towards, photons, axis=0)
+        start_weight = areas / photons
+        weight = start_weight[number]
+        scattered = np.zeros(len(weight), np.bool_)
+        sums = np.zeros(len(towards) * grid.voxels)
+        while len(weight):
+            face, ahead = self.rays.nearest(position, direction)
+            keep = face >= 0  # the others have left the body
+            number, weight, scattered, face = number[keep], weight[keep], scattered[keep], face[keep]
+            position, direction = position[keep], direction[keep]
+            # rounding may put a surface behind the photon that has just crossed it: without this it would stay there
+            ahead = np.maximum(ahead[keep], 0.0)
+            normal = self.normals[face]
+            slope = np.einsum("nc,nc->n", direction, normal)
+            free = -np.log1p(-rng.random(len(weight))) / medium.extinction
+            collides = (slope > 0.0) & (free < ahead)
+            position = position + np.where(collides, free, ahead)[:, None] * direction
+            counted = collides & scattered
+            cell = number[counted] * grid.voxels + grid.voxel_of(position[counted])
+            sums += np.bincount(cell, weight[counted], len(sums))
+            crosses = ~collides
+            turned = self._crossed(direction[crosses], normal[crosses], slope[crosses], medium.ior, rng)
+            direction[crosses] = turned
+            position[crosses] += STEP * self.body.size * turned
+            direction[collides] = scatter(direction[collides], medium.anisotropy, rng)
+            weight = np.where(collides, weight * medium.albedo, weight)
+            scattered = scattered | collides
+            faint = weight < FAINT * start_weight[number]
+            weight = np.where(faint, weight / SURVIVAL, weight)
+            keep = ~faint | (rng.random(len(weight)) < SURVIVAL)
+            number, weight, scattered = number[keep], weight[keep], scattered[keep]
+            position, direction = position[keep], direction[keep]
+        return sums.reshape(len(towards), grid.voxels) / (4.0 * medium.extinction * grid.volume)
+
+    def _start(self, towards: Array, photons: int, rng: np.random.Generator) -> tuple[Array, Array]:
+        """Points on a rectangle across the body for each direction, and the areas of the rectangles."""
+        positions, areas = [], []
+        for direction in towards:
+            side = np.eye(3)[np.argmin(np.abs(direction))]
+            across = np.cross(direction, side)
+            across /= np.linalg.norm(across)
+            along = np.cross(direction, across)
+            spans = [self.body.vertices @ axis for axis in (across, along, direction)]
+            (u, du), (v, dv) = ((span.min(), np.ptp(span)) for span in spans[:2])
+            # the points of a lattice (Kronecker's, with the plastic number) are more even than random ones
+            at = (np.arange(photons)[:, None] * (0.7548776662466927, 0.5698402909980532) + rng.random(2)) % 1.0
+            start = spans[2].max() + 0.01 * self.body.size
+            positions.append((u + du * at[:, :1]) * across + (v + dv * at[:, 1:]) * along + start * direction)
+            areas.append(du * dv)
+        return np.concatenate(positions), np.array(areas)
+
+    @staticmethod
+    def _crossed(direction: Array, normal: Array, slope: Array, ior: float, rng: np.random.Generator) -> Array:
+        """The directions after the surface: refracted, or reflected with Fresnel's probability."""
+        if ior == 1.0:
+            return direction
+        ratio = np.where(slope > 0.0, ior, 1.0 / ior)
+        cosine = np.abs(slope)
+        square = 1.0 - ratio**2 * (1.0 - cosine**2)
+        beyond = np.sqrt(np.maximum(square, 0.0))
+        parallel = (cosine - ratio * beyond) / (cosine + ratio * beyond)
+        vertical = (ratio * cosine - beyond) / (ratio * cosine + beyond)
+        reflectance = np.where(square > 0.0, 0.5 * (parallel**2 + vertical**2), 1.0)
+        reflects = rng.random(len(slope)) < reflectance
+        facing = np.sign(slope)[:, None] * normal
+        refracted = ratio[:, None] * (direction - cosine[:, None] * facing) + beyond[:, None] * facing
+        reflected = direction - 2.0 * slope[:, None] * normal
+        turned = np.where(reflects[:, None], reflected, refracted)
+        result: Array = turned / np.linalg.norm(turned, axis=1, keepdims=True)
+        return result
+
+
+def scatter(direction: Array, anisotropy: float, rng: np.random.Generator) -> Array:
+    """Scattered directions by Henyey and Greenstein's phase function, for unit directions (n, 3)."""
+    count = len(direction)
+    cosine = 2.0 * rng.random(count) - 1.0
+    if anisotropy:
+        g = anisotropy
+        ratio = (1.0 - g * g) / (1.0 + g * cosine)
+        cosine = (1.0 + g * g - ratio * ratio) / (2.0 * g)
+    sine, angle = np.sqrt(np.maximum(1.0 - cosine**2, 0.0)), 2.0 * np.pi * rng.random(count)
+    if not anisotropy:
+        return np.stack([sine * np.cos(angle), sine * np.sin(angle), cosine], axis=1)
+    # Duff et al., Building an Orthonormal Basis, Revisited, JCGT 2017
+    x, y, z = direction.T
+    sign = np.copysign(1.0, z)
+    a = -1.0 / (sign + z)
+    b = x * y * a
+    first = np.stack([1.0 + sign * x * x * a, sign * b, -sign * x], axis=1)
+    second = np.stack([b, sign + y * y * a, -y], axis=1)
+    around: Array = (
+        (sine * np.cos(angle))[:, None] * first + (sine * np.sin(angle))[:, None] * second + cosine[:, None] * direction
+    )
+    return around

@@ -1,0 +1,77 @@
+"""The fluence of a scene's body as textures for measured chains, baked when a chain reads one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache, partial
+
+import numpy as np
+
+from sssgen.harness.backends import Array
+from sssgen.harness.scenes.bounds import placed_corners
+from sssgen.harness.scenes.scene import Light
+from sssgen.lab.fluence import fluence_field as field
+from sssgen.lab.fluence import fluence_volumes as volumes
+from sssgen.lab.scene.measured_scene import MeasuredScene
+from sssgen.targets.runtime.numpy_textures import Texture
+
+SETTINGS = field.Settings()
+RANKS = (4, 8)
+"""The ranks of the techniques fluence_factored_N."""
+LATENTS = 4
+"""The numbers in a texel of a volume."""
+
+
+def of_light(scene: MeasuredScene, light: Light) -> dict[str, Callable[[], Texture]]:
+    """The textures of `sssgen bake fluence` by their names in techniques."""
+    if scene.medium is None:
+        return {}
+    computed: dict[str, Callable[[], Texture]] = {"fluence_volume": partial(_fixed, scene, light)}
+    for rank in RANKS:
+        computed[f"fluence_table_{rank}"] = partial(_table, scene, rank)
+        for number in range(rank // LATENTS):
+            computed[f"fluence_latents_{rank}_{number + 1}"] = partial(_latents, scene, rank, number)
+    return computed
+
+
+def texels(name: str, scene: MeasuredScene) -> int:
+    """The texels of a texture by its name in techniques; 0 for textures of other kinds."""
+    if name.startswith("fluence_table_"):
+        side = SETTINGS.side + 2
+        return side * side * (int(name.rpartition("_")[2]) + 1)
+    return field.grid_in_box(scene, SETTINGS.voxels).voxels if name.startswith("fluence_") else 0
+
+
+@lru_cache(4)
+def _field(scene: MeasuredScene) -> field.Field:
+    # this runs inside a worker already: in the process of the worker
+    return field.field(scene, SETTINGS, processes=0)
+
+
+@lru_cache(8)
+def _factored(scene: MeasuredScene, rank: int) -> volumes.Factored:
+    return volumes.factored(_field(_without_view(scene)), rank)
+
+
+def _without_view(scene: MeasuredScene) -> MeasuredScene:
+    """The same scene for all of its views and lights, which do not change the fluence."""
+    return scene.body_alone()
+
+
+def _table(scene: MeasuredScene, rank: int) -> Texture:
+    return Texture(_factored(_without_view(scene), rank).table.astype(np.float16), wrap="clamp")
+
+
+def _latents(scene: MeasuredScene, rank: int, number: int) -> Texture:
+    stored = _factored(_without_view(scene), rank).latents[..., LATENTS * number : LATENTS * (number + 1)]
+    return Texture(stored / 255.0, wrap="clamp")
+
+
+@lru_cache(8)
+def _fixed(scene: MeasuredScene, light: Light) -> Texture:
+    """The light at each voxel; the scale is part of the texels, whose steps are those of the stored volume."""
+    centre = placed_corners(scene.geometry).mean(axis=0)
+    towards = np.array(light.direction) if light.position is None else np.array(light.position) - centre
+    turned: Array = scene.geometry.to_object()[:3, :3] @ towards
+    stored = volumes.fixed(field.of_light(_without_view(scene), turned / np.linalg.norm(turned), SETTINGS, processes=0))
+    return Texture(stored.texels / 255.0 * np.sqrt(stored.scale), wrap="clamp")

@@ -1,0 +1,158 @@
+"""The fluence inside a body: light tracing, its factors, and the textures of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from oracle import close, rng, technique, unit, units
+from sssgen.harness.scenes.camera import Camera
+from sssgen.harness.scenes.geometry import Ball, Box
+from sssgen.lab.fluence import fluence_field as field
+from sssgen.lab.fluence import fluence_volumes as volumes
+from sssgen.lab.fluence import octahedron
+from sssgen.lab.fluence.factors import factors
+from sssgen.lab.fluence.fluence_field import Settings
+from sssgen.lab.fluence.photons import scatter
+from sssgen.lab.reference.inside_lengths import thickness
+from sssgen.lab.scene.measured_scene import MeasuredScene
+from sssgen.lab.scene.media import Medium
+from sssgen.support.diagnostics import SssgenError
+
+FEW = Settings(voxels=10, side=4, photons=4000)
+
+
+def body(geometry: Ball | Box, extinction: float = 4.0, albedo: float = 1.0, ior: float = 1.0) -> MeasuredScene:
+    scattering = extinction * albedo
+    medium = Medium("test", (extinction - scattering,) * 3, (scattering,) * 3, 0.0, ior, "the test")
+    return MeasuredScene("body", "body", geometry, Camera(), (), medium, None)
+
+
+def test_directions_of_the_octahedral_map() -> None:
+    directions = octahedron.directions(8)
+    close(np.linalg.norm(directions, axis=1), 1.0)
+    place = technique("common/octahedron.sss:octahedral_place")
+    centres = (np.arange(8) + 0.5) / 8
+    y, x = np.meshgrid(centres, centres, indexing="ij")
+    close(place(v=directions), np.stack([x.ravel(), y.ravel()], axis=1), atol=1e-12)
+    close(place(v=np.zeros((1, 3))), 0.5)
+
+
+def test_scattered_directions_have_the_mean_cosine() -> None:
+    direction = np.tile(unit(np.array([1.0, -2.0, 0.5])), (200_000, 1))
+    for anisotropy in (0.0, 0.6, -0.3):
+        scattered = scatter(direction, anisotropy, np.random.default_rng(1))
+        close(np.linalg.norm(scattered, axis=1), 1.0)
+        close((scattered * direction).sum(axis=1).mean(), anisotropy, atol=5e-3)
+
+
+def test_the_collisions_of_a_thin_body_are_those_of_single_scattering() -> None:
+    """Where the body is thin, the second collision follows from the first by an integral over pairs of points."""
+    extinction, radius = 0.5, 0.4
+    traced = field.of_light(
+        body(Ball(radius), extinction), np.array([0.0, 0.0, 1.0]), FEW._replace(photons=60_000), processes=0
+    )
+    points = rng(3).uniform(-radius, radius, (400_000, 3))
+    points = points[np.linalg.norm(points, axis=1) < radius]
+    first, second = np.array_split(points, 2)
+    first = first[: len(second)]
+    volume = 4.0 / 3.0 * np.pi * radius**3
+    # fluence at the second points: the first ones scatter what the light has left there, isotropically
+    way = np.sqrt(radius**2 - (first[:, :2] ** 2).sum(axis=1)) - first[:, 2]
+    apart = np.linalg.norm(first - second, axis=1)
+    scattered = extinction * np.exp(-extinction * (way + apart)) / (4.0 * np.pi * apart**2)
+    expected = volume * scattered.mean() / 4.0
+    weights = np.bincount(traced.nearest, minlength=traced.values.shape[2])
+    assert weights.sum() == traced.grid.voxels
+    inside = np.array([np.linalg.norm(traced.grid.centres(6).reshape(-1, 3), axis=1) < radius]).reshape(-1, 216).mean(1)
+    counted = inside > field.LEAST_INSIDE
+    # bodies this thin scatter a third time, too: a tenth of the second
+    mean = float((traced.values[0, 0] * inside[counted]).sum() / inside[counted].sum())
+    assert expected < mean < 1.25 * expected
+
+
+def test_no_light_is_lost_where_nothing_is_absorbed() -> None:
+    """In white light from everywhere the radiance in a body that absorbs nothing is 1, that with an index n is n^2."""
+    geometry, extinction = Box((0.8, 0.8, 0.8)), 3.0
+    angles = octahedron.solid_angles(FEW.side)
+    scattered = {}
+    for ior in (1.0, 1.4):
+        traced = field.field(body(geometry, extinction, 1.0, ior), FEW._replace(photons=20_000), processes=0)
+        scattered[ior] = np.einsum("dv,d->v", traced.values[0], angles)
+        inner = np.abs(traced.grid.centres()[:, 0]).max(axis=1) < 0.3
+        assert inner.sum() > 100
+    places = np.repeat(traced.grid.centres()[inner, 0], len(angles), axis=0)
+    lengths = thickness(geometry, places, np.tile(traced.directions, (inner.sum(), 1)))
+    direct = 0.25 * np.exp(-extinction * lengths).reshape(-1, len(angles)) @ angles
+    close((scattered[1.0][traced.nearest[inner]] + direct).mean(), np.pi, rtol=0.03)
+    refracted = scattered[1.4][traced.nearest[inner]].mean()
+    assert 1.4**2 * scattered[1.0][traced.nearest[inner]].mean() < refracted < 1.4**2 * np.pi
+
+
+def test_the_same_seed_gives_the_same_bytes() -> None:
+    light = np.array([0.6, 0.0, 0.8])
+    scene = body(Ball(0.5))
+    first, second, other = (
+        volumes.fixed(field.of_light(scene, light, FEW._replace(seed=seed), processes=0)) for seed in (5, 5, 6)
+    )
+    assert first.texels.tobytes() == second.texels.tobytes() != other.texels.tobytes()
+
+
+def test_factors_of_a_noisy_field() -> None:
+    """The weights follow the smooth field: dark rows keep their relative accuracy."""
+    left, right = rng(1).uniform(0.1, 1.0, (300, 3)), rng(2).uniform(0.1, 1.0, (3, 80))
+    exact = (left * np.logspace(-2, 0, 300)[:, None]) @ right
+    noisy = exact * rng(3).uniform(0.5, 1.5, exact.shape)
+    u, v = factors(noisy, 3, 1e-4, exact)
+    error = np.abs(u @ v / exact - 1.0)
+    assert np.median(error) < 0.1
+    assert np.median(error[:100]) < 0.12  # the dark rows
+    u, v = factors(exact, 3, 1e-6, exact)
+    close(u @ v, exact, rtol=1e-4)  # the ridge
+
+
+def test_the_table_continues_across_the_edges_of_the_map() -> None:
+    """A smooth function of the direction is read back, also at the border of its octahedral map."""
+    side = 16
+    directions = octahedron.directions(side)
+    values = 2.0 + directions @ np.array([0.5, -0.7, 0.3])
+    tile = volumes.bordered(values.reshape(side, side, 1))
+    tests = units(500, 9)
+    place = technique("common/octahedron.sss:octahedral_place")(v=tests)
+    texels = place * side + 1.0 - 0.5
+    low = np.floor(texels).astype(int)
+    part = texels - low
+    read = sum(
+        tile[low[:, 1] + dy, low[:, 0] + dx, 0]
+        * (part[:, 0] if dx else 1.0 - part[:, 0])
+        * (part[:, 1] if dy else 1.0 - part[:, 1])
+        for dx in (0, 1)
+        for dy in (0, 1)
+    )
+    close(read, 2.0 + tests @ np.array([0.5, -0.7, 0.3]), atol=0.05)  # a texel is 13 degrees wide
+
+
+def test_a_body_without_voxels_inside_is_an_error() -> None:
+    with pytest.raises(SssgenError, match="no voxel is inside"):
+        field.field(body(Box((1.0, 1.0, 1e-4))), FEW._replace(voxels=4), processes=0)
+
+
+def test_the_bake_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from sssgen.cli.main import main
+    from sssgen.harness.pictures.volumes import read
+
+    monkeypatch.chdir(tmp_path)
+    small = ["--voxels", "8", "--photons", "40", "--processes", "1"]
+    assert main(["bake", "fluence", "cube", "-o", "a.dds", *small]) == 2  # neither a scene file nor a mesh
+    lab = Path(__file__).parents[2] / "examples" / "lab"
+    assert main(["bake", "fluence", str(lab / "cube.toml"), "-o", "a.dds", "--rank", "4", *small]) == 0
+    assert sorted(path.name for path in tmp_path.glob("a*")) == [
+        "a_latents_1.dds", "a_latents_1.dds.json", "a_table.exr", "a_table.exr.json",
+    ]  # fmt: skip
+    assert read("a_latents_1.dds", "a").shape[3] == 4
+    for wrong in (["--rank", "5"], ["--voxels", "1"], ["--photons", "0"], ["--medium", "marble"], ["--light", "0,0,0"]):
+        assert main(["bake", "fluence", str(lab / "cube.toml"), "-o", "a.dds", *small, *wrong]) == 2, wrong
+    assert main(["bake", "fluence", str(lab / "cube.toml"), "-o", "b.npy", "--light", "0,1,0", *small]) == 0
+    assert np.load("b.npy").shape[3] == 4
