@@ -110,13 +110,25 @@ def timed() -> int:
 
 def scene_table(record: Record) -> str:
     """The table of the scenes."""
-    rows = ["| scene | medium | σt per unit (r, g, b) | albedo (r, g, b) |", "|---|---|---|---|"]
+    rows = [
+        "| scene | medium | σt per unit (r, g, b) | albedo (r, g, b) | boundary | lights |",
+        "|---|---|---|---|---|---|",
+    ]
     for scene in record["scenes"]:
         medium = scene.get("medium")
         cells = [medium["name"], *(", ".join(f"{x:.4g}" for x in medium[key]) for key in ("extinction", "albedo"))] \
             if medium else ["clear, with an inlay", "", ""]  # fmt: skip
+        cells += [boundary(medium), ", ".join(scene["lights"])] if medium else ["", ""]
         rows.append(f"| `{scene['name']}`: {scene['title']} | {' | '.join(cells)} |")
     return "\n".join(rows)
+
+
+def boundary(medium: Record) -> str:
+    """The surface of a medium, as text."""
+    if medium["ior"] == 1.0:
+        return "matched"
+    rough = f", roughness {medium['roughness']:g}" if medium["roughness"] else ", smooth"
+    return f"index {medium['ior']:g}{rough}"
 
 
 def points_of(record: Record, scene: str, role: str) -> list[Point]:

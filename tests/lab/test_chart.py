@@ -13,6 +13,7 @@ import pytest
 from sssgen.cli.chart import summary
 from sssgen.cli.main import main
 from sssgen.harness.backends import Backend
+from sssgen.harness.scenes.scene import Light
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.picked_material import stages_of
@@ -496,3 +497,15 @@ def test_refraction_is_charted_where_the_body_refracts() -> None:
     assert [chart._applies(case, bent) for case in (scene, refracting)] == [False, True]
     assert [chart._applies(case, plain) for case in (scene, refracting)] == [True, True]
     assert all(chart._applies(scene, candidate) for candidate in candidates.coordinates())
+
+
+def test_maps_of_distant_lights_are_charted_where_all_lights_are_distant() -> None:
+    scene = cube()
+    near = replace(scene, lights=(*scene.lights, Light((0.0, 3.0, 0.0), None, (1.0, 1.0, 1.0))))
+    chain = ("exact_view_thickness", "interior_octaves")
+    mapped, marched = (
+        candidates.Candidate("translucency", chain[-1], chain[-1], (), chain, False, path)
+        for path in ("depth_map_path", "march_light")
+    )
+    assert [chart._applies(case, mapped) for case in (scene, near)] == [True, False]
+    assert [chart._applies(case, marched) for case in (scene, near)] == [True, True]

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
+from sssgen.ir.drawn import DISTANT
 from sssgen.ir.nodes import Function, Uniform
 from sssgen.ir.types import Sampler, kind_of
 from sssgen.lab.measure.measured_chain import MaterialSection
@@ -328,6 +329,13 @@ def quantity_read(technique: Technique) -> str:
 def refracts(candidate: Candidate) -> bool:
     """Whether a technique of the chain has the refractive index: without refraction, one that has not is the same."""
     return any(uniform.name == INDEX for name in candidate.techniques for uniform in load(name).uniforms)
+
+
+def needs_distant_light(candidate: Candidate) -> bool:
+    """Whether the chain reads a texture that a program draws for a light from afar."""
+    names = [*candidate.techniques, *([candidate.path.partition(":")[0]] if candidate.path else [])]
+    uniforms = [uniform for name in names for uniform in load(name).uniforms]
+    return any(DISTANT in dict(uniform.hints).get("drawn", ()) for uniform in uniforms)
 
 
 def of_role(role: str) -> list[Technique]:
