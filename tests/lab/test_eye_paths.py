@@ -258,7 +258,7 @@ def test_energy_is_conserved() -> None:
     assert left == pytest.approx(1.0, abs=2.0 * sum(error for _, error in scattered))
 
 
-@pytest.mark.parametrize("rough", [0.3, 0.6])
+@pytest.mark.parametrize("rough", [0.3, pytest.param(0.6, marks=pytest.mark.slow)])
 def test_a_rough_surface_conserves_energy(rough: float) -> None:
     # a deep slab without absorption: all light of a beam leaves on the lit side, at once or scattered. The eye's paths
     # and the light's rays meet the surface from opposite sides, so that this also tests reciprocity
