@@ -127,7 +127,8 @@ def _facts(scene: MeasuredScene, settings: Settings, traced: Field) -> dict[str,
         "error": {"standard_error": traced.noise, "relative_to": "the mean value, before the factors average it"},
         "opaque_voxels": bool(max(medium.extinction) * voxel > OPAQUE),
         "object_to_volume": matrix.tolist(),
-        "parameters": dict(medium.parameters),
+        # of a body that is not moved; an engine multiplies the matrix with world space to object space
+        "parameters": {**medium.parameters, "world_to_volume": matrix.T.ravel().tolist()},
         "import": import_settings("3D", "clamp", mipmaps=False),
     }  # fmt: skip
 

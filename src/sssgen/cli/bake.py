@@ -200,7 +200,7 @@ def _fluence_options(parser: ArgumentParser) -> None:
     add("--rank", type=int, default=8, metavar="K", help="numbers in a voxel, for any distant light: 4 or 8 (default)")
     add("--light", metavar="LIGHT", help="one light that is fixed to the body: a .json with direction, or X,Y,Z")
     add("--voxels", type=int, default=24, metavar="N", help="voxels along the longest side (default: 24)")
-    add("--photons", type=int, default=6000, metavar="N", help="for each direction and channel (default: 6000)")
+    add("--photons", type=int, default=24000, metavar="N", help="for each direction and channel (default: 24000)")
     add("--format", metavar="F", help="npy, dds, ktx2 or raw+json (default: from FILE's suffix)")
     add_seed(parser, "the seed of the photons")
     add_workers(parser)

@@ -129,7 +129,8 @@ def _baked_parameters(scene: Scene, material: Material, reflection: Mapping[str,
 def _in_world_space(sidecar: Baked, geometry: Geometry | None) -> dict[str, Any]:
     """The parameters of a JSON file, transformed from object space to world space where techniques need that.
 
-    Raises SssgenError for a depth map of a body that the scene scales: its lengths are in the units of the bake.
+    Raises SssgenError for a depth map of a body that the scene scales, as its lengths are in the units of the bake, and
+    for fluence of a body of another scale.
     """
     values = dict(sidecar.parameters)
     if geometry is None:
@@ -143,6 +144,12 @@ def _in_world_space(sidecar: Baked, geometry: Geometry | None) -> dict[str, Any]
         if geometry.scale != 1.0:
             raise failure("the depth map is for the unscaled body, but the scene scales it", "scale the mesh itself")
         values["light_matrix"] = [*(np.array(matrix).reshape(4, 4).T @ to_object).T.ravel()]
+    if isinstance(matrix := values.get("world_to_volume"), list) and sidecar.kind == "fluence" and len(matrix) == 16:
+        scale = sidecar.facts.get("body", {}).get("scale")
+        if scale != geometry.scale:
+            message = f"the fluence was baked for the scale {scale}, but the scene has {geometry.scale:g}"
+            raise failure(message, "bake it for this scene: light fades over other lengths in a body of another size")
+        values["world_to_volume"] = [*(np.array(matrix).reshape(4, 4).T @ to_object).T.ravel()]
     return values
 
 

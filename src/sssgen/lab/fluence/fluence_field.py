@@ -36,7 +36,7 @@ class Settings(NamedTuple):
     """Along the longest side of the box"""
     side: int = 16
     """Light directions along each side of the octahedral map"""
-    photons: int = 6000
+    photons: int = 24000
     """For each direction and channel"""
     seed: int = 0
 
