@@ -208,14 +208,18 @@ def test_the_text_of_a_body_computes_its_distance(shape: Geometry, tmp_path: Pat
 
 def test_bodies_without_a_transform_are_bound_directly(tmp_path: Path) -> None:
     sphere = Distance("sphere", parameters={"radius": 0.4})
-    assert body.body(sphere) == body.Body("sphere", {}, {"radius": 0.4})
+    bound = body.body(sphere)
+    assert bound == body.Body("sphere", {}, {"radius": 0.4}, bound.span)
+    assert 0.8 * 3.0**0.5 <= bound.span < 0.9 * 3.0**0.5  # the diagonal of its box, which comes from a grid
     text = "float egg(vec3 p)\n{\n    return length(p) - 0.5;\n}\n"
     (tmp_path / "egg.sss").write_text(text, encoding="utf-8")
     egg = Distance("egg.sss:egg", folder=str(tmp_path))
-    assert body.body(egg) == body.Body("egg.sss:egg", {"egg.sss": text}, {})
+    assert replace(body.body(egg), span=0.0) == body.Body("egg.sss:egg", {"egg.sss": text}, {})
     # a function of object space does not depend on the body's position
     assert body.body(replace(egg, position=(1.0, 0.0, 0.0))).function == "distance_texture_world"
-    assert body.body(Mesh(path="m.obj")).function == "distance_texture_world"
+    corners, faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n", "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    (tmp_path / "m.obj").write_text(corners + faces, encoding="utf-8")
+    assert body.body(Mesh(path=str(tmp_path / "m.obj"))).function == "distance_texture_world"
     with pytest.raises(SssgenError, match="cannot be part of a union"):
         body.body(Union((egg,)))
 

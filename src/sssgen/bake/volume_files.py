@@ -62,7 +62,7 @@ def _encoding(texels: npt.NDArray[Any], format: str) -> Encoding:
     if format not in FORMATS:
         hint = did_you_mean(format, FORMATS) or f"there are {', '.join(FORMATS)}"
         raise failure(f"'{format}' is not a format of volumes", hint)
-    if texels.ndim not in (3, 4) or 0 in texels.shape:
+    if texels.ndim not in (3, 4) or texels.shape[3:] not in ((), (4,)) or 0 in texels.shape:
         raise failure(
             f"an array of shape {texels.shape} is not a volume", "(depth, height, width), or (depth, height, width, 4)"
         )
@@ -72,7 +72,8 @@ def _encoding(texels: npt.NDArray[Any], format: str) -> Encoding:
         (encoding for encoding in ENCODINGS if encoding.dtype == dtype and encoding.channels == channels), None
     )
     if encoding is None:
-        message = f"{channels} channels of type {texels.dtype} have no file format"
+        plural = "" if channels == 1 else "s"
+        message = f"texels of type {texels.dtype} with {channels} channel{plural} have no file format"
         raise failure(message, "use one of uint8, uint16, float16 or float32, or four of uint8")
     return encoding
 
