@@ -241,7 +241,10 @@ def fluxes(depth: float, medium: Medium, samples: int) -> list[tuple[float, floa
     return results
 
 
-@pytest.mark.parametrize(("depth", "albedo", "anisotropy", "ior"), SLABS)
+BEAMS = [SLABS[0], *(pytest.param(*slab, marks=pytest.mark.slow) for slab in SLABS[1:])]
+
+
+@pytest.mark.parametrize(("depth", "albedo", "anisotropy", "ior"), BEAMS)
 def test_slabs_in_a_beam_by_adding_and_doubling(depth: float, albedo: float, anisotropy: float, ior: float) -> None:
     reflected, through, _, _ = iadpython.Sample(a=albedo, b=depth, g=anisotropy, n=ior, quad_pts=24).rt()
     front, back = unscattered(depth, ior)
@@ -258,7 +261,8 @@ def test_energy_is_conserved() -> None:
     assert left == pytest.approx(1.0, abs=2.0 * sum(error for _, error in scattered))
 
 
-@pytest.mark.parametrize("rough", [0.3, pytest.param(0.6, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("rough", [0.3, 0.6])
 def test_a_rough_surface_conserves_energy(rough: float) -> None:
     # a deep slab without absorption: all light of a beam leaves on the lit side, at once or scattered. The eye's paths
     # and the light's rays meet the surface from opposite sides, so that this also tests reciprocity
@@ -363,6 +367,7 @@ def test_a_near_point_falls_off() -> None:
     assert near / far == pytest.approx(4.0, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_sky_is_the_sum_of_its_lights() -> None:
     # the same light by two estimators: paths that leave the body, and voxels of light from many directions
     rng = np.random.default_rng(4)

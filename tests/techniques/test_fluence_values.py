@@ -21,7 +21,7 @@ def test_the_techniques_read_what_the_bake_writes(name: str) -> None:
     rank = int(name[-1])
     medium = Medium("test", (0.6,) * 3, (5.4,) * 3, 0.0, 1.0, "the test")
     scene = MeasuredScene("body", "body", Ball(0.5), Camera(), (), medium, None)
-    traced = field.field(scene, Settings(voxels=10, side=16, photons=600), processes=0)
+    traced = field.field(scene, Settings(voxels=8, side=16, photons=300), processes=0)
     stored = volumes.factored(traced, rank)
     names = {f"fluence_table_{rank}": Texture(stored.table, wrap="clamp")}
     for number in range(rank // 4):
