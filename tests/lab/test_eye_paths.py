@@ -254,6 +254,7 @@ def test_slabs_in_a_beam_by_adding_and_doubling(depth: float, albedo: float, ani
         assert abs(flux - expected) < 2.0 * error, f"{flux} {expected} {error}"
 
 
+@pytest.mark.slow
 def test_energy_is_conserved() -> None:
     # without absorption all light of a beam leaves: scattered, or unscattered, or reflected at first
     scattered = fluxes(1.0, grey(1.0, 1.5), 1600)
