@@ -165,9 +165,9 @@ def test_the_report_is_valid_xml_for_any_message() -> None:
     assert (suite.attrib["tests"], suite.attrib["failures"], suite.attrib["skipped"]) == ("3", "1", "1")
     assert suite.attrib["time"] == "1.750"
     failed, skipped, passed = suite
-    assert failed.find("failure").text.endswith("second line")  # type: ignore[union-attr]
-    assert skipped.find("skipped").attrib["message"] == "gl is missing"  # type: ignore[union-attr]
-    assert passed.find("system-out").text == "good\nmore"  # type: ignore[union-attr]
+    assert failed.find("failure").text.endswith("second line")
+    assert skipped.find("skipped").attrib["message"] == "gl is missing"
+    assert passed.find("system-out").text == "good\nmore"
 
 
 def test_an_empty_report() -> None:

@@ -220,7 +220,7 @@ def test_lanes_and_python_numbers(row: Builtin) -> None:
         bare = function(row.name)(*(value[..., None] if value.ndim else value.item() for value in values))
     np.testing.assert_array_equal(lanes, np.repeat(once, 5, -1))
     np.testing.assert_array_equal(np.ravel(bare), np.ravel(once))
-    if types[0].kind != "uint":  # type: ignore[union-attr]
+    if types[0].kind != "uint":
         assert bare.dtype == once.dtype
 
 

@@ -346,8 +346,8 @@ def test_a_record_restores_its_candidates() -> None:
     stages = stages_of(point, shape, cube().medium)
     values = dict(stages[-1].values)
     assert values["steps"] == 6 and values["reach"] == shape.span and dict(stages[0].values)["steps"] == 3
-    assert values["extinction"] == pytest.approx(list(cube().medium.extinction))  # type: ignore[union-attr]
-    assert values["scattering_albedo"] == pytest.approx(list(cube().medium.albedo))  # type: ignore[union-attr]
+    assert values["extinction"] == pytest.approx(list(cube().medium.extinction))
+    assert values["scattering_albedo"] == pytest.approx(list(cube().medium.albedo))
     assert ("light_path", "march_light") in stages[-1].bind
     for name, wrong in (("requires", ["sunshine"]), ("bytes", -1), ("path", 3)):
         with pytest.raises(SssgenError, match=name if name != "requires" else "requires 'sunshine'"):
