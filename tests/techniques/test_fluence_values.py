@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from oracle import close, technique
+from oracle import Array, close, rng, technique, unit, units
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball
 from sssgen.lab.fluence import fluence_field as field
@@ -60,3 +60,81 @@ def test_the_technique_of_a_fixed_light() -> None:
     )  # fmt: skip
     light = 0.25 * np.exp(-0.3 * sigma) + 0.25 * np.array([1.0, 2.0, 4.0])
     close(result, albedo * (1.0 - np.exp(-sigma * length[:, None])) * light, rtol=1e-9)
+
+
+RADIUS = 0.7
+
+
+def refracted_in_ball(ior: float, count: int) -> tuple[Array, Array, Array, Array, Array]:
+    """Points on a ball, directions to an eye, the refracted rays and their chords, and the factor of radiance."""
+    normal = units(count, 3)
+    view = unit(normal + 0.9 * units(count, 4))
+    cosine = np.einsum("nc,nc->n", normal, view)
+    side = view - cosine[:, None] * normal
+    sine = np.linalg.norm(side, axis=1) / ior
+    ray = -(np.sqrt(1.0 - sine**2)[:, None] * normal + side / ior)
+    least = ((ior - 1.0) / (ior + 1.0)) ** 2
+    share = (1.0 - least) * (1.0 - (1.0 - cosine) ** 5) / ior**2
+    return normal, view, ray, 2.0 * RADIUS * np.sqrt(1.0 - sine**2), share
+
+
+@pytest.mark.parametrize("ior", [1.0, 1.4, 2.0])
+def test_the_technique_of_a_fixed_light_behind_a_refracting_surface(ior: float) -> None:
+    """In light that is linear along each axis, two nodes are near the integral over the ray; in even light, exact."""
+    normal, view, ray, chord, share = refracted_in_ball(ior, 200)
+    sigma, albedo = 4.0, np.array([0.9, 0.5, 0.1])
+    slope, level = np.array([0.3, -0.2, 0.25]), 1.1
+    # a volume of square roots: 64 texels along each axis, of which the filter interpolates linearly
+    count = 64
+    axis = (np.arange(count) + 0.5) / count * 2.0 - 1.0
+    z, y, x = np.meshgrid(axis, axis, axis, indexing="ij")
+    root = np.sqrt((level + x * slope[0] + y * slope[1] + z * slope[2]) / 4.0)
+    matrix = np.diag([0.5, 0.5, 0.5, 1.0])
+    matrix[:3, 3] = 0.5
+    values = {"P": RADIUS * normal, "V": view, "N": normal, "ior": ior, "scattering_albedo": albedo,
+              "d": 2.0 * RADIUS * np.einsum("nc,nc->n", normal, view), "mean_free_path": 1.0 / sigma,
+              "fluence_scale": (4.0, 4.0, 8.0), "world_to_volume": matrix}  # fmt: skip
+    lit = technique("fluence_fixed_refracted")
+    result = lit(
+        extinction=(sigma,) * 3, fluence_volume=Texture(np.repeat(root[..., None], 3, axis=3), wrap="clamp"), **values
+    )
+    parts = (np.arange(4000) + 0.5) / 4000
+    length = chord[:, None] * parts
+    light = level + (RADIUS * normal) @ slope
+    along = light[:, None] + (ray @ slope)[:, None] * length
+    seen = (sigma * np.exp(-sigma * length) * along).mean(axis=1) * chord
+    expected = (share * seen)[:, None] * albedo * (1.0, 1.0, 2.0)
+    # two nodes leave a remainder: the logarithm of their place is not a polynomial
+    close(result, expected, rtol=1.2e-2)
+    channels = np.array([2.0, 4.0, 6.0])
+    even = lit(extinction=channels, fluence_volume=Texture(np.full((2, 2, 2, 3), 0.5), wrap="clamp"), **values)
+    expected = share[:, None] * albedo * (1.0 - np.exp(-channels * chord[:, None])) * (1.0, 1.0, 2.0)
+    close(even, expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize("rank", [4, 8])
+def test_the_factored_techniques_behind_a_refracting_surface(rank: int) -> None:
+    ior, mean_free_path = 1.4, 0.2
+    normal, view, ray, chord, share = refracted_in_ball(ior, 60)
+    sigma, albedo = np.array([3.0, 5.0, 7.0]), np.array([0.9, 0.6, 0.4])
+    latents = rng(5).uniform(0.0, 1.0, (6, 5, 4, rank))
+    table = rng(6).uniform(-0.2, 1.0, (18, 18 * (rank + 1), 3))
+    names = {f"fluence_table_{rank}": Texture(table, wrap="clamp")}
+    for number in range(rank // 4):
+        names[f"fluence_latents_{rank}_{number + 1}"] = Texture(
+            latents[..., 4 * number : 4 * number + 4], "nearest", "clamp"
+        )
+    matrix = np.diag([0.5, 0.5, 0.5, 1.0])
+    matrix[:3, 3] = 0.5
+    result = technique(f"fluence_factored_{rank}_refracted")(
+        d=2.0 * RADIUS * np.einsum("nc,nc->n", normal, view), P=RADIUS * normal, V=view, N=normal, ior=ior,
+        L_object=np.tile([0.0, 0.0, 1.0], (60, 1)), extinction=sigma, scattering_albedo=albedo,
+        mean_free_path=mean_free_path, world_to_volume=matrix, **names,
+    )  # fmt: skip
+    place = RADIUS * normal + np.minimum(np.log(2.0) * mean_free_path, 0.5 * chord)[:, None] * ray
+    x, y, z = (np.clip((0.5 * place + 0.5) * (4, 5, 6), 0, (3, 4, 5)).astype(int)).T
+    # the direction +z is in the middle of each tile: between four texels
+    tiles = table.reshape(18, rank + 1, 18, 3)[8:10, :, 8:10].mean(axis=(0, 2))
+    light = np.maximum(tiles[0] + latents[z, y, x] @ tiles[1:], 0.0)
+    close(result, share[:, None] * albedo * (1.0 - np.exp(-sigma * chord[:, None])) * light, rtol=1e-5, atol=1e-9)
+    assert (light > 0.0).all(axis=1).any()

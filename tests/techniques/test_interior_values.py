@@ -119,8 +119,10 @@ def test_a_refracting_surface_bends_the_eyes_ray_and_lets_a_share_through(
     bent = np.sqrt(1.0 - sine**2)[:, None] * normal + side / ior
     least = ((ior - 1.0) / (ior + 1.0)) ** 2
     share = (1.0 - least) * (1.0 - (1.0 - cosine) ** 5)
-    values = {"mean_free_path": 0.3, "P": place, "L": light, "d": length}
-    straight = technique(name, light_path=path)(V=bent, **values)
-    result = technique(refracted, light_path=path)(V=view, N=normal, ior=ior, **values)
+    values = {"mean_free_path": 0.3, "P": place, "L": light}
+    # the chord of the refracted ray
+    chord = 2.0 * RADIUS * np.einsum("nc,nc->n", normal, bent)
+    straight = technique(name, light_path=path)(V=bent, d=chord, **values)
+    result = technique(refracted, light_path=path)(V=view, N=normal, ior=ior, d=length, **values)
     close(result, share[:, None] * straight, rtol=1e-9)
     assert np.linalg.norm(bent, axis=1) == pytest.approx(1.0)

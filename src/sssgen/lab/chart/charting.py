@@ -136,12 +136,15 @@ def _candidates(role: str, scene: MeasuredScene, measured: Sequence[Mapping[str,
 
 
 def _applies(scene: MeasuredScene, candidate: Candidate) -> bool:
-    """Whether a candidate is charted on a scene: refraction only where the body refracts, and maps of lights from afar
-    only where all lights are."""
+    """Whether a candidate is charted on a scene: refraction only where the body refracts, light that is baked without
+    refraction only elsewhere, and maps of lights from afar only where all lights are."""
     if any(light.position is not None for light in scene.lights) and candidates.needs_distant_light(candidate):
         return False
-    matched = scene.medium is not None and scene.medium.ior == 1.0
-    return candidate.role == "coordinates" or not matched or not candidates.refracts(candidate)
+    if candidate.role == "coordinates" or scene.medium is None:
+        return True
+    if scene.medium.ior == 1.0:
+        return not candidates.refracts(candidate)
+    return candidates.refracts(candidate) or not candidates.is_calibrated(candidate)
 
 
 Before = Mapping[tuple[str, tuple[str, ...], Any], Mapping[str, tuple[float, ...]]]

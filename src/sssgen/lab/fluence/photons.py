@@ -2,8 +2,9 @@
 
 For each direction, photons start on a rectangle across the body. They cross the surface (with Fresnel's reflection and
 refraction if the medium has a refractive index), collide and scatter; each collision after the first counts in its
-voxel. The estimate of a voxel is π times the mean radiance for an irradiance of 1 on a plane that faces the light:
-the collision estimator, fluence = weight / (extinction · volume), divided by 4.
+voxel. Behind a refracting surface the first collision counts, too: a technique cannot compute the unscattered light
+there, as no straight line leads to the light. The estimate of a voxel is π times the mean radiance for an irradiance
+of 1 on a plane that faces the light: the collision estimator, fluence = weight / (extinction · volume), divided by 4.
 """
 
 from __future__ import annotations
@@ -64,7 +65,7 @@ class Tracer:
         direction = np.repeat(-towards, photons, axis=0)
         start_weight = areas / photons
         weight = start_weight[number]
-        scattered = np.zeros(len(weight), np.bool_)
+        scattered = np.full(len(weight), medium.ior != 1.0)
         sums = np.zeros(len(towards) * grid.voxels)
         while len(weight):
             face, ahead = self.rays.nearest(position, direction)

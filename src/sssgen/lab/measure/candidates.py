@@ -331,6 +331,11 @@ def refracts(candidate: Candidate) -> bool:
     return any(uniform.name == INDEX for name in candidate.techniques for uniform in load(name).uniforms)
 
 
+def is_calibrated(candidate: Candidate) -> bool:
+    """Whether a bake has the scale of the chain's light, so that nothing is fitted."""
+    return bool(candidate.techniques) and load(candidate.techniques[-1]).attributes.calibrated
+
+
 def needs_distant_light(candidate: Candidate) -> bool:
     """Whether the chain reads a texture that a program draws for a light from afar."""
     names = [*candidate.techniques, *([candidate.path.partition(":")[0]] if candidate.path else [])]

@@ -14,7 +14,7 @@ import numpy as np
 from sssgen.harness.backends import Array
 from sssgen.lab.measure import error_metric as metrics
 from sssgen.lab.measure import fitting
-from sssgen.lab.measure.candidates import PROBES, Candidate, converged_counts, load
+from sssgen.lab.measure.candidates import PROBES, Candidate, converged_counts, is_calibrated, load
 from sssgen.lab.measure.fitting import Fitted
 from sssgen.lab.measure.measured_chain import Chain, material_of
 from sssgen.lab.measure.needed_data import NeededData, needed_data
@@ -85,7 +85,7 @@ def fit_candidate(candidate: Candidate, training: Sequence[View], before: Parame
     `before` has the parameters of its first technique, if they have been fitted: then that technique is evaluated only
     once, and the rest of the chain is fitted to its output.
     """
-    if candidate.techniques and load(candidate.techniques[-1]).attributes.calibrated:
+    if is_calibrated(candidate):
         return Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), math.nan)
     solvable = [
         (view, problem) for view in training if (problem := problem_of(candidate.role, view, summed=False)) is not None
