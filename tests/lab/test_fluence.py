@@ -177,3 +177,35 @@ def test_the_bake_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         assert main(["bake", "fluence", str(lab / "cube.toml"), "-o", "a.dds", *small, *wrong]) == 2, wrong
     assert main(["bake", "fluence", str(lab / "cube.toml"), "-o", "b.npy", "--light", "0,1,0", *small]) == 0
     assert np.load("b.npy").shape[3] == 4
+
+
+def test_a_bake_of_another_boundary_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A material with a bake through a refracting surface needs a technique that refracts, and the reverse."""
+    from sssgen.cli.main import main
+    from sssgen.material.material_loading import load_material
+
+    monkeypatch.chdir(tmp_path)
+    cube = (Path(__file__).parents[2] / "examples" / "lab" / "cube.toml").read_text(encoding="utf-8")
+    assert 'preset = "marble"' in cube
+    small = ["--voxels", "6", "--photons", "8", "--processes", "1", "--light", "light.json"]
+    (tmp_path / "light.json").write_text('{"direction": [0.3, 0.8, 0.5]}', encoding="utf-8")
+    material = '[material]\nname = "m"\n[[thickness]]\ntechnique = "back_face_thickness"\n[[translucency]]\n'
+    material += 'technique = "{}"\n{}fluence_volume = "{}.dds"\n'
+    for name, ior in (("matched", ""), ("refracting", "ior = 1.4\n")):
+        text = cube.replace('preset = "marble"', ior + 'preset = "marble"')
+        (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
+        assert main(["bake", "fluence", f"{name}.toml", "-o", f"{name}.dds", *small]) == 0
+
+    def loaded(technique: str, volume: str) -> float:
+        bind = "" if technique.endswith("refracted") else 'bind = {{ light_path = "depth_map_path" }}\n'.format()
+        (tmp_path / "m.toml").write_text(material.format(technique, bind, volume), encoding="utf-8")
+        (stage,) = [stage for stage in load_material("m.toml").stages if stage.technique.name == technique]
+        return float(stage.values["mean_free_path"][0])
+
+    assert loaded("fluence_fixed", "matched") == loaded("fluence_fixed_refracted", "refracting") > 0.0
+    with pytest.raises(
+        SssgenError, match=r"index 1\.4, and the technique does not refract[^$]*fluence_fixed_refracted"
+    ):
+        loaded("fluence_fixed", "refracting")
+    with pytest.raises(SssgenError, match=r"index 1, and the technique refracts[^$]*use fluence_fixed"):
+        loaded("fluence_fixed_refracted", "matched")

@@ -1,4 +1,5 @@
-"""Fluence volumes of a body: the files for fluence_factored_4, fluence_factored_8 and fluence_fixed.
+"""Fluence volumes of a body: the files for the techniques fluence_factored_4, fluence_factored_8 and fluence_fixed, and
+for those with the ending _refracted if the medium has a refractive index.
 
 The light is traced through the body with its boundary (see `sssgen.lab.fluence`); the JSON states its standard error.
 """
@@ -83,12 +84,16 @@ def bake(
         raise failure(f"{settings.photons} photons are not between 2 and 10,000,000", "some thousands are enough")
     grid = fluence_field.grid_in_box(scene, settings.voxels)
     memory.check(grid.voxels * settings.side**2 * BYTES, "use fewer voxels")
+    refracted = "_refracted" if scene.medium.ior != 1.0 else ""
     if light is None:
         traced = fluence_field.field(scene, settings, scheduler, processes, progress)
-        return Baked(_factored(traced, rank), _facts(scene, settings, traced) | {"rank": rank})
+        return Baked(
+            _factored(traced, rank),
+            _facts(scene, settings, traced) | {"rank": rank, "technique": f"fluence_factored_{rank}{refracted}"},
+        )
     traced = fluence_field.of_light(scene, light.place, settings, scheduler, processes, progress)
     stored = volumes.fixed(traced)
-    facts = _facts(scene, settings, traced) | {"light": light.facts()}
+    facts = _facts(scene, settings, traced) | {"light": light.facts(), "technique": f"fluence_fixed{refracted}"}
     facts["parameters"]["fluence_scale"] = [float(value) for value in stored.scale]
     filled = np.concatenate([stored.texels, np.full((*stored.texels.shape[:3], 1), 255, np.uint8)], axis=3)
     return Baked([Part("", filled, "fluence_volume")], facts)

@@ -230,6 +230,7 @@ def _fluence(arguments: Namespace) -> Result:
     x, y, z = baked.facts["texels"]
     lines = [
         f"{x} × {y} × {z} voxels, {baked.facts['directions']} directions, {baked.facts['photons']} photons for each",
+        f"for the technique {baked.facts['technique']}",
         f"standard error of a voxel {baked.facts['error']['standard_error']:.2g} of the mean, before it is averaged",
     ]
     if baked.facts["opaque_voxels"]:
@@ -359,8 +360,8 @@ KINDS = {
     ),
     "fluence": Kind(
         "the light inside a body, as volumes for any distant light, or for one",
-        "Bind the files to the textures of fluence_factored_8, fluence_factored_4 or fluence_fixed,\n"
-        "as their JSON says.",
+        "Bind the files to the textures of the technique that their JSON names: fluence_factored_8,\n"
+        "fluence_factored_4 or fluence_fixed, each with the ending _refracted for a medium with an index.",
         _fluence_options,
         _fluence,
     ),

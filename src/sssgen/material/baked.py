@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 from sssgen.ir.nodes import Uniform
@@ -16,6 +16,8 @@ from sssgen.support.paths import posix
 FORMAT = 1
 """The version of the JSON format."""
 MAX_BYTES = 2**20
+INDEX = "ior"
+"""The parameter for the refractive index of a medium."""
 LARGEST = 1e30
 """Larger than any number of a bake."""
 UNITS = "materials use metres: scale the mesh to a few units"
@@ -91,6 +93,20 @@ def check(baked_texture: Baked, uniform: Uniform, name: str) -> None:
         raise failure(
             f"'{name}' holds {baked_texture.holds}, and '{uniform.name}' takes an image of the body from one view"
         )
+
+
+def check_boundary(baked_texture: Baked, parameters: Collection[str], name: str) -> None:
+    """Raises SssgenError if light is baked with a refracting surface and the technique, with these parameters, has no
+    refractive index, or the reverse: then the unscattered light counts twice, or not at all.
+    """
+    if baked_texture.kind != "fluence" or INDEX not in baked_texture.parameters:
+        return
+    index, refracts = baked_texture.parameters[INDEX], INDEX in parameters
+    if refracts != (index != 1.0):
+        does = "refracts" if refracts else "does not refract"
+        technique = baked_texture.facts.get("technique", "")
+        hint = f"use {technique}" if technique else "use the technique for this boundary"
+        raise failure(f"'{name}' is baked with the refractive index {index:g}, and the technique {does}", hint)
 
 
 def _readers(quantity: str) -> str:

@@ -282,6 +282,7 @@ class _Reader:
                 if texture is None:
                     continue
                 baked.check(texture, uniform, stage.textures[uniform.name])
+                baked.check_boundary(texture, [other.name for other in uniforms], stage.textures[uniform.name])
             except SssgenError as error:
                 for diagnostic in error.diagnostics:
                     self.document.error(span, diagnostic.message, diagnostic.hint)

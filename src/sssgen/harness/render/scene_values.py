@@ -107,6 +107,9 @@ def _baked_parameters(scene: Scene, material: Material, reflection: Mapping[str,
             if sidecar is None:
                 continue
             baked.check(sidecar, _uniform(material, texture), os.path.basename(file))
+            stages = [stage for stage in material.stages if stage.technique.name == texture["technique"]]
+            declared = [uniform.name for stage in stages for uniform in stage.technique.uniforms]
+            baked.check_boundary(sidecar, declared, os.path.basename(file))
             values = _in_world_space(sidecar, scene.geometry)
         except SssgenError as error:
             if (name := texture["source_name"]) not in scene.textures:

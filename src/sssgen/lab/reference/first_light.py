@@ -2,7 +2,7 @@
 
 Light enters through the surface, is refracted and reflected inside; rays carry it. The voxels are along the axes of the
 body's object space and begin at its faces, so that those of a box are inside or outside as a whole. Each estimate is
-the mean of the fluence over the inside part of its voxel.
+the mean of the fluence over the inside part of its voxel, except where this part is very small.
 """
 
 from __future__ import annotations
@@ -24,6 +24,9 @@ PLACES = 4
 """The points of each segment of a ray whose voxels get its light."""
 LINES = 4
 """The lines through a voxel along each of two axes, on which its inside part is measured."""
+LEAST_PART = 1.0 / LINES**2
+"""The inside part of a voxel below which it counts as this: what one line crosses. The measure of smaller parts is too
+rough for a quotient, and rounding leaves parts of 1e-16."""
 FEWEST_VOXELS, MOST_VOXELS = 48, 128
 """Along the longest side."""
 DEPTH = 0.12
@@ -155,7 +158,8 @@ def first_light(
         weight[faint] /= SURVIVAL
         position, direction, weight = position[~dies], direction[~dies], weight[~dies]
         crossings += 1
-    fluence = np.divide(sums, voxels.volume, out=np.zeros_like(sums), where=voxels.volume > 0.0)
+    cell = float(np.prod((voxels.high - voxels.low) / voxels.shape)) * surface.scale**3
+    fluence = sums / np.maximum(voxels.volume, LEAST_PART * cell)
     return FirstLight(fluence, np.stack([picked.direction for picked in chosen]) if directions else None)
 
 
