@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 from sssgen.lab.chart.record import FORMAT, hypervolumes, on_fronts
 from sssgen.lab.jobs.executor import Failure, Item, Progress, run
 from sssgen.lab.jobs.work_items import code_stamp
-from sssgen.lab.measure import candidates
+from sssgen.lab.measure import candidates, fluence_inputs
 from sssgen.lab.measure import scene_references as references
 from sssgen.lab.measure.candidates import Candidate
 from sssgen.lab.measure.fitting import Fitted
@@ -207,6 +207,8 @@ def _points(
         for scene, candidate in jobs
     ]
     fitted: list[Fitted] = _results(fits, settings)
+    bodies = {scene.key: scene for scene, candidate in jobs if candidates.reads_fluence(candidate)}
+    _results([item for scene in bodies.values() for item in fluence_inputs.items(scene)], settings)
     measures = [
         Item(
             "sssgen.lab.measure.measurement:measure_candidate",
@@ -321,7 +323,7 @@ def useful_lengths(
     lengths: Sequence[Candidate],
     group_of: Callable[[Mapping[str, Any]], tuple[str, ...]] = by_chain,
 ) -> list[Candidate]:
-    """Those of `lengths` for complete chains: in each group the cheapest one, and dearer ones that lower the error.
+    """Those of `lengths` for complete chains: in each group the cheapest, and more expensive ones with a lower error.
 
     The training error decides, not the error on the scene.
     """

@@ -110,8 +110,28 @@ def of_light(
     progress: Progress = lambda *_: None,
 ) -> Field:  # fmt: skip
     """The fluence for one light in the direction `light` (3,), object space, with the photons of all directions."""
-    settings = settings._replace(photons=settings.photons * settings.side)
-    return of_directions(scene, light[None], settings, scheduler, processes, progress)
+    return of_directions(scene, light[None], for_light(settings), scheduler, processes, progress)
+
+
+def for_light(settings: Settings) -> Settings:
+    """The settings for a single light, which gets more photons."""
+    return settings._replace(photons=settings.photons * settings.side)
+
+
+def items(scene: MeasuredScene, directions: Array, settings: Settings) -> list[Item]:
+    """The work items of `of_directions`, channel by channel."""
+    groups = [
+        tuple(map(tuple, directions[first : first + GROUP].tolist())) for first in range(0, len(directions), GROUP)
+    ]
+    return [
+        Item(
+            "sssgen.lab.fluence.fluence_field:traced",
+            (scene, channel, group, settings.voxels, settings.photons, settings.seed),
+            f"fluence of {scene.name}",
+        )
+        for channel in range(3)
+        for group in groups
+    ]
 
 
 def of_directions(
@@ -126,17 +146,7 @@ def of_directions(
     if not counting.any():
         raise failure("no voxel is inside the body", "use more voxels, or close the mesh")
     count = len(directions)
-    towards = [tuple(map(tuple, directions[first : first + GROUP].tolist())) for first in range(0, count, GROUP)]
-    items = [
-        Item(
-            "sssgen.lab.fluence.fluence_field:traced",
-            (scene, channel, group, settings.voxels, settings.photons, settings.seed),
-            f"fluence of {scene.name}",
-        )
-        for channel in range(3)
-        for group in towards
-    ]
-    results = run(items, scheduler, processes, progress=progress)
+    results = run(items(scene, directions, settings), scheduler, processes, progress=progress)
     for result in results:
         if isinstance(result, Failure):
             raise failure(f"{result.name}: {result.message}")

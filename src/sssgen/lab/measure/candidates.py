@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from sssgen.ir.drawn import DISTANT
 from sssgen.ir.nodes import Function, Uniform
 from sssgen.ir.types import Sampler, kind_of
+from sssgen.lab.measure.fluence_inputs import PREFIX
 from sssgen.lab.measure.measured_chain import MaterialSection
 from sssgen.lab.scene.scene_body import Body
 from sssgen.lang.check.quantities import SCALARS
@@ -324,6 +325,12 @@ def complete(roles: Sequence[str]) -> tuple[str, ...]:
 def quantity_read(technique: Technique) -> str:
     """The scalar quantity that a technique reads, or ''."""
     return next((param.quantity for param in technique.function.params if param.quantity in SCALARS), "")
+
+
+def reads_fluence(candidate: Candidate) -> bool:
+    """Whether a chain reads textures of the light inside the body."""
+    uniforms = [uniform for name in candidate.techniques for uniform in load(name).uniforms]
+    return any(isinstance(uniform.type, Sampler) and uniform.name.startswith(PREFIX) for uniform in uniforms)
 
 
 def refracts(candidate: Candidate) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache, partial
+from itertools import chain
 
 import numpy as np
 
@@ -12,10 +13,14 @@ from sssgen.harness.scenes.bounds import placed_corners
 from sssgen.harness.scenes.scene import Light
 from sssgen.lab.fluence import fluence_field as field
 from sssgen.lab.fluence import fluence_volumes as volumes
+from sssgen.lab.fluence import octahedron
+from sssgen.lab.jobs.executor import Item
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.targets.runtime.numpy_textures import Texture
 
 SETTINGS = field.Settings()
+PREFIX = "fluence_"
+"""The names of the textures begin with it."""
 RANKS = (4, 8)
 """The ranks of the techniques fluence_factored_N."""
 LATENTS = 4
@@ -39,7 +44,19 @@ def texels(name: str, scene: MeasuredScene) -> int:
     if name.startswith("fluence_table_"):
         side = SETTINGS.side + 2
         return side * side * (int(name.rpartition("_")[2]) + 1)
-    return field.grid_in_box(scene, SETTINGS.voxels).voxels if name.startswith("fluence_") else 0
+    return field.grid_in_box(scene, SETTINGS.voxels).voxels if name.startswith(PREFIX) else 0
+
+
+def items(scene: MeasuredScene) -> list[Item]:
+    """The work items of the fluence of a scene's body. Chains of several processes find their results in the store;
+    otherwise each process would compute them.
+    """
+    if scene.medium is None:
+        return []
+    alone = _without_view(scene)
+    of_all = field.items(alone, octahedron.directions(SETTINGS.side), SETTINGS)
+    fixed = [field.items(alone, _towards(scene, light)[None], field.for_light(SETTINGS)) for light in scene.lights]
+    return [*of_all, *chain.from_iterable(fixed)]
 
 
 @lru_cache(4)
@@ -67,11 +84,17 @@ def _latents(scene: MeasuredScene, rank: int, number: int) -> Texture:
     return Texture(stored / 255.0, wrap="clamp")
 
 
+def _towards(scene: MeasuredScene, light: Light) -> Array:
+    """The unit direction from the body's centre towards a light, in object space."""
+    centre = placed_corners(scene.geometry).mean(axis=0)
+    towards = np.array(light.direction) if light.position is None else np.array(light.position) - centre
+    turned = scene.geometry.to_object()[:3, :3] @ towards
+    unit: Array = turned / np.linalg.norm(turned)
+    return unit
+
+
 @lru_cache(8)
 def _fixed(scene: MeasuredScene, light: Light) -> Texture:
     """The light at each voxel; the scale is part of the texels, whose steps are those of the stored volume."""
-    centre = placed_corners(scene.geometry).mean(axis=0)
-    towards = np.array(light.direction) if light.position is None else np.array(light.position) - centre
-    turned: Array = scene.geometry.to_object()[:3, :3] @ towards
-    stored = volumes.fixed(field.of_light(_without_view(scene), turned / np.linalg.norm(turned), SETTINGS, processes=0))
+    stored = volumes.fixed(field.of_light(_without_view(scene), _towards(scene, light), SETTINGS, processes=0))
     return Texture(stored.texels / 255.0 * np.sqrt(stored.scale), wrap="clamp")
