@@ -123,7 +123,47 @@ def test_a_light_sees_the_surface(shape: Geometry, light: tuple[float, ...]) -> 
             u, v, z, w = view.matrix @ [*hit.position[0], 1.0]
             row, column = divmod(997 * number, TEXELS)
             np.testing.assert_allclose([u / w, v / w], [(column + 0.5) / TEXELS, (row + 0.5) / TEXELS], atol=1e-6)
-            assert depth[row, column] == pytest.approx(z, abs=1e-6)
+            assert depth[row, column, 0] == pytest.approx(z, abs=1e-6)
+
+
+def test_a_light_sees_three_layers() -> None:
+    """First entry, first exit and second entry; a texel without one of them has the depth of the body's end."""
+    shape = SHAPES["two boxes"]  # from -0.95 to -0.45 and from 0.4 to 1 in x; the second is thinner and farther up in z
+    view, depth = light_depth(shape, np.array([-1.0, 0.0, 0.0, 0.0]), layers=True)
+    assert depth.shape == (TEXELS, TEXELS, 3)
+    _, first = light_depth(shape, np.array([-1.0, 0.0, 0.0, 0.0]))
+    np.testing.assert_array_equal(depth[..., :1], first)
+    expected = {(0.1, 0.1): (-0.95, -0.45, 0.4), (0.1, -0.1): (-0.95, -0.45, 1.0), (0.1, 0.5): (0.4, 1.0, 1.0)}
+    for (y, z), planes in expected.items():
+        u, v, _, _ = view.matrix @ [0.0, y, z, 1.0]
+        along = [(view.matrix @ [x, y, z, 1.0])[2] for x in planes]
+        np.testing.assert_allclose(depth[int(v * TEXELS), int(u * TEXELS)], along, atol=1e-9)
+    assert (depth[0, 0] == view.far).all()
+
+
+@pytest.mark.parametrize("name", ["gl", "webgpu"])
+def test_a_gap_is_not_matter(name: str, backend: Callable[[str], Backend], folder: Path) -> None:
+    """Two boxes, one in the shadow of the other: the length towards the light is that of the march through both."""
+    gap = folder / "gap.toml"
+    gap.write_text(
+        MATERIAL.replace("depth_map_path", "depth_layers_path").replace('"shown"', '"gap"'), encoding="utf-8"
+    )
+    parts = "".join(
+        f'[[geometry.part]]\nkind = "box"\nsize = [0.5, 1.0, 1.0]\nposition = [{x}, 0.0, 0.0]\n' for x in (-0.6, 0.6)
+    )
+    text = f'[geometry]\nkind = "union"\n{parts}[[light]]\ndirection = [-1.0, 0.0, 0.0]\n'
+    scene = parse_scene((HEAD + text).replace("shown.toml", "gap.toml"), folder / "scene.toml")
+    oracle = render(scene, backends.get("numpy"), SIZE)
+    assert largest_difference(render(scene, backend(name), SIZE), oracle) < 1.0
+    origin, rays = scene.camera.rays(*SIZE)
+    assert scene.geometry is not None
+    hits = scene.geometry.hits(origin, rays)
+    middle = 0.5 * (hits.position + origin + back_faces(scene.geometry, origin, rays)[:, None] * rays)
+    behind = hits.hit & (middle[:, 0] > 0.36) & (np.abs(middle[:, 1:]).max(axis=1) < 0.48)  # the filter blurs edges
+    length = (0.5 + middle[:, 0] - 0.35).reshape(SIZE[1], SIZE[0])[::-1]
+    inner = behind.reshape(SIZE[1], SIZE[0])[::-1]
+    assert inner.sum() > 30
+    np.testing.assert_allclose(oracle.linear[inner][:, 1], 0.25 * length[inner], atol=2e-3)
 
 
 def test_the_nearest_back_face() -> None:

@@ -54,6 +54,16 @@ def test_the_path_from_a_lights_depth_map() -> None:
     close(result, np.maximum(place[:, 2] + 2.0 - 1.9, 0.0), atol=1e-12)
 
 
+def test_the_path_through_a_gap() -> None:
+    """From points before, in and behind a gap between two slabs of matter, and in front of both."""
+    view = np.diag([1.0, 1.0, -1.0, 1.0])  # the light is above, and its plane at z = 0
+    place = np.zeros((7, 3))
+    place[:, 2] = [-0.1, -0.2, -0.35, -0.5, -0.7, -0.8, -1.3]
+    layers = Texture(np.broadcast_to(np.array([0.2, 0.5, 0.8]), (4, 4, 3)))
+    result = technique("depth_layers_path")(P=place, L=np.zeros(3), light_matrix=view, light_layer_map=layers)
+    close(result, np.array([0.0, 0.0, 0.15, 0.3, 0.3, 0.3, 0.8]), atol=1e-7)
+
+
 def inside_ball(place: Array, towards: Array) -> Array:
     """The length inside the ball from points in it."""
     along = np.einsum("nc,nc->n", place, towards)
@@ -93,10 +103,23 @@ def test_the_first_octave_is_single_scattering() -> None:
     close(result, np.trapezoid(scattered, axis=0, dx=1.0) * length[:, None] / 20000, rtol=1e-6, atol=1e-12)
     mixed = technique("interior_octaves", light_path=constant)(
         d=np.array([1e9]), P=zeros[:1], V=zeros[:1], L=zeros[:1], extinction=sigma, scattering_albedo=albedo,
-        octaves=(0.0, 1.0, 2.0, 3.0), mean_free_path=0.2,
+        octaves=(0.5, 1.0, 2.0, 3.0), mean_free_path=0.2,
     )  # fmt: skip
-    octaves = sum(share * np.exp(-0.3 * sigma / 2**j) for j, share in enumerate((0.0, 1.0, 2.0, 3.0)))
-    close(mixed[0], 0.25 * albedo * octaves, rtol=1e-9)
+    again = sum(share * np.exp(-0.3 * sigma / part) for share, part in ((1.0, 2.0), (2.0, 4.0), (3.0, 16.0)))
+    close(mixed[0], 0.25 * albedo * (0.5 * np.exp(-0.3 * sigma) + albedo * again), rtol=1e-9)
+
+
+def test_light_that_is_scattered_again_fades_faster_at_thin_edges() -> None:
+    """Single scattering is in proportion to the length of a short ray, what is scattered again to its square."""
+    constant = "thickness fixed_length(world_position p, world_direction l) { return thickness(0.3); }"
+    zeros = np.zeros((2, 3))
+    lit = technique("interior_octaves", light_path=constant)
+    values = {"P": zeros, "V": zeros, "L": zeros, "d": np.array([1e-4, 2e-4]), "extinction": np.full(3, 4.0)}
+    once = lit(octaves=(1.0, 0.0, 0.0, 0.0), **values)
+    close(once[1] / once[0], np.full(3, 2.0), rtol=1e-3)
+    for shares in np.eye(4)[1:]:
+        again = lit(octaves=tuple(shares), **values)
+        close(again[1] / again[0], np.full(3, 4.0), rtol=1e-3)
 
 
 @pytest.mark.parametrize("ior", [1.0, 1.3, 1.8])

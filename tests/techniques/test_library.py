@@ -133,7 +133,8 @@ def test_requirements_follow_from_declarations(tmp_path: Path) -> None:
     mapped = length.format("thickness_map") + '[[thickness]]\ntechnique = "view_thickness_from_chord"\n'
     assert required(mapped + inside.format("depth_map_path", "")) == (("bake", "depth-map"), 1)
     faces = length.format("back_face_thickness")
-    assert required(faces + inside.format("depth_map_path", "")) == (("depth-map", "back-faces"), 0)
+    for path in ("depth_map_path", "depth_layers_path"):
+        assert required(faces + inside.format(path, "")) == (("depth-map", "back-faces"), 0)
     assert required(faces + inside.format("march_light", body.format("sphere"))) == (("back-faces", "rigid"), 0)
     texture = body.format("distance_texture_world")
     marched = length.format("march_view") + 'bind = { body_distance = "distance_texture_world" }\n'

@@ -15,7 +15,7 @@ from sssgen.harness.scenes.drawn_views import light_depth
 from sssgen.harness.scenes.geometry import Geometry
 from sssgen.harness.scenes.light_view import LightView
 from sssgen.harness.scenes.scene import DistanceTexture, Picture, Scene, placement
-from sssgen.ir.drawn import DISTANT, LIGHT_VIEWS
+from sssgen.ir.drawn import DISTANT_VIEWS, LAYERS, LIGHT_VIEWS
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import with_article
 from sssgen.material import baked
@@ -61,13 +61,13 @@ def _light_views(
         drawn = texture["drawn"]
         if drawn not in LIGHT_VIEWS or drawn in views or scene.geometry is None or _file(scene, material, texture):
             continue
-        light = next((light for light in lights if not (light[3] and drawn == DISTANT)), None)
+        light = next((light for light in lights if not (light[3] and drawn in DISTANT_VIEWS)), None)
         if light is None:
-            hint = "add [[light]] with a direction" if drawn == DISTANT else "add [[light]]"
+            hint = "add [[light]] with a direction" if drawn in DISTANT_VIEWS else "add [[light]]"
             file = scene.document.reporter.file
             raise failure(f"'{texture['source_name']}' is drawn from a light, and the scene has none", hint, file)
-        view, depth = light_depth(scene.geometry, np.array(light))
-        views[drawn] = view, half(Texture(depth[..., None], wrap="clamp"))
+        view, depth = light_depth(scene.geometry, np.array(light), drawn == LAYERS)
+        views[drawn] = view, half(Texture(depth, wrap="clamp"))
     return views
 
 

@@ -24,8 +24,8 @@ UV_RANGE = 32.0
 """The probe shown_uv divides texture coordinates by this. Here they are lengths in depths of the inlay."""
 LENGTHS = ("thickness", "view_thickness")
 """The roles whose value is a length."""
-DEPTH_MAP = "light_depth_map"
-"""The texture that differs between lights."""
+LIGHT_MAPS = ("light_depth_map", "light_layer_map")
+"""The textures that differ between lights."""
 WHITE = 0.8
 """The value to which exposure scales a reference's brightest parts."""
 
@@ -68,7 +68,7 @@ class Problem:
     def values(self, chain: Chain, parameters: Mapping[str, Any]) -> Array:
         """The chain's output: (channels, lanes)."""
         outputs = []
-        for part in self.parts if chain.reads(DEPTH_MAP) else [self._merged]:
+        for part in self.parts if any(map(chain.reads, LIGHT_MAPS)) else [self._merged]:
             chain.set({**part.values, **parameters}, part.textures)
             if self.role == "coordinates":
                 outputs.append(UV_RANGE * (chain.surface(part.inputs, "albedo")[:2] - 0.5) - part.inputs["uv"])

@@ -172,7 +172,7 @@ def back_faces(scene: MeasuredScene, lengths: Array) -> Array:
 
 
 def _depth_map(scene: MeasuredScene, light: Light) -> tuple[dict[str, Any], dict[str, Texture]]:
-    """The light's view: matrices for the techniques, and the depth of the first surface.
+    """The light's view: matrices for the techniques, the depth of the first surface, and three layers.
 
     Raises SssgenError for a point light beside the body: its map must show the whole body.
     """
@@ -186,11 +186,14 @@ def _depth_map(scene: MeasuredScene, light: Light) -> tuple[dict[str, Any], dict
     origins = view.origins @ to_object[:3, :3].T + to_object[:3, 3]
     directions = view.directions @ to_object[:3, :3].T * geometry.scale
     inside = intervals(geometry, origins, directions)
-    filled = inside[..., 1] > inside[..., 0]
-    first = np.where(filled, inside[..., 0], np.inf).min(axis=1) * geometry.scale * view.slopes
-    depth = np.where(np.isfinite(first), first, view.far).reshape(DEPTH_MAP, DEPTH_MAP)
+    filled = (inside[..., 1] > inside[..., 0])[..., None]
+    parts = np.sort(np.where(filled, inside, np.inf), axis=1) * geometry.scale * view.slopes[:, None, None]
+    parts = np.pad(parts, ((0, 0), (0, 2), (0, 0)), constant_values=np.inf)
+    layers = np.stack([parts[:, 0, 0], parts[:, 0, 1], parts[:, 1, 0]], axis=1)
+    layers = np.where(np.isfinite(layers), layers, view.far).reshape(DEPTH_MAP, DEPTH_MAP, 3)
     depth_only = np.zeros((4, 4))  # the depth is the distance from the plane of the light
     depth_only[2], depth_only[3, 3] = view.matrix[2], 1.0
     matrices = {"light_matrix": view.matrix, "light_texture": view.matrix, "light_view": depth_only}
     values = {name: matrix.T[..., None] for name, matrix in matrices.items()}
-    return values, {"light_depth_map": Texture(depth[..., None], "linear", "clamp")}
+    maps = {"light_depth_map": layers[..., :1], "light_layer_map": layers}
+    return values, {name: Texture(texels, "linear", "clamp") for name, texels in maps.items()}
