@@ -149,3 +149,24 @@ def test_a_refracting_surface_bends_the_eyes_ray_and_lets_a_share_through(
     result = technique(refracted, light_path=path)(V=view, N=normal, ior=ior, d=length, **values)
     close(result, share[:, None] * straight, rtol=1e-9)
     assert np.linalg.norm(bent, axis=1) == pytest.approx(1.0)
+
+
+def test_the_directional_map_has_the_length_of_its_numbers() -> None:
+    numbers = rng(3).uniform(-0.4, 0.4, (60, 9))
+    numbers[:, 0] += 0.4
+    lowest, span = numbers.min(axis=0), np.ptp(numbers, axis=0)
+    texels = (numbers - lowest) / span
+    view, count = units(60, 4), len(numbers)
+    names: dict[str, object] = {}
+    for number in range(3):
+        part = slice(3 * number, 3 * number + 3)
+        names[f"view_harmonics_{number + 1}"] = Texture(texels[None, :, part], "nearest", "clamp")
+        names[f"harmonics_lowest_{number + 1}"] = tuple(lowest[part])
+        names[f"harmonics_span_{number + 1}"] = tuple(span[part])
+    uv = np.stack([(np.arange(count) + 0.5) / count, np.full(count, 0.5)], axis=1)
+    result = technique("view_thickness_map")(uv=uv, V_object=view, fade_length=0.7, **names)
+    x, y, z = -view.T
+    terms = np.stack([x**0, x, y, z, x * y, y * z, z * x, 3.0 * z**2 - 1.0, x**2 - y**2], axis=1)
+    share = (terms * numbers).sum(axis=1)
+    assert (share < 0.02).any() and (share > 0.9999).any() and ((share > 0.1) & (share < 0.9)).sum() > 20
+    close(result, -0.7 * np.log(1.0 - np.clip(share, 0.02, 0.9999)), rtol=1e-9)

@@ -77,17 +77,17 @@ def atlas(mesh: Triangles, uv: Array, size: tuple[int, int], path: str) -> Atlas
 
 
 def filled(values: Array, texels: Indices, size: tuple[int, int]) -> Array:
-    """The map (height, width) of values at texels (n,); every other texel has the value of the nearest of them,
-    so that filters and mipmaps do not mix the surface with the background.
+    """The map (height, width, …) of values (n, …) at texels (n,); every other texel has the value of the nearest of
+    them, so that filters and mipmaps do not mix the surface with the background.
     """
     width, height = size
     nearest = need("scipy.ndimage", "scipy", "bake")
     empty = np.ones(width * height, np.bool_)
     empty[texels] = False
-    sparse = np.zeros(width * height)
+    sparse = np.zeros((width * height, *values.shape[1:]))
     sparse[texels] = values
     rows, columns = nearest.distance_transform_edt(
         empty.reshape(height, width), return_distances=False, return_indices=True
     )
-    dilated: Array = sparse.reshape(height, width)[rows, columns]
+    dilated: Array = sparse.reshape(height, width, *values.shape[1:])[rows, columns]
     return dilated

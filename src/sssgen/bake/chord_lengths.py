@@ -1,4 +1,4 @@
-"""The lengths of chords inside a body from points of its surface: the work items of a thickness map."""
+"""The lengths of chords inside a body from points of its surface: the work items of thickness maps."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ import numpy as np
 
 from sssgen.bake.voxel_grid import Array
 from sssgen.harness.scenes.mesh import Mesh
+from sssgen.harness.scenes.placed import perpendiculars
+from sssgen.lab.reference import view_harmonics
 from sssgen.lab.reference.inside_lengths import thickness
+from sssgen.lab.reference.view_harmonics import Fit
 
 
 class Chords(NamedTuple):
@@ -51,7 +54,7 @@ def inward(
     u, v = rng.random((2, 2, count, cells))
     u, v = (cell % columns + u) / columns, (cell // columns + v) / (cells // columns)
     radius, angle = np.sqrt(u), 2.0 * np.pi * v
-    side, up = _frame(normals)
+    side, up = perpendiculars(normals)
     parts = radius * np.cos(angle), radius * np.sin(angle), -np.sqrt(np.maximum(1.0 - u, 0.0))
     directions = sum(part[..., None] * axis[:, None] for part, axis in zip(parts, (side, up, normals), strict=True))
     starts = np.broadcast_to(points[:, None], directions.shape)
@@ -67,11 +70,6 @@ def inward(
     return Chords(mean, error, 1.0 - number / (2 * cells))
 
 
-def _frame(normals: Array) -> tuple[Array, Array]:
-    """Unit vectors perpendicular to normals (n, 3) (Duff et al., Building an Orthonormal Basis, Revisited, 2017)."""
-    x, y, z = normals.T
-    sign = np.where(z < 0.0, -1.0, 1.0)
-    a = -1.0 / (sign + z)
-    b = x * y * a
-    side = np.stack([1.0 + sign * x * x * a, sign * b, -sign * x], axis=1)
-    return side, np.stack([b, sign + y * y * a, -y], axis=1)
+def directional(path: str, digest: str, points: Array, normals: Array, fade_length: float, rays: int) -> Fit:
+    """The length along every inward direction, fitted by nine numbers."""
+    return view_harmonics.of_points(_mesh(path, digest), points, normals, fade_length, rays)

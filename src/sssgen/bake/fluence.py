@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from sssgen.bake import memory_check as memory
 from sssgen.bake.bake_light import BakeLight
+from sssgen.harness.scenes import body_identity
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Mesh
 from sssgen.lab.fluence import fluence_field
@@ -22,7 +23,6 @@ from sssgen.lab.fluence.fluence_field import Field, Settings
 from sssgen.lab.jobs.executor import Progress
 from sssgen.lab.scene import measured_scene, media
 from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.support import cache
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix, stem
 from sssgen.targets.texture_import import import_settings
@@ -63,7 +63,7 @@ def body(path: str, medium: str, unit_mm: float) -> MeasuredScene:
     geometry = Mesh(path=path)
     name = stem(path)
     preset = media.preset(medium, unit_mm)
-    contents = measured_scene.contents(geometry)
+    contents = body_identity.contents(geometry)
     return MeasuredScene(name, name, geometry, Camera(), (), preset, None, contents=contents).body_alone()
 
 
@@ -121,7 +121,7 @@ def _facts(scene: MeasuredScene, settings: Settings, traced: Field) -> dict[str,
     matrix[:3, 3] = -traced.grid.low / size
     return {
         "kind": "fluence", "holds": None,
-        "body": {"key": cache.digest(repr((scene.geometry, scene.contents)).encode()), "scale": scene.geometry.scale},
+        "body": body_identity.identity(scene.geometry, scaled=True),
         "medium": {
             "name": medium.name, "extinction": [*medium.extinction], "albedo": [*medium.albedo],
             "anisotropy": medium.anisotropy, "ior": medium.ior,

@@ -238,6 +238,49 @@ def _fluence(arguments: Namespace) -> Result:
     return paths, baked.facts, lines
 
 
+def _view_thickness_options(parser: ArgumentParser) -> None:
+    add = parser.add_argument
+    add("BODY", metavar="MESH|SCENE", help="a mesh, or a scene with [medium] whose body is a mesh")
+    _add_output(parser, "a .png (8 bit), .exr or .npy; the names of three pictures are made of it")
+    add("--mean-free-path", type=float, metavar="M", help="of the medium, in units of the mesh; lengths fade over it")
+    add("--medium", default="", metavar="NAME", help="instead: the medium of a mesh, a name of `sssgen list media`")
+    add("--unit-mm", type=float, default=10.0, metavar="U", help="millimetres in a unit of the mesh (default: 10)")
+    _add_size(parser)
+    add("--rays", type=int, default=64, metavar="N", help="rays per texel, in fixed directions (default: 64)")
+    add("--unwrap", action="store_true", help="compute new texture coordinates; a mesh without any always gets them")
+    add_workers(parser)
+
+
+def _view_thickness(arguments: Namespace) -> Result:
+    from sssgen.bake import baked_files as output
+    from sssgen.bake import fluence, view_thickness
+    from sssgen.bake.thickness_map import warnings
+
+    output.picture_suffix(arguments.output)
+    mesh, length = view_thickness.body(arguments.BODY, arguments.mean_free_path, arguments.medium, arguments.unit_mm)
+    output.check_apart(arguments.output, [arguments.BODY, mesh.path])
+    size = _size(arguments.size)
+    with ProgressBar() as bar:
+        baked = view_thickness.bake(
+            mesh, size, length, arguments.rays, arguments.unwrap, arguments.processes, arguments.scheduler, bar
+        )
+    written = output.mesh_beside(arguments.output)
+    beside = {os.path.basename(written): baked.mesh} if baked.mesh else {}
+    paths = []
+    for number, picture in enumerate(baked.pictures, 1):
+        facts = {**baked.facts, "texture": f"{view_thickness.TEXTURE}_{number}"}
+        path = fluence.part_path(arguments.output, f"_{number}")
+        paths += output.write_picture(path, picture, facts, view_thickness.BITS, beside if number == 1 else None)
+    error = baked.facts["error"]
+    lines = [
+        f"the light along the eye's ray is off by {error['mean_of_fit']:.2g} of all on average, at most "
+        f"{error['largest_of_fit']:.2g}, and by {error['rounding']:.2g} for the rounding",
+        *([f"{posix(written)} is the mesh with its new texture coordinates: use it"] if baked.mesh else []),
+        *(f"warning: {warning}" for warning in warnings(baked.facts)),
+    ]
+    return paths, baked.facts, lines
+
+
 def _voronoi_options(parser: ArgumentParser) -> None:
     add = parser.add_argument
     _add_output(parser, "a .png (16 bit), .exr or .npy")
@@ -364,6 +407,12 @@ KINDS = {
         "fluence_factored_4 or fluence_fixed, each with the ending _refracted for a medium with an index.",
         _fluence_options,
         _fluence,
+    ),
+    "view_thickness": Kind(
+        "the length inside a body along any ray of the eye, below each texel of its texture coordinates",
+        "Bind the pictures to view_harmonics_1, _2 and _3 of the technique view_thickness_map.",
+        _view_thickness_options,
+        _view_thickness,
     ),
     "voronoi": Kind("cells, as in cracked ice: a map of thickness or height", "", _voronoi_options, _voronoi),
     "normal": Kind("the normal map of a height or thickness map", "", _normal_options, _normal),

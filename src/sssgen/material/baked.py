@@ -73,8 +73,13 @@ def read(path: str) -> Baked | None:
 
 
 def check(baked_texture: Baked, uniform: Uniform, name: str) -> None:
-    """Raises SssgenError if a texture's uniform takes another quantity or dimension than the baked texture has."""
+    """Raises SssgenError if a texture's uniform takes another quantity, dimension or part of a bake."""
     assert isinstance(uniform.type, Sampler)
+    made_for = baked_texture.facts.get("texture", uniform.name)
+    if made_for != uniform.name:
+        raise failure(
+            f"'{name}' is baked as '{made_for}', and not as '{uniform.name}'", "bind the file to that texture"
+        )
     quantity = uniform.quantity
     if quantity and baked_texture.holds != quantity:
         holds = baked_texture.holds or f"no quantity: it is a {baked_texture.kind} texture"

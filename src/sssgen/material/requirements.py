@@ -1,8 +1,8 @@
 """What a technique requires besides its parameters: a bake, the light's depth map, back faces, a rigid body.
 
-Most of it follows from declarations: a texture that `holds` a quantity is baked; a volume is baked for a body that
-keeps its shape, and a distance function describes such a body; `drawn` names a picture that the engine draws. A
-technique states the rest: `requires: fixed-light`.
+Most of it follows from declarations: a texture that `holds` a quantity or has `texel_bytes` is baked; a volume is baked
+for a body that keeps its shape, and a distance function describes such a body; `drawn` names a picture that the engine
+draws. A technique states the rest: `requires: fixed-light`.
 """
 
 from __future__ import annotations
@@ -46,8 +46,9 @@ def baked_textures(uses: Iterable[TechniqueUse]) -> list[Uniform]:
 
 
 def is_baked(uniform: Uniform) -> bool:
-    """Whether a texture is baked from the body: a volume, or a map that holds a quantity."""
-    return isinstance(uniform.type, Sampler) and (bool(uniform.quantity) or _is_volume(uniform))
+    """Whether a texture is baked from the body: a volume, a map that holds a quantity, or one with `texel_bytes`."""
+    declared = bool(uniform.quantity) or "texel_bytes" in dict(uniform.hints)
+    return isinstance(uniform.type, Sampler) and (declared or _is_volume(uniform))
 
 
 def texel_bytes(uniform: Uniform) -> int:

@@ -143,6 +143,8 @@ def _in_world_space(sidecar: Baked, geometry: Geometry | None) -> dict[str, Any]
         values |= placement(geometry)
     if isinstance(factor := values.get("thickness_factor"), int | float) and sidecar.kind == "thickness":
         values["thickness_factor"] = factor * geometry.scale
+    if isinstance(length := values.get("fade_length"), int | float) and sidecar.kind == "view_thickness":
+        values["fade_length"] = length * geometry.scale
     if isinstance(matrix := values.get("light_matrix"), list) and sidecar.kind == "depth" and len(matrix) == 16:
         if geometry.scale != 1.0:
             raise failure("the depth map is for the unscaled body, but the scene scales it", "scale the mesh itself")

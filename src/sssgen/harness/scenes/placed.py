@@ -108,6 +108,19 @@ def any_tangent(normals: Array) -> Array:
     return unit(np.cross(axes, normals))
 
 
+def perpendiculars(normals: Array) -> tuple[Array, Array]:
+    """Two unit vectors perpendicular to each unit normal (n, 3), and to each other: side × up = normal.
+
+    Duff et al., Building an Orthonormal Basis, Revisited, 2017.
+    """
+    x, y, z = normals.T
+    sign = np.where(z < 0.0, -1.0, 1.0)
+    a = -1.0 / (sign + z)
+    b = x * y * a
+    side = np.stack([1.0 + sign * x * x * a, sign * b, -sign * x], axis=1)
+    return side, np.stack([b, sign + y * y * a, -y], axis=1)
+
+
 def tangent_of(normals: Array, grows_u: Array, grows_v: Array) -> Array:
     """The tangents (n, 4) of a surface whose u and v are functions of space, from their gradients (n, 3).
 

@@ -277,7 +277,7 @@ def coordinates_problem(scene: MeasuredScene) -> Problem:
 def _part(scene: MeasuredScene, visible: Points, light: Light, color: Array) -> Part:
     """A light in a view; `color` without the fall-off of a point light."""
     of_body, of_light = scene_inputs.of_scene(scene), scene_inputs.of_light(scene, light)
-    computed = fluence_inputs.of_light(scene, light)
+    computed = fluence_inputs.of_light(scene, light) | scene_inputs.directional_maps(scene)
     distance = visible.towards(light)[1]
     return Part(
         {**visible.inputs, **of_body.inputs}, visible.light(light), {**of_body.values, **of_light.values},

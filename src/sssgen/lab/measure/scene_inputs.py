@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -18,8 +18,10 @@ from sssgen.harness.scenes.bounds import placed_corners
 from sssgen.harness.scenes.inside_intervals import intervals
 from sssgen.harness.scenes.light_view import directional_view, point_view
 from sssgen.harness.scenes.scene import Light
+from sssgen.lab.reference import view_harmonics
 from sssgen.lab.reference.curvature import normal_curvature
 from sssgen.lab.reference.inside_lengths import first_exit, thickness
+from sssgen.lab.reference.view_harmonics import LARGEST
 from sssgen.lab.scene import scene_body as body
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.view_points import points
@@ -29,6 +31,8 @@ RAYS = 32
 """Inward rays per point for the mean chord."""
 DEPTH_MAP = 256
 """Width and height of a light's depth map, in texels."""
+IMAGES = 3
+"""The images of a directional map of lengths, with three numbers each."""
 CURVATURE_STEP = 0.02
 """The length over which curvatures are measured, relative to the longest side of the body."""
 
@@ -78,6 +82,12 @@ def of_scene(scene: MeasuredScene) -> SceneInputs:
     exact_view = view_lengths(scene)
     values["exact_view_length"] = exact_view
     values["mean_curvature"] = np.maximum(principal_curvatures(scene).mean(axis=0), 0.0)
+    values["fade_length"] = fade_length(scene)
+    for number in range(1, IMAGES + 1):
+        values |= {
+            f"harmonics_lowest_{number}": np.full((3, 1), -LARGEST),
+            f"harmonics_span_{number}": np.full((3, 1), 2.0 * LARGEST),
+        }
     textures = {
         "back_face_map": Texture(back_faces(scene, exact_view)[..., None], "nearest", "clamp"),
         "distance_map": half(Texture(distances.values(geometry), wrap="clamp")),
@@ -161,6 +171,29 @@ def view_lengths(scene: MeasuredScene) -> Array:
     visible = points(scene)
     origins, rays = (np.ascontiguousarray(part.T) for part in (visible.inputs["P"], -visible.inputs["V"]))
     return first_exit(scene.geometry, origins, rays)
+
+
+def fade_length(scene: MeasuredScene) -> float:
+    """The length with which a directional map of the scene's body stores lengths."""
+    medium = scene.medium.parameters["mean_free_path"] if scene.medium is not None else np.inf
+    return view_harmonics.fade_length(scene.geometry, float(medium))  # type: ignore[arg-type]
+
+
+def directional_maps(scene: MeasuredScene) -> dict[str, Callable[[], Texture]]:
+    """The images of the directional map of lengths, by their names in techniques, computed when a chain reads one."""
+    return {f"view_harmonics_{number + 1}": partial(_directional_map, scene, number) for number in range(IMAGES)}
+
+
+def _directional_map(scene: MeasuredScene, number: int) -> Texture:
+    return _ideal(0.5 + 0.5 / LARGEST * view_fit(scene)[:, 3 * number : 3 * number + 3])
+
+
+@lru_cache(8)
+def view_fit(scene: MeasuredScene) -> Array:
+    """The numbers of the directional map of lengths at the visible points, (n, 9)."""
+    visible = points(scene)
+    places, normals = (np.ascontiguousarray(visible.inputs[name].T) for name in ("P", "N"))
+    return view_harmonics.of_points(scene.geometry, places, normals, fade_length(scene)).coefficients
 
 
 def back_faces(scene: MeasuredScene, lengths: Array) -> Array:

@@ -10,13 +10,13 @@ import dataclasses
 import os
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from sssgen.harness.scenes.body_identity import contents
 from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.geometry import Distance, Geometry, Mesh, Union
+from sssgen.harness.scenes.geometry import Geometry
 from sssgen.harness.scenes.scene import Light, Scene
 from sssgen.harness.scenes.scene_loading import load as load_scene
 from sssgen.harness.scenes.toml_table import NOT_NEGATIVE, POSITIVE, Table
@@ -151,19 +151,6 @@ def inside(geometry: Geometry, position: tuple[float, float, float]) -> bool:
     """Whether a point in world space is inside a shape."""
     to_object = geometry.to_object()
     return bool(geometry.distance((to_object[:3, :3] @ np.array(position) + to_object[:3, 3])[None])[0] <= 0.0)
-
-
-def contents(geometry: Geometry) -> str:
-    """A digest of the files of a shape, '' without files."""
-    if isinstance(geometry, Union):
-        return "".join(contents(part) for part in geometry.parts)
-    if isinstance(geometry, Mesh):
-        return cache.digest(Path(geometry.path).read_bytes())
-    if isinstance(geometry, Distance):
-        file = geometry.technique.rpartition(":")[0] or geometry.technique
-        path = Path(geometry.folder, file)
-        return cache.digest(path.read_bytes()) if path.is_file() else ""
-    return ""
 
 
 def _medium(scene: Scene) -> Medium | None:
