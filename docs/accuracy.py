@@ -7,6 +7,7 @@ docs/accuracy/*.json on a machine with a GPU. An interrupted run continues where
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
 import math
 import sys
@@ -14,13 +15,18 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import accuracy_goals
+import accuracy_pictures
 import pick_trial
 
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart import drawing
 from sssgen.lab.chart.charting import Settings
+from sssgen.lab.chart.choice_pictures import ScenePictures, scene_pictures
+from sssgen.lab.chart.record import to_json
 from sssgen.lab.gpu import chart_times as chart_gpu
 from sssgen.lab.scene import measured_scene
+from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.support.file_writer import write_files
 from sssgen.support.progress import ProgressBar
 
@@ -31,6 +37,9 @@ GPU_CHART = "gpu_chart.json"
 BY_HAND = "gpu_jelly_cubes.json"
 TIMED = ("cube", "torus", "inlay_plate", "inlay_ball")
 """The scenes whose chains are timed, in one or two minutes each."""
+BENT = "chart_refracting.json"
+INDEX = 1.4
+"""The refractive index of the bodies that are charted a second time."""
 SPOT = FOLDER / "spot.toml"
 MESHES = DOCS.parent.parent / "shared" / "data" / "meshes"
 
@@ -55,9 +64,14 @@ def main() -> int:
     if arguments.gpu:
         return timed()
     settings = Settings(scheduler=arguments.scheduler, processes=arguments.processes, progress_bar=ProgressBar)
-    record = chart.chart_record([measured_scene.load(name) for name in scenes()], settings)
+    bodies = [measured_scene.load(name) for name in scenes()]
+    record = chart.chart_record(bodies, settings)
+    pictures = scene_pictures(record, bodies, accuracy_pictures.LIMITS, settings)
     trial = pick_trial.trial_rows(settings)
-    page(record, trial)
+    bent = chart.chart_record(
+        [refracting(body) for body in bodies if body.medium], settings._replace(roles=("material",))
+    )
+    page(record, pictures, trial, bent)
     return 0
 
 
@@ -66,8 +80,14 @@ def scenes() -> list[str]:
     return [*chart.DEFAULTS, *([str(SPOT)] if (MESHES / "spot.obj").is_file() else [])]
 
 
-def page(record: Record, trial: Sequence[Mapping[str, Any]]) -> None:
-    """Writes the pictures and the page."""
+def refracting(scene: MeasuredScene) -> MeasuredScene:
+    """The same scene with a smooth refracting boundary."""
+    assert scene.medium is not None
+    return dataclasses.replace(scene, medium=dataclasses.replace(scene.medium, ior=INDEX))
+
+
+def page(record: Record, pictures: Sequence[ScenePictures], trial: Sequence[Mapping[str, Any]], bent: Record) -> None:
+    """Writes the pictures and the page; `bent` has the bodies with a refracting boundary."""
     chart_files = drawing.chart_files(record)
     files = {name: data for name, data in chart_files.items() if name.endswith((".png", ".csv", ".json"))}
     if (FOLDER / GPU_CHART).is_file():
@@ -75,10 +95,13 @@ def page(record: Record, trial: Sequence[Mapping[str, Any]]) -> None:
         files |= {
             name: data for name, data in drawing.chart_files(gpu_record, "gpu").items() if name.endswith("material.png")
         }
-    write_files(str(FOLDER), files)
+    bent_file = {BENT: to_json(bent)}
+    write_files(str(FOLDER), files | bent_file | {"pictures.png": accuracy_pictures.drawn(pictures)})
     text = (FOLDER / "page.md.in").read_text(encoding="utf-8")
     parts: dict[str, Callable[[], str]] = {
         "scenes": lambda: scene_table(record), "fronts": lambda: fronts(record),
+        "goals": lambda: accuracy_goals.table(record, bent), "medians": lambda: accuracy_goals.medians(record),
+        "boundary": lambda: accuracy_goals.medians(bent),
         "volumes": lambda: hypervolumes(record),
         "known": lambda: expected_results(record), "losses": lambda: baselines_on_fronts(record),
         "implementation": lambda: implementation(record), "gpu": gpu, "by_hand": by_hand,
@@ -103,7 +126,7 @@ def timed() -> int:
         print(f"{completed} of {total}: {name}", file=sys.stderr, flush=True)
 
     timed_record = chart_gpu.with_gpu_cost(shortened, [measured_scene.load(name) for name in names], progress=progress)
-    write_files(str(FOLDER), {GPU_CHART: drawing.record.to_json(timed_record)})
+    write_files(str(FOLDER), {GPU_CHART: to_json(timed_record)})
     print(timed_record["record"]["device"], timed_record["record"]["rank_correlation"])
     return 0
 

@@ -232,12 +232,12 @@ def test_more_expensive_settings_are_used_while_they_lower_the_error(monkeypatch
 
 def test_failures_are_named() -> None:
     with pytest.raises(SssgenError) as caught:
-        chart._results([executor.Item("executor_items:fail", ("said",), "fit this")], settings())
+        chart.results_of([executor.Item("executor_items:fail", ("said",), "fit this")], settings())
     assert "fit this: the scene has no light" in str(caught.value)
     names = ("one", "two", "two", "three")
     again = [executor.Item("executor_items:fail", ("said",), name) for name in names]
     with pytest.raises(SssgenError) as caught:
-        chart._results([*again, executor.Item("executor_items:fail", ("x",), "that")], settings())
+        chart.results_of([*again, executor.Item("executor_items:fail", ("x",), "that")], settings())
     messages = [diagnostic.message for diagnostic in caught.value.diagnostics]
     assert len(messages) == 2 and messages[0].startswith("one and 2 more: the scene has no light")
     assert messages[1].startswith("that: ValueError: no such thing")

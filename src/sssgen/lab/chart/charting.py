@@ -178,7 +178,7 @@ def with_references(
 ) -> dict[str, tuple[View, ...]]:
     """The named views of each group; if `lit`, with their references by light transport."""
     lit_scenes = list({scene.key: scene for group in named.values() for _, scene in group if lit}.values())
-    results = _results(references.items(lit_scenes, settings.samples, settings.seed), settings)
+    results = results_of(references.items(lit_scenes, settings.samples, settings.seed), settings)
     by_scene = references.by_scene(lit_scenes, results)
     stamp = f"{settings.samples} {settings.seed}"
     return {
@@ -206,9 +206,9 @@ def _points(
         )
         for scene, candidate in jobs
     ]
-    fitted: list[Fitted] = _results(fits, settings)
+    fitted: list[Fitted] = results_of(fits, settings)
     bodies = {scene.key: scene for scene, candidate in jobs if candidates.reads_fluence(candidate)}
-    _results([item for scene in bodies.values() for item in fluence_inputs.items(scene)], settings)
+    results_of([item for scene in bodies.values() for item in fluence_inputs.items(scene)], settings)
     measures = [
         Item(
             "sssgen.lab.measure.measurement:measure_candidate",
@@ -217,7 +217,7 @@ def _points(
         )
         for (scene, candidate), fit in zip(jobs, fitted, strict=True)
     ]
-    points: list[dict[str, Any]] = _results(measures, settings)
+    points: list[dict[str, Any]] = results_of(measures, settings)
     for (scene, _), point in zip(jobs, points, strict=True):
         yield scene, {"scene": scene.name, **point}
 
@@ -240,7 +240,7 @@ def remeasured(
         for point in points
     ]
     errors = {}
-    for point, result in zip(points, _results(items, settings), strict=True):
+    for point, result in zip(points, results_of(items, settings), strict=True):
         largest = max(float(view["value"]) for view in result["views"].values())
         errors[point["scene"], point["label"]] = float("inf") if result["failed"] else largest
     return errors
@@ -266,7 +266,7 @@ def _training(candidate: Candidate, views: _Views) -> tuple[View, ...]:
     return tuple(view for view in views.training if (view.name == "plate") == on_plate)
 
 
-def _results(items: Sequence[Item], settings: Settings) -> list[Any]:
+def results_of(items: Sequence[Item], settings: Settings) -> list[Any]:
     """The items' results. Raises SssgenError with all failures."""
     with settings.progress_bar() as progress:
         results = run(items, settings.scheduler, settings.processes, progress=progress)

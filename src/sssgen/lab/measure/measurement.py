@@ -147,7 +147,7 @@ def measure_candidate(candidate: Candidate, fitted: Fitted, views: Sequence[View
         }
     not_finite = sum(int((~np.isfinite(values)).any(axis=0).sum()) for values in outputs)
     lanes = sum(values.shape[1] for values in outputs)
-    pictures = [fitted.apply(np.nan_to_num(values), problem) for values, problem in zip(outputs, problems, strict=True)]
+    pictures = [_fitted_values(values, fitted, problem) for values, problem in zip(outputs, problems, strict=True)]
     error = metrics.compare(
         np.concatenate(pictures, axis=1),
         np.concatenate([problem.target for problem in problems], axis=1),
@@ -175,6 +175,20 @@ def measure_candidate(candidate: Candidate, fitted: Fitted, views: Sequence[View
         "error": error, "views": view_errors, "implementation": implementation,
         "failed": f"{not_finite} of {lanes} points are not finite" if not_finite else "",
     }  # fmt: skip
+
+
+def pictures_of(candidate: Candidate, fitted: Fitted, view: View) -> tuple[Array, Array]:
+    """A view of a material by its chain and by the reference: (height, width, 3) each, linear light, exposed alike."""
+    problem = problem_of("material", view)
+    assert problem is not None
+    with tempfile.TemporaryDirectory() as folder:
+        values = _values(chain_of(candidate, body(view.scene.geometry), folder), fitted, problem)
+    visible = points(view.scene)
+    return visible.picture(_fitted_values(values, fitted, problem)), visible.picture(problem.target)
+
+
+def _fitted_values(values: Array, fitted: Fitted, problem: Problem) -> Array:
+    return fitted.apply(np.nan_to_num(values), problem)
 
 
 def _variants(candidate: Candidate, shape: Body, folder: str) -> Iterator[tuple[str, Chain | None]]:

@@ -1,0 +1,134 @@
+"""The goals of docs/accuracy.md, with what a chart's record shows of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from statistics import median
+from typing import Any, NamedTuple
+
+from sssgen.lab.chart.picking import allowed, chosen, limit_of
+
+Record = Mapping[str, Any]
+Point = Mapping[str, Any]
+
+FIXED = "fixed-light"
+
+
+class Goal(NamedTuple):
+    """A median error over the scenes that some chain reaches within a cost."""
+
+    error: float
+    cost: float
+    fixed: bool
+    """Whether the light may be fixed to the body"""
+
+
+GOALS = (
+    Goal(0.31, 120, False), Goal(0.25, 250, False), Goal(0.16, 500, False),
+    Goal(0.09, 400, True), Goal(0.06, 1000, True),
+)  # fmt: skip
+VOLUMES = {"translucency": 1.5, "material": 2.0}
+"""How often the hypervolume of all baselines together fits into the library's."""
+PICKED = 0.15
+BOUNDARY = 1.25
+"""The largest ratio of an error with a refracting boundary and the goal."""
+
+
+def table(record: Record, bent: Record) -> str:
+    """The goals; `bent` has the same bodies with a refracting boundary."""
+    rows = ["| goal | measured | |", "|---|---|---|"]
+    rows += [_goal("median error", goal, record) for goal in GOALS]
+    bent_goals = [goal._replace(error=round(BOUNDARY * goal.error, 4)) for goal in GOALS]
+    rows += [_goal("median error with the boundary", goal, bent) for goal in bent_goals]
+    for role, factor in VOLUMES.items():
+        ratios = {
+            entry["scene"]: entry["ours"] / max(entry["baselines"], 1e-9)
+            for entry in record["hypervolume"]
+            if entry["role"] == role and entry["scene"] in _lit(record)
+        }
+        good = sum(ratio >= factor for ratio in ratios.values())
+        name = f"hypervolume of {role} ≥ {factor:g} × that of all baselines, on each scene"
+        listed = ", ".join(f"{scene} {ratio:.2f}" for scene, ratio in ratios.items())
+        rows.append(_row(name, f"{good} of {len(ratios)}: {listed}", good == len(ratios)))
+    within = {}
+    for scene in _lit(record):
+        points = [point for point in record["points"] if point["scene"] == scene and point["role"] == "material"]
+        point, met = chosen(list(filter(allowed, points)), PICKED, None)
+        assert point is not None
+        within[scene] = (met, limit_of(point))
+    good = sum(met for met, _ in within.values())
+    missed = ", ".join(f"{scene} {error:.3f}" for scene, (met, error) in within.items() if not met)
+    text = f"{good} of {len(within)}" + (f"; the smallest error elsewhere: {missed}" if missed else "")
+    rows.append(_row(f"`pick --max-error {PICKED:g}` has an answer on 5 of 6 scenes", text, good >= 5))
+    return "\n".join(rows)
+
+
+def medians(record: Record, most: int = 24) -> str:
+    """The chains that have the smallest median error of all that are not more expensive."""
+    scenes = _lit(record)
+    by_label = {label: points for label, points in _by_label(record).items() if len(points) == len(scenes)}
+    chains = sorted((_cost_of(points), _median(points), label) for label, points in by_label.items())
+    rows = [
+        f"| cost | median | {' | '.join(scenes)} | requires | chain |",
+        f"|---:|---:|{'---:|' * len(scenes)}---|---|",
+    ]
+    least = float("inf")
+    for cost, error, label in chains:
+        if error >= 0.98 * least or len(rows) >= most:
+            continue
+        least = error
+        points = by_label[label]
+        errors = " | ".join(f"{points[scene]['error']['value']:.3f}" for scene in scenes)
+        requires = ", ".join(next(iter(points.values()))["requires"])
+        published = " (published)" if next(iter(points.values()))["baseline"] else ""
+        rows.append(f"| {cost:.0f} | {error:.3f} | {errors} | {requires} | {label}{published} |")
+    return "\n".join(rows)
+
+
+def _lit(record: Record) -> list[str]:
+    return [scene["name"] for scene in record["scenes"] if "medium" in scene]
+
+
+def _by_label(record: Record) -> dict[str, dict[str, Point]]:
+    """label → scene → the point of the material, without points that failed."""
+    result: dict[str, dict[str, Point]] = {}
+    for point in record["points"]:
+        if point["role"] == "material" and not point["failed"]:
+            result.setdefault(point["label"], {})[point["scene"]] = point
+    return result
+
+
+def _reached(record: Record, goal: Goal) -> tuple[str, bool]:
+    """The smallest median within the cost, as text, and whether it is within the goal."""
+    scenes = _lit(record)
+    chains = [
+        (_median(points), _cost_of(points), label)
+        for label, points in _by_label(record).items()
+        if len(points) == len(scenes)
+        and _cost_of(points) <= goal.cost
+        and all(allowed(point) and not point["baseline"] for point in points.values())
+        and (goal.fixed or all(FIXED not in point["requires"] for point in points.values()))
+    ]
+    if not chains:
+        return "no chain", False
+    error, cost, label = min(chains)
+    return f"{error:.3f} at {cost:.0f}: {label}", error <= goal.error
+
+
+def _goal(name: str, goal: Goal, record: Record) -> str:
+    light = ", with a light that is fixed to the body" if goal.fixed else ""
+    return _row(f"{name} ≤ {goal.error:g} for at most {goal.cost:g} operations{light}", *_reached(record, goal))
+
+
+def _cost_of(points: Mapping[str, Point]) -> float:
+    """The largest cost on the scenes; chains that evaluate the body's distance function depend on it."""
+    return max(float(point["cost"]["value"]) for point in points.values())
+
+
+def _median(points: Mapping[str, Point]) -> float:
+    return median(float(point["error"]["value"]) for point in points.values())
+
+
+def _row(*cells: Any) -> str:
+    *texts, met = cells
+    return f"| {' | '.join(texts)} | {'reached' if met else '**missed**'} |"
