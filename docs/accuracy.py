@@ -24,6 +24,7 @@ from sssgen.lab.chart import drawing
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.choice_pictures import ScenePictures, scene_pictures
 from sssgen.lab.chart.record import to_json
+from sssgen.lab.chart.scene_conditions import boundary, lights
 from sssgen.lab.gpu import chart_times as chart_gpu
 from sssgen.lab.scene import measured_scene
 from sssgen.lab.scene.measured_scene import MeasuredScene
@@ -141,17 +142,9 @@ def scene_table(record: Record) -> str:
         medium = scene.get("medium")
         cells = [medium["name"], *(", ".join(f"{x:.4g}" for x in medium[key]) for key in ("extinction", "albedo"))] \
             if medium else ["clear, with an inlay", "", ""]  # fmt: skip
-        cells += [boundary(medium), ", ".join(scene["lights"])] if medium else ["", ""]
+        cells += [boundary(medium), lights(scene)] if medium else ["", ""]
         rows.append(f"| `{scene['name']}`: {scene['title']} | {' | '.join(cells)} |")
     return "\n".join(rows)
-
-
-def boundary(medium: Record) -> str:
-    """The surface of a medium, as text."""
-    if medium["ior"] == 1.0:
-        return "matched"
-    rough = f", roughness {medium['roughness']:g}" if medium["roughness"] else ", smooth"
-    return f"index {medium['ior']:g}{rough}"
 
 
 def points_of(record: Record, scene: str, role: str) -> list[Point]:

@@ -378,3 +378,23 @@ def test_a_long_device_and_unit_are_shown() -> None:
     (chart,) = charts_of(checked(result))
     assert chart.cost_unit == result["cost_unit"] and result["record"]["driver"] in chart.note
     assert "a software driver" in chart.note
+
+
+def test_charts_say_the_boundary_and_the_lights() -> None:
+    result = record()
+    assert "boundary" not in charts_of(checked(result))[0].note
+    smooth, rough, clear = result["scenes"]
+    smooth |= {"medium": {"name": "marble", "ior": 1.0, "roughness": 0.0}, "lights": ["from afar"]}
+    rough |= {"medium": {"name": "jade", "ior": 1.4, "roughness": 0.3}, "lights": ["point", "even surroundings"]}
+    texts = ["boundary matched; light from afar", "boundary index 1.4, roughness 0.3; light point, even surroundings"]
+    (chart,) = charts_of(checked(result))
+    line, _, rest = chart.note.partition("\n")
+    assert line == f"{smooth['name']}: {texts[0]} · {rough['name']}: {texts[1]}"
+    assert "boundary" not in rest and clear["name"] not in line
+    clear |= {"medium": smooth["medium"], "lights": smooth["lights"]}
+    (chart,) = charts_of(checked(result))
+    assert chart.note.startswith(f"{smooth['name']}, {clear['name']}: {texts[0]} · ")
+    rough["medium"]["roughness"] = 0.0
+    page = str(drawing.chart_files(result)["chart.html"])
+    assert f"{html.escape(smooth['title'])}: marble · {texts[0]}</li>" in page
+    assert "jade · boundary index 1.4, smooth; light point, even surroundings</li>" in page

@@ -158,8 +158,8 @@ def first_light(
         weight[faint] /= SURVIVAL
         position, direction, weight = position[~dies], direction[~dies], weight[~dies]
         crossings += 1
-    cell = float(np.prod((voxels.high - voxels.low) / voxels.shape)) * surface.scale**3
-    fluence = sums / np.maximum(voxels.volume, LEAST_PART * cell)
+    whole = float(np.prod((voxels.high - voxels.low) / voxels.shape)) * surface.scale**3
+    fluence = sums / np.maximum(voxels.volume, LEAST_PART * whole)
     return FirstLight(fluence, np.stack([picked.direction for picked in chosen]) if directions else None)
 
 

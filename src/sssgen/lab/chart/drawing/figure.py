@@ -66,7 +66,7 @@ def figure_of(chart: Chart) -> Any:
     need("matplotlib.backends.backend_agg", extra="chart")
     wide = len(chart.panels) % 2  # a full-width panel: the medians, or the only scene
     rows = wide + len(chart.panels) // 2
-    key_lines = 3 + math.ceil(len(chart.styles) / KEY_COLUMNS)
+    key_lines = 2 + len(_note_lines(chart)) + math.ceil(len(chart.styles) / KEY_COLUMNS)
     height = 0.5 + TALL * wide + SHORT * (rows - wide) + KEY_LINE * key_lines
     figure = figures.Figure(figsize=(WIDTH, height), layout="constrained")
     grid = figure.add_gridspec(rows, 2, height_ratios=[TALL] * wide + [SHORT] * (rows - wide))
@@ -198,10 +198,14 @@ def _draw_key(figure: Any, chart: Chart) -> None:
         )
         for style in chart.styles.values()
     ]  # fmt: skip
-    title = "\n".join([READING, *wrap(chart.note, 130)])
+    title = "\n".join([READING, *_note_lines(chart)])
     figure.legend(
         handles=handles, loc="outside lower left", ncols=KEY_COLUMNS, title=title, alignment="left", labelspacing=0.6
     )
+
+
+def _note_lines(chart: Chart) -> list[str]:
+    return [line for part in chart.note.split("\n") for line in wrap(part, 130)]
 
 
 def _draw_labels(axes: Any, panel: Panel, styles: dict[str, Style]) -> None:

@@ -12,6 +12,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 
 from sssgen.lab.chart.drawing.panels import Chart, number
 from sssgen.lab.chart.record import COSTS, ERRORS, Point, Record
+from sssgen.lab.chart.scene_conditions import conditions
 
 COLUMNS = ("scene", "role", "technique", "cost", "error", "low", "high", "front", "failed", "settings", "chain")
 """The table's first columns; the other numbers follow."""
@@ -38,6 +39,7 @@ def html_page(record: Record, charts: Sequence[Chart], pictures: Sequence[str]) 
         scenes=list(dict.fromkeys(row["scene"].text for row in rows)),
         roles=[chart.role for chart in charts],
         facts=_facts(record),
+        media=[_medium(scene) for scene in record["scenes"] if scene.get("medium")],
         cost_unit=record["cost_unit"],
     )  # fmt: skip
 
@@ -73,6 +75,12 @@ def _row(point: Point, titles: dict[str, str]) -> dict[str, Cell]:
             value = numbers.get(name)
             cells[title] = Cell(number(value), "" if value is None else float(value))
     return cells
+
+
+def _medium(scene: dict[str, Any]) -> tuple[str, str]:
+    """A scene's title, and its medium with its conditions."""
+    text = " · ".join(filter(None, (scene["medium"].get("name", ""), conditions(scene))))
+    return str(scene.get("title") or scene["name"]), text
 
 
 def _pairs(values: dict[str, Any]) -> str:

@@ -9,6 +9,7 @@ from statistics import median
 from typing import Any
 
 from sssgen.lab.chart.record import Point, Record, front, measures, points_of, roles
+from sssgen.lab.chart.scene_conditions import conditions
 
 COLORS = ("#00539C", "#C84E00", "#00805E", "#A8408F", "#946300", "#2F8FD0", "#505050")
 """After Okabe and Ito, "Color universal design" (2008), distinguishable for colour-blind readers; darker, for text."""
@@ -59,7 +60,8 @@ def charts_of(record: Record) -> list[Chart]:
         for title, note, points in _contents(record, role):
             panels.append(Panel(title, note, sorted(points, key=measures), row))
             row += len(points)
-        charts.append(Chart(role, record["cost_unit"], _conditions(record), panels, styles(points_of(record, role))))
+        note = "\n".join(filter(None, (_surroundings(record, role), _conditions(record))))
+        charts.append(Chart(role, record["cost_unit"], note, panels, styles(points_of(record, role))))
     return charts
 
 
@@ -80,6 +82,15 @@ def _hypervolumes(record: Record, role: str, scene: str) -> str:
         if (volume["scene"], volume["role"]) == (scene, role):
             return f"hypervolume: ours {number(volume['ours'])}, baselines {number(volume['baselines'])}"
     return ""
+
+
+def _surroundings(record: Record, role: str) -> str:
+    """The boundary and the lights of the scenes, in one line."""
+    groups: dict[str, list[str]] = {}
+    for scene in record["scenes"]:
+        if points_of(record, role, scene["name"]) and (text := conditions(scene)):
+            groups.setdefault(text, []).append(scene["name"])
+    return " · ".join(f"{', '.join(names)}: {text}" for text, names in groups.items())
 
 
 def _conditions(record: Record) -> str:
