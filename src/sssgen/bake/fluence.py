@@ -20,7 +20,9 @@ from sssgen.harness.scenes.geometry import Mesh
 from sssgen.lab.fluence import fluence_field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence.fluence_field import Field, Settings
+from sssgen.lab.fluence.voxels import Grid
 from sssgen.lab.jobs.executor import Progress
+from sssgen.lab.reference import geometry_mesh
 from sssgen.lab.scene import measured_scene, media
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.support.diagnostics import failure
@@ -30,6 +32,8 @@ from sssgen.targets.texture_import import import_settings
 RANKS = (4, 8)
 OPAQUE = 3.0
 """The optical depth of a voxel above which light does not reach from one voxel to the next: the bake warns."""
+MOST_OPAQUE = 10.0
+"""The optical depth of a voxel above which a bake is refused: all light ends in the first voxel."""
 BYTES = 3 * 4 * 4
 """Bytes of memory for each voxel and direction: three channels, in float64 and float32, and their averages."""
 
@@ -83,6 +87,14 @@ def bake(
     if not 2 <= settings.photons <= 10**7:
         raise failure(f"{settings.photons} photons are not between 2 and 10,000,000", "some thousands are enough")
     grid = fluence_field.grid_in_box(scene, settings.voxels)
+    if isinstance(scene.geometry, Mesh):
+        geometry_mesh.mesh_of(scene.geometry)  # refuses an open mesh before the work
+    depth = max(scene.medium.extinction) * _voxel(scene, grid)
+    if depth > MOST_OPAQUE:
+        raise failure(
+            f"a voxel is {depth:.3g} mean free paths long in one channel, and at most {MOST_OPAQUE:g} are traced",
+            "use more voxels, or a smaller unit: --unit-mm, unit_mm of [medium]",
+        )
     memory.check(grid.voxels * settings.side**2 * BYTES, "use fewer voxels")
     refracted = "_refracted" if scene.medium.ior != 1.0 else ""
     if light is None:
@@ -114,7 +126,7 @@ def _factored(traced: Field, rank: int) -> list[Part]:
 def _facts(scene: MeasuredScene, settings: Settings, traced: Field) -> dict[str, Any]:
     medium = scene.medium
     assert medium is not None
-    voxel = float(((traced.grid.high - traced.grid.low) / np.array(traced.grid.shape)).max()) * scene.geometry.scale
+    voxel = _voxel(scene, traced.grid)
     matrix = np.eye(4)
     size = traced.grid.high - traced.grid.low
     matrix[[0, 1, 2], [0, 1, 2]] = 1.0 / size
@@ -136,6 +148,11 @@ def _facts(scene: MeasuredScene, settings: Settings, traced: Field) -> dict[str,
         "parameters": {**medium.parameters, "world_to_volume": matrix.T.ravel().tolist()},
         "import": import_settings("3D", "clamp", mipmaps=False),
     }  # fmt: skip
+
+
+def _voxel(scene: MeasuredScene, grid: Grid) -> float:
+    """The longest side of a voxel in world units."""
+    return float(((grid.high - grid.low) / np.array(grid.shape)).max()) * scene.geometry.scale
 
 
 def part_path(path: str, suffix: str, ending: str = "") -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any, NamedTuple
 
 from sssgen.ir.nodes import Uniform
@@ -18,6 +18,10 @@ FORMAT = 1
 MAX_BYTES = 2**20
 INDEX = "ior"
 """The parameter for the refractive index of a medium."""
+MEDIUM = ("extinction", "scattering_albedo")
+"""The parameters of a medium that light is traced with."""
+SAME = 0.01
+"""The relative difference up to which two values of a medium are the same."""
 LARGEST = 1e30
 """Larger than any number of a bake."""
 UNITS = "materials use metres: scale the mesh to a few units"
@@ -112,6 +116,25 @@ def check_boundary(baked_texture: Baked, parameters: Collection[str], name: str)
         technique = baked_texture.facts.get("technique", "")
         hint = f"use {technique}" if technique else "use the technique for this boundary"
         raise failure(f"'{name}' is baked with the refractive index {index:g}, and the technique {does}", hint)
+
+
+def check_medium(baked_texture: Baked, values: Mapping[str, tuple[float, ...]], name: str) -> None:
+    """Raises SssgenError if a material's values, by their names in its technique, are not the medium of baked light."""
+    if baked_texture.kind != "fluence":
+        return
+    for parameter in MEDIUM:
+        raw, own = baked_texture.parameters.get(parameter), values.get(parameter)
+        if own is None or not isinstance(raw, list) or len(raw) != len(own):
+            continue
+        if any(abs(a - b) > SAME * max(abs(a), abs(b)) for a, b in zip(raw, own, strict=True)):
+            raise failure(
+                f"'{name}' is baked for the {parameter} {_text(raw)}, and the material has {_text(own)}",
+                f"leave {parameter} out: it comes with the bake; or bake again with this medium",
+            )
+
+
+def _text(components: Iterable[float]) -> str:
+    return f"({', '.join(f'{component:.4g}' for component in components)})"
 
 
 def _readers(quantity: str) -> str:

@@ -283,6 +283,7 @@ class _Reader:
                     continue
                 baked.check(texture, uniform, stage.textures[uniform.name])
                 baked.check_boundary(texture, [other.name for other in uniforms], stage.textures[uniform.name])
+                baked.check_medium(texture, stage.values, stage.textures[uniform.name])
             except SssgenError as error:
                 for diagnostic in error.diagnostics:
                     self.document.error(span, diagnostic.message, diagnostic.hint)

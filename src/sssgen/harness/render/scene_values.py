@@ -10,6 +10,7 @@ import numpy as np
 
 from sssgen.harness.evaluate import input_files as inputs
 from sssgen.harness.evaluate.evaluation import half
+from sssgen.harness.render import baked_body
 from sssgen.harness.render.shell_values import Shell
 from sssgen.harness.scenes.drawn_views import light_depth
 from sssgen.harness.scenes.geometry import Geometry
@@ -90,11 +91,31 @@ def _parameters(
             document.error(place.key, f"{material.name} has no parameter '{name}'", hint)
             continue
         try:
-            values[name] = read_value(_uniform(material, uniforms[name]), raw)
+            value = read_value(_uniform(material, uniforms[name]), raw)
+            _check_own(scene, material, reflection, uniforms[name], value)
+            values[name] = value
         except WrongValue as wrong:
             document.error(place.value, wrong.message, wrong.hint)
+        except SssgenError as error:
+            for diagnostic in error.diagnostics:
+                document.error(place.value, diagnostic.message, diagnostic.hint)
     document.reporter.check()
     return values
+
+
+def _check_own(
+    scene: Scene,
+    material: Material,
+    reflection: Mapping[str, Any],
+    uniform: Mapping[str, Any],
+    value: tuple[float, ...],
+) -> None:
+    """Raises SssgenError if a scene's value for a uniform is not that of the medium of its technique's baked light."""
+    for texture in reflection["textures"]:
+        file = _file(scene, material, texture) if texture["technique"] == uniform["technique"] else ""
+        sidecar = baked.read(file) if file else None
+        if sidecar is not None:
+            baked.check_medium(sidecar, {uniform["technique_name"]: value}, os.path.basename(file))
 
 
 def _baked_parameters(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
@@ -110,6 +131,10 @@ def _baked_parameters(scene: Scene, material: Material, reflection: Mapping[str,
             stages = [stage for stage in material.stages if stage.technique.name == texture["technique"]]
             declared = [uniform.name for stage in stages for uniform in stage.technique.uniforms]
             baked.check_boundary(sidecar, declared, os.path.basename(file))
+            for stage in stages:
+                baked.check_medium(sidecar, stage.values, os.path.basename(file))
+            if scene.geometry is not None:
+                _check_scene(sidecar, scene, scene.geometry, material, os.path.basename(file))
             values = _in_world_space(sidecar, scene.geometry)
         except SssgenError as error:
             if (name := texture["source_name"]) not in scene.textures:
@@ -129,11 +154,17 @@ def _baked_parameters(scene: Scene, material: Material, reflection: Mapping[str,
     return parameters
 
 
+def _check_scene(sidecar: Baked, scene: Scene, geometry: Geometry, material: Material, name: str) -> None:
+    """Raises SssgenError if a texture is baked for another body, medium or light than the scene's."""
+    baked_body.check_body(sidecar, geometry, name)
+    baked_body.check_lights(sidecar, geometry, scene.lights, name)
+    baked_body.check_resolution(sidecar, geometry, [stage.values for stage in material.stages], name)
+
+
 def _in_world_space(sidecar: Baked, geometry: Geometry | None) -> dict[str, Any]:
     """The parameters of a JSON file, transformed from object space to world space where techniques need that.
 
-    Raises SssgenError for a depth map of a body that the scene scales, as its lengths are in the units of the bake, and
-    for fluence of a body of another scale.
+    Raises SssgenError for a depth map of a body that the scene scales, as its lengths are in the units of the bake.
     """
     values = dict(sidecar.parameters)
     if geometry is None:
@@ -150,10 +181,6 @@ def _in_world_space(sidecar: Baked, geometry: Geometry | None) -> dict[str, Any]
             raise failure("the depth map is for the unscaled body, but the scene scales it", "scale the mesh itself")
         values["light_matrix"] = [*(np.array(matrix).reshape(4, 4).T @ to_object).T.ravel()]
     if isinstance(matrix := values.get("world_to_volume"), list) and sidecar.kind == "fluence" and len(matrix) == 16:
-        scale = sidecar.facts.get("body", {}).get("scale")
-        if scale != geometry.scale:
-            message = f"the fluence was baked for the scale {scale}, but the scene has {geometry.scale:g}"
-            raise failure(message, "bake it for this scene: light fades over other lengths in a body of another size")
         values["world_to_volume"] = [*(np.array(matrix).reshape(4, 4).T @ to_object).T.ravel()]
     return values
 
