@@ -4,8 +4,9 @@
 
 The first table compares 42yeah's published scene with jelly_cubes, with the same camera and glow, and shows the
 difference of their pictures. The second table compares each technique, with default parameters, with its formula in
-benchmarks/by_hand. The third table shows the materials of the examples in their scenes. Emitted and handwritten
-programs take turns in the same run; a ratio below 1 means that the emitted program is faster.
+benchmarks/by_hand. The third table shows the materials of the examples in their scenes. The last table compares chains
+whose light starts inside the body with the time that the published thinness of 30 taps adds to its scene.
+Emitted and handwritten programs take turns in the same run; a ratio below 1 means that the emitted program is faster.
 """
 
 from __future__ import annotations
@@ -16,12 +17,18 @@ import re
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 import sssgen
 from sssgen.harness.pictures.picture_difference import compare
 from sssgen.harness.scenes import scene_loading
+from sssgen.lab.gpu import device_costs
 from sssgen.lab.gpu import gpu_timing as gpu_cost
 from sssgen.lab.gpu import timed_programs as gpu_programs
 from sssgen.lab.gpu.gpu_timing import Program, ProgramTimes, Spread
+from sssgen.lab.measure import candidates
+from sssgen.lab.measure.candidates import Candidate
+from sssgen.lab.scene import measured_scene
 from sssgen.material import library
 from sssgen.material.material_loading import examples
 from sssgen.material.slots import needs
@@ -33,6 +40,8 @@ BODY = {"body_distance": "sphere", "scene_distance": "sphere", "distance_at": "d
 """Slot → the function that is bound to it; the programs in by_hand use the same functions."""
 REACH = 1.5
 """The reach of the thinness techniques; with it the last taps leave the ball on the far side."""
+BODY_SCENE = "cube"
+"""The scene at whose points chains are timed."""
 EVALUATIONS = 32
 """Evaluations of a technique per pixel; reading the inputs would hide the cost of one evaluation."""
 
@@ -140,6 +149,35 @@ def by_example(size: tuple[int, int], rounds: int) -> tuple[Table, ProgramTimes,
     return Table("The examples' materials", ["", "ms per frame", f"× {chosen[0].name}"], rows), timing, {}
 
 
+def interior(size: tuple[int, int], rounds: int) -> tuple[Table, ProgramTimes, dict[str, Any]]:
+    """The table of the techniques that know the light inside a body, beside the published thinness of 30 taps."""
+    scene = published(size[0] / size[1])
+    call = "thinness(p, n)"
+    assert scene.fragment.count(f"float thin = {call}") == 1
+    fragment = scene.fragment.replace(f"= {call}", "= 0.0")
+    without = scene._replace(name=f"{scene.name}, without thinness", fragment=fragment)
+    result = gpu_cost.measure([scene, without], size, rounds)
+    added = result.raw(scene.name).median - result.raw(without.name).median
+    pixels_per_ns = size[0] * size[1] / 1e6
+    rows = [["published thinness", "–" if result.device.software else f"{added:.4g}", "1"]]
+    ratios = {}
+    chains = device_costs.time_chains(chains_inside(), measured_scene.load(BODY_SCENE), size, rounds)
+    for label, ns in zip(chains.labels, chains.ns, strict=True):
+        median = pixels_per_ns * float(np.median(ns))
+        ratios[label] = median / added
+        ms = "–" if chains.driver.software else f"{median:.4g}"
+        rows.append([label, ms, f"{ratios[label]:.3f}"])
+    title = "ms at all pixels for one light, and relative to what the published thinness of 30 taps adds to its scene"
+    return Table(title, ["", "ms", "× published"], rows), result, {"added_ms": added, "of_thinness": ratios}
+
+
+def chains_inside() -> list[Candidate]:
+    """The chains whose light starts inside the body, with back faces from the eye and a depth map from the light."""
+    views = [candidate for candidate in candidates.view_thickness() if candidate.name == "back_face_thickness"]
+    paths = [candidate for candidate in candidates.thickness() if candidate.name == "depth_map_path"]
+    return [candidate for candidate in candidates.materials((), views, paths) if candidate.path]
+
+
 def as_markdown(table: Table) -> str:
     lines = [f"### {table.title}", "", "| " + " | ".join(table.head) + " |", "|---|" + "---:|" * (len(table.head) - 1)]
     return "\n".join([*lines, *("| " + " | ".join(row) + " |" for row in table.rows), ""])
@@ -173,6 +211,7 @@ def main() -> None:
         "jelly_cubes": jelly_cubes(size, options.rounds),
         "techniques": by_technique(size, options.rounds, options.evaluations),
         "examples": by_example(size, options.rounds),
+        "interior": interior(size, options.rounds),
     }.items():
         tables.append(table)
         record[name] = {**result.record(), **more}
