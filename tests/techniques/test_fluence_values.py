@@ -73,8 +73,11 @@ def refracted_in_ball(ior: float, count: int) -> tuple[Array, Array, Array, Arra
     side = view - cosine[:, None] * normal
     sine = np.linalg.norm(side, axis=1) / ior
     ray = -(np.sqrt(1.0 - sine**2)[:, None] * normal + side / ior)
-    least = ((ior - 1.0) / (ior + 1.0)) ** 2
-    share = (1.0 - least) * (1.0 - (1.0 - cosine) ** 5) / ior**2
+    # Fresnel's equations with the cosines on both sides
+    beyond = np.sqrt(1.0 - sine**2)
+    across = (cosine - ior * beyond) / (cosine + ior * beyond)
+    along = (beyond - ior * cosine) / (beyond + ior * cosine)
+    share = (1.0 - 0.5 * (across**2 + along**2)) / ior**2
     return normal, view, ray, 2.0 * RADIUS * np.sqrt(1.0 - sine**2), share
 
 

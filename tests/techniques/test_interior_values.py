@@ -122,6 +122,18 @@ def test_light_that_is_scattered_again_fades_faster_at_thin_edges() -> None:
         close(again[1] / again[0], np.full(3, 4.0), rtol=1e-3)
 
 
+def transmitted(cosine: Array, ior: float) -> Array:
+    """The share that a surface lets through, by Fresnel's equations with the angles on both sides."""
+    before = np.arccos(cosine)
+    beyond = np.arcsin(np.sin(before) / ior)
+    if ior == 1.0:
+        return np.ones_like(cosine)
+    across = np.sin(before - beyond) / np.sin(before + beyond)
+    along = np.tan(before - beyond) / np.tan(before + beyond)
+    result: Array = 1.0 - 0.5 * (across**2 + along**2)
+    return result
+
+
 @pytest.mark.parametrize("ior", [1.0, 1.3, 1.8])
 @pytest.mark.parametrize(
     ("name", "refracted"),
@@ -140,8 +152,7 @@ def test_a_refracting_surface_bends_the_eyes_ray_and_lets_a_share_through(
     side = view - cosine[:, None] * normal
     sine = np.linalg.norm(side, axis=1) / ior
     bent = np.sqrt(1.0 - sine**2)[:, None] * normal + side / ior
-    least = ((ior - 1.0) / (ior + 1.0)) ** 2
-    share = (1.0 - least) * (1.0 - (1.0 - cosine) ** 5)
+    share = transmitted(cosine, ior)
     values = {"mean_free_path": 0.3, "P": place, "L": light}
     # the chord of the refracted ray
     chord = 2.0 * RADIUS * np.einsum("nc,nc->n", normal, bent)
