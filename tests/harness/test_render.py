@@ -92,6 +92,26 @@ def test_every_input_of_a_shell(
 
 
 @pytest.mark.parametrize("name", DRAWING)
+def test_how_near_each_light_is(
+    name: str, backend: Callable[[str], Backend], scene: Callable[..., str], tmp_path: Path
+) -> None:
+    """1 over the distance of a lamp, 0 for a light from afar; a lamp's colour falls off with its square."""
+    text = "/** Shows it.\nrole: translucency\n*/\nvec3 shown(float light_nearness) {\n"
+    text += "    return vec3(1.0, light_nearness, light_nearness * light_nearness);\n}\n"
+    (tmp_path / "shown.sss").write_text(text, encoding="utf-8")
+    material = '[material]\nname = "shown"\nshading = "lit"\n[translucency]\ntechnique = "shown.sss"\n'
+    (tmp_path / "shown.toml").write_text(material, encoding="utf-8")
+    lamp = "[[light]]\nposition = [0.3, 0.5, 1.6]\ncolor = [0.5, 0.5, 0.5]\n"
+    sun = "[[light]]\ndirection = [0.0, 0.0, 1.0]\ncolor = [0.5, 0.5, 0.5]\n"
+    for lights in (lamp, sun, lamp + sun):
+        described = load(scene(f'material = "shown.toml"\nsamples = 1\n{BALL}{lights}'))
+        oracle = render(described, backends.get("numpy"), SIZE)
+        assert largest_difference(render(described, backend(name), SIZE), oracle) < 0.5
+        shown = oracle.linear[oracle.covered == 1.0]
+        assert shown.shape[0] > 100 and np.ptp(shown[:, 1]) > (0.02 if lamp in lights else -1.0)
+
+
+@pytest.mark.parametrize("name", DRAWING)
 @pytest.mark.parametrize("material", ["paper_lantern", "ice", "resin_inlay", "jelly_cubes"])
 def test_examples_equal_numpy(
     name: str, material: str, backend: Callable[[str], Backend], scene: Callable[..., str]

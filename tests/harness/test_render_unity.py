@@ -190,6 +190,23 @@ def test_places_on_the_screen_for_each_light(unity: UnityHLSL, tmp_path: Path) -
     assert np.ptp(oracle.linear[oracle.covered == 1.0], axis=0).min() > 0.02
 
 
+def test_how_near_each_light_is(unity: UnityHLSL, tmp_path: Path) -> None:
+    """A technique has 1 over the distance of a lamp, and 0 for a light from afar."""
+    text = "/** Shows it.\nrole: translucency\n*/\nvec3 shown(world_direction L, float light_nearness) {\n"
+    text += "    return vec3(light_nearness, light_nearness * light_nearness, 0.2) + 0.0 * L.x;\n}\n"
+    (tmp_path / "shown.sss").write_text(text, encoding="utf-8")
+    material = '[material]\nname = "shown"\nshading = "lit"\n[translucency]\ntechnique = "shown.sss"\n'
+    (tmp_path / "shown.toml").write_text(material, encoding="utf-8")
+    means = {}
+    for lights in LIT_FROM_BEHIND.values():
+        described = scene(f'material = "shown.toml"\nsamples = 1\n{BALL}{lights}', tmp_path)
+        oracle = picture_of(described, backends.get("numpy"))
+        assert largest_difference(picture_of(described, unity), oracle) < 0.5
+        means[lights] = oracle.linear[oracle.covered == 1.0].mean(axis=0)
+    lamp, sun, both = means.values()
+    assert sun[0] < 0.02 < 0.05 < both[0] < lamp[0]
+
+
 def test_shadows_on_transmitted_light(backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) -> None:
     """In URP the shadow of another body takes the transmitted light, and the body's own does not.
 

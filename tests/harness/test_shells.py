@@ -46,17 +46,17 @@ THROUGH = """
 role: translucency
 */
 vec3 through(world_direction V, world_direction N, world_direction L, object_direction L_object, vec2 screen_uv,
-    float eye_distance) {
-    return 0.5 + 0.1 * vec3(V + N + L + vec3(L_object)) + vec3(screen_uv, eye_distance);
+    float eye_distance, float light_nearness) {
+    return 0.5 + 0.1 * vec3(V + N + L + vec3(L_object)) + vec3(screen_uv, eye_distance) + light_nearness;
 }
 """
 UNLIT = f"""
 /** Shows what a shell gives an unlit material.
 role: lighting
 */
-vec3 unlit({INPUTS}, world_direction L, object_direction L_object) {{
+vec3 unlit({INPUTS}, world_direction L, object_direction L_object, float light_nearness) {{
     return 0.5 + 0.1 * vec3(V + N + T + B + vec3(V_object) + vec3(N_object) + L + vec3(L_object))
-        + vec3(screen_uv, eye_distance);
+        + vec3(screen_uv, eye_distance) + light_nearness;
 }}
 """
 RAYS = """

@@ -95,15 +95,16 @@ def test_the_first_octave_is_single_scattering() -> None:
     length = np.linspace(0.0, 2.0, 9)
     zeros = np.zeros((9, 3))
     result = technique("interior_octaves", light_path=constant)(
-        d=length, P=zeros, V=zeros, L=zeros, extinction=sigma, scattering_albedo=albedo, octaves=(1.0, 0.0, 0.0, 0.0),
+        d=length, P=zeros, V=zeros, L=units(9, 6), light_nearness=0.0, extinction=sigma, scattering_albedo=albedo,
+        octaves=(1.0, 0.0, 0.0, 0.0),
         mean_free_path=3.0 / sigma.sum(),
     )  # fmt: skip
     depth = np.linspace(0.0, 1.0, 20001)[:, None, None] * length[:, None]
     scattered = albedo * sigma * np.exp(-sigma * depth) * np.exp(-sigma * 0.3) / 4.0
     close(result, np.trapezoid(scattered, axis=0, dx=1.0) * length[:, None] / 20000, rtol=1e-6, atol=1e-12)
     mixed = technique("interior_octaves", light_path=constant)(
-        d=np.array([1e9]), P=zeros[:1], V=zeros[:1], L=zeros[:1], extinction=sigma, scattering_albedo=albedo,
-        octaves=(0.5, 1.0, 2.0, 3.0), mean_free_path=0.2,
+        d=np.array([1e9]), P=zeros[:1], V=zeros[:1], L=units(1, 6), extinction=sigma, scattering_albedo=albedo,
+        octaves=(0.5, 1.0, 2.0, 3.0), mean_free_path=0.2, light_nearness=0.0,
     )  # fmt: skip
     again = sum(share * np.exp(-0.3 * sigma / part) for share, part in ((1.0, 2.0), (2.0, 4.0), (3.0, 16.0)))
     close(mixed[0], 0.25 * albedo * (0.5 * np.exp(-0.3 * sigma) + albedo * again), rtol=1e-9)
@@ -156,6 +157,8 @@ def test_a_refracting_surface_bends_the_eyes_ray_and_lets_a_share_through(
     values = {"mean_free_path": 0.3, "P": place, "L": light}
     # the chord of the refracted ray
     chord = 2.0 * RADIUS * np.einsum("nc,nc->n", normal, bent)
+    if "octaves" in name:
+        values["light_nearness"] = 0.4
     straight = technique(name, light_path=path)(V=bent, d=chord, **values)
     result = technique(refracted, light_path=path)(V=view, N=normal, ior=ior, d=length, **values)
     close(result, share[:, None] * straight, rtol=1e-9)
@@ -181,3 +184,31 @@ def test_the_directional_map_has_the_length_of_its_numbers() -> None:
     share = (terms * numbers).sum(axis=1)
     assert (share < 0.02).any() and (share > 0.9999).any() and ((share > 0.1) & (share < 0.9)).sum() > 20
     close(result, -0.7 * np.log(1.0 - np.clip(share, 0.02, 0.9999)), rtol=1e-9)
+
+
+def test_octaves_have_the_light_at_the_point_inside() -> None:
+    """The direction and the irradiance of a lamp there; the path of this test depends on both place and direction."""
+    place, view, length = seen_ball(200)
+    mean_free_path, lamp = 0.5, np.array([0.4, 0.9, -1.3])
+    towards = lamp - place
+    distance = np.linalg.norm(towards, axis=1)
+    path = "thickness sloped(world_position p, world_direction l) "
+    path += "{ return thickness(2.0 + dot(p, vec3(0.5, 0.7, 0.3)) + dot(l, vec3(0.2, -0.6, 0.4))); }"
+    lit = technique("interior_octaves", light_path=path)
+    values = {"P": place, "V": view, "d": length, "mean_free_path": mean_free_path, "extinction": (2.0,) * 3,
+              "scattering_albedo": (0.5,) * 3, "octaves": (1.0, 0.0, 0.0, 0.0)}  # fmt: skip
+    inside = place - np.minimum(np.log(2.0) * mean_free_path, 0.5 * length)[:, None] * view
+    seen = 0.125 * (1.0 - np.exp(-2.0 * length))
+
+    def expected(way: Array) -> Array:
+        depth = 2.0 + inside @ [0.5, 0.7, 0.3] + way @ [0.2, -0.6, 0.4]
+        result: Array = (seen * np.exp(-2.0 * depth))[:, None] * np.ones(3)
+        return result
+
+    from_inside = lamp - inside
+    result = lit(L=unit(towards), light_nearness=1.0 / distance, **values)
+    nearer = (distance / np.linalg.norm(from_inside, axis=1)) ** 2
+    # the technique has ln 2 with six digits
+    close(result, nearer[:, None] * expected(unit(from_inside)), rtol=1e-6)
+    assert nearer.min() < 0.9 and nearer.max() > 1.1
+    close(lit(L=unit(towards), light_nearness=0.0, **values), expected(unit(towards)), rtol=1e-6)

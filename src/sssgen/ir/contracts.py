@@ -28,6 +28,8 @@ UV = {FLOAT32.name: 1e4, "half": 100.0}
 COLOR = {FLOAT32.name: 65504.0, "half": 1000.0}
 LIGHT = {FLOAT32.name: 1e9, "half": 1000.0}
 """The brightest light: a lamp's colour over its least squared distance, 1e-4 in the shells."""
+NEAREST = 100.0
+"""The largest light_nearness: 1 over the least distance in the shells."""
 INTEGERS = {"int": (-(2.0**31), 2.0**31 - 1.0), "uint": (0.0, 2.0**32 - 1.0), "bool": (0.0, 1.0)}
 
 _UNIT = {"thinness", "transmittance"}
@@ -58,6 +60,8 @@ def of_name(param: Param, format: Format = FLOAT32) -> Contract | None:
         return Contract(0.0, 1.0)
     if param.name == "eye_distance" and param.type == FLOAT:
         return Contract(0.0, THICKNESS[format.name])
+    if param.name == "light_nearness" and param.type == FLOAT:
+        return Contract(0.0, NEAREST)
     if param.name in _COLORS and param.type == VEC3:
         return Contract(0.0, LIGHT[format.name] if param.name == "light_color" else COLOR[format.name])
     return None

@@ -45,11 +45,11 @@ INPUTS: dict[str, Type] = {
     "uv": VEC2, "P": VEC3, "N": VEC3, "V": VEC3, "T": VEC3, "B": VEC3, "L": VEC3,
     "P_object": VEC3, "N_object": VEC3, "V_object": VEC3, "L_object": VEC3,
     "screen_uv": VEC2, "eye_distance": FLOAT,
-    "time": FLOAT, "light_color": VEC3, "ray_origin": VEC3, "ray_direction": VEC3,
+    "time": FLOAT, "light_color": VEC3, "light_nearness": FLOAT, "ray_origin": VEC3, "ray_direction": VEC3,
 }  # fmt: skip
 """The inputs that a shell can supply."""
 
-PER_LIGHT = frozenset({"L", "L_object", "light_color"})
+PER_LIGHT = frozenset({"L", "L_object", "light_color", "light_nearness"})
 
 DEFAULTS: dict[str, tuple[Type, tuple[float, ...]]] = {
     "albedo": (VEC3, (1.0, 1.0, 1.0)),

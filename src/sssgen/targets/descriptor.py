@@ -18,7 +18,7 @@ _Record = TypeVar("_Record", bound=NamedTuple)
 
 CHAIN_INPUTS = (
     "uv", "P", "N", "V", "T", "B", "L", "P_object", "N_object", "V_object", "L_object", "screen_uv", "eye_distance",
-    "time", "light_color", "ray_origin", "ray_direction", "surface", "color",
+    "time", "light_color", "light_nearness", "ray_origin", "ray_direction", "surface", "color",
 )  # fmt: skip
 """The values that a shell passes to the assembled functions; `color` is what `evaluate_output` encodes."""
 

@@ -103,7 +103,10 @@ def _light(shell: Shell, number: int, surface_position: Array, dtype: str) -> di
     towards = to_light / np.sqrt(squared)
     falloff = 1.0 + (1.0 / squared - 1.0) * position[3]
     world_to_object = inverse(shell.model)[:3, :3].astype(dtype)
-    return {"L": towards, "light_color": color[:, None] * falloff, "L_object": _unit(world_to_object @ towards)}
+    return {
+        "L": towards, "light_color": color[:, None] * falloff, "L_object": _unit(world_to_object @ towards),
+        "light_nearness": position[3] / np.sqrt(squared),
+    }  # fmt: skip
 
 
 def _main(

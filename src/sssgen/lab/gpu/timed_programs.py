@@ -82,6 +82,7 @@ _INPUTS = {
     "time": ("timing_time", ()),
     "screen_uv": ("0.5 * v_clip.xy + 0.5", ("v_clip",)),
     "eye_distance": ("distance(timing_eye, v_position)", ("v_position",)),
+    "light_nearness": ("1.0 / distance(timing_light, v_position)", ("v_position",)),
     "ray_origin": ("timing_eye", ()),
     "ray_direction": ("normalize(v_position - timing_eye)", ("v_position",)),
 }

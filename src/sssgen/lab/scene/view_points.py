@@ -48,11 +48,12 @@ class Points:
         return way / distance, distance
 
     def light(self, light: Light) -> dict[str, Array]:
-        """L, L_object and light_color of a white light of irradiance 1 at each point: (3, n)."""
-        towards, _ = self.towards(light)
+        """L, L_object and light_color (3, n) of a white light of irradiance 1 at each point; light_nearness (n,)."""
+        towards, distance = self.towards(light)
         in_object = np.linalg.inv(self.model)[:3, :3] @ towards
         in_object /= np.linalg.norm(in_object, axis=0)
-        return {"L": towards, "L_object": in_object, "light_color": np.ones((3, self.count))}
+        colors = np.ones((3, self.count))
+        return {"L": towards, "L_object": in_object, "light_color": colors, "light_nearness": 1.0 / distance}
 
     def picture(self, values: Array, background: float = 0.0) -> Array:
         """Values (k, n) as a picture (height, width, k), row 0 at the top."""

@@ -56,6 +56,11 @@ int GetAdditionalLightsCount()
     return USE_CLUSTERED_LIGHTING ? 0 : int(_AdditionalLightsCount.x);
 }
 
+int GetPerObjectLightIndex(uint index)
+{
+    return int(index);
+}
+
 Light GetAdditionalLight(uint i, float3 positionWS)
 {
     Light light;
