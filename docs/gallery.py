@@ -155,7 +155,7 @@ def _techniques(material: Material) -> Iterator[str]:
 def _cost(name: str) -> str:
     """The cost of a fragment, and of each light in addition."""
     entries = sssgen.compile(name, "glsl-330").reflection["entries"].values()
-    lights = {"L", "L_object", "light_color"}
+    lights = {"L", "L_object", "light_color", "light_nearness"}
     parts = {
         "a fragment": [entry for entry in entries if not lights & {*entry["inputs"]}],
         "each light": [entry for entry in entries if lights & {*entry["inputs"]}],
