@@ -26,6 +26,7 @@ from sssgen.ir.nodes import (
     Expr,
     Function,
     If,
+    Intrinsic,
     Literal,
     Local,
     Member,
@@ -50,6 +51,14 @@ INPUTS: dict[str, Type] = {
 """The inputs that a shell can supply."""
 
 PER_LIGHT = frozenset({"L", "L_object", "light_color", "light_nearness"})
+
+EYE_DISTANCE = "eye_distance"
+
+RAYS = frozenset({"ray_origin", "ray_direction"})
+"""The inputs of a material that fills the screen, which has no mesh."""
+
+OF_MESH = frozenset({"P", "N", "V", "T", "B", "P_object", "N_object", "V_object", "L_object", EYE_DISTANCE})
+"""The inputs that a shell computes from a mesh."""
 
 DEFAULTS: dict[str, tuple[Type, tuple[float, ...]]] = {
     "albedo": (VEC3, (1.0, 1.0, 1.0)),
@@ -181,8 +190,16 @@ def _value_name(param: Param) -> str:
 def _color_entry(stages: Sequence[ChainFunction], opaque: bool) -> Entry:
     """The entry of an unlit material: all stages in order; those that need a hit are inside its `if`."""
     body = _Body("evaluate_color")
+    first: dict[str, ChainFunction] = {}
     for stage in stages:
         body.add(stage)
+        for name in body.inputs:
+            first.setdefault(name, stage)
+    if RAYS & first.keys() or any(stage.role == "geometry" for stage in stages):
+        for name in sorted(OF_MESH & first.keys()):
+            stage = first[name]
+            reason = "a raymarched material has no mesh: P, N, V and eye_distance exist after the ray's hit"
+            raise LinkError(f"{stage.technique} reads {name}, but {reason}", stage.span)
     return body.finish_color(opaque)
 
 
@@ -217,6 +234,8 @@ class _Body:
         """Adds the call of one stage."""
         function, span = stage.function, stage.span
         self.span = span
+        if any(_value_name(param) == EYE_DISTANCE for param in function.params):
+            self.measure_hit(stage)
         waits = "hit" in self.values and any(
             self.values[name].behind_hit
             for param in function.params
@@ -238,6 +257,14 @@ class _Body:
             for param in function.params:
                 if param.direction == "out":
                     self.values[param.name] = _Value(param.type, True)
+
+    def measure_hit(self, stage: ChainFunction) -> None:
+        """Declares the distance from the eye to the place where the ray has hit, if there is a ray."""
+        if "hit" not in self.values or EYE_DISTANCE in self.values or "P" not in self.values:
+            return
+        eye = self.read("ray_origin", Param("ray_origin", VEC3, "in", "", stage.span), stage)
+        distance = Intrinsic(FLOAT, "distance", (eye, Local(VEC3, "P", stage.span)), stage.span)
+        self.store(EYE_DISTANCE, distance, self.after_hit, True, stage.span)
 
     def argument(self, param: Param, stage: ChainFunction, target: list[Stmt], waits: bool) -> Expr:
         """The argument for a parameter."""
