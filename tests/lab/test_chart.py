@@ -140,7 +140,7 @@ def test_roles_without_light_need_no_reference(monkeypatch: pytest.MonkeyPatch) 
     assert ran and not any("reference" in title for title in ran)
     chart.chart_record([cube()], settings(roles=("thickness", "translucency")))
     assert (
-        sum("reference" in title for title in ran) == 2 + 14
+        sum("reference" in title for title in ran) == 2 + 19
     )  # the two views and the training views, each with a light
     assert [point["label"] for point in points] == [candidate.label for candidate in candidates.thickness()]
 
@@ -161,7 +161,7 @@ def test_a_record_is_valid_and_complete() -> None:
     assert checked(record) == record == json.loads(to_json(record))
     assert [scene["name"] for scene in record["scenes"]] == ["cube", "inlay_plate"]
     assert record["scenes"][0]["medium"]["name"] == "marble" and "medium" not in record["scenes"][1]
-    assert record["scenes"][0]["fitted_to"] == ["ball", "slab", "ball", "slab"]
+    assert record["scenes"][0]["fitted_to"] == ["ball", "bar", "ball", "bar", "slab"]
     assert (record["record"]["samples"], record["record"]["seed"]) == (SAMPLES, 0)
     assert record["record"]["versions"]["mitsuba"]
     roles = {(point["scene"], point["role"]) for point in record["points"]}

@@ -272,7 +272,7 @@ def test_the_published_seed_3_is_ambient_light_times_transmittance(
 
 
 def test_seed_0_mistakes_a_cube_and_a_march_to_the_light_does_not() -> None:
-    # both are fitted only to balls and slabs
+    # both are fitted only to the training scenes
     cube = small("cube")
     fitted_to = [View(scene.name, replace(scene, size=SIZE)) for scene in references.training(cube)]
     error: dict[str, float] = {}

@@ -260,7 +260,7 @@ def test_training_sizes_are_powers_of_two() -> None:
     sizes = [references.training(replace(scene, geometry=Ball(radius)))[0].geometry for radius in (0.9, 1.0, 1.1, 2.0)]
     assert sizes == [Ball(1.0), Ball(1.0), Ball(1.0), Ball(2.0)]
     training_scenes = references.training(scene)
-    assert [training_scene.name for training_scene in training_scenes] == ["ball", "slab", "ball", "slab"]
+    assert [training_scene.name for training_scene in training_scenes] == ["ball", "bar", "ball", "bar", "slab"]
     for training_scene in training_scenes:
         assert training_scene.medium == scene.medium
         surface = points(replace(training_scene, size=(16, 16)))

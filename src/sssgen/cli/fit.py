@@ -19,7 +19,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Fits on balls and slabs of the medium, and prints the error there and on the scene itself."""
+    """Fits on balls, bars and a slab of the medium, and prints the error there and on the scene itself."""
     settings = settings_of(arguments)._replace(roles=("coordinates", "translucency"))
     from sssgen.lab.chart import charting as chart
     from sssgen.lab.measure import candidates
@@ -36,7 +36,7 @@ def run(arguments: Namespace) -> int:
     if arguments.json:
         print_json({"ok": True, "scene": scene.name, "points": points})
         return OK
-    print(f"{scene.title}: fitted with the exact thickness, on balls and slabs of the same medium")
+    print(f"{scene.title}: fitted with the exact thickness, on balls, bars and a slab of the same medium")
     print("  fit: relative error on these; scene: on this scene, and from the side")
     for point in sorted(points, key=lambda point: float(point["error"]["value"])):
         print(_shown(point))

@@ -10,7 +10,7 @@ import numpy as np
 
 from sssgen.harness.scenes.bounds import placed_corners
 from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.geometry import Ball, Geometry, Slab
+from sssgen.harness.scenes.geometry import Ball, Capsule, Geometry, Slab
 from sssgen.harness.scenes.scene import Light
 from sssgen.lab.jobs.executor import Item
 from sssgen.lab.measure.problem import LightReference
@@ -26,7 +26,7 @@ SAMPLES = 512
 """Per ray and channel."""
 TRAINING_SIDE = 40
 
-BALL_LIGHTS = ((0.0, 0.15, -1.0), (0.75, 0.2, -0.65), (-0.95, 0.3, 0.1), (0.35, 0.5, 0.8))
+ROUND_LIGHTS = ((0.0, 0.15, -1.0), (0.75, 0.2, -0.65), (-0.95, 0.3, 0.1), (0.35, 0.5, 0.8))
 SLAB_LIGHTS = ((0.0, 0.0, -1.0), (0.6, 0.35, -0.72), (-0.3, 0.5, 0.8))
 """Directions towards lights behind, beside and in front of the body."""
 
@@ -92,18 +92,22 @@ def by_scene(scenes: Sequence[MeasuredScene], results: Sequence[Any]) -> dict[st
 
 
 def training(scene: MeasuredScene) -> list[MeasuredScene]:
-    """The training scenes: balls and slabs of the scene's medium, as large as its body and smaller.
+    """The training scenes: balls and bars of the scene's medium, as large as its body and smaller, and a small slab.
 
+    Light leaves a bar to all sides, and a slab to none: a large slab would outweigh the others, and no body is one.
     Sizes are powers of two, so that scenes with the same medium share them.
     """
     assert scene.medium is not None
     corners = placed_corners(scene.geometry)
     size = 2.0 ** round(float(np.log2(max(np.ptp(corners, axis=0).max(), 1e-6))))
     result = []
-    for part in (size, 0.4 * size):
-        ball, slab = Ball(0.5 * part), Slab(1.4 * part, 1.4 * part, 0.3 * part)
-        result.append(_lit("ball", ball, scene.medium, (0.0, 0.4 * part, 3.2 * part), BALL_LIGHTS))
-        result.append(_lit("slab", slab, scene.medium, (0.9 * part, 0.7 * part, 3.0 * part), SLAB_LIGHTS))
+    small = 0.4 * size
+    for part in (size, small):
+        ball, bar = Ball(0.5 * part), Capsule(0.14 * part, 0.7 * part, rotation=(0.0, 0.0, 35.0))
+        result.append(_lit("ball", ball, scene.medium, (0.0, 0.4 * part, 3.2 * part), ROUND_LIGHTS))
+        result.append(_lit("bar", bar, scene.medium, (0.5 * part, 0.4 * part, 3.1 * part), ROUND_LIGHTS))
+    slab = Slab(1.4 * small, 1.4 * small, 0.3 * small)
+    result.append(_lit("slab", slab, scene.medium, (0.9 * small, 0.7 * small, 3.0 * small), SLAB_LIGHTS))
     return result
 
 
