@@ -66,6 +66,10 @@ ROWS = (
         "T(0) = 1 exactly; a distance of 0 is opaque", light.thick_matter,
     ),
     DangerousRow(
+        "view-lengths", "d_view 0, below 0, infinite; V = L; no normal; P far from the body",
+        "finite; no light along a ray that does not enter", light.lengths_of_the_eye,
+    ),
+    DangerousRow(
         "black-attenuation", "attenuation colour component 0 with thickness 0", "T(0) = 1", light.black_attenuation,
     ),
     DangerousRow("anisotropy", "g towards -1 and 1", "clamped", light.extreme_anisotropy),

@@ -16,6 +16,7 @@ from sssgen.lang.check.quantities import SCALARS
 
 AXES = [(0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0.6, 0, 0.8), (-0.6, 0, -0.8)]
 _EPS = 2.0**-21
+VIEW_LENGTH = "view_thickness"
 
 
 def powers(specimen: Specimen) -> Iterator[Trial]:
@@ -106,6 +107,26 @@ def thick_matter(specimen: Specimen) -> Iterator[Trial]:
     yield Trial("", specimen, clear, expected={"result": np.ones(1)})
     opaque = {**choices, thickness: [1e-3, 1.0], "attenuation_distance": [0.0], "attenuation_color": [(0.5, 0.5, 0.5)]}
     yield Trial("", specimen, mixed(specimen, {**opaque, **full}, 64), expected={"result": np.zeros(1)}, tolerance=1e-6)
+
+
+def lengths_of_the_eye(specimen: Specimen) -> Iterator[Trial]:
+    """The eye's ray does not enter, or has no end; eye and lamp in one direction; no normal; a point far from the body.
+
+    Nothing is scattered along a ray of length 0.
+    """
+    name = next((name for name, param in specimen.subject.params.items() if param.quantity == VIEW_LENGTH), "")
+    if not name or specimen.role != "translucency":
+        return
+    ways = [*AXES, (0, 0, 0)]
+    choices: dict[str, list[Any]] = dict.fromkeys(directions(specimen), ways)
+    choices |= {
+        name: [-1.0, 0.0, 1e-30, 0.1, 6.1e4, 3e38, np.inf],
+        "P": [(0.1, 0.2, 0.5), (0, 0, 0), (-3, 0.5, 7), (1e4, -1e4, 1e4)],
+        "light_nearness": [0.0, 1e-30, 0.5, 1e4],
+    }
+    yield Trial("", specimen, mixed(specimen, choices))
+    inside = {**choices, name: [-1.0, 0.0]}
+    yield Trial("", specimen, mixed(specimen, inside, 512), expected={"result": np.zeros(1)})
 
 
 def black_attenuation(specimen: Specimen) -> Iterator[Trial]:
