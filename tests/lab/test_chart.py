@@ -13,7 +13,6 @@ import pytest
 from sssgen.cli.chart import summary
 from sssgen.cli.main import main
 from sssgen.harness.backends import Backend
-from sssgen.harness.scenes.scene import Light
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.picked_material import stages_of
@@ -483,36 +482,3 @@ def test_materials_select_their_thickness_technique(monkeypatch: pytest.MonkeyPa
             ("translucency",),
     ]  # fmt: skip
     assert [inputs.samples for inputs in requests] == [512] * 3
-
-
-def test_refraction_is_charted_where_the_body_refracts() -> None:
-    scene = cube()
-    assert scene.medium is not None
-    refracting = replace(scene, medium=replace(scene.medium, ior=1.4))
-    chain = ("exact_view_thickness", "interior_octaves_refracted")
-    bent, plain = (
-        candidates.Candidate("translucency", names[-1], names[-1], (), names, False, "march_light")
-        for names in (chain, ("wrap_lighting",))
-    )
-    assert [chart._applies(case, bent) for case in (scene, refracting)] == [False, True]
-    assert [chart._applies(case, plain) for case in (scene, refracting)] == [True, True]
-    assert all(chart._applies(scene, candidate) for candidate in candidates.coordinates())
-    # the light of a bake contains the boundary: one that does not refract is wrong there
-    baked, of_boundary = (
-        candidates.Candidate("translucency", name, name, (), ("exact_view_thickness", name), False, path)
-        for name, path in (("fluence_factored_4", "march_light"), ("fluence_factored_4_refracted", ""))
-    )
-    assert [chart._applies(case, baked) for case in (scene, refracting)] == [True, False]
-    assert [chart._applies(case, of_boundary) for case in (scene, refracting)] == [False, True]
-
-
-def test_maps_of_distant_lights_are_charted_where_all_lights_are_distant() -> None:
-    scene = cube()
-    near = replace(scene, lights=(*scene.lights, Light((0.0, 3.0, 0.0), None, (1.0, 1.0, 1.0))))
-    chain = ("exact_view_thickness", "interior_octaves")
-    mapped, marched = (
-        candidates.Candidate("translucency", chain[-1], chain[-1], (), chain, False, path)
-        for path in ("depth_map_path", "march_light")
-    )
-    assert [chart._applies(case, mapped) for case in (scene, near)] == [True, False]
-    assert [chart._applies(case, marched) for case in (scene, near)] == [True, True]
