@@ -115,7 +115,8 @@ def test_light_that_is_scattered_again_fades_faster_at_thin_edges() -> None:
     constant = "thickness fixed_length(world_position p, world_direction l) { return thickness(0.3); }"
     zeros = np.zeros((2, 3))
     lit = technique("interior_octaves", light_path=constant)
-    values = {"P": zeros, "V": zeros, "L": zeros, "d": np.array([1e-4, 2e-4]), "extinction": np.full(3, 4.0)}
+    values = {"P": zeros, "V": zeros, "L": zeros, "d": np.array([1e-4, 2e-4]), "light_nearness": 0.0}
+    values |= {"extinction": np.full(3, 4.0)}
     once = lit(octaves=(1.0, 0.0, 0.0, 0.0), **values)
     close(once[1] / once[0], np.full(3, 2.0), rtol=1e-3)
     for shares in np.eye(4)[1:]:
