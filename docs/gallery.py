@@ -48,6 +48,9 @@ CAPTIONS = {
     "jade_ring": "Light that is scattered inside the body, on jade. The program draws the back faces from the eye and "
     "a depth map from the light for each frame: nothing is baked, and the ring needs no texture coordinates. Its "
     "diffuse reflection is small, because the scattered light contains the light that enters in front.",
+    "marble_idol": "Baked light inside a body, on marble. `sssgen bake fluence` has traced light through the bust, for "
+    "lights from everywhere: the sun may move. Two volumes of 8 bits and a table hold it, 90 kB together. What is "
+    "scattered once is computed exactly, with the same two drawn textures as in `jade_ring`.",
 }
 """A caption for the picture of each example, in the order of the page."""
 
@@ -59,6 +62,7 @@ ALTERNATIVE_TEXTS = {
     "resin_inlay": "A square tile of walnut with an inlaid compass rose, under glossy resin with round edges",
     "ice_inlay": "Autumn leaves in a round disc of ice, with the sun behind it",
     "jade_ring": "A thick ring of green jade with bright edges towards the light behind it",
+    "marble_idol": "A smooth marble bust with folded arms, bright on the right where the sun is behind it",
 }
 """The alternative text of each picture."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import re
 import runpy
 from collections.abc import Callable
@@ -19,7 +20,9 @@ from sssgen.harness import backends
 from sssgen.harness.backends import Backend
 from sssgen.harness.pictures import images
 from sssgen.harness.render.scene_render import Rendered, render
+from sssgen.harness.scenes import body_identity
 from sssgen.harness.scenes.scene_loading import load
+from sssgen.lab.scene import measured_scene
 from sssgen.material.material_loading import examples
 
 SMALL = (64, 48)
@@ -63,6 +66,23 @@ def test_light_comes_through() -> None:
     assert ear.mean() > belly.mean() + 0.15
     lantern = render_example("paper_lantern", "numpy").encoded.mean(axis=2)
     assert lantern[8:34, 32].max() > lantern[8:34, 32].min() + 0.4  # the paper is brighter than a hoop
+
+
+def test_the_baked_light_is_that_of_the_scene() -> None:
+    """The body, the medium, and the settings in the command that the scene names."""
+    folder = ROOT / "examples" / "marble_idol"
+    scene = measured_scene.load(str(folder / "scene.toml"))
+    assert scene.medium is not None
+    command = re.search(r"bake fluence .* --voxels (\d+) --photons (\d+)", (folder / "scene.toml").read_text())
+    assert command is not None
+    files = sorted(folder.glob("volumes/*.json"))
+    assert len(files) == 3 and sum(file.stat().st_size for file in folder.glob("volumes/*")) < 300_000
+    for file in files:
+        facts = json.loads(file.read_text(encoding="utf-8"))
+        assert facts["body"]["key"] == body_identity.key(scene.geometry)
+        assert facts["medium"]["extinction"] == pytest.approx(scene.medium.extinction)
+        assert facts["medium"]["albedo"] == pytest.approx(scene.medium.albedo)
+        assert max(facts["texels"]) == int(command[1]) and facts["photons"] == int(command[2])
 
 
 def test_the_textures_equal_the_output_of_their_script(tmp_path: Path) -> None:
