@@ -113,8 +113,9 @@ def page(
         *_paragraph(
             "The number of pixels that differ by more than 1/255, out of 307,200 in the full size with one sample "
             "each. There float32 and float64 decide differently: `jelly_cubes` finds its surface itself, and a ray at "
-            "the edge of a cube, a tile or a shadow can fall on either side. `jade_ring` reads its depth map between "
-            "two texels at the edge that the light sees, where drivers interpolate with different weights."
+            "the edge of a cube, a tile or a shadow can fall on either side. `jade_ring` and `marble_idol` read a "
+            "depth map between two texels at the edge that the light sees, where drivers interpolate with different "
+            "weights."
         ),
         f"| Scene | {' | '.join(f'`{backend.name}`' for backend in present)} |",
         f"|---|{'---|' * len(present)}",
