@@ -36,7 +36,6 @@ technique = "constant_thickness"
 technique = "view_thickness_from_chord"
 [translucency]
 technique = "fluence_fixed"
-bind = { light_path = "march_light", body_distance = "sphere" }
 fluence_volume = "stone.npy"
 """
 SCENE = """

@@ -16,6 +16,17 @@ from sssgen.lab.scene.media import Medium
 from sssgen.targets.runtime.numpy_textures import Texture
 
 
+def maps_of(table: Array, rank: int) -> Array:
+    """The rank + 1 maps of a table: those beside each other, and those in their alphas."""
+    tiles = table.reshape(18, -1, 18, 4).transpose(1, 0, 2, 3)
+    count = rank + 1 - len(tiles)
+    alphas = [
+        np.stack([tiles[3 * number + channel, ..., 3] for channel in range(3)], axis=2) for number in range(count)
+    ]
+    maps: Array = np.concatenate([tiles[..., :3], alphas])
+    return maps
+
+
 @pytest.mark.parametrize("name", ["fluence_factored_4", "fluence_factored_8"])
 def test_the_techniques_read_what_the_bake_writes(name: str) -> None:
     rank = int(name[-1])
@@ -41,25 +52,86 @@ def test_the_techniques_read_what_the_bake_writes(name: str) -> None:
         extinction=(6.0,) * 3, scattering_albedo=(0.9,) * 3, world_to_volume=matrix, **names,
     )  # fmt: skip
     numbers = stored.latents.reshape(-1, rank)[chosen] / 255.0
-    tiles = stored.table.reshape(18, rank + 1, 18, 3)[1 + 100 // 16, :, 1 + 100 % 16]
+    tiles = maps_of(stored.table, rank)[:, 1 + 100 // 16, 1 + 100 % 16]
     close(result, 0.9 * np.maximum(tiles[0] + numbers @ tiles[1:], 0.0), rtol=1e-6)
     exact = 0.9 * traced.smooth[:, 100][:, traced.nearest[chosen]].T
     assert np.median(np.abs(result / exact - 1.0)) < 0.25
 
 
-def test_the_technique_of_a_fixed_light() -> None:
+@pytest.mark.parametrize("name", ["fluence_factored_4", "fluence_factored_8"])
+def test_the_unscattered_light_of_two_nodes(name: str) -> None:
+    """Without a volume: the mean of what is left at both nodes, exactly so for a medium of one colour."""
+    rank = int(name[-1])
+    path = "thickness height(world_position p, world_direction l) { return thickness(2.0 - 0.5 * p.z); }"
+    lit = technique(name, light_path=path)
+    length, zeros = np.array([0.1, 0.7, 50.0]), np.zeros((3, 3))
+    ups = np.tile([0.0, 0.0, -1.0], (3, 1))
+    names = {f"fluence_table_{rank}": Texture(np.zeros((18, 18 * (4 if rank == 4 else 7), 4)), wrap="clamp")}
+    names |= {f"fluence_latents_{rank}_{number + 1}": Texture(np.zeros((2, 2, 2, 4))) for number in range(rank // 4)}
+    values = {"d": length, "P": zeros, "V": ups, "L": zeros, "L_object": ups, "scattering_albedo": (1.0,) * 3, **names}
+    nodes = np.minimum(-0.25 * np.log([0.7886751, 0.2113249]), length[:, None] * [0.2113249, 0.7886751])
+    for sigma in ((4.0, 4.0, 4.0), (3.0, 4.0, 5.0)):
+        left = 0.125 * np.exp(-np.array(sigma) * (2.0 - 0.5 * nodes)[..., None]).sum(axis=1)
+        expected = (1.0 - np.exp(-np.array(sigma) * length[:, None])) * left
+        result = lit(extinction=sigma, mean_free_path=0.25, **values)
+        close(result, expected, rtol=1e-5 if sigma[0] == 4.0 else 0.06)
+
+
+FIXED = ("fluence_fixed", "fluence_fixed_gaps")
+
+
+@pytest.mark.parametrize("name", FIXED)
+def test_the_techniques_of_a_fixed_light_in_even_light(name: str) -> None:
     """Where the volume is even, the light is the part of the eye's ray that is seen times what is there."""
-    constant = "thickness fixed_length(world_position p, world_direction l) { return thickness(0.3); }"
-    lit = technique("fluence_fixed", light_path=constant)
     sigma, albedo, length = np.array([1.0, 3.0, 5.0]), np.array([0.9, 0.5, 0.1]), np.array([0.0, 0.1, 0.7, 1e9])
-    zeros = np.zeros((4, 3))
-    result = lit(
-        d=length, P=zeros, V=zeros, L=zeros, extinction=sigma, scattering_albedo=albedo, mean_free_path=1.0 / 3.0,
-        fluence_volume=Texture(np.full((2, 2, 2, 3), 0.5), wrap="clamp"), fluence_scale=(1.0, 2.0, 4.0),
+    zeros, eyes = np.zeros((4, 3)), np.tile([0.0, 0.0, -1.0], (4, 1))
+    texel = np.array([0.5, 0.5, 0.5, 1.0])  # outside everywhere, behind the first exit
+    result = technique(name)(
+        d=length, P=zeros + 0.5, V=eyes, extinction=sigma, scattering_albedo=albedo,
+        mean_free_path=1.0 / 3.0, fluence_volume=Texture(np.tile(texel, (2, 2, 2, 1)), wrap="clamp"),
+        fluence_scale=(1.0, 2.0, 4.0), world_to_volume=np.eye(4),
+    )  # fmt: skip
+    close(result, albedo * (1.0 - np.exp(-sigma * length[:, None])) * 0.25 * np.array([1.0, 2.0, 4.0]), rtol=1e-6)
+
+
+@pytest.mark.parametrize("name", FIXED)
+def test_the_techniques_of_a_fixed_light_along_a_slope(name: str) -> None:
+    """Light that fades along the ray, in channels of different extinction: near the integral over the ray."""
+    count, sigma, length = 256, np.array([2.0, 4.0, 6.0]), np.array([0.2, 0.5, 0.9])
+    z = (np.arange(count) + 0.5) / count
+    texels = np.ones((count, 1, 1, 4))
+    texels[..., :3] = np.sqrt(np.exp(-2.0 * z))[:, None, None, None]
+    places, eyes = np.tile([0.5, 0.5, 0.0], (3, 1)), np.tile([0.0, 0.0, -1.0], (3, 1))
+    result = technique(name)(
+        d=length, P=places, V=eyes, extinction=sigma, mean_free_path=0.25,
+        scattering_albedo=(1.0,) * 3, fluence_volume=Texture(texels, wrap="clamp"), fluence_scale=(1.0,) * 3,
         world_to_volume=np.eye(4),
     )  # fmt: skip
-    light = 0.25 * np.exp(-0.3 * sigma) + 0.25 * np.array([1.0, 2.0, 4.0])
-    close(result, albedo * (1.0 - np.exp(-sigma * length[:, None])) * light, rtol=1e-9)
+    total = sigma + 2.0
+    close(result, sigma / total * (1.0 - np.exp(-total * length[:, None])), rtol=0.03)
+
+
+def test_light_behind_a_gap() -> None:
+    """Two plates with a gap: the marched part is what the second plate scatters, seen through the first."""
+    count, walls = 64, (0.2, 0.5, 0.75)
+    z = (np.arange(count) + 0.5) / count
+    distance = np.max([np.minimum(z - walls[0], walls[1] - z), z - walls[2]], axis=0)
+    distance = np.where(z < walls[0], z - walls[0], distance)
+    texels = np.full((count, 1, 1, 4), np.sqrt(0.5))
+    texels[..., 3] = (0.5 + 0.5 * distance / 0.25)[:, None, None]
+    sigma, way = np.array([2.0, 4.0, 6.0]), np.array([0.6, 0.0, 0.8])
+    values = {"d": np.array([walls[0] / 0.8]), "P": np.array([[0.0, 0.5, 0.0]]), "V": -way[None], "extinction": sigma,
+              "mean_free_path": 0.25, "scattering_albedo": (1.0,) * 3, "world_to_volume": np.eye(4),
+              "fluence_volume": Texture(texels, wrap="clamp"), "fluence_scale": (1.0, 1.0, 2.0)}  # fmt: skip
+    first = np.exp(-sigma * walls[0] / 0.8)
+    second = np.exp(-sigma * (walls[2] - walls[1]) / 0.8)
+    level = 0.5 * np.array([1.0, 1.0, 2.0])
+    close(technique("fluence_fixed")(**values)[0], level * (1.0 - first), rtol=1e-6)
+    behind = technique("fluence_fixed_gaps")(**values, fluence_reach=0.25)[0] - level * (1.0 - first)
+    close(behind, level * first * (1.0 - second), rtol=0.02)
+    # a ray along the plates meets no other one
+    along = values | {"V": np.array([[-1.0, 0.0, 0.0]]), "P": np.array([[0.0, 0.5, 0.35]]), "d": np.array([0.0])}
+    close(technique("fluence_fixed_gaps")(**along, fluence_reach=0.25), 0.0, atol=1e-6)
 
 
 RADIUS = 0.7
@@ -83,7 +155,7 @@ def refracted_in_ball(ior: float, count: int) -> tuple[Array, Array, Array, Arra
 
 @pytest.mark.parametrize("ior", [1.0, 1.4, 2.0])
 def test_the_technique_of_a_fixed_light_behind_a_refracting_surface(ior: float) -> None:
-    """In light that is linear along each axis, two nodes are near the integral over the ray; in even light, exact."""
+    """In light that is linear along each axis, three nodes are near the integral over the ray; in even light, exact."""
     normal, view, ray, chord, share = refracted_in_ball(ior, 200)
     sigma, albedo = 4.0, np.array([0.9, 0.5, 0.1])
     slope, level = np.array([0.3, -0.2, 0.25]), 1.1
@@ -107,7 +179,7 @@ def test_the_technique_of_a_fixed_light_behind_a_refracting_surface(ior: float) 
     along = light[:, None] + (ray @ slope)[:, None] * length
     seen = (sigma * np.exp(-sigma * length) * along).mean(axis=1) * chord
     expected = (share * seen)[:, None] * albedo * (1.0, 1.0, 2.0)
-    # two nodes leave a remainder: the logarithm of their place is not a polynomial
+    # three nodes leave a remainder: the logarithm of their place is not a polynomial
     close(result, expected, rtol=1.2e-2)
     channels = np.array([2.0, 4.0, 6.0])
     even = lit(extinction=channels, fluence_volume=Texture(np.full((2, 2, 2, 3), 0.5), wrap="clamp"), **values)
@@ -121,7 +193,7 @@ def test_the_factored_techniques_behind_a_refracting_surface(name: str) -> None:
     normal, view, ray, chord, share = refracted_in_ball(ior, 60)
     sigma, albedo = np.array([3.0, 5.0, 7.0]), np.array([0.9, 0.6, 0.4])
     latents = rng(5).uniform(0.0, 1.0, (6, 5, 4, rank))
-    table = rng(6).uniform(-0.2, 1.0, (18, 18 * (rank + 1), 3))
+    table = rng(6).uniform(-0.2, 1.0, (18, 18 * (4 if rank == 4 else 7), 4))
     names = {f"fluence_table_{rank}": Texture(table, wrap="clamp")}
     for number in range(rank // 4):
         names[f"fluence_latents_{rank}_{number + 1}"] = Texture(
@@ -137,7 +209,7 @@ def test_the_factored_techniques_behind_a_refracting_surface(name: str) -> None:
     place = RADIUS * normal + np.minimum(np.log(2.0) * mean_free_path, 0.5 * chord)[:, None] * ray
     x, y, z = (np.clip((0.5 * place + 0.5) * (4, 5, 6), 0, (3, 4, 5)).astype(int)).T
     # the direction +z is in the middle of each tile: between four texels
-    tiles = table.reshape(18, rank + 1, 18, 3)[8:10, :, 8:10].mean(axis=(0, 2))
+    tiles = maps_of(table, rank)[:, 8:10, 8:10].mean(axis=(1, 2))
     light = np.maximum(tiles[0] + latents[z, y, x] @ tiles[1:], 0.0)
     close(result, share[:, None] * albedo * (1.0 - np.exp(-sigma * chord[:, None])) * light, rtol=1e-5, atol=1e-9)
     assert (light > 0.0).all(axis=1).any()

@@ -44,7 +44,7 @@ class Part(NamedTuple):
     suffix: str
     """Of the file's name, before its ending"""
     texels: npt.NDArray[Any]
-    """(z, y, x, 4) bytes, or the table (height, width, 3)"""
+    """(z, y, x, 4) bytes, or the table (height, width, 4)"""
     texture: str
     """Its name in the technique"""
 
@@ -107,8 +107,8 @@ def bake(
     stored = volumes.fixed(traced)
     facts = _facts(scene, settings, traced) | {"light": light.facts(), "technique": f"fluence_fixed{refracted}"}
     facts["parameters"]["fluence_scale"] = [float(value) for value in stored.scale]
-    filled = np.concatenate([stored.texels, np.full((*stored.texels.shape[:3], 1), 255, np.uint8)], axis=3)
-    return Baked([Part("", filled, "fluence_volume")], facts)
+    facts["parameters"]["fluence_reach"] = stored.reach * scene.geometry.scale
+    return Baked([Part("", stored.texels, "fluence_volume")], facts)
 
 
 def _factored(traced: Field, rank: int) -> list[Part]:

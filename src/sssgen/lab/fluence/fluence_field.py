@@ -11,7 +11,9 @@ import numpy.typing as npt
 
 from sssgen.lab.fluence import octahedron
 from sssgen.lab.fluence.photons import Body, Medium, Tracer
+from sssgen.lab.fluence.projection import Projection, covered
 from sssgen.lab.fluence.voxels import Grid
+from sssgen.lab.fluence.walks import Walks
 from sssgen.lab.jobs.executor import Failure, Item, Progress, run
 from sssgen.lab.reference.geometry_mesh import mesh_of
 from sssgen.lab.scene import scene_body
@@ -25,8 +27,12 @@ GROUP = 32
 """The directions of one work item."""
 PARTS = 4
 """The points along each axis of a voxel at which the body's distance is evaluated."""
-LEAST_INSIDE = 0.12
-"""Voxels with a smaller part inside get the values of the nearest other voxel: few photons collide in them."""
+SHARED = 128
+"""The walks in a channel, relative to the photons for each direction, where walks serve all directions."""
+STARTS = 1 << 20
+"""The points from which the walks of one work item start, times the directions: a length is computed for each."""
+WALK_ITEMS = 4
+"""The work items of the walks: their differences give the standard error."""
 
 
 class Settings(NamedTuple):
@@ -39,23 +45,32 @@ class Settings(NamedTuple):
     photons: int = 24000
     """For each direction and channel"""
     seed: int = 0
+    fixed: bool = False
+    """For one light: also what has not been scattered, which a technique need not compute then; photons for it alone
+    are `side` times as many"""
 
 
 class Field(NamedTuple):
-    """π times the mean radiance that is scattered at least once, for an irradiance of 1 on a plane facing the light."""
+    """π times the mean radiance inside, for an irradiance of 1 on a plane facing the light.
+
+    Of light that is scattered at least once; of all light behind a refracting surface, or for a fixed light.
+    """
 
     grid: Grid
     """In the body's object space"""
     values: Array
-    """(3, directions, voxels), of voxels that count; see `nearest`"""
+    """(3, directions, voxels), of voxels that count (see `nearest`): texels for trilinear interpolation, which noise
+    may make negative"""
     nearest: npt.NDArray[np.int64]
     """(voxels of the grid,): the counting voxel whose value each voxel has"""
     directions: Array
     """(directions, 3), towards the light, in object space"""
     noise: float
-    """The standard error of a voxel's value, relative to the mean value"""
+    """The standard error of a voxel's estimate, relative to the mean estimate"""
     smooth: Array
     """`values` averaged over neighbouring voxels"""
+    distance: Array
+    """(voxels of the grid,), from the surface to the voxels' centres, negative inside, in object space"""
 
 
 def grid_in_box(scene: MeasuredScene, voxels: int) -> Grid:
@@ -75,26 +90,43 @@ def tracer(scene: MeasuredScene, voxels: int) -> Tracer:
     return Tracer(body, grid_in_box(scene, voxels))
 
 
+@lru_cache(4)
+def walks_of(scene: MeasuredScene, voxels: int) -> Walks:
+    """The walks through a scene's body, in object space."""
+    return Walks(tracer(scene, voxels), scene.geometry)
+
+
 Directions = tuple[tuple[float, float, float], ...]
 
 
 def traced(
-    scene: MeasuredScene, channel: int, towards: Directions, voxels: int, photons: int, seed: int
+    scene: MeasuredScene, channel: int, towards: Directions, voxels: int, photons: int, seed: int, unscattered: bool
 ) -> tuple[np.ndarray, float]:
-    """The values (directions, voxels) for lights in the directions `towards` (object space), and their mean squared
-    error. Values are per voxel, also where a part of it is outside.
-    """
-    assert scene.medium is not None
-    # a unit of object space is `scale` units of the world, in which the medium is given
-    extinction = scene.medium.extinction[channel] * scene.geometry.scale
-    medium = Medium(extinction, scene.medium.albedo[channel], scene.medium.anisotropy, scene.medium.ior)
+    """The estimates (directions, voxels) of `Tracer.trace` for lights in the directions `towards` (object space), and
+    their mean squared error."""
+    medium = medium_of(scene, channel)
     first, second = (
         tracer(scene, voxels).trace(
-            medium, np.array(towards), max(photons // 2, 1), np.random.default_rng([seed, channel, half])
+            medium, np.array(towards), max(photons // 2, 1), np.random.default_rng([seed, channel, half]), unscattered
         )
         for half in range(2)
     )
     return (0.5 * (first + second)).astype(np.float32), float(np.mean((0.5 * (first - second)) ** 2))
+
+
+def walked(scene: MeasuredScene, part: int, towards: Directions, voxels: int, walks: int, seed: int) -> np.ndarray:
+    """The estimates of `Walks.trace` in all channels, (3, directions, voxels) in float32."""
+    walker, rng = walks_of(scene, voxels), np.random.default_rng([seed, part])
+    starts = walker.starts(max(min(walks, STARTS // len(towards)), 1), np.array(towards), rng)
+    return np.stack([walker.trace(medium_of(scene, channel), starts, walks, rng) for channel in range(3)])
+
+
+def medium_of(scene: MeasuredScene, channel: int) -> Medium:
+    """The scene's medium in one channel, in object space."""
+    assert scene.medium is not None
+    # a unit of object space is `scale` units of the world, in which the medium is given
+    extinction = scene.medium.extinction[channel] * scene.geometry.scale
+    return Medium(extinction, scene.medium.albedo[channel], scene.medium.anisotropy, scene.medium.ior)
 
 
 def field(
@@ -109,29 +141,45 @@ def of_light(
     scene: MeasuredScene, light: Array, settings: Settings, scheduler: str = "", processes: int | None = None,
     progress: Progress = lambda *_: None,
 ) -> Field:  # fmt: skip
-    """The fluence for one light in the direction `light` (3,), object space, with the photons of all directions."""
+    """All light inside for one light in the direction `light` (3,), object space."""
     return of_directions(scene, light[None], for_light(settings), scheduler, processes, progress)
 
 
 def for_light(settings: Settings) -> Settings:
-    """The settings for a single light, which gets more photons."""
-    return settings._replace(photons=settings.photons * settings.side)
+    """The settings for a single light that is fixed to the body."""
+    return settings._replace(fixed=True)
 
 
 def items(scene: MeasuredScene, directions: Array, settings: Settings) -> list[Item]:
-    """The work items of `of_directions`, channel by channel."""
-    groups = [
-        tuple(map(tuple, directions[first : first + GROUP].tolist())) for first in range(0, len(directions), GROUP)
-    ]
+    """The work items of `of_directions`."""
+    label = f"fluence of {scene.name}"
+    if _by_walks(scene):
+        walks = max(settings.photons * SHARED // WALK_ITEMS, 1)
+        arguments = (_tuples(directions), settings.voxels, walks, settings.seed)
+        return [
+            Item("sssgen.lab.fluence.fluence_field:walked", (scene, part, *arguments), label)
+            for part in range(WALK_ITEMS)
+        ]
+    photons = settings.photons * settings.side if settings.fixed else settings.photons
+    groups = [_tuples(directions[first : first + GROUP]) for first in range(0, len(directions), GROUP)]
     return [
         Item(
             "sssgen.lab.fluence.fluence_field:traced",
-            (scene, channel, group, settings.voxels, settings.photons, settings.seed),
-            f"fluence of {scene.name}",
+            (scene, channel, group, settings.voxels, photons, settings.seed, settings.fixed),
+            label,
         )
         for channel in range(3)
         for group in groups
     ]
+
+
+def _by_walks(scene: MeasuredScene) -> bool:
+    """Whether walks serve all directions."""
+    return scene.medium is not None and scene.medium.ior == 1.0 and scene.medium.anisotropy == 0.0
+
+
+def _tuples(directions: Array) -> Directions:
+    return tuple((float(x), float(y), float(z)) for x, y, z in directions)
 
 
 def of_directions(
@@ -140,22 +188,44 @@ def of_directions(
 ) -> Field:  # fmt: skip
     """The fluence for lights in some directions. Raises SssgenError for a body without an inside, or a failed part."""
     grid = grid_in_box(scene, settings.voxels)
-    points = grid.centres(PARTS).reshape(-1, 3)
-    inside = (scene.geometry.distance(points) < 0.0).reshape(grid.voxels, -1).mean(axis=1)
-    counting = inside > LEAST_INSIDE
-    if not counting.any():
+    cell = float(((grid.high - grid.low) / np.array(grid.shape)).mean()) / PARTS
+    distances = scene.geometry.distance(grid.centres(PARTS).reshape(-1, 3))
+    projection = Projection(grid, covered(distances, cell).reshape(grid.voxels, -1))
+    counting = projection.counting
+    if not counting.any() or not (distances < 0.0).any():
         raise failure("no voxel is inside the body", "use more voxels, or close the mesh")
-    count = len(directions)
     results = run(items(scene, directions, settings), scheduler, processes, progress=progress)
     for result in results:
         if isinstance(result, Failure):
             raise failure(f"{result.name}: {result.message}")
-    values = np.concatenate([part for part, _ in results]).astype(np.float64).reshape(3, count, grid.voxels)
-    noise = float(np.sqrt(np.mean([square for _, square in results]))) / max(float(values.mean()), 1e-30)
-    values /= np.maximum(inside, LEAST_INSIDE)
-    return Field(
-        grid, values[..., counting], _nearest(counting, grid), directions, noise, _smooth(values, counting, grid)
-    )
+    estimates, error = (_mean if _by_walks(scene) else _joined)(results, len(directions))
+    noise = error / max(float(estimates.mean()), 1e-30)
+    values = projection.texels(estimates.reshape(-1, grid.voxels)).reshape(3, len(directions), -1)
+    if settings.fixed and _by_walks(scene):
+        values += _unscattered(scene, tracer(scene, settings.voxels), projection.points(grid), directions, projection)
+    distance = scene.geometry.distance(grid.centres()[:, 0])
+    nearest, smooth = _nearest(counting, grid), _smooth(values, counting, grid)
+    return Field(grid, values, nearest, directions, noise, smooth, distance)
+
+
+def _joined(results: list[tuple[np.ndarray, float]], directions: int) -> tuple[Array, float]:
+    """The estimates (3, directions, voxels) of photons and their standard error."""
+    values = np.concatenate([part for part, _ in results]).astype(np.float64).reshape(3, directions, -1)
+    return values, float(np.sqrt(np.mean([square for _, square in results])))
+
+
+def _mean(results: list[np.ndarray], directions: int) -> tuple[Array, float]:
+    """The same of walks."""
+    mean: Array = np.stack(results).mean(axis=0, dtype=np.float64)
+    squares = [float(((result - mean) ** 2).mean()) for result in results]
+    return mean, float(np.sqrt(np.mean(squares) / max(len(results) - 1, 1)))
+
+
+def _unscattered(scene: MeasuredScene, rays: Tracer, points: Array, directions: Array, projection: Projection) -> Array:
+    """The texels of light that has not been scattered, (3, 1, counting), from `points`, those of the projection."""
+    lengths = rays.lengths(points, directions)[:, 0]
+    light = [0.25 * np.exp(-medium_of(scene, channel).extinction * lengths) for channel in range(3)]
+    return projection.texels(projection.integrals(np.stack(light)))[:, None]
 
 
 def _nearest(counting: npt.NDArray[np.bool_], grid: Grid) -> npt.NDArray[np.int64]:
@@ -171,7 +241,10 @@ def _smooth(values: Array, counting: npt.NDArray[np.bool_], grid: Grid) -> Array
     """The values of counting voxels, averaged over their neighbours."""
     ndimage = need("scipy.ndimage", "scipy", "chart")
     mask = counting.reshape(grid.shape[::-1]).astype(float)
-    share = np.maximum(ndimage.gaussian_filter(mask, 1.0), 1e-9)
-    volumes = values.reshape(-1, *mask.shape)
-    averages = [(ndimage.gaussian_filter(volume * mask, 1.0) / share).ravel()[counting] for volume in volumes]
-    return np.stack(averages).reshape(*values.shape[:2], -1)
+    share = np.maximum(ndimage.gaussian_filter(mask, 1.0), 1e-9)[mask > 0.0]
+    averages = []
+    for row in values.reshape(-1, values.shape[-1]):
+        volume = np.zeros(mask.shape)
+        volume[mask > 0.0] = row
+        averages.append(ndimage.gaussian_filter(volume, 1.0)[mask > 0.0] / share)
+    return np.stack(averages).reshape(values.shape)

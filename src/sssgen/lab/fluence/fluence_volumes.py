@@ -9,21 +9,26 @@ import numpy.typing as npt
 
 from sssgen.lab.fluence.factors import factors
 from sssgen.lab.fluence.fluence_field import Field
+from sssgen.lab.fluence.voxels import Grid
 
 Array = npt.NDArray[np.float64]
 Bytes = npt.NDArray[np.uint8]
 
 FLOOR = 0.03
 """The value, relative to the field's 99th percentile, below which errors count as at this value."""
+REACH = 6.0
+"""The largest distance that a volume stores, in voxels."""
+CHANNELS = 4
+"""Of a texel of the table."""
 
 
 class Factored(NamedTuple):
-    """Fluence = table tile 0 + sum over k of latent k times table tile k."""
+    """Fluence = map 0 + sum over k of latent k times map k."""
 
     latents: Bytes
     """(z, y, x, rank): numbers in 0..1, times 255"""
     table: Array
-    """(side + 2, (rank + 1) (side + 2), 3): a tile for each k, an octahedral map with a border of one texel"""
+    """(side + 2, tiles (side + 2), 4): octahedral maps with a border of one texel, as `packed` places them"""
 
 
 def factored(field: Field, rank: int) -> Factored:
@@ -39,9 +44,23 @@ def factored(field: Field, rank: int) -> Factored:
     tiles = np.concatenate([(low @ rows)[None], size[:, None] * rows])
     side = round(count**0.5)
     squares = tiles.reshape(rank + 1, channels, side, side).transpose(0, 2, 3, 1)
-    table = np.concatenate([bordered(square) for square in squares], axis=1)
+    table = np.concatenate([bordered(square) for square in packed(squares)], axis=1)
     stored = np.rint(255.0 * (latents - low) / size).astype(np.uint8)
     return Factored(stored[field.nearest].reshape(*field.grid.shape[::-1], rank), table)
+
+
+def tiles_of(rank: int) -> int:
+    """The tiles of the table of `rank` latents."""
+    return -(-3 * (rank + 1) // CHANNELS)
+
+
+def packed(maps: Array) -> Array:
+    """Maps (n, side, side, 3) in fewer tiles of four channels: the last ones are in the alphas of the first ones."""
+    tiles = np.zeros((tiles_of(len(maps) - 1), *maps.shape[1:3], CHANNELS))
+    tiles[..., :3] = maps[: len(tiles)]
+    rest = np.moveaxis(maps[len(tiles) :], 3, 1).reshape(-1, *maps.shape[1:3])
+    tiles[: len(rest), ..., 3] = rest
+    return tiles
 
 
 def bordered(tile: Array) -> Array:
@@ -53,17 +72,27 @@ def bordered(tile: Array) -> Array:
 
 
 class Fixed(NamedTuple):
-    """Fluence of one light = scale times the square of a texel."""
+    """Light of one light = scale times the square of a texel; its alpha is the distance from the surface."""
 
     texels: Bytes
-    """(z, y, x, 3): numbers in 0..1, times 255"""
+    """(z, y, x, 4): numbers in 0..1, times 255"""
     scale: Array
     """(3,)"""
+    reach: float
+    """The distance outside that alpha 1 stands for, inside alpha 0, in object space"""
 
 
 def fixed(field: Field) -> Fixed:
     """The volume of a field of one light."""
-    values = field.values[:, 0].T
+    values = np.maximum(field.values[:, 0].T, 0.0)
     scale = np.maximum(values.max(axis=0), 1e-12)
-    texels = np.rint(255.0 * np.sqrt(values / scale)).astype(np.uint8)
-    return Fixed(texels[field.nearest].reshape(*field.grid.shape[::-1], 3), scale)
+    light = np.sqrt(values / scale)[field.nearest]
+    reach = reach_of(field.grid)
+    distance = np.clip(0.5 + 0.5 * field.distance / reach, 0.0, 1.0)
+    texels = np.rint(255.0 * np.concatenate([light, distance[:, None]], axis=1)).astype(np.uint8)
+    return Fixed(texels.reshape(*field.grid.shape[::-1], 4), scale, reach)
+
+
+def reach_of(grid: Grid) -> float:
+    """The largest distance that a volume stores."""
+    return REACH * float(((grid.high - grid.low) / np.array(grid.shape)).max())

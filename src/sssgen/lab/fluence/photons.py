@@ -18,6 +18,7 @@ from sssgen.harness.scenes.mesh_rays import MeshRays
 from sssgen.lab.fluence.voxels import Grid
 
 Array = npt.NDArray[np.float64]
+Singles = npt.NDArray[np.float32]
 Indices = npt.NDArray[np.int64]
 
 FAINT = 1e-3
@@ -25,6 +26,11 @@ FAINT = 1e-3
 SURVIVAL = 0.1
 STEP = 1e-5
 """The distance from a crossed surface at which a photon continues, in sizes of the body: above float32's rounding."""
+
+RAYS = 1 << 18
+"""The rays that are cast together."""
+MOST_WALLS = 64
+"""Walls behind these along a ray do not count."""
 
 
 class Medium(NamedTuple):
@@ -57,15 +63,42 @@ class Tracer:
         normal = np.cross(second - first, third - first)
         self.normals: Array = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
 
-    def trace(self, medium: Medium, towards: Array, photons: int, rng: np.random.Generator) -> Array:
-        """The estimates, (directions, voxels), of `photons` photons for each direction (d, 3) towards a light."""
+    def lengths(self, points: Array, towards: Array) -> Singles:
+        """The lengths inside the body from points (n, 3) towards directions (d, 3), (n, d)."""
+        result = np.zeros((len(points), len(towards)), np.float32)
+        group = max(RAYS // len(towards), 1)
+        for first in range(0, len(points), group):
+            some = points[first : first + group]
+            origins, ways = np.repeat(some, len(towards), axis=0), np.tile(towards, (len(some), 1))
+            at, total, active = np.zeros(len(origins)), np.zeros(len(origins)), np.arange(len(origins))
+            for _ in range(MOST_WALLS):
+                face, ahead = self.rays.nearest(origins[active] + at[active, None] * ways[active], ways[active])
+                hit = face >= 0
+                active, face = active[hit], face[hit]
+                if not len(active):
+                    break
+                at[active] += np.maximum(ahead[hit], 0.0)
+                leaves = np.einsum("nc,nc->n", ways[active], self.normals[face]) > 0.0
+                total[active] += np.where(leaves, at[active], -at[active])
+                at[active] += STEP * self.body.size
+            result[first : first + group] = np.maximum(total, 0.0).reshape(len(some), -1)
+        return result
+
+    def trace(
+        self, medium: Medium, towards: Array, photons: int, rng: np.random.Generator, unscattered: bool = False
+    ) -> Array:
+        """The estimates, (directions, voxels), of `photons` photons for each direction (d, 3) towards a light.
+
+        With `unscattered`, or behind a refracting surface, the first collisions count, too. The estimates are the
+        integrals of texels' hats times the field, over the volume of a voxel: see `projection`.
+        """
         grid = self.grid
         number = np.repeat(np.arange(len(towards)), photons)
         position, areas = self._start(towards, photons, rng)
         direction = np.repeat(-towards, photons, axis=0)
         start_weight = areas / photons
         weight = start_weight[number]
-        scattered = np.full(len(weight), medium.ior != 1.0)
+        scattered = np.full(len(weight), unscattered or medium.ior != 1.0)
         sums = np.zeros(len(towards) * grid.voxels)
         while len(weight):
             face, ahead = self.rays.nearest(position, direction)
@@ -80,7 +113,7 @@ class Tracer:
             collides = (slope > 0.0) & (free < ahead)
             position = position + np.where(collides, free, ahead)[:, None] * direction
             counted = collides & scattered
-            cell = number[counted] * grid.voxels + grid.voxel_of(position[counted])
+            cell = number[counted] * grid.voxels + grid.texel_of(position[counted], rng)
             sums += np.bincount(cell, weight[counted], len(sums))
             crosses = ~collides
             turned = self._crossed(direction[crosses], normal[crosses], slope[crosses], medium.ior, rng)

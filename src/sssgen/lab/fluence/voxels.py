@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
+Numbers = npt.NDArray[np.floating]
 
 
 class Grid(NamedTuple):
@@ -29,13 +30,21 @@ class Grid(NamedTuple):
         """The volume of a voxel."""
         return float(np.prod(self.high - self.low)) / self.voxels
 
-    def voxel_of(self, points: Array) -> npt.NDArray[np.int64]:
+    def voxel_of(self, points: Numbers) -> npt.NDArray[np.int64]:
         """The voxel of each point, (n,), x first; points outside belong to the nearest."""
         size = np.array(self.shape)
-        cell = ((points - self.low) * (size / (self.high - self.low))).astype(np.int64)
+        cell = np.floor((points - self.low) * (size / (self.high - self.low))).astype(np.int64)
         x, y, z = np.clip(cell, 0, size - 1).T
         voxel: npt.NDArray[np.int64] = (z * size[1] + y) * size[0] + x
         return voxel
+
+    def texel_of(self, points: Numbers, rng: np.random.Generator) -> npt.NDArray[np.int64]:
+        """A texel for each point, (n,): one of the eight around it, with its weight in their interpolation as chance.
+
+        That of a point moved by up to half a voxel along each axis: it is in the next voxel with that chance.
+        """
+        moves = (rng.random((len(points), 3), dtype=np.float32) - 0.5) * (self.high - self.low) / np.array(self.shape)
+        return self.voxel_of(points + moves)
 
     def centres(self, parts: int = 1) -> Array:
         """Points in each voxel, (voxels, parts^3, 3), evenly spaced."""

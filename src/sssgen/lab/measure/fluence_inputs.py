@@ -43,8 +43,13 @@ def texels(name: str, scene: MeasuredScene) -> int:
     """The texels of a texture by its name in techniques; 0 for textures of other kinds."""
     if name.startswith("fluence_table_"):
         side = SETTINGS.side + 2
-        return side * side * (int(name.rpartition("_")[2]) + 1)
+        return side * side * volumes.tiles_of(int(name.rpartition("_")[2]))
     return field.grid_in_box(scene, SETTINGS.voxels).voxels if name.startswith(PREFIX) else 0
+
+
+def reach(scene: MeasuredScene) -> float:
+    """The largest distance in the volume of a fixed light, in world units."""
+    return volumes.reach_of(field.grid_in_box(scene, SETTINGS.voxels)) * scene.geometry.scale
 
 
 def items(scene: MeasuredScene) -> list[Item]:
@@ -97,4 +102,4 @@ def _towards(scene: MeasuredScene, light: Light) -> Array:
 def _fixed(scene: MeasuredScene, light: Light) -> Texture:
     """The light at each voxel; the scale is part of the texels, whose steps are those of the stored volume."""
     stored = volumes.fixed(field.of_light(_without_view(scene), _towards(scene, light), SETTINGS, processes=0))
-    return Texture(stored.texels / 255.0 * np.sqrt(stored.scale), wrap="clamp")
+    return Texture(stored.texels / 255.0 * np.append(np.sqrt(stored.scale), 1.0), wrap="clamp")

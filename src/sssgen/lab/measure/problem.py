@@ -24,7 +24,7 @@ UV_RANGE = 32.0
 """The probe shown_uv divides texture coordinates by this. Here they are lengths in depths of the inlay."""
 LENGTHS = ("thickness", "view_thickness")
 """The roles whose value is a length."""
-LIGHT_MAPS = ("light_depth_map", "light_layer_map")
+LIGHT_MAPS = ("light_depth_map", "light_layer_map", "fluence_volume")
 """The textures that differ between lights."""
 WHITE = 0.8
 """The value to which exposure scales a reference's brightest parts."""

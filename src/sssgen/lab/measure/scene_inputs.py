@@ -18,6 +18,7 @@ from sssgen.harness.scenes.bounds import placed_corners
 from sssgen.harness.scenes.inside_intervals import intervals
 from sssgen.harness.scenes.light_view import directional_view, point_view
 from sssgen.harness.scenes.scene import Light
+from sssgen.lab.measure import fluence_inputs
 from sssgen.lab.reference import view_harmonics
 from sssgen.lab.reference.curvature import normal_curvature
 from sssgen.lab.reference.inside_lengths import first_exit, thickness
@@ -74,6 +75,7 @@ def of_scene(scene: MeasuredScene) -> SceneInputs:
         name: np.array(value)[:, None] if isinstance(value, list) else value for name, value in parameters.items()
     }
     values["world_to_volume"] = _to_box(geometry.to_object(), distances.box_min, distances.box_max).T[..., None]
+    values["fluence_reach"] = fluence_inputs.reach(scene)
     if scene.medium is not None:
         values |= {
             name: np.array(value)[:, None] if isinstance(value, list) else value
