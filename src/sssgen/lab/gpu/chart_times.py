@@ -15,7 +15,6 @@ import numpy as np
 
 from sssgen.harness.scenes.scene import Scene
 from sssgen.harness.scenes.scene_loading import parse_scene
-from sssgen.ir.drawn import BACK_FACES
 from sssgen.lab.chart.picked_material import stages_of
 from sssgen.lab.gpu import gpu_timing as gpu_cost
 from sssgen.lab.gpu import timed_programs as gpu_programs
@@ -26,7 +25,6 @@ from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.material import library
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile
-from sssgen.targets.runtime.numpy_textures import Texture
 
 AT_ONCE = 40
 """Programs that alternate; with more of them, a round is so long that clocks change in it."""
@@ -130,21 +128,12 @@ def _with_parameters(scene: Scene, measured: MeasuredScene, material: Material) 
         **(measured.inlay.parameters if measured.inlay is not None else {}),
     }
     read = {uniform["source_name"] for uniform in reflection["uniforms"]}
-    declared = [entry for entry in reflection["textures"] if entry["drawn"] != BACK_FACES]  # drawn for the points
-    textures = {entry["source_name"]: _random_texture(entry["type"]) for entry in declared}
-    if "distance_map" in textures:
-        textures["distance_map"] = texture
+    textures = {declared["source_name"] for declared in reflection["textures"]}
     return dataclasses.replace(
         scene,
         parameters={name: value for name, value in values.items() if name in read},
-        textures=textures,
+        textures={"distance_map": texture} if "distance_map" in textures else {},
     )
-
-
-def _random_texture(sampler: str) -> Texture:
-    """A texture as large as a usual one: the time of a read depends on the size, not on the values."""
-    sides = (24, 24, 24) if sampler == "sampler3D" else (512, 512)
-    return Texture(np.random.default_rng(1).random((*sides, 4)).astype(np.float16), wrap="clamp")
 
 
 def correlations(points: Sequence[Mapping[str, Any]]) -> dict[str, float]:

@@ -173,7 +173,9 @@ def of_material(
     compiled = compile(material, TARGET, guards=guards)
     height, width = points.position.shape[:2]
     shell = shell_of(scene, material, compiled.reflection)
-    shell = replace(shell, screens=_screens(scene, compiled.reflection, points))
+    missing = _usual_textures(compiled.reflection["textures"])
+    screens = _screens(scene, compiled.reflection, points)
+    shell = replace(shell, textures={**missing, **shell.textures}, screens=screens)
     program = drawing(compiled, shell, (width, height), None, None)
     text = program.fragment.text.text
     varyings = [varying for varying in _VARYINGS if re.search(rf"^in \w+ {varying};$", text, re.MULTILINE)]
@@ -186,6 +188,17 @@ def of_material(
     uniforms = {**program.values, "timing_evaluations": evaluations}
     main = _main(varyings)
     return Program(name, text + main, uniforms, {**textures, **_bound(points)}, floor + main, evaluations)
+
+
+def _usual_textures(declared: Sequence[Mapping[str, Any]]) -> dict[str, Texture]:
+    """Random textures as large as usual ones: the time of a read depends on the size, not on the values."""
+    random = np.random.default_rng(1)
+    sides = {"sampler2D": (512, 512), "sampler3D": (24, 24, 24)}
+    return {
+        entry["source_name"]: half(Texture(random.random((*sides[entry["type"]], 4)), wrap="clamp"))
+        for entry in declared
+        if entry["type"] in sides and entry["drawn"] != BACK_FACES
+    }
 
 
 def _screens(scene: Scene, reflection: Mapping[str, Any], points: Points) -> dict[str, Texture]:
