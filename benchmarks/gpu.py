@@ -175,7 +175,7 @@ def chains_inside() -> list[Candidate]:
     """The chains whose light starts inside the body, with back faces from the eye and a depth map from the light."""
     views = [candidate for candidate in candidates.view_thickness() if candidate.name == "back_face_thickness"]
     paths = [candidate for candidate in candidates.thickness() if candidate.name == "depth_map_path"]
-    return [candidate for candidate in candidates.materials((), views, paths) if candidate.path]
+    return [candidate for candidate in candidates.materials((), views, paths) if len(candidate.techniques) == 2]
 
 
 def as_markdown(table: Table) -> str:
