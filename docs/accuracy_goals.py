@@ -29,17 +29,20 @@ GOALS = (
 )  # fmt: skip
 VOLUMES = {"translucency": 1.5, "material": 2.0}
 """How often the hypervolume of all baselines together fits into the library's."""
+NOTABLE = 0.98
+"""The largest ratio of an error to that of the cheaper chains for which a chain is listed."""
 PICKED = 0.15
 BOUNDARY = 1.25
 """The largest ratio of an error with a refracting boundary and the goal."""
 
 
-def table(record: Record, bent: Record) -> str:
-    """The goals; `bent` has the same bodies with a refracting boundary."""
+def table(record: Record, bent: Record | None) -> str:
+    """The goals; `bent` has the same bodies with a refracting boundary, if they are measured."""
     rows = ["| goal | measured | |", "|---|---|---|"]
     rows += [_goal("median error", goal, record) for goal in GOALS]
-    bent_goals = [goal._replace(error=round(BOUNDARY * goal.error, 4)) for goal in GOALS]
-    rows += [_goal("median error with the boundary", goal, bent) for goal in bent_goals]
+    if bent is not None:
+        bent_goals = [goal._replace(error=round(BOUNDARY * goal.error, 4)) for goal in GOALS]
+        rows += [_goal("median error with the boundary", goal, bent) for goal in bent_goals]
     for role, factor in VOLUMES.items():
         ratios = {
             entry["scene"]: entry["ours"] / max(entry["baselines"], 1e-9)
@@ -63,10 +66,14 @@ def table(record: Record, bent: Record) -> str:
     return "\n".join(rows)
 
 
-def medians(record: Record, most: int = 24) -> str:
-    """The chains that have the smallest median error of all that are not more expensive."""
+def medians(record: Record, fixed: bool) -> str:
+    """The chains with the smallest median error of all that are not more expensive; `fixed` as in Goal."""
     scenes = _lit(record)
-    by_label = {label: points for label, points in _by_label(record).items() if len(points) == len(scenes)}
+    by_label = {
+        label: points
+        for label, points in _by_label(record).items()
+        if len(points) == len(scenes) and (fixed or _moving(points))
+    }
     chains = sorted((_cost_of(points), _median(points), label) for label, points in by_label.items())
     rows = [
         f"| cost | median | {' | '.join(scenes)} | requires | chain |",
@@ -74,7 +81,7 @@ def medians(record: Record, most: int = 24) -> str:
     ]
     least = float("inf")
     for cost, error, label in chains:
-        if error >= 0.98 * least or len(rows) >= most:
+        if error >= NOTABLE * least:
             continue
         least = error
         points = by_label[label]
@@ -107,12 +114,17 @@ def _reached(record: Record, goal: Goal) -> tuple[str, bool]:
         if len(points) == len(scenes)
         and _cost_of(points) <= goal.cost
         and all(allowed(point) and not point["baseline"] for point in points.values())
-        and (goal.fixed or all(FIXED not in point["requires"] for point in points.values()))
+        and (goal.fixed or _moving(points))
     ]
     if not chains:
         return "no chain", False
     error, cost, label = min(chains)
     return f"{error:.3f} at {cost:.0f}: {label}", error <= goal.error
+
+
+def _moving(points: Mapping[str, Point]) -> bool:
+    """Whether the light may move relative to the body."""
+    return all(FIXED not in point["requires"] for point in points.values())
 
 
 def _goal(name: str, goal: Goal, record: Record) -> str:
