@@ -14,11 +14,11 @@ from sssgen.lab.chart.drawing.panels import Chart, Panel, Style, label_texts, nu
 from sssgen.lab.chart.record import LEAST, Point, measures
 from sssgen.support.extras import need
 
-WIDTH, TALL, SHORT, KEY_LINE = 9.0, 4.2, 3.8, 0.21
+WIDTH, TALL, SHORT, KEY_LINE = 9.0, 4.4, 4.3, 0.21
 """In inches: the width of the chart, the height of a full-width panel, of a half-width panel, of a line of the key."""
 DPI = 200
 KEY_COLUMNS = 4
-LABEL_WIDTH, LABEL_SIZE = 20, 6.5
+LABEL_WIDTH, LABEL_SIZE = 26, 6.0
 """The letters in a line of a label (a long name may have more), and their size in points."""
 MOST_LINES = 60
 """The largest number of techniques whose settings are joined by lines: more lines would hide the points."""
