@@ -79,6 +79,7 @@ def test_the_collisions_of_a_thin_body_are_those_of_single_scattering() -> None:
     assert expected < mean < 1.25 * expected
 
 
+@pytest.mark.slow
 def test_no_light_is_lost_where_nothing_is_absorbed() -> None:
     """In white light from everywhere the radiance in a body that absorbs nothing is 1, that with an index n is n^2."""
     geometry, extinction = Box((0.8, 0.8, 0.8)), 3.0
