@@ -46,8 +46,7 @@ class Settings(NamedTuple):
     """For each direction and channel"""
     seed: int = 0
     fixed: bool = False
-    """For one light: also what has not been scattered, which a technique need not compute then; photons for it alone
-    are `side` times as many"""
+    """For one light: the field includes unscattered light, and the light has `side` times as many photons"""
 
 
 class Field(NamedTuple):

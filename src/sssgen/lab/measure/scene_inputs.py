@@ -177,8 +177,8 @@ def view_lengths(scene: MeasuredScene) -> Array:
 
 def fade_length(scene: MeasuredScene) -> float:
     """The length with which a directional map of the scene's body stores lengths."""
-    medium = scene.medium.parameters["mean_free_path"] if scene.medium is not None else np.inf
-    return view_harmonics.fade_length(scene.geometry, float(medium))  # type: ignore[arg-type]
+    mean_free_path = scene.medium.mean_free_path if scene.medium is not None else np.inf
+    return view_harmonics.fade_length(scene.geometry, mean_free_path)
 
 
 def directional_maps(scene: MeasuredScene) -> dict[str, Callable[[], Texture]]:

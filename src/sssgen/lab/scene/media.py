@@ -65,13 +65,17 @@ class Medium:
     @property
     def parameters(self) -> dict[str, object]:
         """The medium's parameters by their names in techniques, as TOML values."""
-        mean = sum(self.extinction) / 3.0
         return {
             "ior": self.ior,
             "extinction": [*self.extinction],
             "scattering_albedo": [*self.albedo],
-            "mean_free_path": 1.0 / max(mean, CLEAR),
+            "mean_free_path": self.mean_free_path,
         }
+
+    @property
+    def mean_free_path(self) -> float:
+        """That of the channels' mean extinction, in world units; large but finite in a clear medium."""
+        return 1.0 / max(sum(self.extinction) / 3.0, CLEAR)
 
     def matched(self) -> Medium:
         """The same medium with a boundary without reflection and refraction."""
