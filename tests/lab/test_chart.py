@@ -216,19 +216,6 @@ def test_hypervolumes_of_the_library_and_of_the_baselines() -> None:
     assert result["ours"] > result["baselines"] > 0.0
 
 
-def test_more_expensive_settings_are_used_while_they_lower_the_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.undo()  # restores the complete list of candidates
-    chains = {candidate.label: list(candidate.techniques) for candidate in candidates.thickness()}
-    errors = {"march_light, 2 steps": 0.5, "march_light, 3 steps": 0.46, "march_light, 4 steps": 0.3,
-              "march_light, 8 steps": 0.31, "march_light, 16 steps": 0.2, "constant_thickness": 0.9}  # fmt: skip
-    points = [
-        {"role": "thickness", "label": label, "chain": chains[label], "training_error": error, "cost": {"value": cost}}
-        for cost, (label, error) in enumerate(errors.items())
-    ]
-    labels = [candidate.label for candidate in chart.useful_lengths(points, candidates.thickness())]
-    assert labels == ["march_light, 2 steps", "march_light, 4 steps", "march_light, 16 steps", "constant_thickness"]
-
-
 def test_failures_are_named() -> None:
     with pytest.raises(SssgenError) as caught:
         chart.results_of([executor.Item("executor_items:fail", ("said",), "fit this")], settings())
@@ -307,13 +294,14 @@ def test_a_technique_that_measures_inside_has_every_view_and_every_path(monkeypa
     assert light.bind == (("light_path", "march_light"), ("body_distance", "sphere"))
 
 
-def test_dearer_lengths_with_the_same_requirements_are_used_while_they_lower_the_error(
+def test_more_expensive_lengths_with_the_same_requirements_are_used_if_they_halve_the_error(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.undo()
     rigid, depth = ["rigid"], ["depth-map"]
+    layers = [*depth, "depth-layers"]
     rows = [("march_light, 4 steps", 0.5, rigid), ("march_light_traced, 4 steps", 0.2, rigid),
-            ("march_light, 16 steps", 0.19, rigid), ("depth_map_path", 0.6, depth),
+            ("march_light, 16 steps", 0.11, rigid), ("depth_map_path", 0.6, depth), ("depth_layers_path", 0.6, layers),
             ("constant_thickness", 0.1, [])]  # fmt: skip
     points = [
         {
@@ -324,7 +312,7 @@ def test_dearer_lengths_with_the_same_requirements_are_used_while_they_lower_the
     ]  # fmt: skip
     # constant_thickness is no function of a point
     labels = [path.label for path in chart.useful_paths(points)]
-    assert labels == ["march_light, 4 steps", "march_light_traced, 4 steps", "depth_map_path"]
+    assert labels == ["march_light, 4 steps", "march_light_traced, 4 steps", "depth_map_path", "depth_layers_path"]
 
 
 def test_a_record_restores_its_candidates() -> None:
@@ -332,11 +320,11 @@ def test_a_record_restores_its_candidates() -> None:
     (point,) = (
         point
         for point in record["points"]
-        if point["name"] == "march_view → interior_octaves" and point["path_settings"] == {"steps": 6}
+        if point["name"] == "march_view → interior_octaves" and point["path_settings"] == {"steps": 4}
     )
-    assert point["label"] == "march_view, 3 steps → interior_octaves by march_light, 6 steps"
+    assert point["label"] == "march_view, 3 steps → interior_octaves by march_light, 4 steps"
     candidate = chart.candidate_of(point)
-    assert (candidate.path, dict(candidate.path_settings)) == ("march_light", {"steps": 6})
+    assert (candidate.path, dict(candidate.path_settings)) == ("march_light", {"steps": 4})
     assert (point["requires"], point["bytes"]) == (["rigid"], 0)
     row = next(line for line in to_csv(record).splitlines() if point["label"] in line)
     assert ",march_light," in row and ",rigid,0," in row
@@ -344,7 +332,7 @@ def test_a_record_restores_its_candidates() -> None:
     shape = body(cube().geometry)
     stages = stages_of(point, shape, cube().medium)
     values = dict(stages[-1].values)
-    assert values["steps"] == 6 and values["reach"] == shape.span and dict(stages[0].values)["steps"] == 3
+    assert values["steps"] == 4 and values["reach"] == shape.span and dict(stages[0].values)["steps"] == 3
     assert values["extinction"] == pytest.approx(list(cube().medium.extinction))
     assert values["scattering_albedo"] == pytest.approx(list(cube().medium.albedo))
     assert ("light_path", "march_light") in stages[-1].bind

@@ -82,7 +82,7 @@ WRONG_ATTRIBUTES = {
     "requires: depth-mop": ("unknown requirement 'depth-mop'", "did you mean 'depth-map'?"),
     "requires: sunshine": (
         "unknown requirement 'sunshine'",
-        "requirements: bake, depth-map, back-faces, rigid, fixed-light",
+        "requirements: bake, depth-map, depth-layers, back-faces, rigid, fixed-light",
     ),
     "sets: tint": ("'tint' is not a setting", "write, for example, `sets: albedo by tint`"),
     "sets: albedo by tint": ("'f' does not write 'albedo'", ""),
@@ -117,7 +117,7 @@ def test_baked_textures_state_their_size_and_pictures_who_draws_them() -> None:
             assert is_baked(uniform) <= ("texel_bytes" in hints), f"{technique.name}: {uniform.name}"
             if isinstance(uniform.type, Sampler) and "repeat_disable" in hints and not is_baked(uniform):
                 assert "drawn" in hints or technique.attributes.requires, f"{technique.name}: {uniform.name}"
-    assert set(DRAWN.values()) == {"depth-map", "back-faces"} <= set(attributes.REQUIREMENTS)
+    assert {name for names in DRAWN.values() for name in names} <= set(attributes.REQUIREMENTS)
 
 
 def test_requirements_follow_from_declarations(tmp_path: Path) -> None:
@@ -133,8 +133,9 @@ def test_requirements_follow_from_declarations(tmp_path: Path) -> None:
     mapped = length.format("thickness_map") + '[[thickness]]\ntechnique = "view_thickness_from_chord"\n'
     assert required(mapped + inside.format("depth_map_path", "")) == (("bake", "depth-map"), 1)
     faces = length.format("back_face_thickness")
-    for path in ("depth_map_path", "depth_layers_path"):
-        assert required(faces + inside.format(path, "")) == (("depth-map", "back-faces"), 0)
+    assert required(faces + inside.format("depth_map_path", "")) == (("depth-map", "back-faces"), 0)
+    layers = faces + inside.format("depth_layers_path", "")
+    assert required(layers) == (("depth-map", "depth-layers", "back-faces"), 0)
     assert required(faces + inside.format("march_light", body.format("sphere"))) == (("back-faces", "rigid"), 0)
     texture = body.format("distance_texture_world")
     marched = length.format("march_view") + 'bind = { body_distance = "distance_texture_world" }\n'

@@ -32,9 +32,10 @@ ATTRIBUTES = (*TEXTS, "superseded_by", "suggested", "shape", "sets", "requires",
 SHAPES = ("box", "sphere", "torus", "texture")
 """The values of `shape`, the body that a distance function describes."""
 
-REQUIREMENTS = ("bake", "depth-map", "back-faces", "rigid", "fixed-light")
-"""What `requires` can name: a texture baked from the body; the light's depth map; a picture of the body's back faces
-from the eye; a body that keeps its shape; a light that does not move relative to the body."""
+REQUIREMENTS = ("bake", "depth-map", "depth-layers", "back-faces", "rigid", "fixed-light")
+"""What `requires` can name: a texture baked from the body; the light's depth map; that map with further layers; a
+picture of the body's back faces from the eye; a body that keeps its shape; a light that does not move relative to the
+body."""
 
 BOUNDS = ("largest", "share", "bound_share")
 """What `deviation_bounds` can bound."""

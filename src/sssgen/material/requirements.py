@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from sssgen.ir.drawn import BACK_FACES, LIGHT_VIEWS
+from sssgen.ir.drawn import BACK_FACES, DISTANT, LAYERS, LIGHT
 from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import attributes
@@ -18,8 +18,10 @@ from sssgen.material.model import TechniqueUse
 from sssgen.material.slots import needs
 from sssgen.support.diagnostics import SssgenError
 
-DRAWN = {BACK_FACES: "back-faces", **dict.fromkeys(LIGHT_VIEWS, "depth-map")}
-"""A picture that the engine draws → the requirement."""
+DRAWN = {
+    BACK_FACES: ("back-faces",), LIGHT: ("depth-map",), DISTANT: ("depth-map",), LAYERS: ("depth-map", "depth-layers"),
+}  # fmt: skip
+"""A picture that the engine draws → the requirements."""
 TEXEL_BYTES = 4
 """The bytes of a baked texel without the hint `texel_bytes`: four channels of 8 bits."""
 
@@ -33,7 +35,8 @@ def requirements(uses: Iterable[TechniqueUse]) -> tuple[str, ...]:
             textures = [uniform for uniform in _read(module, function) if isinstance(uniform.type, Sampler)]
             volume = any(_is_volume(uniform) for uniform in textures)
             slots = needs(module, function)[1]
-            found.update(DRAWN[str(view)] for texture in textures for view in dict(texture.hints).get("drawn", ()))
+            for texture in textures:
+                found.update(*(DRAWN[str(view)] for view in dict(texture.hints).get("drawn", ())))
             found.update({"bake"} if any(map(is_baked, textures)) else ())
             found.update({"rigid"} if volume or any(map(_is_distance, slots)) else ())
     return tuple(name for name in REQUIREMENTS if name in found)

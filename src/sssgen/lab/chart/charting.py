@@ -29,8 +29,9 @@ from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.version import VERSION
 
-WORTHWHILE = 0.9
-"""Complete chains use a more expensive setting of a thickness if it lowers the training error to this share."""
+WORTHWHILE = 0.5
+"""Complete chains use a more expensive length that requires the same data if it lowers the training error to this
+share. Chains combine two lengths, so that a larger share measures many chains that hardly differ."""
 
 VIEWS = ("own", "held out")
 """The names of a scene's two views."""
@@ -109,7 +110,7 @@ def _measured(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[
             if scene.medium is not None:
                 whole = candidates.materials(
                     useful_lengths(points[scene.key], candidates.thickness()),
-                    useful_lengths(points[scene.key], candidates.view_thickness(), by_requirements),
+                    useful_lengths(points[scene.key], candidates.view_thickness()),
                     useful_paths(points[scene.key]),
                 )
                 jobs += [(scene, candidate) for candidate in whole if _applies(scene, candidate)]
@@ -303,27 +304,14 @@ def distance_function_parameters(
     return parameters
 
 
-def by_chain(point: Mapping[str, Any]) -> tuple[str, ...]:
-    """The key of a chain's settings."""
-    return tuple(point["chain"])
-
-
-def by_requirements(point: Mapping[str, Any]) -> tuple[str, ...]:
-    """The key of the lengths that require the same data, so that only cost and error decide between them."""
-    return tuple(point["requires"])
-
-
 def useful_paths(points: Sequence[Mapping[str, Any]]) -> list[Candidate]:
     """The useful thicknesses among those that can be measured from a point inside the body."""
-    return useful_lengths(points, list(filter(candidates.fits_path, candidates.thickness())), by_requirements)
+    return useful_lengths(points, list(filter(candidates.fits_path, candidates.thickness())))
 
 
-def useful_lengths(
-    points: Sequence[Mapping[str, Any]],
-    lengths: Sequence[Candidate],
-    group_of: Callable[[Mapping[str, Any]], tuple[str, ...]] = by_chain,
-) -> list[Candidate]:
-    """Those of `lengths` for complete chains: in each group the cheapest, and more expensive ones with a lower error.
+def useful_lengths(points: Sequence[Mapping[str, Any]], lengths: Sequence[Candidate]) -> list[Candidate]:
+    """Those of `lengths` for complete chains: of those that require the same data the cheapest, and more expensive ones
+    with a lower error.
 
     The training error decides, not the error on the scene.
     """
@@ -331,7 +319,7 @@ def useful_lengths(
     groups: dict[tuple[str, ...], list[Mapping[str, Any]]] = {}
     for point in points:
         if (point["role"], point["label"]) in by_label:
-            groups.setdefault(group_of(point), []).append(point)
+            groups.setdefault(tuple(point["requires"]), []).append(point)
     chosen = []
     for group in groups.values():
         best = float("inf")

@@ -12,7 +12,7 @@ Point = Mapping[str, Any]
 
 LIGHTS = ("fixed", "moving")
 BODIES = ("rigid", "deforming")
-OMISSIONS = ("bake", "depth-map", "back-faces")
+OMISSIONS = ("bake", "depth-map", "depth-layers", "back-faces")
 """What an engine may be without, by the names of the requirements."""
 
 
