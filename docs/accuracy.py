@@ -24,7 +24,7 @@ from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart import drawing
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.choice_pictures import ScenePictures, scene_pictures
-from sssgen.lab.chart.record import to_json
+from sssgen.lab.chart.record import checked, to_json
 from sssgen.lab.chart.scene_conditions import boundary, lights
 from sssgen.lab.gpu import chart_times as chart_gpu
 from sssgen.lab.scene import measured_scene
@@ -37,6 +37,7 @@ FOLDER = DOCS / "accuracy"
 PAGE = DOCS / "accuracy.md"
 GPU_CHART = "gpu_chart.json"
 BY_HAND = "gpu_jelly_cubes.json"
+"""The record of `make bench-gpu`."""
 TIMED = ("cube", "torus", "inlay_plate", "inlay_ball")
 """The scenes whose chains are timed, in one or two minutes each."""
 BENT = "chart_refracting.json"
@@ -116,17 +117,18 @@ def page(
             name: data for name, data in drawing.chart_files(gpu_record, "gpu").items() if name.endswith("material.png")
         }
     if bent is not None:
-        files[BENT] = to_json(bent)
+        files[BENT] = to_json(checked(bent))
     write_files(str(FOLDER), files | {"pictures.png": accuracy_pictures.drawn(pictures)})
     text = (FOLDER / "page.md.in").read_text(encoding="utf-8")
     parts: dict[str, Callable[[], str]] = {
         "scenes": lambda: scene_table(record), "fronts": lambda: fronts(record),
-        "goals": lambda: accuracy_goals.table(record, bent), "medians": lambda: accuracy_goals.medians(record, True),
+        "goals": lambda: accuracy_goals.table(record, bent, bench_gpu()["interior"]),
+        "medians": lambda: accuracy_goals.medians(record, True),
         "moving": lambda: accuracy_goals.medians(record, False),
         "boundary": lambda: accuracy_goals.medians(bent, True) if bent is not None else UNMEASURED,
         "volumes": lambda: hypervolumes(record),
         "known": lambda: expected_results(record), "losses": lambda: baselines_on_fronts(record),
-        "implementation": lambda: implementation(record), "gpu": gpu, "by_hand": by_hand,
+        "implementation": lambda: implementation(record), "gpu": gpu, "by_hand": by_hand, "inside": inside,
         "pick": lambda: pick_trial.table(trial) if trial is not None else UNMEASURED,
     }  # fmt: skip
     for name, part in parts.items():
@@ -317,9 +319,27 @@ def gpu() -> str:
     return "\n".join([*rows, "", "</details>"])
 
 
+def bench_gpu() -> dict[str, Any]:
+    """The record of `make bench-gpu`."""
+    record: dict[str, Any] = json.loads((FOLDER / BY_HAND).read_text(encoding="utf-8"))
+    return record
+
+
+def inside() -> str:
+    """The times of chains that know the light inside a body."""
+    record = bench_gpu()["interior"]
+    rows = ["| chain | ms | of the published thinness |", "|---|---:|---:|"]
+    rows += [
+        f"| {label} | {ratio * record['added_ms']:.3f} | {ratio:.3f} |"
+        for label, ratio in record["of_thinness"].items()
+        if " → " in label
+    ]
+    return "\n".join(rows)
+
+
 def by_hand() -> str:
-    """Emitted shaders compared with handwritten ones, as recorded by `make bench-gpu`."""
-    record = json.loads((FOLDER / BY_HAND).read_text(encoding="utf-8"))
+    """Emitted shaders compared with handwritten ones."""
+    record = bench_gpu()
     scene_record = record["jelly_cubes"]
     scene = {name: program["net_ms"]["median"] for name, program in scene_record["programs"].items()}
     published, emitted = scene["jelly_cubes published"], scene["jelly_cubes emitted"]
