@@ -305,7 +305,7 @@ def test_the_picked_chain_is_emitted(stored_chart: str, tmp_path: Path, capsys: 
         ([], "required"),
         (["--max-cost", "3", "--max-error", "1"], "not allowed"),
         (["--max-cost", "3", "--device", "llvmpip"], "did you mean 'llvmpipe'"),
-        (["--max-cost", "3", "--device", "gtx"], "devices: llvmpipe"),
+        (["--max-cost", "3", "--device", "gtx"], "devices: h200, llvmpipe"),
         (["--max-cost", "3", "--max-bytes", "-1"], "0 or more; 0 bakes nothing"),
         (["--max-cost", "3", "--light", "movin"], "did you mean 'moving'"),
         (["--max-cost", "3", "--body", "soft"], "choose from: rigid, deforming"),
