@@ -68,7 +68,11 @@ def texts_of_this_state() -> dict[str, str]:
     for path in materials:
         for target in sssgen.all_targets():
             for form in FORMS:
-                for file, text in sssgen.compile(path.as_posix(), target, form).files.items():
+                try:
+                    files = sssgen.compile(path.as_posix(), target, form).files
+                except sssgen.SssgenError as error:
+                    files = {"error": str(error)}
+                for file, text in files.items():
                     texts[f"{path.stem}/{form}/{file}"] = text
     for name in library.index():
         subject = probes.subject(name)

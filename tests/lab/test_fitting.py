@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from carried import carrying
 from measured_views import SIZE, candidate, chain, small
 from sssgen.lab.chart.picked_material import material_files, stages_of
 from sssgen.lab.chart.picking import Pick
@@ -33,7 +34,7 @@ from sssgen.lab.measure.problem import Problem
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.scene_body import body
 from sssgen.material.material_loading import parse_material
-from sssgen.pipeline.compiler import all_targets, compile
+from sssgen.pipeline.compiler import compile
 
 pytest.importorskip("scipy")
 pytest.importorskip("flip_evaluator")
@@ -206,7 +207,7 @@ def test_the_emitted_material_compiles_for_every_target(
     for name, text in files.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     material = parse_material(files["mine.toml"], str(tmp_path / "mine.toml"))
-    targets = all_targets()
+    targets = carrying(material)
     assert len(targets) > 5
     for target in targets:
         assert compile(material, target).files, target

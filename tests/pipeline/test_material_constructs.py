@@ -15,6 +15,7 @@ import pytest
 
 import sssgen
 from folders import TESTS
+from sssgen.support.diagnostics import UnsupportedError
 
 CONSTRUCTS = sorted((TESTS / "material_constructs").glob("*.txt"))
 FORMS = ("shader", "functions")
@@ -24,7 +25,10 @@ def emitted(source: str, folder: Path, target: str, form: str) -> list[str]:
     """The lines of all texts that are emitted for a material and a target."""
     path = folder / "made.toml"
     path.write_text(f'[material]\nname = "made"\n{source}', encoding="utf-8")
-    files = sssgen.compile(str(path), target, form).files
+    try:
+        files = sssgen.compile(str(path), target, form).files
+    except UnsupportedError as error:
+        return [entry.message for entry in error.diagnostics]
     return [line for file, text in files.items() if not file.endswith(".json") for line in text.splitlines()]
 
 

@@ -54,7 +54,7 @@ def test_conventions_are_reported(target: str) -> None:
     """The direction of y, rows and columns, the encoding of colors: the text does not show them."""
     conventions = sssgen.compile("ice", target).reflection["conventions"]
     assert {"matrices", "framebuffer_y", "uv_origin", "color_space"} <= set(conventions)
-    in_a_shell = target not in ("numpy", "unity-shadergraph")
+    in_a_shell = target not in ("numpy", "shadertoy", "unity-shadergraph")
     assert {"clip_y", "clip_z"} <= set(conventions) or not in_a_shell
 
 

@@ -26,7 +26,7 @@ from sssgen.material.requirements import DRAWN, baked_textures, is_baked, requir
 from sssgen.material.slots import candidates
 from sssgen.pipeline.compiler import FORMS, Compiled
 from sssgen.pipeline.compiler import compile as compile_material
-from sssgen.support.diagnostics import SssgenError
+from sssgen.support.diagnostics import SssgenError, UnsupportedError
 from sssgen.targets import registry
 
 NAMES = sorted(library.index())
@@ -305,12 +305,18 @@ def test_every_technique_compiles(target: str, form: str, compiler: Callable[[st
     """Every compiler accepts every technique for every target; all failures are reported together."""
     failures = []
     readers = [compiler(reader) for reader in compilers.readers(target)]
-    count = 0
+    count, lacking = 0, 0
     for name in NAMES:
-        for source in sources(compiled(name, target, form).files):
+        try:
+            files = compiled(name, target, form).files
+        except UnsupportedError:
+            lacking += 1
+            continue
+        for source in sources(files):
             count += 1
             for reader in readers:
                 reported = errors(reader.check(source))
                 failures += [f"{source.name} ({source.stage}), {reader.name}: {message}" for message in reported]
-    assert count >= len(NAMES) and readers
+    assert count >= len(NAMES) - lacking and readers
+    assert lacking == 0 or (registry.load(target).channels and lacking < len(NAMES) / 2)
     assert not failures, "\n".join(failures)

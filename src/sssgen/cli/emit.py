@@ -10,7 +10,7 @@ from sssgen.cli.output import OK, print_json, print_warnings
 from sssgen.pipeline import emitted_cache
 from sssgen.pipeline.emitted_cache import EmittedFiles
 from sssgen.support import file_memo as watch
-from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
+from sssgen.support.diagnostics import Diagnostic, SssgenError, UnsupportedError, did_you_mean, failure
 from sssgen.support.file_writer import write_files
 from sssgen.support.paths import posix
 
@@ -83,6 +83,7 @@ def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
 
     wrong: list[Diagnostic] = []
     names = chosen_targets(arguments.target, wrong)
+    every = "all" in arguments.target.split(",")
     templates = _templates(arguments.templates, wrong)
     materials = _materials(arguments.MATERIAL, wrong)
     files: dict[str, str] = {}
@@ -95,7 +96,10 @@ def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
             try:
                 compiled = compile(material, name, arguments.form, templates, arguments.guards, trace)
             except SssgenError as error:
-                wrong += error.diagnostics
+                if every and isinstance(error, UnsupportedError):
+                    warnings += _left_out(error, material, name)
+                else:
+                    wrong += error.diagnostics
             else:
                 _collect(compiled, (material.name, name), files, sources, wrong)
                 warnings += compiled.warnings
@@ -144,6 +148,12 @@ def _materials(arguments: list[str], wrong: list[Diagnostic]) -> list[Material]:
             message = f"two materials are called '{material.name}': their files would have the same names"
             wrong += failure(message, f"the other one is {posix(other.file)}", posix(material.file)).diagnostics
     return list(materials.values())
+
+
+def _left_out(error: UnsupportedError, material: Material, target: str) -> list[Diagnostic]:
+    """The warnings that `--target all` has no file of a material for a target."""
+    left_out = f"{material.name} is not emitted for {target}: "
+    return [entry._replace(severity="warning", message=left_out + entry.message) for entry in error.diagnostics]
 
 
 def _collect(

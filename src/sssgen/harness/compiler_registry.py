@@ -20,11 +20,12 @@ class CompilerRecord(NamedTuple):
 
 _RECORDS = (
     CompilerRecord(
-        "gl", "the OpenGL driver", frozenset({"glsl-330", "glsl-es-300"}), "gl_driver",
+        "gl", "the OpenGL driver", frozenset({"glsl-330", "glsl-es-300", "shadertoy"}), "gl_driver",
         "`pip install 'sssgen[gl]'` and a driver (Debian, without a GPU: `libegl1 libgl1 libgl1-mesa-dri`)",
     ),
     CompilerRecord(
-        "glslang", "Khronos' reference compiler", frozenset({"glsl-330", "glsl-es-300", "hlsl"}), "glslang",
+        "glslang", "Khronos' reference compiler", frozenset({"glsl-330", "glsl-es-300", "shadertoy", "hlsl"}),
+        "glslang",
         "`glslangValidator` (Debian: `glslang-tools`)",
     ),
     CompilerRecord("dxc", "Microsoft's compiler", frozenset({"hlsl"}), "dxc", "`pip install 'sssgen[dxc]'`"),

@@ -90,6 +90,10 @@ class SssgenError(Exception):
         return type(self), (self.diagnostics,)  # errors are sent between processes
 
 
+class UnsupportedError(SssgenError):
+    """The errors of an input that is correct, but that the chosen target cannot express."""
+
+
 def failure(message: str, hint: str = "", file: str = "") -> SssgenError:
     """An error without a position in a source text (a missing file, a bad argument)."""
     return SssgenError([Diagnostic("error", message, Span(file, 0, 0, 0, 0), hint)])

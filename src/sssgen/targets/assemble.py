@@ -197,6 +197,7 @@ def _context(target: Target, program: Program, printer: Printer, form: str, code
         "inputs": inputs,
         "surface_fields": [{"name": f.name, "type": printer.type(f.type)} for f in surface.fields] if surface else [],
         "library": [function.name for function in program.module.functions],
+        "encoded": program.encoded or "output" in entries,
         "varying_locations": program.stage is not None and program.stage.passes_locations,
     }
 
@@ -279,6 +280,7 @@ def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:
                 "dim": uniform.type.dim,
                 "default": _DEFAULTS.get(_hint(uniform, *_DEFAULTS)[0], "white"),
                 "hint": _hint(uniform, "normal_map")[0] or _hint(uniform, "source_color")[0],
+                "wrap": "clamp" if _hint(uniform, "repeat_disable")[0] else "repeat",
                 "doc": " ".join(uniform.doc.split()),
                 "label": source.replace("_", " ").capitalize(),
                 "holds": uniform.quantity,

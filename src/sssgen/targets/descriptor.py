@@ -168,6 +168,10 @@ class Target(NamedTuple):
     """GLSL: the `#version` line."""
     precision: str = ""
     """GLSL: the precision statements."""
+    constants: bool = False
+    """GLSL: uniforms are printed as constants with the material's values, as the engine sets no uniform."""
+    channels: tuple[str, ...] = ()
+    """The engine's own names for textures; a material's textures get them in order, and there are no more of them."""
     integer_property: str = ""
     """Unity: the type of an integer property."""
     folder: str = ""

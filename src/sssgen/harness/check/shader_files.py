@@ -14,7 +14,7 @@ from sssgen.harness.check.handwritten import LANGUAGES_OF, hand_written, languag
 from sssgen.harness.compilers import Source, Stage, readers
 from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import FORMS, compile
-from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
+from sssgen.support.diagnostics import Diagnostic, SssgenError, UnsupportedError, failure
 from sssgen.support.paths import posix
 from sssgen.support.text_files import read_text
 from sssgen.targets import registry
@@ -75,7 +75,12 @@ def of_material(argument: str, targets: Sequence[str]) -> list[Shader]:
     shaders: list[Shader] = []
     for target in targets or [name for name in registry.names() if readers(name)]:
         for form in FORMS:
-            compiled = compile(material, target, form)
+            try:
+                compiled = compile(material, target, form)
+            except UnsupportedError:
+                if targets:
+                    raise
+                continue  # nobody asked for this target
             shaders += _shaders(compiled.files, sources(compiled.files), compiled.reflection["source_map"])
     return shaders
 

@@ -8,10 +8,13 @@ from typing import Any
 
 from sssgen.harness.compilers.calling_entry import glsl_entry
 from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Severity, Source
+from sssgen.harness.compilers.shadertoy_page import as_program
 
+_ES = "#version 300 es\nprecision highp float;\nprecision highp sampler3D;\n"
 _HEADERS = {
     "glsl-330": "#version 330\n",
-    "glsl-es-300": "#version 300 es\nprecision highp float;\nprecision highp sampler3D;\n",
+    "glsl-es-300": _ES,
+    "shadertoy": _ES,
 }
 _EGL: Any = {"backend": "egl"}
 _SEVERITY: dict[str, Severity] = {"error": "error", "warning": "warning"}
@@ -38,7 +41,7 @@ class DriverGL(Compiler):
         return self._version
 
     def check(self, source: Source) -> list[Message]:
-        text = with_version(source.text, source.language)
+        text = with_version(as_program(source), source.language)
         if source.stage == "library":
             text = glsl_entry(text)
         if source.stage == "vertex":

@@ -13,6 +13,7 @@ from subprocess import CompletedProcess
 from sssgen.harness.compilers.calling_entry import glsl_entry, hlsl_entry
 from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Severity, Source
 from sssgen.harness.compilers.gl_driver import with_version
+from sssgen.harness.compilers.shadertoy_page import as_program
 
 _STAGES = {"vertex": "vert", "fragment": "frag", "library": "frag"}
 _OWN = (None, "0", "stdin")  # the name of the text without a #line that names it
@@ -39,7 +40,7 @@ class Glslang(Compiler):
             if source.stage == "library":
                 return self.check_hlsl(hlsl_entry(text), "fragment", LIBRARY_ENTRY)
             return self.check_hlsl(text, source.stage, source.entry)
-        text = with_version(text, source.language)
+        text = with_version(as_program(source), source.language)
         text = glsl_entry(text) if source.stage == "library" else text
         return _messages_of(self._run(text, ["-S", _STAGES[source.stage]]))
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import textwrap
+from collections.abc import Sequence
+
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import Scalar, Vector, kind_of
+from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.types import Array, Scalar, Type, Vector, kind_of
 from sssgen.passes.stage.stage_interface import COLORS
 from sssgen.targets.descriptor import Target
-from sssgen.targets.printers.printer import Line, Printer, documented
+from sssgen.targets.printers.printer import PRIMARY, WIDTH, Line, Printer, comment_text, documented, wrap
 from sssgen.targets.uniform_layout import Member
 
 
@@ -20,9 +24,18 @@ class GlslPrinter(Printer):
             for variable in module.variables
             if variable.builtin and variable.builtin not in COLORS
         }
+        self.colors = {uniform.name for uniform in module.uniforms if ("source_color", ()) in uniform.hints}
 
     def global_value(self, value: ir.Global) -> str:
         return self.builtins.get(value.name, value.name)
+
+    def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
+        """A builtin; a channel's texels are not decoded, so a colour's are converted."""
+        text, binding = super().intrinsic(call)
+        texture = call.args[0] if self.target.channels and BUILTINS[call.name].kind == "fetch" else None
+        if isinstance(texture, ir.Global) and texture.name in self.colors:
+            return f"linear_texel({text})", PRIMARY
+        return text, binding
 
     def print_variable(self, variable: ir.Variable) -> list[Line]:
         """A variable as it was written. Builtins need no declaration, except for the colours of older versions."""
@@ -50,10 +63,39 @@ class GlslPrinter(Printer):
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The uniform declarations, one a line."""
+        uniforms = [member.uniform for member in members]
+        if self.target.constants:
+            return [line for uniform in uniforms for line in self.constant_of(uniform)]
         return [
             documented(f"uniform {self.variable(uniform.type, uniform.name)}{self.default(uniform)};", uniform)
-            for uniform in (member.uniform for member in members)
+            for uniform in uniforms
         ]
+
+    def constant_of(self, uniform: ir.Uniform) -> list[Line]:
+        """A uniform as a constant after its documentation, range and unit, for people who change its value."""
+        limits, unit = (dict(uniform.hints).get(hint, ()) for hint in ("hint_range", "unit"))
+        facts = [f"{limits[0]:g} to {limits[1]:g}"] if limits else []
+        facts += [str(name) for name in unit if name != "1"]
+        doc = " ".join(uniform.doc.split())
+        words = f"{doc} ({', '.join(facts)})" if facts else doc
+        comments = [Line(f"// {comment_text(line)}", uniform.span) for line in textwrap.wrap(words, WIDTH - 3)]
+        declared = (
+            f"const {self.variable(uniform.type, uniform.name)} = {self.value_of(uniform.type, uniform.default)};"
+        )
+        return [*comments, *wrap(declared, uniform.span)]
+
+    def value_of(self, type_: Type, numbers: Sequence[float]) -> str:
+        """The value of a type that consists of these numbers, as an expression."""
+        if isinstance(type_, Array):
+            size = len(numbers) // type_.length
+            parts = [numbers[size * index : size * (index + 1)] for index in range(type_.length)]
+            return f"{self.type(type_)}({', '.join([self.value_of(type_.element, part) for part in parts])})"
+        number = Scalar(kind_of(type_))
+        literals = [
+            ir.Literal(number, value if number.kind == "float" else int(value), ir.NOWHERE) for value in numbers
+        ]
+        texts = ", ".join(map(self.literal, literals))
+        return texts if isinstance(type_, Scalar) else f"{self.type(type_)}({texts})"
 
     def default(self, uniform: ir.Uniform) -> str:
         """The initial value of a uniform, where the version allows one."""
@@ -68,6 +110,10 @@ class GlslPrinter(Printer):
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
         """The samplers, one a line."""
+        channels = self.target.channels
+        if channels:
+            named = zip(textures, channels, strict=False)  # a program with more textures is refused before
+            return [Line(f"#define {texture.name} {channel}", texture.span) for texture, channel in named]
         lines = []
         for texture in textures:
             type_ = self.type(texture.type)
