@@ -8,7 +8,7 @@ from sssgen.ir.formats import FLOAT32
 from sssgen.ir.intrinsics import BUILTINS, Builtin, with_constants
 
 LANGUAGES = ("glsl", "hlsl", "wgsl")
-DIALECTS = ("glsl-330", "hlsl-dx9", "hlsl-macros")
+DIALECTS = ("glsl-330", "hlsl-dx9", "hlsl-macros", "hlsl-unreal")
 PAGE = Path(__file__).with_name("intrinsics.md")
 
 
@@ -23,7 +23,7 @@ def page() -> str:
         "The columns show the text in each language; *polyfill* means that a function in sssgen's own language",
         "replaces the builtin, inlined if it is one expression; `op <` means the operator. A dialect is listed if it",
         "differs: `glsl-330` lacks some builtins of GLSL ES 3.00, `hlsl-dx9` is Unity's built-in pipeline, `hlsl-",
-        "macros` is Unity's URP and Shader Graph. NumPy has a function with each name.",
+        "macros` is Unity's URP and Shader Graph, `hlsl-unreal` is Unreal. NumPy has a function with each name.",
         "",
         "Domain: the arguments (x, y, z in their order) for which the result is defined. Limit: the error of float32",
         "that is allowed relative to float64, in units in the last place, if it is more than 4. The [guards](#guards)",

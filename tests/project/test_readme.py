@@ -68,7 +68,7 @@ def test_the_table_of_targets() -> None:
         "tint": "Tint",
         "python": "Python",
     }
-    words |= {"unity": "C preprocessor"}
+    words |= {"unity": "C preprocessor", "unreal": "DXC"}
     assert list(rows) == [name for name in rows if name in registry.names()]
     for name in registry.names():
         if (ROOT / "targets" / f"{name}.toml").is_file():

@@ -83,6 +83,10 @@ _RECORDS = (
         "unity-urp", "Unity's URP: preprocessed, through DXC and SPIR-V, in OpenGL", "unity-urp",
         "unity_backend:UnityHLSL", "as `hlsl`, and a C preprocessor (Debian: `gcc`)", {"compiler": "dxc"},
     ),
+    BackendRecord(
+        "unreal", "functions for Unreal: behind a stand-in for the engine, through DXC and SPIR-V, in OpenGL", "unreal",
+        "unreal_backend:UnrealHLSL", "as `hlsl`", {"compiler": "dxc"},
+    ),
 )  # fmt: skip
 
 BACKENDS = {record.name: record for record in _RECORDS}

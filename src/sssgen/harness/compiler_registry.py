@@ -39,6 +39,10 @@ _RECORDS = (
         frozenset({"unity-builtin", "unity-urp", "unity-shadergraph"}), "unity_compiler",
         "`glslang`, `dxc` and a C preprocessor (Debian: `gcc`)",
     ),
+    CompilerRecord(
+        "unreal", "DXC behind a stand-in for Unreal's material shaders", frozenset({"unreal"}), "unreal_compiler",
+        "`pip install 'sssgen[dxc]'`",
+    ),
     CompilerRecord("python", "Python itself", frozenset({"numpy"}), "python_syntax", "nothing"),
 )  # fmt: skip
 

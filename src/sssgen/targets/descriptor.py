@@ -37,6 +37,8 @@ class OutputFile(NamedTuple):
     template: str = ""
     stages: Mapping[str, str] = {}
     """Stage (vertex, fragment, library) → its entry point; '' for a library."""
+    includes: str = ""
+    """The name of the file of the same form that this one includes."""
 
 
 class Names(NamedTuple):
@@ -75,6 +77,8 @@ class Conventions(NamedTuple):
     """The sign of dFdy: `up`, `down`, or a text where it depends on the platform."""
     uv_origin: str = ""
     color_space: str = ""
+    lengths: str = ""
+    """The unit of the engine's lengths, where it is not the metre."""
     attributes: str = ""
     """The locations of a vertex's attributes (GLSL)."""
     semantics: str = ""
@@ -117,7 +121,7 @@ class Bindings(NamedTuple):
 
 
 class Port(NamedTuple):
-    """A port of Shader Graph's node."""
+    """A port of an engine's node: Shader Graph's, or Unreal's Custom node."""
 
     type: str = ""
     wire: str = ""
@@ -132,7 +136,7 @@ class Target(NamedTuple):
     language: str = ""
     """Which printer prints it: glsl, hlsl, wgsl or python, or `module:Class` of a plug-in."""
     dialect: str = ""
-    """The intrinsic table's language: glsl, glsl-330, hlsl, hlsl-dx9, hlsl-macros, wgsl, python."""
+    """The intrinsic table's language: glsl, glsl-330, hlsl, hlsl-dx9, hlsl-macros, hlsl-unreal, wgsl, python."""
     types: Mapping[str, str] = {}
     """Type as sssgen spells it → as the target does."""
     files: Mapping[str, tuple[OutputFile, ...]] = {}
@@ -153,7 +157,7 @@ class Target(NamedTuple):
     material_group: int = 0
     """WGSL: the group of the material's uniform block, textures and samplers."""
     ports: Mapping[str, Port] = {}
-    """Shader Graph: chain input → its port, in the order of the node."""
+    """Shader Graph, Unreal: chain input → its port, in the order of the node."""
     lighting: str = ""
     """The technique that lights a lit material; '' where the engine does."""
     engine_encodes: bool = False

@@ -15,8 +15,8 @@ _OTHER_STAGE = {"vertex": "fragment", "fragment": "vertex"}
 def sources(files: Mapping[str, str]) -> list[Source]:
     """The sources in `files` (file name → text), by the file names in the targets' descriptors.
 
-    A file with several entry points gives one source each, a GLSL stage has the other stage as
-    `companion`, and a .shader file is one source. Files of no target (a reflection) are left out.
+    A file with several entry points gives one source each, a GLSL stage has the other stage as `companion`, a file that
+    includes another one has that, and a .shader file is one source. Files of no target (a reflection) are left out.
     """
     result = []
     for name, text in files.items():
@@ -25,7 +25,7 @@ def sources(files: Mapping[str, str]) -> list[Source]:
             if name.endswith(".shader"):  # has all its stages, and declares their entries
                 stages = dict(list(stages.items())[:1])
             for stage, entry in stages.items():
-                companion = _companion(files, name, target, material, stage)
+                companion = _companion(files, name, target, material, stage, output.includes)
                 result.append(Source(text, target.name, cast(Stage, stage), entry or "main", name, companion))
     return result
 
@@ -49,10 +49,14 @@ def outputs(name: str) -> list[tuple[descriptor.Target, str, descriptor.OutputFi
     return [(target, material, output) for length, target, material, output in matches if length == longest]
 
 
-def _companion(files: Mapping[str, str], name: str, target: descriptor.Target, material: str, stage: str) -> str:
+def _companion(
+    files: Mapping[str, str], name: str, target: descriptor.Target, material: str, stage: str, included: str
+) -> str:
+    folder = name[: len(name) - len(name.rpartition("/")[2])]
+    if included:
+        return files.get(folder + included.replace("{material}", material), "")
     if target.language != "glsl":
         return ""
-    folder = name[: len(name) - len(name.rpartition("/")[2])]
     for output in (entry for entries in target.files.values() for entry in entries):
         if _OTHER_STAGE.get(stage) in output.stages:
             return files.get(folder + output.name.replace("{material}", material), "")

@@ -16,6 +16,7 @@ LANGUAGES_OF: dict[str, tuple[str, ...]] = {
     ".wgsl": ("wgsl",),
     ".hlsl": ("hlsl", "unity-urp", "unity-builtin", "unity-shadergraph"),
     ".cginc": ("unity-builtin",),
+    ".ush": ("unreal",),
     ".shader": ("unity-builtin", "unity-urp"),
     ".py": ("numpy",),
 }

@@ -16,7 +16,8 @@ class Source:
 
     `language` is a target's name ("glsl-330", "hlsl", …). Stage "library" means functions without
     an entry: each compiler calls them from an additional entry, appended so that line numbers stay true.
-    `companion` is the text of the other stage; the GL driver links both, so that a mismatch is an error.
+    `companion` is the text of the other stage, which the GL driver links with it, so that a mismatch is an error; or of
+    the file that the text includes.
     """
 
     text: str

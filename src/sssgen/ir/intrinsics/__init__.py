@@ -22,8 +22,8 @@ A value is one of
   literal int, otherwise Red, and `{type}` the result's type as spelled in the target; arguments are only in places where
   a call's argument could be;
 - `""`: the language has no such builtin and uses `polyfill`; without a polyfill the builtin is refused there.
-The dialects `hlsl-dx9` (Unity's built-in pipeline) and `hlsl-macros` (Unity's SRP) fall back to `hlsl`, and `glsl-330`,
-which lacks some functions of ES 3.00, to `glsl`. The NumPy function has the builtin's own name (`not_` for `not`).
+The dialects `hlsl-dx9` (Unity's built-in pipeline), `hlsl-macros` (Unity's SRP) and `hlsl-unreal` fall back to `hlsl`, and
+`glsl-330`, which lacks some functions of ES 3.00, to `glsl`. The NumPy function has the builtin's own name (`not_` for `not`).
 
 `polyfill` is source in the project's own language, generic like the signatures; the front end instantiates it for the
 types of a call, and it is inlined if it is one expression. It has one function for each signature that some language

@@ -79,6 +79,13 @@ def gather_polyfill(parameters: str, size: str, read: str, channel: bool = False
 """
 
 
+def _unreal(kind: str, arguments: str, *extra: str) -> dict[str, str]:
+    """Unreal's functions for a kind of read; `extra` are the parameters behind the coordinate, of each texture or of all."""
+    behind = extra if len(extra) > 1 else 3 * (extra or ("",))
+    names = zip(_SAMPLE, behind, ("2D", "3D", "Cube"), strict=True)
+    return {f"hlsl-unreal/{params(read)}{more}": f"Texture{dim}Sample{kind}{arguments}" for read, more, dim in names}
+
+
 def _exists(rt: Any, texture: Any, place: Any, level: Any, offset: Any = ()) -> Any:
     """Whether a texel of level 0 exists. An offset has no component for the layer."""
     exists = level == 0
@@ -95,7 +102,8 @@ ROWS = (
         "The tangent-space normal of a normal map's texel, y up. Unity may pack it when it imports the map.",
         samples=Samples(floats=((0.0, 1.0),)), componentwise=False, range=vector_ranges.normal_of_texel,
         size=lambda rt, x: rt.max(2.0 * abs(x[:3]), 1.0),
-        texts={"glsl": "", "hlsl": "", "wgsl": "", "hlsl-dx9": "UnpackNormal", "hlsl-macros": "UnpackNormal"},
+        texts={"glsl": "", "hlsl": "", "wgsl": "", "hlsl-dx9": "UnpackNormal", "hlsl-macros": "UnpackNormal",
+            "hlsl-unreal": "(UnpackNormalMap({0}).xyz * float3(1.0, -1.0, 1.0))"},
         polyfill="vec3 unpackNormal(vec4 texel) { return texel.xyz * 2.0 - 1.0; }", cost=2,
         vectors=(
             (((0.5, 0.5, 1.0, 1.0),), (0.0, 0.0, 1.0)), (((1.0, 0.0, 0.5, 0.0),), (1.0, -1.0, 0.0)),
@@ -155,6 +163,7 @@ ROWS = (
             "hlsl-macros/sampler2D,vec2,float": "SAMPLE_TEXTURE2D_BIAS({texture}, {sampler}, {1}, {2})",
             "hlsl-macros/sampler3D,vec3,float": "{bare_texture}.SampleBias({bare_sampler}, {1}, {2})",
             "hlsl-macros/samplerCube,vec3,float": "SAMPLE_TEXTURECUBE_BIAS({texture}, {sampler}, {1}, {2})",
+            **_unreal("", "({texture}, {sampler}, {1})"), **_unreal("Bias", "({texture}, {sampler}, {1}, {2})", ",float"),
             "wgsl": "textureSample({texture}, {sampler}, {1})",
             **{f"wgsl/{params(read)},float": "textureSampleBias({texture}, {sampler}, {1}, {2})" for read in _SAMPLE},
             **{f"wgsl/{params(read)}{bias}": "" for read in _LAYERS for bias in ("", ",float")},
@@ -179,6 +188,7 @@ float texture(sampler2DArrayShadow map, vec4 P) { return textureCompare(map, P.x
             "hlsl-dx9": "tex{dim}lod({texture}, float4({1}, {2}))",
             "hlsl-dx9/sampler2D,vec2,float": "tex2Dlod({texture}, float4({1}, 0.0, {2}))",
             "hlsl-macros": "SAMPLE_TEXTURE{dim}_LOD({texture}, {sampler}, {1}, {2})",
+            **_unreal("Level", "({texture}, {sampler}, {1}, {2})", ",float"),
             "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2})", "wgsl/sampler2DShadow,vec3,float": "",
             **{f"wgsl/{params(read)},float": "" for read in _LAYERS},
         },
@@ -204,6 +214,7 @@ float textureLod(sampler2DShadow map, vec3 P, float level) { return textureCompa
             "hlsl-dx9": "tex{dim}grad({texture}, {1}, {2}, {3})",
             "hlsl-macros": "{bare_texture}.SampleGrad({bare_sampler}, {1}, {2}, {3})",
             "hlsl-macros/sampler2D,vec2,vec2,vec2": "SAMPLE_TEXTURE2D_GRAD({texture}, {sampler}, {1}, {2}, {3})",
+            **_unreal("Grad", "({texture}, {sampler}, {1}, {2}, {3})", ",vec2,vec2", ",vec3,vec3", ",vec3,vec3"),
             "wgsl": "textureSampleGrad({texture}, {sampler}, {1}, {2}, {3})",
             "wgsl/sampler2DArray,vec3,vec2,vec2": "", "wgsl/samplerCubeArray,vec4,vec3,vec3": "",
             **{f"{language}/{shadow}": "" for language in ("hlsl", "wgsl") for shadow in _SHADOW_GRADIENTS},
