@@ -2,7 +2,7 @@
 
 The engine makes a function of each Custom node: its inputs are parameters, each of the type that the connected node
 has, a texture followed by its sampler; its further outputs are `inout` parameters. The files that the node names are
-included before the function. The engine's own names are those of the stand-in `unreal_standin.hlsl`, which is this project's.
+included before the function. The engine's names are those of `unreal_standin.hlsl`, the project's own stand-in.
 """
 
 from __future__ import annotations
