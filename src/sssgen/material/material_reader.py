@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from sssgen.ir.nodes import Function, Span, Uniform
@@ -14,7 +15,8 @@ from sssgen.material.values import WrongValue, read_texture, read_value
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean
 from sssgen.support.toml_source import Document, parse
 
-_MATERIAL_KEYS = ("name", "title", "doc", "shading", "alpha_mode")
+_TEXTS = ("name", "title", "doc", "shading", "alpha_mode")
+_MATERIAL_KEYS = (*_TEXTS, "two_sided")
 _CHOICES = {
     "shading": (SHADINGS, "lit: the engine lights it; unlit: the chain gives the color"),
     "alpha_mode": (ALPHA_MODES, "opaque: alpha is ignored; mask: cut off at one half; blend: transparent"),
@@ -79,9 +81,9 @@ class _Reader:
         elif self.complete and not self.foreign:
             links = [roles.Link(stage.technique, stage.span) for stage in stages]
             roles.check_chain(links, shading, error)
-        return Material(
-            name, title or name.replace("_", " ").capitalize(), doc, shading, tuple(stages), self.path, alpha_mode
-        )
+        sides = self.two_sided(data.get("material"), stages)
+        title = title or name.replace("_", " ").capitalize()
+        return Material(name, title, doc, shading, tuple(stages), self.path, alpha_mode, sides)
 
     # The head
 
@@ -98,7 +100,7 @@ class _Reader:
             if key not in _MATERIAL_KEYS:
                 hint = did_you_mean(key, _MATERIAL_KEYS) or f"keys: {', '.join(_MATERIAL_KEYS)}"
                 error(place("material", key).key, f"unknown key '{key}' in [material]", hint)
-        texts = {key: self.text(table.get(key, ""), key) for key in _MATERIAL_KEYS}
+        texts = {key: self.text(table.get(key, ""), key) for key in _TEXTS}
         name = texts["name"]
         if "name" not in table:
             error(place("material").value, "the material has no name", 'add: name = "…"')
@@ -111,6 +113,18 @@ class _Reader:
                 message = f"unknown {key.replace('_', ' ')} '{chosen[key]}'"
                 error(place("material", key).value, message, did_you_mean(chosen[key], words) or meaning)
         return name, texts["title"], texts["doc"], chosen["shading"], chosen["alpha_mode"]
+
+    def two_sided(self, table: Any, stages: Sequence[TechniqueUse]) -> bool:
+        """Whether the material has back faces; a raymarched one has no mesh that could have any."""
+        value = table.get("two_sided", False) if isinstance(table, dict) else False
+        place = self.document.place("material", "two_sided")
+        if not isinstance(value, bool):
+            self.document.error(place.value, "'two_sided' takes true or false", "write two_sided = true")
+            return False
+        if value and any(stage.technique.role == "geometry" for stage in stages):
+            message = "a raymarched material has no back faces"
+            self.document.error(place.key, message, "omit two_sided, or omit [geometry]")
+        return value
 
     def text(self, raw: object, key: str) -> str:
         """A text of the [material] section; only `doc` may have several lines."""

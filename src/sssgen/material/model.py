@@ -49,6 +49,8 @@ class Material(NamedTuple):
     """The path of its file."""
     alpha_mode: str = "opaque"
     """opaque, mask or blend, as in glTF: how the engine uses the alpha that techniques write"""
+    two_sided: bool = False
+    """Whether back faces are drawn, too, and lit with the reversed normal"""
 
     @property
     def path(self) -> Path:

@@ -195,7 +195,7 @@ def _bare(stage: TechniqueUse, fixed: set[str]) -> TechniqueUse:
 def _structure(structural: Material, target: Target) -> str:
     """Everything that the program of a material depends on, as text; '' where this is unknown."""
     modules = [library.load(target.lighting).module] if target.lighting else []
-    parts: list[object] = [structural.shading, structural.alpha_mode]
+    parts: list[object] = [structural.shading, structural.alpha_mode, structural.two_sided]
     for stage in structural.stages:
         technique, bindings = stage.technique, stage.bindings
         modules += [technique.module, *(binding.module for binding in bindings.values())]
@@ -217,7 +217,15 @@ def _with_value(uniform: Uniform, program: Program, material: Material) -> Unifo
 
 def _about(material: Material) -> About:
     raymarched = any(stage.technique.role == "geometry" for stage in material.stages)
-    return About(material.name, material.title, material.doc, material.shading, material.alpha_mode, raymarched)
+    return About(
+        material.name,
+        material.title,
+        material.doc,
+        material.shading,
+        material.alpha_mode,
+        material.two_sided,
+        raymarched,
+    )
 
 
 def _finish(program: Program, target: Target, form: str, templates: str | None) -> Compiled:

@@ -33,6 +33,8 @@ class About(NamedTuple):
     doc: str = ""
     shading: str = "lit"
     alpha_mode: str = "opaque"
+    two_sided: bool = False
+    """Whether back faces are drawn, too, and lit with the reversed normal."""
     raymarched: bool = False
     """Whether the chain makes its own geometry, so that the shell needs no mesh."""
     head: tuple[str, ...] = ()
@@ -211,8 +213,9 @@ def _header(target: Target, program: Program) -> list[str]:
     origin = "the material" if program.entries else "the source"
     notice = f"Made by sssgen for {target.title}. Change {origin} and emit it again rather than this file."
     head = ["", *map(comment_text, about.head)] if about.head else []
+    sides = ["Two-sided: drawn without culling; back faces have the reversed normal."] if about.two_sided else []
     drawn = [line for uniform in program.module.uniforms for line in textwrap.wrap(_drawn(uniform), 100)]
-    return [comment_text(line) for line in (*textwrap.wrap(description, 100), notice, *drawn)] + head
+    return [comment_text(line) for line in (*textwrap.wrap(description, 100), notice, *sides, *drawn)] + head
 
 
 def _drawn(uniform: Uniform) -> str:

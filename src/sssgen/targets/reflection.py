@@ -48,6 +48,7 @@ def reflect(
         "material": program.about.name,
         "shading": program.about.shading,
         "alpha_mode": program.about.alpha_mode,
+        "two_sided": program.about.two_sided,
         "raymarched": program.about.raymarched,
         "color": "encoded" if program.encoded else "linear",
         "target": target.name,

@@ -53,7 +53,7 @@ sssgen_varyings sssgen_vertex(appdata_full v) {{
 """
 
 _FRAGMENT = """
-float4 sssgen_fragment(sssgen_varyings i) : SV_Target0 {{
+float4 sssgen_fragment(sssgen_varyings i, bool front : SV_IsFrontFace) : SV_Target0 {{
     float3 worldViewDir = normalize(UnityWorldSpaceViewDir(i.worldPos));
     Input surfIN;
     UNITY_INITIALIZE_OUTPUT(Input, surfIN);
@@ -100,7 +100,7 @@ _INPUTS = {
     "worldRefl": "reflect(-worldViewDir, i.worldNormal)",
     "screenPos": "i.screenPos",
     "color": "i.color",
-    "facing": "1.0",
+    "facing": "front ? 1.0 : -1.0",
     "internalSurfaceTtoW0": "half3(i.worldTangent.x, i.worldBitangent.x, i.worldNormal.x)",
     "internalSurfaceTtoW1": "half3(i.worldTangent.y, i.worldBitangent.y, i.worldNormal.y)",
     "internalSurfaceTtoW2": "half3(i.worldTangent.z, i.worldBitangent.z, i.worldNormal.z)",

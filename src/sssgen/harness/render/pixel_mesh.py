@@ -48,8 +48,8 @@ def _extended(values: Array, valid: Array, size: tuple[int, int], other: list[fl
     return extended.reshape(len(values), -1)
 
 
-def triangles(size: tuple[int, int]) -> Array:
-    """(count, 3) uint32: two triangles for each four neighbouring vertices.
+def triangles(size: tuple[int, int], front: bool) -> Array:
+    """(count, 3) uint32: two triangles for each four neighbouring vertices, all front faces or all back faces.
 
     The edge of the mesh passes through the centres of the outermost pixels, which may or may not be covered: the caller
     crops them (see `BORDER`).
@@ -57,7 +57,8 @@ def triangles(size: tuple[int, int]) -> Array:
     width, height = size
     a = (np.arange(height - 1)[:, None] * width + np.arange(width - 1)).ravel()
     cells = [[a, a + 1, a + width], [a + width, a + 1, a + width + 1]]
-    return np.stack([np.stack(cell, axis=1) for cell in cells], axis=1).reshape(-1, 3).astype(np.uint32)
+    corners = np.stack([np.stack(cell, axis=1) for cell in cells], axis=1).reshape(-1, 3).astype(np.uint32)
+    return corners if front else corners[:, ::-1]
 
 
 BORDER = 1

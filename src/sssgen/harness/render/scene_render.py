@@ -117,6 +117,10 @@ def _surface(
     shell = dataclasses.replace(shell, view_projection=matrix, screens=screens)
     inner = slice(edge, edge + height), slice(edge, edge + width)
     picture = shade(backend, compiled, shell, padded, points)
+    if compiled.reflection["two_sided"] and not hits.front.all():
+        # which triangle covers a pixel's centre is the driver's choice, so each side is drawn on its own
+        behind = shade(backend, compiled, dataclasses.replace(shell, front=False), padded, points)
+        picture = np.where(hits.front.reshape(padded[1], padded[0], 1), picture, behind)
     return picture[inner], hits.hit.reshape(padded[1], padded[0])[inner]
 
 

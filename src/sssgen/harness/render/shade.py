@@ -25,6 +25,6 @@ def shade(backend: Backend, compiled: Compiled, shell: Shell, size: tuple[int, i
     if isinstance(backend, UnityHLSL):
         return unity_values.shade(compiled, shell, backend, size, points)
     assert isinstance(backend, DrawingBackend)
-    triangles = None if points is None else pixel_mesh.triangles(size)
+    triangles = None if points is None else pixel_mesh.triangles(size, shell.front)
     picture = backend.draw(drawing(compiled, shell, size, points, triangles))
     return picture[::-1] if backend.top_first else picture

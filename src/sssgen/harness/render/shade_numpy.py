@@ -25,13 +25,14 @@ _DTYPES: dict[str, Any] = {"float": np.float64, "int": np.int32, "uint": np.uint
 def shade(compiled: Compiled, shell: Shell, size: tuple[int, int], points: Array | None, dtype: str) -> Array:
     """The picture, (height, width, 4), row 0 at the bottom. `points` are `pixel_mesh.vertices`, or None: the screen."""
     names = _namespace(compiled, shell, dtype)
+    two_sided = compiled.reflection["two_sided"]
     width, height = size
     rows = max(2, BAND // width // 2 * 2)
     bands = []
     for start in range(0, height, rows):
         count = min(rows, height - start)
         with precision(dtype), grid(count, width):
-            inputs = _inputs(shell, size, points, slice(start, start + count), dtype)
+            inputs = _inputs(shell, size, points, slice(start, start + count), dtype, two_sided)
             bands.append(_main(compiled.reflection, names, inputs, shell, dtype).reshape(4, count, width))
     return np.moveaxis(np.concatenate(bands, axis=1), 0, -1)
 
@@ -56,7 +57,9 @@ def _namespace(compiled: Compiled, shell: Shell, dtype: str) -> dict[str, Any]:
     return names
 
 
-def _inputs(shell: Shell, size: tuple[int, int], points: Array | None, rows: slice, dtype: str) -> dict[str, Any]:
+def _inputs(
+    shell: Shell, size: tuple[int, int], points: Array | None, rows: slice, dtype: str, two_sided: bool
+) -> dict[str, Any]:
     """The chain's inputs that do not depend on a light, components first."""
     width, height = size
     eye = np.array(shell.camera_position)[:, None]
@@ -80,6 +83,8 @@ def _inputs(shell: Shell, size: tuple[int, int], points: Array | None, rows: sli
         handedness = data[9] * np.sign(np.linalg.det(model[:3, :3]))
         inputs |= {"uv": data[10:12], "P": position, "V": _unit(eye - position), "N": normal, "T": tangent}
         inputs |= {"B": np.cross(normal, tangent, axis=0) * handedness}
+        if two_sided and not shell.front:
+            inputs["N"] = normal = -normal
         inputs |= {"P_object": data[0:3], "V_object": _unit(world_to_object[:3, :3] @ inputs["V"])}
         inputs |= {"N_object": _unit(model[:3, :3].T @ normal)}
         clip = shell.view_projection @ np.concatenate([position, np.ones((1, position.shape[1]))])
@@ -127,7 +132,8 @@ def _main(
     fields = vars(surface) if surface is not None else {}
     if "normal" in fields:
         x, y, z = fields["normal"]
-        inputs["N"] = _unit(inputs["T"] * x + inputs["B"] * y + inputs["N"] * z)
+        side = 1.0 if shell.front or not reflection["two_sided"] else -1.0
+        inputs["N"] = _unit(side * (inputs["T"] * x + inputs["B"] * y) + inputs["N"] * z)
     color: Any = np.array(shell.ambient, dtype)[:, None] * fields.get("albedo", 1.0) * fields.get("occlusion", 1.0)
     color = np.broadcast_to(color + fields.get("emission", 0.0), (3, lanes))
     first = [surface] if surface is not None else []

@@ -43,6 +43,8 @@ class Shell:
     """Likewise; a missing texture is one texel of its default."""
     screens: Mapping[str, Texture] = field(default_factory=dict)
     """Likewise, textures that cover the screen; row 0 is at the bottom."""
+    front: bool = True
+    """Whether front faces are drawn, otherwise back faces."""
 
 
 def inverse(matrix: Array) -> Array:

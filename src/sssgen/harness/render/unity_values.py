@@ -38,7 +38,7 @@ def shade(compiled: Compiled, shell: Shell, backend: UnityHLSL, size: tuple[int,
     if points is None:
         points, triangles = _screen(shell), np.array([[0, 1, 2]], np.uint32)
     else:
-        triangles = pixel_mesh.triangles(size)
+        triangles = pixel_mesh.triangles(size, shell.front)
     pictures = [
         backend.whole.draw(drawing._replace(vertices=points, triangles=triangles))
         for drawing in _passes(compiled, shell, backend, size, points)

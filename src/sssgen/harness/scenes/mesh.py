@@ -78,14 +78,15 @@ class Mesh(Geometry):
         normal = np.where((np.abs(normal) > 0.0).any(axis=1, keepdims=True), unit(normal), mesh.flat[face])
         if mesh.uv is None or mesh.tangents is None:
             uv, grows_u, grows_v = spherical(position - 0.5 * (low + high))
-            return spread(hit, position, normal, tangent_of(normal, grows_u, grows_v), uv)
+            return spread(hit, position, normal, tangent_of(normal, grows_u, grows_v), uv, slope < 0.0)
         along = unit(_interpolated(weights, mesh.tangents[face]))
         along -= np.einsum("nc,nc->n", along, normal)[:, None] * normal
         undefined = np.linalg.norm(along, axis=1, keepdims=True) < 1e-6
         tangent = np.where(undefined, any_tangent(normal), unit(along))
         return spread(
-            hit, position, normal, np.c_[tangent, mesh.handedness[face]], _interpolated(weights, mesh.uv[face])
-        )
+            hit, position, normal, np.c_[tangent, mesh.handedness[face]], _interpolated(weights, mesh.uv[face]),
+            slope < 0.0,
+        )  # fmt: skip
 
     def distance(self, points: Array) -> Array:
         """The sign is by the winding number, which open meshes also have. Raises SssgenError without libigl."""

@@ -27,6 +27,8 @@ class Hits(NamedTuple):
     """(n, 4): the unit direction in which u grows, and the handedness w: B = cross(N, T) * w, where v grows"""
     uv: Array
     """(n, 2): v up"""
+    front: Bools
+    """(n,): whether the ray comes from the side to which the surface's triangles face, or from outside of a solid"""
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ class Geometry(ABC):
         hits = self.cast(object_origin, object_directions)
         tangent = np.c_[hits.tangent[:, :3] @ rotation.T, hits.tangent[:, 3]]
         position = self.scale * hits.position @ rotation.T + self.position
-        return Hits(hits.hit, np.where(hits.hit[:, None], position, 0.0), hits.normal @ rotation.T, tangent, hits.uv)
+        return Hits(hits.hit, np.where(hits.hit[:, None], position, 0.0), hits.normal @ rotation.T, tangent, *hits[4:])
 
     @abstractmethod
     def cast(self, origin: Array, directions: Array) -> Hits:
@@ -84,15 +86,18 @@ class Geometry(ABC):
         return matrix
 
 
-def spread(hit: Bools, position: Array, normal: Array, tangent: Array, uv: Array) -> Hits:
-    """The hits of all rays, from the values of the rays that hit."""
+def spread(hit: Bools, position: Array, normal: Array, tangent: Array, uv: Array, front: Bools | None = None) -> Hits:
+    """The hits of all rays, from the values of the rays that hit; without `front` all are on front faces."""
 
     def with_zeros(values: Array) -> Array:
         all_rays = np.zeros((len(hit), values.shape[1]))
         all_rays[hit] = values
         return all_rays
 
-    return Hits(hit, with_zeros(position), with_zeros(normal), with_zeros(tangent), with_zeros(uv))
+    fronts = np.ones(len(hit), np.bool_)
+    if front is not None:
+        fronts[hit] = front
+    return Hits(hit, with_zeros(position), with_zeros(normal), with_zeros(tangent), with_zeros(uv), fronts)
 
 
 def unit(vectors: Array) -> Array:

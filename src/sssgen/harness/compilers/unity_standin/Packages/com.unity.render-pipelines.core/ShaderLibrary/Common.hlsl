@@ -18,6 +18,10 @@
 #define UNITY_REVERSED_Z 1
 #define UNITY_NEAR_CLIP_VALUE 1.0
 #define UNITY_UV_STARTS_AT_TOP 1
+
+#define FRONT_FACE_SEMANTIC SV_IsFrontFace
+#define FRONT_FACE_TYPE bool
+#define IS_FRONT_VFACE(value, front, back) ((value) ? (front) : (back))
 #define UNITY_BRANCH [branch]
 #define UNITY_FLATTEN [flatten]
 #define UNITY_UNROLL [unroll]
