@@ -182,7 +182,7 @@ def test_dicing_places_a_vertex_at_each_pixels_centre() -> None:
     normal = vertices[:, 3:6][hits.hit] @ np.linalg.inv(ball.to_world())[:3, :3]
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     np.testing.assert_allclose(normal, hits.normal[hits.hit], atol=1e-6)
-    assert len(pixel_mesh.triangles(size, True)) == 2 * 39 * 29 and pixel_mesh.triangles(size).max() == 40 * 30 - 1
+    assert len(pixel_mesh.triangles(size)) == 2 * 39 * 29 and pixel_mesh.triangles(size).max() == 40 * 30 - 1
 
 
 # The command

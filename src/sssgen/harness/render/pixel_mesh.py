@@ -48,7 +48,7 @@ def _extended(values: Array, valid: Array, size: tuple[int, int], other: list[fl
     return extended.reshape(len(values), -1)
 
 
-def triangles(size: tuple[int, int], front: bool) -> Array:
+def triangles(size: tuple[int, int], front: bool = True) -> Array:
     """(count, 3) uint32: two triangles for each four neighbouring vertices, all front faces or all back faces.
 
     The edge of the mesh passes through the centres of the outermost pixels, which may or may not be covered: the caller
