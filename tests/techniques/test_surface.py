@@ -338,6 +338,51 @@ def test_base_color_and_constants() -> None:
     assert (metallic, roughness) == (0.3, 0.7)
 
 
+UV = np.array([[0.25, 0.25], [0.75, 0.25], [0.25, 0.75], [0.75, 0.75]])
+"""The centres of a 2 x 2 picture's texels, row by row."""
+
+
+def test_maps_of_the_surface_multiply_their_factors() -> None:
+    picture = rng().uniform(size=(2, 2, 4))
+    texels = picture.reshape(-1, 4)
+    factors = {"uv": UV, "metalness": 0.8, "surface_roughness": 0.6}
+    metallic, roughness = technique("metallic_roughness_map")(metallic_roughness_texture=picture, **factors)
+    close(metallic, 0.8 * texels[:, 2])
+    close(roughness, 0.6 * texels[:, 1])
+    half = {"occlusion": 0.5, "occlusion_strength": 0.25}
+    expected = 0.5 * (1.0 - 0.25 * (1.0 - texels[:, 0]))
+    close(technique("occlusion_map")(uv=UV, occlusion_texture=picture, **half), expected)
+    packed = technique("occlusion_roughness_metallic_map")(packed_surface_texture=picture, **factors, **half)
+    for result, value in zip(packed, (expected, metallic, roughness), strict=True):
+        close(result, value)
+
+
+def test_emission_is_added() -> None:
+    picture = rng().uniform(size=(2, 2, 3))
+    values = {"emission_color": (1.0, 0.5, 0.25), "emission_strength": 20.0, "emission": (0.1, 0.2, 0.3)}
+    expected = [0.1, 0.2, 0.3] + 20.0 * np.array([1.0, 0.5, 0.25]) * picture.reshape(-1, 3)
+    close(technique("emission_map")(uv=UV, emission_texture=picture, **values), expected)
+
+
+def test_a_map_with_y_down_has_the_normals_of_the_same_map_with_y_up() -> None:
+    up = rng().uniform((0.3, 0.3, 0.7), (0.7, 0.7, 1.0), size=(2, 2, 3))
+    down = up * [1.0, -1.0, 1.0] + [0.0, 1.0, 0.0]
+    values = {"uv": UV, "normal": Z, "normal_scale": 1.5}
+    close(
+        technique("normal_map_directx")(normal_texture_y_down=down, **values),
+        technique("normal_map")(normal_texture=up, **values),
+        atol=1e-12,
+    )
+
+
+def test_transformed_texture_coordinates() -> None:
+    values = {"uv_tiling": (2.0, 3.0), "uv_offset": (0.1, -0.2), "uv_rotation": 30.0}
+    moved = technique("uv_transform")(uv=UV, **values)
+    # complex numbers turn counter-clockwise about 0
+    turned = (2.0 * UV[:, 0] + 3.0j * UV[:, 1]) * np.exp(1j * np.pi / 6.0) + (0.1 - 0.2j)
+    close(moved, np.stack([turned.real, turned.imag], axis=1), atol=1e-12)
+
+
 def test_jelly_surface() -> None:
     """The floor is a faint checker and transmits no light; the cubes have one colour and transmit by their thinness."""
     p = np.array([[3.1, 0.0, 2.6], [3.6, 0.0, 2.6], [-2.1, 0.0, 0.1], [0.0, 0.98, 0.0], [1.45, 0.5, 0.7]])
