@@ -50,7 +50,14 @@ class FakeCompiler(types.ModuleType):
         return {"glsl-330": Target("GLSL 3.30"), "wgsl": Target("WGSL")}
 
     def compile(
-        self, material: Material, target: str, form: str, templates: Path | None, guards: str, trace: object = None
+        self,
+        material: Material,
+        target: str,
+        form: str,
+        templates: Path | None,
+        guards: str,
+        trace: object = None,
+        prefix: str = "",
     ) -> Compiled:
         self.calls.append((material.name, target, form, templates))
         if target in self.failing:

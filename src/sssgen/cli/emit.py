@@ -35,6 +35,9 @@ def add_options(parser: ArgumentParser) -> None:
     )
     add_guards(parser)
     parser.add_argument(
+        "--prefix", default="", metavar="NAME", help="begin every global name with NAME, to fit in your own shader"
+    )
+    parser.add_argument(
         "--trace", action="store_true", help="also write the IR after each pass to DIR/NAME.TARGET.trace/NN-PASS.ir"
     )
     parser.add_argument("--templates", metavar="DIR", help="a folder of templates that replace those of sssgen")
@@ -67,7 +70,7 @@ def _cached_or_compiled(arguments: Namespace, traces: list[Trace]) -> EmittedFil
     """The cached result of the same command; with own templates or a trace it is compiled again."""
     if arguments.templates is not None or arguments.trace:
         return _compile_all(arguments, traces)
-    command = (arguments.MATERIAL, arguments.target, arguments.form, arguments.guards)
+    command = (arguments.MATERIAL, arguments.target, arguments.form, arguments.guards, arguments.prefix)
     cached = emitted_cache.load(*command)
     if cached is not None:
         return cached
@@ -94,7 +97,7 @@ def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
             trace = Trace(f"{material.name}.{name}.trace") if arguments.trace else None
             traces += [trace] if trace is not None else []
             try:
-                compiled = compile(material, name, arguments.form, templates, arguments.guards, trace)
+                compiled = compile(material, name, arguments.form, templates, arguments.guards, trace, arguments.prefix)
             except SssgenError as error:
                 if every and isinstance(error, UnsupportedError):
                     warnings += _left_out(error, material, name)

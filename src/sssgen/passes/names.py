@@ -33,6 +33,7 @@ from sssgen.ir.types import VEC4, Array, Field, Matrix, Struct, Type, spell
 from sssgen.ir.walk import all_expressions, statements, subexpressions
 from sssgen.passes.scopes import Renamer, declared, rename_locals
 from sssgen.passes.struct_types import Retyper
+from sssgen.support.diagnostics import failure
 
 
 def rename(
@@ -45,6 +46,7 @@ def rename(
     loop_scope: bool = True,
     reserved_at_file_scope: Container[str] = (),
     member_types: bool = True,
+    prefix: str = "",
 ) -> tuple[Module, dict[str, str]]:
     """The module with legal names, and what was renamed, as old → new.
 
@@ -53,14 +55,24 @@ def rename(
     `uniform_name` gives a uniform's name in the target's style. With `mangle_overloads` each function of an
     overloaded name gets its parameters' types into its name; without `matrix_overloads` those of a name whose overloads
     differ in a vec4 and a mat2 alone; `loop_scope` as in `rename_locals`; without `member_types` no
-    member has a struct's name. In the result, overloads that got different
+    member has a struct's name; `prefix` begins the name of every declaration. In the result, overloads that got other
     names are listed under their key (as in `box(vec3)`), local names under `function.name`, members under
     `struct.name`.
     """
     return _Namer(
         module, reserved, uniform_name, mangle_overloads, reserved_folded, matrix_overloads, loop_scope,
-        reserved_at_file_scope, member_types,
+        reserved_at_file_scope, member_types, prefix,
     ).run()  # fmt: skip
+
+
+def checked_prefix(prefix: str, reserved: tuple[str, ...]) -> str:
+    """The prefix, if global names can begin with it. Raises SssgenError."""
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", prefix) or "__" in prefix:
+        hint = "letters, digits and single underscores, after a letter: --prefix wax_"
+        raise failure(f"'{prefix}' cannot begin a name", hint)
+    if prefix.startswith(reserved):
+        raise failure(f"names that begin with '{prefix}' are reserved", "choose another prefix, such as wax_")
+    return prefix
 
 
 class _Namer:
@@ -75,12 +87,13 @@ class _Namer:
         loop_scope: bool,
         reserved_at_file_scope: Container[str],
         member_types: bool,
+        prefix: str,
     ) -> None:
         self.module = module
         self.keyed = [(function.key, function) for function in module.functions]
         self.reserved, self.reserved_folded = reserved, reserved_folded
         self.reserved_at_file_scope = reserved_at_file_scope
-        self.uniform_name, self.mangle_overloads = uniform_name, mangle_overloads
+        self.uniform_name, self.mangle_overloads, self.prefix = uniform_name, mangle_overloads, prefix
         self.matrix_overloads, self.loop_scope, self.member_types = matrix_overloads, loop_scope, member_types
         self.legality: dict[str, bool] = {}
         """Whether a name is legal."""
@@ -168,6 +181,8 @@ class _Namer:
                 wanted["key", key] = mangled[key]
             else:
                 wanted["function", function.name] = function.name
+        if self.prefix:
+            wanted = {old: f"{self.prefix}{name}" for old, name in wanted.items()}
         names: dict[tuple[str, str], str] = {}
         # another stage must choose the same names for the interface
         passed = [variable for variable in module.variables if variable.storage != "private" and not variable.builtin]

@@ -15,14 +15,15 @@ from sssgen.ir.types import kind_of
 from sssgen.lang.loader import key_of
 from sssgen.material import library
 from sssgen.material.model import Material, TechniqueUse
+from sssgen.passes.names import checked_prefix
 from sssgen.pipeline.emitted_cache import installation
 from sssgen.support import cache
-from sssgen.support.diagnostics import Diagnostic
+from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.support.gc_pause import paused
 from sssgen.support.paths import place
 from sssgen.targets import registry
 from sssgen.targets.assemble import About, Program, emit
-from sssgen.targets.descriptor import Target
+from sssgen.targets.descriptor import Embedded, Target
 from sssgen.targets.reflection import as_text, reflect
 
 if TYPE_CHECKING:
@@ -50,8 +51,8 @@ class Compiled(NamedTuple):
         return reflection
 
 
-_compiled: dict[tuple[int, str, str, str], tuple[Material, Compiled]] = {}
-_programs: dict[tuple[str, str, str, str], Program] = {}
+_compiled: dict[tuple[int, str, str, str, str], tuple[Material, Compiled]] = {}
+_programs: dict[tuple[str, str, str, str, str], Program] = {}
 _CACHE_SIZE = 128
 
 
@@ -67,13 +68,15 @@ def compile(
     templates: str | os.PathLike[str] | None = None,
     guards: str = "auto",
     trace: Trace | None = None,
+    prefix: str = "",
 ) -> Compiled:
     """Compiles a material for a target.
 
     `material` is a checked material, the path of a material file, or the name of an example; `form` is `shader` (a
     complete shader) or `functions` (a library to paste); `templates` is a folder whose templates replace those of the
     same name; `guards` are added where they are needed (`auto`), everywhere (`all`), or nowhere (`none`).
-    `trace` records the IR after each pass; then no cache is used.
+    `trace` records the IR after each pass; then no cache is used. `prefix` begins every global name of the text, to fit
+    in other people's shaders; whole shaders have one only where the target declares it.
     Raises SssgenError for anything wrong with the input.
 
     >>> import sssgen
@@ -90,18 +93,41 @@ def compile(
 
         raise failure(f"unknown form '{form}'", did_you_mean(form, FORMS) or "forms: shader, functions")
     _check_guards(guards)
-    chosen = registry.load(target)
-    key = (id(material), target, form, guards)
+    chosen = _prefixed(registry.load(target), prefix, form)
+    key = (id(material), target, form, guards, prefix)
     cached = _compiled.get(key) if templates is None and trace is None else None
     if cached is not None and cached[0] is material:
         return _copy(cached[1])
     program = _program_of(material, chosen, form, guards, trace)._replace(about=_about(material))
+    if chosen.embedded:
+        inner = {name: _inner(chosen, embedded) for name, embedded in chosen.embedded.items()}
+        others = {name: (one, _program_of(material, one, form, guards, None)) for name, one in inner.items()}
+        program = program._replace(embedded=others)
     compiled = _finish(program, chosen, form, os.fspath(templates) if templates else None)
     if templates is None:
         if len(_compiled) >= _CACHE_SIZE:
             _compiled.clear()
         _compiled[key] = material, compiled
     return _copy(compiled)
+
+
+def _prefixed(target: Target, prefix: str, form: str) -> Target:
+    """The target with that prefix of global names. Raises SssgenError for a prefix that cannot be."""
+    if not prefix:
+        return target
+    if form != "functions" and not target.prefix:
+        hint = "the names in a whole shader are its own: add --form functions"
+        raise failure(f"a whole shader for {target.title} has no prefix", hint)
+    return target._replace(prefix=checked_prefix(prefix, registry.reserved_everywhere().prefixes))
+
+
+def _inner(target: Target, embedded: Embedded) -> Target:
+    """The target of an embedded text: that language under the outer target's engine."""
+    return registry.load(embedded.target)._replace(
+        name=f"{target.name}.{embedded.target}", inputs=embedded.inputs, light_inputs=embedded.light_inputs,
+        lighting=target.lighting, engine_encodes=target.engine_encodes, parameters=target.parameters,
+        prefix=target.prefix, properties=target.properties,
+    )  # fmt: skip
 
 
 def _copy(compiled: Compiled) -> Compiled:
@@ -127,10 +153,15 @@ def transpile(
     from sssgen.pipeline.programs import make_library
 
     _check_guards(guards)
-    chosen = registry.load(target)
+    chosen = registry.load(target)._replace(prefix="")  # the names are the author's
     about = About(name, name, head=tuple(head))
     with paused():
         program = make_library(module, chosen, guards, called, at, chained, keep, trace, partner)._replace(about=about)
+        inner = {name: _inner(chosen, embedded) for name, embedded in chosen.embedded.items()}
+        others = {
+            name: (one, make_library(module, one, guards, called, at, chained, keep)) for name, one in inner.items()
+        }
+        program = program._replace(embedded=others)
         return _finish(program, chosen, program.stage.kind if program.stage else "functions", None)
 
 
@@ -156,7 +187,7 @@ def _program_of(material: Material, target: Target, form: str, guards: str, trac
     fixed = {name for stage in material.stages for name in stage.fixed}
     structural = material._replace(stages=tuple([_bare(stage, fixed) for stage in material.stages]))
     structure = _structure(structural, target) if trace is None else ""
-    key = (structure, target.name, form, guards)
+    key = (structure, target.name, form, guards, target.prefix)
     program = _programs.get(key) if structure else None
     if program is None:
         program = _stored_program(structural, structure, target, form, guards, trace)
@@ -179,7 +210,7 @@ def _stored_program(
 
     if not structure or target.folder != place("targets"):  # it is unknown which files a plug-in's program depends on
         return make_program()
-    name = "\0".join([os.path.abspath(structural.file), target.name, form, guards])
+    name = "\0".join([os.path.abspath(structural.file), target.name, form, guards, target.prefix])
     program: Program = cache.load_or_make(f"program-{cache.digest(name)}", [installation(), structure], make_program)
     return program
 

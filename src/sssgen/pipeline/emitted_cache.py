@@ -25,9 +25,9 @@ class EmittedFiles(NamedTuple):
     warnings: list[Diagnostic]
 
 
-def load(materials: Sequence[str], target: str, form: str, guards: str) -> EmittedFiles | None:
+def load(materials: Sequence[str], target: str, form: str, guards: str, prefix: str) -> EmittedFiles | None:
     """The files of the command, if nothing that they depend on has changed."""
-    entry = cache.unpickled(cache.read(_entry_name(materials, target, form, guards)))
+    entry = cache.unpickled(cache.read(_entry_name(materials, target, form, guards, prefix)))
     if not isinstance(entry, tuple) or entry[0] != installation():
         return None
     _, digests, emitted = entry
@@ -35,7 +35,13 @@ def load(materials: Sequence[str], target: str, form: str, guards: str) -> Emitt
 
 
 def store(
-    materials: Sequence[str], target: str, form: str, guards: str, emitted: EmittedFiles, read: Iterable[str]
+    materials: Sequence[str],
+    target: str,
+    form: str,
+    guards: str,
+    prefix: str,
+    emitted: EmittedFiles,
+    read: Iterable[str],
 ) -> None:
     """Writes the files of a command to the cache; `read` are the paths that were read for them.
 
@@ -46,7 +52,7 @@ def store(
     if registry.has_plugins():
         return
     entry = (installation(), _digests(read), tuple(emitted))
-    cache.write(_entry_name(materials, target, form, guards), cache.pickled(entry))
+    cache.write(_entry_name(materials, target, form, guards, prefix), cache.pickled(entry))
 
 
 def _digests(paths: Iterable[str]) -> dict[str, str]:
@@ -61,8 +67,8 @@ def _digests(paths: Iterable[str]) -> dict[str, str]:
     return digests
 
 
-def _entry_name(materials: Sequence[str], target: str, form: str, guards: str) -> str:
-    return "emitted-" + cache.digest("\0".join([os.getcwd(), target, form, guards, *materials]))
+def _entry_name(materials: Sequence[str], target: str, form: str, guards: str, prefix: str) -> str:
+    return "emitted-" + cache.digest("\0".join([os.getcwd(), target, form, guards, prefix, *materials]))
 
 
 @functools.cache

@@ -114,8 +114,13 @@ def _finish(state: State, trace: Trace | None) -> Program:
     unlit = material is not None and material.shading != "lit"
     encoded = unlit and any(stage.link.role == "output" for stage in state.stages)
     functions = {function.name: function._replace(body=()) for function in module.functions}
-    entries = {kind: (functions[entry.function.name], entry.inputs) for kind, entry in state.entries.items()}
-    surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == "Surface"), None)
+    renamed = state.renames
+    entries = {
+        kind: (functions[renamed.get(entry.function.name, entry.function.name)], entry.inputs)
+        for kind, entry in state.entries.items()
+    }
+    name = renamed.get("Surface", "Surface")
+    surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == name), None)
     module = module._replace(functions=tuple([function._replace(body=()) for function in module.functions]))
     warnings = [Diagnostic("warning", note.message, note.span, "", source_line(note.span)) for note in state.notes]
     return Program(

@@ -230,6 +230,7 @@ def make_names_legal(state: State) -> Module:
         target.capabilities.loop_scope,
         BUILTINS if target.names.builtins else (),
         target.capabilities.member_types,
+        target.prefix,
     )
     names = zip(module.uniforms, state.module.uniforms, strict=True)
     state.source_names = {new.name: old.name for new, old in names}

@@ -67,6 +67,8 @@ class Program(NamedTuple):
     """How many operations with a domain are proven safe, and each guarded one with its place, operation and reason."""
     stage: Stage | None = None
     """The interface, where the module is a whole shader."""
+    embedded: Mapping[str, tuple[Target, Program]] = {}
+    """The same material in the other languages of the target's files."""
 
 
 class Emitted(NamedTuple):
@@ -78,6 +80,10 @@ class Emitted(NamedTuple):
     block_size: int
     bindings: list[dict[str, int | str]]
     """Where each texture and its sampler are bound; empty where the text does not state it."""
+    calls: Mapping[str, list[dict[str, Any]]]
+    """Entry kind → its parameters in order, with what the shell passes for each."""
+    embedded_calls: Mapping[str, Mapping[str, list[dict[str, Any]]]]
+    """The same of the embedded languages."""
 
 
 _PRINTERS = {
@@ -132,11 +138,31 @@ def print_parts(
 
 def emit(target: Target, program: Program, form: str, templates: str | None = None) -> Emitted:
     """Prints the uniforms and renders every file of a form. Raises SssgenError for a faulty template."""
+    marks: list[Span] = []
+    context, members, size, bindings = _printed(target, program, form, marks)
+    embedded = {name: _printed(*inner, form, marks)[0] for name, inner in program.embedded.items()}
+    context["embedded"] = embedded
+    files: dict[str, str] = {}
+    lines: dict[str, dict[int, Span]] = {}
+    for output in target.files.get(form, ()):
+        name = output.name.format(material=program.about.name)
+        files[name], lines[name] = _finish(render(output.template, context, templates, target.folder), marks)
+    embedded_calls = {name: _calls(inner) for name, inner in embedded.items()}
+    return Emitted(files, lines, members, size, bindings, _calls(context), embedded_calls)
+
+
+def _calls(context: Mapping[str, Any]) -> dict[str, list[dict[str, Any]]]:
+    return {kind: entry["params"] for kind, entry in context["entries"].items()}
+
+
+def _printed(
+    target: Target, program: Program, form: str, marks: list[Span]
+) -> tuple[dict[str, Any], list[Member], int, list[dict[str, int | str]]]:
+    """A template's variables, and where its uniforms and textures are."""
     module = program.module
     printer = printer_for(target, module)
     members, size = place(module.uniforms, target.layout)
     textures = [uniform for uniform in module.uniforms if isinstance(uniform.type, Sampler)]
-    marks: list[Span] = []
     declares = form not in target.parameters
     uniform_lines: list[Line] = printer.print_uniforms(members) if declares else []
     texture_lines: list[Line] = printer.print_textures(textures) if declares else []
@@ -150,14 +176,8 @@ def emit(target: Target, program: Program, form: str, templates: str | None = No
         "functions": _text(program.parts["functions"], marks),
         "entry": _text(program.parts["entry"], marks),
     }
-    context = _context(target, program, printer, form, code)
-    files: dict[str, str] = {}
-    lines: dict[str, dict[int, Span]] = {}
-    for output in target.files.get(form, ()):
-        name = output.name.format(material=program.about.name)
-        files[name], lines[name] = _finish(render(output.template, context, templates, target.folder), marks)
     bindings = [printer.binding(index) for index in range(len(textures))] if declares else []
-    return Emitted(files, lines, members, size, [binding for binding in bindings if binding])
+    return _context(target, program, printer, form, code), members, size, [place for place in bindings if place]
 
 
 def _text(parts: Sequence[Sequence[Line]], marks: list[Span]) -> str:
@@ -182,6 +202,7 @@ def _context(target: Target, program: Program, printer: Printer, form: str, code
         kind: _entry(target, printer, kind, function, inputs) for kind, (function, inputs) in program.entries.items()
     }
     inputs = {name for _, entry_inputs in program.entries.values() for name in entry_inputs}
+    _check_properties(target, program)
     surface = program.surface
     return {
         "material": program.about._asdict(),
@@ -230,13 +251,14 @@ def _entry(target: Target, printer: Printer, kind: str, function: Function, inpu
     leading = ["surface"] if len(function.params) > 0 and isinstance(function.params[0].type, Struct) else []
     names = [*leading, *inputs]
     uniforms = {uniform.span: uniform.name for uniform in printer.module.uniforms}
-    params, args = [], []
+    params = []
     for index, param in enumerate(function.params):
         name = names[index] if index < len(names) else ""
-        text = expressions.get(name, name) if name else _passed(printer, param, uniforms[param.span])
-        params.append({"name": param.name, "type": printer.type(param.type), "input": name})
-        args.append(text)
-    call = f"{function.name}({', '.join(args)})"
+        uniform = "" if name else uniforms[param.span]
+        text = expressions.get(name, name) if name else _passed(printer, param, uniform)
+        described = {"name": param.name, "type": printer.type(param.type), "base": spell(param.type)}
+        params.append({**described, "input": name, "uniform": uniform, "expression": text})
+    call = f"{function.name}({', '.join([param['expression'] for param in params])})"
     return {"name": function.name, "params": params, "result": printer.type(function.result), "call": call}
 
 
@@ -260,6 +282,7 @@ def _uniform(printer: Printer, uniform: Uniform, program: Program) -> dict[str, 
         "source_name": source,
         "type": printer.type(uniform.type),
         "base": spell(uniform.type),
+        "property": property_name(printer.target, source),
         "default": list(uniform.default),
         "range": (*limits, None)[:3] if limits else None,
         "unit": (_hint(uniform, "unit")[1] or ("",))[0],
@@ -267,6 +290,28 @@ def _uniform(printer: Printer, uniform: Uniform, program: Program) -> dict[str, 
         "doc": " ".join(uniform.doc.split()),
         "label": source.replace("_", " ").capitalize(),
     }
+
+
+def _check_properties(target: Target, program: Program) -> None:
+    """Raises SssgenError for parameters that would be one property of the engine's object."""
+    if target.properties.style == "plain" and not target.properties.taken:
+        return
+    sources: dict[str, str] = {}
+    for uniform in program.module.uniforms:
+        source = program.source_names.get(uniform.name, uniform.name)
+        name = property_name(target, source)
+        if name in sources:
+            message = f"'{sources[name]}' and '{source}' would both be the property '{name}' in {target.title}"
+            raise failure(message, "rename one of them in its technique")
+        sources[name] = source
+
+
+def property_name(target: Target, name: str) -> str:
+    """The name of a parameter as a property of the engine's object."""
+    if target.properties.style == "camel":
+        first, *others = name.split("_")
+        name = first + "".join([word[:1].upper() + word[1:] for word in others])
+    return f"{name}_" if name in target.properties.taken else name
 
 
 def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:
@@ -279,6 +324,7 @@ def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:
             {
                 "name": uniform.name,
                 "source_name": source,
+                "property": property_name(printer.target, source),
                 "sampler": printer.sampler(uniform.name),
                 "dim": uniform.type.dim,
                 "default": _DEFAULTS.get(_hint(uniform, *_DEFAULTS)[0], "white"),

@@ -13,14 +13,9 @@ from sssgen.ir.types import BY_NAME
 from sssgen.passes.capabilities import Capabilities
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.paths import stem
+from sssgen.targets.chain_inputs import CHAIN_INPUTS
 
 _Record = TypeVar("_Record", bound=NamedTuple)
-
-CHAIN_INPUTS = (
-    "uv", "P", "N", "V", "T", "B", "L", "P_object", "N_object", "V_object", "L_object", "screen_uv", "eye_distance",
-    "time", "light_color", "light_nearness", "ray_origin", "ray_direction", "surface", "color",
-)  # fmt: skip
-"""The values that a shell passes to the assembled functions; `color` is what `evaluate_output` encodes."""
 
 STAGE_BUILTINS = (
     "gl_Position", "gl_FragCoord", "gl_FrontFacing", "gl_FragDepth", "gl_VertexID", "gl_InstanceID", "gl_PointSize",
@@ -39,6 +34,8 @@ class OutputFile(NamedTuple):
     """Stage (vertex, fragment, library) → its entry point; '' for a library."""
     includes: str = ""
     """The name of the file of the same form that this one includes."""
+    holds: Mapping[str, str] = {}
+    """A constant of a module for the web → the target whose functions are its text, for `sssgen check`."""
 
 
 class Names(NamedTuple):
@@ -128,6 +125,26 @@ class Port(NamedTuple):
     """What to connect to it, for people."""
 
 
+class Embedded(NamedTuple):
+    """The text of another language in a target's files: a module for the web has GLSL and WGSL."""
+
+    target: str = ""
+    """The target whose functions are embedded; the engine's lighting and conventions are those of the outer target."""
+    inputs: Mapping[str, str] = {}
+    """Chain input → the expression for it where these functions are called."""
+    light_inputs: Mapping[str, str] = {}
+    """The same, where it differs inside the loop over the lights."""
+
+
+class Properties(NamedTuple):
+    """How parameters are named as properties of an object of the engine."""
+
+    style: str = "plain"
+    """plain keeps `cell_count`; camel makes `cellCount`."""
+    taken: frozenset[str] = frozenset()
+    """The names that the object already has; a parameter of such a name gets `_` at its end."""
+
+
 class Target(NamedTuple):
     """One target. All fields but the last two are keys and sections of the descriptor; templates see them all."""
 
@@ -158,6 +175,11 @@ class Target(NamedTuple):
     """WGSL: the group of the material's uniform block, textures and samplers."""
     ports: Mapping[str, Port] = {}
     """Shader Graph, Unreal: chain input → its port, in the order of the node."""
+    embedded: Mapping[str, Embedded] = {}
+    """Name in the templates → the functions of another target that the files contain, too."""
+    properties: Properties = Properties()
+    prefix: str = ""
+    """The beginning of every global name; `--prefix` sets another."""
     lighting: str = ""
     """The technique that lights a lit material; '' where the engine does."""
     engine_encodes: bool = False
@@ -228,15 +250,21 @@ class _Reader:
         missing = [key for key in _REQUIRED if key not in table]
         if missing:
             raise self.wrong(f"is incomplete: it has no {' and no '.join(missing)}")
-        simple = {key: value for key, value in table.items() if key not in ("files", "ports")}
+        simple = {key: value for key, value in table.items() if key not in ("files", "ports", "embedded")}
         target = self.record(Target(name=stem(self.file), dialect=table["language"]), simple, "")
         files = {
             form: tuple([self.record(OutputFile(), entry, f"files.{form}") for entry in self.is_a(list, entries, form)])
             for form, entries in self.is_a(dict, table["files"], "files").items()
         }
+        embedded = {
+            name: self.record(Embedded(), entry, f"embedded.{name}")
+            for name, entry in self.is_a(dict, table.get("embedded", {}), "embedded").items()
+        }
         self.check_keys(ports := self.is_a(dict, table.get("ports", {}), "ports"), _KEYS["ports"], "ports")
         return target._replace(
-            files=files, ports={name: self.record(Port(), port, f"ports.{name}") for name, port in ports.items()}
+            files=files,
+            embedded=embedded,
+            ports={name: self.record(Port(), port, f"ports.{name}") for name, port in ports.items()},
         )
 
     def record(self, defaults: _Record, table: object, section: str) -> _Record:

@@ -6,7 +6,8 @@ from typing import Any
 
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, spell
-from sssgen.targets.assemble import Emitted, Program
+from sssgen.targets.assemble import Emitted, Program, property_name
+from sssgen.targets.chain_inputs import CHAIN_INPUTS
 from sssgen.targets.descriptor import Target
 from sssgen.targets.texture_import import import_settings
 
@@ -30,6 +31,8 @@ def reflect(
         technique, own_name = program.owners.get(source, ("", source))
         entry: dict[str, Any] = {"name": uniform.name, "type": spell(uniform.type)}
         entry |= {"source_name": source, "technique": technique, "technique_name": own_name}
+        if target.properties.style != "plain":
+            entry["property"] = property_name(target, source)
         entry |= _described(uniform)
         if isinstance(uniform.type, Sampler):
             entry |= {"holds": uniform.quantity or None, "default": _default_texture(uniform)}
@@ -65,6 +68,7 @@ def reflect(
             kind: {
                 "function": function.name,
                 "inputs": list(inputs),
+                "params": _signature(kind, emitted),
                 "result": spell(function.result),
                 "cost": program.costs[kind],
             }
@@ -80,6 +84,24 @@ def reflect(
         },
         "warnings": [warning.message for warning in program.warnings],
     }
+
+
+def _signature(kind: str, emitted: Emitted) -> list[dict[str, Any]]:
+    """The parameters of an assembled function in order: what each is, and how this target's shell gets it."""
+    params = []
+    for index, call in enumerate(emitted.calls[kind]):
+        known = CHAIN_INPUTS.get(call["input"])
+        entry = {"name": call["name"], "type": call["base"]}
+        if known is not None:
+            entry |= {"input": call["input"], "meaning": known.meaning, "space": known.space or None}
+        else:
+            entry |= {"uniform": call["uniform"]}
+        entry["expression"] = call["expression"]
+        if emitted.embedded_calls:
+            others = {name: calls[kind][index]["expression"] for name, calls in emitted.embedded_calls.items()}
+            entry["embedded_expressions"] = others
+        params.append(entry)
+    return params
 
 
 def _stage(program: Program) -> dict[str, Any]:

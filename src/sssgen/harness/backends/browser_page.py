@@ -20,7 +20,7 @@ import tempfile
 import threading
 import time
 import weakref
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from http import HTTPStatus
 from pathlib import Path
 from typing import IO, Any
@@ -34,8 +34,15 @@ START = 60.0
 """Seconds that a browser has to start; one takes about one second."""
 
 _QUIET = """--headless --no-first-run --no-default-browser-check --disable-quic --disable-sync --disable-extensions
- --disable-background-networking --disable-component-update --disable-breakpad --mute-audio --enable-unsafe-webgpu"""
-_HTML = '<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,"><script type="module">{script}</script>'
+ --disable-background-networking --disable-component-update --disable-breakpad --mute-audio"""
+_HTML = (
+    '<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,">'
+    '<script type="importmap">{imports}</script><script type="module">{script}</script>'
+)
+WEBGPU = "--enable-unsafe-webgpu", "--use-webgpu-adapter={adapter}"
+"""The switches of a page that uses WebGPU."""
+WEBGL = "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"
+"""Those of a page that uses WebGL on the CPU; with them, WebGPU has no adapter."""
 _SILENT = logging.getLogger("sssgen.browser")
 """For the server, which reports every connection that a browser opens ahead of need and never uses."""
 _SILENT.addHandler(logging.NullHandler())
@@ -64,10 +71,18 @@ def find() -> str:
 class Page:
     """A browser with one page that runs `script`; both end with `close`, with this object, and with this process.
 
-    Raises LostError where the browser does not start.
+    `modules` are the files that the script may import, by their names in it. Raises LostError
+    where the browser does not start.
     """
 
-    def __init__(self, program: str, adapter: str, script: str) -> None:
+    def __init__(
+        self,
+        program: str,
+        adapter: str,
+        script: str,
+        switches: Sequence[str] = WEBGPU,
+        modules: Mapping[str, Path] = {},
+    ) -> None:
         folder = tempfile.mkdtemp(prefix="sssgen-browser-")
         ending = contextlib.ExitStack()
         self.close = weakref.finalize(self, ending.close)
@@ -75,9 +90,12 @@ class Page:
         connections: queue.Queue[ServerConnection] = queue.Queue()
         with tempfile.TemporaryFile() as log:
             try:
-                server = _server(path, _HTML.format(script=script), connections, ending)
+                files = {f"{path}/{file.name}": file for file in modules.values()}
+                imports = json.dumps({"imports": {name: f"{path}/{file.name}" for name, file in modules.items()}})
+                page = _HTML.format(imports=imports, script=script)
+                server = _server(path, page, files, connections, ending)
                 url = f"http://127.0.0.1:{server.socket.getsockname()[1]}{path}"
-                self.process = _launch([program, *_flags(folder, adapter), url], folder, log)
+                self.process = _launch([program, *_flags(folder, adapter, switches), url], folder, log)
                 ending.callback(_end, self.process, folder)
                 self._connection = self._first(connections)
             except BaseException as error:
@@ -137,17 +155,27 @@ class Page:
             timer.cancel()
 
 
-def _server(path: str, page: str, connections: queue.Queue[ServerConnection], ending: contextlib.ExitStack) -> Server:
+def _server(
+    path: str,
+    page: str,
+    files: Mapping[str, Path],
+    connections: queue.Queue[ServerConnection],
+    ending: contextlib.ExitStack,
+) -> Server:
     """A server that answers a GET of `path` with the page, and adds its WebSocket to `connections`."""
     closed = threading.Event()
 
     def respond(connection: ServerConnection, request: Request) -> Response | None:
+        if request.path in files:
+            return answer(files[request.path].read_bytes(), "text/javascript")
         if request.path != path:
             return connection.respond(HTTPStatus.NOT_FOUND, "")
         if "Upgrade" in request.headers:
             return None
-        body = page.encode()
-        fields = {"Content-Type": "text/html", "Content-Length": str(len(body)), "Connection": "close"}
+        return answer(page.encode(), "text/html")
+
+    def answer(body: bytes, kind: str) -> Response:
+        fields = {"Content-Type": kind, "Content-Length": str(len(body)), "Connection": "close"}
         return Response(HTTPStatus.OK, "OK", Headers(fields), body)
 
     def hold(connection: ServerConnection) -> None:
@@ -166,8 +194,8 @@ def _server(path: str, page: str, connections: queue.Queue[ServerConnection], en
     return server
 
 
-def _flags(folder: str, adapter: str) -> list[str]:
-    flags = [*_QUIET.split(), f"--user-data-dir={folder}", f"--use-webgpu-adapter={adapter}"]
+def _flags(folder: str, adapter: str, switches: Sequence[str]) -> list[str]:
+    flags = [*_QUIET.split(), f"--user-data-dir={folder}", *(switch.format(adapter=adapter) for switch in switches)]
     if adapter != "swiftshader" and sys.platform == "linux":
         flags.append("--enable-features=Vulkan")
     root = hasattr(os, "geteuid") and os.geteuid() == 0

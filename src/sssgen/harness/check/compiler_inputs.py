@@ -9,6 +9,8 @@ from typing import cast
 from sssgen.harness.compilers import Source, Stage
 from sssgen.targets import descriptor, registry
 
+_SAMPLERS = " ".join(f"precision highp sampler{dim};" for dim in ("2D", "3D", "Cube", "2DArray"))
+"""Which the engine's shader has above the functions."""
 _OTHER_STAGE = {"vertex": "fragment", "fragment": "vertex"}
 
 
@@ -22,11 +24,24 @@ def sources(files: Mapping[str, str]) -> list[Source]:
     for name, text in files.items():
         for target, material, output in outputs(name):
             stages = output.stages
+            result += held(text, name, output)
             if name.endswith(".shader"):  # has all its stages, and declares their entries
                 stages = dict(list(stages.items())[:1])
             for stage, entry in stages.items():
                 companion = _companion(files, name, target, material, stage, output.includes)
                 result.append(Source(text, target.name, cast(Stage, stage), entry or "main", name, companion))
+    return result
+
+
+def held(text: str, name: str, output: descriptor.OutputFile) -> list[Source]:
+    """The functions in a module of JavaScript, each on the lines that it has there."""
+    result = []
+    for constant, language in output.holds.items():
+        for match in re.finditer(rf"const {constant} = /\* \w+ \*/ `((?:[^`\\]|\\.)*)`", text):
+            above = text.count("\n", 0, match.start(1))
+            functions = re.sub(r"\\(.)", r"\1", match[1])
+            head = _SAMPLERS if registry.load(language).precision else ""
+            result.append(Source(head + "\n" * above + functions, language, "library", "", name))
     return result
 
 

@@ -73,7 +73,7 @@ def of_material(argument: str, targets: Sequence[str]) -> list[Shader]:
     """Both forms of a material for each target; no target: for all that a compiler reads."""
     material = load_material(argument)
     shaders: list[Shader] = []
-    for target in targets or [name for name in registry.names() if readers(name)]:
+    for target in targets or [name for name in registry.names() if _compiled(name)]:
         for form in FORMS:
             try:
                 compiled = compile(material, target, form)
@@ -83,6 +83,12 @@ def of_material(argument: str, targets: Sequence[str]) -> list[Shader]:
                 continue  # nobody asked for this target
             shaders += _shaders(compiled.files, sources(compiled.files), compiled.reflection["source_map"])
     return shaders
+
+
+def _compiled(target: str) -> bool:
+    """Whether a compiler reads what is written for the target."""
+    outputs = (output for form in registry.load(target).files.values() for output in form)
+    return bool(readers(target)) or any(output.holds for output in outputs)
 
 
 def of_files(files: Mapping[str, str], named: set[str], targets: Sequence[str]) -> list[Shader]:

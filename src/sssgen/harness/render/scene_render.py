@@ -31,6 +31,7 @@ from sssgen.ir.drawn import BACK_FACES
 from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.support.diagnostics import failure
+from sssgen.targets.descriptor import Target
 from sssgen.targets.runtime.numpy_textures import Texture
 
 LARGEST = 8192
@@ -78,7 +79,7 @@ def render(
         )
     shell = shell_of(scene, material, reflection)
     if raymarched:
-        shell = dataclasses.replace(shell, view_projection=_matrix(scene, backend, width / height))
+        shell = dataclasses.replace(shell, view_projection=_matrix(scene, backend.target, width / height))
         samples, hit = shade(backend, compiled, shell, (width, height), None), np.ones((height, width), bool)
     else:
         samples, hit = _surface(scene, compiled, shell, backend, (width, height))
@@ -98,6 +99,33 @@ def _surface(
     scene: Scene, compiled: Compiled, shell: Shell, backend: Backend, size: tuple[int, int]
 ) -> tuple[Array, Array]:
     """The samples of a surface, and which of them hit it."""
+    (width, height), edge = size, pixel_mesh.BORDER
+    mesh = placed(scene, compiled, shell, backend.target, size)
+    inner = slice(edge, edge + height), slice(edge, edge + width)
+    picture = shade(backend, compiled, mesh.shell, mesh.size, mesh.points)
+    if compiled.reflection["two_sided"] and not mesh.front.all():
+        # which triangle covers a pixel's centre is the driver's choice, so each side is drawn on its own
+        behind = shade(backend, compiled, dataclasses.replace(mesh.shell, front=False), mesh.size, mesh.points)
+        picture = np.where(mesh.front[..., None], picture, behind)
+    return picture[inner], mesh.hit[inner]
+
+
+class PlacedMesh(NamedTuple):
+    """The points of a scene that a picture shows, as a mesh."""
+
+    shell: Shell
+    size: tuple[int, int]
+    """Of the picture with its border."""
+    points: Array
+    """`pixel_mesh.vertices`."""
+    hit: Array
+    """(height, width): whether a pixel shows the surface."""
+    front: Array
+    """Likewise, whether it shows a front face."""
+
+
+def placed(scene: Scene, compiled: Compiled, shell: Shell, target: Target, size: tuple[int, int]) -> PlacedMesh:
+    """The mesh of a scene's points, and the shell with its camera and what the program draws of it."""
     assert scene.geometry is not None
     (width, height), edge = size, pixel_mesh.BORDER
     padded = width + 2 * edge, height + 2 * edge
@@ -113,15 +141,10 @@ def _surface(
     points = pixel_mesh.vertices(hits, origin, directions, shell.model, padded)
     far = float(np.linalg.norm(points[:, :3] @ shell.model[:3, :3].T + shell.model[:3, 3] - origin, axis=1).max())
     deep = dataclasses.replace(scene, camera=dataclasses.replace(wider, near=1e-3 * far, far=2.0 * far))
-    matrix = _matrix(deep, backend, padded[0] / padded[1])
+    matrix = _matrix(deep, target, padded[0] / padded[1])
     shell = dataclasses.replace(shell, view_projection=matrix, screens=screens)
-    inner = slice(edge, edge + height), slice(edge, edge + width)
-    picture = shade(backend, compiled, shell, padded, points)
-    if compiled.reflection["two_sided"] and not hits.front.all():
-        # which triangle covers a pixel's centre is the driver's choice, so each side is drawn on its own
-        behind = shade(backend, compiled, dataclasses.replace(shell, front=False), padded, points)
-        picture = np.where(hits.front.reshape(padded[1], padded[0], 1), picture, behind)
-    return picture[inner], hits.hit.reshape(padded[1], padded[0])[inner]
+    shape = padded[1], padded[0]
+    return PlacedMesh(shell, padded, points, hits.hit.reshape(shape), hits.front.reshape(shape))
 
 
 def _back_face_map(geometry: Geometry, hits: Hits, origin: Array, directions: Array, size: tuple[int, int]) -> Texture:
@@ -131,9 +154,9 @@ def _back_face_map(geometry: Geometry, hits: Hits, origin: Array, directions: Ar
     return half(Texture(distance.reshape(size[1], size[0], 1), wrap="clamp"))
 
 
-def _matrix(scene: Scene, backend: Backend, aspect: float) -> Array:
+def _matrix(scene: Scene, target: Target, aspect: float) -> Array:
     """World to clip space in the target's depth range."""
-    low = (backend.target.conventions.clip_z or (-1.0,))[0]
+    low = (target.conventions.clip_z or (-1.0,))[0]
     return scene.camera.view_projection(aspect, zero_to_one=low == 0.0)
 
 

@@ -36,7 +36,7 @@ _MOST_LIGHTS = 8
 def shade(compiled: Compiled, shell: Shell, backend: UnityHLSL, size: tuple[int, int], points: Array | None) -> Array:
     """The picture, (height, width, 4), row 0 at the bottom. `points` are `pixel_mesh.vertices`, or None: the screen."""
     if points is None:
-        points, triangles = _screen(shell), np.array([[0, 1, 2]], np.uint32)
+        points, triangles = screen_triangle(shell), np.array([[0, 1, 2]], np.uint32)
     else:
         triangles = pixel_mesh.triangles(size, shell.front)
     pictures = [
@@ -47,7 +47,7 @@ def shade(compiled: Compiled, shell: Shell, backend: UnityHLSL, size: tuple[int,
     return total
 
 
-def _screen(shell: Shell) -> Array:
+def screen_triangle(shell: Shell) -> Array:
     """One triangle over the whole picture, in object space, as `pixel_mesh` has its vertices."""
     corners = np.array([[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]])
     clip = np.concatenate([corners, np.full((3, 1), 0.5), np.ones((3, 1))], axis=1)

@@ -1,0 +1,38 @@
+"""The values that a shell passes to the assembled functions: their meaning and their space, for those who call them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+
+class ChainInput(NamedTuple):
+    """What a value is."""
+
+    meaning: str
+    space: str = ""
+    """world, object, texture or screen; '' for what has no space."""
+
+
+CHAIN_INPUTS: Mapping[str, ChainInput] = {
+    "uv": ChainInput("the texture coordinate", "texture"),
+    "P": ChainInput("the position of the surface point", "world"),
+    "N": ChainInput("the unit normal; per light, with the normal map of the surface", "world"),
+    "V": ChainInput("the unit direction towards the eye", "world"),
+    "T": ChainInput("the unit tangent, in the direction of u", "world"),
+    "B": ChainInput("the unit bitangent, in the direction of v", "world"),
+    "L": ChainInput("the unit direction towards the light", "world"),
+    "P_object": ChainInput("the position of the surface point", "object"),
+    "N_object": ChainInput("the unit normal", "object"),
+    "V_object": ChainInput("the unit direction towards the eye", "object"),
+    "L_object": ChainInput("the unit direction towards the light", "object"),
+    "screen_uv": ChainInput("the position on the screen, 0 to 1", "screen"),
+    "eye_distance": ChainInput("the distance from the eye to the surface point"),
+    "time": ChainInput("the time in seconds"),
+    "light_color": ChainInput("the colour of the light where it arrives"),
+    "light_nearness": ChainInput("1 / the distance to the light, 0 for a light from afar"),
+    "ray_origin": ChainInput("the origin of the eye's ray", "world"),
+    "ray_direction": ChainInput("the unit direction of the eye's ray", "world"),
+    "surface": ChainInput("the result of evaluate_surface"),
+    "color": ChainInput("the color that evaluate_output encodes"),
+}

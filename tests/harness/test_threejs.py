@@ -1,0 +1,209 @@
+"""Emitted modules in three.js: WebGLRenderer, WebGPURenderer, and its WebGL 2 fallback, in a headless Chromium."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import sssgen
+from folders import ROOT
+from skips import or_skip
+from sssgen.harness.backends import Array
+from sssgen.harness.backends.three_page import RENDERERS, Three
+from sssgen.harness.check.compiler_inputs import sources
+from sssgen.harness.compilers import Compiler, errors
+from sssgen.harness.render import shade_numpy, three_values
+from sssgen.harness.render.scene_render import PlacedMesh, placed
+from sssgen.harness.render.scene_values import shell_of
+from sssgen.harness.scenes import scene_loading
+from sssgen.material.material_loading import load_material
+from sssgen.support.diagnostics import SssgenError
+from sssgen.targets import registry
+
+INPUTS = "world_position P, world_direction N, world_direction V, world_direction T, world_direction B"
+INPUTS += ", object_position P_object, object_direction N_object, object_direction V_object, vec2 screen_uv"
+INPUTS += ", float eye_distance, uv_position uv, float time"
+VALUES = "vec3(P) + vec3(N) + vec3(V) + vec3(T) + vec3(B) + 2.0 * vec3(P_object) + vec3(N_object) + vec3(V_object)"
+VALUES += " + vec3(screen_uv.x, abs(screen_uv.y - 0.5), eye_distance) + vec3(uv, time)"  # v is down in WebGPU
+HEAD = "/**\n * X.\n * role: {}\n * formula: none\n * source: none\n * units: none\n * limits: none\n */\n"
+PROBES = {
+    "shown": HEAD.format("surface") + f"void shown({INPUTS}, inout tangent_direction normal, out vec3 emission) {{ "
+    f"normal = tangent_direction(normalize(vec3(0.1, 0.2, 1.0))); emission = abs({VALUES}); }}\n",
+    "through": HEAD.format("translucency") + f"vec3 through({INPUTS}, world_direction L, object_direction L_object, "
+    f"float light_nearness) {{ return abs({VALUES} + vec3(L) - vec3(L_object) + light_nearness); }}\n",
+    "unlit": HEAD.format("lighting") + f"vec3 unlit({INPUTS}, world_direction L, object_direction L_object, "
+    f"float light_nearness, vec3 light_color) {{ return abs({VALUES} + vec3(L) - vec3(L_object) + light_nearness) "
+    "+ light_color; }\n",
+    "rays": HEAD.format("lighting") + "vec3 rays(world_direction ray_direction, world_position ray_origin) "
+    "{ return abs(vec3(ray_direction) + vec3(ray_origin)); }\n",
+}
+"""Techniques that show each value of the chain."""
+MATERIALS = {
+    "lit": '[[surface]]\ntechnique = "./shown.sss"\n[translucency]\ntechnique = "./through.sss"\n',
+    "unlit": 'shading = "unlit"\n[lighting]\ntechnique = "./unlit.sss"\n',
+    "rays": 'shading = "unlit"\n[lighting]\ntechnique = "./rays.sss"\n',
+}
+MESHES = ("ice", "ice_inlay", "jade_ring", "marble_idol", "paper_lantern", "resin_inlay", "wax_mouse")
+BLACK = {"color": 0.0, "specularIntensity": 0.0}
+"""three's own reflection is gone: what is left is emission, and the light that comes through."""
+SIZE = (96, 72)
+
+
+@pytest.fixture(scope="module", params=list(RENDERERS))
+def three(request: pytest.FixtureRequest) -> Iterator[Three]:
+    renderer: Three = or_skip(Three, request.param)
+    yield renderer
+    renderer.page.close()
+
+
+@cache
+def mesh_of(name: str) -> PlacedMesh:
+    """The points of an example's scene, with values for its program."""
+    scene = scene_loading.load(str(ROOT / "examples" / name / "scene.toml"))
+    scene = dataclasses.replace(scene, size=SIZE, samples=1)
+    compiled = sssgen.compile(name, "numpy")
+    shell = shell_of(scene, load_material(scene.material), compiled.reflection)
+    return placed(scene, compiled, shell, registry.load("numpy"), SIZE)
+
+
+def through(name: str, mesh: PlacedMesh) -> Array:
+    """Emission and the light that comes through, in NumPy's float64."""
+    compiled = sssgen.compile(name, "numpy")
+    reflection = compiled.reflection
+    del reflection["entries"]["lighting"]
+    dark = dataclasses.replace(mesh.shell, ambient=(0.0, 0.0, 0.0))
+    program: Any = SimpleNamespace(files=compiled.files, reflection=reflection)
+    return shade_numpy.shade(program, dark, mesh.size, mesh.points, "float64")
+
+
+@pytest.mark.parametrize("name", MESHES)
+def test_light_that_comes_through_is_that_of_the_oracle(three: Three, name: str) -> None:
+    mesh = mesh_of(name)
+    dark = dataclasses.replace(mesh.shell, ambient=())  # type: ignore[arg-type]  # none
+    drawn = three_values.shade(sssgen.compile(name, "threejs"), dark, three, mesh.size, mesh.points, BLACK)
+    expected = through(name, mesh)
+    assert np.abs(drawn - expected)[..., :3][mesh.hit].max() < 1.0 / 255.0
+    assert (expected[..., :3][mesh.hit].max() > 0.1) == (name != "resin_inlay")  # which reflects only
+
+
+@pytest.mark.parametrize("name", MESHES)
+def test_three_lights_the_surface(three: Three, name: str) -> None:
+    """The reflected light is three's own: not the oracle's numbers, but the same picture."""
+    mesh = mesh_of(name)
+    drawn = three_values.shade(sssgen.compile(name, "threejs"), mesh.shell, three, mesh.size, mesh.points)
+    compiled = sssgen.compile(name, "numpy")
+    expected = shade_numpy.shade(compiled, mesh.shell, mesh.size, mesh.points, "float64")
+    shown = mesh.hit & (expected[..., 3] >= 0.5)
+    ours, theirs = (np.clip(picture[..., :3][shown], 0.0, 1.0) for picture in (expected, drawn))
+    assert np.isfinite(drawn).all()
+    assert np.abs(ours - theirs).mean() < 0.03
+    assert np.corrcoef(ours.ravel(), theirs.ravel())[0, 1] > 0.95
+
+
+@pytest.mark.parametrize("light", ["point", "direction"])
+@pytest.mark.parametrize(
+    ("name", "front"), [("lit", True), ("lit", False), ("unlit", True), ("unlit", False), ("rays", True)]
+)
+def test_every_value_of_the_chain(three: Three, name: str, front: bool, light: str, tmp_path: Path) -> None:
+    """A turned, stretched and mirrored body from both sides: every input is in its space, per surface and light."""
+    for probe, text in PROBES.items():
+        (tmp_path / f"{probe}.sss").write_text(text, encoding="utf-8")
+    path = tmp_path / "made.toml"
+    path.write_text(f'[material]\nname = "made"\ntwo_sided = true\n{MATERIALS[name]}', encoding="utf-8")
+    turned = np.array([[0.0, -1.5, 0.0, 0.3], [-2.0, 0.0, 0.0, 0.1], [0.0, 0.0, 0.5, 0.2], [0.0, 0.0, 0.0, 1.0]])
+    mesh = mesh_of("wax_mouse")
+    moved = np.linalg.inv(turned) @ mesh.shell.model  # the same points in the world
+    points = mesh.points.copy()
+    points[:, :3] = points[:, :3] @ moved[:3, :3].T + moved[:3, 3]
+    points[:, 3:6] = points[:, 3:6] @ np.linalg.inv(moved[:3, :3])
+    points[:, 6:9] = points[:, 6:9] @ moved[:3, :3].T
+    position = [0.5, 2.0, 3.0, 1.0] if light == "point" else [0.3, 0.5, 0.8, 0.0]
+    shell = dataclasses.replace(
+        mesh.shell, model=turned, parameters={}, textures={}, ambient=(), time=0.75, front=front,  # type: ignore[arg-type]  # none
+        light_positions=np.array([position]), light_colors=np.array([[0.5, 0.7, 0.9]]),
+    )  # fmt: skip
+    drawn = three_values.shade(sssgen.compile(str(path), "threejs"), shell, three, mesh.size, points, BLACK)
+    numpy = sssgen.compile(str(path), "numpy")
+    reflection = numpy.reflection
+    reflection["entries"].pop("lighting", None)
+    program: Any = SimpleNamespace(files=numpy.files, reflection=reflection)
+    dark = dataclasses.replace(shell, ambient=(0.0, 0.0, 0.0))
+    expected = shade_numpy.shade(program, dark, mesh.size, None if name == "rays" else points, "float64")
+    if name == "rays":  # of the mesh's points here, of the screen there
+        world = points[:, :3] @ turned[:3, :3].T + turned[:3, 3] - shell.camera_position
+        ray = world / np.linalg.norm(world, axis=1, keepdims=True)
+        expected = np.abs(ray + shell.camera_position).reshape(*expected.shape[:2], 3)
+    difference = np.abs(drawn[..., :3] - expected[..., :3])[mesh.hit]
+    assert difference.max() < 2e-3 and drawn[..., :3][mesh.hit].std() > 0.02
+
+
+def test_a_raymarched_material_fills_its_mesh(three: Three) -> None:
+    scene = dataclasses.replace(scene_loading.load(str(ROOT / "examples/jelly_cubes/scene.toml")), size=SIZE)
+    numpy = sssgen.compile("jelly_cubes", "numpy")
+    shell = shell_of(scene, load_material(scene.material), numpy.reflection)
+    drawn = three_values.shade(sssgen.compile("jelly_cubes", "threejs"), shell, three, SIZE, None)
+    expected = shade_numpy.shade(numpy, shell, SIZE, None, "float64") ** 2.2  # its output technique, left to three
+    assert np.quantile(np.abs(drawn - expected)[..., :3], 0.98) < 1.0 / 255.0  # but for edges, where a ray may miss
+
+
+def test_tangents_come_from_the_texture_coordinates_where_the_mesh_has_none(three: Three) -> None:
+    mesh, compiled = mesh_of("ice"), sssgen.compile("ice", "threejs")
+    drawn = [
+        three_values.shade(compiled, mesh.shell, three, mesh.size, mesh.points, BLACK, tangents)[..., :3]
+        for tangents in (True, False)
+    ]
+    # the sheet is planar: its derivatives are exact inside of it
+    inner = mesh.hit.copy()
+    for axis in (0, 1):
+        for step in (-2, -1, 1, 2):
+            inner &= np.roll(mesh.hit, step, axis)
+    difference = np.abs(drawn[0] - drawn[1])[inner].max(axis=-1)
+    assert np.quantile(difference, 0.95) < 1.0 / 255.0 and drawn[1][inner].max() > 0.2
+
+
+def test_properties_have_the_defaults_of_the_material(three: Three) -> None:
+    """Without values and textures, the picture is that of the oracle with the defaults."""
+    mesh = mesh_of("paper_lantern")
+    bare = mesh._replace(shell=dataclasses.replace(mesh.shell, parameters={}, textures={}, ambient=(0.0, 0.0, 0.0)))
+    drawn = three_values.shade(
+        sssgen.compile("paper_lantern", "threejs"), bare.shell, three, mesh.size, mesh.points, BLACK
+    )
+    assert np.abs(drawn - through("paper_lantern", bare))[..., :3][mesh.hit].max() < 1.0 / 255.0
+
+
+def test_an_error_of_three_is_reported(three: Three) -> None:
+    mesh, compiled = mesh_of("resin_inlay"), sssgen.compile("resin_inlay", "threejs")
+    declared = r"(Surface|fn) sss_evaluate_surface\("
+    files = {name: re.sub(declared, r"\1 sss_misnamed(", text) for name, text in compiled.files.items()}
+    with pytest.raises(SssgenError, match=r"sss_evaluate_surface|fragment_resin_inlay"):
+        three_values.shade(compiled._replace(files=files), mesh.shell, three, mesh.size, mesh.points)
+
+
+@pytest.mark.parametrize("form", ["shader", "functions"])
+def test_the_texts_in_a_module_compile(form: str, compiler: Callable[[str], Compiler]) -> None:
+    """Both languages are found in the module, and an error has the line that it has there."""
+    (name, text), *_ = sssgen.compile("wax_mouse", "threejs", form).files.items()
+    read = sources({name: text})
+    assert [source.language for source in read] == ["glsl-es-300", "wgsl"]
+    for source, tool in zip(read, ("glslang", "tint"), strict=True):
+        assert errors(compiler(tool).check(source)) == []
+        wrong = dataclasses.replace(source, text=source.text.replace("max(", "maximum(", 1))
+        (line,) = {said.line for said in errors(compiler(tool).check(wrong))[:1]}
+        assert "max(" in text.splitlines()[line - 1]
+
+
+def test_parameters_are_properties() -> None:
+    compiled = sssgen.compile("ice", "threejs")
+    described = "type: 'float', default: 10.0, range: [1.0, 200.0], unit: '1', name: 'sss_cell_count'"
+    assert f"  cellCount: {{ {described} }},\n" in compiled.files["ice.js"]
+    assert "set veinColor(value: THREE.Color | THREE.ColorRepresentation | number[]);" in compiled.files["ice.d.ts"]
+    names = {uniform["source_name"]: uniform["property"] for uniform in compiled.reflection["uniforms"]}
+    assert (names["cell_count"], names["metalness"]) == ("cellCount", "metalness_")  # three has a metalness

@@ -1,0 +1,988 @@
+// Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
+// that melt into it.
+// Made by sssgen for three.js. Change the material and emit it again rather than this file.
+//
+//   import { createMaterial } from './ice.js';
+//   const mesh = new THREE.Mesh(geometry, createMaterial({ variation: 0.6 }));
+//
+// One material for WebGPURenderer (WebGPU and its WebGL 2 fallback) and WebGLRenderer.
+// Lights, shadows, fog and the environment are three's.
+
+import * as THREE from 'three/webgpu';
+import * as TSL from 'three/tsl';
+
+/** The parameters: type, default, range, unit, and the name in GLSL. */
+export const parameters = {
+  /** How much the levels of the cells differ: 0 = all are equal. */
+  variation: { type: 'float', default: 0.6, range: [0.0, 1.0], unit: '1', name: 'sss_variation' },
+  /** Number of cells along one unit of texture coordinate. */
+  cellCount: { type: 'float', default: 10.0, range: [1.0, 200.0], unit: '1', name: 'sss_cell_count' },
+  /** Thickness of a cell of level 1. */
+  thicknessFactor: { type: 'float', default: 0.3, range: [0.0, 10.0], unit: 'm', name: 'sss_thickness_factor' },
+  /** Width of the slope next to an edge, in cells. */
+  bevel: { type: 'float', default: 0.35, range: [0.05, 1.0], unit: '1', name: 'sss_bevel' },
+  /** The length after which 1/e (37 %) of the light remains; 0 = opaque. */
+  attenuationDistance_: { type: 'float', default: 0.25, range: [0.0, 10.0], unit: 'm', name: 'sss_attenuation_distance' },
+  /** Multiplies the texture. */
+  tint: { type: 'vec4', default: [0.75, 0.9, 1.0, 1.0], name: 'sss_tint' },
+  /** 0 = not a metal, 1 = metal. */
+  metalness_: { type: 'float', default: 0.0, range: [0.0, 1.0], unit: '1', name: 'sss_metalness' },
+  /** 0 = smooth as a mirror, 1 = rough as chalk. */
+  surfaceRoughness: { type: 'float', default: 0.12, range: [0.0, 1.0], unit: '1', name: 'sss_surface_roughness' },
+  /** Height of the thickest cells above their edges. */
+  relief: { type: 'float', default: 0.01, range: [0.0, 1.0], unit: 'm', name: 'sss_relief' },
+  /** Change of the texture coordinates per world unit along T and along B. */
+  uvPerUnit: { type: 'vec2', default: [1.0, 1.0], unit: '1/m', name: 'sss_uv_per_unit' },
+  /** Multiplies the texture. */
+  cover: { type: 'float', default: 1.0, range: [0.0, 1.0], unit: '1', name: 'sss_cover' },
+  /** Velocity of the red layer. */
+  redSpeed: { type: 'vec2', default: [0.02, 0.0], unit: '1/s', name: 'sss_red_speed' },
+  /** Velocity of the green layer. */
+  greenSpeed: { type: 'vec2', default: [-0.01, 0.015], unit: '1/s', name: 'sss_green_speed' },
+  /** Velocity of the blue layer. */
+  blueSpeed: { type: 'vec2', default: [0.0, -0.025], unit: '1/s', name: 'sss_blue_speed' },
+  /** Colour of the light in the red and green layers, where both are bright. */
+  veinColor: { type: 'vec3', default: [0.3, 0.8, 1.0], name: 'sss_vein_color' },
+  /** Colour of the light in the blue layer. */
+  sparkColor: { type: 'vec3', default: [0.6, 0.9, 1.0], name: 'sss_spark_color' },
+  /** The length, in texture coordinates, over which slopes are measured: about one texel. */
+  texelSize: { type: 'float', default: 0.002, range: [0.0001, 0.1], unit: '1', name: 'sss_texel_size' },
+  /** Width of the soft edge, in the texture's values. */
+  edge: { type: 'float', default: 0.15, range: [0.01, 1.0], unit: '1', name: 'sss_edge' },
+  /** How much is eroded: 0 = nothing, 1 = everything. */
+  erosion: { type: 'float', default: 0.2, range: [0.0, 1.0], unit: '1', name: 'sss_erosion' },
+  /** Height of the step in the surface at the edge. */
+  edgeHeight: { type: 'float', default: 0.02, range: [0.0, 1.0], unit: 'm', name: 'sss_edge_height' },
+  /** How far the normal bends the light's direction inside the body: 0 ignores the shape. */
+  distortion: { type: 'float', default: 0.2, range: [0.0, 1.0], unit: '1', name: 'sss_distortion' },
+  /** Colour of the transmitted light. */
+  subsurfaceColor: { type: 'vec3', default: [0.55, 0.85, 1.0], name: 'sss_subsurface_color' },
+  /** Factor on the whole result. */
+  attenuation: { type: 'float', default: 0.8, range: [0.0, 1.0], unit: '1', name: 'sss_attenuation' },
+  /** Strength of the glow towards the light. */
+  scale: { type: 'float', default: 2.0, range: [0.0, 20.0], unit: '1', name: 'sss_scale' },
+  /** Glow that does not depend on the direction. */
+  ambient: { type: 'float', default: 0.12, range: [0.0, 1.0], unit: '1', name: 'sss_ambient' },
+  /** How narrow the glow around the light is: the larger, the smaller the spot. */
+  power: { type: 'float', default: 6.0, range: [1.0, 32.0], unit: '1', name: 'sss_power' },
+};
+
+/** The textures: type, the one texel of the default, colour space, and the name in GLSL. */
+export const textures = {
+  /** Colour of the surface (an sRGB texture), with its opacity in alpha. */
+  baseColorTexture: { type: 'sampler2D', default: 'white', colorSpace: THREE.SRGBColorSpace, name: 'sss_base_color_texture' },
+  /** Cover on the ice (snow, rock): black = bare ice, white = covered. */
+  coverTexture: { type: 'sampler2D', default: 'black', colorSpace: THREE.NoColorSpace, name: 'sss_cover_texture' },
+  /** Three pictures in one texture: red, green and blue each hold a layer. */
+  packedTexture: { type: 'sampler2D', default: 'black', colorSpace: THREE.NoColorSpace, name: 'sss_packed_texture' },
+  /** Mask of the erosion: dark parts disappear first. */
+  erosionTexture: { type: 'sampler2D', default: 'white', colorSpace: THREE.NoColorSpace, name: 'sss_erosion_texture' },
+};
+
+const GLSL = /* glsl */ `
+struct sss_Cell {
+    vec2 nearest;
+    vec2 second;
+    float level;
+};
+
+struct sss_Surface {
+    vec3 albedo;
+    float alpha;
+    vec3 normal;
+    float metallic;
+    float roughness;
+    vec3 emission;
+    float transmittance;
+};
+
+const float sss_JITTER = 0.6;
+const float sss_OPAQUE_DISTANCE = 1.0e-6;
+const float sss_ENDLESS = 10000.0;
+const float sss_OPAQUE_DEPTH = 80.0;
+
+// The direction of \`x\`; of a zero vector, 0.
+vec2 sss_safe_normalize(vec2 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
+
+// The direction of \`x\`; of a zero vector, 0.
+vec3 sss_safe_normalize(vec3 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
+
+// Scrambles the bits of \`x\`; 0 stays 0.
+uint sss_hash_bits(uint x) {
+    x = (x ^ (x >> 16u)) * 0x7feb352du;
+    x = (x ^ (x >> 15u)) * 0x846ca68bu;
+    return x ^ (x >> 16u);
+}
+
+// A number in [0, 1) from 24 bits of the hash of \`x\`.
+float sss_hash_unit(uint x) {
+    return float(sss_hash_bits(x) >> 8u) * 5.9604645e-8;
+}
+
+// The cell at \`p\`.
+sss_Cell sss_cell_at(vec2 p, float variation) {
+    vec2 nearest = vec2(4.0);
+    vec2 second = vec2(4.0);
+    // their squared lengths
+    float first_square = 32.0;
+    float second_square = 32.0;
+    uint owner = 0u;
+    // relative to the cell's corner, so that precision does not depend on the distance from the origin
+    vec2 home = floor(p);
+    vec2 within = p - home;
+    for (int j = -1; j <= 1; j++) {
+        for (int i = -1; i <= 1; i++) {
+            vec2 offset = vec2(float(i), float(j));
+            vec2 corner = home + offset;
+            uint seed = sss_hash_bits(uint(int(corner.x)) + sss_hash_bits(uint(int(corner.y)) + 1u));
+            vec2 shift = vec2(sss_hash_unit(seed + 1u), sss_hash_unit(seed + 2u)) - 0.5;
+            vec2 to_site = offset + 0.5 + sss_JITTER * shift - within;
+            float square = dot(to_site, to_site);
+            if (square < first_square) {
+                second = nearest;
+                second_square = first_square;
+                nearest = to_site;
+                first_square = square;
+                owner = seed;
+            } else if (square < second_square) {
+                second = to_site;
+                second_square = square;
+            }
+        }
+    }
+    float level = 1.0 - variation * sss_hash_unit(owner + 3u);
+    return sss_Cell(nearest, second, level);
+}
+
+// How much farther the second nearest site is than the nearest one: 0 on the edges.
+float sss_to_edge(sss_Cell cell) {
+    return length(cell.second) - length(cell.nearest);
+}
+
+// Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
+float sss_voronoi_thickness(vec2 uv, float variation, float cell_count, float thickness_factor, float bevel) {
+    sss_Cell cell = sss_cell_at(uv * cell_count, variation);
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, sss_to_edge(cell));
+}
+
+// The thickness \`d\` in mean free paths, 0 or more.
+float sss_optical_depth(float d, float mean_free_path) {
+    float path = max(mean_free_path, sss_OPAQUE_DISTANCE);
+    return clamp(d, 0.0, sss_ENDLESS * path) / path;
+}
+
+// Thickness to transmittance: the part of the light that absorption leaves.
+float sss_beer_lambert(float d, float attenuation_distance) {
+    return exp(-min(sss_optical_depth(d, attenuation_distance), sss_OPAQUE_DEPTH));
+}
+
+// Colour and opacity from a texture and a tint.
+void sss_base_color(vec2 uv, out vec3 albedo, out float alpha, vec4 tint, sampler2D base_color_texture) {
+    vec4 texel = tint * texture(base_color_texture, uv);
+    albedo = texel.xyz;
+    alpha = texel.w;
+}
+
+// The same metalness and roughness everywhere.
+void sss_pbr_constants(out float metallic, out float roughness, float metalness, float surface_roughness) {
+    metallic = metalness;
+    roughness = surface_roughness;
+}
+
+// The gradient of to_edge.
+vec2 sss_from_edge(sss_Cell cell) {
+    // the nearest site may be exactly here, the second one cannot: they are at least 0.4 apart
+    return sss_safe_normalize(cell.nearest) - normalize(cell.second);
+}
+
+// Adds \`detail\` to \`base\`: x and y are added, z is multiplied; for small slopes this adds the slopes.
+vec3 sss_blend_normals(vec3 base, vec3 detail) {
+    return sss_safe_normalize(vec3(base.xy + detail.xy, base.z * detail.z));
+}
+
+// The normal of a height field; \`slope\` is the increase in height per unit of length along T and B.
+vec3 sss_normal_of_slope(vec2 slope) {
+    return normalize(vec3(-slope, 1.0));
+}
+
+// The normal of the Voronoi cells, so that reflected light agrees with transmitted light.
+void sss_voronoi_normal(vec2 uv, inout vec3 normal, float variation, float cell_count, float bevel,
+    float relief, vec2 uv_per_unit) {
+    sss_Cell cell = sss_cell_at(uv * cell_count, variation);
+    float x = clamp(sss_to_edge(cell) / bevel, 0.0, 1.0);
+    // the derivative of the smoothstep
+    float steepness = cell.level * 6.0 * x * (1.0 - x) / bevel;
+    vec2 slope = relief * uv_per_unit * cell_count * steepness * sss_from_edge(cell);
+    normal = sss_blend_normals(normal, sss_normal_of_slope(slope));
+}
+
+// Only the bare ice transmits light.
+void sss_ice_mask(vec2 uv, inout float through, float cover, sampler2D cover_texture) {
+    float covered = cover * texture(cover_texture, uv).r;
+    through = through * smoothstep(0.0, 0.1, 1.0 - covered);
+}
+
+// One moving layer; the offset stays below 1, so that precision does not decrease with time.
+vec4 sss_layer(vec2 uv, vec2 speed, float time, sampler2D packed_texture) {
+    return texture(packed_texture, uv + fract(speed * time));
+}
+
+// Moving light below the surface, from the channels of one texture, each of which scrolls separately.
+void sss_packed_scroll(vec2 uv, float time, inout vec3 emission, sampler2D packed_texture, vec2 red_speed,
+    vec2 green_speed, vec2 blue_speed, vec3 vein_color, vec3 spark_color) {
+    float veins = sss_layer(uv, red_speed, time, packed_texture).x
+        * sss_layer(uv, green_speed, time, packed_texture).y;
+    float sparks = sss_layer(uv, blue_speed, time, packed_texture).z;
+    emission = min(emission + (vein_color * veins + spark_color * sparks), 65504.0);
+}
+
+// The part of the surface that remains at \`uv\`: 1 = all, 0 = none.
+float sss_left_at(vec2 uv, float edge, float erosion, sampler2D erosion_texture) {
+    // the threshold goes from below black to white, so that erosion 0 keeps and erosion 1 removes everything
+    float threshold = mix(-edge, 1.0, erosion);
+    return clamp((texture(erosion_texture, uv).r - threshold) / edge, 0.0, 1.0);
+}
+
+// Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
+void sss_alpha_erosion(vec2 uv, inout float alpha, inout vec3 normal, vec2 uv_per_unit, float texel_size,
+    float edge, float erosion, sampler2D erosion_texture, float edge_height) {
+    vec2 e = vec2(texel_size, 0.0);
+    vec2 at = uv;
+    float across = sss_left_at(at + e, edge, erosion, erosion_texture)
+        - sss_left_at(at - e, edge, erosion, erosion_texture);
+    float up = sss_left_at(at + e.yx, edge, erosion, erosion_texture)
+        - sss_left_at(at - e.yx, edge, erosion, erosion_texture);
+    vec2 slope = edge_height * uv_per_unit * vec2(across, up) / (2.0 * texel_size);
+    normal = sss_blend_normals(normal, sss_normal_of_slope(slope));
+    alpha *= sss_left_at(at, edge, erosion, erosion_texture);
+}
+
+// The transmitted light for a lobe value of 0..1 and a transmittance.
+vec3 sss_glow(float lobe, float through, vec3 subsurface_color, float attenuation, float scale,
+    float ambient) {
+    return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
+}
+
+// The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
+vec3 sss_lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion, vec3 subsurface_color,
+    float attenuation, float scale, float ambient, float power) {
+    vec3 bent = sss_safe_normalize(L + N * distortion);
+    return sss_glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, attenuation,
+        scale, ambient);
+}
+
+// The values of the surface that do not depend on a light.
+sss_Surface sss_evaluate_surface(vec2 uv, float time, float variation, float cell_count,
+    float thickness_factor, float bevel, float attenuation_distance, vec4 tint, sampler2D base_color_texture,
+    float metalness, float surface_roughness, float relief, vec2 uv_per_unit, float cover,
+    sampler2D cover_texture, sampler2D packed_texture, vec2 red_speed, vec2 green_speed, vec2 blue_speed,
+    vec3 vein_color, vec3 spark_color, float texel_size, float edge, float erosion,
+    sampler2D erosion_texture, float edge_height) {
+    float thickness = sss_voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
+    float transmittance = sss_beer_lambert(thickness, attenuation_distance);
+    vec3 albedo;
+    float alpha;
+    sss_base_color(uv, albedo, alpha, tint, base_color_texture);
+    float metallic;
+    float roughness;
+    sss_pbr_constants(metallic, roughness, metalness, surface_roughness);
+    vec3 normal = vec3(0.0, 0.0, 1.0);
+    sss_voronoi_normal(uv, normal, variation, cell_count, bevel, relief, uv_per_unit);
+    sss_ice_mask(uv, transmittance, cover, cover_texture);
+    vec3 emission = vec3(0.0);
+    sss_packed_scroll(uv, time, emission, packed_texture, red_speed, green_speed, blue_speed, vein_color,
+        spark_color);
+    sss_alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
+        edge_height);
+    return sss_Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
+}
+
+// The transmitted light of one light, as a factor on its colour.
+vec3 sss_evaluate_translucency(sss_Surface surface, vec3 V, vec3 N, vec3 L, float distortion,
+    vec3 subsurface_color, float attenuation, float scale, float ambient, float power) {
+    return sss_lobe_normalized(V, N, L, surface.transmittance, distortion, subsurface_color, attenuation,
+        scale, ambient, power);
+}
+
+sss_Surface sss_surface;
+`;
+
+const WGSL = /* wgsl */ `
+struct sss_Cell {
+    nearest: vec2f,
+    second: vec2f,
+    level: f32,
+}
+
+struct sss_Surface {
+    albedo: vec3f,
+    alpha: f32,
+    normal: vec3f,
+    metallic: f32,
+    roughness: f32,
+    emission: vec3f,
+    transmittance: f32,
+}
+
+const sss_JITTER: f32 = 0.6;
+const sss_OPAQUE_DISTANCE: f32 = 1.0e-6;
+const sss_ENDLESS: f32 = 10000.0;
+const sss_OPAQUE_DEPTH: f32 = 80.0;
+
+// The direction of \`x\`; of a zero vector, 0.
+fn sss_safe_normalize_vec2(x: vec2f) -> vec2f {
+    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+}
+
+// The direction of \`x\`; of a zero vector, 0.
+fn sss_safe_normalize_vec3(x: vec3f) -> vec3f {
+    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+}
+
+// Scrambles the bits of \`x\`; 0 stays 0.
+fn sss_hash_bits(x_in: u32) -> u32 {
+    var x = x_in;
+    x = (x ^ (x >> 16u)) * 0x7feb352du;
+    x = (x ^ (x >> 15u)) * 0x846ca68bu;
+    return x ^ (x >> 16u);
+}
+
+// A number in [0, 1) from 24 bits of the hash of \`x\`.
+fn sss_hash_unit(x: u32) -> f32 {
+    return f32(sss_hash_bits(x) >> 8u) * 5.9604645e-8;
+}
+
+// The cell at \`p\`.
+fn sss_cell_at(p: vec2f, variation: f32) -> sss_Cell {
+    var nearest = vec2f(4.0);
+    var second = vec2f(4.0);
+    // their squared lengths
+    var first_square = 32.0;
+    var second_square = 32.0;
+    var owner = 0u;
+    // relative to the cell's corner, so that precision does not depend on the distance from the origin
+    let home = floor(p);
+    let within = p - home;
+    for (var j = -1; j <= 1; j++) {
+        for (var i = -1; i <= 1; i++) {
+            let offset = vec2f(f32(i), f32(j));
+            let corner = home + offset;
+            let seed = sss_hash_bits(u32(i32(corner.x)) + sss_hash_bits(u32(i32(corner.y)) + 1u));
+            let shift = vec2f(sss_hash_unit(seed + 1u), sss_hash_unit(seed + 2u)) - 0.5;
+            let to_site = offset + 0.5 + sss_JITTER * shift - within;
+            let square = dot(to_site, to_site);
+            if (square < first_square) {
+                second = nearest;
+                second_square = first_square;
+                nearest = to_site;
+                first_square = square;
+                owner = seed;
+            } else if (square < second_square) {
+                second = to_site;
+                second_square = square;
+            }
+        }
+    }
+    let level = 1.0 - variation * sss_hash_unit(owner + 3u);
+    return sss_Cell(nearest, second, level);
+}
+
+// How much farther the second nearest site is than the nearest one: 0 on the edges.
+fn sss_to_edge(cell: sss_Cell) -> f32 {
+    return length(cell.second) - length(cell.nearest);
+}
+
+// Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
+fn sss_voronoi_thickness(uv: vec2f, variation: f32, cell_count: f32, thickness_factor: f32,
+    bevel: f32) -> f32 {
+    let cell = sss_cell_at(uv * cell_count, variation);
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, sss_to_edge(cell));
+}
+
+// The thickness \`d\` in mean free paths, 0 or more.
+fn sss_optical_depth(d: f32, mean_free_path: f32) -> f32 {
+    let path = max(mean_free_path, sss_OPAQUE_DISTANCE);
+    return clamp(d, 0.0, sss_ENDLESS * path) / path;
+}
+
+// Thickness to transmittance: the part of the light that absorption leaves.
+fn sss_beer_lambert(d: f32, attenuation_distance: f32) -> f32 {
+    return exp(-min(sss_optical_depth(d, attenuation_distance), sss_OPAQUE_DEPTH));
+}
+
+// Colour and opacity from a texture and a tint.
+fn sss_base_color(uv: vec2f, albedo: ptr<function, vec3f>, alpha: ptr<function, f32>, tint: vec4f,
+    base_color_texture: texture_2d<f32>, base_color_texture_sampler: sampler) {
+    let texel = tint * textureSample(base_color_texture, base_color_texture_sampler, uv);
+    *albedo = texel.xyz;
+    *alpha = texel.w;
+}
+
+// The same metalness and roughness everywhere.
+fn sss_pbr_constants(metallic: ptr<function, f32>, roughness: ptr<function, f32>, metalness: f32,
+    surface_roughness: f32) {
+    *metallic = metalness;
+    *roughness = surface_roughness;
+}
+
+// The gradient of to_edge.
+fn sss_from_edge(cell: sss_Cell) -> vec2f {
+    // the nearest site may be exactly here, the second one cannot: they are at least 0.4 apart
+    return sss_safe_normalize_vec2(cell.nearest) - normalize(cell.second);
+}
+
+// Adds \`detail\` to \`base\`: x and y are added, z is multiplied; for small slopes this adds the slopes.
+fn sss_blend_normals(base: vec3f, detail: vec3f) -> vec3f {
+    return sss_safe_normalize_vec3(vec3f(base.xy + detail.xy, base.z * detail.z));
+}
+
+// The normal of a height field; \`slope\` is the increase in height per unit of length along T and B.
+fn sss_normal_of_slope(slope: vec2f) -> vec3f {
+    return normalize(vec3f(-slope, 1.0));
+}
+
+// The normal of the Voronoi cells, so that reflected light agrees with transmitted light.
+fn sss_voronoi_normal(uv: vec2f, normal: ptr<function, vec3f>, variation: f32, cell_count: f32, bevel: f32,
+    relief: f32, uv_per_unit: vec2f) {
+    let cell = sss_cell_at(uv * cell_count, variation);
+    let x = clamp(sss_to_edge(cell) / bevel, 0.0, 1.0);
+    // the derivative of the smoothstep
+    let steepness = cell.level * 6.0 * x * (1.0 - x) / bevel;
+    let slope = relief * uv_per_unit * cell_count * steepness * sss_from_edge(cell);
+    *normal = sss_blend_normals(*normal, sss_normal_of_slope(slope));
+}
+
+// Only the bare ice transmits light.
+fn sss_ice_mask(uv: vec2f, through: ptr<function, f32>, cover: f32, cover_texture: texture_2d<f32>,
+    cover_texture_sampler: sampler) {
+    let covered = cover * textureSample(cover_texture, cover_texture_sampler, uv).r;
+    *through = *through * smoothstep(0.0, 0.1, 1.0 - covered);
+}
+
+// One moving layer; the offset stays below 1, so that precision does not decrease with time.
+fn sss_layer(uv: vec2f, speed: vec2f, time: f32, packed_texture: texture_2d<f32>,
+    packed_texture_sampler: sampler) -> vec4f {
+    return textureSample(packed_texture, packed_texture_sampler, uv + fract(speed * time));
+}
+
+// Moving light below the surface, from the channels of one texture, each of which scrolls separately.
+fn sss_packed_scroll(uv: vec2f, time: f32, emission: ptr<function, vec3f>, packed_texture: texture_2d<f32>,
+    packed_texture_sampler: sampler, red_speed: vec2f, green_speed: vec2f, blue_speed: vec2f,
+    vein_color: vec3f, spark_color: vec3f) {
+    let veins = sss_layer(uv, red_speed, time, packed_texture, packed_texture_sampler).x
+        * sss_layer(uv, green_speed, time, packed_texture, packed_texture_sampler).y;
+    let sparks = sss_layer(uv, blue_speed, time, packed_texture, packed_texture_sampler).z;
+    *emission = min(*emission + (vein_color * veins + spark_color * sparks), vec3f(65504.0));
+}
+
+// The part of the surface that remains at \`uv\`: 1 = all, 0 = none.
+fn sss_left_at(uv: vec2f, edge: f32, erosion: f32, erosion_texture: texture_2d<f32>,
+    erosion_texture_sampler: sampler) -> f32 {
+    // the threshold goes from below black to white, so that erosion 0 keeps and erosion 1 removes everything
+    let threshold = mix(-edge, 1.0, erosion);
+    return clamp((textureSample(erosion_texture, erosion_texture_sampler, uv).r - threshold) / edge, 0.0,
+        1.0);
+}
+
+// Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
+fn sss_alpha_erosion(uv: vec2f, alpha: ptr<function, f32>, normal: ptr<function, vec3f>, uv_per_unit: vec2f,
+    texel_size: f32, edge: f32, erosion: f32, erosion_texture: texture_2d<f32>,
+    erosion_texture_sampler: sampler, edge_height: f32) {
+    let e = vec2f(texel_size, 0.0);
+    let at = uv;
+    let across = sss_left_at(at + e, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - sss_left_at(at - e, edge, erosion, erosion_texture, erosion_texture_sampler);
+    let up = sss_left_at(at + e.yx, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - sss_left_at(at - e.yx, edge, erosion, erosion_texture, erosion_texture_sampler);
+    let slope = edge_height * uv_per_unit * vec2f(across, up) / (2.0 * texel_size);
+    *normal = sss_blend_normals(*normal, sss_normal_of_slope(slope));
+    *alpha *= sss_left_at(at, edge, erosion, erosion_texture, erosion_texture_sampler);
+}
+
+// The transmitted light for a lobe value of 0..1 and a transmittance.
+fn sss_glow(lobe: f32, through: f32, subsurface_color: vec3f, attenuation: f32, scale: f32,
+    ambient: f32) -> vec3f {
+    return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
+}
+
+// The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
+fn sss_lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32, distortion: f32, subsurface_color: vec3f,
+    attenuation: f32, scale: f32, ambient: f32, power: f32) -> vec3f {
+    let bent = sss_safe_normalize_vec3(L + N * distortion);
+    return sss_glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, attenuation,
+        scale, ambient);
+}
+
+// The values of the surface that do not depend on a light.
+fn sss_evaluate_surface(uv: vec2f, time: f32, variation: f32, cell_count: f32, thickness_factor: f32,
+    bevel: f32, attenuation_distance: f32, tint: vec4f, base_color_texture: texture_2d<f32>,
+    base_color_texture_sampler: sampler, metalness: f32, surface_roughness: f32, relief: f32,
+    uv_per_unit: vec2f, cover: f32, cover_texture: texture_2d<f32>, cover_texture_sampler: sampler,
+    packed_texture: texture_2d<f32>, packed_texture_sampler: sampler, red_speed: vec2f, green_speed: vec2f,
+    blue_speed: vec2f, vein_color: vec3f, spark_color: vec3f, texel_size: f32, edge: f32, erosion: f32,
+    erosion_texture: texture_2d<f32>, erosion_texture_sampler: sampler, edge_height: f32) -> sss_Surface {
+    let thickness = sss_voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
+    var transmittance = sss_beer_lambert(thickness, attenuation_distance);
+    var albedo: vec3f;
+    var alpha: f32;
+    sss_base_color(uv, &albedo, &alpha, tint, base_color_texture, base_color_texture_sampler);
+    var metallic: f32;
+    var roughness: f32;
+    sss_pbr_constants(&metallic, &roughness, metalness, surface_roughness);
+    var normal = vec3f(0.0, 0.0, 1.0);
+    sss_voronoi_normal(uv, &normal, variation, cell_count, bevel, relief, uv_per_unit);
+    sss_ice_mask(uv, &transmittance, cover, cover_texture, cover_texture_sampler);
+    var emission = vec3f(0.0);
+    sss_packed_scroll(uv, time, &emission, packed_texture, packed_texture_sampler, red_speed, green_speed,
+        blue_speed, vein_color, spark_color);
+    sss_alpha_erosion(uv, &alpha, &normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
+        erosion_texture_sampler, edge_height);
+    return sss_Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
+}
+
+// The transmitted light of one light, as a factor on its colour.
+fn sss_evaluate_translucency(surface: sss_Surface, V: vec3f, N: vec3f, L: vec3f, distortion: f32,
+    subsurface_color: vec3f, attenuation: f32, scale: f32, ambient: f32, power: f32) -> vec3f {
+    return sss_lobe_normalized(V, N, L, surface.transmittance, distortion, subsurface_color, attenuation,
+        scale, ambient, power);
+}
+
+var<private> sss_surface: sss_Surface;
+`;
+
+/** Different for each text: three keeps one program per key. */
+const KEY = `sssgen ice ${[...GLSL].reduce((hash, letter) => (hash * 31 + letter.charCodeAt(0)) | 0, 7)}`;
+
+// Nodes for WebGPURenderer: calls of the functions above, with three's own nodes as arguments.
+
+/** A call of a function of the text; its arguments are nodes with their types, and null for the surface. */
+class Call extends THREE.Node {
+  constructor(type, name, args, surface = null) {
+    super(type);
+    this.name = name;
+    this.args = args.map((arg) => arg && arg[0]);
+    this.types = args.map((arg) => arg && arg[1]);
+    this.surface = surface;
+  }
+
+  generate(builder) {
+    const gpu = builder.renderer.backend.isWebGPUBackend;
+    (gpu ? WGSL_NODE : GLSL_NODE).build(builder);
+    this.surface?.build(builder);
+    const args = this.args.flatMap((arg, index) => {
+      if (!arg) return 'sss_surface';
+      if (!this.types[index].startsWith('sampler')) return arg.build(builder, this.types[index]);
+      return gpu ? [arg.build(builder, 'texture'), arg.build(builder, 'sampler')] : arg.build(builder, 'texture');
+    });
+    return `${this.name}(${args.join(', ')})`;
+  }
+}
+
+const GLSL_NODE = TSL.glsl(GLSL);
+const WGSL_NODE = TSL.wgsl(WGSL);
+
+/** The call that stores the surface, once per fragment. */
+class Surface extends Call {
+  generate(builder) {
+    const data = builder.getDataFromNode(this);
+    if (!data.stored) {
+      data.stored = true;
+      builder.addLineFlowCode(`sss_surface = ${super.generate(builder)}`, this);
+    }
+    return '';
+  }
+}
+
+/** A member of the surface. */
+class Field extends THREE.Node {
+  constructor(type, name, surface) {
+    super(type);
+    this.name = name;
+    this.surface = surface;
+  }
+
+  generate(builder) {
+    this.surface.build(builder, 'void');
+    return `sss_surface.${this.name}`;
+  }
+}
+
+/** v / |v|; 0 stays 0, of which normalize makes NaN. */
+const unit = (v) => v.mul(v.dot(v).max(1e-30).inverseSqrt());
+/** A direction in another space. */
+const turned = (matrix, v) => unit(matrix.mul(TSL.vec4(v, 0)).xyz);
+const viewDirection = turned(TSL.cameraWorldMatrix, TSL.positionViewDirection);
+/** -1 on a back face, whose normal is reversed. */
+const side = TSL.Fn((_, { material }) => (material.side === THREE.DoubleSide ? TSL.faceDirection : TSL.float(1)), 'float')();
+const geometryNormal = turned(TSL.cameraWorldMatrix, TSL.negateOnBackSide(TSL.normalViewGeometry));
+
+/** The tangent and the bitangent: those of the geometry, else from the derivatives of uv. */
+const tangentFrame = (bitangent) => TSL.Fn((_, builder) => {
+  const N = geometryNormal;
+  if (builder.geometry.hasAttribute('tangent')) {
+    const T = unit(TSL.varying(TSL.modelWorldMatrix.mul(TSL.vec4(TSL.tangentGeometry.xyz, 0)).xyz));
+    const handedness = TSL.tangentGeometry.w.mul(TSL.modelWorldMatrix.determinant().sign());
+    return bitangent ? N.mul(side).cross(T).mul(handedness) : T;
+  }
+  const across = TSL.positionWorld.dFdx(), up = TSL.positionWorld.dFdy();
+  const a = TSL.uv().dFdx(), b = TSL.uv().dFdy();
+  const first = up.cross(N), second = N.cross(across);
+  const T = first.mul(a.x).add(second.mul(b.x)), B = first.mul(a.y).add(second.mul(b.y));
+  const longest = T.dot(T).max(B.dot(B)).max(1e-30).inverseSqrt();
+  return (bitangent ? B : T).mul(longest);
+}, 'vec3')();
+const frame = { T: tangentFrame(false), B: tangentFrame(true) };
+
+/** The nodes of the material; WebGPURenderer takes them over as it makes a node material of a classic one. */
+function nodesOf(nodes) {
+  const { time } = nodes;
+  const surface = new Surface('void', 'sss_evaluate_surface', [
+      [TSL.uv(), 'vec2'],
+      [time, 'float'],
+      [nodes.variation, 'float'],
+      [nodes.cellCount, 'float'],
+      [nodes.thicknessFactor, 'float'],
+      [nodes.bevel, 'float'],
+      [nodes.attenuationDistance_, 'float'],
+      [nodes.tint, 'vec4'],
+      [nodes.baseColorTexture, 'sampler2D'],
+      [nodes.metalness_, 'float'],
+      [nodes.surfaceRoughness, 'float'],
+      [nodes.relief, 'float'],
+      [nodes.uvPerUnit, 'vec2'],
+      [nodes.cover, 'float'],
+      [nodes.coverTexture, 'sampler2D'],
+      [nodes.packedTexture, 'sampler2D'],
+      [nodes.redSpeed, 'vec2'],
+      [nodes.greenSpeed, 'vec2'],
+      [nodes.blueSpeed, 'vec2'],
+      [nodes.veinColor, 'vec3'],
+      [nodes.sparkColor, 'vec3'],
+      [nodes.texelSize, 'float'],
+      [nodes.edge, 'float'],
+      [nodes.erosion, 'float'],
+      [nodes.erosionTexture, 'sampler2D'],
+      [nodes.edgeHeight, 'float'],
+  ]);
+  const albedo = new Field('vec3', 'albedo', surface);
+  const alpha = new Field('float', 'alpha', surface);
+  const normal = new Field('vec3', 'normal', surface);
+  const metallic = new Field('float', 'metallic', surface);
+  const roughness = new Field('float', 'roughness', surface);
+  const emission = new Field('vec3', 'emission', surface);
+  return {
+    colorNode: TSL.materialColor.mul(TSL.vec4(albedo, alpha)),
+    metalnessNode: metallic,
+    roughnessNode: roughness,
+    emissiveNode: emission,
+    normalNode: turned(TSL.cameraViewMatrix, frame.T.mul(normal.x).add(frame.B.mul(normal.y)).mul(side).add(geometryNormal.mul(normal.z))),
+    setupLightingModel(builder) {
+      const model = THREE.MeshPhysicalNodeMaterial.prototype.setupLightingModel.call(this, builder);
+      const { direct } = model;
+      model.direct = function (data, builder) {
+        direct.call(this, data, builder);
+        const { lightDirection, lightNode, reflectedLight } = data;
+        const L = turned(TSL.cameraWorldMatrix, lightDirection);
+        const lightColor = unshadowed(lightNode, builder) ?? data.lightColor;
+        const through = new Call('vec3', 'sss_evaluate_translucency', [
+          null,
+          [viewDirection, 'vec3'],
+          [TSL.normalWorld, 'vec3'],
+          [L, 'vec3'],
+          [nodes.distortion, 'float'],
+          [nodes.subsurfaceColor, 'vec3'],
+          [nodes.attenuation, 'float'],
+          [nodes.scale, 'float'],
+          [nodes.ambient, 'float'],
+          [nodes.power, 'float'],
+        ], surface);
+        reflectedLight.directDiffuse.addAssign(through.mul(lightColor).mul(1 / Math.PI));
+      };
+      return model;
+    },
+  };
+}
+
+/** The light's colour where it arrives, without shadow: light that comes through entered on the far side. */
+function unshadowed(lightNode, builder) {
+  const { colorNode, baseColorNode } = lightNode;
+  if (!baseColorNode) return null;
+  lightNode.colorNode = baseColorNode;
+  const { lightColor } = lightNode.setupDirect(builder);
+  lightNode.colorNode = colorNode;
+  return lightColor;
+}
+
+// WebGLRenderer: the functions go into three's own shader, at its includes.
+
+const VERTEX_DECLARATIONS = /* glsl */ `
+varying vec3 sss_view_position;
+varying vec2 sss_uv;
+varying vec4 sss_tangent;
+`;
+
+const VERTEX = /* glsl */ `
+sss_view_position = mvPosition.xyz;
+sss_uv = uv;
+#ifdef USE_SKINNING
+sss_tangent = vec4(0.0);
+#else
+sss_tangent = vec4((modelMatrix * vec4(tangent.xyz, 0.0)).xyz, tangent.w * sign(determinant(mat3(modelMatrix))));
+#endif
+`;
+
+const FRAGMENT_DECLARATIONS = /* glsl */ `
+uniform float sss_variation;
+uniform float sss_cell_count;
+uniform float sss_thickness_factor;
+uniform float sss_bevel;
+uniform float sss_attenuation_distance;
+uniform vec4 sss_tint;
+uniform float sss_metalness;
+uniform float sss_surface_roughness;
+uniform float sss_relief;
+uniform vec2 sss_uv_per_unit;
+uniform float sss_cover;
+uniform vec2 sss_red_speed;
+uniform vec2 sss_green_speed;
+uniform vec2 sss_blue_speed;
+uniform vec3 sss_vein_color;
+uniform vec3 sss_spark_color;
+uniform float sss_texel_size;
+uniform float sss_edge;
+uniform float sss_erosion;
+uniform float sss_edge_height;
+uniform float sss_distortion;
+uniform vec3 sss_subsurface_color;
+uniform float sss_attenuation;
+uniform float sss_scale;
+uniform float sss_ambient;
+uniform float sss_power;
+uniform sampler2D sss_base_color_texture;
+uniform sampler2D sss_cover_texture;
+uniform sampler2D sss_packed_texture;
+uniform sampler2D sss_erosion_texture;
+uniform float sss_time;
+vec3 sss_P, sss_N, sss_V, sss_T, sss_B;
+float sss_side = 1.0;
+
+vec3 sss_unit(vec3 v) {
+  float square = dot(v, v);
+  return square > 1e-30 ? v * inversesqrt(square) : vec3(0.0);
+}
+
+vec3 sss_to_world(vec3 v) {
+  return sss_unit((vec4(v, 0.0) * viewMatrix).xyz);
+}
+
+// The tangent and the bitangent: those of the geometry, else from the derivatives of uv.
+void sss_frame() {
+  vec3 across = dFdx(sss_P), up = dFdy(sss_P);
+  vec2 a = dFdx(sss_uv), b = dFdy(sss_uv);
+  vec3 first = cross(up, sss_N), second = cross(sss_N, across);
+  sss_T = first * a.x + second * b.x;
+  sss_B = first * a.y + second * b.y;
+  float longest = inversesqrt(max(max(dot(sss_T, sss_T), dot(sss_B, sss_B)), 1e-30));
+  sss_T *= longest;
+  sss_B *= longest;
+  if (dot(sss_tangent.xyz, sss_tangent.xyz) > 0.0) {
+    sss_T = sss_unit(sss_tangent.xyz);
+    sss_B = cross(sss_N * sss_side, sss_T) * sss_tangent.w;
+  }
+}
+`;
+
+const BEGIN = /* glsl */ `
+#if defined(FLAT_SHADED)
+sss_N = cross(dFdx(sss_view_position), dFdy(sss_view_position));
+#else
+sss_N = vNormal;
+#if defined(DOUBLE_SIDED)
+sss_side = gl_FrontFacing ? 1.0 : -1.0;
+sss_N *= sss_side;
+#endif
+#endif
+sss_N = sss_to_world(sss_N);
+sss_V = isOrthographic ? sss_to_world(vec3(0.0, 0.0, 1.0)) : sss_to_world(-sss_view_position);
+sss_P = cameraPosition + (vec4(sss_view_position, 0.0) * viewMatrix).xyz;
+sss_frame();
+sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count, sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint, sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief, sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture, sss_red_speed, sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color, sss_texel_size, sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height);
+diffuseColor.rgb *= sss_surface.albedo;
+diffuseColor.a *= sss_surface.alpha;
+`;
+
+// What three calls for each light: its own reflection, then the light that comes through. The macros remember the
+// light's colour before its shadow: light that comes through entered on the far side.
+const LIGHT = /* glsl */ `
+vec3 sss_light_color;
+float sss_light_nearness;
+#define SSS_LIGHT(direct, nearness) sss_light_color = direct.color; sss_light_nearness = nearness
+#define getPointLightInfo(light, at, direct) getPointLightInfo(light, at, direct); SSS_LIGHT(direct, 1.0 / max(length(light.position - at), 0.01))
+#define getSpotLightInfo(light, at, direct) getSpotLightInfo(light, at, direct); SSS_LIGHT(direct, 1.0 / max(length(light.position - at), 0.01))
+#define getDirectionalLightInfo(light, direct) getDirectionalLightInfo(light, direct); SSS_LIGHT(direct, 0.0)
+#define getSunLightInfo(light, direct) getSunLightInfo(light, direct); SSS_LIGHT(direct, 0.0)
+
+void sss_direct(const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight) {
+  RE_Direct_Physical(directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight);
+  vec3 L = sss_to_world(directLight.direction);
+  vec3 N = sss_to_world(geometryNormal);
+  reflectedLight.directDiffuse += RECIPROCAL_PI * sss_light_color * sss_evaluate_translucency(sss_surface, sss_V, N, L, sss_distortion, sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power);
+}
+#undef RE_Direct
+#define RE_Direct sss_direct
+`;
+
+/** What goes into three's shaders, behind which of their includes. */
+const PATCHES = {
+  vertexShader: [['common', VERTEX_DECLARATIONS + '#ifndef USE_TANGENT\nattribute vec4 tangent;\n#endif\n'], ['project_vertex', VERTEX]],
+  fragmentShader: [
+    ['common', VERTEX_DECLARATIONS + FRAGMENT_DECLARATIONS + GLSL],
+    ['map_fragment', BEGIN],
+    ['roughnessmap_fragment', 'roughnessFactor = sss_surface.roughness;'],
+    ['metalnessmap_fragment', 'metalnessFactor = sss_surface.metallic;'],
+    ['normal_fragment_maps', 'normal = sss_unit((viewMatrix * vec4(mat3(sss_T * sss_side, sss_B * sss_side, sss_N) * sss_surface.normal, 0.0)).xyz);'],
+    ['emissivemap_fragment', 'totalEmissiveRadiance += sss_surface.emission;'],
+    ['lights_physical_pars_fragment', LIGHT],
+  ],
+};
+
+function patch(shader, nodes) {
+  for (const [stage, patches] of Object.entries(PATCHES)) {
+    for (const [name, text] of patches) {
+      const include = `#include <${name}>`;
+      if (!shader[stage].includes(include)) throw new Error(`ice: this version of three.js has no ${include}`);
+      shader[stage] = shader[stage].replace(include, () => `${include}\n${text}`);
+    }
+  }
+  for (const [property, { name }] of Object.entries({ ...parameters, ...textures })) shader.uniforms[name] = nodes[property];
+  shader.uniforms.sss_time = nodes.time;
+}
+
+const TEXELS = { white: [1, 1, 1, 1], black: [0, 0, 0, 1], gray: [0.5, 0.5, 0.5, 1], bump: [0.5, 0.5, 1, 1] };
+
+/** A texture of one texel, in half floats, which every device filters. */
+function texel({ type, default: name }) {
+  const data = new Uint16Array(TEXELS[name].map((value) => THREE.DataUtils.toHalfFloat(value)));
+  const settings = {
+    format: THREE.RGBAFormat, type: THREE.HalfFloatType, wrapS: THREE.RepeatWrapping, wrapT: THREE.RepeatWrapping,
+    magFilter: THREE.LinearFilter, minFilter: THREE.LinearFilter, needsUpdate: true,
+  };
+  return Object.assign(type === 'sampler2D' ? new THREE.DataTexture(data, 1, 1) : new THREE.Data3DTexture(data, 1, 1, 1), settings);
+}
+
+/** Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes that melt into it. */
+export class IceMaterial extends THREE.MeshPhysicalMaterial {
+  #nodes;
+
+  constructor(values = {}) {
+    super();
+    this.name = 'ice';
+    this.roughness = 1;
+    this.alphaTest = 0.5;
+    const nodes = this.#nodes = {
+      variation: TSL.uniform(0.6),
+      cellCount: TSL.uniform(10.0),
+      thicknessFactor: TSL.uniform(0.3),
+      bevel: TSL.uniform(0.35),
+      attenuationDistance_: TSL.uniform(0.25),
+      tint: TSL.uniform(new THREE.Vector4().fromArray([0.75, 0.9, 1.0, 1.0])),
+      metalness_: TSL.uniform(0.0),
+      surfaceRoughness: TSL.uniform(0.12),
+      relief: TSL.uniform(0.01),
+      uvPerUnit: TSL.uniform(new THREE.Vector2().fromArray([1.0, 1.0])),
+      cover: TSL.uniform(1.0),
+      redSpeed: TSL.uniform(new THREE.Vector2().fromArray([0.02, 0.0])),
+      greenSpeed: TSL.uniform(new THREE.Vector2().fromArray([-0.01, 0.015])),
+      blueSpeed: TSL.uniform(new THREE.Vector2().fromArray([0.0, -0.025])),
+      veinColor: TSL.uniform(new THREE.Color().setRGB(0.3, 0.8, 1.0)),
+      sparkColor: TSL.uniform(new THREE.Color().setRGB(0.6, 0.9, 1.0)),
+      texelSize: TSL.uniform(0.002),
+      edge: TSL.uniform(0.15),
+      erosion: TSL.uniform(0.2),
+      edgeHeight: TSL.uniform(0.02),
+      distortion: TSL.uniform(0.2),
+      subsurfaceColor: TSL.uniform(new THREE.Color().setRGB(0.55, 0.85, 1.0)),
+      attenuation: TSL.uniform(0.8),
+      scale: TSL.uniform(2.0),
+      ambient: TSL.uniform(0.12),
+      power: TSL.uniform(6.0),
+      baseColorTexture: TSL.texture(texel(textures.baseColorTexture)),
+      coverTexture: TSL.texture(texel(textures.coverTexture)),
+      packedTexture: TSL.texture(texel(textures.packedTexture)),
+      erosionTexture: TSL.texture(texel(textures.erosionTexture)),
+      time: TSL.uniform(0),
+    };
+    /** In seconds; null: the page's clock. */
+    this.time = null;
+    nodes.time.onRenderUpdate(() => this.#seconds());
+    Object.assign(this, nodesOf(nodes));
+    this.setValues(values);
+  }
+
+  static {
+    for (const name of Object.keys(parameters)) {
+      Object.defineProperty(this.prototype, name, {
+        get() { return this.#nodes[name].value; },
+        set(value) {
+          const node = this.#nodes[name];
+          if (typeof node.value !== 'object') node.value = value;
+          else if (Array.isArray(value)) node.value.fromArray(value);
+          else if (node.value.isColor) node.value.set(value);
+          else node.value.copy(value);
+        },
+      });
+    }
+    for (const [name, declared] of Object.entries(textures)) {
+      Object.defineProperty(this.prototype, name, {
+        get() { return this.#nodes[name].value; },
+        set(value) {
+          const decoded = value?.type === THREE.HalfFloatType || value?.type === THREE.FloatType;
+          if (value?.colorSpace === THREE.NoColorSpace && !decoded) value.colorSpace = declared.colorSpace;
+          this.#nodes[name].value = value ?? texel(declared);
+          this.needsUpdate = true;
+        },
+      });
+    }
+  }
+
+  setValues(values) {
+    const others = {};
+    for (const [name, value] of Object.entries(values ?? {})) {
+      if (name in parameters || name in textures) this[name] = value;
+      else others[name] = value;
+    }
+    super.setValues(others);
+  }
+
+  #seconds() {
+    return this.time ?? performance.now() / 1000;
+  }
+
+  onBeforeRender() {
+    this.#nodes.time.value = this.#seconds();
+    this.uniformsNeedUpdate = true;
+  }
+
+  onBeforeCompile(shader) {
+    patch(shader, this.#nodes);
+  }
+
+  customProgramCacheKey() {
+    return [KEY, ...Object.keys(textures).map((name) => this[name].type)].join(' ');
+  }
+
+  copy(source) {
+    super.copy(source);
+    for (const name of [...Object.keys(parameters), ...Object.keys(textures)]) this[name] = source[name];
+    return this;
+  }
+}
+
+/** The material. `values` are its parameters, its textures, and the properties of MeshPhysicalMaterial. */
+export function createMaterial(values = {}) {
+  return new IceMaterial(values);
+}
