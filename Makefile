@@ -7,6 +7,7 @@
 # make fuzz   random programs and files for FUZZ_MINUTES (10)
 # make bench  the benchmarks   make bench-gpu  what shaders cost on this GPU, emitted and by hand
 # make setup  what the others need, done once: .venv, system packages, compilers
+# make engines  Godot 4.6 in build/engines, 1.2 GB, as root: make test-long then runs the shaders for it
 
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
@@ -21,7 +22,7 @@ MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notd
 
 export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:
-.PHONY: setup accuracy bake demo test test-long fuzz lint bench bench-gpu gallery stability clean
+.PHONY: setup accuracy bake demo test test-long fuzz lint bench bench-gpu gallery stability engines clean
 
 setup: .venv/done build/node/done
 
@@ -65,6 +66,11 @@ bake: setup
 
 accuracy: setup
 	$(BIN)/python docs/accuracy.py
+
+engines: build/engines/godot/usr/bin/godot
+
+build/engines/godot/usr/bin/godot:
+	sh tools/install_engines.sh build/engines/godot
 
 clean:
 	rm -rf .venv build out

@@ -67,6 +67,7 @@ def test_the_table_of_targets() -> None:
         "naga": "naga",
         "tint": "Tint",
         "python": "Python",
+        "godot": "Godot 4.6's parser",
     }
     words |= {"unity": "C preprocessor", "unreal": "DXC"}
     assert list(rows) == [name for name in rows if name in registry.names()]

@@ -20,7 +20,15 @@ from sssgen.lang.loader import merge
 from validate import module_of, printed
 
 FOLDER = TESTS / "pitfalls"
-COMPARED_WITH = {"glsl": "", "glsl-es": "glsl", "hlsl": "", "dx9": "hlsl", "urp": "hlsl", "wgsl": ""}
+COMPARED_WITH = {
+    "glsl": "",
+    "glsl-es": "glsl",
+    "hlsl": "",
+    "dx9": "hlsl",
+    "urp": "hlsl",
+    "wgsl": "",
+    "godot": "glsl-es",
+}
 """Target → the target whose output must differ for its own to be listed; '' if it is always listed."""
 
 

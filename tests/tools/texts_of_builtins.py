@@ -335,6 +335,7 @@ CASES = {
         "wgsl": "x4.xyz * 2.0 - 1.0",
         "dx9": "UnpackNormal(x4)",
         "urp": "UnpackNormal(x4)",
+        "godot": "unpack_normal(x4)",
     },
     "texture(map, x2)": {
         "glsl": "texture(map, x2)",

@@ -30,6 +30,7 @@ TARGETS = {
     "dx9": "unity-builtin",
     "urp": "unity-urp",
     "wgsl": "wgsl",
+    "godot": "godot",
     "numpy": "numpy",
 }
 """Name of a target in the tests → target: `dx9` and `urp` are the HLSL dialects of Unity's two pipelines."""

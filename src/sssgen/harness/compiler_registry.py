@@ -16,6 +16,8 @@ class CompilerRecord(NamedTuple):
     """In `sssgen.harness.compilers`; its `find()` starts the compiler."""
     install: str
     """What it needs, in Markdown."""
+    apart: bool = False
+    """Whether it is too large for `make setup`: then its tests are skipped where it is missing, in CI, too."""
 
 
 _RECORDS = (
@@ -42,6 +44,11 @@ _RECORDS = (
     CompilerRecord(
         "unreal", "DXC behind a stand-in for Unreal's material shaders", frozenset({"unreal"}), "unreal_compiler",
         "`pip install 'sssgen[dxc]'`",
+    ),
+    CompilerRecord(
+        "godot", "Godot's own parser", frozenset({"godot"}), "godot_parser",
+        "Godot 4.6: `make engines` sets it up beside the project (1.2 GB), or SSSGEN_GODOT names the program",
+        apart=True,
     ),
     CompilerRecord("python", "Python itself", frozenset({"numpy"}), "python_syntax", "nothing"),
 )  # fmt: skip

@@ -20,6 +20,9 @@ class Capabilities(NamedTuple):
     """A component of a vector or a column of a matrix may be assigned through an index that is not constant."""
     float_array_uniforms: bool = False
     """Array elements in a uniform block may be smaller than 16 bytes; if not, each is a vector of four."""
+    hiding: bool = False
+    """A function's parameters and variables may have the names of uniforms, constants and module variables that it
+    does not use."""
     implicit_levels: bool = False
     """Derivatives, and texture reads that need them, are allowed in non-uniform control flow and in vertex shaders."""
     integer_division: bool = False

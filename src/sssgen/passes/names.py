@@ -47,6 +47,8 @@ def rename(
     reserved_at_file_scope: Container[str] = (),
     member_types: bool = True,
     prefix: str = "",
+    hiding: bool = True,
+    uniforms_declared: bool = True,
 ) -> tuple[Module, dict[str, str]]:
     """The module with legal names, and what was renamed, as old → new.
 
@@ -55,13 +57,14 @@ def rename(
     `uniform_name` gives a uniform's name in the target's style. With `mangle_overloads` each function of an
     overloaded name gets its parameters' types into its name; without `matrix_overloads` those of a name whose overloads
     differ in a vec4 and a mat2 alone; `loop_scope` as in `rename_locals`; without `member_types` no
-    member has a struct's name; `prefix` begins the name of every declaration. In the result, overloads that got other
+    member has a struct's name, and without `hiding` no local variable that of a constant or of a uniform,
+    if `uniforms_declared`; `prefix` begins the name of every declaration. In the result, overloads that got other
     names are listed under their key (as in `box(vec3)`), local names under `function.name`, members under
     `struct.name`.
     """
     return _Namer(
         module, reserved, uniform_name, mangle_overloads, reserved_folded, matrix_overloads, loop_scope,
-        reserved_at_file_scope, member_types, prefix,
+        reserved_at_file_scope, member_types, prefix, hiding, uniforms_declared,
     ).run()  # fmt: skip
 
 
@@ -88,6 +91,8 @@ class _Namer:
         reserved_at_file_scope: Container[str],
         member_types: bool,
         prefix: str,
+        hiding: bool,
+        uniforms_declared: bool,
     ) -> None:
         self.module = module
         self.keyed = [(function.key, function) for function in module.functions]
@@ -95,6 +100,9 @@ class _Namer:
         self.reserved_at_file_scope = reserved_at_file_scope
         self.uniform_name, self.mangle_overloads, self.prefix = uniform_name, mangle_overloads, prefix
         self.matrix_overloads, self.loop_scope, self.member_types = matrix_overloads, loop_scope, member_types
+        self.hiding, self.uniforms_declared = hiding, uniforms_declared
+        self.values: set[str] = set()
+        """The new names of uniforms, constants and variables, where no local variable may have them."""
         self.legality: dict[str, bool] = {}
         """Whether a name is legal."""
         self.renamed: dict[str, str] = {}
@@ -199,6 +207,9 @@ class _Namer:
                 self.taken.add(names[old])
         self.renamed = {old[1]: new for old, new in names.items() if old[1] != new}
         self.globals = {old[1]: new for old, new in names.items() if old[0] == "global" and old[1] != new}
+        if not self.hiding:
+            undeclared = set() if self.uniforms_declared else {uniform.name for uniform in module.uniforms}
+            self.values = {new for (kind, old), new in names.items() if kind == "global" and old not in undeclared}
         self.name_structs(names)
         for key, function in self.keyed:
             new = names["key", key] if key in mangled else names["function", function.name]
@@ -279,7 +290,7 @@ class _Namer:
         name = self.function_names[key]
         names = set(declared(function))
         bad = [local for local in names if not self.legal(local)]
-        bad += self.hidden(function, names)
+        bad += self.hidden(function, names) | (names & self.values)
         if self.structs:
             function = self.retyper.function(function)
         new, renamed = rename_locals(function, bad, self.choose, self.globals, self.keys, self.loop_scope)

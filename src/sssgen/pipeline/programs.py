@@ -13,6 +13,7 @@ from sssgen.material.model import Material
 from sssgen.passes.hoist import Note
 from sssgen.passes.ranges.range_pass import analyse
 from sssgen.passes.ranges.sites import Site, report
+from sssgen.passes.reachable import only
 from sssgen.passes.stage.stage_interface import stage_kind
 from sssgen.pipeline import pass_list
 from sssgen.pipeline.state import State
@@ -113,6 +114,7 @@ def _finish(state: State, trace: Trace | None) -> Program:
     )
     unlit = material is not None and material.shading != "lit"
     encoded = unlit and any(stage.link.role == "output" for stage in state.stages)
+    reached = _reached(state, module) if any(file.without for file in target.files.get(state.form, ())) else {}
     functions = {function.name: function._replace(body=()) for function in module.functions}
     renamed = state.renames
     entries = {
@@ -127,4 +129,14 @@ def _finish(state: State, trace: Trace | None) -> Program:
         module, entries, surface, state.source_names, About("", ""), encoded, parts, state.owners, state.renames,
         {kind: cost._asdict() for kind, cost in state.costs.items()}, warnings, state.settings,
         report(state.guarded.sites, state.guarded.guarded) if state.guarded else {}, state.stage,
+        reached,
     )  # fmt: skip
+
+
+def _reached(state: State, module: Module) -> dict[str, frozenset[str]]:
+    """Entry kind → the names of the functions that it calls, its own among them."""
+    keys = {function.name: function.key for function in module.functions}
+    return {
+        kind: frozenset(function.name for function in only(module, [keys[entry.function.name]]).functions)
+        for kind, entry in state.entries.items()
+    }

@@ -228,9 +228,11 @@ def make_names_legal(state: State) -> Module:
         others.folded | target.names.folded,
         target.capabilities.matrix_overloads,
         target.capabilities.loop_scope,
-        BUILTINS if target.names.builtins else (),
+        target.names.local | BUILTINS.keys() if target.names.builtins else target.names.local,
         target.capabilities.member_types,
         target.prefix,
+        target.capabilities.hiding,
+        state.form not in target.parameters,
     )
     names = zip(module.uniforms, state.module.uniforms, strict=True)
     state.source_names = {new.name: old.name for new, old in names}

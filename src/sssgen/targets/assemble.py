@@ -69,6 +69,8 @@ class Program(NamedTuple):
     """The interface, where the module is a whole shader."""
     embedded: Mapping[str, tuple[Target, Program]] = {}
     """The same material in the other languages of the target's files."""
+    reached: Mapping[str, frozenset[str]] = {}
+    """Entry kind → the names of the functions that it calls, where a file of the target leaves an entry out."""
 
 
 class Emitted(NamedTuple):
@@ -88,6 +90,7 @@ class Emitted(NamedTuple):
 
 _PRINTERS = {
     "glsl": "sssgen.targets.printers.glsl:GlslPrinter",
+    "gdshader": "sssgen.targets.printers.gdshader:GodotPrinter",
     "hlsl": "sssgen.targets.printers.hlsl:HlslPrinter",
     "wgsl": "sssgen.targets.printers.wgsl:WgslPrinter",
     "python": "sssgen.targets.printers.numpy_printer:NumpyPrinter",
@@ -146,7 +149,10 @@ def emit(target: Target, program: Program, form: str, templates: str | None = No
     lines: dict[str, dict[int, Span]] = {}
     for output in target.files.get(form, ()):
         name = output.name.format(material=program.about.name)
-        files[name], lines[name] = _finish(render(output.template, context, templates, target.folder), marks)
+        own = context if not output.without else _without(output.without, context, program, marks)
+        text = render(output.template, own, templates, target.folder)
+        if text.strip():  # a template may have nothing to say about a material
+            files[name], lines[name] = _finish(text, marks)
     embedded_calls = {name: _calls(inner) for name, inner in embedded.items()}
     return Emitted(files, lines, members, size, bindings, _calls(context), embedded_calls)
 
@@ -161,6 +167,8 @@ def _printed(
     """A template's variables, and where its uniforms and textures are."""
     module = program.module
     printer = printer_for(target, module)
+    owners = {uniform.name: program.source_names.get(uniform.name, uniform.name) for uniform in module.uniforms}
+    printer.groups = {name: program.owners[source][0] for name, source in owners.items() if source in program.owners}
     members, size = place(module.uniforms, target.layout)
     textures = [uniform for uniform in module.uniforms if isinstance(uniform.type, Sampler)]
     declares = form not in target.parameters
@@ -178,6 +186,17 @@ def _printed(
     }
     bindings = [printer.binding(index) for index in range(len(textures))] if declares else []
     return _context(target, program, printer, form, code), members, size, [place for place in bindings if place]
+
+
+def _without(kinds: Sequence[str], context: dict[str, Any], program: Program, marks: list[Span]) -> dict[str, Any]:
+    """The variables of a template without some entries and the functions that only these need."""
+    reached = program.reached
+    left = frozenset().union(*(names for kind, names in reached.items() if kind not in kinds))
+    out = frozenset().union(*(names for kind, names in reached.items() if kind in kinds)) - left
+    functions = zip(program.module.functions, program.parts["functions"], strict=True)
+    text = _text([lines for function, lines in functions if function.name not in out], marks)
+    entries = {kind: entry for kind, entry in context["entries"].items() if kind not in kinds}
+    return {**context, "code": {**context["code"], "functions": text}, "entries": entries}
 
 
 def _text(parts: Sequence[Sequence[Line]], marks: list[Span]) -> str:

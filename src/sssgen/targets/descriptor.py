@@ -36,6 +36,8 @@ class OutputFile(NamedTuple):
     """The name of the file of the same form that this one includes."""
     holds: Mapping[str, str] = {}
     """A constant of a module for the web → the target whose functions are its text, for `sssgen check`."""
+    without: tuple[str, ...] = ()
+    """Kinds of entries that this file does not call: functions that only these need are left out."""
 
 
 class Names(NamedTuple):
@@ -49,6 +51,8 @@ class Names(NamedTuple):
     """Reserved in any case, as some of HLSL's words are."""
     prefixes: tuple[str, ...] = ()
     """Every name that starts with one of these is reserved."""
+    local: frozenset[str] = frozenset()
+    """Variables of the templates' functions, whose names declarations at file scope must avoid."""
     builtins: bool = False
     """Whether declarations at file scope, too, must avoid the names of builtins, which are GLSL's here."""
 
@@ -151,9 +155,9 @@ class Target(NamedTuple):
     name: str = ""
     title: str = ""
     language: str = ""
-    """Which printer prints it: glsl, hlsl, wgsl or python, or `module:Class` of a plug-in."""
+    """Which printer prints it: glsl, gdshader, hlsl, wgsl or python, or `module:Class` of a plug-in."""
     dialect: str = ""
-    """The intrinsic table's language: glsl, glsl-330, hlsl, hlsl-dx9, hlsl-macros, hlsl-unreal, wgsl, python."""
+    """The intrinsic table's language: glsl, glsl-330, glsl-godot, hlsl, hlsl-dx9, hlsl-macros, hlsl-unreal, wgsl, python."""
     types: Mapping[str, str] = {}
     """Type as sssgen spells it → as the target does."""
     files: Mapping[str, tuple[OutputFile, ...]] = {}

@@ -9,7 +9,7 @@ from sssgen.ir.types import Sampler, spell
 from sssgen.targets.assemble import Emitted, Program, property_name
 from sssgen.targets.chain_inputs import CHAIN_INPUTS
 from sssgen.targets.descriptor import Target
-from sssgen.targets.texture_import import import_settings
+from sssgen.targets.texture_import import has_hint, import_of
 
 VERSION = 1
 """The format's version; it is increased when a reader of older files would misread newer ones."""
@@ -36,8 +36,8 @@ def reflect(
         entry |= _described(uniform)
         if isinstance(uniform.type, Sampler):
             entry |= {"holds": uniform.quantity or None, "default": _default_texture(uniform)}
-            entry |= {"color_space": "linear" if not _has(uniform, "source_color") else "sRGB"}
-            entry["import"] = _import(uniform)
+            entry |= {"color_space": "linear" if not has_hint(uniform, "source_color") else "sRGB"}
+            entry["import"] = import_of(uniform)
             if emitted.bindings:
                 entry["binding"] = emitted.bindings[len(textures)]
             textures.append(entry)
@@ -155,18 +155,6 @@ def _described(uniform: Uniform) -> dict[str, Any]:
         "drawn": hints.get("drawn", (None,))[0],
         "doc": " ".join(uniform.doc.split()),
     }
-
-
-def _import(uniform: Uniform) -> dict[str, Any]:
-    """The import settings of the image for a texture."""
-    assert isinstance(uniform.type, Sampler)
-    clamped = _has(uniform, "repeat_disable")
-    wrap, mipmaps = "clamp" if clamped else "repeat", not clamped and uniform.type.dim != "3D"
-    return import_settings(uniform.type.dim, wrap, _has(uniform, "source_color"), mipmaps, _has(uniform, "normal_map"))
-
-
-def _has(uniform: Uniform, hint: str) -> bool:
-    return any(name == hint for name, _ in uniform.hints)
 
 
 def _default_texture(uniform: Uniform) -> str:

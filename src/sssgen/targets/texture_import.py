@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from sssgen.ir.nodes import Uniform
+from sssgen.ir.types import Sampler
+
 
 def import_settings(
     dimension: str = "2D", wrap: str = "repeat", srgb: bool = False, mipmaps: bool = True, normal_map: bool = False
@@ -13,3 +16,16 @@ def import_settings(
         "dimension": dimension, "srgb": srgb, "filter": "linear", "wrap": wrap, "mipmaps": mipmaps,
         "normal_map": normal_map,
     }  # fmt: skip
+
+
+def import_of(uniform: Uniform) -> dict[str, Any]:
+    """The import settings of the image for a texture."""
+    assert isinstance(uniform.type, Sampler)
+    dimension, clamped = uniform.type.dim, has_hint(uniform, "repeat_disable")
+    wrap, mipmaps = "clamp" if clamped else "repeat", not clamped and dimension != "3D"
+    return import_settings(dimension, wrap, has_hint(uniform, "source_color"), mipmaps, has_hint(uniform, "normal_map"))
+
+
+def has_hint(uniform: Uniform, hint: str) -> bool:
+    """Whether a uniform's declaration has the hint."""
+    return any(name == hint for name, _ in uniform.hints)

@@ -18,6 +18,8 @@ LANGUAGES_OF: dict[str, tuple[str, ...]] = {
     ".cginc": ("unity-builtin",),
     ".ush": ("unreal",),
     ".shader": ("unity-builtin", "unity-urp"),
+    ".gdshader": ("godot",),
+    ".gdshaderinc": ("godot",),
     ".py": ("numpy",),
 }
 """Extension → possible languages; the first is the default where the text does not decide."""
@@ -52,7 +54,7 @@ def _stage(text: str, language: str, name: str) -> Stage:
     if language == "wgsl":
         stage = re.search(r"@(vertex|fragment)\b", text)
         return "library" if stage is None else "vertex" if stage[1] == "vertex" else "fragment"
-    return "fragment" if name.endswith(".shader") else "library"
+    return "fragment" if name.endswith((".shader", ".gdshader")) else "library"
 
 
 def _hlsl_entries(text: str) -> list[tuple[Stage, str]]:

@@ -46,6 +46,12 @@ def glsl_entry(text: str) -> str:
     return _append(text, [*opaque, entry, "void main() {", *body, "    sssgen_check_color = vec4(0.0);", "}"])
 
 
+def gdshader_entry(text: str) -> str:
+    """`text` as a spatial shader of Godot whose `fragment` calls each of its functions."""
+    body, uniforms = _c_calls(functions(text), "uniform {1} {0};", {})
+    return f"shader_type spatial; {_append(text, [*uniforms, 'void fragment() {', *body, '}'])}"
+
+
 def hlsl_entry(text: str, opaque: dict[str, Opaque] | None = None) -> str:
     """`text` with a fragment entry that calls each of its functions; `opaque` adds to the texture types."""
     body, globals_ = _c_calls(functions(text), "{1} {0};", opaque or {})

@@ -179,7 +179,7 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
         inside=lambda rt, x, y, z: (z.dtype == bool) | (rt.max(abs(x), abs(y)) * rt.max(abs(z), 1.0) < 1e38), size=lambda rt, x, y, z: rt.max(abs(x), abs(y)) * rt.max(abs(z), 1.0),
         domain="x and y finite, unless z is a bool",
         texts={
-            "hlsl": "lerp", **{f"glsl/gen{k},gen{k},genB": "" for k in "IUB"},
+            "hlsl": "lerp", **{f"glsl/gen{k},gen{k},genB": "" for k in "IUB"}, "glsl-godot/genF,genF,genB": "",
             **{f"hlsl/gen{k},gen{k},genB": "" for k in "FIUB"}, **{f"wgsl/gen{k},gen{k},genB": "select" for k in "FIUB"},
         },
         polyfill="\n".join(map(_choice, ("float", "int", "uint", "bool"), ("vec", "ivec", "uvec", "bvec"))),

@@ -103,7 +103,7 @@ ROWS = (
         samples=Samples(floats=((0.0, 1.0),)), componentwise=False, range=vector_ranges.normal_of_texel,
         size=lambda rt, x: rt.max(2.0 * abs(x[:3]), 1.0),
         texts={"glsl": "", "hlsl": "", "wgsl": "", "hlsl-dx9": "UnpackNormal", "hlsl-macros": "UnpackNormal",
-            "hlsl-unreal": "(UnpackNormalMap({0}).xyz * float3(1.0, -1.0, 1.0))"},
+            "glsl-godot": "unpack_normal", "hlsl-unreal": "(UnpackNormalMap({0}).xyz * float3(1.0, -1.0, 1.0))"},
         polyfill="vec3 unpackNormal(vec4 texel) { return texel.xyz * 2.0 - 1.0; }", cost=2,
         vectors=(
             (((0.5, 0.5, 1.0, 1.0),), (0.0, 0.0, 1.0)), (((1.0, 0.0, 0.5, 0.0),), (1.0, -1.0, 0.0)),

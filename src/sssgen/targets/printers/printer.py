@@ -7,7 +7,7 @@ source that it came from.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -73,6 +73,8 @@ class Printer:
         self.kept = False
         """Whether the author's text is kept: numbers have their digits, and every comment stays."""
         self.texts: dict[tuple[str, tuple[Type, ...]], str] = {}
+        self.groups: Mapping[str, str] = {}
+        """A uniform's name → the technique that it belongs to."""
         self.stage: Stage | None = None
         """The interface of a whole shader."""
 

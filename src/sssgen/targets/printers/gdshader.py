@@ -1,0 +1,110 @@
+"""Prints Godot's shading language: GLSL ES whose uniforms have hints for the inspector and for their textures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import VEC4, Array, Matrix, Sampler, Scalar, Type, Vector, components
+from sssgen.targets.descriptor import Target
+from sssgen.targets.printers.glsl import GlslPrinter
+from sssgen.targets.printers.printer import PRIMARY, Line, comment_text, float_text
+from sssgen.targets.texture_import import has_hint, import_of
+from sssgen.targets.uniform_layout import Member
+
+_DEFAULTS = {"default_black": "hint_default_black", "default_bump": "hint_normal"}
+
+
+class GodotPrinter(GlslPrinter):
+    """Colours pass `linear_color` where they are read: the Compatibility renderer leaves them encoded."""
+
+    def __init__(self, target: Target, module: ir.Module) -> None:
+        super().__init__(target, module)
+        self.color_types = {uniform.name: uniform.type for uniform in module.uniforms if uniform.name in self.colors}
+
+    def global_value(self, value: ir.Global) -> str:
+        name, color = super().global_value(value), self.color_types.get(value.name)
+        if isinstance(color, Vector):
+            return f"linear_color({name})" if color == VEC4 else f"linear_color(vec4({name}, 1.0)).rgb"
+        return name
+
+    def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
+        text, binding = super().intrinsic(call)
+        first = call.args[0] if call.args else None
+        named = (
+            isinstance(first, ir.Global | ir.Local) and isinstance(first.type, Sampler) and first.name in self.colors
+        )
+        return (f"linear_color({text})", PRIMARY) if named and call.type == VEC4 else (text, binding)
+
+    def construct(self, construct: ir.Construct) -> tuple[str, int]:
+        """A matrix of numbers is written by columns, which is the only constructor for it here."""
+        type_, args = construct.type, construct.args
+        if not isinstance(type_, Matrix) or len(args) != type_.size**2:
+            return super().construct(construct)
+        column = self.type(Vector("float", type_.size))
+        starts = range(0, len(args), type_.size)
+        columns = [f"{column}({self.arguments(args[start : start + type_.size])})" for start in starts]
+        return f"{self.type(type_)}({self.listed(columns)})", PRIMARY
+
+    def print_uniforms(self, members: list[Member]) -> list[Line]:
+        """The uniforms in the groups of the inspector, each with its documentation, its hint and its default."""
+        return self.grouped([member.uniform for member in members])
+
+    def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
+        return self.grouped(textures)
+
+    def grouped(self, uniforms: list[ir.Uniform]) -> list[Line]:
+        lines: list[Line] = []
+        group = ""
+        for uniform in uniforms:
+            if (own := self.groups.get(uniform.name, "")) != group:
+                group = own
+                lines.append(Line(f"group_uniforms {group};" if group else "group_uniforms;"))
+            if words := comment_text(" ".join(uniform.doc.split())).replace("*/", "* /"):
+                lines.append(Line(f"/** {words} */"))
+            hints = self.texture_hints(uniform) if isinstance(uniform.type, Sampler) else _value_hints(uniform)
+            text = f"uniform {self.variable(uniform.type, uniform.name)}{' : ' if hints else ''}{', '.join(hints)}"
+            lines.append(Line(f"{text}{self.default_of(uniform)};", uniform.span))
+        return [*lines, Line("group_uniforms;")] if group else lines
+
+    def texture_hints(self, texture: ir.Uniform) -> list[str]:
+        """What a texture holds, its default, and how it is sampled: as in its import settings."""
+        assert isinstance(texture.type, Sampler)
+        default = next((text for name, text in _DEFAULTS.items() if has_hint(texture, name)), "hint_default_white")
+        settings = import_of(texture)
+        hints = ["source_color"] if has_hint(texture, "source_color") else []
+        hints += [default] if texture.type.kind == "float" else []
+        hints.append("filter_linear_mipmap" if settings["mipmaps"] else "filter_linear")
+        return [*hints, "repeat_enable" if settings["wrap"] == "repeat" else "repeat_disable"]
+
+    def default_of(self, uniform: ir.Uniform) -> str:
+        """The default; of a colour as sRGB, which the engine converts like a colour of the inspector."""
+        type_, numbers = uniform.type, list(uniform.default)
+        if isinstance(type_, Array | Sampler) or len(numbers) != components(type_):
+            return ""
+        if uniform.name in self.colors:
+            numbers = [*map(_stored, numbers[:3]), *numbers[3:]]
+        return f" = {self.value_of(type_, numbers)}"
+
+    def value_of(self, type_: Type, numbers: Sequence[float]) -> str:
+        if isinstance(type_, Matrix):
+            size, column = type_.size, Vector("float", type_.size)
+            columns = [self.value_of(column, numbers[start : start + size]) for start in range(0, size * size, size)]
+            return f"{self.type(type_)}({', '.join(columns)})"
+        return super().value_of(type_, numbers)
+
+
+def _value_hints(uniform: ir.Uniform) -> list[str]:
+    limits = dict(uniform.hints).get("hint_range")
+    if has_hint(uniform, "source_color"):
+        return ["source_color"]
+    if not limits or not isinstance(uniform.type, Scalar) or uniform.type.kind not in ("float", "int"):
+        return []
+    whole = uniform.type.kind == "int"
+    return [f"hint_range({', '.join(str(int(limit)) if whole else float_text(float(limit)) for limit in limits)})"]
+
+
+def _stored(light: float) -> float:
+    """Linear light as sRGB."""
+    light = max(light, 0.0)
+    return float(round(12.92 * light if light <= 0.0031308 else 1.055 * light ** (1.0 / 2.4) - 0.055, 6))

@@ -1,0 +1,159 @@
+"""Example scenes as Godot draws them, and the oracle's pictures of the same points."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import tempfile
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import sssgen
+from folders import ROOT
+from sssgen.harness import backends
+from sssgen.harness.backends import Array
+from sssgen.harness.backends.godot_drawing import Godot, View
+from sssgen.harness.pictures.images import encode_srgb
+from sssgen.harness.render import godot_values, scene_render, shade_numpy
+from sssgen.harness.render.shell_values import Shell
+from sssgen.harness.scenes import scene_loading
+from sssgen.harness.scenes.scene import Scene
+from sssgen.pipeline.compiler import Compiled
+
+MESHES = ["ice", "ice_inlay", "jade_ring", "marble_idol", "paper_lantern", "resin_inlay", "wax_mouse"]
+"""The examples that are on a mesh."""
+WHOLE, THROUGH = "whole", "through"
+"""All light of a file whose light is ours; the light alone that comes through, of the file with Godot's light."""
+SIZE = (160, 120)
+_OWN = "    // Godot's own reflected"
+_THROUGH = "    // Light that comes through"
+
+
+def scene_of(name: str) -> Scene:
+    """An example, small and without ambient light: Godot counts that in another way. Time stands still at 0."""
+    scene = scene_loading.load(str(ROOT / "examples" / name / "scene.toml"))
+    return dataclasses.replace(scene, size=SIZE, samples=1, time=0.0, ambient=(0.0, 0.0, 0.0))
+
+
+def text_of(compiled: Compiled, part: str) -> str:
+    """The shader of a part; reflected light is cut from Godot's light to leave the light that comes through."""
+    name = compiled.reflection["material"]
+    if part == WHOLE:
+        return compiled.files.get(f"{name}.own_light.gdshader") or compiled.files[f"{name}.gdshader"]
+    text = compiled.files[f"{name}.gdshader"]
+    assert text.count(_OWN) == text.count(_THROUGH) == 1
+    return text[: text.index(_OWN)] + text[text.index(_THROUGH) :]
+
+
+def deviation(name: str, renderer: str, part: str) -> Array:
+    """The largest difference of a channel in each pixel, of linear light clamped to 0..1."""
+    reference, picture = (np.clip(_picture(name, engine, part), 0.0, 1.0) for engine in ("numpy", renderer))
+    difference: Array = np.abs(reference - picture).max(axis=2)
+    return difference
+
+
+@cache
+def _picture(name: str, engine: str, part: str) -> Array:
+    backend: Any = backends.get("numpy") if engine == "numpy" else Godot(engine)
+
+    def shade(_: object, compiled: Compiled, shell: Shell, size: tuple[int, int], points: Array | None) -> Array:
+        reflection = compiled.reflection
+        if points is not None:
+            points = _as_godot_stores(points)
+        if isinstance(backend, Godot):
+            return godot_values.shade(text_of(compiled, part), reflection, shell, backend, size, points)
+        if part == THROUGH:
+            reflection["entries"].pop("lighting")
+            compiled = compiled._replace(files={**compiled.files, list(compiled.files)[-1]: json.dumps(reflection)})
+        return shade_numpy.shade(compiled, shell, size, points, "float64")
+
+    usual, scene_render.shade = scene_render.shade, shade
+    try:
+        return scene_render.render(scene_of(name), backend).linear
+    finally:
+        scene_render.shade = usual
+
+
+def _as_godot_stores(points: Array) -> Array:
+    """The vertices with the normals and tangents that Godot's meshes have: two numbers of 16 bits each."""
+    stored = points.copy()
+    stored[:, 3:6], stored[:, 6:9] = _rounded(points[:, 3:6]), _rounded(points[:, 6:9])
+    return stored
+
+
+def _rounded(directions: Array) -> Array:
+    """Unit directions on the octahedron that is unfolded to a square of 65536 × 65536 places."""
+    sums = np.maximum(np.abs(directions).sum(axis=1, keepdims=True), 1e-20)
+    x, y, z = (directions / sums).T
+    folded = z < 0.0
+    u = np.where(folded, (1.0 - np.abs(y)) * np.where(x >= 0.0, 1.0, -1.0), x)
+    v = np.where(folded, (1.0 - np.abs(x)) * np.where(y >= 0.0, 1.0, -1.0), y)
+    u, v = (np.round((0.5 * axis + 0.5) * 65535.0) / 65535.0 * 2.0 - 1.0 for axis in (u, v))
+    z = 1.0 - np.abs(u) - np.abs(v)
+    back = np.maximum(-z, 0.0)
+    x, y = u + np.where(u >= 0.0, -back, back), v + np.where(v >= 0.0, -back, back)
+    result: Array = np.stack([x, y, z], axis=1)
+    return result / np.maximum(np.linalg.norm(result, axis=1, keepdims=True), 1e-20)
+
+
+_DULL = """
+[material]
+name = "dull"
+[[thickness]]
+technique = "constant_thickness"
+[[thickness]]
+technique = "beer_lambert"
+[[surface]]
+technique = "base_color"
+tint = [0.6, 0.3, 0.1, 1.0]
+[[surface]]
+technique = "pbr_constants"
+metalness = 0.0
+surface_roughness = {roughness}
+[translucency]
+technique = "lobe_normalized"
+attenuation = 0.0
+"""
+
+
+def standard_material_deviation(renderer: str, roughness: float) -> Array:
+    """A ball of a material that transmits no light, beside Godot's own standard material, under two lights."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "dull.toml"
+        path.write_text(_DULL.format(roughness=roughness), encoding="utf-8")
+        text = sssgen.compile(path, "godot").files["dull.gdshader"]
+    lights: list[dict[str, Any]] = [
+        {"towards": [0.5, 0.6, 0.62], "color": [1.0, 0.8, 0.6], "energy": 1.5},
+        {"place": [-1.5, 0.5, 1.5], "color": [0.4, 0.6, 1.0], "energy": 2.0},
+    ]
+    camera = np.eye(4)
+    camera[2, 3] = 3.0
+    view = View((96, 96), camera, 45.0, lights, np.eye(4), *_ball(48))
+    color = [*map(float, encode_srgb(np.array([0.6, 0.3, 0.1])))]
+    values = {
+        "albedo_color": {"kind": "color", "value": color},
+        "metallic": {"kind": "float", "value": [0.0]},
+        "roughness": {"kind": "float", "value": [roughness]},
+    }
+    godot = Godot(renderer)
+    ours, theirs = (
+        np.clip(godot.draw(shader, view, own, {})[..., :3], 0.0, 1.0) for shader, own in ((text, {}), ("", values))
+    )
+    assert theirs.max() > 0.5
+    return np.abs(ours - theirs)
+
+
+def _ball(rows: int) -> tuple[Array, Array]:
+    """The vertices and the triangles of a ball of radius 1."""
+    polar, around = np.meshgrid(np.linspace(0, np.pi, rows), np.linspace(0, 2 * np.pi, 2 * rows), indexing="ij")
+    normal = np.stack([np.sin(polar) * np.cos(around), np.cos(polar), np.sin(polar) * np.sin(around)], -1)
+    tangent = np.stack([-np.sin(around), 0 * around, np.cos(around), np.ones_like(around)], -1)
+    uv = np.stack([around / (2 * np.pi), polar / np.pi], -1)
+    vertices = np.concatenate([normal, normal, tangent, uv], axis=-1).reshape(-1, 12)
+    width = 2 * rows
+    corner = (np.arange(rows - 1)[:, None] * width + np.arange(width - 1)).ravel()
+    halves = [[corner, corner + 1, corner + width], [corner + 1, corner + width + 1, corner + width]]
+    return vertices, np.concatenate([np.stack(half, axis=1) for half in halves])
