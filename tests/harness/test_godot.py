@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import sssgen
-from godot_scenes import MESHES, THROUGH, WHOLE, deviation, standard_material_deviation
+from godot_scenes import MESHES, THROUGH, WHOLE, back_face_deviation, deviation, standard_material_deviation
 from pitfall_cases import program
 from sssgen.harness.backends.godot_drawing import RENDERERS
 from sssgen.harness.check.compiler_inputs import sources
@@ -155,3 +155,10 @@ def test_reflected_light_is_that_of_the_standard_material(
 ) -> None:
     compiler(GODOT)
     assert standard_material_deviation(renderer, roughness).max() <= 1.0 / 255.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("renderer", RENDERERS)
+def test_back_faces_have_the_reversed_normal(renderer: str, compiler: Callable[[str], Compiler]) -> None:
+    compiler(GODOT)
+    assert back_face_deviation(renderer).max() <= 1.0 / 255.0

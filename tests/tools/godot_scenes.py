@@ -121,29 +121,64 @@ attenuation = 0.0
 
 def standard_material_deviation(renderer: str, roughness: float) -> Array:
     """A ball of a material that transmits no light, beside Godot's own standard material, under two lights."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "dull.toml"
-        path.write_text(_DULL.format(roughness=roughness), encoding="utf-8")
-        text = sssgen.compile(path, "godot").files["dull.gdshader"]
-    lights: list[dict[str, Any]] = [
-        {"towards": [0.5, 0.6, 0.62], "color": [1.0, 0.8, 0.6], "energy": 1.5},
-        {"place": [-1.5, 0.5, 1.5], "color": [0.4, 0.6, 1.0], "energy": 2.0},
-    ]
-    camera = np.eye(4)
-    camera[2, 3] = 3.0
-    view = View((96, 96), camera, 45.0, lights, np.eye(4), *_ball(48))
+    text = _emitted(_DULL.format(roughness=roughness), "dull.gdshader")
     color = [*map(float, encode_srgb(np.array([0.6, 0.3, 0.1])))]
     values = {
         "albedo_color": {"kind": "color", "value": color},
         "metallic": {"kind": "float", "value": [0.0]},
         "roughness": {"kind": "float", "value": [roughness]},
     }
-    godot = Godot(renderer)
-    ours, theirs = (
-        np.clip(godot.draw(shader, view, own, {})[..., :3], 0.0, 1.0) for shader, own in ((text, {}), ("", values))
-    )
-    assert theirs.max() > 0.5
+    godot, view = Godot(renderer), _view(*_ball(48))
+    ours, theirs = (np.clip(godot.draw(shader, view, own, {}), 0.0, 1.0) for shader, own in ((text, {}), ("", values)))
+    assert theirs[..., :3].max() > 0.5
     return np.abs(ours - theirs)
+
+
+_SHEET = """
+[material]
+name = "sheet"
+two_sided = {two_sided}
+[[surface]]
+technique = "base_color"
+tint = [0.6, 0.3, 0.1, 1.0]
+[translucency]
+technique = "wrap_lighting"
+"""
+
+
+def back_face_deviation(renderer: str) -> Array:
+    """The inside of a two-sided ball, beside that of a ball whose front faces are inside."""
+    vertices, triangles = _ball(48)
+    inside = vertices.copy()
+    inside[:, 3:6] *= -1.0
+    godot = Godot(renderer)
+    back, front = (
+        np.clip(godot.draw(_emitted(_SHEET.format(two_sided=sides), "sheet.gdshader"), view, {}, {}), 0.0, 1.0)
+        for sides, view in (
+            ("true", _view(vertices, triangles, 0.5)),
+            ("false", _view(inside, triangles[:, [0, 2, 1]], 0.5)),
+        )
+    )
+    assert front[..., :3].max() > 0.2
+    return np.abs(back - front)
+
+
+def _emitted(material: str, file: str) -> str:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "made.toml"
+        path.write_text(material, encoding="utf-8")
+        return sssgen.compile(path, "godot").files[file]
+
+
+def _view(vertices: Array, triangles: Array, distance: float = 3.0) -> View:
+    """A mesh at the origin with a light from afar and a lamp, and a camera at a distance."""
+    lights: list[dict[str, Any]] = [
+        {"towards": [0.5, 0.6, 0.62], "color": [1.0, 0.8, 0.6], "energy": 1.5},
+        {"place": [-1.5, 0.5, 1.5], "color": [0.4, 0.6, 1.0], "energy": 2.0},
+    ]
+    camera = np.eye(4)
+    camera[2, 3] = distance
+    return View((96, 96), camera, 45.0, lights, np.eye(4), vertices, triangles)
 
 
 def _ball(rows: int) -> tuple[Array, Array]:

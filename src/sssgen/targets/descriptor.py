@@ -157,7 +157,8 @@ class Target(NamedTuple):
     language: str = ""
     """Which printer prints it: glsl, gdshader, hlsl, wgsl or python, or `module:Class` of a plug-in."""
     dialect: str = ""
-    """The intrinsic table's language: glsl, glsl-330, glsl-godot, hlsl, hlsl-dx9, hlsl-macros, hlsl-unreal, wgsl, python."""
+    """The intrinsic table's language: glsl, glsl-330, glsl-godot, hlsl, hlsl-dx9, hlsl-macros, hlsl-unreal, wgsl,
+    python."""
     types: Mapping[str, str] = {}
     """Type as sssgen spells it → as the target does."""
     files: Mapping[str, tuple[OutputFile, ...]] = {}
