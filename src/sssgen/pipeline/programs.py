@@ -129,7 +129,7 @@ def _finish(state: State, trace: Trace | None) -> Program:
         module, entries, surface, state.source_names, About("", ""), encoded, parts, state.owners, state.renames,
         {kind: cost._asdict() for kind, cost in state.costs.items()}, warnings, state.settings,
         report(state.guarded.sites, state.guarded.guarded) if state.guarded else {}, state.stage,
-        reached,
+        reached=reached,
     )  # fmt: skip
 
 
@@ -137,6 +137,9 @@ def _reached(state: State, module: Module) -> dict[str, frozenset[str]]:
     """Entry kind → the names of the functions that it calls, its own among them."""
     keys = {function.name: function.key for function in module.functions}
     return {
-        kind: frozenset(function.name for function in only(module, [keys[entry.function.name]]).functions)
+        kind: frozenset(
+            function.name
+            for function in only(module, [keys[state.renames.get(entry.function.name, entry.function.name)]]).functions
+        )
         for kind, entry in state.entries.items()
     }
