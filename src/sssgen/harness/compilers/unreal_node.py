@@ -35,6 +35,7 @@ NODES: dict[str, tuple[str, ...]] = {
     "Constant3Vector": _PLACE,
     "ScalarParameter": _SCALAR,
     "Time": _SCALAR,
+    "TwoSidedSign": _SCALAR,
     "Distance": _SCALAR,
     "TextureCoordinate": ("MaterialFloat2",),
     "ScreenPosition": ("MaterialFloat2",),
