@@ -179,6 +179,15 @@ def test_properties_have_the_defaults_of_the_material(three: Three) -> None:
     assert np.abs(drawn - through("paper_lantern", bare))[..., :3][mesh.hit].max() < 1.0 / 255.0
 
 
+def test_another_prefix_draws_the_same(three: Three) -> None:
+    mesh = mesh_of("ice")
+    own, other = (
+        three_values.shade(sssgen.compile("ice", "threejs", prefix=prefix), mesh.shell, three, mesh.size, mesh.points)
+        for prefix in ("", "wax_")
+    )
+    assert (own == other).all() and own.max() > 0.2
+
+
 def test_an_error_of_three_is_reported(three: Three) -> None:
     mesh, compiled = mesh_of("resin_inlay"), sssgen.compile("resin_inlay", "threejs")
     declared = r"(Surface|fn) sss_evaluate_surface\("
