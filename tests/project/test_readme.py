@@ -69,7 +69,7 @@ def test_the_table_of_targets() -> None:
         "python": "Python",
         "godot": "Godot 4.6's parser",
     }
-    words |= {"unity": "C preprocessor", "unreal": "DXC"}
+    words |= {"unity": "C preprocessor", "unreal": "DXC", "bevy": "wesl"}
     assert list(rows) == [name for name in rows if name in registry.names()]
     for name in registry.names():
         if (ROOT / "targets" / f"{name}.toml").is_file():

@@ -84,6 +84,10 @@ _RECORDS = (
         "unity_backend:UnityHLSL", "as `hlsl`, and a C preprocessor (Debian: `gcc`)", {"compiler": "dxc"},
     ),
     BackendRecord(
+        "bevy", "functions for Bevy: WESL, linked by npm wesl, then through naga, in wgpu", "bevy",
+        "bevy_backend:BevyWGSL", "as `webgpu`, node and the npm package `wesl`",
+    ),
+    BackendRecord(
         "unreal", "functions for Unreal: behind a stand-in for the engine, through DXC and SPIR-V, in OpenGL", "unreal",
         "unreal_backend:UnrealHLSL", "as `hlsl`", {"compiler": "dxc"},
     ),

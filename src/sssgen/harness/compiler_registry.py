@@ -50,6 +50,10 @@ _RECORDS = (
         "Godot 4.6: `make engines` sets it up beside the project (1.2 GB), or SSSGEN_GODOT names the program",
         apart=True,
     ),
+    CompilerRecord(
+        "bevy", "npm wesl with a stand-in for Bevy's modules, then naga and Tint", frozenset({"bevy"}), "bevy_compiler",
+        "`naga`, `tint` and the npm package `wesl`",
+    ),
     CompilerRecord("python", "Python itself", frozenset({"numpy"}), "python_syntax", "nothing"),
 )  # fmt: skip
 

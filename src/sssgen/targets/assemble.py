@@ -18,7 +18,7 @@ from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.printer import Comments, Line, Printer, comment_text
 from sssgen.targets.templates import render
-from sssgen.targets.uniform_layout import Member, place
+from sssgen.targets.uniform_layout import Member, padding, place
 
 _MARK = re.compile(r"\x02(\d{1,9})\x03", re.ASCII)
 
@@ -185,7 +185,8 @@ def _printed(
         "entry": _text(program.parts["entry"], marks),
     }
     bindings = [printer.binding(index) for index in range(len(textures))] if declares else []
-    return _context(target, program, printer, form, code), members, size, [place for place in bindings if place]
+    context = _context(target, program, printer, form, code) | {"padding": padding(members)}
+    return context, members, size, [place for place in bindings if place]
 
 
 def _without(kinds: Sequence[str], context: dict[str, Any], program: Program, marks: list[Span]) -> dict[str, Any]:

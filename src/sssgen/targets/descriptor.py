@@ -115,10 +115,16 @@ class TextureTexts(NamedTuple):
 
 
 class Bindings(NamedTuple):
-    """Where HLSL's constant buffer of the material goes; without a block the members alone are declared."""
+    """Where the uniform block of the material goes. HLSL: without a block the members alone are declared."""
 
     material_block: str = ""
     material_register: str = ""
+    group: str = ""
+    """WGSL: the group, where it is a name of the engine's; else it is `material_group`."""
+    first: int = 0
+    """WGSL: the binding of the block; those of the textures and samplers follow."""
+    padded: bool = False
+    """WGSL: whether the block ends with members that make its size a multiple of 16 bytes."""
 
 
 class Port(NamedTuple):
@@ -158,7 +164,7 @@ class Target(NamedTuple):
     """Which printer prints it: glsl, gdshader, hlsl, wgsl or python, or `module:Class` of a plug-in."""
     dialect: str = ""
     """The intrinsic table's language: glsl, glsl-330, glsl-godot, hlsl, hlsl-dx9, hlsl-macros, hlsl-unreal, wgsl,
-    python."""
+    wgsl-wesl, python."""
     types: Mapping[str, str] = {}
     """Type as sssgen spells it → as the target does."""
     files: Mapping[str, tuple[OutputFile, ...]] = {}

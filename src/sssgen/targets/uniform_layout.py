@@ -67,3 +67,8 @@ def _hlsl_offset(end: int, type_: Type, size: int) -> int:
     if isinstance(type_, Matrix | Array):
         return _align(end, 16)
     return _align(end, 16) if end % 16 + size > 16 else end
+
+
+def padding(members: Sequence[Member]) -> int:
+    """How many floats behind the last member make the size of the block a multiple of 16 bytes."""
+    return -(members[-1].offset + members[-1].size) % 16 // 4 if members else 0

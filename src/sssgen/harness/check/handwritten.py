@@ -14,6 +14,7 @@ LANGUAGES_OF: dict[str, tuple[str, ...]] = {
     ".frag": _GLSL,
     ".glsl": _GLSL,
     ".wgsl": ("wgsl",),
+    ".wesl": ("bevy",),
     ".hlsl": ("hlsl", "unity-urp", "unity-builtin", "unity-shadergraph"),
     ".cginc": ("unity-builtin",),
     ".ush": ("unreal",),

@@ -98,16 +98,22 @@ class Tint(Compiler):
         raise EOFError
 
 
-def find() -> Tint:
-    """Tint in node. SSSGEN_NODE_MODULES names the folder that npm filled, else it is build/node/node_modules.
+def node_modules() -> tuple[str, Path]:
+    """node, and the folder that npm filled: SSSGEN_NODE_MODULES names it, else it is build/node/node_modules.
 
-    Raises CompilerMissing where node or the package is lacking.
+    Raises CompilerMissing where node is lacking.
     """
     node = shutil.which("node") or shutil.which("nodejs")
     if node is None:
         raise CompilerMissing("node (Debian: nodejs npm)")
     configured = os.environ.get("SSSGEN_NODE_MODULES")
     modules = Path(configured) if configured else folder("build") / "node" / "node_modules"
+    return node, modules.resolve()
+
+
+def find() -> Tint:
+    """Tint in node. Raises CompilerMissing where node or the package is lacking."""
+    node, modules = node_modules()
     if not (modules / "webgpu" / "package.json").is_file():
         raise CompilerMissing("npm install --prefix build/node webgpu@0.6.2 (make setup does it)")
-    return Tint(node, modules.resolve())
+    return Tint(node, modules)

@@ -14,7 +14,7 @@ from sssgen.passes.uniform_blocks import block_type
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.printer import PRIMARY, UNARY, Line, Printer, documented, wrap
 from sssgen.targets.printers.wgsl_entry import print_entry
-from sssgen.targets.uniform_layout import Member
+from sssgen.targets.uniform_layout import Member, padding
 
 _TYPED = (ir.Local, ir.Global, ir.Call, ir.Construct)
 
@@ -65,7 +65,11 @@ class WgslPrinter(Printer):
 
     def listed(self, texts: list[str]) -> str:
         """The arguments; `(x < y)` is in parentheses, as `x < y, z > t` would be read as a template x<y, z>."""
-        return ", ".join([*(f"({text})" if _has_open_less(text) else text for text in texts[:-1]), *texts[-1:]])
+        first = [f"({text})" if _has_open_less(text) else text for text in texts[:-1]]
+        last = texts[-1:]
+        if self.target.dialect == "wgsl-wesl" and first != texts[:-1]:  # npm wesl reads `<y), z>` as a template, too
+            last = [f"({text})" for text in last]
+        return ", ".join([*first, *last])
 
     def argument(self, arg: ir.Expr, param: ir.Param) -> str:
         if param.direction == "in" or not isinstance(arg, ir.Local):
@@ -122,8 +126,14 @@ class WgslPrinter(Printer):
         for member in members:
             text = self.type(block_type(member.uniform.type, self.target.capabilities))
             lines.append(documented(f"    {member.uniform.name}: {text},", member.uniform))
-        place = f"@group({self.target.material_group}) @binding(0)"
+        if self.target.bindings.padded:
+            lines += [Line(f"    padding_{index}: f32,") for index in range(padding(members))]
+        place = f"@group({self.group}) @binding({self.target.bindings.first})"
         return [*lines, Line("}"), Line(f"{place} var<uniform> material: Material;")]
+
+    @property
+    def group(self) -> int | str:
+        return self.target.bindings.group or self.target.material_group
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
         """Each texture and its sampler, at the bindings after the uniform struct's."""
@@ -139,7 +149,8 @@ class WgslPrinter(Printer):
         return lines
 
     def binding(self, index: int) -> dict[str, int | str]:
-        return {"group": self.target.material_group, "texture": 1 + 2 * index, "sampler": 2 + 2 * index}
+        first = self.target.bindings.first
+        return {"group": self.group, "texture": first + 1 + 2 * index, "sampler": first + 2 + 2 * index}
 
 
 def _has_type(call: ir.Intrinsic) -> bool:
