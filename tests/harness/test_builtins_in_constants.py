@@ -17,7 +17,7 @@ from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
 
 PYTHON = {"float": float, "int": int, "uint": int, "bool": bool}
-BACKENDS = ("numpy", "gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity")
+BACKENDS = ("numpy", "gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity", "metal")
 
 
 class Case(NamedTuple):

@@ -58,7 +58,7 @@ LIGHT = "[[light]]\ndirection = [1.0, 2.0, -0.5]\ncolor = [1.0, 1.0, 1.0]\n"
 BALL = f'[geometry]\nkind = "ball"\nradius = {0.5 * RADIUS}\nscale = 2.0\nrotation = [10, 20, 30]\n'
 TORUS = '[geometry]\nkind = "torus"\nmajor = 0.7\nminor = 0.3\nrotation = [50, 20, 10]\nposition = [0.2, -0.3, 0.0]\n'
 SIZE = (48, 36)
-DRAWING = ["gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity", "unity-urp"]
+DRAWING = ["gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity", "unity-urp", "metal"]
 
 
 @pytest.fixture

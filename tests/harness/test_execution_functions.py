@@ -20,7 +20,7 @@ from sssgen.lang.loader import load_text
 LANES = 48
 
 
-@pytest.fixture(params=["gl", "webgpu", "hlsl"])
+@pytest.fixture(params=["gl", "webgpu", "hlsl", "metal"])
 def gpu(request: pytest.FixtureRequest, backend: Callable[[str], Backend]) -> Backend:
     """A back end for each language."""
     return backend(request.param)

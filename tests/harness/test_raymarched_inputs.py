@@ -66,13 +66,13 @@ def test_the_distance_of_the_hit_in_closed_form(folder: Path) -> None:
     assert hit.sum() > 50
 
 
-@pytest.mark.parametrize("name", ["gl", "gl-es", "webgpu", "browser", "hlsl", "unity", "unity-urp"])
+@pytest.mark.parametrize("name", ["gl", "gl-es", "webgpu", "browser", "hlsl", "unity", "unity-urp", "metal"])
 def test_every_back_end_shows_the_same(name: str, backend: Callable[[str], Backend], folder: Path) -> None:
     scene = parse_scene(SCENE, folder / "scene.toml")
     oracle = render(scene, backends.get("numpy"), SIZE).linear
     shown = render(scene, backend(name), SIZE).linear
     np.testing.assert_allclose(shown[..., :2], oracle[..., :2], atol=4e-3)
-    if name in ("webgpu", "browser", "hlsl"):  # their framebuffers count rows from the top
+    if name in ("webgpu", "browser", "hlsl", "metal"):  # their framebuffers count rows from the top
         shown[..., 2] = np.where(oracle[..., 0] > 0.0, 1.0 - shown[..., 2], shown[..., 2])
     np.testing.assert_allclose(shown[..., 2], oracle[..., 2], atol=4e-3)
     assert np.ptp(oracle[oracle[..., 0] > 0.0], axis=0).min() > 0.05

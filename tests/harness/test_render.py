@@ -23,7 +23,7 @@ from sssgen.harness.scenes.geometry import Ball
 from sssgen.harness.scenes.scene_loading import load
 from sssgen.support.diagnostics import SssgenError
 
-DRAWING = ["gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang"]
+DRAWING = ["gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "metal"]
 
 PROBE = """
 uniform float shade : hint_range(0.0, 1.0) = 0.5;

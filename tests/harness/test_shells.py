@@ -26,7 +26,7 @@ from sssgen.ir.types import VEC3
 from sssgen.material.material_loading import examples, load_material
 from sssgen.pipeline.compiler import Compiled, all_targets, compile
 
-PLAIN = ["numpy", "numpy-f32", "gl", "gl-es", "webgpu", "hlsl", "hlsl-glslang"]
+PLAIN = ["numpy", "numpy-f32", "gl", "gl-es", "webgpu", "hlsl", "hlsl-glslang", "metal"]
 DRAWN_SHELLS = [*((name, probe) for name in [*PLAIN, "unity-urp"] for probe in ("lit", "unlit")), ("unity", "unlit")]
 SIZE = (8, 6)
 BRIGHT = 1e8

@@ -16,7 +16,7 @@ from sssgen.harness.scenes.scene_loading import load
 from sssgen.material.material_loading import parse_material
 from sssgen.support.diagnostics import SssgenError
 
-DRAWING = ["gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity", "unity-urp"]
+DRAWING = ["gl", "gl-es", "webgpu", "browser", "hlsl", "hlsl-glslang", "unity", "unity-urp", "metal"]
 SIZE = (24, 16)
 
 # two triangles that face +z, and bend at their common edge

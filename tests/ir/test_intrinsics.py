@@ -36,7 +36,7 @@ dFdyCoarse fwidthCoarse textureOffset textureLodOffset textureGradOffset texelFe
 textureGatherOffset textureQueryLevels textureQueryLod
 """.split()  # noqa: SIM905 (a hundred names)
 )
-LANGUAGES = ("glsl", "glsl-330", "glsl-godot", "hlsl", "hlsl-dx9", "hlsl-macros", "wgsl")
+LANGUAGES = ("glsl", "glsl-330", "glsl-godot", "hlsl", "hlsl-dx9", "hlsl-macros", "hlsl-unreal", "wgsl", "wgsl-metal")
 OWN = {
     *("saturate", "fmod", "unpackNormal", "textureLayer", "textureLayerLod", "textureLayerGrad", "texelFetchLayer"),
     *("textureCompare", "textureCompareLod", "textureLayerOffset", "textureLayerLodOffset", "textureLayerGradOffset"),

@@ -68,6 +68,7 @@ def test_the_table_of_targets() -> None:
         "tint": "Tint",
         "python": "Python",
         "godot": "Godot 4.6's parser",
+        "metal": "g++",
     }
     words |= {"unity": "C preprocessor", "unreal": "DXC", "bevy": "wesl"}
     assert list(rows) == [name for name in rows if name in registry.names()]

@@ -24,7 +24,7 @@ def failures(figures: dict[str, Figure]) -> str:
     return "\n".join(f"{name}: {figure}" for name, figure in figures.items() if not figure.right)
 
 
-@pytest.mark.parametrize("name", BACKENDS)
+@pytest.mark.parametrize("name", [*BACKENDS, "metal"])
 def test_every_builtin_is_within_its_limits(name: str, backend: Callable[[str], Backend]) -> None:
     gpu = backend(name)
     figures = measure(gpu, cases(LANES))

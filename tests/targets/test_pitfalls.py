@@ -34,7 +34,7 @@ def test_names_are_used_once() -> None:
     assert len({function.name for _, function in functions}) == len(functions)
 
 
-@pytest.mark.parametrize("target", [*TARGETS, "unity-shadergraph", "unreal", "bevy"])
+@pytest.mark.parametrize("target", [*TARGETS, "metal", "unity-shadergraph", "unreal", "bevy"])
 def test_every_case_compiles(target: str, assert_compiles: Callable[[Source], None]) -> None:
     """All cases in one library, in every compiler that reads the target."""
     name = TARGETS.get(target, target)

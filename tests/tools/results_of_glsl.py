@@ -13,7 +13,7 @@ from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
 from sssgen.targets.runtime.numpy_textures import Texture
 
-BACKENDS = ("numpy", "gl", "gl-es", "webgpu", "hlsl", "hlsl-glslang", "unity")
+BACKENDS = ("numpy", "gl", "gl-es", "webgpu", "hlsl", "hlsl-glslang", "unity", "metal")
 LANES = 4
 
 

@@ -91,6 +91,10 @@ _RECORDS = (
         "unreal", "functions for Unreal: behind a stand-in for the engine, through DXC and SPIR-V, in OpenGL", "unreal",
         "unreal_backend:UnrealHLSL", "as `hlsl`", {"compiler": "dxc"},
     ),
+    BackendRecord(
+        "metal", "Metal on the processor: g++ with a stand-in for Metal's library", "metal", "metal_backend:MetalOnCpu",
+        "`g++` (Debian: `g++`)", driver=False,
+    ),
 )  # fmt: skip
 
 BACKENDS = {record.name: record for record in _RECORDS}

@@ -54,6 +54,10 @@ _RECORDS = (
         "bevy", "npm wesl with a stand-in for Bevy's modules, then naga and Tint", frozenset({"bevy"}), "bevy_compiler",
         "`naga`, `tint` and the npm package `wesl`",
     ),
+    CompilerRecord(
+        "metal", "g++ with a stand-in for Metal's library", frozenset({"metal"}), "metal_compiler",
+        "`g++` (Debian: `g++`)",
+    ),
     CompilerRecord("python", "Python itself", frozenset({"numpy"}), "python_syntax", "nothing"),
 )  # fmt: skip
 

@@ -7,6 +7,7 @@ known wherever the template placed it.
 from __future__ import annotations
 
 import re
+import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -16,7 +17,7 @@ from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.targets.descriptor import Target
-from sssgen.targets.printers.printer import Comments, Line, Printer, comment_text
+from sssgen.targets.printers.printer import WIDTH, Comments, Line, Printer, comment_text
 from sssgen.targets.templates import render
 from sssgen.targets.uniform_layout import Member, padding, place
 
@@ -93,6 +94,7 @@ _PRINTERS = {
     "gdshader": "sssgen.targets.printers.gdshader:GodotPrinter",
     "hlsl": "sssgen.targets.printers.hlsl:HlslPrinter",
     "wgsl": "sssgen.targets.printers.wgsl:WgslPrinter",
+    "metal": "sssgen.targets.printers.metal:MetalPrinter",
     "python": "sssgen.targets.printers.numpy_printer:NumpyPrinter",
 }
 
@@ -171,7 +173,7 @@ def _printed(
     printer.groups = {name: program.owners[source][0] for name, source in owners.items() if source in program.owners}
     members, size = place(module.uniforms, target.layout)
     textures = [uniform for uniform in module.uniforms if isinstance(uniform.type, Sampler)]
-    declares = form not in target.parameters
+    declares = target.declares(form)
     uniform_lines: list[Line] = printer.print_uniforms(members) if declares else []
     texture_lines: list[Line] = printer.print_textures(textures) if declares else []
     code = {
@@ -247,8 +249,6 @@ def _context(target: Target, program: Program, printer: Printer, form: str, code
 
 def _header(target: Target, program: Program) -> list[str]:
     """The comment at the head of a file: its contents, and where to change them."""
-    import textwrap
-
     about = program.about
     description = f"{about.title}: {about.doc}" if about.doc else about.title
     origin = "the material" if program.entries else "the source"
@@ -278,13 +278,16 @@ def _entry(target: Target, printer: Printer, kind: str, function: Function, inpu
         text = expressions.get(name, name) if name else _passed(printer, param, uniform)
         described = {"name": param.name, "type": printer.type(param.type), "base": spell(param.type)}
         params.append({**described, "input": name, "uniform": uniform, "expression": text})
-    call = f"{function.name}({', '.join([param['expression'] for param in params])})"
+    listed = ", ".join([param["expression"] for param in params])
+    if target.declared:  # all uniforms are among the arguments
+        listed = textwrap.fill(listed, WIDTH - 12, subsequent_indent=" " * 12, break_long_words=False)
+    call = f"{function.name}({listed})"
     return {"name": function.name, "params": params, "result": printer.type(function.result), "call": call}
 
 
 def _passed(printer: Printer, param: Param, uniform: str) -> str:
     """A uniform as an argument; the shell has it under the uniform's name, not under the parameter's."""
-    return printer.argument(Local(param.type, uniform, param.span), param)
+    return printer.passed(Local(param.type, uniform, param.span), param)
 
 
 def _hint(uniform: Uniform, *names: str) -> tuple[str, tuple[Any, ...]]:
@@ -346,6 +349,8 @@ def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:
                 "source_name": source,
                 "property": property_name(printer.target, source),
                 "sampler": printer.sampler(uniform.name),
+                "type": printer.type(uniform.type),
+                "sampler_type": printer.sampler_type(uniform.type),
                 "dim": uniform.type.dim,
                 "default": _DEFAULTS.get(_hint(uniform, *_DEFAULTS)[0], "white"),
                 "hint": _hint(uniform, "normal_map")[0] or _hint(uniform, "source_color")[0],

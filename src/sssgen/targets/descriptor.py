@@ -85,7 +85,7 @@ class Conventions(NamedTuple):
     semantics: str = ""
     """The same in HLSL."""
     locations: str = ""
-    """The same in WGSL."""
+    """The same in WGSL and Metal."""
 
 
 class Limits(NamedTuple):
@@ -161,10 +161,10 @@ class Target(NamedTuple):
     name: str = ""
     title: str = ""
     language: str = ""
-    """Which printer prints it: glsl, gdshader, hlsl, wgsl or python, or `module:Class` of a plug-in."""
+    """Which printer prints it: glsl, gdshader, hlsl, metal, wgsl or python, or `module:Class` of a plug-in."""
     dialect: str = ""
     """The intrinsic table's language: glsl, glsl-330, glsl-godot, hlsl, hlsl-dx9, hlsl-macros, hlsl-unreal, wgsl,
-    wgsl-wesl, python."""
+    wgsl-metal, wgsl-wesl, python."""
     types: Mapping[str, str] = {}
     """Type as sssgen spells it → as the target does."""
     files: Mapping[str, tuple[OutputFile, ...]] = {}
@@ -198,9 +198,11 @@ class Target(NamedTuple):
     uniform_style: str = "plain"
     """plain keeps `distortion`; unity makes `_Distortion`."""
     layout: str = ""
-    """The rule for offsets in a uniform block: std140, hlsl, or '' where there is none."""
+    """The rule for offsets in a uniform block: std140, hlsl, simd, or '' where there is none."""
     parameters: tuple[str, ...] = ("functions",)
     """The forms in which uniforms are passed to every function instead of being read as globals."""
+    declared: tuple[str, ...] = ()
+    """Those of these forms whose shell declares the uniforms all the same, and passes them."""
     version: str = ""
     """GLSL: the `#version` line."""
     precision: str = ""
@@ -215,6 +217,10 @@ class Target(NamedTuple):
     """Where the descriptor is; a plug-in keeps its `templates` there."""
     half_of: str = ""
     """The target of which this one is the variant in half precision; '' for every other."""
+
+    def declares(self, form: str) -> bool:
+        """Whether the text of a form declares the uniforms and textures."""
+        return form not in self.parameters or form in self.declared
 
 
 _REQUIRED = ("title", "language", "types", "files")

@@ -23,7 +23,7 @@ def reflect(
 ) -> dict[str, Any]:
     """Everything that an engine or a tool needs to bind the shader, as JSON."""
     offsets = {member.uniform.name: member for member in emitted.members}
-    blocked = bool(target.layout) and form not in target.parameters
+    blocked = bool(target.layout) and target.declares(form)
     uniforms: list[dict[str, Any]] = []
     textures: list[dict[str, Any]] = []
     for uniform in program.module.uniforms:

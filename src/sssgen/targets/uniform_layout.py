@@ -1,7 +1,8 @@
 """The layout of a uniform block.
 
 std140 (OpenGL 4.6, section 7.6.2.2) is the rule that every API can be made to follow: WGSL's own alignment gives the
-same offsets for these types, and HLSL's packing does with explicit padding where it packs tighter.
+same offsets for these types, and HLSL's packing does with explicit padding where it packs tighter. Metal's structs are
+those of C with the vectors of Apple's header simd: three numbers take the place of four.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from sssgen.ir.nodes import Uniform
-from sssgen.ir.types import Array, Matrix, Sampler, Type, components
+from sssgen.ir.types import Array, Matrix, Sampler, Type, components, kind_of
 
 
 class Member(NamedTuple):
@@ -24,6 +25,8 @@ class Member(NamedTuple):
 
 def place(uniforms: Sequence[Uniform], rule: str) -> tuple[list[Member], int]:
     """The members of a block in order, and its size in bytes. Textures are left out."""
+    if rule == "simd":
+        return _as_simd(uniforms)
     members: list[Member] = []
     end = 0
     for uniform in uniforms:
@@ -36,6 +39,28 @@ def place(uniforms: Sequence[Uniform], rule: str) -> tuple[list[Member], int]:
         members.append(Member(uniform, offset, size, padding))
         end = offset + (size if rule == "hlsl" else _std140_size(uniform.type, size))
     return members, _align(end, 16)
+
+
+def _as_simd(uniforms: Sequence[Uniform]) -> tuple[list[Member], int]:
+    members: list[Member] = []
+    end, largest = 0, 1
+    for uniform in uniforms:
+        if isinstance(uniform.type, Sampler):
+            continue
+        size, alignment = _simd_size(uniform.type)
+        members.append(Member(uniform, _align(end, alignment), size, 0))
+        end, largest = members[-1].offset + size, max(largest, alignment)
+    return members, _align(end, largest)
+
+
+def _simd_size(type_: Type) -> tuple[int, int]:
+    """The size and the alignment."""
+    if isinstance(type_, Array):
+        size, alignment = _simd_size(type_.element)
+        return size * type_.length, alignment
+    count = type_.size if isinstance(type_, Matrix) else components(type_)
+    width = (1 if kind_of(type_) == "bool" else 4) * (4 if count == 3 else count)
+    return (width * count if isinstance(type_, Matrix) else width), width
 
 
 def _align(offset: int, alignment: int) -> int:

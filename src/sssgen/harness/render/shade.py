@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from sssgen.harness.backends import Array, Backend, DrawingBackend
 from sssgen.harness.backends.isolated import Isolated
+from sssgen.harness.backends.metal_backend import MetalOnCpu
 from sssgen.harness.backends.numpy_reference import Reference
 from sssgen.harness.backends.unity_backend import UnityHLSL
-from sssgen.harness.render import pixel_mesh, shade_numpy, unity_values
+from sssgen.harness.render import metal_values, pixel_mesh, shade_numpy, unity_values
 from sssgen.harness.render.shell_values import Shell, drawing
 from sssgen.pipeline.compiler import Compiled
 
@@ -24,6 +25,8 @@ def shade(backend: Backend, compiled: Compiled, shell: Shell, size: tuple[int, i
         return shade_numpy.shade(compiled, shell, size, points, backend.dtype)
     if isinstance(backend, UnityHLSL):
         return unity_values.shade(compiled, shell, backend, size, points)
+    if isinstance(backend, MetalOnCpu):
+        return metal_values.shade(compiled, shell, backend, size, points)
     assert isinstance(backend, DrawingBackend)
     triangles = None if points is None else pixel_mesh.triangles(size, shell.front)
     picture = backend.draw(drawing(compiled, shell, size, points, triangles))

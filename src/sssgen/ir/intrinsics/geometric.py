@@ -41,7 +41,8 @@ def _away_from_total_reflection(rt: Any, x: Any, y: Any, z: Any, rounding: float
 # A table: several fields to a line.
 # fmt: off
 ROWS = (
-    Builtin("length", ("float(genF)",), "Euclidean length.",
+    Builtin("length", ("float(vecF)", "float(float)"), "Euclidean length.",
+        texts={"wgsl-metal/float": "abs"},
         fold=lambda x: [_length(x)], relation="length", componentwise=False, range=vector_ranges.length,
         inside=lambda rt, x: (rt.dot(x, x) < 1e38) & ((rt.dot(x, x) > 1e-30) | (rt.dot(x, x) == 0.0)),
         domain="dot(x, x) does not overflow: |x| < 1e19", kind="transcendental", cost=2, once=4, ulp=8.0,
@@ -51,7 +52,7 @@ ROWS = (
     Builtin("distance", _REDUCE, "Length of x - y.",
         fold=lambda x, y: [_length([a - b for a, b in zip(x, y)])], componentwise=False, range=vector_ranges.distance,
         inside=lambda rt, x, y: (rt.dot(x - y, x - y) < 1e38) & ((rt.dot(x - y, x - y) > 1e-30) | (rt.dot(x - y, x - y) == 0.0)),
-        domain="|x - y| < 1e19", texts={"hlsl/float,float": ""}, polyfill="float distance(float x, float y) { return abs(x - y); }",
+        domain="|x - y| < 1e19", texts={"hlsl/float,float": "", "wgsl-metal/float,float": ""}, polyfill="float distance(float x, float y) { return abs(x - y); }",
         kind="transcendental", cost=3, once=4, ulp=8.0, clause="WGSL, Vulkan: that of length(x - y)",
         vectors=(
             (((4.0, 6.0), (1.0, 2.0)), 5.0), (((1.0, 2.0, 3.0), (1.0, 2.0, 3.0)), 0.0), ((1.0, -1.5), 2.5),
@@ -96,7 +97,8 @@ ROWS = (
         "x where dot(z, y) < 0, else -x: the normal x turned against the direction of incidence y.",
         not_constant=("wgsl",), fold=lambda x, y, z: [a if _dot(z, y) < 0.0 else -a for a in x], quantity="direction", componentwise=False, range=vector_ranges.faceforward,
         inside=_signed_dot,
-        texts={"hlsl/float,float,float": "", "wgsl": "faceForward", "wgsl/float,float,float": ""},
+        texts={"hlsl/float,float,float": "", "wgsl": "faceForward", "wgsl/float,float,float": "",
+            "wgsl-metal/vecF,vecF,vecF": "faceforward"},
         polyfill="float faceforward(float x, float y, float z) { return z * y < 0.0 ? x : -x; }", cost=4,
         ulp=0.0, vectors=(
             (((0.0, 1.0), (0.0, -1.0), (0.0, 1.0)), (0.0, 1.0)),

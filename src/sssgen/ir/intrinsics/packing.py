@@ -14,7 +14,7 @@ ROWS = (
         "Two numbers in [-1, 1], each as a signed 16-bit fraction of 32767.",
         componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
         inside=lambda rt, x: abs(rt.fract(rt.clamp(x, -1.0, 1.0) * 32767.0) - 0.5) > 0.01,
-        texts={"glsl-330": "", "hlsl": "", "wgsl": "pack2x16snorm"},
+        texts={"glsl-330": "", "hlsl": "", "wgsl": "pack2x16snorm", "wgsl-metal": ""},
         polyfill="""
 uint packSnorm2x16(vec2 x) {
     ivec2 i = ivec2(round(clamp(x, -1.0, 1.0) * 32767.0));
@@ -26,7 +26,7 @@ uint packSnorm2x16(vec2 x) {
     Builtin("packUnorm2x16", ("uint(vec2)",), "Two numbers in [0, 1], each as a 16-bit fraction of 65535.",
         componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
         inside=lambda rt, x: abs(rt.fract(rt.clamp(x, 0.0, 1.0) * 65535.0) - 0.5) > 0.01,
-        texts={"glsl-330": "", "hlsl": "", "wgsl": "pack2x16unorm"},
+        texts={"glsl-330": "", "hlsl": "", "wgsl": "pack2x16unorm", "wgsl-metal": ""},
         polyfill="""
 uint packUnorm2x16(vec2 x) {
     uvec2 u = uvec2(round(clamp(x, 0.0, 1.0) * 65535.0));
@@ -39,7 +39,7 @@ uint packUnorm2x16(vec2 x) {
         fold=lambda x: [int.from_bytes(struct.pack("<2e", *x), "little")], samples=Samples(halves=True), componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
         inside=lambda rt, x: rt.unpackHalf2x16(rt.packHalf2x16(x)) == x,
         domain="representable in float16: the rounding is the target's",
-        texts={"glsl-330": "", "hlsl": "dot(f32tof16({0}), uint2(1u, 65536u))", "hlsl-dx9": "", "wgsl": "pack2x16float"},
+        texts={"glsl-330": "", "hlsl": "dot(f32tof16({0}), uint2(1u, 65536u))", "hlsl-dx9": "", "wgsl": "pack2x16float", "wgsl-metal": ""},
         polyfill="""
 uint packHalf2x16(vec2 x) {
     uvec2 bits = floatBitsToUint(abs(x));
@@ -56,7 +56,7 @@ uint packHalf2x16(vec2 x) {
     Builtin("unpackSnorm2x16", ("vec2(uint)",),
         "Two numbers in [-1, 1] from signed 16-bit fractions of 32767.",
         float32_bits=True, not_constant=("wgsl",), componentwise=False, range=all_within(-1.0, 1.0),
-        texts={"glsl-330": "", "hlsl": "", "wgsl": "unpack2x16snorm"},
+        texts={"glsl-330": "", "hlsl": "", "wgsl": "unpack2x16snorm", "wgsl-metal": ""},
         polyfill="""
 vec2 unpackSnorm2x16(uint x) {
     return clamp(vec2(float(int(x << 16u) >> 16), float(int(x) >> 16)) / 32767.0, -1.0, 1.0);
@@ -67,7 +67,7 @@ vec2 unpackSnorm2x16(uint x) {
     ),
     Builtin("unpackUnorm2x16", ("vec2(uint)",), "Two numbers in [0, 1] from 16-bit fractions of 65535.",
         float32_bits=True, not_constant=("wgsl",), componentwise=False, range=all_within(0.0, 1.0),
-        texts={"glsl-330": "", "hlsl": "", "wgsl": "unpack2x16unorm"},
+        texts={"glsl-330": "", "hlsl": "", "wgsl": "unpack2x16unorm", "wgsl-metal": ""},
         polyfill="vec2 unpackUnorm2x16(uint x) { return vec2(float(x & 65535u), float(x >> 16u)) / 65535.0; }",
         cost=3,
         vectors=(((0xFFFF,), (1.0, 0.0)), ((0,), (0.0, 0.0)), ((0x80000000,), (0.0, 0.5000076295109483))),
@@ -79,7 +79,7 @@ vec2 unpackSnorm2x16(uint x) {
         inside=lambda rt, x: abs(rt.unpackHalf2x16(x)) < 1e5,
         domain="both are finite",
         texts={
-            "glsl-330": "", "hlsl": "f16tof32(({0}) >> uint2(0u, 16u))", "hlsl-dx9": "", "wgsl": "unpack2x16float",
+            "glsl-330": "", "hlsl": "f16tof32(({0}) >> uint2(0u, 16u))", "hlsl-dx9": "", "wgsl": "unpack2x16float", "wgsl-metal": "",
         },
         polyfill="""
 vec2 unpackHalf2x16(uint x) {
@@ -97,7 +97,7 @@ vec2 unpackHalf2x16(uint x) {
     Builtin("packSnorm4x8", ("uint(vec4)",), "Four numbers in [-1, 1], each as a signed 8-bit fraction of 127.",
         componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
         inside=lambda rt, x: abs(rt.fract(rt.clamp(x, -1.0, 1.0) * 127.0) - 0.5) > 0.01,
-        texts={"glsl": "", "hlsl": "", "wgsl": "pack4x8snorm"},
+        texts={"glsl": "", "hlsl": "", "wgsl": "pack4x8snorm", "wgsl-metal": ""},
         polyfill="""
 uint packSnorm4x8(vec4 x) {
     uvec4 u = uvec4(ivec4(round(clamp(x, -1.0, 1.0) * 127.0))) & 0xffu;
@@ -111,7 +111,7 @@ uint packSnorm4x8(vec4 x) {
     Builtin("packUnorm4x8", ("uint(vec4)",), "Four numbers in [0, 1], each as an 8-bit fraction of 255.",
         componentwise=False, range=any_numbers, float32_bits=True, not_constant=("wgsl",),
         inside=lambda rt, x: abs(rt.fract(rt.clamp(x, 0.0, 1.0) * 255.0) - 0.5) > 0.01,
-        texts={"glsl": "", "hlsl": "", "wgsl": "pack4x8unorm"},
+        texts={"glsl": "", "hlsl": "", "wgsl": "pack4x8unorm", "wgsl-metal": ""},
         polyfill="""
 uint packUnorm4x8(vec4 x) {
     uvec4 u = uvec4(round(clamp(x, 0.0, 1.0) * 255.0));
@@ -124,7 +124,7 @@ uint packUnorm4x8(vec4 x) {
     ),
     Builtin("unpackSnorm4x8", ("vec4(uint)",), "Four numbers in [-1, 1] from signed 8-bit fractions of 127.",
         float32_bits=True, not_constant=("wgsl",), componentwise=False, range=all_within(-1.0, 1.0),
-        texts={"glsl": "", "hlsl": "", "wgsl": "unpack4x8snorm"},
+        texts={"glsl": "", "hlsl": "", "wgsl": "unpack4x8snorm", "wgsl-metal": ""},
         polyfill="""
 vec4 unpackSnorm4x8(uint x) {
     ivec4 parts = ivec4(int(x << 24u), int(x << 16u), int(x << 8u), int(x)) >> 24u;
@@ -137,7 +137,7 @@ vec4 unpackSnorm4x8(uint x) {
     ),
     Builtin("unpackUnorm4x8", ("vec4(uint)",), "Four numbers in [0, 1] from 8-bit fractions of 255.",
         float32_bits=True, not_constant=("wgsl",), componentwise=False, range=all_within(0.0, 1.0),
-        texts={"glsl": "", "hlsl": "", "wgsl": "unpack4x8unorm"},
+        texts={"glsl": "", "hlsl": "", "wgsl": "unpack4x8unorm", "wgsl-metal": ""},
         polyfill="""
 vec4 unpackUnorm4x8(uint x) {
     return vec4(float(x & 255u), float((x >> 8u) & 255u), float((x >> 16u) & 255u), float(x >> 24u)) / 255.0;

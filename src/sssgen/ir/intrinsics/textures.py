@@ -119,6 +119,12 @@ ROWS = (
         "Size in texels of level y, and how many layers there are.",
         size_query=True, componentwise=False, range=all_within(0.0, 65536.0), domain="the level exists",
         texts={
+            "wgsl-metal": "{type}({texture}.get_width(uint({1})), {texture}.get_height(uint({1})))",
+            **{f"wgsl-metal/{kind}sampler3D,int": "{type}({texture}.get_width(uint({1})), {texture}.get_height(uint({1})), {texture}.get_depth(uint({1})))" for kind in _KINDS},
+            **{
+                f"wgsl-metal/{sampler},int": "{type}({texture}.get_width(uint({1})), {texture}.get_height(uint({1})), {texture}.get_array_size())"
+                for sampler in ("sampler2DArray", "isampler2DArray", "usampler2DArray", "samplerCubeArray", "sampler2DArrayShadow")
+            },
             "hlsl": "texture_size({bare_texture}, {1})", "hlsl-dx9": "", "wgsl": "{type}(textureDimensions({texture}, {1}))",
             **{
                 f"wgsl/{sampler},int": "{type}(vec3u(textureDimensions({texture}, {1}), textureNumLayers({texture})))"
@@ -130,7 +136,9 @@ ROWS = (
     Builtin("textureQueryLevels", ("int(sampler2D)", "int(sampler3D)", "int(samplerCube)", "int(sampler2DArray)"),
         "How many levels there are.", componentwise=False, range=all_within(0.0, 32.0),
         size_query=True,
-        texts={"glsl": "", "hlsl": "", "wgsl": "{type}(textureNumLevels({texture}))"}, kind="fetch",
+        texts={
+            "wgsl-metal": "{type}({texture}.get_num_mip_levels())",
+            "glsl": "", "hlsl": "", "wgsl": "{type}(textureNumLevels({texture}))"}, kind="fetch",
     ),
     Builtin("textureQueryLod", ("vec2(sampler2D, vec2)", "vec2(sampler3D, vec3)"),
         "The level that a read would take at y, and the one that derivatives give. Only HLSL has it.",
@@ -153,6 +161,10 @@ ROWS = (
         with_level=Level("textureLod", 2), with_gradients="textureGrad", componentwise=False, range=texels,
         uniform_flow=True,
         texts={
+            "wgsl-metal": "{texture}.sample({sampler}, {1})",
+            **{f"wgsl-metal/{params(read)},float": "{texture}.sample({sampler}, {1}, metal::bias({2}))" for read in _SAMPLE},
+            **{f"wgsl-metal/{params(read)}{bias}": "" for read in _LAYERS for bias in ("", ",float")},
+            **{f"wgsl-metal/{shadow}": "" for shadow in _SHADOWS},
             "hlsl": "{texture}.Sample({sampler}, {1})",
             **{f"hlsl/{params(read)},float": "{texture}.SampleBias({sampler}, {1}, {2})" for read in (*_SAMPLE, *_LAYERS)},
             "hlsl-dx9": "tex{dim}({texture}, {1})",
@@ -184,6 +196,8 @@ float texture(sampler2DArrayShadow map, vec4 P) { return textureCompare(map, P.x
         "Filtered texture read at level z; HLSL and WGSL compare at level 0 only.",
         componentwise=False, range=texels, domain="z = 0 for a texture that compares",
         texts={
+            "wgsl-metal": "{texture}.sample({sampler}, {1}, metal::level({2}))", "wgsl-metal/sampler2DShadow,vec3,float": "",
+            **{f"wgsl-metal/{params(read)},float": "" for read in _LAYERS},
             "hlsl": "{texture}.SampleLevel({sampler}, {1}, {2})", "hlsl/sampler2DShadow,vec3,float": "",
             "hlsl-dx9": "tex{dim}lod({texture}, float4({1}, {2}))",
             "hlsl-dx9/sampler2D,vec2,float": "tex2Dlod({texture}, float4({1}, 0.0, {2}))",
@@ -210,6 +224,10 @@ float textureLod(sampler2DShadow map, vec3 P, float level) { return textureCompa
         "WGSL compare at level 0 only.",
         componentwise=False, range=texels,
         texts={
+            "wgsl-metal": "",
+            "wgsl-metal/sampler2D,vec2,vec2,vec2": "{texture}.sample({sampler}, {1}, gradient2d({2}, {3}))",
+            "wgsl-metal/sampler3D,vec3,vec3,vec3": "{texture}.sample({sampler}, {1}, gradient3d({2}, {3}))",
+            "wgsl-metal/samplerCube,vec3,vec3,vec3": "{texture}.sample({sampler}, {1}, gradientcube({2}, {3}))",
             "hlsl": "{texture}.SampleGrad({sampler}, {1}, {2}, {3})",
             "hlsl-dx9": "tex{dim}grad({texture}, {1}, {2}, {3})",
             "hlsl-macros": "{bare_texture}.SampleGrad({bare_sampler}, {1}, {2}, {3})",
@@ -234,6 +252,9 @@ float textureGrad(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy) { return t
         with_level=Level("textureLodOffset", 2), with_gradients="textureGradOffset",
         componentwise=False, range=texels, constant=(offset_at(2),), uniform_flow=True,
         texts={
+            "wgsl-metal": "",
+            **{f"wgsl-metal/{params(one)[:-1]}": "{texture}.sample({sampler}, {1}, {2})" for one in _offsets()[:2]},
+            **{f"wgsl-metal/{params(one)[:-1]},float": "{texture}.sample({sampler}, {1}, metal::bias({3}), {2})" for one in _offsets()[:2]},
             "glsl/sampler2DArrayShadow,vec4,ivec2": "",
             "hlsl": "{bare_texture}.Sample({bare_sampler}, {1}, {2})",
             **{f"hlsl/{params(one)[:-1]},float": "{bare_texture}.SampleBias({bare_sampler}, {1}, {3}, {2})" for one in _offsets()},
@@ -255,6 +276,8 @@ float textureOffset(sampler2DArrayShadow map, vec4 P, ivec2 offset) { return tex
         "As textureLod, with w added to the place in texels.",
         componentwise=False, range=texels, constant=(offset_at(3),), domain="z = 0 for a texture that compares",
         texts={
+            "wgsl-metal": "",
+            **{f"wgsl-metal/{params(one)[:-1]}": "{texture}.sample({sampler}, {1}, metal::level({2}), {3})" for one in _offsets(", float")[:2]},
             "hlsl": "{bare_texture}.SampleLevel({bare_sampler}, {1}, {2}, {3})", "hlsl-dx9": "",
             "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2}, {3})", "wgsl/sampler2DArray,vec3,float,ivec2": "",
             "hlsl/sampler2DShadow,vec3,float,ivec2": "", "wgsl/sampler2DShadow,vec3,float,ivec2": "",
@@ -273,6 +296,9 @@ float textureLodOffset(sampler2DShadow map, vec3 P, float level, ivec2 offset) {
         "As textureGrad, with the last argument added to the place in texels.",
         componentwise=False, range=texels, constant=(offset_at(4),),
         texts={
+            "wgsl-metal": "",
+            "wgsl-metal/sampler2D,vec2,vec2,vec2,ivec2": "{texture}.sample({sampler}, {1}, gradient2d({2}, {3}), {4})",
+            "wgsl-metal/sampler3D,vec3,vec3,vec3,ivec3": "{texture}.sample({sampler}, {1}, gradient3d({2}, {3}), {4})",
             "hlsl": "{bare_texture}.SampleGrad({bare_sampler}, {1}, {2}, {3}, {4})", "hlsl-dx9": "",
             "wgsl": "textureSampleGrad({texture}, {sampler}, {1}, {2}, {3}, {4})",
             "wgsl/sampler2DArray,vec3,vec2,vec2,ivec2": "",
@@ -292,6 +318,9 @@ float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec
         componentwise=False, range=texels, defined=_exists,
         domain="the texel and the level exist",
         texts={
+            "wgsl-metal": "",
+            **{f"wgsl-metal/{kind}sampler2D,ivec2,int": "{texture}.read(uint2({1}), uint({2}))" for kind in _KINDS},
+            **{f"wgsl-metal/{kind}sampler3D,ivec3,int": "{texture}.read(uint3({1}), uint({2}))" for kind in _KINDS},
             "hlsl": "{texture}.Load(int3({1}, {2}))", "hlsl-dx9": "",
             **{f"hlsl/{kind}sampler{dim},ivec3,int": "{texture}.Load(int4({1}, {2}))" for kind in _KINDS for dim in ("3D", "2DArray")},
             "hlsl-macros": "LOAD_TEXTURE{dim}_LOD({texture}, {1}, {2})",
@@ -331,6 +360,7 @@ float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec
         "from the lower left one. Of a texture that compares: 1 where the texel is not below the reference z, else 0.",
         componentwise=False, range=texels, constant=(channel_at(2),),
         texts={
+            "wgsl-metal": "",
             "glsl": "",
             "hlsl": "{bare_texture}.Gather{channel}({bare_sampler}, {1})", "hlsl-dx9": "",
             "wgsl": "textureGather(0, {texture}, {sampler}, {1})",
@@ -363,6 +393,7 @@ vec4 textureGather(sampler2DArrayShadow map, vec3 P, float reference) { return t
         "texture that compares.",
         componentwise=False, range=texels, constant=(offset_at(2), offset_at(3), channel_at(3)),
         texts={
+            "wgsl-metal": "",
             "glsl": "",
             "hlsl": "{bare_texture}.Gather{channel}({bare_sampler}, {1}, {2})", "hlsl-dx9": "",
             "hlsl/sampler2DShadow,vec2,float,ivec2": "{texture}.GatherCmp({sampler}, {1}, {2}, {3})",

@@ -30,11 +30,13 @@ def _reduced(rt: Any, x: Any) -> Any:
 # fmt: off
 ROWS = (
     Builtin("radians", F1, "Degrees to radians: x·pi/180.",
-        fold=lambda x: x * math.pi / 180.0, range=scaled(0.017453292519943295),
+        fold=lambda x: x * math.pi / 180.0, range=scaled(0.017453292519943295), texts={"wgsl-metal": ""},
+        polyfill="genF radians(genF x) { return x * 0.017453292519943295; }",
         vectors=(((90.0,), HALF_PI), ((0.0,), 0.0), ((-30.0,), -0.5235987755982989)),
     ),
     Builtin("degrees", F1, "Radians to degrees: x·180/pi.",
-        fold=lambda x: x * 180.0 / math.pi, range=scaled(57.29577951308232),
+        fold=lambda x: x * 180.0 / math.pi, range=scaled(57.29577951308232), texts={"wgsl-metal": ""},
+        polyfill="genF degrees(genF x) { return x * 57.29577951308232; }",
         vectors=(((1.0,), 57.29577951308232), ((0.0,), 0.0), ((-0.5,), -28.64788975654116)),
     ),
     Builtin("sin", F1, "Sine of an angle in radians.",

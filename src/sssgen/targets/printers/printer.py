@@ -207,6 +207,10 @@ class Printer:
             return self.target.textures.argument.format(name=arg.name, sampler=self.sampler(arg.name))
         return self.expr(arg)
 
+    def passed(self, uniform: ir.Local, param: ir.Param) -> str:
+        """A uniform or texture as the shell passes it to a function that has it as a parameter."""
+        return self.argument(uniform, param)
+
     def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
         """A builtin, by the intrinsic table's text for this language."""
         text = self.builtin_text(call.name, tuple([arg.type for arg in call.args]))
