@@ -179,6 +179,21 @@ def test_properties_have_the_defaults_of_the_material(three: Three) -> None:
     assert np.abs(drawn - through("paper_lantern", bare))[..., :3][mesh.hit].max() < 1.0 / 255.0
 
 
+def test_names_of_macros_are_free(three: Three, tmp_path: Path) -> None:
+    """three's shaders define PI and others as macros, which would replace local names."""
+    body = "{ float PI = OPAQUE; float EPSILON = PI * 2.0; float STANDARD = EPSILON; emission = vec3(STANDARD); }\n"
+    uniform = "/// O.\nuniform float OPAQUE = 0.25;\n"
+    text = f"{uniform}{HEAD.format('surface')}void made(out vec3 emission) {body}"
+    (tmp_path / "made.sss").write_text(text, encoding="utf-8")
+    (tmp_path / "m.toml").write_text('[material]\nname = "m"\n[[surface]]\ntechnique = "./made.sss"\n', "utf-8")
+    mesh = mesh_of("wax_mouse")
+    bare = dataclasses.replace(mesh.shell, parameters={}, textures={}, ambient=())  # type: ignore[arg-type]  # none
+    compiled = sssgen.compile(str(tmp_path / "m.toml"), "threejs")
+    drawn = three_values.shade(compiled, bare, three, mesh.size, mesh.points, BLACK)
+    assert np.abs(drawn[..., :3][mesh.hit] - 0.5).max() < 1e-6
+    assert "float STANDARD = " in sssgen.compile(str(tmp_path / "m.toml"), "glsl-330").files["m.glsl-330.frag"]
+
+
 def test_another_prefix_draws_the_same(three: Three) -> None:
     mesh = mesh_of("ice")
     own, other = (

@@ -47,6 +47,8 @@ class Names(NamedTuple):
     """The language's own."""
     shell: frozenset[str] = frozenset()
     """Those of the templates."""
+    macros: frozenset[str] = frozenset()
+    """The engine's macros, which this target alone avoids: they replace local names, too."""
     case_insensitive: frozenset[str] = frozenset()
     """Reserved in any case, as some of HLSL's words are."""
     prefixes: tuple[str, ...] = ()
