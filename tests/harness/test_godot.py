@@ -5,12 +5,14 @@ Without `make engines`, or another Godot 4, the slow tests are skipped.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 
 import sssgen
+from folders import ROOT
 from godot_scenes import MESHES, THROUGH, WHOLE, back_face_deviation, deviation, standard_material_deviation
 from pitfall_cases import program
 from sssgen.harness.backends.godot_drawing import RENDERERS
@@ -21,6 +23,7 @@ from sssgen.harness.pictures.images import encode_srgb
 from sssgen.material import library
 from sssgen.material.material_loading import examples
 from sssgen.pipeline.compiler import transpile
+from sssgen.targets import registry
 from validate import module_of
 
 GODOT = "godot"
@@ -82,6 +85,16 @@ def test_no_parameter_has_the_name_of_a_uniform() -> None:
 def test_matrices_by_columns() -> None:
     module = module_of("mat2 turn(float x) { return mat2(x, -x, 1.0, x); }")
     assert "return mat2(vec2(x, -x), vec2(1.0, x));" in transpile(module, GODOT, "m").files["m.gdshaderinc"]
+
+
+def test_variables_of_the_shell_are_reserved_at_file_scope() -> None:
+    """Godot refuses a variable or a parameter with the name of a uniform."""
+    paths = [*(ROOT / "templates" / "godot").glob("*.j2"), ROOT / "templates" / "common" / "unit_vector.j2"]
+    texts = [re.sub(r"\{#.*?#\}|//[^\n]*", "", path.read_text("utf-8"), flags=re.DOTALL) for path in paths]
+    declared = set(re.findall(r"(?:float|vec[234]|mat4|}}) (\w+)(?= =|\)|;)", "\n".join(texts)))
+    names = registry.load(GODOT).names
+    assert {"v", "surface", "cos_view", "texel", "world_position", "N"} <= declared
+    assert declared <= names.local | names.shell
 
 
 def test_its_compiler_is_apart() -> None:
