@@ -187,6 +187,7 @@ def test_rust_reads_the_struct(material: str, tmp_path: Path) -> None:
 
 
 def test_the_example_names_what_is_emitted() -> None:
+    """The names that its program imports and calls."""
     _, rust, _ = files(WAX)
     main = (EXAMPLES / "engines" / "bevy" / "src" / "main.rs").read_text(encoding="utf-8")
     (names,) = re.findall(r"use wax::\{(.*)\};", main)

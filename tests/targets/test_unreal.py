@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import sssgen
+from folders import EXAMPLES
 from sssgen.harness.backends import Backend, Call, Text
 from sssgen.harness.check.compiler_inputs import sources
 from sssgen.harness.compilers import Compiler, Source, errors, unreal_node
@@ -180,6 +181,14 @@ def test_what_the_sun_lights_and_what_the_engine_lights() -> None:
     sunlit, lit = files("wax_mouse")[1], files("examples/bake/wax_map.toml")[1]
     assert "does not see the lights of the level" in sunlit and "SubsurfaceColor" not in sunlit
     assert "does not see the lights" not in lit and "Two Sided Foliage" in lit and "EmissiveColor" not in lit
+
+
+def test_the_example_is_lit_by_the_engine() -> None:
+    """What comes through the leaf is subsurface colour, on both sides, cut out by its opacity."""
+    text, included = files(str(EXAMPLES / "engines" / "unreal" / "leaf.toml"))
+    assert "// Switch on Two Sided." in included and "Blend Mode: Masked" in included
+    names = {name for _, name in unreal_node.read(text).outputs}
+    assert {"SubsurfaceColor", "OpacityMask"} <= names and "EmissiveColor" not in names
 
 
 def node_of(material: str) -> CustomNode:

@@ -8,10 +8,7 @@ use wax::{Wax, WaxMaterial};
 
 fn main() {
     App::new()
-        .add_plugins((
-            DefaultPlugins,
-            MaterialPlugin::<WaxMaterial>::default(),
-        ))
+        .add_plugins((DefaultPlugins, MaterialPlugin::<WaxMaterial>::default()))
         .add_systems(Startup, setup)
         .run();
 }
