@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import VEC4, Array, Matrix, Sampler, Scalar, Type, Vector, components
+from sssgen.ir.types import VEC4, Array, Matrix, Sampler, Scalar, Type, Vector, components, kind_of
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.glsl import GlslPrinter
 from sssgen.targets.printers.printer import PRIMARY, Line, comment_text, float_text
@@ -35,6 +35,16 @@ class GodotPrinter(GlslPrinter):
             isinstance(first, ir.Global | ir.Local) and isinstance(first.type, Sampler) and first.name in self.colors
         )
         return (f"linear_color({text})", PRIMARY) if named and call.type == VEC4 else (text, binding)
+
+    def binary(self, binary: ir.Binary) -> tuple[str, int]:
+        """Vectors are compared by functions, as `==` gives one bool here; the operands of bits have one type."""
+        if binary.op in ("==", "!=") and isinstance(binary.type, Vector):
+            name = "equal" if binary.op == "==" else "notEqual"
+            return f"{name}({self.arguments((binary.left, binary.right))})", PRIMARY
+        if binary.op in ("<<", ">>", "&", "|", "^") and {binary.left.type, binary.right.type} != {binary.type}:
+            sides = [_of_type(binary.type, side) for side in (binary.left, binary.right)]
+            binary = binary._replace(left=sides[0], right=sides[1])
+        return super().binary(binary)
 
     def construct(self, construct: ir.Construct) -> tuple[str, int]:
         """A matrix of numbers is written by columns, which is the only constructor for it here."""
@@ -92,6 +102,13 @@ class GodotPrinter(GlslPrinter):
             columns = [self.value_of(column, numbers[start : start + size]) for start in range(0, size * size, size)]
             return f"{self.type(type_)}({', '.join(columns)})"
         return super().value_of(type_, numbers)
+
+
+def _of_type(type_: Type, value: ir.Expr) -> ir.Expr:
+    """An integer operand as one of a type: a number first gets the kind, and then the size."""
+    if isinstance(value.type, Scalar) and kind_of(value.type) != kind_of(type_):
+        value = ir.Construct(Scalar(kind_of(type_)), (value,), value.span)
+    return value if value.type == type_ else ir.Construct(type_, (value,), value.span)
 
 
 def _value_hints(uniform: ir.Uniform) -> list[str]:
