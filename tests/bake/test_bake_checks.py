@@ -87,6 +87,7 @@ def message(text: str) -> str:
 def test_a_bake_fits_its_body_wherever_it_is() -> None:
     assert drawn() > 0.0
     placed = SCENE.replace("[[light]]", "position = [0.1, 0.2, 0.0]\nrotation = [0.0, 20.0, 0.0]\n[[light]]")
+    placed = placed.replace("[0.4, 0.8, 0.1]", "[0.4101, 0.8, -0.0428]")  # turned with the body
     assert drawn(placed) > 0.0
 
 
@@ -278,3 +279,36 @@ def test_an_inverted_mesh_is_the_same_body(folder: Path) -> None:
         bake("fluence", f"{name}.ply", "-o", f"{name}.npy", *words)
     assert facts("turned.npy")["parameters"] == facts("right.npy")["parameters"]
     assert (Path("turned.npy").read_bytes()) == Path("right.npy").read_bytes()
+
+
+def test_a_volume_for_another_light(stone: Path, folder: Path) -> None:
+    scene = folder / "scene.toml"
+    scene.write_text(SCENE.replace("[0.4, 0.8, 0.1]", "[0.0, 1.0, 0.0]"), encoding="utf-8")
+    with pytest.raises(SssgenError) as caught:
+        render(load(str(scene)), backends.needed("numpy"))
+    (wrong,) = caught.value.diagnostics
+    assert wrong.message == (
+        "'stone.npy' is baked for a light from (0.444, 0.889, 0.111) in the body's space; the scene has (0, 1, 0)"
+    )
+    # the body turns, and the light with it
+    turned = SCENE.replace("size = [1.0", "rotation = [0.0, 0.0, 90.0]\nsize = [1.0")
+    scene.write_text(turned.replace("[0.4, 0.8, 0.1]", "[-0.8, 0.4, 0.1]"), encoding="utf-8")
+    render(load(str(scene)), backends.needed("numpy"))
+
+
+@pytest.mark.parametrize(
+    ("name", "message"), [("missing.obj", "there is no such file"), (".", "this is a folder")], ids=["file", "folder"]
+)
+def test_a_body_that_is_no_file(name: str, message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bake", "fluence", name, "-o", "out.npy", "--medium", "marble", *FEW]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_a_seed_is_not_negative(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bake", "fluence", "body.obj", "-o", "out.npy", "--medium", "marble", "--seed", "-1"]) == 2
+    assert "'-1' is not a seed: 0 or a larger integer" in capsys.readouterr().err
+
+
+def test_the_media_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["list", "media"]) == 0
+    assert "marble" in capsys.readouterr().out

@@ -64,6 +64,10 @@ def body(path: str, medium: str, unit_mm: float) -> MeasuredScene:
         return measured_scene.load(path).body_alone()
     if not medium:
         raise failure("a mesh has no medium", "name one with --medium", posix(path))
+    if not os.path.isfile(path):
+        raise failure(
+            "this is a folder" if os.path.isdir(path) else "there is no such file", "name a mesh", posix(path)
+        )
     geometry = Mesh(path=path)
     name = stem(path)
     preset = media.preset(medium, unit_mm)

@@ -1,4 +1,4 @@
-"""`sssgen list`: the techniques, the targets, the example materials."""
+"""`sssgen list`: the techniques, the targets, the example materials, the media."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from sssgen.pipeline.compiler import all_targets
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
 
-LISTS = ("techniques", "targets", "materials")
+LISTS = ("techniques", "targets", "materials", "media")
 
 
 def add_options(parser: ArgumentParser) -> None:
-    parser.add_argument("KIND", choices=LISTS, help="techniques, targets or materials")
+    parser.add_argument("KIND", choices=LISTS, help="techniques, targets, materials, or media of bodies")
     parser.add_argument("--role", metavar="R", help="list only the techniques of this role")
 
 
@@ -29,7 +29,7 @@ def run(arguments: Namespace) -> int:
         if arguments.role not in library.ROLES:
             hint = did_you_mean(arguments.role, library.ROLES) or f"roles: {', '.join(library.ROLES)}"
             raise failure(f"unknown role '{arguments.role}'", hint)
-    rows = {"techniques": _techniques, "targets": _targets, "materials": _materials}[kind]()
+    rows = {"techniques": _techniques, "targets": _targets, "materials": _materials, "media": _media}[kind]()
     if arguments.role is not None:
         rows = [row for row in rows if row["role"] == arguments.role]
     if arguments.json:
@@ -78,3 +78,9 @@ def _materials() -> list[dict[str, Any]]:
         }
         for material in materials
     ]
+
+
+def _media() -> list[dict[str, Any]]:
+    from sssgen.lab.scene import media
+
+    return [{"name": name, "summary": medium.source} for name, medium in media.media().items()]

@@ -6,16 +6,20 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from sssgen.harness.scenes import body_identity
 from sssgen.harness.scenes.bounds import bounds
 from sssgen.harness.scenes.geometry import Geometry
+from sssgen.harness.scenes.placed import unit
 from sssgen.harness.scenes.scene import Light
 from sssgen.material.baked import Baked
 from sssgen.support.diagnostics import failure
 
 SAME_SIZE = 0.01
 """The difference of two boxes' corners, relative to the longest side, up to which the boxes are the same."""
+SAME_DIRECTION = 0.02
+"""The difference of two unit directions up to which lights from afar are the same."""
 COARSER, FINER = 2.0, 0.2
 """The mean free path of a material, relative to that of a map of lengths, beyond which the map does not resolve it."""
 
@@ -55,10 +59,13 @@ def _corner(corner: Iterable[float]) -> str:
 
 
 def check_lights(sidecar: Baked, geometry: Geometry, lights: Iterable[Light], name: str) -> None:
-    """Raises SssgenError if light is baked for lights from afar, and a light of the scene is inside the body."""
+    """Raises SssgenError if light is baked for another direction than that of every light of the scene, or for lights
+    from afar while a light is inside the body.
+    """
     if sidecar.kind != "fluence":
         return
     to_object = geometry.to_object()
+    lights = list(lights)
     for number, light in enumerate(lights, 1):
         if light.position is None:
             continue
@@ -68,6 +75,21 @@ def check_lights(sidecar: Baked, geometry: Geometry, lights: Iterable[Light], na
                 f"'{name}' is baked for lights from afar, and light {number} is inside the body",
                 "move the light out, or use a technique that needs no baked light",
             )
+    _check_direction(sidecar, to_object[:3, :3], lights, name)
+
+
+def _check_direction(sidecar: Baked, to_object: npt.NDArray[np.float64], lights: list[Light], name: str) -> None:
+    fixed = sidecar.facts.get("light")
+    if not isinstance(fixed, dict) or np.shape(fixed.get("direction", 0.0)) != (3,):
+        return
+    towards = [unit((to_object @ np.array(light.direction))[None])[0] for light in lights if light.direction]
+    if not any(np.linalg.norm(direction - fixed["direction"]) < SAME_DIRECTION for direction in towards):
+        own = ", ".join(map(_corner, towards)) or "none from afar"
+        baked_for = f"a light from {_corner(fixed['direction'])} in the body's space"
+        raise failure(
+            f"'{name}' is baked for {baked_for}; the scene has {own}",
+            "bake it for the scene's light, or use a technique for any light",
+        )
 
 
 def check_resolution(
