@@ -135,7 +135,7 @@ def _reached(record: Record, goal: Goal) -> tuple[str, bool]:
     if not chains:
         return "no chain", False
     error, cost, label = min(chains)
-    return f"{error:.3f} at {cost:.0f}: {label}", error <= goal.error
+    return f"{error:.4f} at {cost:.0f}: {label}", error <= goal.error
 
 
 def _moving(points: Mapping[str, Point]) -> bool:

@@ -229,7 +229,8 @@ def _fluence(arguments: Namespace) -> Result:
             paths += output.write_picture(path, part.texels[::-1], {**facts, "import": import_settings(wrap="clamp")})
     x, y, z = baked.facts["texels"]
     lines = [
-        f"{x} × {y} × {z} voxels, {baked.facts['directions']} directions, {baked.facts['photons']} photons for each",
+        f"{x} × {y} × {z} voxels; {baked.facts['photons']} photons for each of {baked.facts['directions']} "
+        f"direction{'s' if baked.facts['directions'] > 1 else ''}",
         f"for the technique {baked.facts['technique']}",
         f"standard error of a voxel {baked.facts['error']['standard_error']:.2g} of the mean, before it is averaged",
     ]
