@@ -304,9 +304,10 @@ def test_a_body_that_is_no_file(name: str, message: str, capsys: pytest.CaptureF
     assert message in capsys.readouterr().err
 
 
-def test_a_seed_is_not_negative(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["bake", "fluence", "body.obj", "-o", "out.npy", "--medium", "marble", "--seed", "-1"]) == 2
-    assert "'-1' is not a seed: 0 or a larger integer" in capsys.readouterr().err
+def test_a_seed_is_not_negative(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "body.toml").write_text(SCENE.replace('material = "stone.toml"', "") + MEDIUM, encoding="utf-8")
+    assert main(["bake", "fluence", "body.toml", "-o", "out.npy", "--seed", "-1"]) == 2
+    assert "-1 is not a seed" in capsys.readouterr().err
 
 
 def test_the_media_are_listed(capsys: pytest.CaptureFixture[str]) -> None:

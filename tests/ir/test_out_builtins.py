@@ -15,7 +15,7 @@ from sssgen.ir.types import FLOAT, VEC2, VEC3, VEC4, Sampler, Type, kind_of, spe
 from sssgen.lang.loader import load_text
 from sssgen.pipeline.compiler import transpile
 
-BACKENDS = ("numpy", *SINGLE)
+BACKENDS = ("numpy", *(name for name in SINGLE if name != "bevy"))  # its text is that of webgpu, in a larger program
 LANES = 64
 
 KINDS: dict[str, tuple[str, ...]] = {

@@ -298,7 +298,7 @@ def test_the_same_record_gives_the_same_files(folder: Path, tmp_path: Path) -> N
 def test_pictures(folder: Path) -> None:
     image = pytest.importorskip("PIL.Image")
     with image.open(folder / "chart_thickness.png") as picture:
-        assert picture.width == 1800  # twice the size in a README
+        assert picture.width == 2000  # twice the size in a README
         colors = {color for _, color in picture.convert("RGB").getcolors(1 << 24)}
     assert {tuple(bytes.fromhex(color[1:])) for color in COLORS} <= colors
     text = (folder / "chart_thickness.svg").read_text()

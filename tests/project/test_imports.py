@@ -18,6 +18,7 @@ LAZY_IMPORTS = {
     "sssgen.cli.emit": EMIT,
     "sssgen.cli.engine_options": HELP,
     "sssgen.cli.eval": HELP,
+    "sssgen.cli.listing": HELP,
     "sssgen.cli.fit": HELP,
     "sssgen.cli.lint": HELP,
     "sssgen.cli.main": "only an internal error needs it, and `sssgen emit` starts faster",

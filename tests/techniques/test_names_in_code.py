@@ -31,7 +31,6 @@ PERMITTED = {
     "material/baked.py": (HINT, {"normal_map"}),
     "material/slots.py": (EXAMPLE, {"box"}),
     "targets/assemble.py": (HINT, {"normal_map"}),
-    "targets/reflection.py": (HINT, {"normal_map"}),
     "targets/texture_import.py": ("settings of a texture import", {"normal_map", "srgb"}),
 }
 """File → the reason, and the quoted words that are also names of techniques."""

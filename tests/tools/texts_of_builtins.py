@@ -335,7 +335,14 @@ CASES = {
         "wgsl": "x4.xyz * 2.0 - 1.0",
         "dx9": "UnpackNormal(x4)",
         "urp": "UnpackNormal(x4)",
-        "godot": "unpack_normal(x4)",
+        "godot": """
+            vec3 unpack_normal(vec4 texel) {
+                vec3 n = texel.xyz * 2.0 - 1.0;
+                return vec3(n.xy, texel.z > 0.0 ? n.z : sqrt(max(1.0 - dot(n.xy, n.xy), 0.0)));
+            }
+
+            return unpack_normal(x4);
+        """,
     },
     "texture(map, x2)": {
         "glsl": "texture(map, x2)",

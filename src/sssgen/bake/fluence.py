@@ -90,6 +90,8 @@ def bake(
         raise failure(f"{settings.voxels} voxels are not between 4 and 128", "24 to 32 are enough")
     if not 2 <= settings.photons <= 10**7:
         raise failure(f"{settings.photons} photons are not between 2 and 10,000,000", "some thousands are enough")
+    if settings.seed < 0:
+        raise failure(f"{settings.seed} is not a seed", "0 or a larger integer")
     grid = fluence_field.grid_in_box(scene, settings.voxels)
     if isinstance(scene.geometry, Mesh):
         geometry_mesh.mesh_of(scene.geometry)  # refuses an open mesh before the work

@@ -60,9 +60,10 @@ def _compilers(names: list[str], wrong: list[Diagnostic]) -> list[str]:
 
 
 def _passed(report: Report, shaders: list[Shader]) -> bool:
-    """Whether something was compiled without errors; in CI, no compiler may be missing."""
+    """Whether something was compiled without errors; in CI, no compiler may be missing that `make setup` installs."""
     in_ci = os.environ.get("CI", "") not in ("", "0", "false")
-    return all(result.ok for result in report.results) and bool(report.results) and not (in_ci and report.missing)
+    missing = [name for name in report.missing if not COMPILERS[name].apart]
+    return all(result.ok for result in report.results) and bool(report.results) and not (in_ci and missing)
 
 
 def _print(report: Report, shaders: list[Shader]) -> None:

@@ -54,13 +54,7 @@ def add_guards(parser: argparse.ArgumentParser, default: str = "auto") -> None:
 
 def add_seed(parser: argparse.ArgumentParser, help: str) -> None:
     """Which random numbers are used: `--seed`."""
-    parser.add_argument("--seed", type=_seed, default=0, metavar="N", help=f"{help} (default: 0)")
-
-
-def _seed(text: str) -> int:
-    if not text.isdecimal():
-        raise argparse.ArgumentTypeError(f"'{text}' is not a seed: 0 or a larger integer")
-    return int(text)
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help=f"{help} (default: 0)")
 
 
 def add_workers(parser: argparse.ArgumentParser) -> None:

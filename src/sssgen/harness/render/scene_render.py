@@ -144,7 +144,7 @@ def placed(scene: Scene, compiled: Compiled, shell: Shell, target: Target, size:
     matrix = _matrix(deep, target, padded[0] / padded[1])
     shell = dataclasses.replace(shell, view_projection=matrix, screens=screens)
     shape = padded[1], padded[0]
-    return PlacedMesh(shell, padded, points, hits.hit.reshape(shape), hits.front.reshape(shape))
+    return PlacedMesh(shell, padded, points, hits.hit.reshape(shape), (hits.front | ~hits.hit).reshape(shape))
 
 
 def _back_face_map(geometry: Geometry, hits: Hits, origin: Array, directions: Array, size: tuple[int, int]) -> Texture:

@@ -94,7 +94,7 @@ def spread(hit: Bools, position: Array, normal: Array, tangent: Array, uv: Array
         all_rays[hit] = values
         return all_rays
 
-    fronts = np.ones(len(hit), np.bool_)
+    fronts = hit.copy()
     if front is not None:
         fronts[hit] = front
     return Hits(hit, with_zeros(position), with_zeros(normal), with_zeros(tangent), with_zeros(uv), fronts)

@@ -14,7 +14,7 @@ from sssgen.lab.chart.drawing.panels import Chart, Panel, Style, label_texts, nu
 from sssgen.lab.chart.record import LEAST, Point, measures
 from sssgen.support.extras import need
 
-WIDTH, TALL, SHORT, KEY_LINE = 9.0, 4.4, 4.3, 0.21
+WIDTH, TALL, SHORT, KEY_LINE = 10.0, 4.8, 5.0, 0.21
 """In inches: the width of the chart, the height of a full-width panel, of a half-width panel, of a line of the key."""
 DPI = 200
 KEY_COLUMNS = 4
