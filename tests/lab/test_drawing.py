@@ -302,7 +302,7 @@ def test_pictures(folder: Path) -> None:
         colors = {color for _, color in picture.convert("RGB").getcolors(1 << 24)}
     assert {tuple(bytes.fromhex(color[1:])) for color in COLORS} <= colors
     text = (folder / "chart_thickness.svg").read_text()
-    assert text.count("<svg") == 1 and "dc:date" not in text and 'width="648pt"' in text
+    assert text.count("<svg") == 1 and "dc:date" not in text and 'width="720pt"' in text
 
 
 def test_page_is_complete_and_safe(folder: Path) -> None:
