@@ -28,7 +28,8 @@ FEW = 500
 Get = Callable[[str], Backend]
 
 
-@pytest.mark.parametrize("name", ["gl", "webgpu", "browser", "hlsl", "metal"])
+# g++ takes longer for each technique than the other compilers together
+@pytest.mark.parametrize("name", ["gl", "webgpu", "browser", "hlsl", pytest.param("metal", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("technique", sorted(library.index()))
 def test_technique(backend: Get, technique: str, name: str) -> None:
     """Consecutive tests use the same technique, because `measure` caches the oracle of the latest techniques."""
