@@ -28,7 +28,7 @@ FEW = 500
 Get = Callable[[str], Backend]
 
 
-# g++ takes longer for each technique than the other compilers together
+# with g++ there is a compilation for each technique: make test-long
 @pytest.mark.parametrize("name", ["gl", "webgpu", "browser", "hlsl", pytest.param("metal", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("technique", sorted(library.index()))
 def test_technique(backend: Get, technique: str, name: str) -> None:
