@@ -14,7 +14,7 @@ import sssgen
 from folders import EXAMPLES
 from sssgen.cli.main import main
 from sssgen.harness import backends
-from sssgen.harness.backends import Array, Backend, Bound, Drawing, Place, Stage, Text
+from sssgen.harness.backends import Array, Backend, Bound, Drawing, DrawingBackend, Place, Stage, Text
 from sssgen.harness.compilers import Source
 from sssgen.harness.compilers.shadertoy_page import program
 from sssgen.harness.evaluate.evaluation import default_texture
@@ -66,7 +66,8 @@ def picture(
     vertex = Stage(Text("#version 300 es\nvoid main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0"
                         " - 1.0, 0.0, 1.0); }"))  # fmt: skip
     drawing = Drawing(SIZE, stage, vertex, floats=True, values=values, textures=bound)
-    return gl.draw(drawing)[::-1, :, :3]  # type: ignore[attr-defined]  # OpenGL draws
+    assert isinstance(gl, DrawingBackend)
+    return gl.draw(drawing)[::-1, :, :3]
 
 
 def channels(compiled: sssgen.Compiled, scene: Scene) -> dict[str, Texture]:

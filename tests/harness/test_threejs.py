@@ -87,7 +87,7 @@ def through(name: str, mesh: PlacedMesh) -> Array:
 @pytest.mark.parametrize("name", MESHES)
 def test_light_that_comes_through_is_that_of_the_oracle(three: Three, name: str) -> None:
     mesh = mesh_of(name)
-    dark = dataclasses.replace(mesh.shell, ambient=())  # type: ignore[arg-type]  # none
+    dark = dataclasses.replace(mesh.shell, ambient=(0.0, 0.0, 0.0))
     drawn = three_values.shade(sssgen.compile(name, "threejs"), dark, three, mesh.size, mesh.points, BLACK)
     expected = through(name, mesh)
     assert np.abs(drawn - expected)[..., :3][mesh.hit].max() < 1.0 / 255.0
@@ -127,7 +127,7 @@ def test_every_value_of_the_chain(three: Three, name: str, front: bool, light: s
     points[:, 6:9] = points[:, 6:9] @ moved[:3, :3].T
     position = [0.5, 2.0, 3.0, 1.0] if light == "point" else [0.3, 0.5, 0.8, 0.0]
     shell = dataclasses.replace(
-        mesh.shell, model=turned, parameters={}, textures={}, ambient=(), time=0.75, front=front,  # type: ignore[arg-type]  # none
+        mesh.shell, model=turned, parameters={}, textures={}, ambient=(0.0, 0.0, 0.0), time=0.75, front=front,
         light_positions=np.array([position]), light_colors=np.array([[0.5, 0.7, 0.9]]),
     )  # fmt: skip
     drawn = three_values.shade(sssgen.compile(str(path), "threejs"), shell, three, mesh.size, points, BLACK)
@@ -187,7 +187,7 @@ def test_names_of_macros_are_free(three: Three, tmp_path: Path) -> None:
     (tmp_path / "made.sss").write_text(text, encoding="utf-8")
     (tmp_path / "m.toml").write_text('[material]\nname = "m"\n[[surface]]\ntechnique = "./made.sss"\n', "utf-8")
     mesh = mesh_of("wax_mouse")
-    bare = dataclasses.replace(mesh.shell, parameters={}, textures={}, ambient=())  # type: ignore[arg-type]  # none
+    bare = dataclasses.replace(mesh.shell, parameters={}, textures={}, ambient=(0.0, 0.0, 0.0))
     compiled = sssgen.compile(str(tmp_path / "m.toml"), "threejs")
     drawn = three_values.shade(compiled, bare, three, mesh.size, mesh.points, BLACK)
     assert np.abs(drawn[..., :3][mesh.hit] - 0.5).max() < 1e-6

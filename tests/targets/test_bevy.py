@@ -179,7 +179,7 @@ def test_rust_reads_the_struct(material: str, tmp_path: Path) -> None:
     """rustfmt parses it, and has nothing to change."""
     program = shutil.which("rustfmt")
     if program is None:
-        pytest.skip("rustfmt (Debian: rustfmt)")
+        pytest.skip("rustfmt is missing: apt-get install rustfmt")
     path = tmp_path / "material.rs"
     path.write_text(files(material)[1], encoding="utf-8")
     ran = subprocess.run([program, "--edition", "2021", "--check", str(path)], capture_output=True, text=True)
