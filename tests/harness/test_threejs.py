@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections.abc import Callable, Iterator
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -17,10 +17,11 @@ import sssgen
 from folders import ROOT
 from skips import or_skip
 from sssgen.harness.backends import Array
-from sssgen.harness.backends.three_page import RENDERERS, Three
+from sssgen.harness.backends.engine_page import EnginePage
+from sssgen.harness.backends.three_page import THREE
 from sssgen.harness.check.compiler_inputs import sources
 from sssgen.harness.compilers import Compiler, errors
-from sssgen.harness.render import shade_numpy, three_values
+from sssgen.harness.render import page_values, shade_numpy
 from sssgen.harness.render.scene_render import PlacedMesh, placed
 from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.scenes import scene_loading
@@ -57,9 +58,9 @@ BLACK = {"color": 0.0, "specularIntensity": 0.0}
 SIZE = (96, 72)
 
 
-@pytest.fixture(scope="module", params=list(RENDERERS))
-def three(request: pytest.FixtureRequest) -> Iterator[Three]:
-    renderer: Three = or_skip(Three, request.param)
+@pytest.fixture(scope="module", params=list(THREE.renderers))
+def three(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
+    renderer: EnginePage = or_skip(partial(EnginePage, THREE), request.param)
     yield renderer
     renderer.page.close()
 
@@ -85,20 +86,20 @@ def through(name: str, mesh: PlacedMesh) -> Array:
 
 
 @pytest.mark.parametrize("name", MESHES)
-def test_light_that_comes_through_is_that_of_the_oracle(three: Three, name: str) -> None:
+def test_light_that_comes_through_is_that_of_the_oracle(three: EnginePage, name: str) -> None:
     mesh = mesh_of(name)
     dark = dataclasses.replace(mesh.shell, ambient=(0.0, 0.0, 0.0))
-    drawn = three_values.shade(sssgen.compile(name, "threejs"), dark, three, mesh.size, mesh.points, BLACK)
+    drawn = page_values.shade(sssgen.compile(name, "threejs"), dark, three, mesh.size, mesh.points, BLACK)
     expected = through(name, mesh)
     assert np.abs(drawn - expected)[..., :3][mesh.hit].max() < 1.0 / 255.0
     assert (expected[..., :3][mesh.hit].max() > 0.1) == (name != "resin_inlay")  # which reflects only
 
 
 @pytest.mark.parametrize("name", MESHES)
-def test_three_lights_the_surface(three: Three, name: str) -> None:
+def test_three_lights_the_surface(three: EnginePage, name: str) -> None:
     """The reflected light is three's own: not the oracle's numbers, but the same picture."""
     mesh = mesh_of(name)
-    drawn = three_values.shade(sssgen.compile(name, "threejs"), mesh.shell, three, mesh.size, mesh.points)
+    drawn = page_values.shade(sssgen.compile(name, "threejs"), mesh.shell, three, mesh.size, mesh.points)
     compiled = sssgen.compile(name, "numpy")
     expected = shade_numpy.shade(compiled, mesh.shell, mesh.size, mesh.points, "float64")
     shown = mesh.hit & (expected[..., 3] >= 0.5)
@@ -112,7 +113,7 @@ def test_three_lights_the_surface(three: Three, name: str) -> None:
 @pytest.mark.parametrize(
     ("name", "front"), [("lit", True), ("lit", False), ("unlit", True), ("unlit", False), ("rays", True)]
 )
-def test_every_value_of_the_chain(three: Three, name: str, front: bool, light: str, tmp_path: Path) -> None:
+def test_every_value_of_the_chain(three: EnginePage, name: str, front: bool, light: str, tmp_path: Path) -> None:
     """A turned, stretched and mirrored body from both sides: every input is in its space, per surface and light."""
     for probe, text in PROBES.items():
         (tmp_path / f"{probe}.sss").write_text(text, encoding="utf-8")
@@ -130,7 +131,7 @@ def test_every_value_of_the_chain(three: Three, name: str, front: bool, light: s
         mesh.shell, model=turned, parameters={}, textures={}, ambient=(0.0, 0.0, 0.0), time=0.75, front=front,
         light_positions=np.array([position]), light_colors=np.array([[0.5, 0.7, 0.9]]),
     )  # fmt: skip
-    drawn = three_values.shade(sssgen.compile(str(path), "threejs"), shell, three, mesh.size, points, BLACK)
+    drawn = page_values.shade(sssgen.compile(str(path), "threejs"), shell, three, mesh.size, points, BLACK)
     numpy = sssgen.compile(str(path), "numpy")
     reflection = numpy.reflection
     reflection["entries"].pop("lighting", None)
@@ -145,19 +146,19 @@ def test_every_value_of_the_chain(three: Three, name: str, front: bool, light: s
     assert difference.max() < 2e-3 and drawn[..., :3][mesh.hit].std() > 0.02
 
 
-def test_a_raymarched_material_fills_its_mesh(three: Three) -> None:
+def test_a_raymarched_material_fills_its_mesh(three: EnginePage) -> None:
     scene = dataclasses.replace(scene_loading.load(str(ROOT / "examples/jelly_cubes/scene.toml")), size=SIZE)
     numpy = sssgen.compile("jelly_cubes", "numpy")
     shell = shell_of(scene, load_material(scene.material), numpy.reflection)
-    drawn = three_values.shade(sssgen.compile("jelly_cubes", "threejs"), shell, three, SIZE, None)
+    drawn = page_values.shade(sssgen.compile("jelly_cubes", "threejs"), shell, three, SIZE, None)
     expected = shade_numpy.shade(numpy, shell, SIZE, None, "float64") ** 2.2  # its output technique, left to three
     assert np.quantile(np.abs(drawn - expected)[..., :3], 0.98) < 1.0 / 255.0  # but for edges, where a ray may miss
 
 
-def test_tangents_come_from_the_texture_coordinates_where_the_mesh_has_none(three: Three) -> None:
+def test_tangents_come_from_the_texture_coordinates_where_the_mesh_has_none(three: EnginePage) -> None:
     mesh, compiled = mesh_of("ice"), sssgen.compile("ice", "threejs")
     drawn = [
-        three_values.shade(compiled, mesh.shell, three, mesh.size, mesh.points, BLACK, tangents)[..., :3]
+        page_values.shade(compiled, mesh.shell, three, mesh.size, mesh.points, BLACK, tangents)[..., :3]
         for tangents in (True, False)
     ]
     # the sheet is planar: its derivatives are exact inside of it
@@ -169,17 +170,17 @@ def test_tangents_come_from_the_texture_coordinates_where_the_mesh_has_none(thre
     assert np.quantile(difference, 0.95) < 1.0 / 255.0 and drawn[1][inner].max() > 0.2
 
 
-def test_properties_have_the_defaults_of_the_material(three: Three) -> None:
+def test_properties_have_the_defaults_of_the_material(three: EnginePage) -> None:
     """Without values and textures, the picture is that of the oracle with the defaults."""
     mesh = mesh_of("paper_lantern")
     bare = mesh._replace(shell=dataclasses.replace(mesh.shell, parameters={}, textures={}, ambient=(0.0, 0.0, 0.0)))
-    drawn = three_values.shade(
+    drawn = page_values.shade(
         sssgen.compile("paper_lantern", "threejs"), bare.shell, three, mesh.size, mesh.points, BLACK
     )
     assert np.abs(drawn - through("paper_lantern", bare))[..., :3][mesh.hit].max() < 1.0 / 255.0
 
 
-def test_names_of_macros_are_free(three: Three, tmp_path: Path) -> None:
+def test_names_of_macros_are_free(three: EnginePage, tmp_path: Path) -> None:
     """three's shaders define PI and others as macros, which would replace local names."""
     body = "{ float PI = OPAQUE; float EPSILON = PI * 2.0; float STANDARD = EPSILON; emission = vec3(STANDARD); }\n"
     uniform = "/// O.\nuniform float OPAQUE = 0.25;\n"
@@ -189,26 +190,26 @@ def test_names_of_macros_are_free(three: Three, tmp_path: Path) -> None:
     mesh = mesh_of("wax_mouse")
     bare = dataclasses.replace(mesh.shell, parameters={}, textures={}, ambient=(0.0, 0.0, 0.0))
     compiled = sssgen.compile(str(tmp_path / "m.toml"), "threejs")
-    drawn = three_values.shade(compiled, bare, three, mesh.size, mesh.points, BLACK)
+    drawn = page_values.shade(compiled, bare, three, mesh.size, mesh.points, BLACK)
     assert np.abs(drawn[..., :3][mesh.hit] - 0.5).max() < 1e-6
     assert "float STANDARD = " in sssgen.compile(str(tmp_path / "m.toml"), "glsl-330").files["m.glsl-330.frag"]
 
 
-def test_another_prefix_draws_the_same(three: Three) -> None:
+def test_another_prefix_draws_the_same(three: EnginePage) -> None:
     mesh = mesh_of("ice")
     own, other = (
-        three_values.shade(sssgen.compile("ice", "threejs", prefix=prefix), mesh.shell, three, mesh.size, mesh.points)
+        page_values.shade(sssgen.compile("ice", "threejs", prefix=prefix), mesh.shell, three, mesh.size, mesh.points)
         for prefix in ("", "wax_")
     )
     assert (own == other).all() and own.max() > 0.2
 
 
-def test_an_error_of_three_is_reported(three: Three) -> None:
+def test_an_error_of_three_is_reported(three: EnginePage) -> None:
     mesh, compiled = mesh_of("resin_inlay"), sssgen.compile("resin_inlay", "threejs")
     declared = r"(Surface|fn) sss_evaluate_surface\("
     files = {name: re.sub(declared, r"\1 sss_misnamed(", text) for name, text in compiled.files.items()}
     with pytest.raises(SssgenError, match=r"sss_evaluate_surface|fragment_resin_inlay"):
-        three_values.shade(compiled._replace(files=files), mesh.shell, three, mesh.size, mesh.points)
+        page_values.shade(compiled._replace(files=files), mesh.shell, three, mesh.size, mesh.points)
 
 
 @pytest.mark.parametrize("form", ["shader", "functions"])

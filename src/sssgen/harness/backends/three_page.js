@@ -1,20 +1,9 @@
-// The page of the three.js renderers: it draws meshes with emitted modules, as plans say that come through a WebSocket.
-//
-// A message pair each way: a text of JSON, then bytes. In a plan, `{at, size}` stands for a piece of its bytes. When the
-// connection ends, the page closes, and with it the browser.
+// three.js in a page: draws meshes with emitted modules, as plans say (engine_page.js).
 
 import * as THREE from 'three';
 import { WebGPURenderer, REVISION } from 'three/webgpu';
 
-const complaints = [];
-for (const level of ['error', 'warn']) {
-  const print = console[level];
-  console[level] = (...parts) => {
-    complaints.push(parts.map(String).join(' '));
-    print(...parts);
-  };
-}
-
+const VERSION = REVISION;
 const renderers = new Map();
 
 async function rendererFor(kind) {
@@ -30,12 +19,9 @@ async function rendererFor(kind) {
 }
 
 async function draw(plan, piece) {
-  complaints.length = 0;
   const renderer = await rendererFor(plan.renderer);
   const gpu = plan.renderer === 'webgpu';
-  const url = URL.createObjectURL(new Blob([plan.module], { type: 'text/javascript' }));
-  const { createMaterial } = await import(url);
-  URL.revokeObjectURL(url);
+  const { createMaterial } = await imported(plan.module);
   const textures = Object.fromEntries(Object.entries(plan.textures).map(([name, one]) => [name, textureOf(one, piece)]));
   const material = createMaterial({ ...plan.values, ...textures });
   for (const [name, value] of Object.entries(plan.properties)) {
@@ -43,13 +29,13 @@ async function draw(plan, piece) {
     else material[name] = value;
   }
 
-  const vertices = new THREE.InterleavedBuffer(new Float32Array(piece(plan.vertices).slice().buffer), 12);
+  const vertices = new THREE.InterleavedBuffer(floats(piece(plan.vertices)), 12);
   const geometry = new THREE.BufferGeometry();
   for (const [name, size, offset] of [['position', 3, 0], ['normal', 3, 3], ['tangent', 4, 6], ['uv', 2, 10]]) {
     geometry.setAttribute(name, new THREE.InterleavedBufferAttribute(vertices, size, offset));
   }
   if (plan.withoutTangents) geometry.deleteAttribute('tangent');
-  geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(piece(plan.triangles).slice().buffer), 1));
+  geometry.setIndex(new THREE.BufferAttribute(indices(piece(plan.triangles)), 1));
   const mesh = new THREE.Mesh(geometry, material);
   mesh.frustumCulled = false;
   mesh.matrixAutoUpdate = false;
@@ -67,7 +53,6 @@ async function draw(plan, piece) {
   renderer.setClearColor(0x000000, 0);
   renderer.setRenderTarget(into);
   renderer.clear();
-  const start = performance.now();
   renderer.render(scene, cameraOf(plan, gpu));
   let pixels;
   if (plan.renderer === 'webgl') {
@@ -76,11 +61,9 @@ async function draw(plan, piece) {
   } else {
     pixels = await renderer.readRenderTargetPixelsAsync(into, 0, 0, plan.width, plan.height);
   }
-  const drew = (performance.now() - start) / 1000;
   renderer.setRenderTarget(null);
   [geometry, material, target, glTarget, ...Object.values(textures)].forEach((one) => one.dispose());
-  const stride = pixels.length / plan.height * 4;
-  return [{ stride, drew, topFirst: gpu, complaints: [...complaints] }, pixels.buffer.slice(pixels.byteOffset, pixels.byteOffset + pixels.byteLength)];
+  return [{ topFirst: gpu }, pixels];
 }
 
 function lightOf({ position, color }) {
@@ -91,20 +74,15 @@ function lightOf({ position, color }) {
   return light;
 }
 
-// A camera that is turned against the scene, so that world space and view space differ.
-function cameraOf({ viewProjection, eye }, gpu) {
+function cameraOf(plan, gpu) {
   const camera = new THREE.PerspectiveCamera();
-  const view = new THREE.Matrix4().makeRotationFromEuler(new THREE.Euler(0.4, -0.7, 0.2));
-  view.multiply(new THREE.Matrix4().makeTranslation(-eye[0], -eye[1], -eye[2]));
-  const projection = new THREE.Matrix4().fromArray(viewProjection).multiply(view.clone().invert());
-  if (gpu) projection.premultiply(new THREE.Matrix4().set(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0.5, 0.5, 0, 0, 0, 1));
   camera.coordinateSystem = gpu ? THREE.WebGPUCoordinateSystem : THREE.WebGLCoordinateSystem;
   camera.matrixAutoUpdate = camera.matrixWorldAutoUpdate = false;
   camera.updateProjectionMatrix = () => {};
-  camera.projectionMatrix.copy(projection);
-  camera.projectionMatrixInverse.copy(projection).invert();
-  camera.matrixWorldInverse.copy(view);
-  camera.matrixWorld.copy(view).invert();
+  camera.projectionMatrix.fromArray(plan.projection);
+  camera.projectionMatrixInverse.copy(camera.projectionMatrix).invert();
+  camera.matrixWorldInverse.fromArray(plan.view);
+  camera.matrixWorld.copy(camera.matrixWorldInverse).invert();
   camera.updateMatrixWorld = () => {};
   return camera;
 }
@@ -112,12 +90,12 @@ function cameraOf({ viewProjection, eye }, gpu) {
 const WRAPS = { repeat: THREE.RepeatWrapping, clamp: THREE.ClampToEdgeWrapping, mirror: THREE.MirroredRepeatWrapping };
 
 function textureOf({ dim, size, levels, filter, wrap }, piece) {
-  const halves = levels.map((level) => new Uint16Array(piece(level.data).slice().buffer));
+  const texels = levels.map((level) => halves(piece(level.data)));
   const Kind = dim === '3D' ? THREE.Data3DTexture : THREE.DataTexture;
-  const texture = new Kind(halves[0], ...size);
+  const texture = new Kind(texels[0], ...size);
   const mag = filter === 'nearest' ? THREE.NearestFilter : THREE.LinearFilter;
   if (levels.length > 1) {
-    texture.mipmaps = levels.map((level, i) => ({ data: halves[i], width: level.size[0], height: level.size[1] }));
+    texture.mipmaps = levels.map((level, i) => ({ data: texels[i], width: level.size[0], height: level.size[1] }));
   }
   const min = levels.length > 1 ? THREE.LinearMipmapLinearFilter : mag;
   return Object.assign(texture, {
@@ -125,27 +103,3 @@ function textureOf({ dim, size, levels, filter, wrap }, piece) {
     wrapS: WRAPS[wrap], wrapT: WRAPS[wrap], wrapR: WRAPS[wrap], unpackAlignment: 1, needsUpdate: true,
   });
 }
-
-const socket = new WebSocket(location.href.replace('http:', 'ws:'));
-socket.binaryType = 'arraybuffer';
-socket.onclose = () => window.close();
-
-function say(answer, bytes = new ArrayBuffer(0)) {
-  socket.send(JSON.stringify(answer));
-  socket.send(bytes);
-}
-
-let plan;
-socket.onmessage = async ({ data }) => {
-  if (typeof data === 'string') {
-    plan = JSON.parse(data);
-    return;
-  }
-  const bytes = new Uint8Array(data);
-  try {
-    say(...(await draw(plan, ({ at, size }) => bytes.subarray(at, at + size))));
-  } catch (error) {
-    say({ error: `${error.name}: ${error.message}`, complaints: [...complaints], stack: error.stack });
-  }
-};
-socket.onopen = () => say({ version: REVISION });

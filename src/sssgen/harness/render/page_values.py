@@ -1,4 +1,4 @@
-"""The values that three.js gets for an emitted module: its material's properties, textures, and three's own lights."""
+"""The values that an engine in a page gets for an emitted module: its material's properties, textures, and lights."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from sssgen.harness.backends import Array
-from sssgen.harness.backends.three_page import Three, ThreeDrawing
+from sssgen.harness.backends.engine_page import EngineDrawing, EnginePage
 from sssgen.harness.render import pixel_mesh
 from sssgen.harness.render.shell_values import Shell, bound_texture
 from sssgen.harness.render.unity_values import screen_triangle
@@ -18,7 +18,7 @@ from sssgen.pipeline.compiler import Compiled
 def shade(
     compiled: Compiled,
     shell: Shell,
-    renderer: Three,
+    page: EnginePage,
     size: tuple[int, int],
     points: Array | None,
     properties: Mapping[str, Any] | None = None,
@@ -26,10 +26,10 @@ def shade(
 ) -> Array:
     """The picture, (height, width, 4), row 0 at the bottom. `points` are `pixel_mesh.vertices`, or None: the screen.
 
-    `properties` are those of three's own material. Without `tangents` the mesh has none.
+    `properties` are those of the engine's own material. Without `tangents` the mesh has none.
     """
     reflection = compiled.reflection
-    upright = np.linalg.det(shell.model[:3, :3]) > 0.0  # three turns the faces of a mirrored body
+    upright = np.linalg.det(shell.model[:3, :3]) > 0.0  # engines turn the faces of a mirrored body
     triangles = [[0, 1, 2]] if points is None else pixel_mesh.triangles(size, shell.front == upright)
     values = {
         uniform["property"]: _value(shell.parameters[uniform["source_name"]])
@@ -39,11 +39,11 @@ def shade(
     if any("time" in entry["inputs"] for entry in reflection["entries"].values()):
         values["time"] = shell.time
     textures = {
-        texture["property"]: bound_texture(texture, shell, renderer.top_first) for texture in reflection["textures"]
+        texture["property"]: bound_texture(texture, shell, page.renderer.gpu) for texture in reflection["textures"]
     }
     module = next(text for name, text in compiled.files.items() if name.endswith(".js"))
-    return renderer.draw(
-        ThreeDrawing(
+    return page.draw(
+        EngineDrawing(
             module, size, screen_triangle(shell) if points is None else points, triangles, shell.view_projection,
             shell.camera_position, shell.model, shell.light_positions, shell.light_colors, shell.ambient, values,
             textures, properties or {}, tangents,

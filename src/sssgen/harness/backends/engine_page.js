@@ -1,0 +1,58 @@
+// What the pages of all engines share: plans come through a WebSocket, and pictures go back. The engine's own script is in
+// front of this one; it has `VERSION` and `async function draw(plan, piece)`, which returns [facts, floats].
+//
+// A message pair each way: a text of JSON, then bytes. In a plan, `{at, size}` stands for a piece of its bytes. When the
+// connection ends, the page closes, and with it the browser.
+
+const complaints = [];
+for (const level of ['error', 'warn']) {
+  const print = console[level];
+  console[level] = (...parts) => {
+    complaints.push(parts.map(String).join(' '));
+    print(...parts);
+  };
+}
+
+// The picture of a plan: its rows are `stride` bytes apart, the first at the top where `topFirst` says so.
+async function drawn(plan, piece) {
+  complaints.length = 0;
+  const start = performance.now();
+  const [facts, pixels] = await draw(plan, piece);
+  const took = { stride: pixels.byteLength / plan.height, drew: (performance.now() - start) / 1000 };
+  return [{ ...took, ...facts, complaints: [...complaints] }, pixels.slice().buffer];
+}
+
+async function imported(text) {
+  const url = URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
+  const module = await import(url);
+  URL.revokeObjectURL(url);
+  return module;
+}
+
+const floats = (bytes) => new Float32Array(bytes.slice().buffer);
+const indices = (bytes) => new Uint32Array(bytes.slice().buffer);
+const halves = (bytes) => new Uint16Array(bytes.slice().buffer);
+
+const socket = new WebSocket(location.href.replace('http:', 'ws:'));
+socket.binaryType = 'arraybuffer';
+socket.onclose = () => window.close();
+
+function say(answer, bytes = new ArrayBuffer(0)) {
+  socket.send(JSON.stringify(answer));
+  socket.send(bytes);
+}
+
+let plan;
+socket.onmessage = async ({ data }) => {
+  if (typeof data === 'string') {
+    plan = JSON.parse(data);
+    return;
+  }
+  const bytes = new Uint8Array(data);
+  try {
+    say(...(await drawn(plan, ({ at, size }) => bytes.subarray(at, at + size))));
+  } catch (error) {
+    say({ error: `${error.name}: ${error.message}`, complaints: [...complaints], stack: error.stack });
+  }
+};
+socket.onopen = () => say({ version: VERSION });
