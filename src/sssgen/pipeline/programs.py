@@ -21,7 +21,7 @@ from sssgen.pipeline.trace import Trace
 from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.targets.assemble import About, Program, print_parts
 from sssgen.targets.descriptor import Target
-from sssgen.targets.texture_support import check_textures
+from sssgen.targets.uniform_support import check_uniforms
 
 _material_programs: dict[tuple[str, str, bool, str, str, str], State] = {}
 """The states after the passes of a material, which are the same for all targets of one kind."""
@@ -108,7 +108,7 @@ def _finish(state: State, trace: Trace | None) -> Program:
     """Runs the passes for the target, and prints the result."""
     pass_list.run(pass_list.TARGET, state, trace)
     module, target, material = state.module, state.target, state.material
-    check_textures(target, module.uniforms, source_line)
+    check_uniforms(target, state.form, module.uniforms, state.source_names, source_line)
     parts = print_parts(
         target, module, comments_before, state.stage, state.entry_name, state.keep, comment_behind, source_line
     )

@@ -1,0 +1,57 @@
+"""What a target cannot supply to a program is one error per parameter or texture, with its place and what to do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import sssgen
+from sssgen.support.diagnostics import UnsupportedError
+
+HEAD = "/** X.\nrole: surface\n*/\n"
+
+
+def material(folder: Path, uniform: str, value: str) -> str:
+    """A material of one technique that reads the uniform `x`."""
+    (folder / "reads.sss").write_text(
+        f"uniform {uniform};\n{HEAD}void reads(uv_position uv, out vec3 albedo) {{ albedo = vec3({value}); }}\n",
+        encoding="utf-8",
+    )
+    path = folder / "made.toml"
+    path.write_text('[material]\nname = "made"\n[[surface]]\ntechnique = "./reads.sss"\n', encoding="utf-8")
+    return str(path)
+
+
+@pytest.mark.parametrize(
+    ("uniform", "value", "targets"),
+    [
+        ("float[3] x = float[3](0.1, 0.2, 0.3)", "x[1]", ("threejs", "bevy", "unreal", "unity-shadergraph")),
+        ("bvec2 x = bvec2(true, false)", "x.x ? 1.0 : 0.0", ("threejs", "bevy")),
+        ("mat2 x = mat2(1.0)", "x[0].x", ("bevy",)),
+    ],
+)
+def test_parameters_of_other_types(uniform: str, value: str, targets: tuple[str, ...], tmp_path: Path) -> None:
+    path = material(tmp_path, uniform, value)
+    for target in targets:
+        with pytest.raises(UnsupportedError, match="'x' cannot be a parameter in ") as raised:
+            sssgen.compile(path, target)
+        (only,) = raised.value.diagnostics
+        assert only.span.file.endswith("reads.sss") and only.span.line == 1 and "--form functions" in only.hint
+        assert sssgen.compile(path, target, "functions").files  # whose caller passes the value
+
+
+def test_a_bool_is_a_number_in_bevy(tmp_path: Path) -> None:
+    files = sssgen.compile(material(tmp_path, "bool x = true", "x ? 0.5 : 0.25"), "bevy").files
+    rust = next(text for name, text in files.items() if name.endswith(".rs"))
+    assert "pub x: i32" in rust and "x: 1," in rust
+
+
+@pytest.mark.parametrize("target", ["unity-builtin", "unity-urp", "unity-shadergraph", "unreal", "godot", "shadertoy"])
+def test_kinds_of_textures(target: str, tmp_path: Path) -> None:
+    path = material(tmp_path, "sampler2DShadow x", "texture(x, vec3(vec2(uv), 0.5))")
+    for form in ("shader", "functions"):
+        with pytest.raises(UnsupportedError, match="cannot supply 'x': it has no sampler2DShadow") as raised:
+            sssgen.compile(path, target, form)
+        (only,) = raised.value.diagnostics
+        assert only.span.line == 1 and "another target" in only.hint
