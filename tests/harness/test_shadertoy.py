@@ -115,6 +115,18 @@ def test_a_ball_is_that_of_numpy(
         assert np.median(ball) < 1e-4 and (ball > 1.0 / 255.0).mean() < 0.01
 
 
+def test_tones_are_mapped_as_in_numpy(backend: Callable[[str], Backend], tmp_path: Path) -> None:
+    material = 'title = "Wax"\n[surface]\ntechnique = "base_color"\n[tone_mapping]\ntechnique = "khronos_neutral"\n'
+    (tmp_path / "wax.toml").write_text(f'[material]\nname = "wax"\n{material}exposure = 2.0\n', encoding="utf-8")
+    scene = parse_scene(SCENE.format(material="wax.toml", camera=camera((0.0, 0.0))), tmp_path / "scene.toml")
+    compiled = sssgen.compile(str(tmp_path / "wax.toml"), "shadertoy")
+    shown = picture(backend("gl"), compiled.files["wax.shadertoy.glsl"], channels(compiled, scene), 2.5)
+    oracle = render(scene, backends.get("numpy"), SIZE)
+    inside = oracle.covered > 0.0
+    assert 0.95 < oracle.linear[inside].max() <= 1.0
+    assert (np.abs(shown - oracle.encoded)[inside].max(axis=-1) > 1.0 / 255.0).mean() < 0.01
+
+
 def test_an_srgb_texture_is_decoded(backend: Callable[[str], Backend], tmp_path: Path) -> None:
     (tmp_path / "flat.toml").write_text(
         '[material]\nname = "flat"\n[[surface]]\ntechnique = "base_color"\n', encoding="utf-8"

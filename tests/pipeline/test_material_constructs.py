@@ -21,20 +21,21 @@ CONSTRUCTS = sorted((TESTS / "material_constructs").glob("*.txt"))
 FORMS = ("shader", "functions")
 
 
-def emitted(source: str, folder: Path, target: str, form: str) -> list[str]:
-    """The lines of all texts that are emitted for a material and a target."""
+def emitted(source: str, folder: Path, target: str, form: str) -> tuple[list[str], bool]:
+    """The lines of all texts that are emitted for a material and a target, or else the messages, and whether it was."""
     path = folder / "made.toml"
     path.write_text(f'[material]\nname = "made"\n{source}', encoding="utf-8")
     try:
         files = sssgen.compile(str(path), target, form).files
     except UnsupportedError as error:
-        return [entry.message for entry in error.diagnostics]
-    return [line for file, text in files.items() if not file.endswith(".json") for line in text.splitlines()]
+        return [entry.message for entry in error.diagnostics], False
+    return [line for file, text in files.items() if not file.endswith(".json") for line in text.splitlines()], True
 
 
 def differences(before: str, after: str, folder: Path, target: str, form: str) -> str:
     """The lines for a target that only one of the two materials has."""
-    texts = [emitted(source, folder, target, form) for source in (before, after)]
+    (lines, _), (new, supported) = (emitted(source, folder, target, form) for source in (before, after))
+    texts = (lines, new) if supported else ([], new)
     return "\n".join(line for line in list(unified_diff(*texts, lineterm="", n=0))[2:] if line[0] in "+-")
 
 

@@ -35,6 +35,14 @@ def add_options(parser: ArgumentParser) -> None:
     )
     add_guards(parser)
     parser.add_argument(
+        "--shell",
+        action="append",
+        default=[],
+        metavar="ROLE=TECHNIQUE",
+        help="add a shadow, environment or tone_mapping technique to the shell of every material, or omit the "
+        "material's own (ROLE=none)",
+    )
+    parser.add_argument(
         "--prefix", default="", metavar="NAME", help="begin every global name with NAME, to fit in your own shader"
     )
     parser.add_argument(
@@ -70,7 +78,8 @@ def _cached_or_compiled(arguments: Namespace, traces: list[Trace]) -> EmittedFil
     """The cached result of the same command; with own templates or a trace it is compiled again."""
     if arguments.templates is not None or arguments.trace:
         return _compile_all(arguments, traces)
-    command = (arguments.MATERIAL, arguments.target, arguments.form, arguments.guards, arguments.prefix)
+    options = (arguments.form, arguments.guards, arguments.prefix, arguments.shell)
+    command = (arguments.MATERIAL, arguments.target, *options)
     cached = emitted_cache.load(*command)
     if cached is not None:
         return cached
@@ -88,7 +97,7 @@ def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
     names = chosen_targets(arguments.target, wrong)
     every = "all" in arguments.target.split(",")
     templates = _templates(arguments.templates, wrong)
-    materials = _materials(arguments.MATERIAL, wrong)
+    materials = _materials(arguments.MATERIAL, arguments.shell, wrong)
     files: dict[str, str] = {}
     sources: dict[str, tuple[str, str]] = {}
     warnings: list[Diagnostic] = []
@@ -136,13 +145,15 @@ def _templates(folder: str | None, wrong: list[Diagnostic]) -> str | None:
     return folder
 
 
-def _materials(arguments: list[str], wrong: list[Diagnostic]) -> list[Material]:
+def _materials(arguments: list[str], shell: list[str], wrong: list[Diagnostic]) -> list[Material]:
     from sssgen.material.material_loading import load_material
+    from sssgen.material.shell_stages import with_shell
 
     materials: dict[str, Material] = {}
     for argument in arguments:
         try:
             material = load_material(argument)
+            material = with_shell(material, shell) if shell else material
         except SssgenError as error:
             wrong += error.diagnostics
             continue

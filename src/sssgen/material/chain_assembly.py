@@ -3,7 +3,10 @@
 - `evaluate_surface(…)` runs once per fragment and returns a `Surface` with the values for the engine and the lights;
 - `evaluate_translucency(surface, …)` runs once per light and returns the factor on the light's colour;
 - `evaluate_lighting(surface, …)` is the lighting of targets without their own;
+- `evaluate_shadow(…)` is the share of the first light that arrives;
+- `evaluate_environment(surface, …)` is the reflected light of the surroundings;
 - `evaluate_color(…)` is a complete unlit material;
+- `evaluate_tone_mapping(color)` brings a colour into the range of a display;
 - `evaluate_output(color)` encodes for the display.
 
 Parameters are matched to values by name, scalar quantities by type. A value that no stage writes comes from the shell
@@ -75,12 +78,19 @@ DEFAULTS: dict[str, tuple[Type, tuple[float, ...]]] = {
 
 SURFACE_FIELDS = ("albedo", "alpha", "normal", "metallic", "roughness", "occlusion", "emission")
 
-_RESULT_OF_ROLE = {"coordinates": "uv", "geometry": "hit", "lighting": "color", "output": "color"}
+_RESULT_OF_ROLE = {
+    "coordinates": "uv", "geometry": "hit", "lighting": "color", "shadow": "shadow", "environment": "color",
+    "tone_mapping": "color", "output": "color",
+}  # fmt: skip
+_LAST = ("tone_mapping", "output")
+"""The roles that change the final colour."""
+_APART = ("lighting", "shadow", "environment", *_LAST)
+"""The roles with functions of their own."""
 
 
 TAKEN = frozenset(
     {"Surface", "surface", "light", *INPUTS}
-    | {f"evaluate_{kind}" for kind in ("surface", "translucency", "lighting", "color", "output")}
+    | {f"evaluate_{kind}" for kind in ("surface", "translucency", "lighting", "shadow", "environment", "color", *_LAST)}
 )
 """The names of the assembled functions, their inputs and their surface, which no uniform may have. The other names
 that a shell declares are reserved by its descriptor."""
@@ -105,7 +115,7 @@ class Entry(NamedTuple):
 
 
 class Chain(NamedTuple):
-    """The module with its entries, by kind: surface, translucency, lighting, color, output."""
+    """The module with its entries, by kind: surface, translucency, lighting, shadow, environment, color, …"""
 
     module: Module
     entries: dict[str, Entry]
@@ -117,24 +127,27 @@ def assemble(module: Module, stages: Sequence[ChainFunction], lit: bool, opaque:
     if not lit:
         entry = _color_entry(stages, opaque)
         return Chain(module._replace(functions=(*module.functions, entry.function)), {"color": entry}, None)
-    outputs = [stage for stage in stages if stage.role == "output"]
-    chained = [stage for stage in stages if stage.role not in ("lighting", "output")]
+    chained = [stage for stage in stages if stage.role not in _APART]
     per_light = _per_light(chained)
     surface = _Body("evaluate_surface", lit=True)
     for stage, late in zip(chained, per_light, strict=True):
         if not late:
             surface.add(stage)
     late_stages = [stage for stage, late in zip(chained, per_light, strict=True) if late]
-    lighting = [stage for stage in stages if stage.role == "lighting"]
     light = _Body("evaluate_translucency", surface, lit=True)
     if "translucency" in surface.values:  # the same for every light; each multiplies it by its colour
         light.take_over("translucency")
     for stage in late_stages:
         light.add(stage)
-    shade = _Body("evaluate_lighting", surface)
-    for stage in lighting:
-        shade.add(stage)
-    crossing = [name for name in (*light.crossing, *shade.crossing) if name not in SURFACE_FIELDS]
+    apart = {role: _Body(f"evaluate_{role}", surface) for role in ("lighting", "shadow", "environment")}
+    for role in _LAST:
+        apart[role] = _Body(f"evaluate_{role}")
+        apart[role].supply("color", VEC3)
+    for stage in stages:
+        if stage.role in apart:
+            apart[stage.role].add(stage)
+    named = [name for body in (light, *apart.values()) for name in body.crossing]
+    crossing = [name for name in named if name not in SURFACE_FIELDS]
     own = [name for name in SURFACE_FIELDS if name in surface.values and not (opaque and name == "alpha")]
     fields = own + list(dict.fromkeys(crossing))
     if not fields:  # no shading language has empty structs
@@ -144,14 +157,10 @@ def assemble(module: Module, stages: Sequence[ChainFunction], lit: bool, opaque:
     entries: dict[str, Entry] = {"surface": surface.finish_surface(struct)}
     if light.statements:
         entries["translucency"] = light.finish("translucency", VEC3, struct)
-    if lighting:
-        entries["lighting"] = shade.finish("color", VEC3, struct)
-    if outputs:
-        encode = _Body("evaluate_output")
-        encode.supply("color", VEC3)
-        for stage in outputs:
-            encode.add(stage)
-        entries["output"] = encode.finish("color", VEC3, None)
+    for role, body in apart.items():
+        if body.statements:
+            value, type_ = ("shadow", FLOAT) if role == "shadow" else ("color", VEC3)
+            entries[role] = body.finish(value, type_, struct if body.crossing or role == "lighting" else None)
     declared = StructDecl(struct, "Surface values that the techniques compute.", NOWHERE)
     functions = module.functions + tuple(entry.function for entry in entries.values())
     return Chain(module._replace(structs=(*module.structs, declared), functions=functions), entries, struct)
@@ -242,7 +251,7 @@ class _Body:
             if param.direction != "out" and (name := _value_name(param)) in self.values
         )
         target = self.after_hit if waits else self.statements
-        if stage.role == "output" and "hit" in self.values:
+        if stage.role in _LAST and "hit" in self.values:
             target = self.after
         args = tuple([self.argument(param, stage, target, waits) for param in function.params])
         call = Call(function.result, function.key, args, span)
@@ -366,6 +375,9 @@ class _Body:
         doc = {
             "translucency": "The transmitted light of one light, as a factor on its colour.",
             "evaluate_lighting": "The reflected light of one light.",
+            "evaluate_shadow": "The share of the first light that arrives, 0 to 1.",
+            "evaluate_environment": "The reflected light of the surroundings.",
+            "evaluate_tone_mapping": "Brings a linear colour into the range of a display.",
             "evaluate_output": "Encodes a linear colour for the display.",
         }.get(name if name == "translucency" else self.name, "")
         return Entry(self.function(type_, (*statements, Return(value, self.span)), doc, struct), tuple(self.inputs))

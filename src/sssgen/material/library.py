@@ -27,10 +27,16 @@ ROLES = (
     "surface",
     "translucency",
     "lighting",
+    "shadow",
+    "environment",
+    "tone_mapping",
     "output",
     "distance",
 )
 """The roles of a material's chain, in the order they run; `distance` functions are bound to slots."""
+
+OF_SHELLS = ("shadow", "environment", "tone_mapping")
+"""The roles that add to a shell without an engine what an engine has of its own."""
 
 
 class Technique(NamedTuple):

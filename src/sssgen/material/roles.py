@@ -13,11 +13,16 @@ from sssgen.ir.types import BOOL, FLOAT, VEC3, VOID, Type, spell
 from sssgen.lang.check.quantities import SCALARS, words
 from sssgen.lang.check.suggested_conversions import suggested_conversions
 from sssgen.material.chain_assembly import DEFAULTS, INPUTS
-from sssgen.material.library import Technique, folder_of, index, load_path
+from sssgen.material.library import OF_SHELLS, Technique, folder_of, index, load_path
 from sssgen.support.diagnostics import did_you_mean
 
-SECTIONS = ("geometry", "coordinates", "thickness", "surface", "translucency", "lighting", "output")
+SECTIONS = (
+    "geometry", "coordinates", "thickness", "surface", "translucency", "lighting", *OF_SHELLS, "output",
+)  # fmt: skip
 """The sections of a material file that hold stages, in the order they run."""
+
+OF_LIGHTS = ("shadow", "environment")
+"""The roles of lit materials with at most one stage."""
 
 VALUE_QUANTITIES = {
     "uv": "uv_position",
@@ -56,6 +61,7 @@ def check_chain(links: Sequence[Link], shading: str, report: Report) -> None:
     values |= {name: _Value(type_, VALUE_QUANTITIES.get(name, "")) for name, (type_, _) in DEFAULTS.items()}
     sources: dict[str, str] = {}
     unread: set[str] = set()
+    of_lights: set[str] = set()
     colored = False
     for technique, span in links:
         if error := wrong_result(technique):
@@ -78,6 +84,11 @@ def check_chain(links: Sequence[Link], shading: str, report: Report) -> None:
             sources[quantity] = technique.name
             unread.add(quantity)
         colored = colored or technique.role == "lighting"
+        if technique.role in OF_LIGHTS and (shading == "unlit" or technique.role in of_lights):
+            unlit = f"an unlit material has no lights for [{technique.role}]"
+            message = unlit if shading == "unlit" else f"a second [{technique.role}] stage"
+            report(span, message, "remove it")
+        of_lights.add(technique.role)
         if technique.role == "geometry" and technique.function.result == BOOL and shading == "lit":
             message = f"'{technique.name}' may miss, and then there is no surface for the engine to light"
             report(span, message, 'write shading = "unlit", and add a [lighting] stage')
@@ -98,6 +109,9 @@ def wrong_result(technique: Technique) -> str:
         "surface": ((VOID,), "void"),
         "translucency": ((FLOAT, VEC3), "float or vec3"),
         "lighting": ((VEC3,), "vec3"),
+        "shadow": ((FLOAT,), "float"),
+        "environment": ((VEC3,), "vec3"),
+        "tone_mapping": ((VEC3,), "vec3"),
         "output": ((VEC3,), "vec3"),
     }
     if role in wanted:

@@ -25,9 +25,11 @@ class EmittedFiles(NamedTuple):
     warnings: list[Diagnostic]
 
 
-def load(materials: Sequence[str], target: str, form: str, guards: str, prefix: str) -> EmittedFiles | None:
+def load(
+    materials: Sequence[str], target: str, form: str, guards: str, prefix: str, shell: Sequence[str]
+) -> EmittedFiles | None:
     """The files of the command, if nothing that they depend on has changed."""
-    entry = cache.unpickled(cache.read(_entry_name(materials, target, form, guards, prefix)))
+    entry = cache.unpickled(cache.read(_entry_name(materials, target, form, guards, prefix, shell)))
     if not isinstance(entry, tuple) or entry[0] != installation():
         return None
     _, digests, emitted = entry
@@ -40,6 +42,7 @@ def store(
     form: str,
     guards: str,
     prefix: str,
+    shell: Sequence[str],
     emitted: EmittedFiles,
     read: Iterable[str],
 ) -> None:
@@ -52,7 +55,7 @@ def store(
     if registry.has_plugins():
         return
     entry = (installation(), _digests(read), tuple(emitted))
-    cache.write(_entry_name(materials, target, form, guards, prefix), cache.pickled(entry))
+    cache.write(_entry_name(materials, target, form, guards, prefix, shell), cache.pickled(entry))
 
 
 def _digests(paths: Iterable[str]) -> dict[str, str]:
@@ -67,8 +70,11 @@ def _digests(paths: Iterable[str]) -> dict[str, str]:
     return digests
 
 
-def _entry_name(materials: Sequence[str], target: str, form: str, guards: str, prefix: str) -> str:
-    return "emitted-" + cache.digest("\0".join([os.getcwd(), target, form, guards, prefix, *materials]))
+def _entry_name(
+    materials: Sequence[str], target: str, form: str, guards: str, prefix: str, shell: Sequence[str]
+) -> str:
+    command = [os.getcwd(), target, form, guards, prefix, ",".join(shell), *materials]
+    return "emitted-" + cache.digest("\0".join(command))
 
 
 @functools.cache

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from sssgen.ir.nodes import Module, Span
+from sssgen.lang.source_lines import source_line
 from sssgen.material import library
 from sssgen.material.model import Material, TechniqueUse
 from sssgen.passes.link import LinkInput
+from sssgen.support.diagnostics import Diagnostic, UnsupportedError
 from sssgen.targets.descriptor import Target
 
 
@@ -37,6 +39,21 @@ def stages_for(material: Material, target: Target) -> list[TargetTechnique]:
     engine = {"lighting"} if lit and not target.lighting else set()
     engine |= {"output"} if target.engine_encodes else set()
     return [stage for stage in stages if stage.link.role not in engine]
+
+
+def check_shell(material: Material, target: Target) -> None:
+    """Raises UnsupportedError for stages that add to a shell, where the target's engine has that itself."""
+    wrong = [
+        Diagnostic("error", f"{target.title} does not take a material's [{role}]{_WHY[bool(target.shell)]}", stage.span,
+                   f"leave it out for this target: --shell {role}=none", source_line(stage.span))
+        for stage in material.stages
+        if (role := stage.technique.role) in library.OF_SHELLS and role not in target.shell
+    ]  # fmt: skip
+    if wrong:
+        raise UnsupportedError(wrong)
+
+
+_WHY = {False: ": the engine does this", True: ": its shell cannot carry it"}
 
 
 def _link_input(stage: TechniqueUse) -> LinkInput:

@@ -34,5 +34,5 @@ CHAIN_INPUTS: Mapping[str, ChainInput] = {
     "ray_origin": ChainInput("the origin of the eye's ray", "world"),
     "ray_direction": ChainInput("the unit direction of the eye's ray", "world"),
     "surface": ChainInput("the result of evaluate_surface"),
-    "color": ChainInput("the color that evaluate_output encodes"),
+    "color": ChainInput("the final color"),
 }

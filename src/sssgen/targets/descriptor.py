@@ -195,6 +195,9 @@ class Target(NamedTuple):
     """The beginning of every global name; `--prefix` sets another."""
     lighting: str = ""
     """The technique that lights a lit material; '' where the engine does."""
+    shell: tuple[str, ...] = ()
+    """Which of the roles that add to a plain shell (shadow, environment, tone_mapping) its own can carry; an engine has
+    its own instead."""
     engine_encodes: bool = False
     """Whether the engine encodes the final colour for a display, so that `output` techniques are left out."""
     uniform_style: str = "plain"

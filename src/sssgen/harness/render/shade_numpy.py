@@ -120,8 +120,9 @@ def _main(
     """The fragment stage over all lanes: (4, lanes)."""
     entries = reflection["entries"]
 
-    def call(kind: str, *first: Any) -> Any:
-        return names[entries[kind]["function"]](*first, *(inputs[name] for name in entries[kind]["inputs"]))
+    def call(kind: str) -> Any:
+        passed = [param["input"] for param in entries[kind]["params"] if "input" in param]
+        return names[entries[kind]["function"]](*(inputs[name] for name in passed))
 
     lanes = inputs["uv"].shape[-1]
     if "color" in entries:
@@ -136,15 +137,20 @@ def _main(
         inputs["N"] = _unit(side * (inputs["T"] * x + inputs["B"] * y) + inputs["N"] * z)
     color: Any = np.array(shell.ambient, dtype)[:, None] * fields.get("albedo", 1.0) * fields.get("occlusion", 1.0)
     color = np.broadcast_to(color + fields.get("emission", 0.0), (3, lanes))
-    first = [surface] if surface is not None else []
+    inputs["surface"] = surface
     for number in range(min(len(shell.light_positions), 4)):
         inputs |= _light(shell, number, inputs["P"], dtype)
         if "lighting" in entries:
-            color = color + call("lighting", *first)
+            share = call("shadow") if number == 0 and "shadow" in entries else 1.0
+            color = color + share * call("lighting")
         if "translucency" in entries:
-            color = color + call("translucency", *first) * inputs["light_color"]
-    if "output" in entries:
-        color = names[entries["output"]["function"]](color)
+            color = color + call("translucency") * inputs["light_color"]
+    if "environment" in entries:
+        color = color + call("environment")
+    for kind in ("tone_mapping", "output"):
+        if kind in entries:
+            inputs["color"] = np.broadcast_to(color, (3, lanes))
+            color = call(kind)
     alpha = np.broadcast_to(np.asarray(fields.get("alpha", 1.0)), (1, lanes))
     if reflection["alpha_mode"] == "mask":
         color, alpha = np.where(alpha < 0.5, 0.0, color), np.where(alpha < 0.5, 0.0, alpha)

@@ -25,7 +25,7 @@ JUMP = 0.02
 GROWTH = 1e-5
 """How much light rounding may add when there is more matter, relative to the larger of its size and 1."""
 
-_LIGHTS = {"translucency", "lighting", "output"}
+_LIGHTS = {"translucency", "lighting", "environment", "tone_mapping", "output"}
 
 
 class OutputFaults(NamedTuple):
