@@ -7,7 +7,7 @@
 # make fuzz   random programs and files for FUZZ_MINUTES (10)
 # make bench  the benchmarks   make bench-gpu  what shaders cost on this GPU, emitted and by hand
 # make setup  what the others need, done once: .venv, system packages, compilers
-# make engines  Godot 4.6 in build/engines, 1.2 GB, as root: make test-long then runs the shaders for it
+# make engines  Godot 4.6 in build/engines, 1.2 GB, and Firefox, as root: make test-long then runs the shaders in them
 
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)

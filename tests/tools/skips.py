@@ -9,6 +9,7 @@ from typing import TypeVar
 import pytest
 
 from sssgen.harness import compilers
+from sssgen.harness.backend_registry import BACKENDS
 from sssgen.harness.compilers import Compiler, CompilerMissing
 
 Tool = TypeVar("Tool")
@@ -20,7 +21,8 @@ def or_skip(get: Callable[[str], Tool], name: str) -> Tool:
     try:
         return get(name)
     except CompilerMissing as reason:
-        apart = name in compilers.COMPILERS and compilers.COMPILERS[name].apart
+        record = compilers.COMPILERS.get(name) or BACKENDS.get(name)
+        apart = record is not None and record.apart
         if os.environ.get("CI", "") not in ("", "0", "false") and not apart:
             pytest.fail(f"{name} is missing: {reason}")
         pytest.skip(f"{name} is missing: {reason}")

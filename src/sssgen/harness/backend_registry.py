@@ -29,6 +29,8 @@ class BackendRecord(NamedTuple):
     """Its counterpart in half precision."""
     driver: bool = True
     """Whether a driver computes, which may crash."""
+    apart: bool = False
+    """Whether `make setup` leaves it out, so that its absence in CI is no failure."""
     default: bool = False
     """Whether it runs where no back end is named: one for each compiler, and NumPy."""
 
@@ -66,6 +68,11 @@ _RECORDS = (
     BackendRecord(
         "browser", "WGSL through Tint, in a headless Chromium", "wgsl", "browser:Browser",
         "`pip install 'sssgen[browser]'` and Chromium or Chrome (Debian: `chromium`)", default=True,
+    ),
+    BackendRecord(
+        "firefox", "WGSL through naga, in a headless Firefox", "wgsl", "browser:Browser",
+        "`pip install 'sssgen[browser]'`, Firefox (Debian: `firefox-esr`) and Vulkan", {"program": "firefox"},
+        apart=True,
     ),
     BackendRecord(
         "hlsl", "HLSL through DXC and SPIR-V, in OpenGL", "hlsl", "hlsl_spirv:HLSL", _DXC, {"compiler": "dxc"},

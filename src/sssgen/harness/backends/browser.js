@@ -17,10 +17,15 @@ async function start() {
   const requiredLimits = Object.fromEntries(LIMITS.map((name) => [name, adapter.limits[name]]));
   device = await adapter.requestDevice({ requiredLimits });
   device.lost.then((info) => { lost = info.message || info.reason; });
-  const { fullVersionList } = await navigator.userAgentData.getHighEntropyValues(["fullVersionList"]);
-  const version = fullVersionList.find(({ brand }) => brand === "Chromium")?.version ?? "";
+  const version = await browserVersion();
   const { description, device: chip, architecture } = adapter.info;
   return { version, adapter: description || chip || architecture };
+}
+
+async function browserVersion() {
+  const detail = await navigator.userAgentData?.getHighEntropyValues(["fullVersionList"]);
+  const chromium = detail?.fullVersionList.find(({ brand }) => brand === "Chromium");
+  return chromium?.version ?? navigator.userAgent.match(/Firefox\/(\S+)/)?.[1] ?? "";
 }
 
 // What a plan gives: `{stride}` and the picture, its rows `stride` bytes apart; `{messages}` where the text is refused;

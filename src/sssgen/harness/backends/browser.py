@@ -1,20 +1,22 @@
-"""WebGPU in a headless Chromium or Chrome, whose compiler is Tint: on SwiftShader, or on the machine's GPU.
+"""WebGPU in a headless browser: Chromium or Chrome, whose compiler is Tint, or Firefox, whose compiler is naga.
 
-$SSSGEN_CHROMIUM names the browser's program; else an installed one is used. $SSSGEN_BROWSER_ADAPTER names the adapter:
-`swiftshader`, which every browser has and which computes on the CPU, or `default` for the machine's GPU.
+$SSSGEN_CHROMIUM and $SSSGEN_FIREFOX name the browsers' programs; else installed ones are used. $SSSGEN_BROWSER_ADAPTER
+names Chromium's adapter: `swiftshader`, which it always has and which computes on the CPU, or `default` for the
+machine's GPU. Firefox takes the adapter that Vulkan, Metal or Direct3D 12 has, and does not name it.
 """
 
 from __future__ import annotations
 
 import json
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from sssgen.harness.backends.backend_interface import Array, Drawing, backend_failure, refused
-from sssgen.harness.backends.browser_page import START, LostError, Page, find
+from sssgen.harness.backends.browser_page import START, WEBGPU, LostError, Page, find, find_firefox
 from sssgen.harness.backends.call_program import FRAGMENT
 from sssgen.harness.backends.draw_backend import DrawingBackend
 from sssgen.harness.backends.webgpu_plan import ATTRIBUTE_PLAN, STRIDE, Plan, layout_entries, plan
@@ -31,18 +33,20 @@ _WHOLE_QUADS = "diagnostic(off, derivative_uniformity);"
 class Browser(DrawingBackend):
     """A page executes the plans; a browser that is lost is started again for the next draw.
 
-    `seconds`: how long a small draw may take.
+    `seconds`: how long a small draw may take; `program`: chromium or firefox.
     """
 
     top_first = True
 
-    def __init__(self, name: str, target: str, seconds: float = SECONDS) -> None:
+    def __init__(self, name: str, target: str, seconds: float = SECONDS, program: str = "chromium") -> None:
         super().__init__(name, target)
-        self.seconds = seconds
-        self.page, self.facts = _open()
+        self.seconds, self.program = seconds, program
+        self.page, self.facts = _OPEN[program]()
 
     def device(self) -> str:
-        return f"Tint in Chromium {self.facts['version']} on {self.facts['adapter']}"
+        return (
+            f"{_COMPILERS[self.program]} {self.facts['version']} on {self.facts['adapter'] or 'the machine’s adapter'}"
+        )
 
     def draw(self, drawing: Drawing) -> Array:
         self.check(drawing)
@@ -56,7 +60,7 @@ class Browser(DrawingBackend):
         try:
             if not self.page.alive():
                 self.page.close()
-                self.page, self.facts = _open()
+                self.page, self.facts = _OPEN[self.program]()
             self.page.send(head, data, seconds)
             answer, picture = self.page.receive(seconds)
         except LostError as reason:
@@ -78,19 +82,38 @@ class Browser(DrawingBackend):
 
 
 def _open() -> tuple[Page, dict[str, Any]]:
-    """A page with a device, and its version and adapter. Raises CompilerMissing where there is none."""
+    """A page in Chromium with a device, and its version and adapter. Raises CompilerMissing where there is none."""
     program = find()
     if not program:
         raise CompilerMissing("chromium (Debian: chromium · elsewhere: Chrome; or set SSSGEN_CHROMIUM)")
     adapter = os.environ.get("SSSGEN_BROWSER_ADAPTER", "swiftshader")
+    return _page("chromium", program, adapter, WEBGPU, f" (SSSGEN_BROWSER_ADAPTER={adapter})")
+
+
+def _open_firefox() -> tuple[Page, dict[str, Any]]:
+    """The same in Firefox."""
+    program = find_firefox()
+    if not program:
+        raise CompilerMissing("firefox (Debian: firefox-esr; or set SSSGEN_FIREFOX)")
+    return _page("firefox", program, "", None, "")
+
+
+_OPEN = {"chromium": _open, "firefox": _open_firefox}
+_COMPILERS = {"chromium": "Tint in Chromium", "firefox": "naga in Firefox"}
+
+
+def _page(
+    name: str, program: str, adapter: str, switches: Sequence[str] | None, setting: str
+) -> tuple[Page, dict[str, Any]]:
+    script = Path(__file__).with_name("browser.js").read_text(encoding="utf-8")
     try:
-        page = Page(program, adapter, Path(__file__).with_name("browser.js").read_text(encoding="utf-8"))
+        page = Page(program, adapter, script, switches)
         facts, _ = page.receive(START)
     except LostError as reason:
-        raise CompilerMissing(f"chromium that starts: {program} {reason}") from None
+        raise CompilerMissing(f"{name} that starts: {program} {reason}") from None
     if "error" in facts:
         page.close()
-        raise CompilerMissing(f"chromium with WebGPU: {program}: {facts['error']} (SSSGEN_BROWSER_ADAPTER={adapter})")
+        raise CompilerMissing(f"{name} with WebGPU: {program}: {facts['error']}{setting}")
     return page, facts
 
 

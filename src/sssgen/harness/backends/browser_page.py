@@ -49,12 +49,35 @@ _SILENT.addHandler(logging.NullHandler())
 _SILENT.propagate = False
 
 
+FIREFOX = {
+    "dom.webgpu.enabled": True,
+    "gfx.webgpu.force-enabled": True,
+    "gfx.webgpu.ignore-blocklist": True,
+    "dom.allow_scripts_to_close_windows": True,
+    "app.update.enabled": False,
+    "browser.shell.checkDefaultBrowser": False,
+    "datareporting.policy.dataSubmissionEnabled": False,
+    "network.captive-portal-service.enabled": False,
+    "network.connectivity-service.enabled": False,
+}
+"""Firefox's preferences: WebGPU also on a driver that computes on the CPU, and no requests of its own."""
+
+
 class LostError(Exception):
     """The page or its browser is gone; the message states the reason and follows the browser's name."""
 
 
+def find_firefox() -> str:
+    """Firefox's program: $SSSGEN_FIREFOX if it is set, else one that is installed; '' where there is none."""
+    configured = os.environ.get("SSSGEN_FIREFOX")
+    places = (
+        [configured] if configured else ["firefox", "firefox-esr", "/Applications/Firefox.app/Contents/MacOS/firefox"]
+    )
+    return next((path for place in places if (path := shutil.which(place))), "")
+
+
 def find() -> str:
-    """The browser's program: $SSSGEN_CHROMIUM if it is set, else one that is installed; '' where there is none."""
+    """Chromium's program: $SSSGEN_CHROMIUM if it is set, else one that is installed; '' where there is none."""
     configured = os.environ.get("SSSGEN_CHROMIUM")
     if configured:
         return shutil.which(configured) or ""
@@ -71,8 +94,8 @@ def find() -> str:
 class Page:
     """A browser with one page that runs `script`; both end with `close`, with this object, and with this process.
 
-    `modules` are the files that the script may import, by their names in it. Raises LostError
-    where the browser does not start.
+    `switches` are Chromium's, or None: the program is Firefox. `modules` are the files that the script may import, by
+    their names in it. Raises LostError where the browser does not start.
     """
 
     def __init__(
@@ -80,7 +103,7 @@ class Page:
         program: str,
         adapter: str,
         script: str,
-        switches: Sequence[str] = WEBGPU,
+        switches: Sequence[str] | None = WEBGPU,
         modules: Mapping[str, Path] = {},
     ) -> None:
         folder = tempfile.mkdtemp(prefix="sssgen-browser-")
@@ -95,7 +118,8 @@ class Page:
                 page = _HTML.format(imports=imports, script=script)
                 server = _server(path, page, files, connections, ending)
                 url = f"http://127.0.0.1:{server.socket.getsockname()[1]}{path}"
-                self.process = _launch([program, *_flags(folder, adapter, switches), url], folder, log)
+                flags = _firefox_flags(folder) if switches is None else _flags(folder, adapter, switches)
+                self.process = _launch([program, *flags, url], folder, log)
                 ending.callback(_end, self.process, folder)
                 self._connection = self._first(connections)
             except BaseException as error:
@@ -204,6 +228,13 @@ def _flags(folder: str, adapter: str, switches: Sequence[str]) -> list[str]:
     if root or container or ci:  # the sandbox does not start there, and shared memory may be 64 MB
         flags += ["--no-sandbox", "--disable-dev-shm-usage"]
     return flags
+
+
+def _firefox_flags(folder: str) -> list[str]:
+    """The command line; the profile in `folder` gets the preferences."""
+    lines = [f'user_pref("{name}", {json.dumps(value)});\n' for name, value in FIREFOX.items()]
+    Path(folder, "user.js").write_text("".join(lines), encoding="utf-8")
+    return ["--headless", "--no-remote", "--profile", folder]
 
 
 # A link in the profile leads to another folder of the browser, for a socket.
