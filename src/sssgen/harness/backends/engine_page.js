@@ -1,5 +1,5 @@
 // What the pages of all engines share: plans come through a WebSocket, and pictures go back. The engine's own script is in
-// front of this one; it has `VERSION` and `async function draw(plan, piece)`, which returns [facts, floats].
+// front of this one; it has `VERSION` and `async function draw(plan, piece)`, which returns the floats.
 //
 // A message pair each way: a text of JSON, then bytes. In a plan, `{at, size}` stands for a piece of its bytes. When the
 // connection ends, the page closes, and with it the browser.
@@ -13,13 +13,13 @@ for (const level of ['error', 'warn']) {
   };
 }
 
-// The picture of a plan: its rows are `stride` bytes apart, the first at the top where `topFirst` says so.
+// The picture of a plan: its rows are `stride` bytes apart.
 async function drawn(plan, piece) {
   complaints.length = 0;
   const start = performance.now();
-  const [facts, pixels] = await draw(plan, piece);
-  const took = { stride: pixels.byteLength / plan.height, drew: (performance.now() - start) / 1000 };
-  return [{ ...took, ...facts, complaints: [...complaints] }, pixels.slice().buffer];
+  const pixels = await draw(plan, piece);
+  const drew = (performance.now() - start) / 1000;
+  return [{ stride: pixels.byteLength / plan.height, drew, complaints: [...complaints] }, pixels.slice().buffer];
 }
 
 async function imported(text) {

@@ -30,7 +30,9 @@ class Renderer(NamedTuple):
     switches: Sequence[str]
     """The browser's: WEBGL or WEBGPU of `browser_page`."""
     gpu: bool = False
-    """Whether it is WebGPU: depth from 0 to 1, the first row of a render target at the top."""
+    """Whether it is WebGPU: depth in clip space is from 0 to 1, not from -1."""
+    top_first: bool = False
+    """Whether the first row of a render target is at the top."""
 
 
 class Engine(NamedTuple):
@@ -105,7 +107,7 @@ class EnginePage:
         width, height = drawing.size
         rows = np.frombuffer(bytearray(picture), np.float32).reshape(height, answer["stride"] // 4)
         result = rows[:, : width * 4].reshape(height, width, 4)
-        return result[::-1] if answer["topFirst"] else result
+        return result[::-1] if self.renderer.top_first else result
 
 
 def _packed(drawing: EngineDrawing, name: str, renderer: Renderer) -> tuple[str, bytes]:

@@ -63,7 +63,7 @@ async function draw(plan, piece) {
   }
   renderer.setRenderTarget(null);
   [geometry, material, target, glTarget, ...Object.values(textures)].forEach((one) => one.dispose());
-  return [{ topFirst: gpu }, pixels];
+  return pixels;
 }
 
 function lightOf({ position, color }) {

@@ -20,5 +20,5 @@ def _modules(packages: Path) -> Mapping[str, Path]:
 
 THREE = Engine(
     "threejs", "three.js", "npm package three: make setup", _modules, "three_page.js",
-    {"webgl": Renderer(WEBGL), "webgpu": Renderer(WEBGPU, gpu=True), "webgl2": Renderer(WEBGL)},
+    {"webgl": Renderer(WEBGL), "webgpu": Renderer(WEBGPU, gpu=True, top_first=True), "webgl2": Renderer(WEBGL)},
 )  # fmt: skip

@@ -38,9 +38,8 @@ def shade(
     }
     if any("time" in entry["inputs"] for entry in reflection["entries"].values()):
         values["time"] = shell.time
-    textures = {
-        texture["property"]: bound_texture(texture, shell, page.renderer.gpu) for texture in reflection["textures"]
-    }
+    top_first = page.renderer.top_first
+    textures = {texture["property"]: bound_texture(texture, shell, top_first) for texture in reflection["textures"]}
     module = next(text for name, text in compiled.files.items() if name.endswith(".js"))
     return page.draw(
         EngineDrawing(
