@@ -16,7 +16,18 @@ import numpy as np
 import pytest
 
 from processes import wait_until
-from sssgen.harness.backends import Backend, Block, Bound, Call, CompilerMissing, Drawing, Place, Stage, Text
+from sssgen.harness.backends import (
+    VERTEX_SIZE,
+    Backend,
+    Block,
+    Bound,
+    Call,
+    CompilerMissing,
+    Drawing,
+    Place,
+    Stage,
+    Text,
+)
 from sssgen.harness.backends.browser import Browser
 from sssgen.ir.types import BY_NAME, FLOAT, INT, VEC2, VEC3, VEC4
 from sssgen.lang.loader import load_text
@@ -100,10 +111,10 @@ def test_implicit_levels_in_a_function(browser: Browser) -> None:
 
 
 def test_vertices_and_blocks(browser: Browser) -> None:
-    vertices = np.zeros((3, 12), np.float32)
+    vertices = np.zeros((3, VERTEX_SIZE), np.float32)
     vertices[:, :2] = [[-1, 1], [3, 1], [-1, -3]]  # covers the whole picture; the first row is at the top
     vertices[:, 9] = -1.0
-    vertices[:, 10:] = [[0, 0], [2, 0], [0, 2]]
+    vertices[:, 10:12] = [[0, 0], [2, 0], [0, 2]]
     gain = {"gain": Block(np.array([1, 2, 3, 4], np.float32).tobytes(), Place(1, 2))}
     triangles = np.array([[0, 1, 2]], np.uint32)
     picture = browser.draw(drawing(MESH, vertices=vertices, triangles=triangles, blocks=gain))

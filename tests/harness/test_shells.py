@@ -33,13 +33,14 @@ BRIGHT = 1e8
 """More than the lights of these tests can give."""
 
 INPUTS = "world_direction V, world_direction N, world_direction T, world_direction B, object_direction V_object, "
-INPUTS += "object_direction N_object, vec2 screen_uv, float eye_distance"
+INPUTS += "object_direction N_object, vec2 screen_uv, float eye_distance, uv_position uv2, vec4 vertex_color"
 LIT = f"""
 /** Shows what a shell gives a surface.
 role: surface
 */
 void shown({INPUTS}, inout tangent_direction normal, out vec3 emission) {{
-    emission = 0.5 + 0.1 * vec3(V + N + T + B + vec3(V_object) + vec3(N_object) + vec3(screen_uv, eye_distance));
+    emission = 0.5 + 0.1 * vec3(V + N + T + B + vec3(V_object) + vec3(N_object) + vec3(screen_uv, eye_distance))
+        + 0.1 * (vec3(uv2, vertex_color.a) + vertex_color.rgb);
 }}
 """
 THROUGH = """
@@ -47,8 +48,9 @@ THROUGH = """
 role: translucency
 */
 vec3 through(world_direction V, world_direction N, world_direction L, object_direction L_object, vec2 screen_uv,
-    float eye_distance, float light_nearness) {
-    return 0.5 + 0.1 * vec3(V + N + L + vec3(L_object)) + vec3(screen_uv, eye_distance) + light_nearness;
+    float eye_distance, float light_nearness, uv_position uv2, vec4 vertex_color) {
+    return 0.5 + 0.1 * vec3(V + N + L + vec3(L_object)) + vec3(screen_uv, eye_distance) + light_nearness
+        + 0.1 * (vec3(uv2, vertex_color.a) + vertex_color.rgb);
 }
 """
 UNLIT = f"""
@@ -57,7 +59,7 @@ role: lighting
 */
 vec3 unlit({INPUTS}, world_direction L, object_direction L_object, float light_nearness) {{
     return 0.5 + 0.1 * vec3(V + N + T + B + vec3(V_object) + vec3(N_object) + L + vec3(L_object))
-        + vec3(screen_uv, eye_distance) + light_nearness;
+        + vec3(screen_uv, eye_distance) + light_nearness + 0.1 * (vec3(uv2, vertex_color.a) + vertex_color.rgb);
 }}
 """
 RAYS = """
@@ -85,7 +87,7 @@ MATERIALS = {
     'technique = "plain.sss"\n',
 }
 
-FRONT = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.5, 0.5])
+FRONT = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.5, 0.5, 0.25, 0.5, 0.5, 0.4, 0.3, 0.8])
 """A vertex that faces +z; `grid` sets its position."""
 LAMPS = np.array([[0.0, 0.0, 1.0, 0.0], [1.0, 2.0, 3.0, 1.0]])
 
@@ -229,7 +231,8 @@ def test_hostile_ports_of_a_graph(
         r"^    (float\d) (\w+),$", text.partition("void Unlit_float(")[2].partition(") {")[0], re.MULTILINE
     )
     assert {("float3", "V"), ("float3", "N"), ("float2", "screen_uv")} <= set(ports)
-    call = f"float4 color; Unlit_float({', '.join(f'({type})v' for type, _ in ports)}, color); return color.rgb;"
+    given = ", ".join("float4(v, 1.0)" if type == "float4" else f"({type})v" for type, _ in ports)
+    call = f"float4 color; Unlit_float({given}, color); return color.rgb;"
     text += f"\nfloat3 called(float3 v) {{ {call} }}\n"
     lanes = np.array([[0.0, 0.0, 0.3], [0.0, 1e-25, 0.4], [0.0, 0.0, 0.5]])
     (result,) = machine.run(Text(text), [Call("called", (VEC3,), VEC3, (lanes,))])

@@ -31,9 +31,10 @@ from sssgen.targets import registry
 
 INPUTS = "world_position P, world_direction N, world_direction V, world_direction T, world_direction B"
 INPUTS += ", object_position P_object, object_direction N_object, object_direction V_object, vec2 screen_uv"
-INPUTS += ", float eye_distance, uv_position uv, float time"
+INPUTS += ", float eye_distance, uv_position uv, float time, uv_position uv2, vec4 vertex_color"
 VALUES = "vec3(P) + vec3(N) + vec3(V) + vec3(T) + vec3(B) + 2.0 * vec3(P_object) + vec3(N_object) + vec3(V_object)"
 VALUES += " + vec3(screen_uv.x, abs(screen_uv.y - 0.5), eye_distance) + vec3(uv, time)"  # v is down in WebGPU
+VALUES += " + vertex_color.a * vertex_color.rgb + vec3(uv2, 0.0)"
 HEAD = "/**\n * X.\n * role: {}\n * formula: none\n * source: none\n * units: none\n * limits: none\n */\n"
 PROBES = {
     "shown": HEAD.format("surface") + f"void shown({INPUTS}, inout tangent_direction normal, out vec3 emission) {{ "
@@ -126,6 +127,7 @@ def test_every_value_of_the_chain(three: EnginePage, name: str, front: bool, lig
     points[:, :3] = points[:, :3] @ moved[:3, :3].T + moved[:3, 3]
     points[:, 3:6] = points[:, 3:6] @ np.linalg.inv(moved[:3, :3])
     points[:, 6:9] = points[:, 6:9] @ moved[:3, :3].T
+    points[:, 12:18] = 0.5 + 0.4 * np.sin(points[:, :1] * np.arange(1.0, 7.0))  # a second set, and colours
     position = [0.5, 2.0, 3.0, 1.0] if light == "point" else [0.3, 0.5, 0.8, 0.0]
     shell = dataclasses.replace(
         mesh.shell, model=turned, parameters={}, textures={}, ambient=(0.0, 0.0, 0.0), time=0.75, front=front,

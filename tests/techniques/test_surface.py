@@ -357,6 +357,14 @@ def test_maps_of_the_surface_multiply_their_factors() -> None:
         close(result, value)
 
 
+def test_colours_of_vertices_are_factors() -> None:
+    colors = rng().uniform(size=(8, 4))
+    colors[0, 3] = 3.0
+    albedo, alpha = technique("vertex_tint")(vertex_color=colors, albedo=(0.5, 1.0, 0.25), alpha=0.6)
+    close(albedo, colors[:, :3] * [0.5, 1.0, 0.25])
+    close(alpha, 0.6 * np.minimum(colors[:, 3], 1.0))
+
+
 def test_emission_is_added() -> None:
     picture = rng().uniform(size=(2, 2, 3))
     values = {"emission_color": (1.0, 0.5, 0.25), "emission_strength": 20.0, "emission": (0.1, 0.2, 0.3)}

@@ -62,6 +62,8 @@ def of_name(param: Param, format: Format = FLOAT32) -> Contract | None:
         return Contract(0.0, THICKNESS[format.name])
     if param.name == "light_nearness" and param.type == FLOAT:
         return Contract(0.0, NEAREST)
+    if param.name == "vertex_color" and param.type == VEC4:
+        return Contract(0.0, COLOR[format.name])
     if param.name in _COLORS and param.type == VEC3:
         return Contract(0.0, LIGHT[format.name] if param.name == "light_color" else COLOR[format.name])
     return None

@@ -50,6 +50,7 @@ INPUTS: dict[str, Type] = {
     "P_object": VEC3, "N_object": VEC3, "V_object": VEC3, "L_object": VEC3,
     "screen_uv": VEC2, "eye_distance": FLOAT,
     "time": FLOAT, "light_color": VEC3, "light_nearness": FLOAT, "ray_origin": VEC3, "ray_direction": VEC3,
+    "uv2": VEC2, "vertex_color": VEC4,
 }  # fmt: skip
 """The inputs that a shell can supply."""
 
@@ -60,7 +61,9 @@ EYE_DISTANCE = "eye_distance"
 RAYS = frozenset({"ray_origin", "ray_direction"})
 """The inputs of a material that fills the screen, which has no mesh."""
 
-OF_MESH = frozenset({"P", "N", "V", "T", "B", "P_object", "N_object", "V_object", "L_object", EYE_DISTANCE})
+OF_MESH = frozenset({
+    "P", "N", "V", "T", "B", "P_object", "N_object", "V_object", "L_object", EYE_DISTANCE, "uv2", "vertex_color",
+})  # fmt: skip
 """The inputs that a shell computes from a mesh."""
 
 DEFAULTS: dict[str, tuple[Type, tuple[float, ...]]] = {
@@ -79,7 +82,7 @@ DEFAULTS: dict[str, tuple[Type, tuple[float, ...]]] = {
 SURFACE_FIELDS = ("albedo", "alpha", "normal", "metallic", "roughness", "occlusion", "emission")
 
 _RESULT_OF_ROLE = {
-    "coordinates": "uv", "geometry": "hit", "lighting": "color", "shadow": "shadow", "environment": "color",
+    "geometry": "hit", "lighting": "color", "shadow": "shadow", "environment": "color",
     "tone_mapping": "color", "output": "color",
 }  # fmt: skip
 _LAST = ("tone_mapping", "output")
@@ -105,6 +108,8 @@ class ChainFunction(NamedTuple):
     span: Span
     glows: bool = False
     """Whether its result is added once and not multiplied by a light's colour"""
+    uv: str = "uv"
+    """The value that its parameter `uv` is, and, of a coordinates stage, its result: `uv`, or `uv2`."""
 
 
 class Entry(NamedTuple):
@@ -171,7 +176,7 @@ def _per_light(stages: Sequence[ChainFunction]) -> list[bool]:
     late: set[str] = set(PER_LIGHT)
     result = []
     for stage in stages:
-        reads = {_value_name(param) for param in stage.function.params if param.direction != "out"}
+        reads = {_value_name(param, stage) for param in stage.function.params if param.direction != "out"}
         is_late = bool(reads & late)
         written = _written(stage)
         late = late | written if is_late else late - (written - reads)
@@ -180,7 +185,7 @@ def _per_light(stages: Sequence[ChainFunction]) -> list[bool]:
 
 
 def _written(stage: ChainFunction) -> set[str]:
-    names = {_value_name(param) for param in stage.function.params if param.direction != "in"}
+    names = {_value_name(param, stage) for param in stage.function.params if param.direction != "in"}
     result = _result_name(stage)
     return names | {result} if result else names
 
@@ -189,11 +194,14 @@ def _result_name(stage: ChainFunction) -> str:
     """The name of the value that a stage's result becomes."""
     if stage.function.result == VOID:
         return ""
+    if stage.role == "coordinates":
+        return stage.uv
     return _RESULT_OF_ROLE.get(stage.role) or stage.function.quantity or "translucency"
 
 
-def _value_name(param: Param) -> str:
-    return param.quantity if param.quantity in SCALARS else param.name
+def _value_name(param: Param, stage: ChainFunction) -> str:
+    name = param.quantity if param.quantity in SCALARS else param.name
+    return stage.uv if name == "uv" else name
 
 
 def _color_entry(stages: Sequence[ChainFunction], opaque: bool) -> Entry:
@@ -243,12 +251,12 @@ class _Body:
         """Adds the call of one stage."""
         function, span = stage.function, stage.span
         self.span = span
-        if any(_value_name(param) == EYE_DISTANCE for param in function.params):
+        if any(_value_name(param, stage) == EYE_DISTANCE for param in function.params):
             self.measure_hit(stage)
         waits = "hit" in self.values and any(
             self.values[name].behind_hit
             for param in function.params
-            if param.direction != "out" and (name := _value_name(param)) in self.values
+            if param.direction != "out" and (name := _value_name(param, stage)) in self.values
         )
         target = self.after_hit if waits else self.statements
         if stage.role in _LAST and "hit" in self.values:
@@ -277,7 +285,7 @@ class _Body:
 
     def argument(self, param: Param, stage: ChainFunction, target: list[Stmt], waits: bool) -> Expr:
         """The argument for a parameter."""
-        name = _value_name(param)
+        name = _value_name(param, stage)
         if param.direction == "out":
             if name not in self.values:
                 self.values[name] = _Value(param.type, waits)

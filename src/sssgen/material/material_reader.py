@@ -10,7 +10,7 @@ from sssgen.ir.nodes import Function, Span, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import baked, library, roles, slots
 from sssgen.material.library import Technique
-from sssgen.material.model import ALPHA_MODES, SHADINGS, Binding, Material, TechniqueUse, wrong_name
+from sssgen.material.model import ALPHA_MODES, SHADINGS, UV_SETS, Binding, Material, TechniqueUse, wrong_name
 from sssgen.material.values import WrongValue, read_texture, read_value
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean
 from sssgen.support.toml_source import Document, parse
@@ -173,7 +173,7 @@ class _Reader:
         stage = TechniqueUse(technique, {}, frozenset(), {}, bindings, span)
         key_of: dict[Span, str] = {}
         for key, raw in table.items():
-            if key in ("technique", "bind"):
+            if key in ("technique", "bind", "uv"):
                 continue
             matches = [uniform for uniform in uniforms.values() if key in _names(uniform)]
             if not matches:
@@ -185,7 +185,19 @@ class _Reader:
                     continue
                 key_of[uniform.span] = key
                 stage = self.parameter(stage, uniform, (*path, key), raw)
+        if "uv" in table:
+            stage = stage._replace(uv=self.uv_set(technique, (*path, "uv"), table["uv"]))
         return self.baked(stage, list(uniforms.values()), path, table)
+
+    def uv_set(self, technique: Technique, path: tuple[str | int, ...], raw: object) -> str:
+        """The set of texture coordinates that a stage reads."""
+        place = self.document.place(*path)
+        if raw not in UV_SETS:
+            message = f"'uv' takes the name of a set of texture coordinates: {' or '.join(UV_SETS)}"
+            self.document.error(place.value, message, 'write uv = "uv2"')
+        elif all(param.name != "uv" for param in technique.function.params):
+            self.document.error(place.key, f"'{technique.name}' reads no texture coordinates", "omit uv")
+        return str(raw)
 
     def technique(self, section: str, path: tuple[str | int, ...], table: dict[str, Any]) -> Technique | None:
         """The technique that a stage names."""

@@ -33,6 +33,8 @@ class TechniqueUse(NamedTuple):
     """Slot name → the function bound to it."""
     span: Span
     """The position of the stage's `technique = …` line."""
+    uv: str = "uv"
+    """The set of texture coordinates that the technique reads, one of `UV_SETS`."""
 
 
 class Material(NamedTuple):
@@ -60,6 +62,7 @@ class Material(NamedTuple):
         return Path(self.file)
 
 
+UV_SETS = ("uv", "uv2")
 SHADINGS = ("lit", "unlit")
 ALPHA_MODES = ("opaque", "mask", "blend")
 

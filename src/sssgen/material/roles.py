@@ -26,6 +26,7 @@ OF_LIGHTS = ("shadow", "environment")
 
 VALUE_QUANTITIES = {
     "uv": "uv_position",
+    "uv2": "uv_position",
     "P": "world_position",
     "ray_origin": "world_position",
     "P_object": "object_position",

@@ -23,12 +23,14 @@ class TargetTechnique(NamedTuple):
     """Its position in the material; a stage that the target adds comes after all of them."""
     glows: bool = False
     """Whether its technique is documented to glow: its light needs no lamp."""
+    uv: str = "uv"
+    """The set of texture coordinates that it reads."""
 
 
 def stages_for(material: Material, target: Target) -> list[TargetTechnique]:
     """The material's stages without what the engine does, with the lighting that the target adds."""
     stages = [
-        TargetTechnique(_link_input(stage), stage.span, number, stage.technique.attributes.glows)
+        TargetTechnique(_link_input(stage), stage.span, number, stage.technique.attributes.glows, stage.uv)
         for number, stage in enumerate(material.stages)
     ]
     lit = material.shading == "lit"

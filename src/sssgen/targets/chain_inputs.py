@@ -33,6 +33,8 @@ CHAIN_INPUTS: Mapping[str, ChainInput] = {
     "light_nearness": ChainInput("1 / the distance to the light, 0 for a light from afar"),
     "ray_origin": ChainInput("the origin of the eye's ray", "world"),
     "ray_direction": ChainInput("the unit direction of the eye's ray", "world"),
+    "uv2": ChainInput("the texture coordinate of the second set; 0 where the mesh has none", "texture"),
+    "vertex_color": ChainInput("the linear colour and opacity of the vertices; white where the mesh has none"),
     "surface": ChainInput("the result of evaluate_surface"),
     "color": ChainInput("the final color"),
 }

@@ -13,6 +13,7 @@ from importlib import import_module
 
 from sssgen.harness.backend_registry import BACKENDS, DEFAULT, DRIVERS, HALF, SINGLE, chosen, in_half
 from sssgen.harness.backends.backend_interface import (
+    VERTEX_SIZE,
     Array,
     Backend,
     Block,
@@ -29,9 +30,9 @@ from sssgen.harness.compilers import CompilerMissing
 from sssgen.support.diagnostics import failure
 
 __all__ = [
-    "BACKENDS", "DEFAULT", "DRIVERS", "HALF", "SINGLE", "Array", "Backend", "Block", "Bound", "Call", "CompilerMissing",
-    "Drawing", "DrawingBackend", "Place", "Stage", "Text", "available", "chosen", "emitted", "get", "in_half",
-    "missing", "needed",
+    "BACKENDS", "DEFAULT", "DRIVERS", "HALF", "SINGLE", "VERTEX_SIZE", "Array", "Backend", "Block", "Bound", "Call",
+    "CompilerMissing", "Drawing", "DrawingBackend", "Place", "Stage", "Text", "available", "chosen", "emitted", "get",
+    "in_half", "missing", "needed",
 ]  # fmt: skip
 
 

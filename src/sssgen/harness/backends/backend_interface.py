@@ -111,13 +111,17 @@ class Drawing(NamedTuple):
     values: Mapping[str, Array] = {}
     """Uniforms outside of blocks (GLSL): numbers by name, matrices column by column."""
     vertices: Array | None = None
-    """(count, 12) float32: position, normal, tangent with its handedness, uv."""
+    """(count, `VERTEX_SIZE`) float32: position, normal, tangent with its handedness, uv, second uv, colour."""
     triangles: Array | None = None
     """(count, 3) uint32."""
 
 
-ATTRIBUTES = {"position": (0, 3), "normal": (3, 3), "tangent": (6, 4), "uv": (10, 2)}
-"""A vertex's attributes: the first of its twelve numbers, and how many."""
+ATTRIBUTES = {
+    "position": (0, 3), "normal": (3, 3), "tangent": (6, 4), "uv": (10, 2), "uv2": (12, 2), "color": (14, 4),
+}  # fmt: skip
+"""A vertex's attributes: the first of its numbers, and how many."""
+VERTEX_SIZE = 18
+"""The numbers of a vertex."""
 
 
 def refused(backend: str, text: Text, messages: Sequence[Message]) -> SssgenError:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.harness.backends.backend_interface import Array, backend_failure
+from sssgen.harness.backends.backend_interface import ATTRIBUTES, VERTEX_SIZE, Array, backend_failure
 from sssgen.harness.backends.browser_page import START, LostError, Page, find
 from sssgen.harness.compilers import CompilerMissing
 from sssgen.support.paths import folder
@@ -56,7 +56,7 @@ class EngineDrawing(NamedTuple):
     module: str
     size: tuple[int, int]
     vertices: Array
-    """(n, 12): position, normal, tangent with handedness and uv, in object space."""
+    """(n, `VERTEX_SIZE`), as in `Drawing`, in object space."""
     triangles: Any
     view_projection: Array
     """World to clip space, depth from -1 to 1."""
@@ -140,7 +140,8 @@ def _packed(drawing: EngineDrawing, name: str, renderer: Renderer) -> tuple[str,
         projection = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0.5, 0.5], [0, 0, 0, 1]]) @ projection
     plan = {
         "module": drawing.module, "renderer": name, "width": drawing.size[0], "height": drawing.size[1],
-        "vertices": piece(drawing.vertices, np.float32), "triangles": piece(np.asarray(drawing.triangles), np.uint32),
+        "vertices": piece(drawing.vertices, np.float32), "vertexSize": VERTEX_SIZE, "attributes": ATTRIBUTES,
+        "triangles": piece(np.asarray(drawing.triangles), np.uint32),
         "view": view.T.ravel().tolist(), "projection": projection.T.ravel().tolist(), "eye": list(drawing.eye),
         "model": drawing.model.T.ravel().tolist(), "lights": lights, "ambient": list(drawing.ambient),
         "values": dict(drawing.values), "properties": dict(drawing.properties), "textures": textures,

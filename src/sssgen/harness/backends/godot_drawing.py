@@ -34,7 +34,7 @@ class View(NamedTuple):
     """`towards` or `place`, and the linear `color` and its factor `energy`."""
     model: Array
     vertices: Array | None
-    """(count, 12) float32, as in `Drawing`; None: a box around the camera."""
+    """(count, `VERTEX_SIZE`) float32, as in `Drawing`; None: a box around the camera."""
     triangles: Array | None
 
 
@@ -103,6 +103,8 @@ def _plan(
             "normal": normals,
             "tangent": np.column_stack([tangents, v[:, 9]]),
             "uv": v[:, 10:12],
+            "uv2": v[:, 12:14],
+            "color": v[:, 14:18],
         }
         files |= {f"{name}.bin": np.ascontiguousarray(part, np.float32).tobytes() for name, part in parts.items()}
         # Godot's front faces turn clockwise
@@ -171,6 +173,8 @@ func mesh():
     arrays[Mesh.ARRAY_NORMAL] = bytes("normal").to_vector3_array()
     arrays[Mesh.ARRAY_TANGENT] = bytes("tangent").to_float32_array()
     arrays[Mesh.ARRAY_TEX_UV] = bytes("uv").to_vector2_array()
+    arrays[Mesh.ARRAY_TEX_UV2] = bytes("uv2").to_vector2_array()
+    arrays[Mesh.ARRAY_COLOR] = bytes("color").to_color_array()
     arrays[Mesh.ARRAY_INDEX] = bytes("index").to_int32_array()
     var made = ArrayMesh.new()
     made.add_surface_from_arrays(Mesh.PRIMITIVE_TRIANGLES, arrays)

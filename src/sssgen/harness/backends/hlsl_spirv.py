@@ -20,6 +20,8 @@ _ENDINGS = {
     "normal": ("NORMAL", "_normal"),
     "tangent": ("TANGENT", "_tangent"),
     "uv": ("TEXCOORD0", "_uv", "_texcoord"),
+    "uv2": ("TEXCOORD1", "_uv2", "_texcoord1"),
+    "color": ("COLOR", "COLOR0", "_color"),
 }
 _TIMEOUT = 120.0
 

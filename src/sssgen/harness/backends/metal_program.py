@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from sssgen.harness.backends.backend_interface import Call
+from sssgen.harness.backends.backend_interface import ATTRIBUTES, VERTEX_SIZE, Call
 from sssgen.harness.compilers.metal_compiler import with_swizzles
 from sssgen.ir.types import Matrix, Type, components, kind_of, spell
 from sssgen.targets.descriptor import Target
@@ -33,8 +33,8 @@ def program(target: Target, text: str, calls: Sequence[Call], textures: Sequence
 def shading(text: str, textures: Sequence[str]) -> str:
     """C++ for a whole shader: `sssgen_texture`, and `sssgen_shade(blocks, points, result, width, rows, front)`.
 
-    Each pixel has a vertex of its own, whose attributes are twelve numbers of `points`; without `points` one triangle
-    covers the picture. The blocks are those of the shell by their names, in the order of `BLOCKS`.
+    Each pixel has a vertex of its own, whose attributes are `VERTEX_SIZE` numbers of `points`; without `points` one
+    triangle covers the picture. The blocks are those of the shell by their names, in the order of `BLOCKS`.
     """
     points = "VertexInput" in text
     vertex_args = ", ".join([_argument(name, kind, textures) for kind, name in _parameters(text, "vertex")[1:]])
@@ -52,9 +52,9 @@ def shading(text: str, textures: Sequence[str]) -> str:
         "    long pixel = y * sssgen_width + x;",
     ]
     if points:
-        lines += ["    const float* at = sssgen_points + 12 * pixel;", "    VertexInput given;"]
+        lines += [f"    const float* at = sssgen_points + {VERTEX_SIZE} * pixel;", "    VertexInput given;"]
         for kind, name in _members(text, "VertexInput"):
-            first = _ATTRIBUTES[name]
+            first, _ = ATTRIBUTES[name]
             numbers = ", ".join([f"at[{first + i}]" for i in range(int(kind[-1]))])
             lines.append(f"    given.{name} = {kind}({numbers});")
         lines.append(f"    Varyings varyings = vertex_main(given{listed});")
@@ -82,7 +82,6 @@ def shading(text: str, textures: Sequence[str]) -> str:
 
 
 BLOCKS = ("Camera", "Lights", "Object", "Material")
-_ATTRIBUTES = {"position": 0, "normal": 3, "tangent": 6, "uv": 10}
 
 
 def _parameters(text: str, stage: str) -> list[tuple[str, str]]:

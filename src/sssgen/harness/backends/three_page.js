@@ -29,9 +29,10 @@ async function draw(plan, piece) {
     else material[name] = value;
   }
 
-  const vertices = new THREE.InterleavedBuffer(floats(piece(plan.vertices)), 12);
+  const vertices = new THREE.InterleavedBuffer(floats(piece(plan.vertices)), plan.vertexSize);
   const geometry = new THREE.BufferGeometry();
-  for (const [name, size, offset] of [['position', 3, 0], ['normal', 3, 3], ['tangent', 4, 6], ['uv', 2, 10]]) {
+  for (const [ours, [offset, size]] of Object.entries(plan.attributes)) {
+    const name = ours === 'uv2' ? 'uv1' : ours;
     geometry.setAttribute(name, new THREE.InterleavedBufferAttribute(vertices, size, offset));
   }
   if (plan.withoutTangents) geometry.deleteAttribute('tangent');

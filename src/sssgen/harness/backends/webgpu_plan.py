@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.harness.backends.backend_interface import ATTRIBUTES, Array, Bound, Drawing
+from sssgen.harness.backends.backend_interface import ATTRIBUTES, VERTEX_SIZE, Array, Bound, Drawing
 from sssgen.targets.runtime.numpy_textures import Texture
 
 _WRAP = {"repeat": "repeat", "clamp": "clamp-to-edge", "mirror": "mirror-repeat"}
@@ -62,14 +62,14 @@ class Plan(NamedTuple):
     """Indices as uint32; empty: three vertices without buffers."""
 
 
-STRIDE = 48
+STRIDE = 4 * VERTEX_SIZE
 """Bytes of a vertex."""
 
 ATTRIBUTE_PLAN = [
     {"format": f"float32x{size}", "offset": 4 * first, "shaderLocation": location}
     for location, (first, size) in enumerate(ATTRIBUTES.values())
 ]
-"""All four attributes; a program may read fewer."""
+"""All attributes; a program may read fewer."""
 
 
 def plan(drawing: Drawing) -> Plan:

@@ -32,6 +32,7 @@ _PLACE = ("MaterialFloat3",)
 _SCALAR = ("MaterialFloat",)
 NODES: dict[str, tuple[str, ...]] = {
     "VectorParameter": _VECTOR,
+    "VertexColor": _VECTOR,
     "Constant3Vector": _PLACE,
     "ScalarParameter": _SCALAR,
     "Time": _SCALAR,
@@ -47,7 +48,8 @@ NODES: dict[str, tuple[str, ...]] = {
         _PLACE,
     ),
 }  # fmt: skip
-"""Class of a node → the types of its outputs. TruncateLWC has that of its input, a texture that of the text."""
+"""Class of a node → the types of its outputs. TruncateLWC has that of its input, AppendVector both inputs' numbers, a
+texture that of the text."""
 
 
 class NodeError(ValueError):
@@ -176,6 +178,9 @@ def _type_of(nodes: Mapping[str, str], node: str, output: int) -> str:
         return ""
     if kind == "TruncateLWC":
         return _type_of(nodes, *_connected(nodes, _property(nodes[node], "Input").strip("()")))
+    if kind == "AppendVector":
+        parts = [_type_of(nodes, *_connected(nodes, _property(nodes[node], name).strip("()"))) for name in "AB"]
+        return f"MaterialFloat{sum(int(part[-1]) if part[-1].isdigit() else 1 for part in parts)}"
     if kind not in NODES or output >= len(NODES[kind]):
         raise NodeError(f"{node}: there is no output {output} of {kind or 'a node without a class'}")
     return NODES[kind][output]

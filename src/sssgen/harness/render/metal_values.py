@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.backends import Array, Text, emitted
+from sssgen.harness.backends import VERTEX_SIZE, Array, Text, emitted
 from sssgen.harness.backends.metal_backend import MetalOnCpu
 from sssgen.harness.render.shell_values import LIGHTS, Shell, bound_texture, inverse
 from sssgen.ir.types import BY_NAME, Matrix, Vector, kind_of
@@ -22,7 +22,7 @@ def shade(compiled: Compiled, shell: Shell, backend: MetalOnCpu, size: tuple[int
     text: Text = emitted(compiled, reflection, reflection["files"][0]["name"])
     textures = {texture["name"]: bound_texture(texture, shell, True) for texture in reflection["textures"]}
     if points is not None:
-        points = points.reshape(size[1], size[0], 12)[::-1]
+        points = points.reshape(size[1], size[0], VERTEX_SIZE)[::-1]
     return backend.shade(text, blocks(reflection, shell), textures, points, size, shell.front)[::-1]
 
 

@@ -14,7 +14,7 @@ from sssgen.harness.scenes.geometry import Hits
 
 
 def vertices(hits: Hits, origin: Array, directions: Array, model: Array, size: tuple[int, int]) -> Array:
-    """(width * height, 12) float32: position, normal, tangent with handedness and uv, in object space.
+    """(width * height, `VERTEX_SIZE`) float32: the attributes of `Drawing.vertices`, in object space.
 
     `hits` are in world space, row by row from the bottom. A pixel without a hit has the attributes and distance of a
     neighbour with one: a steep slope at the surface's edge would make rounding visible.
@@ -27,8 +27,8 @@ def vertices(hits: Hits, origin: Array, directions: Array, model: Array, size: t
     placed = position @ inverse[:3, :3].T + inverse[:3, 3]
     normal = hits.normal @ model[:3, :3]  # the shell multiplies by the inverse transpose
     tangent = hits.tangent[:, :3] @ inverse[:3, :3].T
-    around = np.concatenate([normal, tangent, hits.tangent[:, 3:], hits.uv], axis=1)
-    around = _extended(around, hit, size, [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0])
+    around = np.concatenate([normal, tangent, hits.tangent[:, 3:], hits.uv, hits.uv2, hits.color], axis=1)
+    around = _extended(around, hit, size, [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, *4 * [0.0], *4 * [1.0]])
     return np.concatenate([placed, around], axis=1).astype(np.float32)
 
 

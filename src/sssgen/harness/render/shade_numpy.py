@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.backends import Array
+from sssgen.harness.backends import VERTEX_SIZE, Array
 from sssgen.harness.render.shell_values import Shell, bound_texture, inverse
 from sssgen.ir.types import BY_NAME, Matrix, Vector, kind_of
 from sssgen.pipeline.compiler import Compiled
@@ -76,12 +76,13 @@ def _inputs(
         }
         inputs |= {"ray_direction": _unit(far[:3] - eye * far[3])}
     else:
-        data = points.reshape(height, width, 12)[rows].reshape(-1, 12).T.astype(np.float64)
+        data = points.reshape(height, width, VERTEX_SIZE)[rows].reshape(-1, VERTEX_SIZE).T.astype(np.float64)
         model, world_to_object = shell.model, inverse(shell.model)
         position = model[:3, :3] @ data[0:3] + model[:3, 3:]
         normal, tangent = _unit(world_to_object[:3, :3].T @ data[3:6]), _unit(model[:3, :3] @ data[6:9])
         handedness = data[9] * np.sign(np.linalg.det(model[:3, :3]))
         inputs |= {"uv": data[10:12], "P": position, "V": _unit(eye - position), "N": normal, "T": tangent}
+        inputs |= {"uv2": data[12:14], "vertex_color": data[14:18]}
         inputs |= {"B": np.cross(normal, tangent, axis=0) * handedness}
         if two_sided and not shell.front:
             inputs["N"] = normal = -normal

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.backends import Array, Bound, Drawing, Place, emitted
+from sssgen.harness.backends import VERTEX_SIZE, Array, Bound, Drawing, Place, emitted
 from sssgen.harness.backends.unity_backend import UnityHLSL
 from sssgen.harness.render import pixel_mesh
 from sssgen.harness.render.shell_values import Shell, inverse, textures
@@ -52,10 +52,11 @@ def screen_triangle(shell: Shell) -> Array:
     corners = np.array([[-1.0, -1.0], [3.0, -1.0], [-1.0, 3.0]])
     clip = np.concatenate([corners, np.full((3, 1), 0.5), np.ones((3, 1))], axis=1)
     placed = clip @ inverse(shell.view_projection @ shell.model).T
-    vertices = np.zeros((3, 12))
+    vertices = np.zeros((3, VERTEX_SIZE))
     vertices[:, :3] = placed[:, :3] / np.where(placed[:, 3:] == 0.0, 1.0, placed[:, 3:])
     vertices[:, 3:10] = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0]
-    vertices[:, 10:] = 0.5 * corners + 0.5
+    vertices[:, 10:12] = 0.5 * corners + 0.5
+    vertices[:, 14:] = 1.0
     return vertices.astype(np.float32)
 
 

@@ -87,7 +87,10 @@ class Union(Geometry):
         uv, grows_u, grows_v = planar(chosen.position)
         tangent = tangent_of(chosen.normal, grows_u, grows_v)
         hit = chosen.hit
-        return spread(hit, chosen.position[hit], chosen.normal[hit], tangent[hit], uv[hit], chosen.front[hit])
+        return spread(
+            hit, chosen.position[hit], chosen.normal[hit], tangent[hit], uv[hit], chosen.front[hit], chosen.uv2[hit],
+            chosen.color[hit],
+        )  # fmt: skip
 
     def distance(self, points: Array) -> Array:
         each = [_distance(part, points) for part in self.parts]

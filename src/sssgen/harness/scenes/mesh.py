@@ -43,11 +43,17 @@ class Triangles(NamedTuple):
     """(f, 3, 3): the direction in which u grows at each corner; not unit, 0 where undefined"""
     handedness: Array
     """(f,): -1 where uv is mirrored, else 1"""
+    uv2: Array | None = None
+    """(f, 3, 2): the second set, or None"""
+    color: Array | None = None
+    """(f, 3, 4): linear colours with their opacity, or None"""
 
 
 @dataclass(frozen=True)
 class Mesh(Geometry):
     """The triangles of an .obj, .ply, .stl, .glb or .gltf file, open or closed. A file's parts become one mesh.
+
+    The second set of uv and the colours of the vertices are the file's, or else 0 and white.
 
     Normals are smooth: the faces' normals, averaged at each vertex by area and interpolated; normals in the file are
     ignored. uv, v up, are the file's, or else longitude and latitude about the bounding box's centre (see `spherical`).
@@ -76,16 +82,17 @@ class Mesh(Geometry):
         hit[rays] = True
         normal = _interpolated(weights, mesh.normals[mesh.corners[face]])
         normal = np.where((np.abs(normal) > 0.0).any(axis=1, keepdims=True), unit(normal), mesh.flat[face])
+        others = [None if values is None else _interpolated(weights, values[face]) for values in (mesh.uv2, mesh.color)]
         if mesh.uv is None or mesh.tangents is None:
             uv, grows_u, grows_v = spherical(position - 0.5 * (low + high))
-            return spread(hit, position, normal, tangent_of(normal, grows_u, grows_v), uv, slope < 0.0)
+            return spread(hit, position, normal, tangent_of(normal, grows_u, grows_v), uv, slope < 0.0, *others)
         along = unit(_interpolated(weights, mesh.tangents[face]))
         along -= np.einsum("nc,nc->n", along, normal)[:, None] * normal
         undefined = np.linalg.norm(along, axis=1, keepdims=True) < 1e-6
         tangent = np.where(undefined, any_tangent(normal), unit(along))
         return spread(
             hit, position, normal, np.c_[tangent, mesh.handedness[face]], _interpolated(weights, mesh.uv[face]),
-            slope < 0.0,
+            slope < 0.0, *others,
         )  # fmt: skip
 
     def distance(self, points: Array) -> Array:
@@ -118,15 +125,15 @@ class Mesh(Geometry):
 
 
 def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
-    vertices, faces, uv = content
+    vertices, faces, uv, uv2, color = content
     if not len(faces):
         raise failure("the file holds no triangles", "", shown)
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise failure("a triangle refers to a missing vertex", "export it again", shown)
     if not (np.abs(vertices) <= FARTHEST).all():
         raise failure(f"a vertex is not a number, or beyond {FARTHEST:g}", "scale the mesh, or export it again", shown)
-    if uv is not None and (uv.shape != (len(vertices), 2) or not (np.abs(uv) <= FARTHEST).all()):
-        uv = None
+    uv, uv2 = _usable(uv, (len(vertices), 2)), _usable(uv2, (len(vertices), 2))
+    color = _usable(color, (len(vertices), 4))
     used, index_of = np.unique(faces, return_inverse=True)  # a file may have vertices that belong to no triangle
     places, place_of = np.unique(vertices[used], axis=0, return_inverse=True)
     if (size := float(np.ptp(places, axis=0).max())) < SMALLEST:
@@ -141,8 +148,15 @@ def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
     faces, corners, across = faces[valid], corners[valid], across[valid]
     normals = np.zeros_like(places)
     np.add.at(normals, corners, across[:, None, :])
-    mesh = Triangles(places, corners, unit(across), unit(normals), None, None, np.ones(len(faces)))
+    further = [None if values is None else values[faces] for values in (uv2, color)]
+    mesh = Triangles(places, corners, unit(across), unit(normals), None, None, np.ones(len(faces)), *further)
     return mesh if uv is None else _with_tangents(mesh, uv[faces])
+
+
+def _usable(values: Array | None, shape: tuple[int, int]) -> Array | None:
+    """The values of the vertices, or None where they are not of that shape or no usual numbers."""
+    usable = values is not None and values.shape == shape and bool((np.abs(values) <= FARTHEST).all())
+    return values if usable else None
 
 
 def _with_tangents(mesh: Triangles, uv: Array) -> Triangles:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import io
 import os
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from sssgen.harness.pictures.images import decode_srgb
 from sssgen.harness.scenes.placed import Array
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.extras import need
@@ -27,6 +29,10 @@ class FileContent(NamedTuple):
     """(f, 3) indices of vertices"""
     uv: Array | None
     """(v, 2), v up, or None where a part of the file has none"""
+    uv2: Array | None = None
+    """(v, 2): glTF's second set, v up, or None where a part of the file has none"""
+    color: Array | None = None
+    """(v, 4): linear colours with their opacity, or None where no part of the file has any"""
 
 
 def check_suffix(path: str) -> None:
@@ -46,21 +52,71 @@ def read(path: str) -> FileContent:
     kind = os.path.splitext(path)[1].lower()
     try:
         if kind in (".glb", ".gltf"):  # texture coordinates are loaded with the materials
-            return _joined(trimesh.load_scene(path, process=False))
+            return _joined(trimesh.load_scene(*_gltf(path, kind), process=False))
         loaded = trimesh.load_mesh(path, process=False, skip_materials=True)
-        return _read(loaded.vertices, loaded.faces, getattr(loaded.visual, "uv", None))
+        color = _colors(loaded)
+        if color is not None:  # of a file format without a colour space: as its editors show them
+            color[:, :3] = decode_srgb(color[:, :3])
+        return _read(loaded.vertices, loaded.faces, getattr(loaded.visual, "uv", None), None, color)
     except Exception as error:  # its readers raise exceptions of any type for a faulty file
         # for bytes that are not text it tries to import a package that guesses encodings
         hint = "" if isinstance(error, ImportError) else f"the reader reports: {type(error).__name__}: {error}"
         raise failure(f"the mesh cannot be read: it is not a valid {kind} file", hint, posix(path)) from None
 
 
-def _read(vertices: Any, faces: Any, uv: Any) -> FileContent:
+def _read(vertices: Any, faces: Any, uv: Any, uv2: Any = None, color: Any = None) -> FileContent:
     return FileContent(
         np.asarray(vertices, np.float64).reshape(-1, 3),
         np.asarray(faces, np.int64).reshape(-1, 3),
         None if uv is None else np.asarray(uv, np.float64),
+        uv2,
+        color,
     )
+
+
+_SECOND = b'"TEXCOORD_1"'
+_CUSTOM = b'"_TEXCOORD1"'
+"""Of the same length: trimesh reads attributes with names of an application's own, but no second set."""
+
+
+def _gltf(path: str, kind: str) -> tuple[Any, str, Any]:
+    """A glTF file for trimesh, its second sets under `_CUSTOM`: the file, its type, and what finds files beside it."""
+    from trimesh.resolvers import FilePathResolver
+
+    with open(path, "rb") as file:
+        data = file.read()
+    # the JSON of a .glb is its first chunk
+    end = 20 + int.from_bytes(data[12:16], "little") if kind == ".glb" else len(data)
+    return io.BytesIO(data[:end].replace(_SECOND, _CUSTOM) + data[end:]), kind[1:], FilePathResolver(path)
+
+
+def _second(mesh: Any) -> Array | None:
+    """The second set of texture coordinates of a mesh of a glTF file, v up."""
+    raw = mesh.vertex_attributes.get(_CUSTOM.decode().strip('"'))
+    if raw is None:
+        return None
+    uv = _fractions(raw)
+    return np.stack([uv[:, 0], 1.0 - uv[:, 1]], axis=1)
+
+
+def _colors(mesh: Any) -> Array | None:
+    """The colours of a mesh's vertices, (v, 4), as the file has them."""
+    visual = mesh.visual
+    raw = visual.vertex_attributes.get("color") if hasattr(visual, "vertex_attributes") else None
+    if raw is None and visual.kind == "vertex":
+        raw = visual.vertex_colors
+    if raw is None:
+        return None
+    values = _fractions(raw)
+    return np.c_[values, np.ones(len(values))] if values.shape[1] == 3 else values
+
+
+def _fractions(raw: Any) -> Array:
+    """Numbers, where those of unsigned integers are shares of the largest."""
+    values = np.asarray(raw)
+    scale = float(np.iinfo(values.dtype).max) if values.dtype.kind == "u" else 1.0
+    fractions: Array = values.astype(np.float64) / scale
+    return fractions
 
 
 def _joined(scene: Any) -> FileContent:
@@ -71,15 +127,23 @@ def _joined(scene: Any) -> FileContent:
         mesh = scene.geometry[name]
         if not hasattr(mesh, "faces"):  # points and lines
             continue
-        part = _read(mesh.vertices, mesh.faces, getattr(mesh.visual, "uv", None))
+        part = _read(mesh.vertices, mesh.faces, getattr(mesh.visual, "uv", None), _second(mesh), _colors(mesh))
         faces = part.faces[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0.0 else part.faces
-        parts.append(FileContent(part.vertices @ matrix[:3, :3].T + matrix[:3, 3], faces, part.uv))
+        parts.append(part._replace(vertices=part.vertices @ matrix[:3, :3].T + matrix[:3, 3], faces=faces))
     if not parts:
         return _read((), (), None)
     starts = np.cumsum([0] + [len(part.vertices) for part in parts])
-    uv = [part.uv for part in parts if part.uv is not None]
+    white = [np.ones((len(part.vertices), 4)) if part.color is None else part.color for part in parts]
     return FileContent(
         np.concatenate([part.vertices for part in parts]),
         np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)]),
-        np.concatenate(uv) if len(uv) == len(parts) else None,
+        _of_all([part.uv for part in parts]),
+        _of_all([part.uv2 for part in parts]),
+        np.concatenate(white) if any(part.color is not None for part in parts) else None,
     )
+
+
+def _of_all(parts: list[Array | None]) -> Array | None:
+    """The values of all parts, or None where one has none."""
+    given = [part for part in parts if part is not None]
+    return np.concatenate(given) if len(given) == len(parts) else None

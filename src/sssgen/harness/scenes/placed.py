@@ -29,6 +29,10 @@ class Hits(NamedTuple):
     """(n, 2): v up"""
     front: Bools
     """(n,): whether the ray comes from the side to which the surface's triangles face, or from outside of a solid"""
+    uv2: Array
+    """(n, 2): the second set, v up; 0 without one"""
+    color: Array
+    """(n, 4): the linear colour and opacity of the vertices; 1 without one"""
 
 
 @dataclass(frozen=True)
@@ -86,7 +90,10 @@ class Geometry(ABC):
         return matrix
 
 
-def spread(hit: Bools, position: Array, normal: Array, tangent: Array, uv: Array, front: Bools | None = None) -> Hits:
+def spread(
+    hit: Bools, position: Array, normal: Array, tangent: Array, uv: Array, front: Bools | None = None,
+    uv2: Array | None = None, color: Array | None = None,
+) -> Hits:  # fmt: skip
     """The hits of all rays, from the values of the rays that hit; without `front` all are on front faces."""
 
     def with_zeros(values: Array) -> Array:
@@ -97,7 +104,11 @@ def spread(hit: Bools, position: Array, normal: Array, tangent: Array, uv: Array
     fronts = hit.copy()
     if front is not None:
         fronts[hit] = front
-    return Hits(hit, with_zeros(position), with_zeros(normal), with_zeros(tangent), with_zeros(uv), fronts)
+    second = np.zeros((len(hit), 2)) if uv2 is None else with_zeros(uv2)
+    colors = with_zeros(np.ones((int(hit.sum()), 4)) if color is None else color)
+    return Hits(
+        hit, with_zeros(position), with_zeros(normal), with_zeros(tangent), with_zeros(uv), fronts, second, colors
+    )
 
 
 def unit(vectors: Array) -> Array:
