@@ -5,58 +5,28 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections.abc import Callable, Iterator
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
 
 import sssgen
+from engine_cases import HEAD, MESHES, SIZE, chain_case, mesh_of, through
 from folders import ROOT
 from skips import or_skip
-from sssgen.harness.backends import Array
 from sssgen.harness.backends.engine_page import EnginePage
 from sssgen.harness.backends.three_page import THREE
 from sssgen.harness.check.compiler_inputs import sources
 from sssgen.harness.compilers import Compiler, errors
 from sssgen.harness.render import page_values, shade_numpy
-from sssgen.harness.render.scene_render import PlacedMesh, placed
 from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.scenes import scene_loading
 from sssgen.material.material_loading import load_material
 from sssgen.support.diagnostics import SssgenError
-from sssgen.targets import registry
 
-INPUTS = "world_position P, world_direction N, world_direction V, world_direction T, world_direction B"
-INPUTS += ", object_position P_object, object_direction N_object, object_direction V_object, vec2 screen_uv"
-INPUTS += ", float eye_distance, uv_position uv, float time, uv_position uv2, vec4 vertex_color"
-VALUES = "vec3(P) + vec3(N) + vec3(V) + vec3(T) + vec3(B) + 2.0 * vec3(P_object) + vec3(N_object) + vec3(V_object)"
-VALUES += " + vec3(screen_uv.x, abs(screen_uv.y - 0.5), eye_distance) + vec3(uv, time)"  # v is down in WebGPU
-VALUES += " + vertex_color.a * vertex_color.rgb + vec3(uv2, 0.0)"
-HEAD = "/**\n * X.\n * role: {}\n * formula: none\n * source: none\n * units: none\n * limits: none\n */\n"
-PROBES = {
-    "shown": HEAD.format("surface") + f"void shown({INPUTS}, inout tangent_direction normal, out vec3 emission) {{ "
-    f"normal = tangent_direction(normalize(vec3(0.1, 0.2, 1.0))); emission = abs({VALUES}); }}\n",
-    "through": HEAD.format("translucency") + f"vec3 through({INPUTS}, world_direction L, object_direction L_object, "
-    f"float light_nearness) {{ return abs({VALUES} + vec3(L) - vec3(L_object) + light_nearness); }}\n",
-    "unlit": HEAD.format("lighting") + f"vec3 unlit({INPUTS}, world_direction L, object_direction L_object, "
-    f"float light_nearness, vec3 light_color) {{ return abs({VALUES} + vec3(L) - vec3(L_object) + light_nearness) "
-    "+ light_color; }\n",
-    "rays": HEAD.format("lighting") + "vec3 rays(world_direction ray_direction, world_position ray_origin) "
-    "{ return abs(vec3(ray_direction) + vec3(ray_origin)); }\n",
-}
-"""Techniques that show each value of the chain."""
-MATERIALS = {
-    "lit": '[[surface]]\ntechnique = "./shown.sss"\n[translucency]\ntechnique = "./through.sss"\n',
-    "unlit": 'shading = "unlit"\n[lighting]\ntechnique = "./unlit.sss"\n',
-    "rays": 'shading = "unlit"\n[lighting]\ntechnique = "./rays.sss"\n',
-}
-MESHES = ("ice", "ice_inlay", "jade_ring", "marble_idol", "paper_lantern", "resin_inlay", "wax_mouse")
 BLACK = {"color": 0.0, "specularIntensity": 0.0}
 """three's own reflection is gone: what is left is emission, and the light that comes through."""
-SIZE = (96, 72)
 
 
 @pytest.fixture(scope="module", params=list(THREE.renderers))
@@ -64,26 +34,6 @@ def three(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
     renderer: EnginePage = or_skip(partial(EnginePage, THREE), request.param)
     yield renderer
     renderer.page.close()
-
-
-@cache
-def mesh_of(name: str) -> PlacedMesh:
-    """The points of an example's scene, with values for its program."""
-    scene = scene_loading.load(str(ROOT / "examples" / name / "scene.toml"))
-    scene = dataclasses.replace(scene, size=SIZE, samples=1)
-    compiled = sssgen.compile(name, "numpy")
-    shell = shell_of(scene, load_material(scene.material), compiled.reflection)
-    return placed(scene, compiled, shell, registry.load("numpy"), SIZE)
-
-
-def through(name: str, mesh: PlacedMesh) -> Array:
-    """Emission and the light that comes through, in NumPy's float64."""
-    compiled = sssgen.compile(name, "numpy")
-    reflection = compiled.reflection
-    del reflection["entries"]["lighting"]
-    dark = dataclasses.replace(mesh.shell, ambient=(0.0, 0.0, 0.0))
-    program: Any = SimpleNamespace(files=compiled.files, reflection=reflection)
-    return shade_numpy.shade(program, dark, mesh.size, mesh.points, "float64")
 
 
 @pytest.mark.parametrize("name", MESHES)
@@ -116,36 +66,11 @@ def test_three_lights_the_surface(three: EnginePage, name: str) -> None:
 )
 def test_every_value_of_the_chain(three: EnginePage, name: str, front: bool, light: str, tmp_path: Path) -> None:
     """A turned, stretched and mirrored body from both sides: every input is in its space, per surface and light."""
-    for probe, text in PROBES.items():
-        (tmp_path / f"{probe}.sss").write_text(text, encoding="utf-8")
-    path = tmp_path / "made.toml"
-    path.write_text(f'[material]\nname = "made"\ntwo_sided = true\n{MATERIALS[name]}', encoding="utf-8")
-    turned = np.array([[0.0, -1.5, 0.0, 0.3], [-2.0, 0.0, 0.0, 0.1], [0.0, 0.0, 0.5, 0.2], [0.0, 0.0, 0.0, 1.0]])
-    mesh = mesh_of("wax_mouse")
-    moved = np.linalg.inv(turned) @ mesh.shell.model  # the same points in the world
-    points = mesh.points.copy()
-    points[:, :3] = points[:, :3] @ moved[:3, :3].T + moved[:3, 3]
-    points[:, 3:6] = points[:, 3:6] @ np.linalg.inv(moved[:3, :3])
-    points[:, 6:9] = points[:, 6:9] @ moved[:3, :3].T
-    points[:, 12:18] = 0.5 + 0.4 * np.sin(points[:, :1] * np.arange(1.0, 7.0))  # a second set, and colours
-    position = [0.5, 2.0, 3.0, 1.0] if light == "point" else [0.3, 0.5, 0.8, 0.0]
-    shell = dataclasses.replace(
-        mesh.shell, model=turned, parameters={}, textures={}, ambient=(0.0, 0.0, 0.0), time=0.75, front=front,
-        light_positions=np.array([position]), light_colors=np.array([[0.5, 0.7, 0.9]]),
-    )  # fmt: skip
-    drawn = page_values.shade(sssgen.compile(str(path), "threejs"), shell, three, mesh.size, points, BLACK)
-    numpy = sssgen.compile(str(path), "numpy")
-    reflection = numpy.reflection
-    reflection["entries"].pop("lighting", None)
-    program: Any = SimpleNamespace(files=numpy.files, reflection=reflection)
-    dark = dataclasses.replace(shell, ambient=(0.0, 0.0, 0.0))
-    expected = shade_numpy.shade(program, dark, mesh.size, None if name == "rays" else points, "float64")
-    if name == "rays":  # of the mesh's points here, of the screen there
-        world = points[:, :3] @ turned[:3, :3].T + turned[:3, 3] - shell.camera_position
-        ray = world / np.linalg.norm(world, axis=1, keepdims=True)
-        expected = np.abs(ray + shell.camera_position).reshape(*expected.shape[:2], 3)
-    difference = np.abs(drawn[..., :3] - expected[..., :3])[mesh.hit]
-    assert difference.max() < 2e-3 and drawn[..., :3][mesh.hit].std() > 0.02
+    case = chain_case(name, front, light, tmp_path)
+    compiled = sssgen.compile(case.material, "threejs")
+    drawn = page_values.shade(compiled, case.shell, three, case.mesh.size, case.points, BLACK)
+    difference = np.abs(drawn[..., :3] - case.expected[..., :3])[case.mesh.hit]
+    assert difference.max() < 2e-3 and drawn[..., :3][case.mesh.hit].std() > 0.02
 
 
 def test_a_raymarched_material_fills_its_mesh(three: EnginePage) -> None:

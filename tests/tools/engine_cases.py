@@ -1,0 +1,111 @@
+"""What tests of engines in a page draw: the examples with a mesh, and techniques that show each value of the chain."""
+
+from __future__ import annotations
+
+import dataclasses
+from functools import cache
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import sssgen
+from folders import ROOT
+from sssgen.harness.backends import Array
+from sssgen.harness.render import shade_numpy
+from sssgen.harness.render.scene_render import PlacedMesh, placed
+from sssgen.harness.render.scene_values import shell_of
+from sssgen.harness.render.shell_values import Shell
+from sssgen.harness.scenes import scene_loading
+from sssgen.material.material_loading import load_material
+from sssgen.targets import registry
+
+INPUTS = "world_position P, world_direction N, world_direction V, world_direction T, world_direction B"
+INPUTS += ", object_position P_object, object_direction N_object, object_direction V_object, vec2 screen_uv"
+INPUTS += ", float eye_distance, uv_position uv, float time, uv_position uv2, vec4 vertex_color"
+VALUES = "vec3(P) + vec3(N) + vec3(V) + vec3(T) + vec3(B) + 2.0 * vec3(P_object) + vec3(N_object) + vec3(V_object)"
+VALUES += " + vec3(screen_uv.x, abs(screen_uv.y - 0.5), eye_distance) + vec3(uv, time)"  # v is down in WebGPU
+VALUES += " + vertex_color.a * vertex_color.rgb + vec3(uv2, 0.0)"
+HEAD = "/**\n * X.\n * role: {}\n * formula: none\n * source: none\n * units: none\n * limits: none\n */\n"
+PROBES = {
+    "shown": HEAD.format("surface") + f"void shown({INPUTS}, inout tangent_direction normal, out vec3 emission) {{ "
+    f"normal = tangent_direction(normalize(vec3(0.1, 0.2, 1.0))); emission = abs({VALUES}); }}\n",
+    "through": HEAD.format("translucency") + f"vec3 through({INPUTS}, world_direction L, object_direction L_object, "
+    f"float light_nearness) {{ return abs({VALUES} + vec3(L) - vec3(L_object) + light_nearness); }}\n",
+    "unlit": HEAD.format("lighting") + f"vec3 unlit({INPUTS}, world_direction L, object_direction L_object, "
+    f"float light_nearness, vec3 light_color) {{ return abs({VALUES} + vec3(L) - vec3(L_object) + light_nearness) "
+    "+ light_color; }\n",
+    "rays": HEAD.format("lighting") + "vec3 rays(world_direction ray_direction, world_position ray_origin) "
+    "{ return abs(vec3(ray_direction) + vec3(ray_origin)); }\n",
+}
+"""Techniques that show each value of the chain."""
+MATERIALS = {
+    "lit": '[[surface]]\ntechnique = "./shown.sss"\n[translucency]\ntechnique = "./through.sss"\n',
+    "unlit": 'shading = "unlit"\n[lighting]\ntechnique = "./unlit.sss"\n',
+    "rays": 'shading = "unlit"\n[lighting]\ntechnique = "./rays.sss"\n',
+}
+MESHES = ("ice", "ice_inlay", "jade_ring", "marble_idol", "paper_lantern", "resin_inlay", "wax_mouse")
+SIZE = (96, 72)
+
+
+@cache
+def mesh_of(name: str) -> PlacedMesh:
+    """The points of an example's scene, with values for its program."""
+    scene = scene_loading.load(str(ROOT / "examples" / name / "scene.toml"))
+    scene = dataclasses.replace(scene, size=SIZE, samples=1)
+    compiled = sssgen.compile(name, "numpy")
+    shell = shell_of(scene, load_material(scene.material), compiled.reflection)
+    return placed(scene, compiled, shell, registry.load("numpy"), SIZE)
+
+
+def through(name: str, mesh: PlacedMesh) -> Array:
+    """Emission and the light that comes through, in NumPy's float64."""
+    compiled = sssgen.compile(name, "numpy")
+    reflection = compiled.reflection
+    del reflection["entries"]["lighting"]
+    dark = dataclasses.replace(mesh.shell, ambient=(0.0, 0.0, 0.0))
+    program: Any = SimpleNamespace(files=compiled.files, reflection=reflection)
+    return shade_numpy.shade(program, dark, mesh.size, mesh.points, "float64")
+
+
+class ChainCase(NamedTuple):
+    """A material that shows the values of its chain, on a turned, stretched and mirrored body under one light."""
+
+    material: str
+    mesh: PlacedMesh
+    shell: Shell
+    points: Array
+    expected: Array
+    """Emission and the light that comes through, in NumPy's float64."""
+
+
+def chain_case(name: str, front: bool, light: str, folder: Path) -> ChainCase:
+    """`name` is of MATERIALS, `light` point or direction; the camera sees the front or the back."""
+    for probe, text in PROBES.items():
+        (folder / f"{probe}.sss").write_text(text, encoding="utf-8")
+    path = folder / "made.toml"
+    path.write_text(f'[material]\nname = "made"\ntwo_sided = true\n{MATERIALS[name]}', encoding="utf-8")
+    turned = np.array([[0.0, -1.5, 0.0, 0.3], [-2.0, 0.0, 0.0, 0.1], [0.0, 0.0, 0.5, 0.2], [0.0, 0.0, 0.0, 1.0]])
+    mesh = mesh_of("wax_mouse")
+    moved = np.linalg.inv(turned) @ mesh.shell.model  # the same points in the world
+    points = mesh.points.copy()
+    points[:, :3] = points[:, :3] @ moved[:3, :3].T + moved[:3, 3]
+    points[:, 3:6] = points[:, 3:6] @ np.linalg.inv(moved[:3, :3])
+    points[:, 6:9] = points[:, 6:9] @ moved[:3, :3].T
+    points[:, 12:18] = 0.5 + 0.4 * np.sin(points[:, :1] * np.arange(1.0, 7.0))  # a second set, and colours
+    position = [0.5, 2.0, 3.0, 1.0] if light == "point" else [0.3, 0.5, 0.8, 0.0]
+    shell = dataclasses.replace(
+        mesh.shell, model=turned, parameters={}, textures={}, ambient=(0.0, 0.0, 0.0), time=0.75, front=front,
+        light_positions=np.array([position]), light_colors=np.array([[0.5, 0.7, 0.9]]),
+    )  # fmt: skip
+    numpy = sssgen.compile(str(path), "numpy")
+    reflection = numpy.reflection
+    reflection["entries"].pop("lighting", None)
+    program: Any = SimpleNamespace(files=numpy.files, reflection=reflection)
+    expected = shade_numpy.shade(program, shell, mesh.size, None if name == "rays" else points, "float64")
+    if name == "rays":  # of the mesh's points here, of the screen there
+        world = points[:, :3] @ turned[:3, :3].T + turned[:3, 3] - shell.camera_position
+        ray = world / np.linalg.norm(world, axis=1, keepdims=True)
+        expected = np.abs(ray + shell.camera_position).reshape(*expected.shape[:2], 3)
+    return ChainCase(str(path), mesh, shell, points, expected)
