@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -269,6 +270,9 @@ def test_a_pick_for_a_device_has_its_costs(stored_chart: str, capsys: pytest.Cap
     picked = json.loads(capsys.readouterr().out)["coordinates"]
     assert picked["label"] == static["label"] and picked["cost"]["static"] == static["cost"]["value"]
     assert picked["cost"]["value"] == device_costs.load("llvmpipe").predicted(static["cost"])
+    assert run("--max-cost", "5", "--device", "llvmpipe") == 0
+    costs = re.findall(r"cost [\d.e-]+ ?(.*)", capsys.readouterr().out)
+    assert len(costs) > 1 and set(costs) == {"ns"}
 
 
 def test_another_number_of_samples_is_another_chart(stored_chart: str, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 from typing import TYPE_CHECKING
 
+from sssgen.material.attributes import OMISSIONS
 from sssgen.support.diagnostics import failure
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ def add_condition_options(parser: ArgumentParser) -> None:
         help="whether the body keeps its shape (default: rigid)",
     )  # fmt: skip
     add(
-        "--without", choices=("bake", "depth-map", "depth-layers", "back-faces"), action="append", default=[],
+        "--without", choices=OMISSIONS, action="append", default=[],
         help="what the engine does not provide; may be repeated",
     )  # fmt: skip
     add("--device", metavar="NAME", help="costs are nanoseconds predicted for this device, or for its .toml file")

@@ -65,7 +65,7 @@ def run(arguments: Namespace) -> int:
         fields = {**picked._asdict(), "roles": [role._asdict() for role in picked.roles]}
         print_json({"ok": picked.met, "files": files, **fields})
     else:
-        print(shown(scene, picked, arguments.max_error, arguments.max_cost))
+        print(shown(scene, picked, arguments.max_error, arguments.max_cost, " ns" if device is not None else ""))
         for file in files:
             print(f"wrote {file}")
     return OK if picked.met else CHECK_FAILED
@@ -90,21 +90,21 @@ def _emitted(scene: MeasuredScene, picked: Pick, folder: str, targets: str) -> l
     return [os.path.join(folder, file) for file in files]
 
 
-def shown(scene: MeasuredScene, picked: Pick, max_error: float | None, max_cost: float | None) -> str:
-    """The choice, as text."""
-    limit = f"an error of at most {max_error:g}" if max_error is not None else f"a cost of at most {max_cost:g}"
+def shown(scene: MeasuredScene, picked: Pick, max_error: float | None, max_cost: float | None, unit: str = "") -> str:
+    """The choice, as text; `unit` follows each cost."""
+    limit = f"an error of at most {max_error:g}" if max_error is not None else f"a cost of at most {max_cost:g}{unit}"
     lines = [f"{scene.title}: {limit}" + ("" if picked.met else ", which no chain reaches; this is the nearest")]
     lines += [f"  {role.role:13} {role.technique:24} {role.why}".rstrip() for role in picked.roles]
     main = picked.chain or picked.coordinates
     assert main is not None
-    lines.append(f"  picked        {_point(main)}")
+    lines.append(f"  picked        {_point(main)}{unit}")
     if main.get("requires"):
         baked = f"; {main['bytes']:,} bytes baked".replace(",", " ") if main.get("bytes") else ""
         lines.append(f"  requires      {', '.join(main['requires'])}{baked}")
     if picked.excluded is not None:
-        lines.append(f"  excluded      by {picked.excluded_by}: {_point(picked.excluded)}")
+        lines.append(f"  excluded      by {picked.excluded_by}: {_point(picked.excluded)}{unit}")
     for title, point in (("next cheaper", picked.cheaper), ("next better", picked.better)):
-        lines.append(f"  {title:13} {_point(point) if point is not None else 'none'}")
+        lines.append(f"  {title:13} {_point(point) + unit if point is not None else 'none'}")
     return "\n".join(lines)
 
 

@@ -37,6 +37,9 @@ REQUIREMENTS = ("bake", "depth-map", "depth-layers", "back-faces", "rigid", "fix
 picture of the body's back faces from the eye; a body that keeps its shape; a light that does not move relative to the
 body."""
 
+OMISSIONS = REQUIREMENTS[:4]
+"""Those that an engine may not provide; the others are facts of the body and the light."""
+
 BOUNDS = ("largest", "share", "bound_share")
 """What `deviation_bounds` can bound."""
 

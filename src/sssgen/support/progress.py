@@ -1,20 +1,25 @@
-"""A progress bar on a terminal, by rich (https://github.com/Textualize/rich)."""
+"""Progress: a bar on a terminal, by rich (https://github.com/Textualize/rich); elsewhere a line now and then."""
 
 from __future__ import annotations
 
 import contextlib
 import sys
+import time
 from types import TracebackType
+
+QUIET = 10.0
+"""Seconds between the lines, and before the first: what is quick prints none."""
 
 
 class ProgressBar:
-    """`with ProgressBar() as progress: run(items, progress=progress)`: on the standard error stream, erased at the end.
+    """`with ProgressBar() as progress: run(items, progress=progress)`: on the standard error stream.
 
-    It shows nothing where that is no terminal, and without rich.
+    On a terminal with rich it is a bar that is erased at the end; in a pipe or a log, a line every 10 seconds.
     """
 
     def __init__(self) -> None:
         self.bar = None
+        self.shown = time.monotonic()
         if sys.stderr is not None and sys.stderr.isatty():
             with contextlib.suppress(ImportError):
                 from rich.console import Console
@@ -41,3 +46,6 @@ class ProgressBar:
             from rich.markup import escape
 
             self.bar.update(self.task, completed=done, total=total, description=escape(name))
+        elif sys.stderr is not None and time.monotonic() - self.shown >= QUIET:
+            self.shown = time.monotonic()
+            print(f"{done:.4g} of {total}: {name}", file=sys.stderr, flush=True)

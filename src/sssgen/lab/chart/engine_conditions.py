@@ -12,8 +12,6 @@ Point = Mapping[str, Any]
 
 LIGHTS = ("fixed", "moving")
 BODIES = ("rigid", "deforming")
-OMISSIONS = ("bake", "depth-map", "depth-layers", "back-faces")
-"""What an engine may be without, by the names of the requirements."""
 
 
 class Conditions(NamedTuple):
@@ -26,7 +24,7 @@ class Conditions(NamedTuple):
     body: str = "rigid"
     """deforming: it does not keep its shape"""
     without: tuple[str, ...] = ()
-    """Of OMISSIONS"""
+    """Of `material.attributes.OMISSIONS`"""
 
     def missing(self, point: Point) -> str:
         """Why a point cannot be used, as an option of the commands; '' if it can."""
