@@ -271,12 +271,13 @@ def test_an_opaque_voxel_is_a_warning_and_the_volume_is_finite(
     assert np.isfinite(facts("out.npy")["parameters"]["fluence_scale"]).all()
 
 
-def test_an_inverted_mesh_is_the_same_body(folder: Path) -> None:
+def test_an_inverted_mesh_is_the_same_body(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write(Path("turned.ply"), meshes.box((1.0, 0.6, 0.4)).inverted()._replace(uv=None))
     write(Path("right.ply"), meshes.box((1.0, 0.6, 0.4))._replace(uv=None))
     words = ["--medium", "marble", "--unit-mm", "2", "--light", "0,1,0", *FEW]
     for name in ("turned", "right"):
         bake("fluence", f"{name}.ply", "-o", f"{name}.npy", *words)
+        assert ("the mesh is inside out" in capsys.readouterr().out) == (name == "turned")
     assert facts("turned.npy")["parameters"] == facts("right.npy")["parameters"]
     assert (Path("turned.npy").read_bytes()) == Path("right.npy").read_bytes()
 

@@ -234,6 +234,8 @@ def _fluence(arguments: Namespace) -> Result:
         f"for the technique {baked.facts['technique']}",
         f"standard error of a voxel {baked.facts['error']['standard_error']:.2g} of the mean, before it is averaged",
     ]
+    if getattr(scene.geometry, "inside_out", False):
+        lines.append("the mesh is inside out: it was reversed")
     if baked.facts["opaque_voxels"]:
         lines.append("warning: a voxel is opaque in one channel: use more voxels, or a smaller --unit-mm")
     return paths, baked.facts, lines
