@@ -194,7 +194,7 @@ def test_keyword_variants_cover_every_pair() -> None:
         #pragma multi_compile_vertex _ D
         ENDHLSL
     } } }"""
-    program = shaderlab.parse(code, "x").programs[0]
+    program = shaderlab.parse(code, "x", 202120).programs[0]
     rows = program.keyword_sets("fragment")
     lists = [["", "A1", "A2"], ["", "B"], ["", "C"]]
     for first, second in itertools.combinations(lists, 2):

@@ -8,7 +8,9 @@ block that does not end, a property of an unknown type, or one whose default doe
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from sssgen.harness.compilers.compiler_interface import Message
 from sssgen.ir.types import with_article
@@ -21,13 +23,26 @@ _PROPERTY = re.compile(
     r"\s*((?:\[[^\]]*\]\s*)*)(\w+)\s*\(\s*\"[^\"\n]*\"\s*,\s*(Range\s*\([^()]*\)|\w+)\s*\)\s*=\s*"
     rf"({_NUMBER}|\([^()]*\)|\"\w*\"\s*(?:\{{[^{{}}]*\}})?)"
 )
-_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(\w+)[ \t]*(.*?)[ \t]*$", re.MULTILINE)
+_DIRECTIVE = re.compile(
+    r"^[ \t]*#[ \t]*(pragma|if|ifdef|ifndef|elif|else|endif)\b[ \t]*(.*?)[ \t]*(?://.*)?$", re.MULTILINE
+)
+_VERSION = re.compile(r"UNITY_VERSION\s*>=\s*(\d+)")
 _DEFAULTS = {
     "float": _NUMBER, "int": _NUMBER, "integer": _NUMBER, "range": _NUMBER,
     "color": _NUMBERS, "vector": _NUMBERS,
     "2d": r"\".*", "3d": r"\".*", "cube": r"\".*", "2darray": r"\".*", "cubearray": r"\".*",
 }  # fmt: skip
 _TEXTURES = frozenset({"2d", "3d", "cube", "2darray", "cubearray"})
+
+
+class _Branch(NamedTuple):
+    """A branch of a preprocessor's condition."""
+
+    of_versions: bool
+    """Whether its #if compares versions."""
+    taken: bool
+    before: bool
+    """Whether a branch before it was taken."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +60,13 @@ class Program:
     def pragma(self, key: str) -> str | None:
         """The text after the first `#pragma KEY`."""
         return next((value for k, value in self.pragmas if k == key), None)
+
+    def declared(self) -> list[str]:
+        """Every keyword of the pragmas, in the order of the text."""
+        lines = [_keywords(key, value, stage) for key, value in self.pragmas for stage in ("vertex", "fragment")]
+        if self.pragma("multi_compile_fog") is not None:
+            lines.append(["FOG_LINEAR", "FOG_EXP", "FOG_EXP2"])
+        return list(dict.fromkeys(word for words in lines for word in words if word))
 
     def keyword_sets(self, stage: str) -> list[list[str]]:
         """Variants that contain every pair of choices of two `multi_compile` or `shader_feature` lines.
@@ -68,8 +90,8 @@ class Shader:
         return [name for name, kind in self.properties.items() if kind not in _TEXTURES]
 
 
-def parse(text: str, name: str) -> Shader:
-    """The shader in `text`; errors of its ShaderLab are in `messages`."""
+def parse(text: str, name: str, version: int) -> Shader:
+    """The shader in `text` as UNITY_VERSION `version` reads it; errors of its ShaderLab are in `messages`."""
     shader = Shader()
     text = text.replace("\r\n", "\n")
     shell = _BLOCK.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
@@ -88,13 +110,36 @@ def parse(text: str, name: str) -> Shader:
             shared += code
             continue
         names = re.findall(r'\bName\s*"([^"]*)"', shell[: block.start()])
-        pragmas = tuple((m[1], re.sub(r"\s*//.*", "", m[2])) for m in _PRAGMA.finditer(shared + code))
+        pragmas = tuple(_pragmas(shared + code, version))
         number = len(shader.programs) + 1
         pass_name = names[-1] if names else f"pass {number}"
         shader.programs.append(Program(shared + code, block[1], pass_name, pragmas))
     if not shader.programs:
         shader.messages.append(Message("error", 1, 1, "no CGPROGRAM or HLSLPROGRAM"))
     return shader
+
+
+def _pragmas(code: str, version: int) -> Iterator[tuple[str, str]]:
+    """The pragmas, each as its first word and the rest.
+
+    Those in a branch for other versions are left out. Unity's preprocessor evaluates no other condition around a pragma
+    that a shader may have; a branch of another condition counts as taken.
+    """
+    branches: list[_Branch] = []  # of each open #if
+    for directive, value in _DIRECTIVE.findall(code):
+        limit = _VERSION.fullmatch(value)
+        if directive.startswith("if"):
+            branches.append(_Branch(limit is not None, limit is None or version >= int(limit[1]), False))
+        elif directive == "endif" and branches:
+            branches.pop()
+        elif directive in ("elif", "else") and branches:
+            last = branches.pop()
+            before = last.of_versions and (last.before or last.taken)
+            holds = limit is None or version >= int(limit[1])
+            branches.append(_Branch(last.of_versions, holds and not before, before))
+        elif directive == "pragma" and all(branch.taken for branch in branches):
+            word, _, rest = value.partition(" ")
+            yield word, rest.strip()
 
 
 def _pairwise(lists: list[list[str]]) -> list[list[str]]:

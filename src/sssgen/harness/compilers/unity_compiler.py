@@ -1,14 +1,16 @@
 """Unity's shaders, compiled outside Unity: preprocessed with Unity's headers, then given to glslang or DXC.
 
 Unity's headers are not part of this project. SSSGEN_UNITY_INCLUDES names a folder with `CGIncludes/` and
-`Packages/com.unity.render-pipelines.{core,universal}/` (an installed Unity has both); without it the stand-in headers
-of `unity_standin/` are used, which declare only what is needed. `version()` states which.
+`Packages/com.unity.render-pipelines.{core,universal}/` (an installed Unity has both), or several, separated as in PATH:
+then every version of the packages compiles the text. Without it the stand-in headers of `unity_standin/` are used,
+which declare only what is needed. `version()` states which.
 
 Built-in pipeline: HLSL with DX9 samplers, so glslang reads it. URP and Shader Graph: DXC.
 """
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -54,7 +56,11 @@ _LIBRARY_HEADERS = {
 _BUILTIN_MACROS = (
     "SHADER_API_D3D11=1", "SHADER_TARGET=30", "UNITY_VERSION=201940", "UNITY_PBS_USE_BRDF1=1", "float1=float2",
 )  # fmt: skip
-_URP_MACROS = ("SHADER_API_D3D11=1", "SHADER_TARGET=45", "UNITY_VERSION=202120", "UNITY_COMPILER_DXC=1")
+_URP_MACROS = ("SHADER_API_D3D11=1", "SHADER_TARGET=45", "UNITY_COMPILER_DXC=1")
+_KEYWORDS_ARE_VALUES = 60000000
+"""UNITY_VERSION from which headers read a declared keyword that is off as a value, `if (FOG_LINEAR)`."""
+OLDEST = 202120
+"""UNITY_VERSION of the first version with URP 12."""
 # Unity's preprocessor expands a macro's arguments before it joins them with ##; C's does not, so that the
 # instanced matrices get this name. The same is impossible for the built-in pipeline's headers: its shaders
 # are compiled without instancing.
@@ -96,15 +102,26 @@ class Unity(Compiler):
 
     name = "unity"
 
-    def __init__(self, root: Path, real: bool, preprocess: Callable[[str, list[str], list[Path]], str]) -> None:
+    def __init__(
+        self,
+        root: Path,
+        real: bool,
+        preprocess: Callable[[str, list[str], list[Path]], str],
+        others: Sequence[Unity] = (),
+        unity_version: int | None = None,
+    ) -> None:
+        """`others` check a text too. `unity_version` is UNITY_VERSION, or None: that of the packages in `root`."""
         self.root = root
         self.real = real
+        self.unity_version = unity_version or version_of(root)
         self._preprocess = preprocess
+        self._others = others
         self._glslang = glslang.find()
         self._dxc = dxc.find()
 
     def version(self) -> str:
-        return f"{self.headers()}, {self._glslang.version()}, {self._dxc.version()}"
+        headers = ", ".join(unity.headers() for unity in (self, *self._others))
+        return f"{headers}, {self._glslang.version()}, {self._dxc.version()}"
 
     def headers(self) -> str:
         """The owner of the headers: Unity or this project."""
@@ -116,7 +133,8 @@ class Unity(Compiler):
         Raises ValueError with the preprocessor's log.
         """
         builtin = language == "unity-builtin"
-        macros = (*_BUILTIN_MACROS, *_SURFACE_PASSES[0], "SHADER_STAGE_FRAGMENT=1") if builtin else _URP_MACROS
+        stage = "SHADER_STAGE_FRAGMENT=1"
+        macros = (*_BUILTIN_MACROS, *_SURFACE_PASSES[0], stage) if builtin else self._urp_macros()
         head = "".join(f'#include "{header}"\n' for header in _LIBRARY_HEADERS[language])
         return self._preprocess(f"{head}#line 1\n{text}", list(macros), self._roots(builtin))
 
@@ -125,30 +143,82 @@ class Unity(Compiler):
 
         `keywords` are macros, `NAME=1`; a surface shader's pass is one of them. Raises ValueError with the first error.
         """
-        shader = shaderlab.parse(text, _TEXT)
+        shader = shaderlab.parse(text, _TEXT, self.unity_version)
         if shader.messages:
             raise ValueError(shader.messages[0].text)
         program = shader.programs[0]
         if (surface_pragma := program.pragma("surface")) is not None:
             job = _surface_job(program, surface_pragma, stage, tuple(keywords))
         else:
-            job = _pass_job(program, stage, tuple(keywords), language == "unity-builtin")
+            job = self._pass_job(program, stage, tuple(keywords), language == "unity-builtin")
         return self._text(job), job.entry
 
     def check(self, source: Source) -> list[Message]:
+        messages = self._own_check(source)
+        for other in self._others if source.language != "unity-builtin" else ():
+            messages += [replace(m, text=f"{other.headers()}: {m.text}") for m in other._own_check(source)]
+        return messages
+
+    def _own_check(self, source: Source) -> list[Message]:
         if not re.search(r'^\s*Shader\s*"', source.text, re.MULTILINE):
-            return self._run(_library_jobs(source, self._has_preview()))
-        shader = shaderlab.parse(source.text, _TEXT)
+            return self._run(self._library_jobs(source))
+        shader = shaderlab.parse(source.text, _TEXT, self.unity_version)
         if shader.messages:
             return shader.messages
         try:
-            jobs = [job for program in shader.programs for job in _program_jobs(program, source.language)]
+            jobs = [job for program in shader.programs for job in self._program_jobs(program, source.language)]
         except surface.SurfaceError as error:
             return [Message("error", 0, 0, str(error))]
         messages = self._run(iter(jobs))
         if source.language == "unity-urp" and not messages:
             messages += _check_batcher(shader)
         return messages
+
+    def _library_jobs(self, source: Source) -> Iterator[_Job]:
+        """Functions to paste, called once each; a Shader Graph include also as the node's preview compiles it."""
+        language = source.language
+        builtin = language == "unity-builtin"
+        code = f'#line 1 "{_TEXT}"\n' + hlsl_entry(source.text, opaque=_GRAPH_TEXTURES)
+        macros: tuple[str, ...] = (*_BUILTIN_MACROS, *_SURFACE_PASSES[0]) if builtin else self._urp_macros()
+        if language == "unity-shadergraph":
+            macros += ("SHADERGRAPH_TARGET=1", "_MAIN_LIGHT_SHADOWS=1", "_ADDITIONAL_LIGHTS=1")
+        entry = glslang.LIBRARY_ENTRY
+        yield _Job("functions", _LIBRARY_HEADERS[language], macros, code, "fragment", entry, builtin)
+        if language == "unity-shadergraph" and self._has_preview():
+            macros = (*self._urp_macros(), "SHADERGRAPH_PREVIEW=1")
+            yield _Job("preview", _LIBRARY_HEADERS["preview"], macros, code, "fragment", entry, builtin)
+
+    def _program_jobs(self, program: shaderlab.Program, language: str) -> Iterator[_Job]:
+        builtin = language == "unity-builtin"
+        stages: tuple[Stage, ...] = ("vertex", "fragment")
+        surface_pragma = program.pragma("surface")
+        if surface_pragma is not None:
+            for macros in _SURFACE_PASSES:
+                for stage in stages:
+                    yield _surface_job(program, surface_pragma, stage, macros)
+            return
+        for stage in stages:
+            for keywords in program.keyword_sets(stage):
+                defines = tuple(f"{word}=1" for word in keywords if not (builtin and word == "INSTANCING_ON"))
+                yield self._pass_job(program, stage, defines, builtin)
+
+    def _pass_job(self, program: shaderlab.Program, stage: Stage, keywords: tuple[str, ...], builtin: bool) -> _Job:
+        """A stage of a pass with vertex and fragment programs of its own. Raises SurfaceError."""
+        entry = program.pragma(stage)
+        if entry is None:
+            raise surface.SurfaceError(f"{program.name}: no #pragma {stage}")
+        headers = _CG_HEADERS if program.dialect == "CG" else ()
+        common = _BUILTIN_MACROS if builtin else (*self._urp_macros(), _INSTANCED)
+        words, code = program.declared(), program.code
+        declared = (f"{word}_KEYWORD_DECLARED=1" for word in words)
+        defines = (*common, f"SHADER_STAGE_{stage.upper()}=1", *declared, *keywords)
+        if self.unity_version >= _KEYWORDS_ARE_VALUES:
+            off = (word for word in words if f"{word}=1" not in keywords)
+            code = "".join(f"static const bool {word} = false;\n" for word in off) + code
+        return _Job(f"{program.name} {stage}", headers, defines, code, stage, entry, builtin)
+
+    def _urp_macros(self) -> tuple[str, ...]:
+        return (*_URP_MACROS, f"UNITY_VERSION={self.unity_version}")
 
     def _has_preview(self) -> bool:
         return (self.root / _GRAPH / "ShaderVariables.hlsl").is_file()
@@ -190,53 +260,12 @@ def located(message: Message, job: str) -> Message:
     return Message(message.severity, 0, 0, f"{job}: {place}: {message.text}", message.file)
 
 
-def _library_jobs(source: Source, preview: bool) -> Iterator[_Job]:
-    """Functions to paste, called once each; a Shader Graph include also as the node's preview compiles it."""
-    language = source.language
-    builtin = language == "unity-builtin"
-    code = f'#line 1 "{_TEXT}"\n' + hlsl_entry(source.text, opaque=_GRAPH_TEXTURES)
-    macros: tuple[str, ...] = (*_BUILTIN_MACROS, *_SURFACE_PASSES[0]) if builtin else _URP_MACROS
-    if language == "unity-shadergraph":
-        macros += ("SHADERGRAPH_TARGET=1", "_MAIN_LIGHT_SHADOWS=1", "_ADDITIONAL_LIGHTS=1")
-    entry = glslang.LIBRARY_ENTRY
-    yield _Job("functions", _LIBRARY_HEADERS[language], macros, code, "fragment", entry, builtin)
-    if language == "unity-shadergraph" and preview:
-        macros = (*_URP_MACROS, "SHADERGRAPH_PREVIEW=1")
-        yield _Job("preview", _LIBRARY_HEADERS["preview"], macros, code, "fragment", entry, builtin)
-
-
-def _program_jobs(program: shaderlab.Program, language: str) -> Iterator[_Job]:
-    builtin = language == "unity-builtin"
-    stages: tuple[Stage, ...] = ("vertex", "fragment")
-    surface_pragma = program.pragma("surface")
-    if surface_pragma is not None:
-        for macros in _SURFACE_PASSES:
-            for stage in stages:
-                yield _surface_job(program, surface_pragma, stage, macros)
-        return
-    for stage in stages:
-        for keywords in program.keyword_sets(stage):
-            defines = tuple(f"{word}=1" for word in keywords if not (builtin and word == "INSTANCING_ON"))
-            yield _pass_job(program, stage, defines, builtin)
-
-
 def _surface_job(program: shaderlab.Program, surface_pragma: str, stage: Stage, macros: tuple[str, ...]) -> _Job:
     """A stage of one of the passes that the editor makes of a surface shader; `macros[0]` names the pass."""
     code = f'{program.code}#line 1 "surface entries"\n{surface.entries(program.code, surface_pragma)}'
     pass_name = macros[0].removeprefix("UNITY_PASS_").partition("=")[0]
     defines = (*_BUILTIN_MACROS, *macros, f"SHADER_STAGE_{stage.upper()}=1")
     return _Job(pass_name, (*_CG_HEADERS, *_SURFACE_HEADERS), defines, code, stage, f"sssgen_{stage}", True)
-
-
-def _pass_job(program: shaderlab.Program, stage: Stage, keywords: tuple[str, ...], builtin: bool) -> _Job:
-    """A stage of a pass with vertex and fragment programs of its own. Raises SurfaceError."""
-    entry = program.pragma(stage)
-    if entry is None:
-        raise surface.SurfaceError(f"{program.name}: no #pragma {stage}")
-    headers = _CG_HEADERS if program.dialect == "CG" else ()
-    common = _BUILTIN_MACROS if builtin else (*_URP_MACROS, _INSTANCED)
-    defines = (*common, f"SHADER_STAGE_{stage.upper()}=1", *keywords)
-    return _Job(f"{program.name} {stage}", headers, defines, program.code, stage, entry, builtin)
 
 
 def _check_batcher(shader: shaderlab.Shader) -> list[Message]:
@@ -259,11 +288,27 @@ def _check_batcher(shader: shaderlab.Shader) -> list[Message]:
 
 def find() -> Unity:
     """The headers, a C preprocessor, glslang and DXC. Raises CompilerMissing where one of them is missing."""
-    configured = os.environ.get("SSSGEN_UNITY_INCLUDES")
-    root = Path(configured).expanduser() if configured else STANDIN
-    if not holds_headers(root):
+    configured = os.environ.get("SSSGEN_UNITY_INCLUDES") or ""
+    folders = filter(None, configured.split(os.pathsep))
+    roots = [Path(folder).expanduser().resolve() for folder in folders] or [STANDIN.resolve()]
+    if not all(map(holds_headers, roots)):
         raise CompilerMissing(f"SSSGEN_UNITY_INCLUDES must name a folder with {HEADERS}")
-    return Unity(root.resolve(), root.resolve() != STANDIN.resolve(), _preprocessor())
+    preprocess = preprocessor()
+    others = [Unity(root, True, preprocess) for root in roots[1:]]
+    return Unity(roots[0], roots[0] != STANDIN.resolve(), preprocess, others)
+
+
+def version_of(root: Path) -> int:
+    """UNITY_VERSION of a folder's packages, from their `package.json`; OLDEST where there is none."""
+    try:
+        package = (root / _URP).parent / "package.json"
+        named = re.fullmatch(r"(\d+)\.(\d+)", json.loads(package.read_text(encoding="utf-8"))["unity"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return OLDEST
+    if named is None:
+        return OLDEST
+    year, release = int(named[1]), int(named[2])
+    return year * 10000 + release * 100 if year >= 6000 else year * 100 + release * 10
 
 
 def holds_headers(root: Path) -> bool:
@@ -271,7 +316,7 @@ def holds_headers(root: Path) -> bool:
     return (root / "CGIncludes" / "UnityCG.cginc").is_file() and (root / _URP / "Core.hlsl").is_file()
 
 
-def _preprocessor() -> Callable[[str, list[str], list[Path]], str]:
+def preprocessor() -> Callable[[str, list[str], list[Path]], str]:
     """A C preprocessor: gcc's or clang's."""
     program = next(filter(None, map(shutil.which, ("gcc", "clang", "cc"))), None)
     if program is None:

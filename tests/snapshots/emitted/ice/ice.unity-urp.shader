@@ -355,12 +355,46 @@ Shader "sssgen/Ice (URP)" {
             #pragma fragment frag
             #pragma multi_compile _ _MAIN_LIGHT_SHADOWS _MAIN_LIGHT_SHADOWS_CASCADE _MAIN_LIGHT_SHADOWS_SCREEN
             #pragma multi_compile _ _ADDITIONAL_LIGHTS
+            #pragma multi_compile _ _LIGHT_LAYERS
             #pragma multi_compile_fragment _ _ADDITIONAL_LIGHT_SHADOWS
-            #pragma multi_compile_fragment _ _SHADOWS_SOFT
+            #pragma multi_compile_fragment _ _LIGHT_COOKIES
             #pragma multi_compile_fragment _ _SCREEN_SPACE_OCCLUSION
-            #pragma multi_compile _ _CLUSTERED_RENDERING _FORWARD_PLUS
+            #pragma multi_compile_fragment _ _REFLECTION_PROBE_BLENDING
+            #pragma multi_compile_fragment _ _REFLECTION_PROBE_BOX_PROJECTION
+            // Names that depend on the version: soft shadows, the lists of lights per part of the screen, probe volumes.
+            #if UNITY_VERSION >= 202310
+            #pragma multi_compile_fragment _ _SHADOWS_SOFT _SHADOWS_SOFT_LOW _SHADOWS_SOFT_MEDIUM _SHADOWS_SOFT_HIGH
+            #else
+            #pragma multi_compile_fragment _ _SHADOWS_SOFT
+            #endif
+            #if UNITY_VERSION >= 60000100
+            #pragma multi_compile _ _CLUSTER_LIGHT_LOOP
+            #elif UNITY_VERSION >= 202220
+            #pragma multi_compile _ _FORWARD_PLUS
+            #else
+            #pragma multi_compile _ _CLUSTERED_RENDERING
+            #endif
+            #if UNITY_VERSION >= 60000000
+            #pragma multi_compile _ PROBE_VOLUMES_L1 PROBE_VOLUMES_L2
+            #endif
             #pragma multi_compile_fog
             #pragma multi_compile_instancing
+            #pragma instancing_options renderinglayer
+
+            // Without shadow; 0 for a light of other rendering layers than the object's.
+            float3 incoming_light(Light light) {
+            #if defined(_LIGHT_LAYERS)
+            #if UNITY_VERSION >= 202220
+                uint layers = GetMeshRenderingLayer();
+            #else
+                uint layers = GetMeshRenderingLightLayer();
+            #endif
+                if (!IsMatchingLightLayer(light.layerMask, layers)) {
+                    return float3(0.0, 0.0, 0.0);
+                }
+            #endif
+                return light.color * light.distanceAttenuation;
+            }
 
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_INSTANCE_ID(input);
@@ -383,7 +417,12 @@ Shader "sssgen/Ice (URP)" {
                 inputData.shadowCoord = TransformWorldToShadowCoord(input.positionWS);
             #endif
                 inputData.shadowMask = 1.0;
+            #if defined(PROBE_VOLUMES_L1) || defined(PROBE_VOLUMES_L2)
+                float3 probe_place = GetAbsolutePositionWS(input.positionWS);
+                inputData.bakedGI = SampleProbeVolumePixel(0.0, probe_place, N, V, input.positionCS.xy);
+            #else
                 inputData.bakedGI = SampleSH(N);
+            #endif
 
                 SurfaceData surfaceData = (SurfaceData)0;
                 surfaceData.albedo = surface.albedo;
@@ -396,8 +435,9 @@ Shader "sssgen/Ice (URP)" {
 
                 // Without the object's own shadow: light that comes through entered on the far side. The shadow map is read
                 // beyond the object, where only the shadows of others are.
-                Light light = GetMainLight();
-                float3 light_color = light.color * light.distanceAttenuation;
+                // With the light's cookie.
+                Light light = GetMainLight(inputData.shadowCoord, input.positionWS, inputData.shadowMask);
+                float3 light_color = incoming_light(light);
             #if !defined(_MAIN_LIGHT_SHADOWS_SCREEN)
                 if (_TransmissionShadowOffset > 0.0) {
                     float3 beyond = input.positionWS + light.direction * _TransmissionShadowOffset;
@@ -406,10 +446,23 @@ Shader "sssgen/Ice (URP)" {
             #endif
                 color.rgb += evaluate_translucency(surface, V, N, light.direction) * light_color;
             #if defined(_ADDITIONAL_LIGHTS)
+            #if USE_CLUSTER_LIGHT_LOOP || USE_FORWARD_PLUS || USE_CLUSTERED_LIGHTING
+                // The loop below has the lights near this part of the screen; directional ones come first in the array.
+            #if USE_CLUSTERED_LIGHTING
+                uint directional_count = min(_AdditionalLightsDirectionalCount, MAX_VISIBLE_LIGHTS);
+            #else
+                uint directional_count = min(URP_FP_DIRECTIONAL_LIGHTS_COUNT, MAX_VISIBLE_LIGHTS);
+            #endif
+                for (uint number = 0u; number < directional_count; number++) {
+                    light = GetAdditionalLight(number, input.positionWS, inputData.shadowMask);
+                    light_color = incoming_light(light);
+                    color.rgb += evaluate_translucency(surface, V, N, light.direction) * light_color;
+                }
+            #endif
                 uint light_count = GetAdditionalLightsCount();
                 LIGHT_LOOP_BEGIN(light_count)
-                    light = GetAdditionalLight(lightIndex, input.positionWS);
-                    light_color = light.color * light.distanceAttenuation;
+                    light = GetAdditionalLight(lightIndex, input.positionWS, inputData.shadowMask);
+                    light_color = incoming_light(light);
                     color.rgb += evaluate_translucency(surface, V, N, light.direction) * light_color;
                 LIGHT_LOOP_END
             #endif
@@ -502,6 +555,42 @@ Shader "sssgen/Ice (URP)" {
             #else
                 return float4(N, 0.0);
             #endif
+            }
+            ENDHLSL
+        }
+
+        Pass {
+            // What the lightmapper and probe volumes read: the light that the surface reflects and emits.
+            Name "Meta"
+            Tags { "LightMode" = "Meta" }
+            Cull Off
+
+            HLSLPROGRAM
+            #pragma target 3.5
+            #pragma vertex vert_meta
+            #pragma fragment frag
+            #include "Packages/com.unity.render-pipelines.universal/ShaderLibrary/MetaInput.hlsl"
+
+            Varyings vert_meta(Attributes input, float2 lightmap_uv : TEXCOORD1, float2 dynamic_lightmap_uv : TEXCOORD2) {
+                Varyings output = vert(input);
+                output.positionCS = UnityMetaVertexPosition(input.positionOS.xyz, lightmap_uv, dynamic_lightmap_uv);
+                return output;
+            }
+
+            float4 frag(Varyings input) : SV_Target {
+                UNITY_SETUP_INSTANCE_ID(input);
+                Surface surface = evaluate_surface(input.uv, _Time.y);
+                clip(surface.alpha - 0.5);
+                float3 albedo = surface.albedo;
+                float metallic = surface.metallic;
+                float smoothness = 1.0 - surface.roughness;
+                half alpha = 1.0;
+                BRDFData brdf;
+                InitializeBRDFData(albedo, metallic, 0.0, smoothness, alpha, brdf);
+                UnityMetaInput light = (UnityMetaInput)0;
+                light.Albedo = brdf.diffuse + brdf.specular * brdf.roughness * 0.5;  // as URP's own materials
+                light.Emission = surface.emission;
+                return UnityMetaFragment(light);
             }
             ENDHLSL
         }

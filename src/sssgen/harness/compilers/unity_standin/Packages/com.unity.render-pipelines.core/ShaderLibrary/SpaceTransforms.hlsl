@@ -18,6 +18,11 @@ float4 _Time;
 #define UNITY_MATRIX_V unity_MatrixV
 #define UNITY_MATRIX_VP unity_MatrixVP
 
+float3 GetAbsolutePositionWS(float3 positionRWS)
+{
+    return positionRWS;
+}
+
 float4x4 GetObjectToWorldMatrix()
 {
     return UNITY_MATRIX_M;

@@ -6,10 +6,17 @@
 #include "Packages/com.unity.render-pipelines.core/ShaderLibrary/UnityInstancing.hlsl"
 #include "Packages/com.unity.render-pipelines.core/ShaderLibrary/SpaceTransforms.hlsl"
 
-#if defined(_CLUSTERED_RENDERING)
-#define USE_CLUSTERED_LIGHTING 1
+// Lists of lights for each part of the screen, under the names of each version.
+#define STANDIN_TILES (defined(_CLUSTER_LIGHT_LOOP) || defined(_FORWARD_PLUS) || defined(_CLUSTERED_RENDERING))
+#if UNITY_VERSION >= 60000100
+#define USE_CLUSTER_LIGHT_LOOP defined(_CLUSTER_LIGHT_LOOP)
+#elif UNITY_VERSION >= 202220
+#define USE_FORWARD_PLUS defined(_FORWARD_PLUS)
 #else
-#define USE_CLUSTERED_LIGHTING 0
+#define USE_CLUSTERED_LIGHTING defined(_CLUSTERED_RENDERING)
+#endif
+#if STANDIN_TILES
+#define _ADDITIONAL_LIGHTS 1
 #endif
 #define MAX_VISIBLE_LIGHTS 256
 
@@ -19,7 +26,16 @@ float4 _MainLightPosition;
 half4 _MainLightColor;
 half4 unity_SHAr, unity_SHAg, unity_SHAb;
 half4 _AdditionalLightsCount;
+float unity_RenderingLayer;
+uint _MainLightLayerMask;
+uint _AdditionalLightsLayerMask;  // of all of them
+half3 standin_cookie;             // of every light
+#if STANDIN_TILES && UNITY_VERSION >= 202220
+float4 _FPParams0;
+#define URP_FP_DIRECTIONAL_LIGHTS_COUNT ((uint)_FPParams0.w)
+#elif STANDIN_TILES
 uint _AdditionalLightsDirectionalCount;
+#endif
 float4 _AdditionalLightsPosition[MAX_VISIBLE_LIGHTS];  // w: 1 a position, 0 a direction
 half4 _AdditionalLightsColor[MAX_VISIBLE_LIGHTS];
 

@@ -16,15 +16,42 @@ struct Light
     uint layerMask;
 };
 
-#if USE_CLUSTERED_LIGHTING
-// The loop reads the fragment's place from `inputData`, as Unity's does.
+#if STANDIN_TILES
+// The loop reads the fragment's place from `inputData`, as Unity's does. Directional lights come before its lights.
+#if UNITY_VERSION >= 202220
+#define STANDIN_FIRST URP_FP_DIRECTIONAL_LIGHTS_COUNT
+#else
+#define STANDIN_FIRST _AdditionalLightsDirectionalCount
+#endif
 #define LIGHT_LOOP_BEGIN(lightCount)                                                                            \
-    uint standin_tile = uint(inputData.normalizedScreenSpaceUV.x + inputData.positionWS.z);                     \
-    for (uint lightIndex = standin_tile % 2u; lightIndex < 8u; ++lightIndex) {
+    uint standin_tile = uint(abs(inputData.normalizedScreenSpaceUV.x + inputData.positionWS.z));                \
+    for (uint lightIndex = STANDIN_FIRST + min(standin_tile, 0u); lightIndex < uint(_AdditionalLightsCount.x); ++lightIndex) {
 #else
 #define LIGHT_LOOP_BEGIN(lightCount) for (uint lightIndex = 0u; lightIndex < lightCount; ++lightIndex) {
 #endif
 #define LIGHT_LOOP_END }
+
+#if UNITY_VERSION >= 202220
+uint GetMeshRenderingLayer()
+#else
+uint GetMeshRenderingLightLayer()
+#endif
+{
+    return asuint(unity_RenderingLayer);
+}
+
+bool IsMatchingLightLayer(uint lightLayers, uint renderingLayers)
+{
+    return (lightLayers & renderingLayers) != 0u;
+}
+
+Light standin_through_cookie(Light light)
+{
+#if defined(_LIGHT_COOKIES)
+    light.color *= standin_cookie;
+#endif
+    return light;
+}
 
 Light GetMainLight()
 {
@@ -33,7 +60,7 @@ Light GetMainLight()
     light.color = _MainLightColor.rgb;
     light.distanceAttenuation = 1.0;
     light.shadowAttenuation = 1.0;
-    light.layerMask = 255u;
+    light.layerMask = _MainLightLayerMask;
     return light;
 }
 
@@ -48,12 +75,16 @@ Light GetMainLight(float4 shadowCoord, float3 positionWS, half4 shadowMask)
 {
     Light light = GetMainLight(shadowCoord);
     light.shadowAttenuation *= shadowMask.x;
-    return light;
+    return standin_through_cookie(light);
 }
 
 int GetAdditionalLightsCount()
 {
-    return USE_CLUSTERED_LIGHTING ? 0 : int(_AdditionalLightsCount.x);
+#if STANDIN_TILES
+    return 0;
+#else
+    return int(_AdditionalLightsCount.x);
+#endif
 }
 
 int GetPerObjectLightIndex(uint index)
@@ -70,7 +101,7 @@ Light GetAdditionalLight(uint i, float3 positionWS)
     light.color = _AdditionalLightsColor[i].rgb;
     light.distanceAttenuation = rcp(max(dot(toLight, toLight), HALF_MIN));
     light.shadowAttenuation = 1.0;
-    light.layerMask = 255u;
+    light.layerMask = _AdditionalLightsLayerMask;
     return light;
 }
 
@@ -78,7 +109,7 @@ Light GetAdditionalLight(uint i, float3 positionWS, half4 shadowMask)
 {
     Light light = GetAdditionalLight(i, positionWS);
     light.shadowAttenuation = shadowMask.x;
-    return light;
+    return standin_through_cookie(light);
 }
 
 half3 SampleSH(half3 normalWS)
@@ -87,8 +118,36 @@ half3 SampleSH(half3 normalWS)
     return half3(dot(unity_SHAr, normal), dot(unity_SHAg, normal), dot(unity_SHAb, normal));
 }
 
+#if UNITY_VERSION >= 60000000 && (defined(PROBE_VOLUMES_L1) || defined(PROBE_VOLUMES_L2))
+half3 SampleProbeVolumePixel(half3 vertexValue, float3 absolutePositionWS, float3 normalWS, float3 viewDir, float2 positionSS)
+{
+    return SampleSH(normalWS);
+}
+#endif
+
+struct BRDFData
+{
+    half3 diffuse;
+    half3 specular;
+    half roughness;
+};
+
+void InitializeBRDFData(
+    half3 albedo, half metallic, half3 specular, half smoothness, inout half alpha, out BRDFData outBRDFData)
+{
+    outBRDFData.diffuse = albedo * (1.0 - metallic);
+    outBRDFData.specular = lerp((half3)0.04, albedo, metallic);
+    outBRDFData.roughness = (1.0 - smoothness) * (1.0 - smoothness);
+}
+
 half3 standin_received(Light light, InputData inputData, SurfaceData surfaceData)
 {
+#if defined(_LIGHT_LAYERS)
+    if (!IsMatchingLightLayer(light.layerMask, asuint(unity_RenderingLayer)))
+    {
+        return 0.0;
+    }
+#endif
     return light.color * light.distanceAttenuation * light.shadowAttenuation
         * standin_standard(inputData.normalWS, inputData.viewDirectionWS, light.direction, surfaceData.albedo,
             surfaceData.metallic, 1.0 - surfaceData.smoothness);
@@ -99,6 +158,13 @@ half4 UniversalFragmentPBR(InputData inputData, SurfaceData surfaceData)
     Light light = GetMainLight(inputData.shadowCoord, inputData.positionWS, inputData.shadowMask);
     half3 color = surfaceData.albedo * inputData.bakedGI * surfaceData.occlusion + surfaceData.emission;
     color += standin_received(light, inputData, surfaceData);
+#if STANDIN_TILES
+    for (uint number = 0u; number < STANDIN_FIRST; ++number)
+    {
+        light = GetAdditionalLight(number, inputData.positionWS, inputData.shadowMask);
+        color += standin_received(light, inputData, surfaceData);
+    }
+#endif
 #if defined(_ADDITIONAL_LIGHTS)
     uint lightCount = GetAdditionalLightsCount();
     LIGHT_LOOP_BEGIN(lightCount)
