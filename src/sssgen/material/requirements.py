@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from sssgen.ir.drawn import BACK_FACES, DISTANT, LAYERS, LIGHT
+from sssgen.ir.drawn import BACK_FACES, CUBES, DISTANT, LAYERS, LIGHT, SHADOW
 from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import attributes
@@ -20,6 +20,7 @@ from sssgen.support.diagnostics import SssgenError
 
 DRAWN = {
     BACK_FACES: ("back-faces",), LIGHT: ("depth-map",), DISTANT: ("depth-map",), LAYERS: ("depth-map", "depth-layers"),
+    SHADOW: ("depth-map",), **dict.fromkeys(CUBES, ()),
 }  # fmt: skip
 """A picture that the engine draws → the requirements."""
 TEXEL_BYTES = 4

@@ -83,7 +83,8 @@ def _parameters(
     document, values = scene.document, _baked_parameters(scene, material, reflection)
     for name, uniform in uniforms.items():
         if uniform["drawn"] in views:
-            values[name] = (*views[uniform["drawn"]][0].matrix.T.ravel(),)
+            view, map_ = views[uniform["drawn"]]
+            values[name] = (*view.matrix.T.ravel(),) if uniform["type"] == "mat4" else (float(map_.size()[0]),)
     for name, raw in scene.parameters.items():
         place = document.place("parameters", name)
         if name not in uniforms:

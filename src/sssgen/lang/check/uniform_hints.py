@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from sssgen.ir.drawn import DRAWN
+from sssgen.ir.drawn import CUBES, DRAWN
 from sssgen.ir.nodes import Span
 from sssgen.ir.rules import FLOAT_MAX
-from sssgen.ir.types import VEC3, VEC4, Matrix, Sampler, Type, kind_of
+from sssgen.ir.types import FLOAT, VEC3, VEC4, Matrix, Sampler, Type, kind_of
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.context import CheckContext
 from sssgen.lang.syntax import tree as s
@@ -77,8 +77,11 @@ def _check_drawn(context: CheckContext, span: Span, view: str, type_: Type) -> N
         raise context.fail(
             span, f"a program cannot draw '{view}'", did_you_mean(view, DRAWN) or f"one of: {', '.join(DRAWN)}"
         )
-    if type_ != Matrix(4) and not (isinstance(type_, Sampler) and type_.dim == "2D"):
-        raise context.fail(span, "drawn is for a sampler2D, and for the mat4 of the view in which it is drawn")
+    dim = "Cube" if view in CUBES else "2D"
+    if type_ not in (Matrix(4), FLOAT) and not (isinstance(type_, Sampler) and type_.dim == dim):
+        raise context.fail(
+            span, f"drawn({view}) is for a sampler{dim}, the mat4 of the view in which it is drawn, and its size"
+        )
 
 
 def _check_range(
