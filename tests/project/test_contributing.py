@@ -17,7 +17,7 @@ from documents import Reader, blocks, programs, read, uncommented
 from folders import ROOT
 from sssgen import SssgenError
 from sssgen.lang.check.shader_interface import BUILTIN_VARIABLES
-from sssgen.material.chain_assembly import INPUTS
+from sssgen.material.chain_assembly import INPUTS, OPTIONAL
 from sssgen.passes.capabilities import Capabilities
 from sssgen.targets import descriptor, registry
 
@@ -212,5 +212,6 @@ def test_own_descriptors_declare_every_capability() -> None:
 
 
 def test_the_keys_of_descriptors_equal_the_inputs_of_the_chain() -> None:
+    assert descriptor.OPTIONAL_VALUES == OPTIONAL
     assert set(descriptor.CHAIN_INPUTS) == {*INPUTS, "surface", "color"}
     assert set(descriptor.STAGE_BUILTINS) < set(BUILTIN_VARIABLES)

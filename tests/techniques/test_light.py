@@ -183,14 +183,14 @@ def test_limits_of_absorption(d: float, distance: float, color: Any, expected: A
 # Lighting
 
 
-def own_standard(albedo: Array, metallic: Array, roughness: Array) -> Array:
+def own_standard(albedo: Array, metallic: Array, roughness: Array, reflected: Any = 0.04) -> Array:
     """Cook and Torrance's f_r times pi and the cosine, with D, G and F of the papers."""
     h = unit(V + L)
     nl, nv, nh, vh = dot(N, L), dot(N, V), dot(N, h), dot(V, h)
     a = np.maximum(roughness, 0.045) ** 2
     ndf = a**2 / (np.pi * (nh**2 * (a**2 - 1.0) + 1.0) ** 2)
     masking = 2.0 * nl * nv / ((1.0 - a) * 2.0 * nl * nv + a * (nl + nv))
-    f0 = 0.04 * (1.0 - metallic)[:, None] + albedo * metallic[:, None]
+    f0 = (reflected * (1.0 - metallic))[:, None] + albedo * metallic[:, None]
     fresnel = f0 + (1.0 - f0) * ((1.0 - vh) ** 5)[:, None]
     specular = fresnel * (ndf * masking / (4.0 * nl * nv))[:, None]
     diffuse = (1.0 - fresnel) * (1.0 - metallic)[:, None] * albedo / np.pi
@@ -198,10 +198,14 @@ def own_standard(albedo: Array, metallic: Array, roughness: Array) -> Array:
     return np.where(((nl > 0.0) & (nv > 0.0))[:, None], lit, 0.0)
 
 
+BARE = {"specular": 0.04, "clearcoat": 0.0, "clearcoat_roughness": 0.0}
+"""The usual reflection of a dielectric, without a coat."""
+
+
 def test_standard_light() -> None:
     albedo, metallic, roughness = rng().uniform(size=(COUNT, 3)), rng(1).uniform(size=COUNT), rng(2).uniform(size=COUNT)
     roughness[:20] *= 0.05  # some values are below the minimum
-    values = {"albedo": albedo, "metallic": metallic, "roughness": roughness, "light_color": COLOR}
+    values = {"albedo": albedo, "metallic": metallic, "roughness": roughness, "light_color": COLOR, **BARE}
     result = technique("standard")(N=N, V=V, L=L, **values)
     visible = dot(N, V) > 0.0
     assert (result[visible].max(axis=1) > 0.01).sum() > 20
@@ -209,8 +213,27 @@ def test_standard_light() -> None:
     assert not result[dot(N, L) <= 0.0].any()
 
 
+def test_standard_light_under_a_clear_coat() -> None:
+    """KHR_materials_clearcoat: mix(base, coat, weight * F), with a coat of F0 = 0.04 and its own roughness."""
+    albedo, metallic, roughness = rng().uniform(size=(COUNT, 3)), rng(1).uniform(size=COUNT), rng(2).uniform(size=COUNT)
+    reflected, weight, rough = rng(3).uniform(size=COUNT), rng(4).uniform(size=COUNT), rng(5).uniform(size=COUNT)
+    weight[:5] = 0.0
+    values = {"albedo": albedo, "metallic": metallic, "roughness": roughness, "light_color": COLOR}
+    layers = {"specular": reflected, "clearcoat": weight, "clearcoat_roughness": rough}
+    result = technique("standard")(N=N, V=V, L=L, **values, **layers)
+    h = unit(V + L)
+    share = (weight * (0.04 + 0.96 * (1.0 - dot(V, h)) ** 5))[:, None]
+    # a black surface of no metal that reflects everything has the highlight alone
+    black = np.zeros((COUNT, 3))
+    coat = own_standard(black, np.zeros(COUNT), rough, 1.0)
+    expected = (1.0 - share) * own_standard(albedo, metallic, roughness, reflected) + share * coat
+    visible = dot(N, V) > 0.0
+    close(result[visible], (expected * COLOR)[visible], rtol=1e-9, atol=1e-12)
+    assert (np.abs(expected - own_standard(albedo, metallic, roughness, reflected)).max(axis=1) > 1e-3).sum() > 20
+
+
 def test_standard_light_is_reciprocal_and_reads_1_on_white() -> None:
-    above = {"N": UP, "albedo": COLOR, "metallic": 0.3, "roughness": 0.4, "light_color": np.ones(3)}
+    above = {"N": UP, "albedo": COLOR, "metallic": 0.3, "roughness": 0.4, "light_color": np.ones(3), **BARE}
     v, light = (unit(np.abs(vectors) + 0.1 * UP) for vectors in (V, L))
     forward, backward = technique("standard")(V=v, L=light, **above), technique("standard")(V=light, L=v, **above)
     close(forward / light[:, 1:2], backward / v[:, 1:2], rtol=1e-9)

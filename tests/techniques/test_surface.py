@@ -365,6 +365,20 @@ def test_colours_of_vertices_are_factors() -> None:
     close(alpha, 0.6 * np.minimum(colors[:, 3], 1.0))
 
 
+def test_specular_and_clearcoat() -> None:
+    picture = rng().uniform(size=(2, 2, 4))
+    texels = picture.reshape(-1, 4)
+    # glass of the index 1.5 reflects ((1.5 - 1) / (1.5 + 1))^2
+    close(technique("specular_level")(dielectric_specular=0.5), (0.5 / 2.5) ** 2)
+    reflected = technique("specular_map")(uv=UV, specular_texture=picture, specular_strength=0.75)
+    close(reflected, 0.06 * texels[:, 3])
+    factors = {"coat_weight": 0.8, "coat_roughness": 0.3}
+    assert technique("clearcoat_constants")(**factors) == (0.8, 0.3)
+    weight, roughness = technique("clearcoat_map")(uv=UV, clearcoat_texture=picture, **factors)
+    close(weight, 0.8 * texels[:, 0])
+    close(roughness, 0.3 * texels[:, 1])
+
+
 def test_emission_is_added() -> None:
     picture = rng().uniform(size=(2, 2, 3))
     values = {"emission_color": (1.0, 0.5, 0.25), "emission_strength": 20.0, "emission": (0.1, 0.2, 0.3)}

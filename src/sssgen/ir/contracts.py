@@ -34,7 +34,7 @@ INTEGERS = {"int": (-(2.0**31), 2.0**31 - 1.0), "uint": (0.0, 2.0**32 - 1.0), "b
 
 _UNIT = {"thinness", "transmittance"}
 _LENGTHS = {"thickness", "view_thickness"}
-_FRACTIONS = {"alpha", "metallic", "roughness", "occlusion"}
+_FRACTIONS = {"alpha", "metallic", "roughness", "occlusion", "specular", "clearcoat", "clearcoat_roughness"}
 _COLORS = {"albedo", "light_color", "emission", "color", "translucency"}
 _FRAME = {"N", "V", "L", "T", "B", "normal"}
 

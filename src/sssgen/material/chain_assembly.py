@@ -74,12 +74,18 @@ DEFAULTS: dict[str, tuple[Type, tuple[float, ...]]] = {
     "roughness": (FLOAT, (0.5,)),
     "occlusion": (FLOAT, (1.0,)),
     "emission": (VEC3, (0.0, 0.0, 0.0)),
+    "specular": (FLOAT, (0.04,)),
+    "clearcoat": (FLOAT, (0.0,)),
+    "clearcoat_roughness": (FLOAT, (0.0,)),
     "translucency": (VEC3, (0.0, 0.0, 0.0)),
     "color": (VEC3, (0.0, 0.0, 0.0)),
 }
 """The values of the surface, with their defaults where no technique writes them."""
 
-SURFACE_FIELDS = ("albedo", "alpha", "normal", "metallic", "roughness", "occlusion", "emission")
+OPTIONAL = ("specular", "clearcoat", "clearcoat_roughness")
+"""Values that are constants in the text of the techniques that read them, where no stage writes them."""
+
+SURFACE_FIELDS = ("albedo", "alpha", "normal", "metallic", "roughness", "occlusion", "emission", *OPTIONAL)
 
 _RESULT_OF_ROLE = {
     "geometry": "hit", "lighting": "color", "shadow": "shadow", "environment": "color",

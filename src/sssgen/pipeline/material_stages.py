@@ -8,6 +8,7 @@ from sssgen.ir.nodes import Module, Span
 from sssgen.lang.source_lines import source_line
 from sssgen.material import library
 from sssgen.material.model import Material, TechniqueUse
+from sssgen.material.unwritten import unwritten, with_constants
 from sssgen.passes.link import LinkInput
 from sssgen.support.diagnostics import Diagnostic, UnsupportedError
 from sssgen.targets.descriptor import Target
@@ -40,7 +41,27 @@ def stages_for(material: Material, target: Target) -> list[TargetTechnique]:
         stages.append(TargetTechnique(added, technique.function.span, len(stages)))
     engine = {"lighting"} if lit and not target.lighting else set()
     engine |= {"output"} if target.engine_encodes else set()
-    return [stage for stage in stages if stage.link.role not in engine]
+    stages = [stage for stage in stages if stage.link.role not in engine]
+    absent = unwritten([stage.link.function for stage in stages])
+    return [
+        stage._replace(link=link._replace(function=with_constants(link.function, link.module, absent)))
+        for stage in stages
+        if (link := stage.link)
+    ]
+
+
+def check_values(material: Material, target: Target) -> None:
+    """Raises UnsupportedError for stages that write a value of the surface which the target's engine lacks."""
+    wrong = [
+        Diagnostic("error", f"{target.title} has no '{param.name}', which '{stage.technique.name}' gives", stage.span,
+                   target.lacks[param.name], source_line(stage.span))
+        for stage in material.stages
+        if material.shading == "lit"
+        for param in stage.technique.function.params
+        if param.direction != "in" and param.name in target.lacks
+    ]  # fmt: skip
+    if wrong:
+        raise UnsupportedError(wrong)
 
 
 def check_shell(material: Material, target: Target) -> None:

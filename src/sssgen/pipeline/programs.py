@@ -16,7 +16,7 @@ from sssgen.passes.ranges.sites import Site, report
 from sssgen.passes.reachable import only
 from sssgen.passes.stage.stage_interface import stage_kind
 from sssgen.pipeline import pass_list
-from sssgen.pipeline.material_stages import check_shell
+from sssgen.pipeline.material_stages import check_shell, check_values
 from sssgen.pipeline.state import State
 from sssgen.pipeline.trace import Trace
 from sssgen.support.diagnostics import Diagnostic, failure
@@ -38,6 +38,7 @@ def make(
     `structure` identifies what the program depends on; '' where that is unknown, and nothing is cached.
     """
     check_shell(material, target)
+    check_values(material, target)
     state = _material_program(material, structure if trace is None else "", target, form, guards, trace)
     return _finish(replace(state, chosen=target), trace)
 

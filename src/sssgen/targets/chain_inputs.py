@@ -14,6 +14,9 @@ class ChainInput(NamedTuple):
     """world, object, texture or screen; '' for what has no space."""
 
 
+OPTIONAL_VALUES = ("specular", "clearcoat", "clearcoat_roughness")
+"""The values of the surface that not every engine has."""
+
 CHAIN_INPUTS: Mapping[str, ChainInput] = {
     "uv": ChainInput("the texture coordinate", "texture"),
     "P": ChainInput("the position of the surface point", "world"),

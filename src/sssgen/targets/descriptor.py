@@ -13,7 +13,7 @@ from sssgen.ir.types import BY_NAME
 from sssgen.passes.capabilities import Capabilities
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.paths import stem
-from sssgen.targets.chain_inputs import CHAIN_INPUTS
+from sssgen.targets.chain_inputs import CHAIN_INPUTS, OPTIONAL_VALUES
 
 _Record = TypeVar("_Record", bound=NamedTuple)
 
@@ -193,6 +193,8 @@ class Target(NamedTuple):
     properties: Properties = Properties()
     prefix: str = ""
     """The beginning of every global name; `--prefix` sets another."""
+    lacks: Mapping[str, str] = {}
+    """Value of the surface that the engine does not have → what a user can do instead."""
     lighting: str = ""
     """The technique that lights a lit material; '' where the engine does."""
     shell: tuple[str, ...] = ()
@@ -237,6 +239,7 @@ _KEYS: dict[str, Collection[str]] = {
     "inputs": CHAIN_INPUTS,
     "light_inputs": CHAIN_INPUTS,
     "ports": CHAIN_INPUTS,
+    "lacks": OPTIONAL_VALUES,
     "stage_builtins": STAGE_BUILTINS,
 }
 """The keys of the sections that have no record type."""

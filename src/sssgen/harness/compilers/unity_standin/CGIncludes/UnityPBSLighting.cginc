@@ -35,6 +35,29 @@ half4 LightingStandard(SurfaceOutputStandard s, float3 viewDir, UnityGI gi)
     return half4(s.Albedo * gi.indirect.diffuse + direct * gi.light.color + gi.indirect.specular, s.Alpha);
 }
 
+struct SurfaceOutputStandardSpecular
+{
+    fixed3 Albedo;
+    fixed3 Specular;
+    float3 Normal;
+    half3 Emission;
+    half Smoothness;
+    half Occlusion;
+    fixed Alpha;
+};
+
+half4 LightingStandardSpecular(SurfaceOutputStandardSpecular s, float3 viewDir, UnityGI gi)
+{
+    float3 normal = normalize(s.Normal);
+    half3 direct = standin_layered(normal, viewDir, gi.light.dir, s.Albedo, s.Specular, 1.0 - s.Smoothness, 0.0, 0.0);
+    return half4(s.Albedo * gi.indirect.diffuse + direct * gi.light.color + gi.indirect.specular, s.Alpha);
+}
+
+void LightingStandardSpecular_GI(SurfaceOutputStandardSpecular s, UnityGIInput data, inout UnityGI gi)
+{
+    UNITY_GI(gi, s, data);
+}
+
 void LightingStandard_GI(SurfaceOutputStandard s, UnityGIInput data, inout UnityGI gi)
 {
     UNITY_GI(gi, s, data);

@@ -135,8 +135,13 @@ struct BRDFData
 void InitializeBRDFData(
     half3 albedo, half metallic, half3 specular, half smoothness, inout half alpha, out BRDFData outBRDFData)
 {
+#if defined(_SPECULAR_SETUP)
+    outBRDFData.diffuse = albedo;
+    outBRDFData.specular = specular;
+#else
     outBRDFData.diffuse = albedo * (1.0 - metallic);
     outBRDFData.specular = lerp((half3)0.04, albedo, metallic);
+#endif
     outBRDFData.roughness = (1.0 - smoothness) * (1.0 - smoothness);
 }
 
@@ -148,9 +153,19 @@ half3 standin_received(Light light, InputData inputData, SurfaceData surfaceData
         return 0.0;
     }
 #endif
+    half3 F0 = lerp((half3)0.04, surfaceData.albedo, surfaceData.metallic);
+    half3 diffuse = surfaceData.albedo * (1.0 - surfaceData.metallic);
+    half coat = 0.0;
+#if defined(_SPECULAR_SETUP)
+    F0 = surfaceData.specular;
+    diffuse = surfaceData.albedo;
+#endif
+#if defined(_CLEARCOAT)
+    coat = surfaceData.clearCoatMask;
+#endif
     return light.color * light.distanceAttenuation * light.shadowAttenuation
-        * standin_standard(inputData.normalWS, inputData.viewDirectionWS, light.direction, surfaceData.albedo,
-            surfaceData.metallic, 1.0 - surfaceData.smoothness);
+        * standin_layered(inputData.normalWS, inputData.viewDirectionWS, light.direction, diffuse, F0,
+            1.0 - surfaceData.smoothness, coat, 1.0 - surfaceData.clearCoatSmoothness);
 }
 
 half4 UniversalFragmentPBR(InputData inputData, SurfaceData surfaceData)
