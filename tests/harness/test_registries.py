@@ -6,7 +6,7 @@ import re
 from importlib.util import find_spec
 
 from folders import ROOT
-from sssgen.harness.backend_registry import BACKENDS, DEFAULT, DRIVERS, HALF, SINGLE
+from sssgen.harness.backend_registry import BACKENDS, DEFAULT, DRIVERS, FUNCTIONS, HALF, SINGLE
 from sssgen.harness.compiler_registry import COMPILERS
 from sssgen.targets import registry
 
@@ -22,7 +22,8 @@ def test_every_record_names_a_module_and_targets() -> None:
 
 def test_the_lists_of_back_ends() -> None:
     assert {record.half for record in BACKENDS.values() if record.half} == set(HALF)
-    assert [*BACKENDS] == sorted({"numpy", *SINGLE, *HALF}, key=[*BACKENDS].index)
+    assert [*FUNCTIONS] == sorted({"numpy", *SINGLE, *HALF}, key=[*BACKENDS].index)
+    assert {name for name, record in BACKENDS.items() if record.scenes_only} == set(BACKENDS) - set(FUNCTIONS)
     assert set(DRIVERS) < set(SINGLE)
     assert set(DEFAULT) < set(SINGLE)
 

@@ -50,7 +50,7 @@ def _render(arguments: Namespace) -> int:
     from sssgen.harness.scenes.scene_loading import load
 
     size = _size(arguments.size) if arguments.size else None
-    name, *more = backends.chosen(arguments.backend)
+    name, *more = backends.chosen(arguments.backend, scenes=True)
     if more:
         raise failure(f"{arguments.backend} are several back ends", "name one")
     if arguments.time is not None and not abs(arguments.time) < 1e9:

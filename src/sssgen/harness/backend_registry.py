@@ -5,7 +5,7 @@ Nothing is imported for it, so that help texts and reports may list what this ma
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from sssgen.support.diagnostics import did_you_mean, failure
@@ -29,6 +29,8 @@ class BackendRecord(NamedTuple):
     """Its counterpart in half precision."""
     driver: bool = True
     """Whether a driver computes, which may crash."""
+    scenes_only: bool = False
+    """Whether it is an engine, which draws and lights scenes, and evaluates no functions."""
     apart: bool = False
     """Whether `make setup` leaves it out, so that its absence in CI is no failure."""
     default: bool = False
@@ -40,6 +42,24 @@ _SPIRV = "spirv-val and spirv-cross (Debian: `spirv-tools spirv-cross`)"
 _DXC = f"as `gl`, `pip install 'sssgen[dxc]'`, {_SPIRV}"
 _GLSLANG = f"as `gl`, `glslangValidator` (Debian: `glslang-tools`), {_SPIRV}"
 _NUMPY = "`pip install 'sssgen[numpy]'`"
+
+_GODOT = "Godot 4.6 (`make engines`, or `SSSGEN_GODOT` names the program)"
+
+
+def _page(target: str, title: str, package: str, renderers: Mapping[str, tuple[str, str]]) -> Iterator[BackendRecord]:
+    """The back ends of an engine of the web: a suffix of the name → the renderer's title and name."""
+    install = f"`pip install 'sssgen[browser]'`, Chromium or Chrome (Debian: `chromium`), the npm package `{package}`"
+    for suffix, (renderer, name) in renderers.items():
+        yield BackendRecord(
+            target + suffix,
+            f"{title}: {renderer}, in a headless Chromium",
+            target,
+            "engine_backend:PageBackend",
+            install,
+            {"renderer": name},
+            scenes_only=True,
+        )
+
 
 _RECORDS = (
     BackendRecord(
@@ -102,10 +122,26 @@ _RECORDS = (
         "metal", "Metal on the processor: g++ with a stand-in for Metal's library", "metal", "metal_backend:MetalOnCpu",
         "`g++` (Debian: `g++`)", driver=False,
     ),
+    *_page("threejs", "three.js", "three", {
+        "": ("WebGPURenderer", "webgpu"), "-webgl": ("WebGLRenderer", "webgl"),
+        "-webgl2": ("WebGPURenderer on WebGL 2", "webgl2"),
+    }),
+    *(
+        BackendRecord(
+            f"godot{suffix}", f"Godot, {title}", "godot", "engine_backend:GodotBackend", _GODOT,
+            {"renderer": renderer}, scenes_only=True, apart=True,
+        )
+        for suffix, title, renderer in (
+            ("", "Forward+", "forward_plus"), ("-mobile", "Mobile", "mobile"),
+            ("-compatibility", "Compatibility", "gl_compatibility"),
+        )
+    ),
 )  # fmt: skip
 
 BACKENDS = {record.name: record for record in _RECORDS}
-SINGLE = tuple(record.name for record in _RECORDS if record.bits == 32)
+FUNCTIONS = tuple(record.name for record in _RECORDS if not record.scenes_only)
+"""Those that evaluate functions."""
+SINGLE = tuple(name for name in FUNCTIONS if BACKENDS[name].bits == 32)
 """Those that compute in float32."""
 HALF = tuple(record.name for record in _RECORDS if record.bits == 16)
 DRIVERS = tuple(name for name in SINGLE if BACKENDS[name].driver)
@@ -115,13 +151,18 @@ PREFERRED = "gl"
 """The one where a single back end is needed and none is named."""
 
 
-def chosen(text: str) -> list[str]:
-    """The back ends that `NAME,NAME` names, each once. Raises SssgenError for unknown ones."""
+def chosen(text: str, scenes: bool = False) -> list[str]:
+    """The back ends that `NAME,NAME` names, each once; those that draw scenes only, where `scenes` are drawn.
+
+    Raises SssgenError for others.
+    """
     names = list(dict.fromkeys(name.strip() for name in text.split(",")))
     for name in names:
         if name not in BACKENDS:
-            hint = did_you_mean(name, BACKENDS) or f"choose from: {', '.join(BACKENDS)}"
+            hint = did_you_mean(name, BACKENDS) or f"choose from: {', '.join(BACKENDS if scenes else FUNCTIONS)}"
             raise failure(f"unknown back end '{name}'", hint)
+        if BACKENDS[name].scenes_only and not scenes:
+            raise failure(f"{name} draws scenes and evaluates no functions", f"choose from: {', '.join(FUNCTIONS)}")
     return names
 
 

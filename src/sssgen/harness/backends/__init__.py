@@ -11,7 +11,7 @@ from __future__ import annotations
 from functools import cache
 from importlib import import_module
 
-from sssgen.harness.backend_registry import BACKENDS, DEFAULT, DRIVERS, HALF, SINGLE, chosen, in_half
+from sssgen.harness.backend_registry import BACKENDS, DEFAULT, DRIVERS, FUNCTIONS, HALF, SINGLE, chosen, in_half
 from sssgen.harness.backends.backend_interface import (
     VERTEX_SIZE,
     Array,
@@ -30,9 +30,9 @@ from sssgen.harness.compilers import CompilerMissing
 from sssgen.support.diagnostics import failure
 
 __all__ = [
-    "BACKENDS", "DEFAULT", "DRIVERS", "HALF", "SINGLE", "VERTEX_SIZE", "Array", "Backend", "Block", "Bound", "Call",
-    "CompilerMissing", "Drawing", "DrawingBackend", "Place", "Stage", "Text", "available", "chosen", "emitted", "get",
-    "in_half", "missing", "needed",
+    "BACKENDS", "DEFAULT", "DRIVERS", "FUNCTIONS", "HALF", "SINGLE", "VERTEX_SIZE", "Array", "Backend", "Block",
+    "Bound", "Call", "CompilerMissing", "Drawing", "DrawingBackend", "Place", "Stage", "Text", "available", "chosen",
+    "emitted", "get", "in_half", "missing", "needed",
 ]  # fmt: skip
 
 
@@ -53,13 +53,13 @@ def needed(name: str) -> Backend:
 
 
 def available() -> list[Backend]:
-    """Every back end that this machine has, started."""
-    return [backend for backend in map(_find, BACKENDS) if isinstance(backend, Backend)]
+    """Every back end for functions that this machine has, started."""
+    return [backend for backend in map(_find, FUNCTIONS) if isinstance(backend, Backend)]
 
 
 def missing() -> list[tuple[str, str]]:
-    """(name, how to get it) of every back end that this machine lacks."""
-    return [(name, reason) for name in BACKENDS if isinstance(reason := _find(name), str)]
+    """(name, how to get it) of every such back end that this machine lacks."""
+    return [(name, reason) for name in FUNCTIONS if isinstance(reason := _find(name), str)]
 
 
 @cache

@@ -22,7 +22,7 @@ def shade(
 
     Raises SssgenError where Godot refuses the shader.
     """
-    triangles = None if points is None else pixel_mesh.triangles(size)
+    triangles = None if points is None else pixel_mesh.triangles(size, shell.front)
     view = view_of(shell, size, points, triangles)
     picture = godot.draw(text, view, values_of(reflection, shell), textures_of(reflection, shell, godot.encodes))
     if reflection["alpha_mode"] == "mask":  # Forward+ leaves traces of alpha beside what is discarded

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from sssgen.harness.backends import Array, Backend, DrawingBackend
+from sssgen.harness.backends.engine_backend import GodotBackend, PageBackend
 from sssgen.harness.backends.isolated import Isolated
 from sssgen.harness.backends.metal_backend import MetalOnCpu
 from sssgen.harness.backends.numpy_reference import Reference
 from sssgen.harness.backends.unity_backend import UnityHLSL
-from sssgen.harness.render import metal_values, pixel_mesh, shade_numpy, unity_values
+from sssgen.harness.render import godot_values, metal_values, page_values, pixel_mesh, shade_numpy, unity_values
 from sssgen.harness.render.shell_values import Shell, drawing
 from sssgen.pipeline.compiler import Compiled
 
@@ -27,6 +28,11 @@ def shade(backend: Backend, compiled: Compiled, shell: Shell, size: tuple[int, i
         return unity_values.shade(compiled, shell, backend, size, points)
     if isinstance(backend, MetalOnCpu):
         return metal_values.shade(compiled, shell, backend, size, points)
+    if isinstance(backend, PageBackend):
+        return page_values.shade(compiled, shell, backend.page, size, points)
+    if isinstance(backend, GodotBackend):
+        text = compiled.files[f"{compiled.reflection['material']}.gdshader"]
+        return godot_values.shade(text, compiled.reflection, shell, backend.godot, size, points)
     assert isinstance(backend, DrawingBackend)
     triangles = None if points is None else pixel_mesh.triangles(size, shell.front)
     picture = backend.draw(drawing(compiled, shell, size, points, triangles))
