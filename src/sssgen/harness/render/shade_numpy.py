@@ -129,7 +129,8 @@ def _main(
     if "color" in entries:
         if len(shell.light_positions):
             inputs |= _light(shell, 0, inputs["P"], dtype)
-        return np.array(np.broadcast_to(call("color"), (4, lanes)))
+        shown = np.array(np.broadcast_to(call("color"), (4, lanes)))
+        return np.where(shown[3] < 0.5, 0.0, shown) if reflection["alpha_mode"] == "mask" else shown
     surface = call("surface") if "surface" in entries else None
     fields = vars(surface) if surface is not None else {}
     if "normal" in fields:
