@@ -12,7 +12,7 @@
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 BIN := .venv/bin
-NODE_PACKAGES := webgpu@0.6.2 three@0.187.0 wesl@0.7.31
+NODE_PACKAGES := webgpu@0.6.2 three@0.187.0 playcanvas@2.23.3 wesl@0.7.31
 # The index has its source only: built here once, for two minutes, and kept apart from .venv.
 BUILT_PACKAGES := compushady==0.17.5
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet

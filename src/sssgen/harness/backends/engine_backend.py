@@ -7,11 +7,12 @@ from collections.abc import Mapping, Sequence
 from sssgen.harness.backends.backend_interface import Array, Backend, Call, Text, backend_failure
 from sssgen.harness.backends.engine_page import EnginePage
 from sssgen.harness.backends.godot_drawing import Godot
+from sssgen.harness.backends.playcanvas_page import PLAYCANVAS
 from sssgen.harness.backends.three_page import THREE
 from sssgen.targets import registry
 from sssgen.targets.runtime.numpy_textures import Texture
 
-_PAGES = {engine.target: engine for engine in (THREE,)}
+_PAGES = {engine.target: engine for engine in (PLAYCANVAS, THREE)}
 """The engines of the web, by their targets."""
 
 

@@ -40,7 +40,7 @@ def shade(
         values["time"] = shell.time
     top_first = page.renderer.top_first
     textures = {texture["property"]: bound_texture(texture, shell, top_first) for texture in reflection["textures"]}
-    module = next(text for name, text in compiled.files.items() if name.endswith(".js"))
+    module = next(text for name, text in compiled.files.items() if name.endswith((".js", ".mjs")))
     return page.draw(
         EngineDrawing(
             module, size, screen_triangle(shell) if points is None else points, triangles, shell.view_projection,

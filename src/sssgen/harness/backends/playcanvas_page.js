@@ -1,0 +1,146 @@
+// PlayCanvas in a page: draws meshes with emitted modules, as plans say (engine_page.js).
+
+import * as pc from 'playcanvas';
+
+const VERSION = pc.version;
+const apps = new Map();
+
+// PlayCanvas cannot turn its clustered lighting on again: with and without it are two apps.
+async function appFor(renderer, clustered) {
+  const kind = `${renderer} ${clustered}`;
+  if (!apps.has(kind)) {
+    const canvas = document.createElement('canvas');
+    const gpu = renderer === 'webgpu';
+    const device = await pc.createGraphicsDevice(canvas, { deviceTypes: [gpu ? pc.DEVICETYPE_WEBGPU : pc.DEVICETYPE_WEBGL2], antialias: false });
+    if (device.isWebGPU !== gpu) throw new Error(`PlayCanvas chose another device: ${device.deviceType}`);
+    if (gpu) {
+      device.wgpu.addEventListener('uncapturederror', ({ error }) => console.error(error.message));
+      // without a GPU, Chromium loses the device where a canvas is shown: the frame goes into a texture
+      device.gpuContext = null;
+      device.externalBackbuffer = new pc.Texture(device, { width: 4, height: 4, format: device.backBufferFormat, mipmaps: false });
+    }
+    const options = new pc.AppOptions();
+    options.graphicsDevice = device;
+    options.componentSystems = [pc.RenderComponentSystem, pc.CameraComponentSystem, pc.LightComponentSystem];
+    const app = new pc.AppBase(canvas);
+    app.init(options);
+    app.scene.clusteredLightingEnabled = clustered;
+    invertedSquares(device);
+    apps.set(kind, app);
+  }
+  return apps.get(kind);
+}
+
+// PlayCanvas's light at the distance d is 16 / (d * d + 1) within a range. For numbers that can be compared with those of
+// other targets it is 1 / (d * d) here.
+function invertedSquares(device) {
+  pc.ShaderChunks.get(device, pc.SHADERLANGUAGE_GLSL).set('falloffInvSquaredPS', `
+float getFalloffWindow(float radius, vec3 d) { return 1.0; }
+float getFalloffInvSquared(float radius, vec3 d) { return 1.0 / max(dot(d, d), 1e-4); }
+`);
+  pc.ShaderChunks.get(device, pc.SHADERLANGUAGE_WGSL).set('falloffInvSquaredPS', `
+fn getFalloffWindow(radius: f32, d: vec3f) -> f32 { return 1.0; }
+fn getFalloffInvSquared(radius: f32, d: vec3f) -> f32 { return 1.0 / max(dot(d, d), 1e-4); }
+`);
+}
+
+async function draw(plan, piece) {
+  const { clustered = true, ...properties } = plan.properties;
+  const app = await appFor(plan.renderer, clustered);
+  const { scene, graphicsDevice: device } = app;
+  const { createMaterial } = await imported(plan.module);
+  const textures = Object.fromEntries(Object.entries(plan.textures).map(([name, one]) => [name, textureOf(device, one, piece)]));
+  const material = createMaterial(device, { ...plan.values, ...textures });
+  for (const [name, value] of Object.entries(properties)) {
+    if (material[name] instanceof pc.Color) material[name].set(value, value, value);
+    else material[name] = value;
+  }
+  scene.ambientLight = colorOf(plan.ambient.length ? plan.ambient : [0, 0, 0]);
+
+  const entity = new pc.Entity('', app);
+  const instance = new pc.MeshInstance(meshOf(device, plan, piece), material, entity);
+  instance.cull = false;
+  entity.addComponent('render', { meshInstances: [instance] });
+  placed(entity, plan.model);
+  const lights = plan.lights.map((light) => lightOf(app, light));
+  if (material.light === null && lights.length) material.light = lights[0].light;
+  material.update();
+
+  const colorBuffer = new pc.Texture(device, {
+    width: plan.width, height: plan.height, format: pc.PIXELFORMAT_RGBA32F, mipmaps: false,
+    minFilter: pc.FILTER_NEAREST, magFilter: pc.FILTER_NEAREST,
+  });
+  const renderTarget = new pc.RenderTarget({ colorBuffer, depth: true, samples: 1 });
+  const camera = cameraOf(app, plan, renderTarget);
+  const all = [entity, camera, ...lights];
+  all.forEach((one) => app.root.addChild(one));
+  app.render();
+  const pixels = await colorBuffer.read(0, 0, plan.width, plan.height, { renderTarget, immediate: true });
+  await device.wgpu?.queue.onSubmittedWorkDone();
+  all.forEach((one) => one.destroy());
+  renderTarget.destroy();
+  [colorBuffer, material, ...Object.values(textures)].forEach((one) => one.destroy());
+  return pixels;
+}
+
+const SEMANTICS = {
+  position: pc.SEMANTIC_POSITION, normal: pc.SEMANTIC_NORMAL, tangent: pc.SEMANTIC_TANGENT,
+  uv: pc.SEMANTIC_TEXCOORD0, uv2: pc.SEMANTIC_TEXCOORD1, color: pc.SEMANTIC_COLOR,
+};
+
+function meshOf(device, plan, piece) {
+  const rows = floats(piece(plan.vertices));
+  const count = rows.length / plan.vertexSize;
+  const mesh = new pc.Mesh(device);
+  for (const [name, [first, size]] of Object.entries(plan.attributes)) {
+    if (name === 'tangent' && plan.withoutTangents) continue;
+    const part = Float32Array.from({ length: count * size }, (_, i) => rows[Math.floor(i / size) * plan.vertexSize + first + i % size]);
+    mesh.setVertexStream(SEMANTICS[name], part, size);
+  }
+  mesh.setIndices(indices(piece(plan.triangles)));
+  mesh.update();
+  return mesh;
+}
+
+// PlayCanvas keeps colours encoded.
+const colorOf = (values) => new pc.Color(...values.map((value) => value ** (1 / 2.2)));
+
+function lightOf(app, { position, color }) {
+  const [x, y, z, w] = position;
+  const entity = new pc.Entity('', app);
+  entity.addComponent('light', { type: w ? 'omni' : 'directional', color: colorOf(color), intensity: 1, range: 50, falloffMode: pc.LIGHTFALLOFF_INVERSESQUARED });
+  if (w) entity.setPosition(x, y, z);
+  else entity.setRotation(new pc.Quat().setFromDirections(pc.Vec3.UP, new pc.Vec3(x, y, z).normalize()));
+  return entity;
+}
+
+// A matrix that may stretch and mirror along any axes: not one of position, rotation and scale.
+function placed(entity, matrix) {
+  entity.getLocalTransform();
+  entity.localTransform.set(matrix);
+}
+
+function cameraOf(app, plan, renderTarget) {
+  const entity = new pc.Entity('', app);
+  entity.addComponent('camera', { renderTarget, clearColor: new pc.Color(0, 0, 0, 0), toneMapping: pc.TONEMAP_NONE, gammaCorrection: pc.GAMMA_NONE, frustumCulling: false });
+  const world = new pc.Mat4().set(plan.view).invert();
+  entity.setPosition(...plan.eye);
+  const projection = new pc.Mat4().set(plan.projection);
+  // PlayCanvas takes depths from -1 to 1 on both devices
+  if (plan.renderer === 'webgpu') projection.mul2(new pc.Mat4().set([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2, 0, 0, 0, -1, 1]), projection.clone());
+  entity.camera.calculateProjection = (result) => result.copy(projection);
+  entity.camera.calculateTransform = (result) => result.copy(world);
+  return entity;
+}
+
+const WRAPS = { repeat: pc.ADDRESS_REPEAT, clamp: pc.ADDRESS_CLAMP_TO_EDGE, mirror: pc.ADDRESS_MIRRORED_REPEAT };
+
+function textureOf(device, { dim, size, levels, filter, wrap }, piece) {
+  const nearest = filter === 'nearest';
+  return new pc.Texture(device, {
+    width: size[0], height: size[1], depth: size[2] ?? 1, volume: dim === '3D', format: pc.PIXELFORMAT_RGBA16F, mipmaps: levels.length > 1,
+    numLevels: levels.length, levels: levels.map((level) => halves(piece(level.data))),
+    minFilter: nearest ? pc.FILTER_NEAREST : levels.length > 1 ? pc.FILTER_LINEAR_MIPMAP_LINEAR : pc.FILTER_LINEAR,
+    magFilter: nearest ? pc.FILTER_NEAREST : pc.FILTER_LINEAR, addressU: WRAPS[wrap], addressV: WRAPS[wrap], addressW: WRAPS[wrap],
+  });
+}

@@ -1,0 +1,19 @@
+"""PlayCanvas in a page: WebGL 2 and WebGPU."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from sssgen.harness.backends.browser_page import WEBGL, WEBGPU
+from sssgen.harness.backends.engine_page import Engine, Renderer
+
+
+def _modules(packages: Path) -> Mapping[str, Path]:
+    return {"playcanvas": packages / "playcanvas" / "build" / "playcanvas.mjs"}
+
+
+PLAYCANVAS = Engine(
+    "playcanvas", "PlayCanvas", "npm package playcanvas: make setup", _modules, "playcanvas_page.js",
+    {"webgl2": Renderer(WEBGL), "webgpu": Renderer(WEBGPU, gpu=True, top_first=True)},
+)  # fmt: skip

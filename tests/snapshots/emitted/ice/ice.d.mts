@@ -1,0 +1,195 @@
+// Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
+// that melt into it.
+// Made by sssgen for PlayCanvas. Change the material and emit it again rather than this file.
+
+import * as pc from 'playcanvas';
+
+/** What createMaterial takes, beside the properties of StandardMaterial. */
+export interface IceMaterialValues {
+  /** How much the levels of the cells differ: 0 = all are equal. Default 0.6. Range 0.0 to 1.0. */
+  variation?: number;
+  /** Number of cells along one unit of texture coordinate. Default 10.0. Range 1.0 to 200.0. */
+  cellCount?: number;
+  /** Thickness of a cell of level 1. Default 0.3. Range 0.0 to 10.0. Unit m. */
+  thicknessFactor?: number;
+  /** Width of the slope next to an edge, in cells. Default 0.35. Range 0.05 to 1.0. */
+  bevel?: number;
+  /** The length after which 1/e (37 %) of the light remains; 0 = opaque. Default 0.25. Range 0.0 to 10.0. Unit m. */
+  attenuationDistance_?: number;
+  /** Multiplies the texture. Default 0.75, 0.9, 1.0, 1.0. */
+  tint?: number[] | pc.Color | pc.Vec4;
+  /** 0 = not a metal, 1 = metal. Default 0.0. Range 0.0 to 1.0. */
+  metalness_?: number;
+  /** 0 = smooth as a mirror, 1 = rough as chalk. Default 0.12. Range 0.0 to 1.0. */
+  surfaceRoughness?: number;
+  /** Height of the thickest cells above their edges. Default 0.01. Range 0.0 to 1.0. Unit m. */
+  relief?: number;
+  /** Change of the texture coordinates per world unit along T and along B. Default 1.0, 1.0. Unit 1/m. */
+  uvPerUnit?: number[] | pc.Vec2;
+  /** Multiplies the texture. Default 1.0. Range 0.0 to 1.0. */
+  cover?: number;
+  /** Velocity of the red layer. Default 0.02, 0.0. Unit 1/s. */
+  redSpeed?: number[] | pc.Vec2;
+  /** Velocity of the green layer. Default -0.01, 0.015. Unit 1/s. */
+  greenSpeed?: number[] | pc.Vec2;
+  /** Velocity of the blue layer. Default 0.0, -0.025. Unit 1/s. */
+  blueSpeed?: number[] | pc.Vec2;
+  /** Colour of the light in the red and green layers, where both are bright. Default 0.3, 0.8, 1.0. */
+  veinColor?: number[] | pc.Color | pc.Vec3;
+  /** Colour of the light in the blue layer. Default 0.6, 0.9, 1.0. */
+  sparkColor?: number[] | pc.Color | pc.Vec3;
+  /** The length, in texture coordinates, over which slopes are measured: about one texel. Default 0.002. Range 0.0001 to 0.1. */
+  texelSize?: number;
+  /** Width of the soft edge, in the texture's values. Default 0.15. Range 0.01 to 1.0. */
+  edge?: number;
+  /** How much is eroded: 0 = nothing, 1 = everything. Default 0.2. Range 0.0 to 1.0. */
+  erosion?: number;
+  /** Height of the step in the surface at the edge. Default 0.02. Range 0.0 to 1.0. Unit m. */
+  edgeHeight?: number;
+  /** How far the normal bends the light's direction inside the body: 0 ignores the shape. Default 0.2. Range 0.0 to 1.0. */
+  distortion?: number;
+  /** Colour of the transmitted light. Default 0.55, 0.85, 1.0. */
+  subsurfaceColor?: number[] | pc.Color | pc.Vec3;
+  /** Factor on the whole result. Default 0.8. Range 0.0 to 1.0. */
+  attenuation_?: number;
+  /** Strength of the glow towards the light. Default 2.0. Range 0.0 to 20.0. */
+  scale?: number;
+  /** Glow that does not depend on the direction. Default 0.12. Range 0.0 to 1.0. */
+  ambient_?: number;
+  /** How narrow the glow around the light is: the larger, the smaller the spot. Default 6.0. Range 1.0 to 32.0. */
+  power?: number;
+  /** Colour of the surface (an sRGB texture), with its opacity in alpha. */
+  baseColorTexture?: pc.Texture | null;
+  /** Cover on the ice (snow, rock): black = bare ice, white = covered. */
+  coverTexture?: pc.Texture | null;
+  /** Three pictures in one texture: red, green and blue each hold a layer. */
+  packedTexture?: pc.Texture | null;
+  /** Mask of the erosion: dark parts disappear first. */
+  erosionTexture?: pc.Texture | null;
+  /** In seconds; null: the page's clock. */
+  time?: number | null;
+  /** Whether the reflected light is that of the targets without an engine. */
+  ownLight?: boolean;
+}
+
+export interface Parameter {
+  type: string;
+  default: number | number[];
+  range?: number[];
+  unit?: string;
+  name: string;
+}
+
+export interface TextureParameter {
+  type: string;
+  default: 'white' | 'black' | 'gray' | 'bump';
+  colorSpace: 'srgb' | 'linear';
+  name: string;
+}
+
+export const parameters: Record<"variation" | "cellCount" | "thicknessFactor" | "bevel" | "attenuationDistance_" | "tint" | "metalness_" | "surfaceRoughness" | "relief" | "uvPerUnit" | "cover" | "redSpeed" | "greenSpeed" | "blueSpeed" | "veinColor" | "sparkColor" | "texelSize" | "edge" | "erosion" | "edgeHeight" | "distortion" | "subsurfaceColor" | "attenuation_" | "scale" | "ambient_" | "power", Parameter>;
+export const textures: Record<"baseColorTexture" | "coverTexture" | "packedTexture" | "erosionTexture", TextureParameter>;
+
+/** Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes that melt into it. */
+export class IceMaterial extends pc.StandardMaterial {
+  constructor(device: pc.GraphicsDevice, values?: IceMaterialValues & Partial<pc.StandardMaterial>);
+  /** How much the levels of the cells differ: 0 = all are equal. Default 0.6. Range 0.0 to 1.0. */
+  get variation(): number;
+  set variation(value: number);
+  /** Number of cells along one unit of texture coordinate. Default 10.0. Range 1.0 to 200.0. */
+  get cellCount(): number;
+  set cellCount(value: number);
+  /** Thickness of a cell of level 1. Default 0.3. Range 0.0 to 10.0. Unit m. */
+  get thicknessFactor(): number;
+  set thicknessFactor(value: number);
+  /** Width of the slope next to an edge, in cells. Default 0.35. Range 0.05 to 1.0. */
+  get bevel(): number;
+  set bevel(value: number);
+  /** The length after which 1/e (37 %) of the light remains; 0 = opaque. Default 0.25. Range 0.0 to 10.0. Unit m. */
+  get attenuationDistance_(): number;
+  set attenuationDistance_(value: number);
+  /** Multiplies the texture. Default 0.75, 0.9, 1.0, 1.0. */
+  get tint(): number[];
+  set tint(value: number[] | pc.Color | pc.Vec4);
+  /** 0 = not a metal, 1 = metal. Default 0.0. Range 0.0 to 1.0. */
+  get metalness_(): number;
+  set metalness_(value: number);
+  /** 0 = smooth as a mirror, 1 = rough as chalk. Default 0.12. Range 0.0 to 1.0. */
+  get surfaceRoughness(): number;
+  set surfaceRoughness(value: number);
+  /** Height of the thickest cells above their edges. Default 0.01. Range 0.0 to 1.0. Unit m. */
+  get relief(): number;
+  set relief(value: number);
+  /** Change of the texture coordinates per world unit along T and along B. Default 1.0, 1.0. Unit 1/m. */
+  get uvPerUnit(): number[];
+  set uvPerUnit(value: number[] | pc.Vec2);
+  /** Multiplies the texture. Default 1.0. Range 0.0 to 1.0. */
+  get cover(): number;
+  set cover(value: number);
+  /** Velocity of the red layer. Default 0.02, 0.0. Unit 1/s. */
+  get redSpeed(): number[];
+  set redSpeed(value: number[] | pc.Vec2);
+  /** Velocity of the green layer. Default -0.01, 0.015. Unit 1/s. */
+  get greenSpeed(): number[];
+  set greenSpeed(value: number[] | pc.Vec2);
+  /** Velocity of the blue layer. Default 0.0, -0.025. Unit 1/s. */
+  get blueSpeed(): number[];
+  set blueSpeed(value: number[] | pc.Vec2);
+  /** Colour of the light in the red and green layers, where both are bright. Default 0.3, 0.8, 1.0. */
+  get veinColor(): number[];
+  set veinColor(value: number[] | pc.Color | pc.Vec3);
+  /** Colour of the light in the blue layer. Default 0.6, 0.9, 1.0. */
+  get sparkColor(): number[];
+  set sparkColor(value: number[] | pc.Color | pc.Vec3);
+  /** The length, in texture coordinates, over which slopes are measured: about one texel. Default 0.002. Range 0.0001 to 0.1. */
+  get texelSize(): number;
+  set texelSize(value: number);
+  /** Width of the soft edge, in the texture's values. Default 0.15. Range 0.01 to 1.0. */
+  get edge(): number;
+  set edge(value: number);
+  /** How much is eroded: 0 = nothing, 1 = everything. Default 0.2. Range 0.0 to 1.0. */
+  get erosion(): number;
+  set erosion(value: number);
+  /** Height of the step in the surface at the edge. Default 0.02. Range 0.0 to 1.0. Unit m. */
+  get edgeHeight(): number;
+  set edgeHeight(value: number);
+  /** How far the normal bends the light's direction inside the body: 0 ignores the shape. Default 0.2. Range 0.0 to 1.0. */
+  get distortion(): number;
+  set distortion(value: number);
+  /** Colour of the transmitted light. Default 0.55, 0.85, 1.0. */
+  get subsurfaceColor(): number[];
+  set subsurfaceColor(value: number[] | pc.Color | pc.Vec3);
+  /** Factor on the whole result. Default 0.8. Range 0.0 to 1.0. */
+  get attenuation_(): number;
+  set attenuation_(value: number);
+  /** Strength of the glow towards the light. Default 2.0. Range 0.0 to 20.0. */
+  get scale(): number;
+  set scale(value: number);
+  /** Glow that does not depend on the direction. Default 0.12. Range 0.0 to 1.0. */
+  get ambient_(): number;
+  set ambient_(value: number);
+  /** How narrow the glow around the light is: the larger, the smaller the spot. Default 6.0. Range 1.0 to 32.0. */
+  get power(): number;
+  set power(value: number);
+  /** Colour of the surface (an sRGB texture), with its opacity in alpha. */
+  get baseColorTexture(): pc.Texture;
+  set baseColorTexture(value: pc.Texture | null);
+  /** Cover on the ice (snow, rock): black = bare ice, white = covered. */
+  get coverTexture(): pc.Texture;
+  set coverTexture(value: pc.Texture | null);
+  /** Three pictures in one texture: red, green and blue each hold a layer. */
+  get packedTexture(): pc.Texture;
+  set packedTexture(value: pc.Texture | null);
+  /** Mask of the erosion: dark parts disappear first. */
+  get erosionTexture(): pc.Texture;
+  set erosionTexture(value: pc.Texture | null);
+  /** In seconds; null: the page's clock. */
+  time: number | null;
+  /** Whether the reflected light is that of the targets without an engine. */
+  ownLight: boolean;
+  /** Sets many properties: those of the material, and those of StandardMaterial. */
+  set(values: IceMaterialValues & Partial<pc.StandardMaterial>): this;
+}
+
+/** The material, for WebGL 2 and WebGPU. */
+export function createMaterial(device: pc.GraphicsDevice, values?: IceMaterialValues & Partial<pc.StandardMaterial>): IceMaterial;

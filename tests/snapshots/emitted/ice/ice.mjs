@@ -1,0 +1,1117 @@
+// Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
+// that melt into it.
+// Made by sssgen for PlayCanvas. Change the material and emit it again rather than this file.
+//
+//   import { createMaterial } from './ice.mjs';
+//   entity.render.material = createMaterial(app.graphicsDevice, { variation: 0.6 });
+//
+// A StandardMaterial for WebGL 2 and WebGPU.
+// Lights, shadows, fog and the environment are PlayCanvas's.
+
+import * as pc from 'playcanvas';
+
+/** The parameters: type, default, range, unit, and the name in the shader. */
+export const parameters = {
+  /** How much the levels of the cells differ: 0 = all are equal. */
+  variation: { type: 'float', default: 0.6, range: [0.0, 1.0], unit: '1', name: 'sss_variation' },
+  /** Number of cells along one unit of texture coordinate. */
+  cellCount: { type: 'float', default: 10.0, range: [1.0, 200.0], unit: '1', name: 'sss_cell_count' },
+  /** Thickness of a cell of level 1. */
+  thicknessFactor: { type: 'float', default: 0.3, range: [0.0, 10.0], unit: 'm', name: 'sss_thickness_factor' },
+  /** Width of the slope next to an edge, in cells. */
+  bevel: { type: 'float', default: 0.35, range: [0.05, 1.0], unit: '1', name: 'sss_bevel' },
+  /** The length after which 1/e (37 %) of the light remains; 0 = opaque. */
+  attenuationDistance_: { type: 'float', default: 0.25, range: [0.0, 10.0], unit: 'm', name: 'sss_attenuation_distance' },
+  /** Multiplies the texture. */
+  tint: { type: 'vec4', default: [0.75, 0.9, 1.0, 1.0], name: 'sss_tint' },
+  /** 0 = not a metal, 1 = metal. */
+  metalness_: { type: 'float', default: 0.0, range: [0.0, 1.0], unit: '1', name: 'sss_metalness' },
+  /** 0 = smooth as a mirror, 1 = rough as chalk. */
+  surfaceRoughness: { type: 'float', default: 0.12, range: [0.0, 1.0], unit: '1', name: 'sss_surface_roughness' },
+  /** Height of the thickest cells above their edges. */
+  relief: { type: 'float', default: 0.01, range: [0.0, 1.0], unit: 'm', name: 'sss_relief' },
+  /** Change of the texture coordinates per world unit along T and along B. */
+  uvPerUnit: { type: 'vec2', default: [1.0, 1.0], unit: '1/m', name: 'sss_uv_per_unit' },
+  /** Multiplies the texture. */
+  cover: { type: 'float', default: 1.0, range: [0.0, 1.0], unit: '1', name: 'sss_cover' },
+  /** Velocity of the red layer. */
+  redSpeed: { type: 'vec2', default: [0.02, 0.0], unit: '1/s', name: 'sss_red_speed' },
+  /** Velocity of the green layer. */
+  greenSpeed: { type: 'vec2', default: [-0.01, 0.015], unit: '1/s', name: 'sss_green_speed' },
+  /** Velocity of the blue layer. */
+  blueSpeed: { type: 'vec2', default: [0.0, -0.025], unit: '1/s', name: 'sss_blue_speed' },
+  /** Colour of the light in the red and green layers, where both are bright. */
+  veinColor: { type: 'vec3', default: [0.3, 0.8, 1.0], name: 'sss_vein_color' },
+  /** Colour of the light in the blue layer. */
+  sparkColor: { type: 'vec3', default: [0.6, 0.9, 1.0], name: 'sss_spark_color' },
+  /** The length, in texture coordinates, over which slopes are measured: about one texel. */
+  texelSize: { type: 'float', default: 0.002, range: [0.0001, 0.1], unit: '1', name: 'sss_texel_size' },
+  /** Width of the soft edge, in the texture's values. */
+  edge: { type: 'float', default: 0.15, range: [0.01, 1.0], unit: '1', name: 'sss_edge' },
+  /** How much is eroded: 0 = nothing, 1 = everything. */
+  erosion: { type: 'float', default: 0.2, range: [0.0, 1.0], unit: '1', name: 'sss_erosion' },
+  /** Height of the step in the surface at the edge. */
+  edgeHeight: { type: 'float', default: 0.02, range: [0.0, 1.0], unit: 'm', name: 'sss_edge_height' },
+  /** How far the normal bends the light's direction inside the body: 0 ignores the shape. */
+  distortion: { type: 'float', default: 0.2, range: [0.0, 1.0], unit: '1', name: 'sss_distortion' },
+  /** Colour of the transmitted light. */
+  subsurfaceColor: { type: 'vec3', default: [0.55, 0.85, 1.0], name: 'sss_subsurface_color' },
+  /** Factor on the whole result. */
+  attenuation_: { type: 'float', default: 0.8, range: [0.0, 1.0], unit: '1', name: 'sss_attenuation' },
+  /** Strength of the glow towards the light. */
+  scale: { type: 'float', default: 2.0, range: [0.0, 20.0], unit: '1', name: 'sss_scale' },
+  /** Glow that does not depend on the direction. */
+  ambient_: { type: 'float', default: 0.12, range: [0.0, 1.0], unit: '1', name: 'sss_ambient' },
+  /** How narrow the glow around the light is: the larger, the smaller the spot. */
+  power: { type: 'float', default: 6.0, range: [1.0, 32.0], unit: '1', name: 'sss_power' },
+};
+
+/** The textures: type, the one texel of the default, colour space, and the name in the shader. */
+export const textures = {
+  /** Colour of the surface (an sRGB texture), with its opacity in alpha. */
+  baseColorTexture: { type: 'sampler2D', default: 'white', colorSpace: 'srgb', name: 'sss_base_color_texture' },
+  /** Cover on the ice (snow, rock): black = bare ice, white = covered. */
+  coverTexture: { type: 'sampler2D', default: 'black', colorSpace: 'linear', name: 'sss_cover_texture' },
+  /** Three pictures in one texture: red, green and blue each hold a layer. */
+  packedTexture: { type: 'sampler2D', default: 'black', colorSpace: 'linear', name: 'sss_packed_texture' },
+  /** Mask of the erosion: dark parts disappear first. */
+  erosionTexture: { type: 'sampler2D', default: 'white', colorSpace: 'linear', name: 'sss_erosion_texture' },
+};
+
+const GLSL = /* glsl */ `
+struct sss_Cell {
+    vec2 nearest;
+    vec2 second;
+    float level;
+};
+
+struct sss_Surface {
+    vec3 albedo;
+    float alpha;
+    vec3 normal;
+    float metallic;
+    float roughness;
+    vec3 emission;
+    float transmittance;
+};
+
+const float sss_JITTER = 0.6;
+const float sss_OPAQUE_DISTANCE = 1.0e-6;
+const float sss_ENDLESS = 10000.0;
+const float sss_OPAQUE_DEPTH = 80.0;
+
+// The direction of \`x\`; of a zero vector, 0.
+vec2 sss_safe_normalize(vec2 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
+
+// The direction of \`x\`; of a zero vector, 0.
+vec3 sss_safe_normalize(vec3 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
+
+// Scrambles the bits of \`x\`; 0 stays 0.
+uint sss_hash_bits(uint x) {
+    x = (x ^ (x >> 16u)) * 0x7feb352du;
+    x = (x ^ (x >> 15u)) * 0x846ca68bu;
+    return x ^ (x >> 16u);
+}
+
+// A number in [0, 1) from 24 bits of the hash of \`x\`.
+float sss_hash_unit(uint x) {
+    return float(sss_hash_bits(x) >> 8u) * 5.9604645e-8;
+}
+
+// The cell at \`p\`.
+sss_Cell sss_cell_at(vec2 p, float variation) {
+    vec2 nearest = vec2(4.0);
+    vec2 second = vec2(4.0);
+    // their squared lengths
+    float first_square = 32.0;
+    float second_square = 32.0;
+    uint owner = 0u;
+    // relative to the cell's corner, so that precision does not depend on the distance from the origin
+    vec2 home = floor(p);
+    vec2 within = p - home;
+    for (int j = -1; j <= 1; j++) {
+        for (int i = -1; i <= 1; i++) {
+            vec2 offset = vec2(float(i), float(j));
+            vec2 corner = home + offset;
+            uint seed = sss_hash_bits(uint(int(corner.x)) + sss_hash_bits(uint(int(corner.y)) + 1u));
+            vec2 shift = vec2(sss_hash_unit(seed + 1u), sss_hash_unit(seed + 2u)) - 0.5;
+            vec2 to_site = offset + 0.5 + sss_JITTER * shift - within;
+            float square = dot(to_site, to_site);
+            if (square < first_square) {
+                second = nearest;
+                second_square = first_square;
+                nearest = to_site;
+                first_square = square;
+                owner = seed;
+            } else if (square < second_square) {
+                second = to_site;
+                second_square = square;
+            }
+        }
+    }
+    float level = 1.0 - variation * sss_hash_unit(owner + 3u);
+    return sss_Cell(nearest, second, level);
+}
+
+// How much farther the second nearest site is than the nearest one: 0 on the edges.
+float sss_to_edge(sss_Cell cell) {
+    return length(cell.second) - length(cell.nearest);
+}
+
+// Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
+float sss_voronoi_thickness(vec2 uv, float variation, float cell_count, float thickness_factor, float bevel) {
+    sss_Cell cell = sss_cell_at(uv * cell_count, variation);
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, sss_to_edge(cell));
+}
+
+// The thickness \`d\` in mean free paths, 0 or more.
+float sss_optical_depth(float d, float mean_free_path) {
+    float path = max(mean_free_path, sss_OPAQUE_DISTANCE);
+    return clamp(d, 0.0, sss_ENDLESS * path) / path;
+}
+
+// Thickness to transmittance: the part of the light that absorption leaves.
+float sss_beer_lambert(float d, float attenuation_distance) {
+    return exp(-min(sss_optical_depth(d, attenuation_distance), sss_OPAQUE_DEPTH));
+}
+
+// Colour and opacity from a texture and a tint.
+void sss_base_color(vec2 uv, out vec3 albedo, out float alpha, vec4 tint, sampler2D base_color_texture) {
+    vec4 texel = tint * texture(base_color_texture, uv);
+    albedo = texel.xyz;
+    alpha = texel.w;
+}
+
+// The same metalness and roughness everywhere.
+void sss_pbr_constants(out float metallic, out float roughness, float metalness, float surface_roughness) {
+    metallic = metalness;
+    roughness = surface_roughness;
+}
+
+// The gradient of to_edge.
+vec2 sss_from_edge(sss_Cell cell) {
+    // the nearest site may be exactly here, the second one cannot: they are at least 0.4 apart
+    return sss_safe_normalize(cell.nearest) - normalize(cell.second);
+}
+
+// Adds \`detail\` to \`base\`: x and y are added, z is multiplied; for small slopes this adds the slopes.
+vec3 sss_blend_normals(vec3 base, vec3 detail) {
+    return sss_safe_normalize(vec3(base.xy + detail.xy, base.z * detail.z));
+}
+
+// The normal of a height field; \`slope\` is the increase in height per unit of length along T and B.
+vec3 sss_normal_of_slope(vec2 slope) {
+    return normalize(vec3(-slope, 1.0));
+}
+
+// The normal of the Voronoi cells, so that reflected light agrees with transmitted light.
+void sss_voronoi_normal(vec2 uv, inout vec3 normal, float variation, float cell_count, float bevel,
+    float relief, vec2 uv_per_unit) {
+    sss_Cell cell = sss_cell_at(uv * cell_count, variation);
+    float x = clamp(sss_to_edge(cell) / bevel, 0.0, 1.0);
+    // the derivative of the smoothstep
+    float steepness = cell.level * 6.0 * x * (1.0 - x) / bevel;
+    vec2 slope = relief * uv_per_unit * cell_count * steepness * sss_from_edge(cell);
+    normal = sss_blend_normals(normal, sss_normal_of_slope(slope));
+}
+
+// Only the bare ice transmits light.
+void sss_ice_mask(vec2 uv, inout float through, float cover, sampler2D cover_texture) {
+    float covered = cover * texture(cover_texture, uv).r;
+    through = through * smoothstep(0.0, 0.1, 1.0 - covered);
+}
+
+// One moving layer; the offset stays below 1, so that precision does not decrease with time.
+vec4 sss_layer(vec2 uv, vec2 speed, float time, sampler2D packed_texture) {
+    return texture(packed_texture, uv + fract(speed * time));
+}
+
+// Moving light below the surface, from the channels of one texture, each of which scrolls separately.
+void sss_packed_scroll(vec2 uv, float time, inout vec3 emission, sampler2D packed_texture, vec2 red_speed,
+    vec2 green_speed, vec2 blue_speed, vec3 vein_color, vec3 spark_color) {
+    float veins = sss_layer(uv, red_speed, time, packed_texture).x
+        * sss_layer(uv, green_speed, time, packed_texture).y;
+    float sparks = sss_layer(uv, blue_speed, time, packed_texture).z;
+    emission = min(emission + (vein_color * veins + spark_color * sparks), 65504.0);
+}
+
+// The part of the surface that remains at \`uv\`: 1 = all, 0 = none.
+float sss_left_at(vec2 uv, float edge, float erosion, sampler2D erosion_texture) {
+    // the threshold goes from below black to white, so that erosion 0 keeps and erosion 1 removes everything
+    float threshold = mix(-edge, 1.0, erosion);
+    return clamp((texture(erosion_texture, uv).r - threshold) / edge, 0.0, 1.0);
+}
+
+// Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
+void sss_alpha_erosion(vec2 uv, inout float alpha, inout vec3 normal, vec2 uv_per_unit, float texel_size,
+    float edge, float erosion, sampler2D erosion_texture, float edge_height) {
+    vec2 e = vec2(texel_size, 0.0);
+    vec2 at = uv;
+    float across = sss_left_at(at + e, edge, erosion, erosion_texture)
+        - sss_left_at(at - e, edge, erosion, erosion_texture);
+    float up = sss_left_at(at + e.yx, edge, erosion, erosion_texture)
+        - sss_left_at(at - e.yx, edge, erosion, erosion_texture);
+    vec2 slope = edge_height * uv_per_unit * vec2(across, up) / (2.0 * texel_size);
+    normal = sss_blend_normals(normal, sss_normal_of_slope(slope));
+    alpha *= sss_left_at(at, edge, erosion, erosion_texture);
+}
+
+// The transmitted light for a lobe value of 0..1 and a transmittance.
+vec3 sss_glow(float lobe, float through, vec3 subsurface_color, float attenuation, float scale,
+    float ambient) {
+    return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
+}
+
+// The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
+vec3 sss_lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion, vec3 subsurface_color,
+    float attenuation, float scale, float ambient, float power) {
+    vec3 bent = sss_safe_normalize(L + N * distortion);
+    return sss_glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, attenuation,
+        scale, ambient);
+}
+
+// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one light.
+vec3 sss_standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
+    vec3 H = sss_safe_normalize(V + L);
+    float NoL = max(dot(N, L), 0.0);
+    float NoV = max(dot(N, V), 0.0001);
+    float NoH = clamp(dot(N, H), 0.0, 1.0);
+    float a = max(roughness, 0.045) * max(roughness, 0.045);
+    // (a^2 - 1) dot(N, H)^2 + 1, but accurate at the peak, where N and H nearly coincide; never below a^2
+    vec3 across = cross(N, H);
+    float spread = NoH > 0.0 ? max(dot(across, across) + NoH * NoH * (a * a), a * a) : 1.0;
+    // D times pi
+    float facets = a * a / (spread * spread);
+    // masking and shadowing, divided by 4 dot(N, L) dot(N, V)
+    float visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
+    // a surface reflects at most all light
+    vec3 F0 = mix(vec3(0.04), min(albedo, 1.0), metallic);
+    vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
+    vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
+    return (diffuse + facets * visible * F) * NoL * light_color;
+}
+
+// The values of the surface that do not depend on a light.
+sss_Surface sss_evaluate_surface(vec2 uv, float time, float variation, float cell_count,
+    float thickness_factor, float bevel, float attenuation_distance, vec4 tint, sampler2D base_color_texture,
+    float metalness, float surface_roughness, float relief, vec2 uv_per_unit, float cover,
+    sampler2D cover_texture, sampler2D packed_texture, vec2 red_speed, vec2 green_speed, vec2 blue_speed,
+    vec3 vein_color, vec3 spark_color, float texel_size, float edge, float erosion,
+    sampler2D erosion_texture, float edge_height) {
+    float thickness = sss_voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
+    float transmittance = sss_beer_lambert(thickness, attenuation_distance);
+    vec3 albedo;
+    float alpha;
+    sss_base_color(uv, albedo, alpha, tint, base_color_texture);
+    float metallic;
+    float roughness;
+    sss_pbr_constants(metallic, roughness, metalness, surface_roughness);
+    vec3 normal = vec3(0.0, 0.0, 1.0);
+    sss_voronoi_normal(uv, normal, variation, cell_count, bevel, relief, uv_per_unit);
+    sss_ice_mask(uv, transmittance, cover, cover_texture);
+    vec3 emission = vec3(0.0);
+    sss_packed_scroll(uv, time, emission, packed_texture, red_speed, green_speed, blue_speed, vein_color,
+        spark_color);
+    sss_alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
+        edge_height);
+    return sss_Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
+}
+
+// The transmitted light of one light, as a factor on its colour.
+vec3 sss_evaluate_translucency(sss_Surface surface, vec3 V, vec3 N, vec3 L, float distortion,
+    vec3 subsurface_color, float attenuation, float scale, float ambient, float power) {
+    return sss_lobe_normalized(V, N, L, surface.transmittance, distortion, subsurface_color, attenuation,
+        scale, ambient, power);
+}
+
+// The reflected light of one light.
+vec3 sss_evaluate_lighting(sss_Surface surface, vec3 N, vec3 V, vec3 L, vec3 light_color) {
+    return sss_standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color);
+}
+`;
+
+const WGSL = /* wgsl */ `
+struct sss_Cell {
+    nearest: vec2f,
+    second: vec2f,
+    level: f32,
+}
+
+struct sss_Surface {
+    albedo: vec3f,
+    alpha: f32,
+    normal: vec3f,
+    metallic: f32,
+    roughness: f32,
+    emission: vec3f,
+    transmittance: f32,
+}
+
+const sss_JITTER: f32 = 0.6;
+const sss_OPAQUE_DISTANCE: f32 = 1.0e-6;
+const sss_ENDLESS: f32 = 10000.0;
+const sss_OPAQUE_DEPTH: f32 = 80.0;
+
+// The direction of \`x\`; of a zero vector, 0.
+fn sss_safe_normalize_vec2(x: vec2f) -> vec2f {
+    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+}
+
+// The direction of \`x\`; of a zero vector, 0.
+fn sss_safe_normalize_vec3(x: vec3f) -> vec3f {
+    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+}
+
+// Scrambles the bits of \`x\`; 0 stays 0.
+fn sss_hash_bits(x_in: u32) -> u32 {
+    var x = x_in;
+    x = (x ^ (x >> 16u)) * 0x7feb352du;
+    x = (x ^ (x >> 15u)) * 0x846ca68bu;
+    return x ^ (x >> 16u);
+}
+
+// A number in [0, 1) from 24 bits of the hash of \`x\`.
+fn sss_hash_unit(x: u32) -> f32 {
+    return f32(sss_hash_bits(x) >> 8u) * 5.9604645e-8;
+}
+
+// The cell at \`p\`.
+fn sss_cell_at(p: vec2f, variation: f32) -> sss_Cell {
+    var nearest = vec2f(4.0);
+    var second = vec2f(4.0);
+    // their squared lengths
+    var first_square = 32.0;
+    var second_square = 32.0;
+    var owner = 0u;
+    // relative to the cell's corner, so that precision does not depend on the distance from the origin
+    let home = floor(p);
+    let within = p - home;
+    for (var j = -1; j <= 1; j++) {
+        for (var i = -1; i <= 1; i++) {
+            let offset = vec2f(f32(i), f32(j));
+            let corner = home + offset;
+            let seed = sss_hash_bits(u32(i32(corner.x)) + sss_hash_bits(u32(i32(corner.y)) + 1u));
+            let shift = vec2f(sss_hash_unit(seed + 1u), sss_hash_unit(seed + 2u)) - 0.5;
+            let to_site = offset + 0.5 + sss_JITTER * shift - within;
+            let square = dot(to_site, to_site);
+            if (square < first_square) {
+                second = nearest;
+                second_square = first_square;
+                nearest = to_site;
+                first_square = square;
+                owner = seed;
+            } else if (square < second_square) {
+                second = to_site;
+                second_square = square;
+            }
+        }
+    }
+    let level = 1.0 - variation * sss_hash_unit(owner + 3u);
+    return sss_Cell(nearest, second, level);
+}
+
+// How much farther the second nearest site is than the nearest one: 0 on the edges.
+fn sss_to_edge(cell: sss_Cell) -> f32 {
+    return length(cell.second) - length(cell.nearest);
+}
+
+// Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
+fn sss_voronoi_thickness(uv: vec2f, variation: f32, cell_count: f32, thickness_factor: f32,
+    bevel: f32) -> f32 {
+    let cell = sss_cell_at(uv * cell_count, variation);
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, sss_to_edge(cell));
+}
+
+// The thickness \`d\` in mean free paths, 0 or more.
+fn sss_optical_depth(d: f32, mean_free_path: f32) -> f32 {
+    let path = max(mean_free_path, sss_OPAQUE_DISTANCE);
+    return clamp(d, 0.0, sss_ENDLESS * path) / path;
+}
+
+// Thickness to transmittance: the part of the light that absorption leaves.
+fn sss_beer_lambert(d: f32, attenuation_distance: f32) -> f32 {
+    return exp(-min(sss_optical_depth(d, attenuation_distance), sss_OPAQUE_DEPTH));
+}
+
+// Colour and opacity from a texture and a tint.
+fn sss_base_color(uv: vec2f, albedo: ptr<function, vec3f>, alpha: ptr<function, f32>, tint: vec4f,
+    base_color_texture: texture_2d<f32>, base_color_texture_sampler: sampler) {
+    let texel = tint * textureSample(base_color_texture, base_color_texture_sampler, uv);
+    *albedo = texel.xyz;
+    *alpha = texel.w;
+}
+
+// The same metalness and roughness everywhere.
+fn sss_pbr_constants(metallic: ptr<function, f32>, roughness: ptr<function, f32>, metalness: f32,
+    surface_roughness: f32) {
+    *metallic = metalness;
+    *roughness = surface_roughness;
+}
+
+// The gradient of to_edge.
+fn sss_from_edge(cell: sss_Cell) -> vec2f {
+    // the nearest site may be exactly here, the second one cannot: they are at least 0.4 apart
+    return sss_safe_normalize_vec2(cell.nearest) - normalize(cell.second);
+}
+
+// Adds \`detail\` to \`base\`: x and y are added, z is multiplied; for small slopes this adds the slopes.
+fn sss_blend_normals(base: vec3f, detail: vec3f) -> vec3f {
+    return sss_safe_normalize_vec3(vec3f(base.xy + detail.xy, base.z * detail.z));
+}
+
+// The normal of a height field; \`slope\` is the increase in height per unit of length along T and B.
+fn sss_normal_of_slope(slope: vec2f) -> vec3f {
+    return normalize(vec3f(-slope, 1.0));
+}
+
+// The normal of the Voronoi cells, so that reflected light agrees with transmitted light.
+fn sss_voronoi_normal(uv: vec2f, normal: ptr<function, vec3f>, variation: f32, cell_count: f32, bevel: f32,
+    relief: f32, uv_per_unit: vec2f) {
+    let cell = sss_cell_at(uv * cell_count, variation);
+    let x = clamp(sss_to_edge(cell) / bevel, 0.0, 1.0);
+    // the derivative of the smoothstep
+    let steepness = cell.level * 6.0 * x * (1.0 - x) / bevel;
+    let slope = relief * uv_per_unit * cell_count * steepness * sss_from_edge(cell);
+    *normal = sss_blend_normals(*normal, sss_normal_of_slope(slope));
+}
+
+// Only the bare ice transmits light.
+fn sss_ice_mask(uv: vec2f, through: ptr<function, f32>, cover: f32, cover_texture: texture_2d<f32>,
+    cover_texture_sampler: sampler) {
+    let covered = cover * textureSample(cover_texture, cover_texture_sampler, uv).r;
+    *through = *through * smoothstep(0.0, 0.1, 1.0 - covered);
+}
+
+// One moving layer; the offset stays below 1, so that precision does not decrease with time.
+fn sss_layer(uv: vec2f, speed: vec2f, time: f32, packed_texture: texture_2d<f32>,
+    packed_texture_sampler: sampler) -> vec4f {
+    return textureSample(packed_texture, packed_texture_sampler, uv + fract(speed * time));
+}
+
+// Moving light below the surface, from the channels of one texture, each of which scrolls separately.
+fn sss_packed_scroll(uv: vec2f, time: f32, emission: ptr<function, vec3f>, packed_texture: texture_2d<f32>,
+    packed_texture_sampler: sampler, red_speed: vec2f, green_speed: vec2f, blue_speed: vec2f,
+    vein_color: vec3f, spark_color: vec3f) {
+    let veins = sss_layer(uv, red_speed, time, packed_texture, packed_texture_sampler).x
+        * sss_layer(uv, green_speed, time, packed_texture, packed_texture_sampler).y;
+    let sparks = sss_layer(uv, blue_speed, time, packed_texture, packed_texture_sampler).z;
+    *emission = min(*emission + (vein_color * veins + spark_color * sparks), vec3f(65504.0));
+}
+
+// The part of the surface that remains at \`uv\`: 1 = all, 0 = none.
+fn sss_left_at(uv: vec2f, edge: f32, erosion: f32, erosion_texture: texture_2d<f32>,
+    erosion_texture_sampler: sampler) -> f32 {
+    // the threshold goes from below black to white, so that erosion 0 keeps and erosion 1 removes everything
+    let threshold = mix(-edge, 1.0, erosion);
+    return clamp((textureSample(erosion_texture, erosion_texture_sampler, uv).r - threshold) / edge, 0.0,
+        1.0);
+}
+
+// Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
+fn sss_alpha_erosion(uv: vec2f, alpha: ptr<function, f32>, normal: ptr<function, vec3f>, uv_per_unit: vec2f,
+    texel_size: f32, edge: f32, erosion: f32, erosion_texture: texture_2d<f32>,
+    erosion_texture_sampler: sampler, edge_height: f32) {
+    let e = vec2f(texel_size, 0.0);
+    let at = uv;
+    let across = sss_left_at(at + e, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - sss_left_at(at - e, edge, erosion, erosion_texture, erosion_texture_sampler);
+    let up = sss_left_at(at + e.yx, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - sss_left_at(at - e.yx, edge, erosion, erosion_texture, erosion_texture_sampler);
+    let slope = edge_height * uv_per_unit * vec2f(across, up) / (2.0 * texel_size);
+    *normal = sss_blend_normals(*normal, sss_normal_of_slope(slope));
+    *alpha *= sss_left_at(at, edge, erosion, erosion_texture, erosion_texture_sampler);
+}
+
+// The transmitted light for a lobe value of 0..1 and a transmittance.
+fn sss_glow(lobe: f32, through: f32, subsurface_color: vec3f, attenuation: f32, scale: f32,
+    ambient: f32) -> vec3f {
+    return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
+}
+
+// The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
+fn sss_lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32, distortion: f32, subsurface_color: vec3f,
+    attenuation: f32, scale: f32, ambient: f32, power: f32) -> vec3f {
+    let bent = sss_safe_normalize_vec3(L + N * distortion);
+    return sss_glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, attenuation,
+        scale, ambient);
+}
+
+// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one light.
+fn sss_standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
+    light_color: vec3f) -> vec3f {
+    let H = sss_safe_normalize_vec3(V + L);
+    let NoL = max(dot(N, L), 0.0);
+    let NoV = max(dot(N, V), 0.0001);
+    let NoH = clamp(dot(N, H), 0.0, 1.0);
+    let a = max(roughness, 0.045) * max(roughness, 0.045);
+    // (a^2 - 1) dot(N, H)^2 + 1, but accurate at the peak, where N and H nearly coincide; never below a^2
+    let across = cross(N, H);
+    let spread = select(1.0, max(dot(across, across) + NoH * NoH * (a * a), a * a), NoH > 0.0);
+    // D times pi
+    let facets = a * a / (spread * spread);
+    // masking and shadowing, divided by 4 dot(N, L) dot(N, V)
+    let visible = 0.5 / (2.0 * NoL * NoV * (1.0 - a) + (NoL + NoV) * a);
+    // a surface reflects at most all light
+    let F0 = mix(vec3f(0.04), min(albedo, vec3f(1.0)), metallic);
+    let F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
+    let diffuse = albedo * (1.0 - metallic) * (1.0 - F);
+    return (diffuse + facets * visible * F) * NoL * light_color;
+}
+
+// The values of the surface that do not depend on a light.
+fn sss_evaluate_surface(uv: vec2f, time: f32, variation: f32, cell_count: f32, thickness_factor: f32,
+    bevel: f32, attenuation_distance: f32, tint: vec4f, base_color_texture: texture_2d<f32>,
+    base_color_texture_sampler: sampler, metalness: f32, surface_roughness: f32, relief: f32,
+    uv_per_unit: vec2f, cover: f32, cover_texture: texture_2d<f32>, cover_texture_sampler: sampler,
+    packed_texture: texture_2d<f32>, packed_texture_sampler: sampler, red_speed: vec2f, green_speed: vec2f,
+    blue_speed: vec2f, vein_color: vec3f, spark_color: vec3f, texel_size: f32, edge: f32, erosion: f32,
+    erosion_texture: texture_2d<f32>, erosion_texture_sampler: sampler, edge_height: f32) -> sss_Surface {
+    let thickness = sss_voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
+    var transmittance = sss_beer_lambert(thickness, attenuation_distance);
+    var albedo: vec3f;
+    var alpha: f32;
+    sss_base_color(uv, &albedo, &alpha, tint, base_color_texture, base_color_texture_sampler);
+    var metallic: f32;
+    var roughness: f32;
+    sss_pbr_constants(&metallic, &roughness, metalness, surface_roughness);
+    var normal = vec3f(0.0, 0.0, 1.0);
+    sss_voronoi_normal(uv, &normal, variation, cell_count, bevel, relief, uv_per_unit);
+    sss_ice_mask(uv, &transmittance, cover, cover_texture, cover_texture_sampler);
+    var emission = vec3f(0.0);
+    sss_packed_scroll(uv, time, &emission, packed_texture, packed_texture_sampler, red_speed, green_speed,
+        blue_speed, vein_color, spark_color);
+    sss_alpha_erosion(uv, &alpha, &normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
+        erosion_texture_sampler, edge_height);
+    return sss_Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
+}
+
+// The transmitted light of one light, as a factor on its colour.
+fn sss_evaluate_translucency(surface: sss_Surface, V: vec3f, N: vec3f, L: vec3f, distortion: f32,
+    subsurface_color: vec3f, attenuation: f32, scale: f32, ambient: f32, power: f32) -> vec3f {
+    return sss_lobe_normalized(V, N, L, surface.transmittance, distortion, subsurface_color, attenuation,
+        scale, ambient, power);
+}
+
+// The reflected light of one light.
+fn sss_evaluate_lighting(surface: sss_Surface, N: vec3f, V: vec3f, L: vec3f, light_color: vec3f) -> vec3f {
+    return sss_standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color);
+}
+`;
+
+const GLSL_CHUNKS = {
+  litUserDeclarationVS: `
+varying vec2 sss_uv;
+varying vec4 sss_tangent;
+#if defined(SSS_TEXCOORD0) && !defined(UV0)
+attribute vec2 vertex_texCoord0;
+#endif
+#if defined(SSS_TANGENT) && !defined(TANGENTS)
+attribute vec4 vertex_tangent;
+#endif
+`,
+  litUserMainEndVS: `
+#ifdef SSS_TEXCOORD0
+sss_uv = vertex_texCoord0;
+#else
+sss_uv = vec2(0.0);
+#endif
+#ifdef SSS_TANGENT
+sss_tangent = vertex_tangent;
+#else
+sss_tangent = vec4(0.0);
+#endif
+vec3 sss_axis_x = dModelMatrix[0].xyz;
+vec3 sss_axis_y = dModelMatrix[1].xyz;
+vec3 sss_axis_z = dModelMatrix[2].xyz;
+float sss_axes_volume = dot(cross(sss_axis_x, sss_axis_y), sss_axis_z);
+sss_tangent = vec4((dModelMatrix * vec4(sss_tangent.xyz, 0.0)).xyz, sss_tangent.w * sign(sss_axes_volume));
+`,
+  litUserDeclarationPS: `
+precision highp sampler2D;
+varying vec2 sss_uv;
+varying vec4 sss_tangent;
+uniform float sss_variation;
+uniform float sss_cell_count;
+uniform float sss_thickness_factor;
+uniform float sss_bevel;
+uniform float sss_attenuation_distance;
+uniform vec4 sss_tint;
+uniform float sss_metalness;
+uniform float sss_surface_roughness;
+uniform float sss_relief;
+uniform vec2 sss_uv_per_unit;
+uniform float sss_cover;
+uniform vec2 sss_red_speed;
+uniform vec2 sss_green_speed;
+uniform vec2 sss_blue_speed;
+uniform vec3 sss_vein_color;
+uniform vec3 sss_spark_color;
+uniform float sss_texel_size;
+uniform float sss_edge;
+uniform float sss_erosion;
+uniform float sss_edge_height;
+uniform float sss_distortion;
+uniform vec3 sss_subsurface_color;
+uniform float sss_attenuation;
+uniform float sss_scale;
+uniform float sss_ambient;
+uniform float sss_power;
+uniform highp sampler2D sss_base_color_texture;
+uniform highp sampler2D sss_cover_texture;
+uniform highp sampler2D sss_packed_texture;
+uniform highp sampler2D sss_erosion_texture;
+uniform float sss_time;
+${GLSL}
+vec3 sss_N;
+vec3 sss_V;
+vec3 sss_T;
+vec3 sss_B;
+vec3 sss_L;
+vec3 sss_eye_position;
+vec3 sss_light_color;
+vec3 sss_light_sum;
+float sss_light_nearness;
+float sss_side = 1.0;
+sss_Surface sss_surface;
+
+vec3 sss_unit(vec3 v) {
+  float square = dot(v, v);
+  if (square > 1e-30) { return v * inversesqrt(square); }
+  return vec3(0.0);
+}
+`,
+  front: `
+// What the chain reads, and the surface: once per fragment, in the passes of shadows and picking as well.
+void sss_begin_surface() {
+  sss_light_sum = vec3(0.0);
+#ifdef FORWARD_PASS
+  sss_N = dVertexNormalW;
+  sss_V = dViewDirW;
+  sss_eye_position = view_position;
+#ifdef LIT_TWO_SIDED_LIGHTING
+  sss_side = gl_FrontFacing ? 1.0 : -1.0;
+#endif
+#else
+  sss_N = sss_unit(cross(dFdx(vPositionW), dFdy(vPositionW)));
+  sss_V = sss_N;
+  sss_eye_position = vPositionW + sss_V;
+#endif
+  // the tangent and the bitangent: those of the mesh, else from the derivatives of uv
+  vec3 across = dFdx(vPositionW);
+  vec3 up = dFdy(vPositionW);
+  vec2 a = dFdx(sss_uv);
+  vec2 b = dFdy(sss_uv);
+  if (dot(cross(across, up), sss_V) < 0.0) { up = -up; b = -b; }  // the rows of the target count downwards
+  vec3 first = cross(up, sss_N);
+  vec3 second = cross(sss_N, across);
+  sss_T = first * a.x + second * b.x;
+  sss_B = first * a.y + second * b.y;
+  float longest = inversesqrt(max(max(dot(sss_T, sss_T), dot(sss_B, sss_B)), 1e-30));
+  sss_T *= longest;
+  sss_B *= longest;
+  if (dot(sss_tangent.xyz, sss_tangent.xyz) > 0.0) {
+    sss_T = sss_unit(sss_tangent.xyz);
+    sss_B = cross(sss_N * sss_side, sss_T) * sss_tangent.w;
+  }
+  sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count, sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint, sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief, sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture, sss_red_speed, sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color, sss_texel_size, sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height);
+}
+
+void evaluateFrontend() {
+  sss_begin_surface();
+  sss_engine_front();
+#ifdef FORWARD_PASS
+  litArgs_albedo *= sss_surface.albedo;
+  litArgs_metalness = sss_surface.metallic;
+  litArgs_gloss = 1.0 - sss_surface.roughness + 1e-7;
+  litArgs_emission += sss_surface.emission;
+  litArgs_worldNormal = sss_unit((sss_T * sss_surface.normal.x + sss_B * sss_surface.normal.y) * sss_side + sss_N * sss_surface.normal.z);
+#endif
+}
+
+// One of PlayCanvas's lights: what comes through has no shadow, as it entered on the far side.
+void sss_light_through(vec3 L, vec3 color, float nearness) {
+  sss_L = L;
+  sss_light_color = color;
+  sss_light_nearness = nearness;
+  sss_light_sum += color * sss_evaluate_translucency(sss_surface, sss_V, litArgs_worldNormal, sss_L, sss_distortion, sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power);
+}
+#ifdef SSS_OWN_LIGHT
+
+void sss_light_reflected(vec3 color) {
+  sss_light_color = color;
+  sss_light_sum += sss_evaluate_lighting(sss_surface, litArgs_worldNormal, sss_V, sss_L, sss_light_color);
+}
+#endif
+`,
+  opacity: `
+void getOpacity() {
+  sss_engine_opacity();
+  dAlpha *= sss_surface.alpha;
+}
+`,
+  combine: `
+#if defined(SSS_OWN_LIGHT) && defined(LIT_ADD_AMBIENT)
+void addAmbient(vec3 worldNormal);
+#endif
+vec3 combineColor(vec3 albedo, vec3 sheenSpecularity, float clearcoatSpecularity) {
+#ifdef SSS_OWN_LIGHT
+#ifdef LIT_ADD_AMBIENT
+  dDiffuseLight = vec3(0.0);
+  addAmbient(litArgs_worldNormal);
+  sss_light_sum += dDiffuseLight * sss_surface.albedo;
+#endif
+  return sss_light_sum;
+#else
+  return sss_engine_combine(albedo, sheenSpecularity, clearcoatSpecularity) + sss_light_sum;
+#endif
+}
+`,
+  lambert: `
+float getLightDiffuse(vec3 worldNormal, vec3 viewDir, vec3 lightDirNorm) {
+#ifdef SSS_OWN_LIGHT
+  return 1.0;
+#else
+  return sss_engine_lambert(worldNormal, viewDir, lightDirNorm);
+#endif
+}
+`,
+  clustered: `
+float sss_arriving = falloffAttenuation;
+if (light.isSpot) {
+  ClusterLightSpotData spot = decodeClusterLightSpot();
+  sss_arriving *= getSpotEffect(light.direction, spot.innerConeAngleCos, spot.outerConeAngleCos, lightDirNormW);
+}
+sss_light_through(-lightDirNormW, light.color * sss_arriving, 1.0 / max(length(lightDirW), 0.01));
+`,
+};
+
+const WGSL_CHUNKS = {
+  litUserDeclarationVS: `
+varying sss_uv: vec2f;
+varying sss_tangent: vec4f;
+#if defined(SSS_TEXCOORD0) && !defined(UV0)
+attribute vertex_texCoord0: vec2f;
+#endif
+#if defined(SSS_TANGENT) && !defined(TANGENTS)
+attribute vertex_tangent: vec4f;
+#endif
+`,
+  litUserMainEndVS: `
+#ifdef SSS_TEXCOORD0
+output.sss_uv = vertex_texCoord0;
+#else
+output.sss_uv = vec2f(0.0);
+#endif
+#ifdef SSS_TANGENT
+output.sss_tangent = vertex_tangent;
+#else
+output.sss_tangent = vec4f(0.0);
+#endif
+var sss_axis_x = dModelMatrix[0].xyz;
+var sss_axis_y = dModelMatrix[1].xyz;
+var sss_axis_z = dModelMatrix[2].xyz;
+var sss_axes_volume = dot(cross(sss_axis_x, sss_axis_y), sss_axis_z);
+output.sss_tangent = vec4f((dModelMatrix * vec4f(output.sss_tangent.xyz, 0.0)).xyz, output.sss_tangent.w * sign(sss_axes_volume));
+`,
+  litUserDeclarationPS: `
+varying sss_uv: vec2f;
+varying sss_tangent: vec4f;
+uniform sss_variation: f32;
+uniform sss_cell_count: f32;
+uniform sss_thickness_factor: f32;
+uniform sss_bevel: f32;
+uniform sss_attenuation_distance: f32;
+uniform sss_tint: vec4f;
+uniform sss_metalness: f32;
+uniform sss_surface_roughness: f32;
+uniform sss_relief: f32;
+uniform sss_uv_per_unit: vec2f;
+uniform sss_cover: f32;
+uniform sss_red_speed: vec2f;
+uniform sss_green_speed: vec2f;
+uniform sss_blue_speed: vec2f;
+uniform sss_vein_color: vec3f;
+uniform sss_spark_color: vec3f;
+uniform sss_texel_size: f32;
+uniform sss_edge: f32;
+uniform sss_erosion: f32;
+uniform sss_edge_height: f32;
+uniform sss_distortion: f32;
+uniform sss_subsurface_color: vec3f;
+uniform sss_attenuation: f32;
+uniform sss_scale: f32;
+uniform sss_ambient: f32;
+uniform sss_power: f32;
+var sss_base_color_texture: texture_2d<f32>;
+var sss_base_color_texture_sampler: sampler;
+var sss_cover_texture: texture_2d<f32>;
+var sss_cover_texture_sampler: sampler;
+var sss_packed_texture: texture_2d<f32>;
+var sss_packed_texture_sampler: sampler;
+var sss_erosion_texture: texture_2d<f32>;
+var sss_erosion_texture_sampler: sampler;
+uniform sss_time: f32;
+${WGSL}
+var<private> sss_N: vec3f;
+var<private> sss_V: vec3f;
+var<private> sss_T: vec3f;
+var<private> sss_B: vec3f;
+var<private> sss_L: vec3f;
+var<private> sss_eye_position: vec3f;
+var<private> sss_light_color: vec3f;
+var<private> sss_light_sum: vec3f;
+var<private> sss_light_nearness: f32;
+var<private> sss_side: f32 = 1.0;
+var<private> sss_surface: sss_Surface;
+
+fn sss_unit(v: vec3f) -> vec3f {
+  var square = dot(v, v);
+  if (square > 1e-30) { return v * inverseSqrt(square); }
+  return vec3f(0.0);
+}
+`,
+  front: `
+// What the chain reads, and the surface: once per fragment, in the passes of shadows and picking as well.
+fn sss_begin_surface() {
+  sss_light_sum = vec3f(0.0);
+#ifdef FORWARD_PASS
+  sss_N = dVertexNormalW;
+  sss_V = dViewDirW;
+  sss_eye_position = uniform.view_position;
+#ifdef LIT_TWO_SIDED_LIGHTING
+  sss_side = select(-1.0, 1.0, pcFrontFacing);
+#endif
+#else
+  sss_N = sss_unit(cross(dpdx(vPositionW), dpdy(vPositionW))) * -1.0;
+  sss_V = sss_N;
+  sss_eye_position = vPositionW + sss_V;
+#endif
+  // the tangent and the bitangent: those of the mesh, else from the derivatives of uv
+  var across = dpdx(vPositionW);
+  var up = dpdy(vPositionW);
+  var a = dpdx(sss_uv);
+  var b = dpdy(sss_uv);
+  if (dot(cross(across, up), sss_V) < 0.0) { up = -up; b = -b; }  // the rows of the target count downwards
+  var first = cross(up, sss_N);
+  var second = cross(sss_N, across);
+  sss_T = first * a.x + second * b.x;
+  sss_B = first * a.y + second * b.y;
+  var longest = inverseSqrt(max(max(dot(sss_T, sss_T), dot(sss_B, sss_B)), 1e-30));
+  sss_T *= longest;
+  sss_B *= longest;
+  if (dot(sss_tangent.xyz, sss_tangent.xyz) > 0.0) {
+    sss_T = sss_unit(sss_tangent.xyz);
+    sss_B = cross(sss_N * sss_side, sss_T) * sss_tangent.w;
+  }
+  sss_surface = sss_evaluate_surface(sss_uv, uniform.sss_time, uniform.sss_variation, uniform.sss_cell_count, uniform.sss_thickness_factor, uniform.sss_bevel, uniform.sss_attenuation_distance, uniform.sss_tint, sss_base_color_texture, sss_base_color_texture_sampler, uniform.sss_metalness, uniform.sss_surface_roughness, uniform.sss_relief, uniform.sss_uv_per_unit, uniform.sss_cover, sss_cover_texture, sss_cover_texture_sampler, sss_packed_texture, sss_packed_texture_sampler, uniform.sss_red_speed, uniform.sss_green_speed, uniform.sss_blue_speed, uniform.sss_vein_color, uniform.sss_spark_color, uniform.sss_texel_size, uniform.sss_edge, uniform.sss_erosion, sss_erosion_texture, sss_erosion_texture_sampler, uniform.sss_edge_height);
+}
+
+fn evaluateFrontend() {
+  sss_begin_surface();
+  sss_engine_front();
+#ifdef FORWARD_PASS
+  litArgs_albedo *= sss_surface.albedo;
+  litArgs_metalness = sss_surface.metallic;
+  litArgs_gloss = 1.0 - sss_surface.roughness + 1e-7;
+  litArgs_emission += sss_surface.emission;
+  litArgs_worldNormal = sss_unit((sss_T * sss_surface.normal.x + sss_B * sss_surface.normal.y) * sss_side + sss_N * sss_surface.normal.z);
+#endif
+}
+
+// One of PlayCanvas's lights: what comes through has no shadow, as it entered on the far side.
+fn sss_light_through(L: vec3f, color: vec3f, nearness: f32) {
+  sss_L = L;
+  sss_light_color = color;
+  sss_light_nearness = nearness;
+  sss_light_sum += color * sss_evaluate_translucency(sss_surface, sss_V, litArgs_worldNormal, sss_L, uniform.sss_distortion, uniform.sss_subsurface_color, uniform.sss_attenuation, uniform.sss_scale, uniform.sss_ambient, uniform.sss_power);
+}
+#ifdef SSS_OWN_LIGHT
+
+fn sss_light_reflected(color: vec3f) {
+  sss_light_color = color;
+  sss_light_sum += sss_evaluate_lighting(sss_surface, litArgs_worldNormal, sss_V, sss_L, sss_light_color);
+}
+#endif
+`,
+  opacity: `
+fn getOpacity() {
+  sss_engine_opacity();
+  dAlpha *= sss_surface.alpha;
+}
+`,
+  combine: `
+fn combineColor(albedo: vec3f, sheenSpecularity: vec3f, clearcoatSpecularity: f32) -> vec3f {
+#ifdef SSS_OWN_LIGHT
+#ifdef LIT_ADD_AMBIENT
+  dDiffuseLight = vec3f(0.0);
+  addAmbient(litArgs_worldNormal);
+  sss_light_sum += dDiffuseLight * sss_surface.albedo;
+#endif
+  return sss_light_sum;
+#else
+  return sss_engine_combine(albedo, sheenSpecularity, clearcoatSpecularity) + sss_light_sum;
+#endif
+}
+`,
+  lambert: `
+fn getLightDiffuse(worldNormal: vec3f, viewDir: vec3f, lightDirNorm: vec3f) -> f32 {
+#ifdef SSS_OWN_LIGHT
+  return 1.0;
+#else
+  return sss_engine_lambert(worldNormal, viewDir, lightDirNorm);
+#endif
+}
+`,
+  clustered: `
+var sss_arriving = falloffAttenuation;
+if (light.isSpot) {
+  let spot = decodeClusterLightSpot();
+  sss_arriving *= getSpotEffect(light.direction, spot.innerConeAngleCos, spot.outerConeAngleCos, lightDirNormW);
+}
+sss_light_through(-lightDirNormW, light.color * sss_arriving, 1.0 / max(length(lightDirW), 0.01));
+`,
+};
+
+/** A chunk of the engine, what is sought in it, and what it becomes: the engine's own text stays. */
+const CHANGES = (own) => [
+  ['stdFrontEndPS', /evaluateFrontend/, 'sss_engine_front', own.front],
+  ['opacityPS', /getOpacity/, 'sss_engine_opacity', own.opacity],
+  ['combinePS', /combineColor/, 'sss_engine_combine', own.combine],
+  ['lightDiffuseLambertPS', /getLightDiffuse/, 'sss_engine_lambert', own.lambert],
+  ['lightFunctionLightPS', /(?=dAtten\b[^;\n]*getLightDiffuse)/, `
+#if LIGHT{i}TYPE == DIRECTIONAL
+sss_light_through(-dLightDirNormW, lightColor * dAtten, 0.0);
+#else
+sss_light_through(-dLightDirNormW, lightColor * dAtten, 1.0 / max(length(lightDirW), 0.01));
+#endif
+`, ''],
+  ['lightFunctionLightPS', /(?=#ifdef LIGHT\{i\}AFFECT_SPECULARITY)/, `
+#if defined(SSS_OWN_LIGHT) && LIGHT{i}SHAPE == PUNCTUAL
+sss_light_reflected(lightColor * dAtten);
+#endif
+`, ''],
+  ['clusteredLightPS', /(?=falloffAttenuation\b[^;\n]*getLightDiffuse)/, own.clustered, ''],
+  ['clusteredLightPS', /(?=dAtten = falloffAttenuation;)/, `
+#ifdef SSS_OWN_LIGHT
+if (light.shape == {LIGHTSHAPE_PUNCTUAL}) { sss_light_reflected(light.color * cookieAttenuation * falloffAttenuation); }
+#endif
+`, ''],
+];
+
+const TEXELS = { white: [1, 1, 1, 1], black: [0, 0, 0, 1], gray: [0.5, 0.5, 0.5, 1], bump: [0.5, 0.5, 1, 1] };
+
+/** A texture of one texel, in half floats, which every device filters. */
+function texel(device, { type, default: name }) {
+  const data = new Uint16Array(TEXELS[name].map((value) => pc.FloatPacking.float2Half(value)));
+  const [cube, volume, layers] = ['samplerCube', 'sampler3D', 'sampler2DArray'].map((one) => one === type);
+  return new pc.Texture(device, {
+    name: `ice ${name}`, width: 1, height: 1, format: pc.PIXELFORMAT_RGBA16F, mipmaps: false,
+    cubemap: cube, volume, depth: 1, arrayLength: layers ? 1 : 0, minFilter: pc.FILTER_LINEAR, magFilter: pc.FILTER_LINEAR,
+    levels: [cube ? Array(6).fill(data) : layers ? [data] : data],
+  });
+}
+
+/** A value as the shader takes it; a pc.Color is converted to linear light. */
+function numbers(value, type) {
+  if (value instanceof pc.Color) {
+    const { r, g, b, a } = new pc.Color().linear(value);
+    return [r, g, b, a].slice(0, type === 'vec3' ? 3 : 4);
+  }
+  if (Array.isArray(value)) return [...value];
+  if (typeof value === 'boolean') return Number(value);
+  return value?.data ? Array.from(value.data) : value?.toArray ? value.toArray([]) : value;
+}
+
+/** Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes that melt into it. */
+export class IceMaterial extends pc.StandardMaterial {
+  #device;
+  /** In seconds; null: the page's clock. */
+  time = null;
+
+  constructor(device, values = {}) {
+    super();
+    this.#device = device;
+    this.name = 'ice';
+    this.useMetalness = true;
+    this.metalness = 0;
+    this.gloss = 0;
+    this.alphaTest = 0.5;
+    const language = device.isWebGPU ? pc.SHADERLANGUAGE_WGSL : pc.SHADERLANGUAGE_GLSL;
+    const own = device.isWebGPU ? WGSL_CHUNKS : GLSL_CHUNKS;
+    const engine = pc.ShaderChunks.get(device, language);
+    const chunks = this.getShaderChunks(language);
+    for (const name of ['litUserDeclarationVS', 'litUserMainEndVS', 'litUserDeclarationPS']) {
+      chunks.set(name, (engine.get(name) ?? '') + own[name]);
+    }
+    for (const [name, sought, instead, added] of CHANGES(own)) {
+      const text = chunks.get(name) ?? engine.get(name) ?? '';
+      if (!sought.test(text)) throw new Error(`ice: this version of PlayCanvas has no ${sought.source} in its chunk ${name}`);
+      chunks.set(name, text.replace(sought, () => instead) + added);
+    }
+    for (const [name, one] of Object.entries(parameters)) this[name] = one.default;
+    for (const name of Object.keys(textures)) this[name] = null;
+    this.set(values);
+    this.update();
+  }
+
+  static {
+    for (const [name, { name: uniform, type }] of Object.entries(parameters)) {
+      Object.defineProperty(this.prototype, name, {
+        get() { return this.getParameter(uniform).data; },
+        set(value) { this.setParameter(uniform, numbers(value, type)); },
+      });
+    }
+    for (const [name, declared] of Object.entries(textures)) {
+      Object.defineProperty(this.prototype, name, {
+        get() { return this.getParameter(declared.name).data; },
+        set(value) { this.setParameter(declared.name, value ?? texel(this.#device, declared)); },
+      });
+    }
+  }
+
+  /** Whether the reflected light is that of the targets without an engine, the same picture everywhere. */
+  get ownLight() {
+    return this.getDefine('SSS_OWN_LIGHT');
+  }
+
+  set ownLight(value) {
+    this.setDefine('SSS_OWN_LIGHT', value ? '' : undefined);
+  }
+
+  /** Sets many properties: those of the material, and those of StandardMaterial. */
+  set(values) {
+    Object.assign(this, values);
+    return this;
+  }
+
+  /** PlayCanvas calls this for each format of vertices: the shader reads the attributes that the mesh has. */
+  getShaderVariant(params) {
+    const { defines } = this;
+    this.defines = new Map(defines);
+    for (const { name } of params.vertexFormat?.elements ?? []) this.defines.set(`SSS_${name}`, '');
+    try {
+      return super.getShaderVariant(params);
+    } finally {
+      this.defines = defines;
+    }
+  }
+
+  /** PlayCanvas calls this before it draws. */
+  setParameters(...args) {
+    this.setParameter('sss_time', this.time ?? performance.now() / 1000);
+    super.setParameters(...args);
+  }
+
+  clone() {
+    return new this.constructor(this.#device).copy(this).set({ time: this.time });
+  }
+}
+
+/** The material. `values` are its parameters, its textures, and the properties of StandardMaterial. */
+export function createMaterial(device, values = {}) {
+  return new IceMaterial(device, values);
+}
