@@ -1,0 +1,40 @@
+"""docs/engines.md has a row for each engine and back end that draws, and its pictures are those of the reference."""
+
+from __future__ import annotations
+
+import re
+import runpy
+from typing import Any
+
+import pytest
+
+from folders import ROOT
+from sssgen.harness import backends
+from sssgen.harness.backends import BACKENDS
+
+pytest.importorskip("PIL", reason="Pillow is missing: pip install 'sssgen[dev]'")
+
+
+def page() -> dict[str, Any]:
+    return runpy.run_path(str(ROOT / "docs" / "engines.py"))
+
+
+def test_every_engine_has_a_row() -> None:
+    text, engines = (ROOT / "docs" / "engines.md").read_text(encoding="utf-8"), page()
+    rows = re.findall(r"^\| ([^|]+) \| (?:ours|the engine's)", text, re.MULTILINE)
+    titles = [record.description for record in BACKENDS.values() if record.scenes_only]
+    expected = [*engines["TITLES"].values(), *(title.removesuffix(", in a headless Chromium") for title in titles)]
+    assert sorted(rows) == sorted(expected)
+    assert "not run" not in text.partition(engines["START"])[2]
+
+
+def test_the_scene_is_that_of_shadertoy() -> None:
+    """The page compares Shadertoy's own shell with a scene of this project."""
+    if "gl" not in {backend.name for backend in backends.available()}:
+        pytest.skip("gl is missing")
+    engines = page()
+    scene = engines["scene_loading"].load(str(engines["FOLDER"] / "scene.toml"))
+    reference = engines["render"](scene, backends.get("numpy"), (48, 36)).encoded
+    drawn = engines["_shadertoy"]((48, 36), scene.samples)
+    tile = engines["_compared"]("Shadertoy", "ours", drawn, reference, True)
+    assert reference.max() - reference.min() > 0.5 and tile.difference < 2.0 / 255.0
