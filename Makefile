@@ -12,7 +12,9 @@
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 BIN := .venv/bin
-NODE_PACKAGES := webgpu@0.6.2 three@0.187.0 playcanvas@2.23.3 wesl@0.7.31
+NODE_PACKAGES := webgpu@0.6.2 three@0.187.0 playcanvas@2.23.3 wesl@0.7.31 @babylonjs/core@9.34.0 esbuild@0.28.2
+# Babylon.js is thousands of files: a page loads one.
+BABYLON_BUNDLE := src/sssgen/harness/backends/babylon_bundle.js
 # The index has its source only: built here once, for two minutes, and kept apart from .venv.
 BUILT_PACKAGES := compushady==0.17.5
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
@@ -92,6 +94,8 @@ build/wheels/done: Makefile | .venv/pyvenv.cfg
 	$(PIP) install --find-links build/wheels --editable '.[dev]'
 	@touch $@
 
-build/node/done: Makefile | build/system
+build/node/done: Makefile $(BABYLON_BUNDLE) | build/system
 	npm install --prefix build/node --no-audit --no-fund --loglevel=error $(NODE_PACKAGES)
+	NODE_PATH=build/node/node_modules build/node/node_modules/.bin/esbuild $(BABYLON_BUNDLE) --bundle --format=esm \
+		--outfile=build/node/babylon.js --log-level=error
 	@touch $@

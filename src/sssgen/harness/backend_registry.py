@@ -126,6 +126,7 @@ _RECORDS = (
         "": ("WebGPURenderer", "webgpu"), "-webgl": ("WebGLRenderer", "webgl"),
         "-webgl2": ("WebGPURenderer on WebGL 2", "webgl2"),
     }),
+    *_page("babylonjs", "Babylon.js", "@babylonjs/core", {"": ("WebGPU", "webgpu"), "-webgl": ("WebGL 2", "webgl")}),
     *_page("playcanvas", "PlayCanvas", "playcanvas", {"": ("WebGPU", "webgpu"), "-webgl2": ("WebGL 2", "webgl2")}),
     *(
         BackendRecord(

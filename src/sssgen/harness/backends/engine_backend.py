@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from sssgen.harness.backends.babylon_page import BABYLON
 from sssgen.harness.backends.backend_interface import Array, Backend, Call, Text, backend_failure
 from sssgen.harness.backends.engine_page import EnginePage
 from sssgen.harness.backends.godot_drawing import Godot
@@ -12,7 +13,7 @@ from sssgen.harness.backends.three_page import THREE
 from sssgen.targets import registry
 from sssgen.targets.runtime.numpy_textures import Texture
 
-_PAGES = {engine.target: engine for engine in (PLAYCANVAS, THREE)}
+_PAGES = {engine.target: engine for engine in (BABYLON, PLAYCANVAS, THREE)}
 """The engines of the web, by their targets."""
 
 

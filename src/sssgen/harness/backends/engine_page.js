@@ -13,6 +13,20 @@ for (const level of ['error', 'warn']) {
   };
 }
 
+addEventListener('unhandledrejection', ({ reason }) => complaints.push(`${reason?.stack ?? reason}`));
+
+// Without a GPU, Chromium loses the device when a canvas with WebGPU is shown: a texture stands in for it.
+if (globalThis.GPUCanvasContext) {
+  GPUCanvasContext.prototype.configure = function (configuration) {
+    this.configuration = configuration;
+  };
+  GPUCanvasContext.prototype.getCurrentTexture = function () {
+    const { device, format, usage = GPUTextureUsage.RENDER_ATTACHMENT } = this.configuration;
+    this.shown ??= device.createTexture({ size: [this.canvas.width, this.canvas.height], format, usage });
+    return this.shown;
+  };
+}
+
 // The picture of a plan: its rows are `stride` bytes apart.
 async function drawn(plan, piece) {
   complaints.length = 0;

@@ -1,0 +1,110 @@
+// Babylon.js in a page: draws meshes with emitted modules, as plans say (engine_page.js).
+
+import {
+  Camera, Color3, Color4, DirectionalLight, Engine, Matrix, Mesh, PointLight, RawTexture, RawTexture3D, RenderTargetTexture, Scene,
+  Texture, Vector3, VertexData, WebGPUEngine,
+} from '@babylonjs/core/scene.js';
+
+const VERSION = Engine.Version;
+const RGBA = 5, FLOAT = 1, HALF_FLOAT = 2, COUNTER_CLOCKWISE = 1;
+const WRAPS = { clamp: 0, repeat: 1, mirror: 2 };
+let engine;
+
+async function engineFor(kind) {
+  const canvas = document.createElement('canvas');
+  if (kind === 'webgl') return new Engine(canvas, false);
+  const made = new WebGPUEngine(canvas);
+  await made.initAsync();
+  return made;
+}
+
+class GivenCamera extends Camera {
+  constructor(plan, scene) {
+    super('given', Vector3.Zero(), scene);
+    this.view = Matrix.FromArray(plan.view);
+    this.freezeProjectionMatrix(Matrix.FromArray(plan.projection));
+  }
+
+  _getViewMatrix() {
+    return this.view;
+  }
+}
+
+async function draw(plan, piece) {
+  engine ??= await engineFor(plan.renderer);
+  const scene = new Scene(engine);
+  scene.useRightHandedSystem = true;
+  scene.clearColor = new Color4(0, 0, 0, 0);
+  scene.ambientColor = Color3.FromArray(plan.ambient.length ? plan.ambient : [0, 0, 0]);
+  scene.imageProcessingConfiguration.applyByPostProcess = true; // linear light
+  const camera = new GivenCamera(plan, scene);
+  plan.lights.forEach((light) => lightOf(light, scene));
+  const { createMaterial } = await imported(plan.module);
+  const textures = Object.fromEntries(Object.entries(plan.textures).map(([name, one]) => [name, textureOf(one, piece, scene)]));
+  const material = createMaterial({ ambientColor: Color3.White(), ...plan.values, ...textures }, scene);
+  for (const [path, value] of Object.entries(plan.properties)) {
+    const names = path.split('.');
+    const last = names.pop();
+    const one = names.reduce((object, name) => object[name], material);
+    one[last] = one[last] instanceof Color3 ? new Color3(value, value, value) : value;
+  }
+  if (material.light === null) material.light = scene.lights[0] ?? null;
+
+  const mesh = new Mesh('drawn', scene);
+  vertexDataOf(plan, piece).applyToMesh(mesh);
+  mesh.material = material;
+  mesh.sideOrientation = COUNTER_CLOCKWISE;
+  mesh.alwaysSelectAsActiveMesh = true;
+  mesh.freezeWorldMatrix(Matrix.FromArray(plan.model));
+  mesh._updateNonUniformScalingState(true); // Babylon derives it from mesh.scaling
+
+  const size = { width: plan.width, height: plan.height };
+  const target = new RenderTargetTexture('target', size, scene, { type: FLOAT, samplingMode: Texture.NEAREST_SAMPLINGMODE, generateMipMaps: false });
+  target.clearColor = scene.clearColor;
+  target.activeCamera = camera;
+  target.renderList = [mesh];
+  scene.activeCamera = camera;
+  while (!mesh.isReady(true)) {
+    const wrong = mesh.subMeshes[0].effect?.getCompilationError();
+    if (wrong) throw new Error(wrong);
+    await new Promise((resume) => setTimeout(resume, 1));
+  }
+  scene.customRenderTargets.push(target);
+  engine.beginFrame();
+  scene.render();
+  engine.endFrame();
+  const pixels = await target.readPixels();
+  scene.dispose();
+  return new Float32Array(pixels.buffer, pixels.byteOffset, plan.width * plan.height * 4);
+}
+
+function vertexDataOf(plan, piece) {
+  const vertices = floats(piece(plan.vertices));
+  const part = (name) => {
+    const [offset, size] = plan.attributes[name];
+    const count = vertices.length / plan.vertexSize;
+    return Float32Array.from({ length: count * size }, (_, i) => vertices[Math.floor(i / size) * plan.vertexSize + offset + (i % size)]);
+  };
+  return Object.assign(new VertexData(), {
+    positions: part('position'), normals: part('normal'), tangents: plan.withoutTangents ? null : part('tangent'), uvs: part('uv'),
+    uvs2: part('uv2'), colors: part('color'), indices: indices(piece(plan.triangles)),
+  });
+}
+
+function lightOf({ position, color }, scene) {
+  const [x, y, z, w] = position;
+  const light = w ? new PointLight('point', new Vector3(x, y, z), scene) : new DirectionalLight('direction', new Vector3(-x, -y, -z), scene);
+  light.diffuse = light.specular = Color3.FromArray(color);
+  light.intensity = Math.PI; // Babylon's lights are irradiance, those of the other shells radiance
+  return light;
+}
+
+function textureOf({ dim, size, levels, filter, wrap }, piece, scene) {
+  const texels = halves(piece(levels[0].data));
+  const mode = filter === 'nearest' ? Texture.NEAREST_SAMPLINGMODE : levels.length > 1 ? Texture.TRILINEAR_SAMPLINGMODE : Texture.BILINEAR_SAMPLINGMODE;
+  const mipmaps = levels.length > 1;
+  const texture = dim === '3D'
+    ? new RawTexture3D(texels, ...size, RGBA, scene, false, false, mode, HALF_FLOAT)
+    : new RawTexture(texels, ...size, RGBA, scene, mipmaps, false, mode, HALF_FLOAT);
+  return Object.assign(texture, { wrapU: WRAPS[wrap], wrapV: WRAPS[wrap], wrapR: WRAPS[wrap], anisotropicFilteringLevel: 1 });
+}

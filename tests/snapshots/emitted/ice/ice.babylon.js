@@ -1,0 +1,977 @@
+// Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
+// that melt into it.
+// Made by sssgen for Babylon.js. Change the material and emit it again rather than this file.
+//
+//   import { createMaterial } from './ice.babylon.js';
+//   mesh.material = createMaterial({ variation: 0.6 });
+//
+// A PBRMaterial with a plug-in, for WebGL 2 and WebGPU.
+// Lights, shadows, fog and the environment are Babylon's.
+
+import { SerializationHelper } from '@babylonjs/core/Misc/decorators.serialization.js';
+import { MaterialPluginBase } from '@babylonjs/core/Materials/materialPluginBase.js';
+import { PBRMaterial } from '@babylonjs/core/Materials/PBR/pbrMaterial.js';
+import { Color3 } from '@babylonjs/core/Maths/math.color.js';
+import { Vector2, Vector3, Vector4 } from '@babylonjs/core/Maths/math.vector.js';
+import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
+import { RawTexture } from '@babylonjs/core/Materials/Textures/rawTexture.js';
+
+/** The parameters: type, default, range, unit, and the name in the shaders. */
+export const parameters = {
+  /** How much the levels of the cells differ: 0 = all are equal. */
+  variation: { type: 'float', default: 0.6, range: [0.0, 1.0], unit: '1', name: 'sss_variation' },
+  /** Number of cells along one unit of texture coordinate. */
+  cellCount: { type: 'float', default: 10.0, range: [1.0, 200.0], unit: '1', name: 'sss_cell_count' },
+  /** Thickness of a cell of level 1. */
+  thicknessFactor: { type: 'float', default: 0.3, range: [0.0, 10.0], unit: 'm', name: 'sss_thickness_factor' },
+  /** Width of the slope next to an edge, in cells. */
+  bevel: { type: 'float', default: 0.35, range: [0.05, 1.0], unit: '1', name: 'sss_bevel' },
+  /** The length after which 1/e (37 %) of the light remains; 0 = opaque. */
+  attenuationDistance: { type: 'float', default: 0.25, range: [0.0, 10.0], unit: 'm', name: 'sss_attenuation_distance' },
+  /** Multiplies the texture. */
+  tint: { type: 'vec4', default: [0.75, 0.9, 1.0, 1.0], name: 'sss_tint' },
+  /** 0 = not a metal, 1 = metal. */
+  metalness: { type: 'float', default: 0.0, range: [0.0, 1.0], unit: '1', name: 'sss_metalness' },
+  /** 0 = smooth as a mirror, 1 = rough as chalk. */
+  surfaceRoughness: { type: 'float', default: 0.12, range: [0.0, 1.0], unit: '1', name: 'sss_surface_roughness' },
+  /** Height of the thickest cells above their edges. */
+  relief: { type: 'float', default: 0.01, range: [0.0, 1.0], unit: 'm', name: 'sss_relief' },
+  /** Change of the texture coordinates per world unit along T and along B. */
+  uvPerUnit: { type: 'vec2', default: [1.0, 1.0], unit: '1/m', name: 'sss_uv_per_unit' },
+  /** Multiplies the texture. */
+  cover: { type: 'float', default: 1.0, range: [0.0, 1.0], unit: '1', name: 'sss_cover' },
+  /** Velocity of the red layer. */
+  redSpeed: { type: 'vec2', default: [0.02, 0.0], unit: '1/s', name: 'sss_red_speed' },
+  /** Velocity of the green layer. */
+  greenSpeed: { type: 'vec2', default: [-0.01, 0.015], unit: '1/s', name: 'sss_green_speed' },
+  /** Velocity of the blue layer. */
+  blueSpeed: { type: 'vec2', default: [0.0, -0.025], unit: '1/s', name: 'sss_blue_speed' },
+  /** Colour of the light in the red and green layers, where both are bright. */
+  veinColor: { type: 'vec3', default: [0.3, 0.8, 1.0], name: 'sss_vein_color' },
+  /** Colour of the light in the blue layer. */
+  sparkColor: { type: 'vec3', default: [0.6, 0.9, 1.0], name: 'sss_spark_color' },
+  /** The length, in texture coordinates, over which slopes are measured: about one texel. */
+  texelSize: { type: 'float', default: 0.002, range: [0.0001, 0.1], unit: '1', name: 'sss_texel_size' },
+  /** Width of the soft edge, in the texture's values. */
+  edge: { type: 'float', default: 0.15, range: [0.01, 1.0], unit: '1', name: 'sss_edge' },
+  /** How much is eroded: 0 = nothing, 1 = everything. */
+  erosion: { type: 'float', default: 0.2, range: [0.0, 1.0], unit: '1', name: 'sss_erosion' },
+  /** Height of the step in the surface at the edge. */
+  edgeHeight: { type: 'float', default: 0.02, range: [0.0, 1.0], unit: 'm', name: 'sss_edge_height' },
+  /** How far the normal bends the light's direction inside the body: 0 ignores the shape. */
+  distortion: { type: 'float', default: 0.2, range: [0.0, 1.0], unit: '1', name: 'sss_distortion' },
+  /** Colour of the transmitted light. */
+  subsurfaceColor: { type: 'vec3', default: [0.55, 0.85, 1.0], name: 'sss_subsurface_color' },
+  /** Factor on the whole result. */
+  attenuation: { type: 'float', default: 0.8, range: [0.0, 1.0], unit: '1', name: 'sss_attenuation' },
+  /** Strength of the glow towards the light. */
+  scale: { type: 'float', default: 2.0, range: [0.0, 20.0], unit: '1', name: 'sss_scale' },
+  /** Glow that does not depend on the direction. */
+  ambient: { type: 'float', default: 0.12, range: [0.0, 1.0], unit: '1', name: 'sss_ambient' },
+  /** How narrow the glow around the light is: the larger, the smaller the spot. */
+  power: { type: 'float', default: 6.0, range: [1.0, 32.0], unit: '1', name: 'sss_power' },
+};
+
+/** The textures: type, the one texel of the default, whether it has colours (sRGB), and the name in the shaders. */
+export const textures = {
+  /** Colour of the surface (an sRGB texture), with its opacity in alpha. */
+  baseColorTexture: { type: 'sampler2D', default: 'white', color: true, name: 'sss_base_color_texture' },
+  /** Cover on the ice (snow, rock): black = bare ice, white = covered. */
+  coverTexture: { type: 'sampler2D', default: 'black', color: false, name: 'sss_cover_texture' },
+  /** Three pictures in one texture: red, green and blue each hold a layer. */
+  packedTexture: { type: 'sampler2D', default: 'black', color: false, name: 'sss_packed_texture' },
+  /** Mask of the erosion: dark parts disappear first. */
+  erosionTexture: { type: 'sampler2D', default: 'white', color: false, name: 'sss_erosion_texture' },
+};
+
+const GLSL = /* glsl */ `
+struct sss_Cell {
+    vec2 nearest;
+    vec2 second;
+    float level;
+};
+
+struct sss_Surface {
+    vec3 albedo;
+    float alpha;
+    vec3 normal;
+    float metallic;
+    float roughness;
+    vec3 emission;
+    float transmittance;
+};
+
+const float sss_JITTER = 0.6;
+const float sss_OPAQUE_DISTANCE = 1.0e-6;
+const float sss_ENDLESS = 10000.0;
+const float sss_OPAQUE_DEPTH = 80.0;
+
+// The direction of \`x\`; of a zero vector, 0.
+vec2 sss_safe_normalize(vec2 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
+
+// The direction of \`x\`; of a zero vector, 0.
+vec3 sss_safe_normalize(vec3 x) {
+    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+}
+
+// Scrambles the bits of \`x\`; 0 stays 0.
+uint sss_hash_bits(uint x) {
+    x = (x ^ (x >> 16u)) * 0x7feb352du;
+    x = (x ^ (x >> 15u)) * 0x846ca68bu;
+    return x ^ (x >> 16u);
+}
+
+// A number in [0, 1) from 24 bits of the hash of \`x\`.
+float sss_hash_unit(uint x) {
+    return float(sss_hash_bits(x) >> 8u) * 5.9604645e-8;
+}
+
+// The cell at \`p\`.
+sss_Cell sss_cell_at(vec2 p, float variation) {
+    vec2 nearest = vec2(4.0);
+    vec2 second = vec2(4.0);
+    // their squared lengths
+    float first_square = 32.0;
+    float second_square = 32.0;
+    uint owner = 0u;
+    // relative to the cell's corner, so that precision does not depend on the distance from the origin
+    vec2 home = floor(p);
+    vec2 within = p - home;
+    for (int j = -1; j <= 1; j++) {
+        for (int i = -1; i <= 1; i++) {
+            vec2 offset = vec2(float(i), float(j));
+            vec2 corner = home + offset;
+            uint seed = sss_hash_bits(uint(int(corner.x)) + sss_hash_bits(uint(int(corner.y)) + 1u));
+            vec2 shift = vec2(sss_hash_unit(seed + 1u), sss_hash_unit(seed + 2u)) - 0.5;
+            vec2 to_site = offset + 0.5 + sss_JITTER * shift - within;
+            float square = dot(to_site, to_site);
+            if (square < first_square) {
+                second = nearest;
+                second_square = first_square;
+                nearest = to_site;
+                first_square = square;
+                owner = seed;
+            } else if (square < second_square) {
+                second = to_site;
+                second_square = square;
+            }
+        }
+    }
+    float level = 1.0 - variation * sss_hash_unit(owner + 3u);
+    return sss_Cell(nearest, second, level);
+}
+
+// How much farther the second nearest site is than the nearest one: 0 on the edges.
+float sss_to_edge(sss_Cell cell) {
+    return length(cell.second) - length(cell.nearest);
+}
+
+// Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
+float sss_voronoi_thickness(vec2 uv, float variation, float cell_count, float thickness_factor, float bevel) {
+    sss_Cell cell = sss_cell_at(uv * cell_count, variation);
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, sss_to_edge(cell));
+}
+
+// The thickness \`d\` in mean free paths, 0 or more.
+float sss_optical_depth(float d, float mean_free_path) {
+    float path = max(mean_free_path, sss_OPAQUE_DISTANCE);
+    return clamp(d, 0.0, sss_ENDLESS * path) / path;
+}
+
+// Thickness to transmittance: the part of the light that absorption leaves.
+float sss_beer_lambert(float d, float attenuation_distance) {
+    return exp(-min(sss_optical_depth(d, attenuation_distance), sss_OPAQUE_DEPTH));
+}
+
+// Colour and opacity from a texture and a tint.
+void sss_base_color(vec2 uv, out vec3 albedo, out float alpha, vec4 tint, sampler2D base_color_texture) {
+    vec4 texel = tint * texture(base_color_texture, uv);
+    albedo = texel.xyz;
+    alpha = texel.w;
+}
+
+// The same metalness and roughness everywhere.
+void sss_pbr_constants(out float metallic, out float roughness, float metalness, float surface_roughness) {
+    metallic = metalness;
+    roughness = surface_roughness;
+}
+
+// The gradient of to_edge.
+vec2 sss_from_edge(sss_Cell cell) {
+    // the nearest site may be exactly here, the second one cannot: they are at least 0.4 apart
+    return sss_safe_normalize(cell.nearest) - normalize(cell.second);
+}
+
+// Adds \`detail\` to \`base\`: x and y are added, z is multiplied; for small slopes this adds the slopes.
+vec3 sss_blend_normals(vec3 base, vec3 detail) {
+    return sss_safe_normalize(vec3(base.xy + detail.xy, base.z * detail.z));
+}
+
+// The normal of a height field; \`slope\` is the increase in height per unit of length along T and B.
+vec3 sss_normal_of_slope(vec2 slope) {
+    return normalize(vec3(-slope, 1.0));
+}
+
+// The normal of the Voronoi cells, so that reflected light agrees with transmitted light.
+void sss_voronoi_normal(vec2 uv, inout vec3 normal, float variation, float cell_count, float bevel,
+    float relief, vec2 uv_per_unit) {
+    sss_Cell cell = sss_cell_at(uv * cell_count, variation);
+    float x = clamp(sss_to_edge(cell) / bevel, 0.0, 1.0);
+    // the derivative of the smoothstep
+    float steepness = cell.level * 6.0 * x * (1.0 - x) / bevel;
+    vec2 slope = relief * uv_per_unit * cell_count * steepness * sss_from_edge(cell);
+    normal = sss_blend_normals(normal, sss_normal_of_slope(slope));
+}
+
+// Only the bare ice transmits light.
+void sss_ice_mask(vec2 uv, inout float through, float cover, sampler2D cover_texture) {
+    float covered = cover * texture(cover_texture, uv).r;
+    through = through * smoothstep(0.0, 0.1, 1.0 - covered);
+}
+
+// One moving layer; the offset stays below 1, so that precision does not decrease with time.
+vec4 sss_layer(vec2 uv, vec2 speed, float time, sampler2D packed_texture) {
+    return texture(packed_texture, uv + fract(speed * time));
+}
+
+// Moving light below the surface, from the channels of one texture, each of which scrolls separately.
+void sss_packed_scroll(vec2 uv, float time, inout vec3 emission, sampler2D packed_texture, vec2 red_speed,
+    vec2 green_speed, vec2 blue_speed, vec3 vein_color, vec3 spark_color) {
+    float veins = sss_layer(uv, red_speed, time, packed_texture).x
+        * sss_layer(uv, green_speed, time, packed_texture).y;
+    float sparks = sss_layer(uv, blue_speed, time, packed_texture).z;
+    emission = min(emission + (vein_color * veins + spark_color * sparks), 65504.0);
+}
+
+// The part of the surface that remains at \`uv\`: 1 = all, 0 = none.
+float sss_left_at(vec2 uv, float edge, float erosion, sampler2D erosion_texture) {
+    // the threshold goes from below black to white, so that erosion 0 keeps and erosion 1 removes everything
+    float threshold = mix(-edge, 1.0, erosion);
+    return clamp((texture(erosion_texture, uv).r - threshold) / edge, 0.0, 1.0);
+}
+
+// Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
+void sss_alpha_erosion(vec2 uv, inout float alpha, inout vec3 normal, vec2 uv_per_unit, float texel_size,
+    float edge, float erosion, sampler2D erosion_texture, float edge_height) {
+    vec2 e = vec2(texel_size, 0.0);
+    vec2 at = uv;
+    float across = sss_left_at(at + e, edge, erosion, erosion_texture)
+        - sss_left_at(at - e, edge, erosion, erosion_texture);
+    float up = sss_left_at(at + e.yx, edge, erosion, erosion_texture)
+        - sss_left_at(at - e.yx, edge, erosion, erosion_texture);
+    vec2 slope = edge_height * uv_per_unit * vec2(across, up) / (2.0 * texel_size);
+    normal = sss_blend_normals(normal, sss_normal_of_slope(slope));
+    alpha *= sss_left_at(at, edge, erosion, erosion_texture);
+}
+
+// The transmitted light for a lobe value of 0..1 and a transmittance.
+vec3 sss_glow(float lobe, float through, vec3 subsurface_color, float attenuation, float scale,
+    float ambient) {
+    return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
+}
+
+// The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
+vec3 sss_lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion, vec3 subsurface_color,
+    float attenuation, float scale, float ambient, float power) {
+    vec3 bent = sss_safe_normalize(L + N * distortion);
+    return sss_glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, attenuation,
+        scale, ambient);
+}
+
+// The values of the surface that do not depend on a light.
+sss_Surface sss_evaluate_surface(vec2 uv, float time, float variation, float cell_count,
+    float thickness_factor, float bevel, float attenuation_distance, vec4 tint, sampler2D base_color_texture,
+    float metalness, float surface_roughness, float relief, vec2 uv_per_unit, float cover,
+    sampler2D cover_texture, sampler2D packed_texture, vec2 red_speed, vec2 green_speed, vec2 blue_speed,
+    vec3 vein_color, vec3 spark_color, float texel_size, float edge, float erosion,
+    sampler2D erosion_texture, float edge_height) {
+    float thickness = sss_voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
+    float transmittance = sss_beer_lambert(thickness, attenuation_distance);
+    vec3 albedo;
+    float alpha;
+    sss_base_color(uv, albedo, alpha, tint, base_color_texture);
+    float metallic;
+    float roughness;
+    sss_pbr_constants(metallic, roughness, metalness, surface_roughness);
+    vec3 normal = vec3(0.0, 0.0, 1.0);
+    sss_voronoi_normal(uv, normal, variation, cell_count, bevel, relief, uv_per_unit);
+    sss_ice_mask(uv, transmittance, cover, cover_texture);
+    vec3 emission = vec3(0.0);
+    sss_packed_scroll(uv, time, emission, packed_texture, red_speed, green_speed, blue_speed, vein_color,
+        spark_color);
+    sss_alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
+        edge_height);
+    return sss_Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
+}
+
+// The transmitted light of one light, as a factor on its colour.
+vec3 sss_evaluate_translucency(sss_Surface surface, vec3 V, vec3 N, vec3 L, float distortion,
+    vec3 subsurface_color, float attenuation, float scale, float ambient, float power) {
+    return sss_lobe_normalized(V, N, L, surface.transmittance, distortion, subsurface_color, attenuation,
+        scale, ambient, power);
+}
+`;
+
+const WGSL = /* wgsl */ `
+struct sss_Cell {
+    nearest: vec2f,
+    second: vec2f,
+    level: f32,
+}
+
+struct sss_Surface {
+    albedo: vec3f,
+    alpha: f32,
+    normal: vec3f,
+    metallic: f32,
+    roughness: f32,
+    emission: vec3f,
+    transmittance: f32,
+}
+
+const sss_JITTER: f32 = 0.6;
+const sss_OPAQUE_DISTANCE: f32 = 1.0e-6;
+const sss_ENDLESS: f32 = 10000.0;
+const sss_OPAQUE_DEPTH: f32 = 80.0;
+
+// The direction of \`x\`; of a zero vector, 0.
+fn sss_safe_normalize_vec2(x: vec2f) -> vec2f {
+    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+}
+
+// The direction of \`x\`; of a zero vector, 0.
+fn sss_safe_normalize_vec3(x: vec3f) -> vec3f {
+    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+}
+
+// Scrambles the bits of \`x\`; 0 stays 0.
+fn sss_hash_bits(x_in: u32) -> u32 {
+    var x = x_in;
+    x = (x ^ (x >> 16u)) * 0x7feb352du;
+    x = (x ^ (x >> 15u)) * 0x846ca68bu;
+    return x ^ (x >> 16u);
+}
+
+// A number in [0, 1) from 24 bits of the hash of \`x\`.
+fn sss_hash_unit(x: u32) -> f32 {
+    return f32(sss_hash_bits(x) >> 8u) * 5.9604645e-8;
+}
+
+// The cell at \`p\`.
+fn sss_cell_at(p: vec2f, variation: f32) -> sss_Cell {
+    var nearest = vec2f(4.0);
+    var second = vec2f(4.0);
+    // their squared lengths
+    var first_square = 32.0;
+    var second_square = 32.0;
+    var owner = 0u;
+    // relative to the cell's corner, so that precision does not depend on the distance from the origin
+    let home = floor(p);
+    let within = p - home;
+    for (var j = -1; j <= 1; j++) {
+        for (var i = -1; i <= 1; i++) {
+            let offset = vec2f(f32(i), f32(j));
+            let corner = home + offset;
+            let seed = sss_hash_bits(u32(i32(corner.x)) + sss_hash_bits(u32(i32(corner.y)) + 1u));
+            let shift = vec2f(sss_hash_unit(seed + 1u), sss_hash_unit(seed + 2u)) - 0.5;
+            let to_site = offset + 0.5 + sss_JITTER * shift - within;
+            let square = dot(to_site, to_site);
+            if (square < first_square) {
+                second = nearest;
+                second_square = first_square;
+                nearest = to_site;
+                first_square = square;
+                owner = seed;
+            } else if (square < second_square) {
+                second = to_site;
+                second_square = square;
+            }
+        }
+    }
+    let level = 1.0 - variation * sss_hash_unit(owner + 3u);
+    return sss_Cell(nearest, second, level);
+}
+
+// How much farther the second nearest site is than the nearest one: 0 on the edges.
+fn sss_to_edge(cell: sss_Cell) -> f32 {
+    return length(cell.second) - length(cell.nearest);
+}
+
+// Thickness in Voronoi cells: facets with thin edges between them, as in cracked ice.
+fn sss_voronoi_thickness(uv: vec2f, variation: f32, cell_count: f32, thickness_factor: f32,
+    bevel: f32) -> f32 {
+    let cell = sss_cell_at(uv * cell_count, variation);
+    return thickness_factor * cell.level * smoothstep(0.0, bevel, sss_to_edge(cell));
+}
+
+// The thickness \`d\` in mean free paths, 0 or more.
+fn sss_optical_depth(d: f32, mean_free_path: f32) -> f32 {
+    let path = max(mean_free_path, sss_OPAQUE_DISTANCE);
+    return clamp(d, 0.0, sss_ENDLESS * path) / path;
+}
+
+// Thickness to transmittance: the part of the light that absorption leaves.
+fn sss_beer_lambert(d: f32, attenuation_distance: f32) -> f32 {
+    return exp(-min(sss_optical_depth(d, attenuation_distance), sss_OPAQUE_DEPTH));
+}
+
+// Colour and opacity from a texture and a tint.
+fn sss_base_color(uv: vec2f, albedo: ptr<function, vec3f>, alpha: ptr<function, f32>, tint: vec4f,
+    base_color_texture: texture_2d<f32>, base_color_texture_sampler: sampler) {
+    let texel = tint * textureSample(base_color_texture, base_color_texture_sampler, uv);
+    *albedo = texel.xyz;
+    *alpha = texel.w;
+}
+
+// The same metalness and roughness everywhere.
+fn sss_pbr_constants(metallic: ptr<function, f32>, roughness: ptr<function, f32>, metalness: f32,
+    surface_roughness: f32) {
+    *metallic = metalness;
+    *roughness = surface_roughness;
+}
+
+// The gradient of to_edge.
+fn sss_from_edge(cell: sss_Cell) -> vec2f {
+    // the nearest site may be exactly here, the second one cannot: they are at least 0.4 apart
+    return sss_safe_normalize_vec2(cell.nearest) - normalize(cell.second);
+}
+
+// Adds \`detail\` to \`base\`: x and y are added, z is multiplied; for small slopes this adds the slopes.
+fn sss_blend_normals(base: vec3f, detail: vec3f) -> vec3f {
+    return sss_safe_normalize_vec3(vec3f(base.xy + detail.xy, base.z * detail.z));
+}
+
+// The normal of a height field; \`slope\` is the increase in height per unit of length along T and B.
+fn sss_normal_of_slope(slope: vec2f) -> vec3f {
+    return normalize(vec3f(-slope, 1.0));
+}
+
+// The normal of the Voronoi cells, so that reflected light agrees with transmitted light.
+fn sss_voronoi_normal(uv: vec2f, normal: ptr<function, vec3f>, variation: f32, cell_count: f32, bevel: f32,
+    relief: f32, uv_per_unit: vec2f) {
+    let cell = sss_cell_at(uv * cell_count, variation);
+    let x = clamp(sss_to_edge(cell) / bevel, 0.0, 1.0);
+    // the derivative of the smoothstep
+    let steepness = cell.level * 6.0 * x * (1.0 - x) / bevel;
+    let slope = relief * uv_per_unit * cell_count * steepness * sss_from_edge(cell);
+    *normal = sss_blend_normals(*normal, sss_normal_of_slope(slope));
+}
+
+// Only the bare ice transmits light.
+fn sss_ice_mask(uv: vec2f, through: ptr<function, f32>, cover: f32, cover_texture: texture_2d<f32>,
+    cover_texture_sampler: sampler) {
+    let covered = cover * textureSample(cover_texture, cover_texture_sampler, uv).r;
+    *through = *through * smoothstep(0.0, 0.1, 1.0 - covered);
+}
+
+// One moving layer; the offset stays below 1, so that precision does not decrease with time.
+fn sss_layer(uv: vec2f, speed: vec2f, time: f32, packed_texture: texture_2d<f32>,
+    packed_texture_sampler: sampler) -> vec4f {
+    return textureSample(packed_texture, packed_texture_sampler, uv + fract(speed * time));
+}
+
+// Moving light below the surface, from the channels of one texture, each of which scrolls separately.
+fn sss_packed_scroll(uv: vec2f, time: f32, emission: ptr<function, vec3f>, packed_texture: texture_2d<f32>,
+    packed_texture_sampler: sampler, red_speed: vec2f, green_speed: vec2f, blue_speed: vec2f,
+    vein_color: vec3f, spark_color: vec3f) {
+    let veins = sss_layer(uv, red_speed, time, packed_texture, packed_texture_sampler).x
+        * sss_layer(uv, green_speed, time, packed_texture, packed_texture_sampler).y;
+    let sparks = sss_layer(uv, blue_speed, time, packed_texture, packed_texture_sampler).z;
+    *emission = min(*emission + (vein_color * veins + spark_color * sparks), vec3f(65504.0));
+}
+
+// The part of the surface that remains at \`uv\`: 1 = all, 0 = none.
+fn sss_left_at(uv: vec2f, edge: f32, erosion: f32, erosion_texture: texture_2d<f32>,
+    erosion_texture_sampler: sampler) -> f32 {
+    // the threshold goes from below black to white, so that erosion 0 keeps and erosion 1 removes everything
+    let threshold = mix(-edge, 1.0, erosion);
+    return clamp((textureSample(erosion_texture, erosion_texture_sampler, uv).r - threshold) / edge, 0.0,
+        1.0);
+}
+
+// Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
+fn sss_alpha_erosion(uv: vec2f, alpha: ptr<function, f32>, normal: ptr<function, vec3f>, uv_per_unit: vec2f,
+    texel_size: f32, edge: f32, erosion: f32, erosion_texture: texture_2d<f32>,
+    erosion_texture_sampler: sampler, edge_height: f32) {
+    let e = vec2f(texel_size, 0.0);
+    let at = uv;
+    let across = sss_left_at(at + e, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - sss_left_at(at - e, edge, erosion, erosion_texture, erosion_texture_sampler);
+    let up = sss_left_at(at + e.yx, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - sss_left_at(at - e.yx, edge, erosion, erosion_texture, erosion_texture_sampler);
+    let slope = edge_height * uv_per_unit * vec2f(across, up) / (2.0 * texel_size);
+    *normal = sss_blend_normals(*normal, sss_normal_of_slope(slope));
+    *alpha *= sss_left_at(at, edge, erosion, erosion_texture, erosion_texture_sampler);
+}
+
+// The transmitted light for a lobe value of 0..1 and a transmittance.
+fn sss_glow(lobe: f32, through: f32, subsurface_color: vec3f, attenuation: f32, scale: f32,
+    ambient: f32) -> vec3f {
+    return subsurface_color * (attenuation * (lobe * scale + ambient) * through);
+}
+
+// The back-light lobe with a unit half vector: the lobe of Alisavakis and Unity ice, corrected.
+fn sss_lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32, distortion: f32, subsurface_color: vec3f,
+    attenuation: f32, scale: f32, ambient: f32, power: f32) -> vec3f {
+    let bent = sss_safe_normalize_vec3(L + N * distortion);
+    return sss_glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, attenuation,
+        scale, ambient);
+}
+
+// The values of the surface that do not depend on a light.
+fn sss_evaluate_surface(uv: vec2f, time: f32, variation: f32, cell_count: f32, thickness_factor: f32,
+    bevel: f32, attenuation_distance: f32, tint: vec4f, base_color_texture: texture_2d<f32>,
+    base_color_texture_sampler: sampler, metalness: f32, surface_roughness: f32, relief: f32,
+    uv_per_unit: vec2f, cover: f32, cover_texture: texture_2d<f32>, cover_texture_sampler: sampler,
+    packed_texture: texture_2d<f32>, packed_texture_sampler: sampler, red_speed: vec2f, green_speed: vec2f,
+    blue_speed: vec2f, vein_color: vec3f, spark_color: vec3f, texel_size: f32, edge: f32, erosion: f32,
+    erosion_texture: texture_2d<f32>, erosion_texture_sampler: sampler, edge_height: f32) -> sss_Surface {
+    let thickness = sss_voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
+    var transmittance = sss_beer_lambert(thickness, attenuation_distance);
+    var albedo: vec3f;
+    var alpha: f32;
+    sss_base_color(uv, &albedo, &alpha, tint, base_color_texture, base_color_texture_sampler);
+    var metallic: f32;
+    var roughness: f32;
+    sss_pbr_constants(&metallic, &roughness, metalness, surface_roughness);
+    var normal = vec3f(0.0, 0.0, 1.0);
+    sss_voronoi_normal(uv, &normal, variation, cell_count, bevel, relief, uv_per_unit);
+    sss_ice_mask(uv, &transmittance, cover, cover_texture, cover_texture_sampler);
+    var emission = vec3f(0.0);
+    sss_packed_scroll(uv, time, &emission, packed_texture, packed_texture_sampler, red_speed, green_speed,
+        blue_speed, vein_color, spark_color);
+    sss_alpha_erosion(uv, &alpha, &normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
+        erosion_texture_sampler, edge_height);
+    return sss_Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
+}
+
+// The transmitted light of one light, as a factor on its colour.
+fn sss_evaluate_translucency(surface: sss_Surface, V: vec3f, N: vec3f, L: vec3f, distortion: f32,
+    subsurface_color: vec3f, attenuation: f32, scale: f32, ambient: f32, power: f32) -> vec3f {
+    return sss_lobe_normalized(V, N, L, surface.transmittance, distortion, subsurface_color, attenuation,
+        scale, ambient, power);
+}
+`;
+
+/** Babylon takes shaders apart at semicolons, also in comments. */
+const withoutComments = (text) => text.replace(/\/\/.*$/gm, '');
+
+/** What goes into Babylon's shaders, at which of their places: [GLSL, WGSL]. */
+const VERTEX = [{
+  CUSTOM_VERTEX_DEFINITIONS: `
+varying vec2 sss_uv;
+varying vec4 sss_tangent;
+`,
+  CUSTOM_VERTEX_MAIN_END: `
+sss_uv = uvUpdated;
+float sss_turns = sign(dot(finalWorld[0].xyz, cross(finalWorld[1].xyz, finalWorld[2].xyz)));
+#ifdef TANGENT
+sss_tangent = vec4((finalWorld * vec4(tangentUpdated.xyz, 0.0)).xyz, tangentUpdated.w * sss_turns);
+#else
+sss_tangent = vec4(0.0);
+#endif
+`,
+}, {
+  CUSTOM_VERTEX_DEFINITIONS: `
+varying sss_uv: vec2f;
+varying sss_tangent: vec4f;
+`,
+  CUSTOM_VERTEX_MAIN_END: `
+vertexOutputs.sss_uv = uvUpdated;
+var sss_turns: f32 = sign(dot(finalWorld[0].xyz, cross(finalWorld[1].xyz, finalWorld[2].xyz)));
+#ifdef TANGENT
+vertexOutputs.sss_tangent = vec4((finalWorld * vec4(tangentUpdated.xyz, 0.0)).xyz, tangentUpdated.w * sss_turns);
+#else
+vertexOutputs.sss_tangent = vec4(0.0);
+#endif
+`,
+}];
+const FRAGMENT = [{
+  CUSTOM_FRAGMENT_DEFINITIONS: `
+varying vec2 sss_uv;
+varying vec4 sss_tangent;
+uniform highp sampler2D sss_base_color_texture;
+uniform highp sampler2D sss_cover_texture;
+uniform highp sampler2D sss_packed_texture;
+uniform highp sampler2D sss_erosion_texture;
+vec3 sss_N;
+vec3 sss_V;
+vec3 sss_T;
+vec3 sss_B;
+float sss_side;
+${withoutComments(GLSL)}
+sss_Surface sss_surface;
+vec3 sss_unit(vec3 v) {
+  return v * inversesqrt(max(dot(v, v), 1e-30));
+}
+// The tangent and the bitangent: those of the mesh, else from the derivatives of uv.
+void sss_frame() {
+  vec3 first = cross(dFdy(vPositionW), sss_N);
+  vec3 second = cross(sss_N, dFdx(vPositionW));
+  vec2 across = dFdx(sss_uv);
+  vec2 up = dFdy(sss_uv);
+  sss_T = first * across.x + second * up.x;
+  sss_B = first * across.y + second * up.y;
+  float longest = inversesqrt(max(max(dot(sss_T, sss_T), dot(sss_B, sss_B)), 1e-30));
+  sss_T *= longest;
+  sss_B *= longest;
+  if (dot(sss_tangent.xyz, sss_tangent.xyz) > 0.0) {
+    sss_T = sss_unit(sss_tangent.xyz);
+    sss_B = cross(sss_N * sss_side, sss_T) * sss_tangent.w;
+  }
+}
+vec3 sss_through(vec3 L, vec3 N, float sss_light_nearness, vec3 sss_light_color) {
+  return sss_light_color * sss_evaluate_translucency(sss_surface, sss_V, N, L, sss_distortion, sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power);
+}
+`,
+  CUSTOM_FRAGMENT_MAIN_BEGIN: `
+sss_side = 1.0;
+#ifdef TWOSIDEDLIGHTING
+sss_side = gl_FrontFacing ? 1.0 : -1.0;
+#ifdef MIRRORED
+sss_side = -sss_side;
+#endif
+#endif
+#ifdef NORMAL
+sss_N = sss_unit(vNormalW) * sss_side;
+#else
+sss_N = sss_unit(cross(dFdx(vPositionW), dFdy(vPositionW))) * vEyePosition.w;
+#endif
+sss_V = sss_unit(vEyePosition.xyz - vPositionW);
+sss_frame();
+bool sss_pending = false;
+float sss_light_nearness = 0.0;
+vec3 sss_light_color = vec3(0.0);
+vec3 sss_lights = vec3(0.0);
+sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count, sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint, sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief, sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture, sss_red_speed, sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color, sss_texel_size, sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height);
+`,
+  CUSTOM_FRAGMENT_UPDATE_ALBEDO: `
+surfaceAlbedo *= sss_surface.albedo;
+alpha *= sss_surface.alpha;
+`,
+  CUSTOM_FRAGMENT_BEFORE_LIGHTS: `
+normalW = sss_unit((sss_T * sss_surface.normal.x + sss_B * sss_surface.normal.y) * sss_side + sss_N * sss_surface.normal.z);
+`,
+  CUSTOM_FRAGMENT_UPDATE_METALLICROUGHNESS: `
+metallicRoughness.r = sss_surface.metallic;
+metallicRoughness.g = sss_surface.roughness;
+`,
+  // Where Babylon begins a light, the one before it is complete. The light's colour has no shadow: light that comes
+  // through entered on the far side.
+  '!#define CUSTOM_LIGHT(\\d+)_COLOR': `
+if (sss_pending) {
+  sss_lights += sss_through(preInfo.L, normalW, sss_light_nearness / max(preInfo.lightDistance, 0.01), sss_light_color * preInfo.attenuation);
+}
+sss_light_color = diffuse$1.rgb;
+sss_light_nearness = 0.0;
+#if defined(POINTLIGHT$1) || defined(SPOTLIGHT$1)
+sss_light_nearness = 1.0;
+#endif
+sss_pending = true;
+#if defined(HEMILIGHT$1) || defined(AREALIGHT$1) || defined(CLUSTLIGHT$1)
+sss_pending = false;
+#endif
+#define CUSTOM_LIGHT$1_COLOR
+`,
+  CUSTOM_FRAGMENT_BEFORE_FINALCOLORCOMPOSITION: `
+#ifndef UNLIT
+if (sss_pending) {
+  sss_lights += sss_through(preInfo.L, normalW, sss_light_nearness / max(preInfo.lightDistance, 0.01), sss_light_color * preInfo.attenuation);
+}
+finalDiffuse += sss_lights * vLightingIntensity.x / 3.14159265;
+#endif
+finalEmissive += sss_surface.emission * vLightingIntensity.y;
+`,
+}, {
+  CUSTOM_FRAGMENT_DEFINITIONS: `
+varying sss_uv: vec2f;
+varying sss_tangent: vec4f;
+var sss_base_color_textureSampler: sampler;
+var sss_base_color_texture: texture_2d<f32>;
+var sss_cover_textureSampler: sampler;
+var sss_cover_texture: texture_2d<f32>;
+var sss_packed_textureSampler: sampler;
+var sss_packed_texture: texture_2d<f32>;
+var sss_erosion_textureSampler: sampler;
+var sss_erosion_texture: texture_2d<f32>;
+var<private> sss_N: vec3f;
+var<private> sss_V: vec3f;
+var<private> sss_T: vec3f;
+var<private> sss_B: vec3f;
+var<private> sss_side: f32;
+${withoutComments(WGSL)}
+var<private> sss_surface: sss_Surface;
+fn sss_unit(v: vec3f) -> vec3f {
+  return v * inverseSqrt(max(dot(v, v), 1e-30));
+}
+// The tangent and the bitangent: those of the mesh, else from the derivatives of uv.
+fn sss_frame() {
+  var first: vec3f = cross(dpdy(fragmentInputs.vPositionW), sss_N);
+  var second: vec3f = cross(sss_N, dpdx(fragmentInputs.vPositionW));
+  var across: vec2f = dpdx(fragmentInputs.sss_uv);
+  var up: vec2f = dpdy(fragmentInputs.sss_uv);
+  sss_T = first * across.x + second * up.x;
+  sss_B = first * across.y + second * up.y;
+  var longest: f32 = inverseSqrt(max(max(dot(sss_T, sss_T), dot(sss_B, sss_B)), 1e-30));
+  sss_T *= longest;
+  sss_B *= longest;
+  if (dot(fragmentInputs.sss_tangent.xyz, fragmentInputs.sss_tangent.xyz) > 0.0) {
+    sss_T = sss_unit(fragmentInputs.sss_tangent.xyz);
+    sss_B = cross(sss_N * sss_side, sss_T) * fragmentInputs.sss_tangent.w;
+  }
+}
+fn sss_through(L: vec3f, N: vec3f, sss_light_nearness: f32, sss_light_color: vec3f) -> vec3f {
+  return sss_light_color * sss_evaluate_translucency(sss_surface, sss_V, N, L, uniforms.sss_distortion, uniforms.sss_subsurface_color, uniforms.sss_attenuation, uniforms.sss_scale, uniforms.sss_ambient, uniforms.sss_power);
+}
+`,
+  CUSTOM_FRAGMENT_MAIN_BEGIN: `
+sss_side = 1.0;
+#ifdef TWOSIDEDLIGHTING
+sss_side = select(-1.0, 1.0, fragmentInputs.frontFacing);
+#ifdef MIRRORED
+sss_side = -sss_side;
+#endif
+#endif
+#ifdef NORMAL
+sss_N = sss_unit(fragmentInputs.vNormalW) * sss_side;
+#else
+sss_N = sss_unit(cross(dpdx(fragmentInputs.vPositionW), dpdy(fragmentInputs.vPositionW))) * scene.vEyePosition.w;
+#endif
+sss_V = sss_unit(scene.vEyePosition.xyz - fragmentInputs.vPositionW);
+sss_frame();
+var sss_pending: bool = false;
+var sss_light_nearness: f32 = 0.0;
+var sss_light_color: vec3f = vec3f(0.0);
+var sss_lights: vec3f = vec3f(0.0);
+sss_surface = sss_evaluate_surface(fragmentInputs.sss_uv, uniforms.sss_time, uniforms.sss_variation, uniforms.sss_cell_count, uniforms.sss_thickness_factor, uniforms.sss_bevel, uniforms.sss_attenuation_distance, uniforms.sss_tint, sss_base_color_texture, sss_base_color_textureSampler, uniforms.sss_metalness, uniforms.sss_surface_roughness, uniforms.sss_relief, uniforms.sss_uv_per_unit, uniforms.sss_cover, sss_cover_texture, sss_cover_textureSampler, sss_packed_texture, sss_packed_textureSampler, uniforms.sss_red_speed, uniforms.sss_green_speed, uniforms.sss_blue_speed, uniforms.sss_vein_color, uniforms.sss_spark_color, uniforms.sss_texel_size, uniforms.sss_edge, uniforms.sss_erosion, sss_erosion_texture, sss_erosion_textureSampler, uniforms.sss_edge_height);
+`,
+  CUSTOM_FRAGMENT_UPDATE_ALBEDO: `
+surfaceAlbedo *= sss_surface.albedo;
+alpha *= sss_surface.alpha;
+`,
+  CUSTOM_FRAGMENT_BEFORE_LIGHTS: `
+normalW = sss_unit((sss_T * sss_surface.normal.x + sss_B * sss_surface.normal.y) * sss_side + sss_N * sss_surface.normal.z);
+`,
+  CUSTOM_FRAGMENT_UPDATE_METALLICROUGHNESS: `
+metallicRoughness.r = sss_surface.metallic;
+metallicRoughness.g = sss_surface.roughness;
+`,
+  // Where Babylon begins a light, the one before it is complete. The light's colour has no shadow: light that comes
+  // through entered on the far side.
+  '!#define CUSTOM_LIGHT(\\d+)_COLOR': `
+if (sss_pending) {
+  sss_lights += sss_through(preInfo.L, normalW, sss_light_nearness / max(preInfo.lightDistance, 0.01), sss_light_color * preInfo.attenuation);
+}
+sss_light_color = diffuse$1.rgb;
+sss_light_nearness = 0.0;
+#if defined(POINTLIGHT$1) || defined(SPOTLIGHT$1)
+sss_light_nearness = 1.0;
+#endif
+sss_pending = true;
+#if defined(HEMILIGHT$1) || defined(AREALIGHT$1) || defined(CLUSTLIGHT$1)
+sss_pending = false;
+#endif
+#define CUSTOM_LIGHT$1_COLOR
+`,
+  CUSTOM_FRAGMENT_BEFORE_FINALCOLORCOMPOSITION: `
+#ifndef UNLIT
+if (sss_pending) {
+  sss_lights += sss_through(preInfo.L, normalW, sss_light_nearness / max(preInfo.lightDistance, 0.01), sss_light_color * preInfo.attenuation);
+}
+finalDiffuse += sss_lights * uniforms.vLightingIntensity.x / 3.14159265;
+#endif
+finalEmissive += sss_surface.emission * uniforms.vLightingIntensity.y;
+`,
+}];
+
+/** Different for each text: Babylon keeps one program for each name of a plug-in. */
+const KEY = `SssgenIceMaterial${[...GLSL].reduce((hash, letter) => (hash * 31 + letter.charCodeAt(0)) >>> 0, 7)}`;
+
+/** The uniform of a type: its number of floats, and its type in the block. */
+const UNIFORMS = { float: [1, 'float'], vec2: [2, 'vec2'], vec3: [3, 'vec3'], vec4: [4, 'vec4'], mat4: [16, 'mat4'] };
+const kindOf = (type) => (type.startsWith('mat') ? 'mat4' : /\d/.test(type) ? `vec${type.at(-1)}` : 'float');
+
+/** The numbers of a value: a number, a boolean, an array, or one of Babylon's vectors, colours and matrices. */
+const numbersOf = (value) => (typeof value === 'object' ? [...(value.asArray?.() ?? value)].map(Number) : [Number(value)]);
+
+class Plugin extends MaterialPluginBase {
+  constructor(material) {
+    super(material, KEY, 200, undefined, true, true);
+    this.doNotSerialize = true;
+  }
+
+  getClassName() {
+    return KEY;
+  }
+
+  isCompatible() {
+    return true;
+  }
+
+  getUniforms() {
+    const ubo = Object.values(parameters).map(({ name, type }) => [name, kindOf(type)]);
+    ubo.push(['sss_time', 'float']);
+    return {
+      ubo: ubo.map(([name, kind]) => ({ name, size: UNIFORMS[kind][0], type: kind })),
+      fragment: ubo.map(([name, kind]) => `uniform ${kind} ${name};`).join('\n'),
+    };
+  }
+
+  getSamplers(samplers) {
+    samplers.push(...Object.values(textures).map(({ name }) => name));
+  }
+
+  getCustomCode(stage, language) {
+    return (stage === 'vertex' ? VERTEX : FRAGMENT)[language];
+  }
+
+  prepareDefinesBeforeAttributes(defines) {
+    defines._needNormals = true;
+    defines._needUVs = true;
+  }
+
+  getActiveTextures(active) {
+    active.push(...this.used());
+  }
+
+  hasTexture(texture) {
+    return this.used().includes(texture);
+  }
+
+  isReadyForSubMesh() {
+    return this.used().every((texture) => texture.isReadyOrNotBlocking());
+  }
+
+  dispose(forceDisposeTextures) {
+    if (forceDisposeTextures) this.used().forEach((texture) => texture.dispose());
+  }
+
+  used() {
+    return Object.keys(textures).map((name) => this._material[name]);
+  }
+
+  bindForSubMesh(buffer) {
+    const material = this._material;
+    const write = (name, type, numbers) => {
+      const [size] = UNIFORMS[kindOf(type)];
+      if (size === 16) buffer.updateMatrices(name, Float32Array.from(numbers));
+      else buffer[`updateFloat${size === 1 ? '' : size}`](name, ...numbers);
+    };
+    for (const [property, { name, type }] of Object.entries(parameters)) write(name, type, numbersOf(material[property]));
+    for (const [property, { name }] of Object.entries(textures)) buffer.setTexture(name, material[property]);
+    write('sss_time', 'float', [material.time ?? performance.now() / 1000]);
+  }
+}
+
+const TEXELS = { white: [1, 1, 1, 1], black: [0, 0, 0, 1], gray: [0.5, 0.5, 0.5, 1], bump: [0.5, 0.5, 1, 1] };
+const HALVES = { 0: 0, 0.5: 0x3800, 1: 0x3c00 };
+const RGBA = 5, LINEAR = 2, HALF_FLOAT = 2;
+
+/** A texture of one texel, in half floats, which every device filters. */
+function texel({ type, default: name }, scene) {
+  const data = new Uint16Array(TEXELS[name].map((value) => HALVES[value]));
+  return new RawTexture(data, 1, 1, RGBA, scene, false, false, LINEAR, HALF_FLOAT);
+}
+
+/** Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes that melt into it. */
+export class IceMaterial extends PBRMaterial {
+  #values = {
+    variation: 0.6,
+    cellCount: 10.0,
+    thicknessFactor: 0.3,
+    bevel: 0.35,
+    attenuationDistance: 0.25,
+    tint: Vector4.FromArray([0.75, 0.9, 1.0, 1.0]),
+    metalness: 0.0,
+    surfaceRoughness: 0.12,
+    relief: 0.01,
+    uvPerUnit: Vector2.FromArray([1.0, 1.0]),
+    cover: 1.0,
+    redSpeed: Vector2.FromArray([0.02, 0.0]),
+    greenSpeed: Vector2.FromArray([-0.01, 0.015]),
+    blueSpeed: Vector2.FromArray([0.0, -0.025]),
+    veinColor: Color3.FromArray([0.3, 0.8, 1.0]),
+    sparkColor: Color3.FromArray([0.6, 0.9, 1.0]),
+    texelSize: 0.002,
+    edge: 0.15,
+    erosion: 0.2,
+    edgeHeight: 0.02,
+    distortion: 0.2,
+    subsurfaceColor: Color3.FromArray([0.55, 0.85, 1.0]),
+    attenuation: 0.8,
+    scale: 2.0,
+    ambient: 0.12,
+    power: 6.0,
+  };
+  #given = {};
+  #texels = {};
+
+  constructor(values = {}, scene) {
+    super('ice', scene);
+    this.metallic = 0;
+    this.roughness = 1;
+    this.transparencyMode = PBRMaterial.PBRMATERIAL_ALPHATEST;
+    this.alphaCutOff = 0.5;
+    /** In seconds; null: the page's clock. */
+    this.time = null;
+    new Plugin(this);
+    Object.assign(this, values);
+  }
+
+  static {
+    for (const name of Object.keys(parameters)) {
+      Object.defineProperty(this.prototype, name, {
+        get() { return this.#values[name]; },
+        set(value) {
+          const old = this.#values[name];
+          if (typeof old !== 'object') this.#values[name] = value;
+          else if (old instanceof Color3 && typeof value === 'string') old.copyFrom(Color3.FromHexString(value).toLinearSpace());
+          else old.fromArray(numbersOf(value));
+        },
+      });
+    }
+    for (const [name, declared] of Object.entries(textures)) {
+      Object.defineProperty(this.prototype, name, {
+        get() { return this.#given[name] ?? (this.#texels[name] ??= texel(declared, this.getScene())); },
+        set(value) {
+          if (typeof value === 'string') value = new Texture(value, this.getScene(), { useSRGBBuffer: declared.color });
+          if (declared.color && value?.gammaSpace && value.textureType === 0) {
+            console.warn(`ice: ${name} has colours in sRGB: create it with { useSRGBBuffer: true }, or set its URL`);
+          }
+          this.#given[name] = value;
+          this.markAsDirty(PBRMaterial.TextureDirtyFlag);
+        },
+      });
+    }
+  }
+
+  needAlphaTesting() {
+    return super.needAlphaTesting() || this.transparencyMode === PBRMaterial.PBRMATERIAL_ALPHATEST;
+  }
+
+  needAlphaBlending() {
+    return super.needAlphaBlending() || this.transparencyMode === PBRMaterial.PBRMATERIAL_ALPHABLEND;
+  }
+
+  clone(name, cloneTexturesOnlyOnce = true, rootUrl = '') {
+    const options = { cloneTexturesOnlyOnce };
+    const copy = SerializationHelper.Clone(() => new IceMaterial({}, this.getScene()), this, options);
+    Object.assign(copy, { id: name, name });
+    this.stencil.copyTo(copy.stencil);
+    this._clonePlugins(copy, rootUrl);
+    Object.assign(copy, this.#values, this.#given, { time: this.time });
+    return copy;
+  }
+
+  dispose(forceDisposeEffect, forceDisposeTextures, notBoundToMesh) {
+    super.dispose(forceDisposeEffect, forceDisposeTextures, notBoundToMesh);
+    Object.values(this.#texels).forEach((texture) => texture.dispose());
+  }
+}
+
+/** The material. `values` are its parameters, its textures, and the properties of PBRMaterial; `scene`: else the last one. */
+export function createMaterial(values = {}, scene) {
+  return new IceMaterial(values, scene);
+}
