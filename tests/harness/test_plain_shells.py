@@ -12,6 +12,7 @@ import sssgen
 from sssgen.harness import backends
 from sssgen.harness.backends import Array, Backend
 from sssgen.harness.render.scene_render import render
+from sssgen.harness.scenes.environment import read_environment
 from sssgen.harness.scenes.scene_loading import load
 from sssgen.material.library import OF_SHELLS
 from sssgen.material.material_loading import load_material, parse_material
@@ -154,7 +155,6 @@ def test_engines_have_their_own() -> None:
 # A shadow map
 
 SHADOW = '[shadow]\ntechnique = "shadow_map"\n'
-ALL = AGX + SHADOW
 BALL_OVER_FLOOR = """
 [geometry]
 kind = "union"
@@ -239,11 +239,64 @@ def test_wrong_shadows(text: str, message: str) -> None:
     assert [entry.message for entry in caught.value.diagnostics] == [message]
 
 
+# An environment
+
+SKY = '[environment]\ntechnique = "prefiltered_environment"\n'
+ENVIRONMENT = '\n[environment]\nfile = "sky.npy"\nintensity = 1.2\n'
+
+
+def with_sky(folder: Path) -> None:
+    """A picture with a warm sky, a dark ground and a bright spot, row 0 at the top once it is read."""
+    v, u = np.meshgrid((np.arange(128) + 0.5) / 128, (np.arange(256) + 0.5) / 256, indexing="ij")
+    sky = np.stack([1.2 - v, 1.0 - v + 0.2 * u, 0.6 + 0.0 * v], axis=-1) * np.where(v > 0.5, 0.2, 1.0)[..., None]
+    sky += 6.0 * np.exp(-80.0 * ((v - 0.3) ** 2 + (u - 0.7) ** 2))[..., None]
+    np.save(folder / "sky.npy", np.flipud(sky).astype(np.float32))
+
+
+def test_a_polished_metal_shows_the_surroundings(tmp_path: Path) -> None:
+    """Against the picture itself, at the mirrored directions of the pixels of a ball."""
+    with_sky(tmp_path)
+    dark = SCENE.replace("[4.0, 3.6, 3.0]", "[0, 0, 0]").replace("[3.0, 3.0, 4.0]", "[0, 0, 0]")
+    dark = dark.replace("[0.1, 0.12, 0.15]", "[0, 0, 0]") + BALL + ENVIRONMENT
+    head = '[material]\nname = "wax"\n[[surface]]\ntechnique = "base_color"\n[[surface]]\ntechnique = "pbr_constants"\n'
+    metal = f"{head}metalness = 1.0\nsurface_roughness = 0.0\n{SKY}"
+    shown = picture_of(tmp_path, backends.needed("numpy"), metal, dark)[::-1].reshape(-1, 3)
+    (tmp_path / "any.toml").write_text(dark.replace("wax.toml", "ice"), encoding="utf-8")
+    scene = load(str(tmp_path / "any.toml"))
+    environment = read_environment(scene)
+    assert environment is not None and scene.geometry is not None
+    origin, directions = scene.camera.rays(*SIZE)
+    hits = scene.geometry.hits(origin, directions)
+    along = (directions * hits.normal).sum(axis=1, keepdims=True)
+    expected = environment.sky()(directions - 2.0 * along * hits.normal)
+    inside = hits.hit & (along[:, 0] < -0.3)
+    difference = np.abs(shown - expected)[inside]
+    assert np.median(difference) < 0.01 and np.ptp(expected[inside]) > 2.0
+    assert (difference.max(axis=1) > 0.1).mean() < 0.05  # at the picture's horizon
+
+
+def test_without_surroundings_it_adds_nothing(tmp_path: Path) -> None:
+    numpy = backends.needed("numpy")
+    np.testing.assert_array_equal(drawn(tmp_path, numpy, SKY), drawn(tmp_path, numpy, ""))
+
+
 # Everything together
 
 
+ALL = AGX + SHADOW + SKY
+LIT_SCENE = BALL_OVER_FLOOR + ENVIRONMENT
+
+
+@pytest.fixture(scope="module")
+def lit_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One folder for all back ends, so that the surroundings are prefiltered once."""
+    folder = tmp_path_factory.mktemp("lit")
+    with_sky(folder)
+    return folder
+
+
 @pytest.mark.parametrize("name", DRAWING)
-def test_every_back_end_draws_all_of_it(name: str, backend: Callable[[str], Backend], tmp_path: Path) -> None:
-    expected = drawn(tmp_path, backends.needed("numpy"), ALL, BALL_OVER_FLOOR)
-    beyond = np.abs(drawn(tmp_path, backend(name), ALL, BALL_OVER_FLOOR) - expected).max(axis=-1) > 1.0 / 255.0
+def test_every_back_end_draws_all_of_it(name: str, backend: Callable[[str], Backend], lit_folder: Path) -> None:
+    expected = drawn(lit_folder, backends.needed("numpy"), ALL, LIT_SCENE)
+    beyond = np.abs(drawn(lit_folder, backend(name), ALL, LIT_SCENE) - expected).max(axis=-1) > 1.0 / 255.0
     assert beyond.mean() < 0.005  # at the shadow's edge, where rounding decides which texels are compared

@@ -14,6 +14,7 @@ import pytest
 
 from measured_views import SIZE, candidate, chain, small, synthetic_view
 from sssgen.harness.scenes.camera import Camera
+from sssgen.harness.scenes.environment import Environment
 from sssgen.harness.scenes.geometry import Ball, Box, Union
 from sssgen.harness.scenes.scene import Light
 from sssgen.harness.scenes.scene_loading import parse_scene
@@ -37,7 +38,6 @@ from sssgen.lab.measure.measurement import View
 from sssgen.lab.measure.problem import Problem
 from sssgen.lab.reference.inside_lengths import thickness
 from sssgen.lab.scene import measured_scene
-from sssgen.lab.scene.environment import Environment
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.lab.scene.media import Medium
 from sssgen.lab.scene.view_points import points

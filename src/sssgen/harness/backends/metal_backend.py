@@ -91,7 +91,8 @@ def _compiled(compiler: str, source: str) -> tuple[str, Any]:
 
 def _bind(library: Any, number: int, texture: Texture) -> list[Array]:
     """Gives the library a texture; the arrays must live as long as it is read."""
-    sizes = np.array([[*texture.size(level), 1][:3] for level in range(len(texture.levels))], np.int32)
+    last = 6 if texture.dim == "Cube" else 1  # faces, or one layer
+    sizes = np.array([[*texture.size(level), last][:3] for level in range(len(texture.levels))], np.int32)
     texels = np.concatenate([np.asarray(level, np.float32).ravel() for level in texture.levels])
     library.sssgen_texture(
         number, _pointer(texels), _pointer(sizes), len(sizes), int(texture.filter == "linear"),

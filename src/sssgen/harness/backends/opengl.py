@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ctypes
+import ctypes.util
 from collections import OrderedDict
 from collections.abc import Collection, Mapping
 from itertools import count
@@ -160,7 +162,7 @@ class OpenGL(DrawingBackend):
         return name if name in program else ""
 
     def upload(self, data: Texture | Array) -> Any:
-        """A texture with the same filter and wrapping; the driver computes further levels."""
+        """A texture with the same filter and wrapping; the driver computes further levels, but not those of a cube."""
         context = self.context
         if isinstance(data, np.ndarray):
             texture = context.texture((data.shape[1], data.shape[0]), 4, np.ascontiguousarray(data), dtype="u4")
@@ -169,6 +171,8 @@ class OpenGL(DrawingBackend):
         texture = self.depths(data) if data.compare else self.texels(data)
         if len(data.levels) > 1:
             texture.build_mipmaps()
+            if data.dim == "Cube":
+                write_cube_levels(texture.glo, data)
         with_levels, single_level = {
             "linear": (context.LINEAR_MIPMAP_LINEAR, context.LINEAR),
             "nearest": (context.NEAREST_MIPMAP_LINEAR, context.NEAREST),
@@ -199,6 +203,19 @@ class OpenGL(DrawingBackend):
         texture = self.context.depth_texture(data.size(), depths.tobytes())
         texture.compare_func = "<="
         return texture
+
+
+def write_cube_levels(name: int, data: Texture) -> None:
+    """Replaces the levels of a cube map by those of the texture. moderngl writes the first level only."""
+    library: Any = ctypes.CDLL(ctypes.util.find_library("OpenGL") or ctypes.util.find_library("GL") or "opengl32")
+    library.glBindTexture(_CUBE_MAP, name)
+    for number, level in enumerate(data.levels[1:], 1):
+        for face, texels in enumerate(np.ascontiguousarray(level, np.float16)):
+            place = (_POSITIVE_X + face, number, 0, 0, texels.shape[1], texels.shape[0])
+            library.glTexSubImage2D(*place, _RGBA, _HALF_FLOAT, texels.ctypes.data_as(ctypes.c_void_p))
+
+
+_CUBE_MAP, _POSITIVE_X, _RGBA, _HALF_FLOAT = 0x8513, 0x8515, 0x1908, 0x140B
 
 
 def is_loose(member: Any) -> bool:

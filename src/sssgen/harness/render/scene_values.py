@@ -11,12 +11,14 @@ import numpy as np
 from sssgen.harness.evaluate import input_files as inputs
 from sssgen.harness.evaluate.evaluation import half
 from sssgen.harness.render import baked_body
+from sssgen.harness.render.environment_maps import irradiance_map, reflection_map
 from sssgen.harness.render.shell_values import Shell
 from sssgen.harness.scenes.drawn_views import light_depth
+from sssgen.harness.scenes.environment import read_environment
 from sssgen.harness.scenes.geometry import Geometry
 from sssgen.harness.scenes.light_view import LightView
 from sssgen.harness.scenes.scene import DistanceTexture, Picture, Scene, placement
-from sssgen.ir.drawn import DISTANT_VIEWS, LAYERS, LIGHT_VIEWS
+from sssgen.ir.drawn import CUBES, DISTANT_VIEWS, IRRADIANCE, LAYERS, LIGHT_VIEWS, REFLECTIONS
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import with_article
 from sssgen.material import baked
@@ -34,7 +36,9 @@ def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) ->
         [*light.position, 1.0] if light.position else [*(light.direction or ()), 0.0] for light in scene.lights
     ]
     views = _light_views(scene, material, reflection, positions)
-    parameters = _parameters(scene, material, reflection, views)
+    surroundings = _surroundings(scene, material, reflection)
+    maps = surroundings | {name: texture for name, (_, texture) in views.items()}
+    parameters = _parameters(scene, material, reflection, views, maps)
     if any(uniform["source_name"] == "aspect" for uniform in reflection["uniforms"]):  # of a camera in the chain
         parameters.setdefault("aspect", (scene.size[0] / scene.size[1],))
     return Shell(
@@ -46,7 +50,7 @@ def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) ->
         light_colors=np.array([light.color for light in scene.lights], float).reshape(-1, 3),
         model=scene.geometry.to_world() if scene.geometry else np.eye(4),
         parameters=parameters,
-        textures=_textures(scene, material, reflection, views),
+        textures=_textures(scene, material, reflection, maps),
     )
 
 
@@ -72,19 +76,34 @@ def _light_views(
     return views
 
 
+def _surroundings(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, Texture]:
+    """The cube maps of the scene's [environment], by the hint `drawn`."""
+    if "environment" not in scene.measured:
+        return {}
+    makers = {IRRADIANCE: irradiance_map, REFLECTIONS: reflection_map}
+    asked = {texture["drawn"] for texture in reflection["textures"] if not _file(scene, material, texture)}
+    needed = [(name, maker) for name, maker in makers.items() if name in asked]
+    environment = read_environment(scene) if needed else None
+    scene.document.reporter.check()
+    return {name: half(maker(environment)) for name, maker in needed} if environment is not None else {}
+
+
 def _parameters(
     scene: Scene,
     material: Material,
     reflection: Mapping[str, Any],
     views: Mapping[str, tuple[LightView, Texture]],
+    maps: Mapping[str, Texture],
 ) -> dict[str, tuple[float, ...]]:
     """The scene's values for the material's uniforms, with the same checks as in a material."""
     uniforms = {uniform["source_name"]: uniform for uniform in reflection["uniforms"]}
     document, values = scene.document, _baked_parameters(scene, material, reflection)
     for name, uniform in uniforms.items():
-        if uniform["drawn"] in views:
-            view, map_ = views[uniform["drawn"]]
-            values[name] = (*view.matrix.T.ravel(),) if uniform["type"] == "mat4" else (float(map_.size()[0]),)
+        drawn = uniform["drawn"]
+        if drawn in views and uniform["type"] == "mat4":
+            values[name] = (*views[drawn][0].matrix.T.ravel(),)
+        elif drawn in maps:
+            values[name] = (len(maps[drawn].levels) - 1.0 if drawn in CUBES else float(maps[drawn].size()[0]),)
     for name, raw in scene.parameters.items():
         place = document.place("parameters", name)
         if name not in uniforms:
@@ -201,7 +220,7 @@ def _textures(
     scene: Scene,
     material: Material,
     reflection: Mapping[str, Any],
-    views: Mapping[str, tuple[LightView, Texture]],
+    maps: Mapping[str, Texture],
 ) -> dict[str, Texture]:
     """The scene's textures; for the others those that the material suggests, or that the program draws."""
     entries = {texture["source_name"]: texture for texture in reflection["textures"]}
@@ -218,8 +237,8 @@ def _textures(
                 raise failure(f"texture '{name}' is the distance to the scene's geometry, but the scene has none")
             textures[name] = half(Texture(chosen.values(scene.geometry), wrap="clamp"))
         elif not (file := _file(scene, material, texture)):
-            if texture["drawn"] in views:
-                textures[name] = views[texture["drawn"]][1]
+            if texture["drawn"] in maps:
+                textures[name] = maps[texture["drawn"]]
         else:
             wrap = getattr(chosen, "wrap", "") or str(texture["import"]["wrap"])
             textures[name] = _picture(file, wrap, texture)

@@ -19,7 +19,7 @@ from sssgen.support.paths import posix
 from sssgen.support.toml_source import Document, Path
 
 MEASURED = ("title", "medium", "inlay", "environment")
-"""Keys that describe the physical scene: for measuring materials, not for drawing."""
+"""Keys that describe the physical scene, for measuring materials; shells with an environment draw with its key."""
 
 _KEYS = (
     "material", "size", "samples", "time", "background", "ambient", "exposure",

@@ -16,13 +16,13 @@ import numpy as np
 
 from sssgen.harness.scenes.body_identity import contents
 from sssgen.harness.scenes.camera import Camera
+from sssgen.harness.scenes.environment import Environment, read_environment
 from sssgen.harness.scenes.geometry import Geometry
 from sssgen.harness.scenes.scene import Light, Scene
 from sssgen.harness.scenes.scene_loading import load as load_scene
 from sssgen.harness.scenes.toml_table import NOT_NEGATIVE, POSITIVE, Table
 from sssgen.lab.jobs.result_store import encoded
 from sssgen.lab.scene import media
-from sssgen.lab.scene.environment import Environment, read_environment
 from sssgen.lab.scene.media import Medium
 from sssgen.support import cache
 from sssgen.support.diagnostics import did_you_mean, failure

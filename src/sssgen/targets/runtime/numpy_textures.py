@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 from typing import Any, NamedTuple, TypeAlias
 
@@ -39,7 +40,7 @@ class Texture:
     channels) with the faces +x, -x, +y, -y, +z, -z; row 0 is at v = 0. With `layers`, the first axis is for them.
     Missing channels read as 0, alpha as 1.
     Texel i of N has its centre at (i + 0.5)/N. `filter` is linear or nearest; `wrap` is repeat, clamp or mirror (a cube
-    wraps over its edges; at a corner one of the three faces gives the missing texel). With `mipmaps`, each level is
+    wraps over its edges; at a corner the missing texel is the mean of the other three). With `mipmaps`, each level is
     box-filtered from the previous one, and reads blend the two nearest levels; without, there is only level 0.
     Samples have the floating-point type of the coordinate. `kind` is that of the texels: float, or int or uint, which
     are only fetched. With `compare`, a read compares: 1 where the reference is at most the texel's first channel, else
@@ -76,6 +77,15 @@ class Texture:
         self.levels = [filled]
         while mipmaps and max(self.size(len(self.levels) - 1)) > 1:
             self.levels.append(self._halve(self.levels[-1]))
+
+    @classmethod
+    def of_levels(
+        cls, levels: Sequence[npt.ArrayLike], filter: str = "linear", wrap: str = "repeat", dim: str = ""
+    ) -> Texture:
+        """A texture whose levels are given, each with half the side of the one before."""
+        each = [cls(level, filter, wrap, dim) for level in levels]
+        each[0].levels = [texture.levels[0] for texture in each]
+        return each[0]
 
     @property
     def axes(self) -> int:
@@ -166,11 +176,15 @@ class Texture:
         if self.filter == "nearest":
             return self._corner(level, low, (0,) * len(base), face, read)
         result = np.zeros((4, *coord.shape[1:]), coord.dtype)
-        for corner in product((0, 1), repeat=len(base)):
+        corners = list(product((0, 1), repeat=len(base)))
+        values = [self._corner(level, low, corner, face, read) for corner in corners]
+        if face is not None:
+            values = _with_cube_corners(values, corners, low, size[0])
+        for corner, value in zip(corners, values, strict=True):
             weight = np.ones((), coord.dtype)
             for b, p, bit in zip(base, low, corner, strict=True):
                 weight = weight * (b - p if bit else 1.0 - (b - p))
-            result = result + weight * self._corner(level, low, corner, face, read)
+            result = result + weight * value
         return result
 
     def _corner(self, level: int, low: list[Array], corner: tuple[int, ...], face: Array | None, read: _Read) -> Array:
@@ -212,6 +226,16 @@ class Texture:
         return data
 
 
+def cube_directions(side: int) -> Array:
+    """The unit directions of the texels' centres of a cube map, (6, side, side, 3)."""
+    at = (2.0 * np.arange(side) + 1.0) / side - 1.0
+    t, s = np.meshgrid(at, at, indexing="ij")
+    along = _FACES.astype(np.float64)[:, :, None, None, :]
+    ways = along[:, 0] * s[..., None] + along[:, 1] * t[..., None] + along[:, 2]
+    result: Array = ways / np.linalg.norm(ways, axis=-1, keepdims=True)
+    return result
+
+
 def _integers(number: Array) -> Array:
     """Whole floats as integers; NaN gives 0."""
     return np.nan_to_num(number).astype(np.int64)
@@ -223,6 +247,16 @@ def _project(direction: Array) -> tuple[Array, Array]:
     face = np.argmax(np.nan_to_num(along[:, 2]), axis=0)
     s, t, m = np.take_along_axis(along, face[None, None], axis=0)[0]
     return face, np.stack([s / m, t / m]) * 0.5 + 0.5
+
+
+def _with_cube_corners(values: list[Array], corners: list[tuple[int, ...]], low: list[Array], size: int) -> list[Array]:
+    """The texels of a filter; one beyond a corner of the cube, where three faces meet, is the mean of the others."""
+    total = sum(values[1:], values[0])
+    filled = []
+    for value, corner in zip(values, corners, strict=True):
+        beyond = [(p + bit < 0) | (p + bit >= size) for p, bit in zip(low, corner, strict=True)]
+        filled.append(np.where(beyond[0] & beyond[1], (total - value) / 3.0, value).astype(value.dtype))
+    return filled
 
 
 def _over_edges(places: list[Array], size: int, face: Array) -> list[Array]:
