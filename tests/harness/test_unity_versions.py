@@ -160,6 +160,32 @@ def test_the_version_of_a_folder(tmp_path: Path) -> None:
         assert unity.version_of(tmp_path) == version
 
 
+# --- the file for Shader Graph
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "job"),
+    [
+        ("#elif defined(UNIVERSAL_LIGHTING_INCLUDED)", "#elif 1 // UNIVERSAL_LIGHTING_INCLUDED", "HDRP"),
+        ("GetMeshRenderingLayer()", "missing()", "functions"),
+        ("URP_FP_DIRECTIONAL_LIGHTS_COUNT", "missing", "functions"),
+    ],
+)
+def test_a_graph_is_compiled_for_each_pipeline(
+    right: str, wrong: str, job: str, of_version: Callable[[int], unity.Unity], tmp_path: Path
+) -> None:
+    """HDRP's graphs have no lights, so a text that reads them fails there only."""
+    (tmp_path / "leaf.toml").write_text(LEAF, encoding="utf-8")
+    compiled = sssgen.compile(str(tmp_path / "leaf.toml"), "unity-shadergraph")
+    text = compiled.files["leaf.unity-shadergraph.hlsl"]
+    assert right in text
+    found = of_version(NEWEST).check(
+        Source(text.replace(right, wrong), "unity-shadergraph", "library", name="leaf.hlsl")
+    )
+    assert found
+    assert all(f"{job}:" in message.text for message in found)
+
+
 # --- drawn with the stand-in headers
 
 

@@ -29,7 +29,9 @@ def emitted(source: str, folder: Path, target: str, form: str) -> tuple[list[str
         files = sssgen.compile(str(path), target, form).files
     except UnsupportedError as error:
         return [entry.message for entry in error.diagnostics], False
-    return [line for file, text in files.items() if not file.endswith(".json") for line in text.splitlines()], True
+    # a sub-graph for Unity is JSON, in which every line differs: it has tests of its own
+    shown = [text for file, text in files.items() if not file.endswith((".json", ".shadersubgraph"))]
+    return [line for text in shown for line in text.splitlines()], True
 
 
 def differences(before: str, after: str, folder: Path, target: str, form: str) -> str:

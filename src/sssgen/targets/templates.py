@@ -73,7 +73,7 @@ def _environment(templates: str | None, folder: str) -> Environment:
         users = [templates] if templates is not None else []
         cached = cache.folder()
         pattern = f"{Chosen.__name__.lower()}_%s.cache"
-        _environments[key] = Chosen(
+        environment = Chosen(
             loader=FileSystemLoader([*users, os.path.join(folder, "templates"), place("templates")]),
             undefined=StrictUndefined,
             trim_blocks=True,
@@ -82,4 +82,13 @@ def _environment(templates: str | None, folder: str) -> Environment:
             bytecode_cache=FileSystemBytecodeCache(cached, pattern) if cached else None,
             auto_reload=templates is not None,
         )
+        environment.filters["digest"] = _digest
+        _environments[key] = environment
     return _environments[key]
+
+
+def _digest(text: str) -> str:
+    """32 hexadecimal digits that follow from a text: an identifier that is the same each time."""
+    from hashlib import blake2b
+
+    return blake2b(text.encode(), digest_size=16).hexdigest()

@@ -35,6 +35,7 @@ HEADERS = "CGIncludes/ and Packages/com.unity.render-pipelines.*/"
 _URP = "Packages/com.unity.render-pipelines.universal/ShaderLibrary/"
 _CORE = "Packages/com.unity.render-pipelines.core/ShaderLibrary/"
 _GRAPH = "Packages/com.unity.shadergraph/ShaderGraphLibrary/"
+_HDRP = "Packages/com.unity.render-pipelines.high-definition/Runtime/ShaderLibrary/"
 
 # The headers that the editor includes implicitly: in CGPROGRAM, and around a surface function.
 _CG_HEADERS = ("HLSLSupport.cginc", "UnityShaderVariables.cginc", "UnityShaderUtilities.cginc")
@@ -42,10 +43,15 @@ _SURFACE_HEADERS = ("UnityCG.cginc", "Lighting.cginc", "UnityPBSLighting.cginc",
 _LIBRARY_HEADERS = {
     "unity-builtin": (*_CG_HEADERS, *_SURFACE_HEADERS),
     "unity-urp": (_URP + "Core.hlsl", _URP + "Lighting.hlsl"),
-    # in a graph's own pass, and in the preview on a node
+    # in a graph's own pass in URP and in HDRP, and in the preview on a node
     "unity-shadergraph": (
         *(_CORE + name for name in ("Color.hlsl", "Texture.hlsl")),
         *(_URP + name for name in ("Core.hlsl", "Lighting.hlsl", "ShaderGraphFunctions.hlsl")),
+    ),
+    "high definition": (
+        *(f"{_CORE}{name}.hlsl" for name in ("Common", "Packing", "Color", "Texture", "UnityInstancing")),
+        _HDRP + "ShaderVariables.hlsl",
+        _GRAPH + "Functions.hlsl",
     ),
     "preview": (
         *(f"{_CORE}{name}.hlsl" for name in ("Common", "Packing", "Color", "Texture", "UnityInstancing")),
@@ -65,6 +71,8 @@ OLDEST = 202120
 # instanced matrices get this name. The same is impossible for the built-in pipeline's headers: its shaders
 # are compiled without instancing.
 _INSTANCED = "UNITY_BUILTINS_WITH_WORLDTOOBJECTARRAYArray=unity_Builtins0Array"
+# The keywords of lists of lights per part of the screen; those of other versions do nothing.
+_CLUSTERS = ("_CLUSTERED_RENDERING", "_FORWARD_PLUS", "_CLUSTER_LIGHT_LOOP")
 # The passes of a surface shader that is lit forward, without and with shadows.
 _SURFACE_PASSES = (
     ("UNITY_PASS_FORWARDBASE=1", "DIRECTIONAL=1"),
@@ -175,18 +183,29 @@ class Unity(Compiler):
         return messages
 
     def _library_jobs(self, source: Source) -> Iterator[_Job]:
-        """Functions to paste, called once each; a Shader Graph include also as the node's preview compiles it."""
+        """Functions to paste, called once each.
+
+        A Shader Graph include also as the node's preview and HDRP compile it; a graph sees no lights in HDRP, so that a
+        text which reads them everywhere is one for URP.
+        """
         language = source.language
         builtin = language == "unity-builtin"
         code = f'#line 1 "{_TEXT}"\n' + hlsl_entry(source.text, opaque=_GRAPH_TEXTURES)
         macros: tuple[str, ...] = (*_BUILTIN_MACROS, *_SURFACE_PASSES[0]) if builtin else self._urp_macros()
-        if language == "unity-shadergraph":
-            macros += ("SHADERGRAPH_TARGET=1", "_MAIN_LIGHT_SHADOWS=1", "_ADDITIONAL_LIGHTS=1")
-        entry = glslang.LIBRARY_ENTRY
-        yield _Job("functions", _LIBRARY_HEADERS[language], macros, code, "fragment", entry, builtin)
-        if language == "unity-shadergraph" and self._has_preview():
-            macros = (*self._urp_macros(), "SHADERGRAPH_PREVIEW=1")
-            yield _Job("preview", _LIBRARY_HEADERS["preview"], macros, code, "fragment", entry, builtin)
+        entry, headers = glslang.LIBRARY_ENTRY, _LIBRARY_HEADERS[language]
+        if language != "unity-shadergraph":
+            yield _Job("functions", headers, macros, code, "fragment", entry, builtin)
+            return
+        graph = (*macros, "SHADERGRAPH_TARGET=1", "_MAIN_LIGHT_SHADOWS=1", "_LIGHT_COOKIES=1", "_LIGHT_LAYERS=1")
+        for keyword in ("_ADDITIONAL_LIGHTS", *_CLUSTERS):
+            yield _Job("functions", headers, (*graph, f"{keyword}=1"), code, "fragment", entry, builtin)
+        if self._has(_GRAPH + "ShaderVariables.hlsl"):
+            preview = (*macros, "SHADERGRAPH_PREVIEW=1")
+            yield _Job("preview", _LIBRARY_HEADERS["preview"], preview, code, "fragment", entry, builtin)
+        urp_only = "GetMainLight" in source.text and "UNIVERSAL_LIGHTING_INCLUDED" not in source.text
+        if self._has(_HDRP + "ShaderVariables.hlsl") and not urp_only:
+            hdrp = _LIBRARY_HEADERS["high definition"]
+            yield _Job("HDRP", hdrp, (*macros, "SHADERGRAPH_TARGET=1"), code, "fragment", entry, builtin)
 
     def _program_jobs(self, program: shaderlab.Program, language: str) -> Iterator[_Job]:
         builtin = language == "unity-builtin"
@@ -220,8 +239,8 @@ class Unity(Compiler):
     def _urp_macros(self) -> tuple[str, ...]:
         return (*_URP_MACROS, f"UNITY_VERSION={self.unity_version}")
 
-    def _has_preview(self) -> bool:
-        return (self.root / _GRAPH / "ShaderVariables.hlsl").is_file()
+    def _has(self, header: str) -> bool:
+        return (self.root / header).is_file()
 
     def _run(self, jobs: Iterator[_Job]) -> list[Message]:
         unique: dict[tuple[int, int, str], Message] = {}

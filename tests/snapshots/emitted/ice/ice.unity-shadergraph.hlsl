@@ -1,9 +1,10 @@
 // Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
 // that melt into it.
 // Made by sssgen for Unity Shader Graph, Custom Function. Change the material and emit it again rather than this file.
-// A Custom Function node of Type "File": Name Ice, Source this file, and these ports in this order.
+// ice.unity-shadergraph.shadersubgraph has a Custom Function node of this file, with all ports connected.
+// By hand: a Custom Function node of Type "File": Name Ice, Source this file, and these ports in this order.
 //   uv: UV
-//   P: Position, World
+//   P: Position, Absolute World
 //   N: Normal Vector, World
 //   T: Tangent Vector, World
 //   B: Bitangent Vector, World
@@ -260,6 +261,20 @@ float3 unit_vector(float3 v) {
     return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
 }
 
+// 1 for a light of the object's rendering layers, else 0.
+float in_layers(uint light_layers) {
+#if defined(_LIGHT_LAYERS)
+#if UNITY_VERSION >= 202220
+    uint layers = GetMeshRenderingLayer();
+#else
+    uint layers = GetMeshRenderingLightLayer();
+#endif
+    return IsMatchingLightLayer(light_layers, layers) ? 1.0 : 0.0;
+#else
+    return 1.0;
+#endif
+}
+
 void Ice_float(
     float2 uv,
     float3 P,
@@ -308,7 +323,8 @@ void Ice_float(
     out float Smoothness,
     out float Occlusion,
     out float3 Emission,
-    out float Alpha) {
+    out float Alpha,
+    out float Transmittance) {
     V = unit_vector(V);
     N = unit_vector(N);
     Surface surface = evaluate_surface(uv, time, variation, cell_count, thickness_factor, bevel, attenuation_distance, tint, base_color_texture, base_color_texture_sampler, metalness, surface_roughness, relief, uv_per_unit, cover, cover_texture, cover_texture_sampler, packed_texture, packed_texture_sampler, red_speed, green_speed, blue_speed, vein_color, spark_color, texel_size, edge, erosion, erosion_texture, erosion_texture_sampler, edge_height);
@@ -320,26 +336,43 @@ void Ice_float(
     Occlusion = 1.0;
     Emission = surface.emission;
     Alpha = surface.alpha;
+    Transmittance = surface.transmittance;
 
-    // Goes to Emission, without shadow: light that comes through entered on the far side, in the object's own shadow.
+    // Goes to Emission, without shadow: light that comes through entered on the far side, in the object's own shadow. In URP
+    // only: in HDRP a graph does not see lights.
 #if defined(SHADERGRAPH_PREVIEW)
     float3 L = normalize(float3(0.5, 0.5, -0.5));
     float3 light_color = 1.0;
     Emission += evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power) * light_color;
-#else
-    Light light = GetMainLight();
+#elif defined(UNIVERSAL_LIGHTING_INCLUDED)
+    half4 no_mask = half4(1.0, 1.0, 1.0, 1.0);
+    Light light = GetMainLight(TransformWorldToShadowCoord(P), P, no_mask);  // with its cookie
     float3 L = light.direction;
-    float3 light_color = light.color * light.distanceAttenuation;
+    float3 light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
     Emission += evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power) * light_color;
 #if defined(_ADDITIONAL_LIGHTS)
     InputData inputData = (InputData)0;
     inputData.positionWS = P;
     inputData.normalizedScreenSpaceUV = ComputeNormalizedDeviceCoordinates(P, GetWorldToHClipMatrix());
+#if USE_CLUSTER_LIGHT_LOOP || USE_FORWARD_PLUS || USE_CLUSTERED_LIGHTING
+    // The loop below has the lights near this part of the screen; directional ones come first in the array.
+#if USE_CLUSTERED_LIGHTING
+    uint directional_count = min(_AdditionalLightsDirectionalCount, MAX_VISIBLE_LIGHTS);
+#else
+    uint directional_count = min(URP_FP_DIRECTIONAL_LIGHTS_COUNT, MAX_VISIBLE_LIGHTS);
+#endif
+    for (uint number = 0u; number < directional_count; number++) {
+        light = GetAdditionalLight(number, P, no_mask);
+        L = light.direction;
+        light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
+        Emission += evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power) * light_color;
+    }
+#endif
     uint light_count = GetAdditionalLightsCount();
     LIGHT_LOOP_BEGIN(light_count)
-        light = GetAdditionalLight(lightIndex, P);
+        light = GetAdditionalLight(lightIndex, P, no_mask);
         L = light.direction;
-        light_color = light.color * light.distanceAttenuation;
+        light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
         Emission += evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power) * light_color;
     LIGHT_LOOP_END
 #endif
@@ -394,8 +427,9 @@ void Ice_half(
     out half Smoothness,
     out half Occlusion,
     out half3 Emission,
-    out half Alpha) {
-    Ice_float(uv, P, N, T, B, V, time, variation, cell_count, thickness_factor, bevel, attenuation_distance, tint, metalness, surface_roughness, relief, uv_per_unit, cover, red_speed, green_speed, blue_speed, vein_color, spark_color, texel_size, edge, erosion, edge_height, distortion, subsurface_color, attenuation, scale, ambient, power, base_color_texture, base_color_texture_sampler, cover_texture, cover_texture_sampler, packed_texture, packed_texture_sampler, erosion_texture, erosion_texture_sampler, BaseColor, NormalTS, Metallic, Smoothness, Occlusion, Emission, Alpha);
+    out half Alpha,
+    out half Transmittance) {
+    Ice_float(uv, P, N, T, B, V, time, variation, cell_count, thickness_factor, bevel, attenuation_distance, tint, metalness, surface_roughness, relief, uv_per_unit, cover, red_speed, green_speed, blue_speed, vein_color, spark_color, texel_size, edge, erosion, edge_height, distortion, subsurface_color, attenuation, scale, ambient, power, base_color_texture, base_color_texture_sampler, cover_texture, cover_texture_sampler, packed_texture, packed_texture_sampler, erosion_texture, erosion_texture_sampler, BaseColor, NormalTS, Metallic, Smoothness, Occlusion, Emission, Alpha, Transmittance);
 }
 
 #endif

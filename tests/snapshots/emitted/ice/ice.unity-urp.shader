@@ -381,19 +381,18 @@ Shader "sssgen/Ice (URP)" {
             #pragma multi_compile_instancing
             #pragma instancing_options renderinglayer
 
-            // Without shadow; 0 for a light of other rendering layers than the object's.
-            float3 incoming_light(Light light) {
+            // 1 for a light of the object's rendering layers, else 0.
+            float in_layers(uint light_layers) {
             #if defined(_LIGHT_LAYERS)
             #if UNITY_VERSION >= 202220
                 uint layers = GetMeshRenderingLayer();
             #else
                 uint layers = GetMeshRenderingLightLayer();
             #endif
-                if (!IsMatchingLightLayer(light.layerMask, layers)) {
-                    return float3(0.0, 0.0, 0.0);
-                }
+                return IsMatchingLightLayer(light_layers, layers) ? 1.0 : 0.0;
+            #else
+                return 1.0;
             #endif
-                return light.color * light.distanceAttenuation;
             }
 
             float4 frag(Varyings input) : SV_Target {
@@ -437,7 +436,7 @@ Shader "sssgen/Ice (URP)" {
                 // beyond the object, where only the shadows of others are.
                 // With the light's cookie.
                 Light light = GetMainLight(inputData.shadowCoord, input.positionWS, inputData.shadowMask);
-                float3 light_color = incoming_light(light);
+                float3 light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
             #if !defined(_MAIN_LIGHT_SHADOWS_SCREEN)
                 if (_TransmissionShadowOffset > 0.0) {
                     float3 beyond = input.positionWS + light.direction * _TransmissionShadowOffset;
@@ -455,14 +454,14 @@ Shader "sssgen/Ice (URP)" {
             #endif
                 for (uint number = 0u; number < directional_count; number++) {
                     light = GetAdditionalLight(number, input.positionWS, inputData.shadowMask);
-                    light_color = incoming_light(light);
+                    light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
                     color.rgb += evaluate_translucency(surface, V, N, light.direction) * light_color;
                 }
             #endif
                 uint light_count = GetAdditionalLightsCount();
                 LIGHT_LOOP_BEGIN(light_count)
                     light = GetAdditionalLight(lightIndex, input.positionWS, inputData.shadowMask);
-                    light_color = incoming_light(light);
+                    light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
                     color.rgb += evaluate_translucency(surface, V, N, light.direction) * light_color;
                 LIGHT_LOOP_END
             #endif

@@ -1,6 +1,7 @@
 // Stand-in (see the README above): the lights, and the standard lighting.
 #ifndef SSSGEN_STANDIN_LIGHTING
 #define SSSGEN_STANDIN_LIGHTING
+#define UNIVERSAL_LIGHTING_INCLUDED
 #include "Packages/com.unity.render-pipelines.universal/ShaderLibrary/Core.hlsl"
 #include "Packages/com.unity.render-pipelines.core/ShaderLibrary/CommonMaterial.hlsl"
 #include "Packages/com.unity.render-pipelines.universal/ShaderLibrary/SurfaceData.hlsl"
