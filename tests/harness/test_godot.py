@@ -13,7 +13,16 @@ import pytest
 
 import sssgen
 from folders import ROOT
-from godot_scenes import MESHES, THROUGH, WHOLE, back_face_deviation, deviation, standard_material_deviation
+from godot_scenes import (
+    MESHES,
+    THROUGH,
+    WHOLE,
+    back_face_deviation,
+    deviation,
+    layered_deviation,
+    standard_material_deviation,
+    vertex_deviation,
+)
 from pitfall_cases import program
 from sssgen.harness.backends.godot_drawing import RENDERERS
 from sssgen.harness.check.compiler_inputs import sources
@@ -175,3 +184,19 @@ def test_reflected_light_is_that_of_the_standard_material(
 def test_back_faces_have_the_reversed_normal(renderer: str, compiler: Callable[[str], Compiler]) -> None:
     compiler(GODOT)
     assert back_face_deviation(renderer).max() <= 1.0 / 255.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("renderer", RENDERERS)
+@pytest.mark.parametrize("role", ["lighting", "translucency"])
+def test_values_of_the_vertices(role: str, renderer: str, compiler: Callable[[str], Compiler]) -> None:
+    """Godot's meshes have colours of 8 bits."""
+    compiler(GODOT)
+    assert vertex_deviation(renderer, role).max() <= 1.0 / 255.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("renderer", RENDERERS)
+def test_specular_level_and_clear_coat_are_godots(renderer: str, compiler: Callable[[str], Compiler]) -> None:
+    compiler(GODOT)
+    assert layered_deviation(renderer).max() <= 1.0 / 255.0

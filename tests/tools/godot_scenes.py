@@ -14,7 +14,7 @@ import numpy as np
 import sssgen
 from folders import ROOT
 from sssgen.harness import backends
-from sssgen.harness.backends import Array
+from sssgen.harness.backends import VERTEX_SIZE, Array
 from sssgen.harness.backends.godot_drawing import Godot, View
 from sssgen.harness.pictures.images import encode_srgb
 from sssgen.harness.render import godot_values, scene_render, shade_numpy
@@ -163,9 +163,85 @@ def back_face_deviation(renderer: str) -> Array:
     return np.abs(back - front)
 
 
-def _emitted(material: str, file: str) -> str:
+_PAINTED = """
+[material]
+name = "painted"
+shading = "{shading}"
+[[{role}]]
+technique = "shown.sss"
+"""
+_SHOWN = """
+/** Shows values of the mesh.
+role: {role}
+*/
+vec3 shown(vec4 vertex_color, uv_position uv2, object_position P_object, world_direction N, world_direction L)
+{{
+    vec3 p = vec3(P_object);
+    return 0.6 * ({value}) * (0.5 + 0.2 * dot(N, L));
+}}
+"""
+_VALUES = ("vertex_color.rgb * vertex_color.a + vec3(0.4 * uv2, 0.0)",
+           "(0.5 + 0.4 * p) * (0.7 + 0.2 * p.x) + vec3(0.2 + 0.12 * p.xy, 0.0)")  # fmt: skip
+
+
+def vertex_deviation(renderer: str, role: str) -> Array:
+    """Colours and second coordinates of a ball's vertices, beside the same numbers computed from the position."""
+    shading = "unlit" if role == "lighting" else "lit"
+    godot, view = Godot(renderer), _view(*_ball(96))
+    read, computed = (
+        np.clip(godot.draw(_emitted(
+            _PAINTED.format(shading=shading, role=role), "painted.gdshader", _SHOWN.format(role=role, value=value)
+        ), view, {}, {}), 0.0, 1.0)
+        for value in _VALUES
+    )  # fmt: skip
+    assert read[..., :3].max() > 0.3
+    return np.abs(read - computed)
+
+
+_LAYERED = """
+[material]
+name = "layered"
+[[surface]]
+technique = "base_color"
+tint = [0.6, 0.3, 0.1, 1.0]
+[[surface]]
+technique = "pbr_constants"
+surface_roughness = 0.7
+[[surface]]
+technique = "specular_level"
+dielectric_specular = 0.9
+[[surface]]
+technique = "clearcoat_constants"
+coat_weight = 0.8
+coat_roughness = 0.5
+"""
+
+
+def layered_deviation(renderer: str) -> Array:
+    """A ball with a clear coat, beside Godot's own standard material with its properties."""
+    values = {
+        "albedo_color": {"kind": "color", "value": [*map(float, encode_srgb(np.array([0.6, 0.3, 0.1])))]},
+        "metallic": {"kind": "float", "value": [0.0]},
+        "roughness": {"kind": "float", "value": [0.7]},
+        "metallic_specular": {"kind": "float", "value": [float(np.sqrt(0.08 * 0.9 / 0.16))]},
+        "clearcoat_enabled": {"kind": "float", "value": [1.0]},
+        "clearcoat": {"kind": "float", "value": [0.8]},
+        "clearcoat_roughness": {"kind": "float", "value": [0.5]},
+    }
+    godot, view = Godot(renderer), _view(*_ball(48))
+    text = _emitted(_LAYERED, "layered.gdshader")
+    ours, theirs = (np.clip(godot.draw(shader, view, own, {}), 0.0, 1.0) for shader, own in ((text, {}), ("", values)))
+    bare = np.clip(
+        godot.draw("", view, {**values, "clearcoat_enabled": {"kind": "float", "value": [0.0]}}, {}), 0.0, 1.0
+    )
+    assert np.abs(theirs - bare).max() > 4.0 / 255.0
+    return np.abs(ours - theirs)
+
+
+def _emitted(material: str, file: str, technique: str = "") -> str:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "made.toml"
+        (Path(folder) / "shown.sss").write_text(technique, encoding="utf-8")
         path.write_text(material, encoding="utf-8")
         return sssgen.compile(path, "godot").files[file]
 
@@ -182,12 +258,14 @@ def _view(vertices: Array, triangles: Array, distance: float = 3.0) -> View:
 
 
 def _ball(rows: int) -> tuple[Array, Array]:
-    """The vertices and the triangles of a ball of radius 1."""
+    """The vertices and the triangles of a ball of radius 1; second uv and colours are linear in the position."""
     polar, around = np.meshgrid(np.linspace(0, np.pi, rows), np.linspace(0, 2 * np.pi, 2 * rows), indexing="ij")
     normal = np.stack([np.sin(polar) * np.cos(around), np.cos(polar), np.sin(polar) * np.sin(around)], -1)
     tangent = np.stack([-np.sin(around), 0 * around, np.cos(around), np.ones_like(around)], -1)
     uv = np.stack([around / (2 * np.pi), polar / np.pi], -1)
-    vertices = np.concatenate([normal, normal, tangent, uv], axis=-1).reshape(-1, 12)
+    color = np.concatenate([0.5 + 0.4 * normal, 0.7 + 0.2 * normal[..., :1]], axis=-1)
+    parts = [normal, normal, tangent, uv, 0.5 + 0.3 * normal[..., :2], color]
+    vertices = np.concatenate(parts, axis=-1).reshape(-1, VERTEX_SIZE)
     width = 2 * rows
     corner = (np.arange(rows - 1)[:, None] * width + np.arange(width - 1)).ravel()
     halves = [[corner, corner + 1, corner + width], [corner + 1, corner + width + 1, corner + width]]
