@@ -34,10 +34,11 @@ CLUSTERS = {
 }
 """The keyword of lists of lights per part of the screen, by UNITY_VERSION."""
 NEWEST = 60000500
+ENDS = [202120, *(pytest.param(version, marks=pytest.mark.slow) for version in (202220, 60000000)), 60000100]
+"""The oldest and the newest names; those between in the slow tests."""
 MATERIALS = (
     "leaf",
-    "jelly_cubes",
-    *(pytest.param(name, marks=pytest.mark.slow) for name in ("ice", "marble_idol", "paper_lantern")),
+    *(pytest.param(name, marks=pytest.mark.slow) for name in ("ice", "jelly_cubes", "marble_idol", "paper_lantern")),
 )
 LEAF = """
 [material]
@@ -83,7 +84,7 @@ def of_version(compiler: Callable[[str], Compiler]) -> Callable[[int], unity.Uni
     return lambda version: unity.Unity(unity.STANDIN, False, unity.preprocessor(), (), version)
 
 
-@pytest.mark.parametrize("version", CLUSTERS)
+@pytest.mark.parametrize("version", ENDS)
 def test_every_version_takes_every_pass(text: str, version: int, of_version: Callable[[int], unity.Unity]) -> None:
     assert not of_version(version).check(Source(text, "unity-urp", name="x.shader"))
 
@@ -167,8 +168,8 @@ def test_the_version_of_a_folder(tmp_path: Path) -> None:
     ("right", "wrong", "job"),
     [
         ("#elif defined(UNIVERSAL_LIGHTING_INCLUDED)", "#elif 1 // UNIVERSAL_LIGHTING_INCLUDED", "HDRP"),
-        ("GetMeshRenderingLayer()", "missing()", "functions"),
-        ("URP_FP_DIRECTIONAL_LIGHTS_COUNT", "missing", "functions"),
+        pytest.param("GetMeshRenderingLayer()", "missing()", "functions", marks=pytest.mark.slow),
+        pytest.param("URP_FP_DIRECTIONAL_LIGHTS_COUNT", "missing", "functions", marks=pytest.mark.slow),
     ],
 )
 def test_a_graph_is_compiled_for_each_pipeline(
@@ -215,7 +216,7 @@ def drawn(backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) ->
     yield draw
 
 
-@pytest.mark.parametrize("version", CLUSTERS)
+@pytest.mark.parametrize("version", ENDS)
 def test_every_light_counts_once(drawn: Callable[..., Array], version: int) -> None:
     """With lists of lights per part of the screen, directional lights are apart; the picture is the same."""
     plain = drawn(version)
@@ -227,14 +228,14 @@ def test_every_light_counts_once(drawn: Callable[..., Array], version: int) -> N
     assert plain.max(axis=(0, 1)).min() > 0.05
 
 
-@pytest.mark.parametrize("version", [202120, NEWEST])
+@pytest.mark.parametrize("version", [pytest.param(202120, marks=pytest.mark.slow), NEWEST])
 def test_cookies_color_every_light(drawn: Callable[..., Array], version: int) -> None:
     plain, keywords = drawn(version), ("_ADDITIONAL_LIGHTS=1", "_LIGHT_COOKIES=1")
     cookie = np.array([0.5, 0.25, 0.125])
     np.testing.assert_allclose(drawn(version, keywords, standin_cookie=list(cookie)), cookie * plain, atol=1e-5)
 
 
-@pytest.mark.parametrize("version", [202120, NEWEST])
+@pytest.mark.parametrize("version", [pytest.param(202120, marks=pytest.mark.slow), NEWEST])
 def test_lights_of_other_layers_do_not_come_through(drawn: Callable[..., Array], version: int) -> None:
     keywords = ("_ADDITIONAL_LIGHTS=1", "_LIGHT_LAYERS=1")
     layer = float(np.array([2], np.uint32).view(np.float32)[0])
@@ -263,6 +264,7 @@ def test_unitys_own_headers_of_each_version(text: str, folder: str, compiler: Ca
     assert not unity.Unity(root, True, unity.preprocessor()).check(Source(text, "unity-urp", name="x.shader"))
 
 
+@pytest.mark.slow
 def test_several_folders_are_checked_together(
     monkeypatch: pytest.MonkeyPatch, compiler: Callable[[str], Compiler], tmp_path: Path
 ) -> None:

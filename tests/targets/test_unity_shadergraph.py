@@ -47,6 +47,19 @@ void every_kind(uv_position uv, world_position P, world_direction V, world_direc
     emission += texture(volume, P_object).rgb + texture(sky, V_object + N_object).rgb + texture(bumps, uv).rgb;
 }
 """
+COAT = """
+[material]
+name = "coat"
+shading = "lit"
+[[surface]]
+technique = "specular_level"
+[[surface]]
+technique = "clearcoat_constants"
+[[thickness]]
+technique = "thickness_map"
+[translucency]
+technique = "absorption_tint"
+"""
 SLOT = {"m_Id", "m_DisplayName", "m_SlotType", "m_Hidden", "m_ShaderOutputName", "m_StageCapability"}
 VALUE = {"m_Value", "m_DefaultValue"}
 NODE = {
@@ -131,10 +144,14 @@ class Graph:
         return node, slot
 
 
-@pytest.fixture(scope="module", params=["leaf", "ice", "jelly_cubes", "paper_lantern", "every_kind"])
+@pytest.fixture(scope="module", params=["leaf", "ice", "jelly_cubes", "paper_lantern", "every_kind", "coat"])
 def graph(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Graph:
     if request.param == "every_kind":
         return Graph(every_kind(tmp_path_factory.mktemp("graph")))
+    if request.param == "coat":
+        path = tmp_path_factory.mktemp("graph") / "coat.toml"
+        path.write_text(COAT, encoding="utf-8")
+        return Graph(str(path))
     return Graph(str(LEAF) if request.param == "leaf" else request.param)
 
 
@@ -186,6 +203,8 @@ def test_the_function_node_has_the_parameters_of_the_function(graph: Graph) -> N
         for expected, slots in ((inputs, graph.slots(node, False)), (outputs, graph.slots(node, True))):
             got = [(class_of(slot).removesuffix("MaterialSlot"), slot["m_ShaderOutputName"]) for slot in slots]
             assert got == [(SLOTS[kind], name) for kind, name in expected]
+    # Shader Graph refuses other characters in the name of a slot
+    assert all(re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", slot["m_DisplayName"]) for slot in graph.slots(node, False))
     assert len({slot["m_Id"] for slot in [*graph.slots(node, False), *graph.slots(node, True)]}) == len(node["m_Slots"])
 
 
