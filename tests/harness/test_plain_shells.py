@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import sssgen
+from sssgen.cli.main import main
 from sssgen.harness import backends
 from sssgen.harness.backends import Array, Backend
 from sssgen.harness.render.scene_render import render
@@ -126,6 +127,23 @@ def test_wrong_options(option: str, message: str, hint: str) -> None:
         with_shell(load_material("ice"), [option])
     (entry,) = caught.value.diagnostics
     assert entry.message == message and hint in entry.hint
+
+
+def test_the_command_emits_and_warns(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`--target all` leaves the engines out; the same command without the option has other files."""
+    (tmp_path / "wax.toml").write_text(MATERIAL, encoding="utf-8")
+    command = ["emit", str(tmp_path / "wax.toml"), "-o", str(tmp_path)]
+    options = ["--shell", "shadow=shadow_map", "--shell", "tone_mapping=aces"]
+    assert main([*command, "-t", "wgsl,metal", *options]) == 0
+    assert "evaluate_shadow" in (tmp_path / "wax.wgsl").read_text("utf-8")
+    assert "evaluate_tone_mapping" in (tmp_path / "wax.metal").read_text("utf-8")
+    assert main([*command, "-t", "wgsl"]) == 0
+    assert "evaluate_shadow" not in (tmp_path / "wax.wgsl").read_text("utf-8")
+    capsys.readouterr()
+    assert main([*command, "-t", "shadertoy", *options]) == 2
+    said = capsys.readouterr().err
+    assert "Shadertoy does not take a material's [shadow]: its shell cannot carry it" in said
+    assert "tone_mapping" not in said
 
 
 def test_a_wrong_name_in_a_material() -> None:
