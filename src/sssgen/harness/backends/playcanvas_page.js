@@ -45,7 +45,7 @@ fn getFalloffInvSquared(radius: f32, d: vec3f) -> f32 { return 1.0 / max(dot(d, 
 }
 
 async function draw(plan, piece) {
-  const { clustered = true, ...properties } = plan.properties;
+  const { clustered = true, shadows = false, ...properties } = plan.properties;
   const app = await appFor(plan.renderer, clustered);
   const { scene, graphicsDevice: device } = app;
   const { createMaterial } = await imported(plan.module);
@@ -60,9 +60,9 @@ async function draw(plan, piece) {
   const entity = new pc.Entity('', app);
   const instance = new pc.MeshInstance(meshOf(device, plan, piece), material, entity);
   instance.cull = false;
-  entity.addComponent('render', { meshInstances: [instance] });
+  entity.addComponent('render', { meshInstances: [instance], castShadows: shadows, receiveShadows: shadows });
   placed(entity, plan.model);
-  const lights = plan.lights.map((light) => lightOf(app, light));
+  const lights = plan.lights.map((light) => lightOf(app, light, shadows));
   if (material.light === null && lights.length) material.light = lights[0].light;
   material.update();
 
@@ -105,10 +105,10 @@ function meshOf(device, plan, piece) {
 // PlayCanvas keeps colours encoded.
 const colorOf = (values) => new pc.Color(...values.map((value) => value ** (1 / 2.2)));
 
-function lightOf(app, { position, color }) {
+function lightOf(app, { position, color }, castShadows) {
   const [x, y, z, w] = position;
   const entity = new pc.Entity('', app);
-  entity.addComponent('light', { type: w ? 'omni' : 'directional', color: colorOf(color), intensity: 1, range: 50, falloffMode: pc.LIGHTFALLOFF_INVERSESQUARED });
+  entity.addComponent('light', { type: w ? 'omni' : 'directional', color: colorOf(color), intensity: 1, range: 50, falloffMode: pc.LIGHTFALLOFF_INVERSESQUARED, castShadows });
   if (w) entity.setPosition(x, y, z);
   else entity.setRotation(new pc.Quat().setFromDirections(pc.Vec3.UP, new pc.Vec3(x, y, z).normalize()));
   return entity;

@@ -1,7 +1,7 @@
 // Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
 // that melt into it.
 // Made by sssgen for PlayCanvas. Change the material and emit it again rather than this file.
-// The assembled functions in both languages; `entries` tells how to call them. ice.js has them as a material.
+// The assembled functions in both languages; `entries` tells how to call them. ice.mjs has them as a material.
 
 /** GLSL ES 3.00. */
 export const glsl = /* glsl */ `

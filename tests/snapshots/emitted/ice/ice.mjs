@@ -1039,6 +1039,7 @@ export class IceMaterial extends pc.StandardMaterial {
     this.useMetalness = true;
     this.metalness = 0;
     this.gloss = 0;
+    this.enableGGXSpecular = true; // which the surface's roughness is meant for
     this.alphaTest = 0.5;
     const language = device.isWebGPU ? pc.SHADERLANGUAGE_WGSL : pc.SHADERLANGUAGE_GLSL;
     const own = device.isWebGPU ? WGSL_CHUNKS : GLSL_CHUNKS;
