@@ -197,13 +197,13 @@ def test_specular_level_and_clear_coat_are_those_of_babylon(babylon: EnginePage)
     """The same picture as without the stages, with Babylon's properties in their place."""
     mesh = mesh_of("wax_mouse")
     surface = '[material]\nname = "ball"\n[[surface]]\ntechnique = "pbr_constants"\nsurface_roughness = 0.6\n'
-    layers = '[[surface]]\ntechnique = "specular_level"\ndielectric_specular = 0.25\n'
+    layers = '[[surface]]\ntechnique = "specular_level"\ndielectric_specular = 1.0\n'
     layers += '[[surface]]\ntechnique = "clearcoat_constants"\ncoat_weight = 0.7\ncoat_roughness = 0.2\n'
     own = {
         "clearCoat.isEnabled": True,
         "clearCoat.intensity": 0.7,
         "clearCoat.roughness": 0.2,
-        "indexOfRefraction": 3.0,
+        "indexOfRefraction": 1.78885438,  # it reflects 0.08
     }
     bare = dataclasses.replace(mesh.shell, parameters={}, textures={})
     ours, theirs, none = (

@@ -24,7 +24,7 @@ const engine = kind === 'webgl' ? new Engine(canvas, true) : await WebGPUEngine.
 const scene = new Scene(engine);
 scene.clearColor = Color4.FromHexString('#1b2838ff');
 scene.fogMode = Scene.FOGMODE_LINEAR;
-scene.fogColor = Color3.FromHexString('#1b2838').toLinearSpace();
+scene.fogColor = Color3.FromHexString('#1b2838');
 scene.fogStart = 6;
 scene.fogEnd = 14;
 scene.imageProcessingConfiguration.toneMappingEnabled = true;

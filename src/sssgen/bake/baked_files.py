@@ -91,6 +91,23 @@ def write_picture(
     return _write(path, data, {**facts, "file": about}, beside)
 
 
+def check_cube_path(path: str) -> None:
+    """Raises SssgenError for a path that no cube map can have. Commands call it before the work."""
+    _check_place(path)
+    suffix = os.path.splitext(path)[1]
+    if suffix.lower() != ".dds":
+        raise failure(f"'{suffix}' is not the suffix of a cube map's file", "end it in .dds", posix(path))
+
+
+def write_cubes(path: str, cubes: Mapping[str, bytes], facts: Mapping[str, Any]) -> list[str]:
+    """Writes cube maps, by what follows the name of `path`, and one JSON file; returns the paths."""
+    check_cube_path(path)
+    stem, suffix = os.path.splitext(path)
+    folder, name = os.path.split(stem)
+    files: dict[str, str | bytes] = {f"{name}{ending}{suffix}": data for ending, data in cubes.items()}
+    return [written.path for written in write_files(folder, {**files, **_json_beside(f"{name}{suffix}", facts)})]
+
+
 def check_apart(path: str, sources: Iterable[str]) -> None:
     """Raises SssgenError if an output, at the path or next to it, is one of the sources."""
     for written in (path, baked.sidecar(path), mesh_beside(path)):
@@ -118,7 +135,12 @@ def _check_place(path: str) -> None:
 
 def _write(path: str, data: bytes, facts: Mapping[str, Any], beside: Mapping[str, str] | None = None) -> list[str]:
     folder, name = os.path.split(path)
+    files: dict[str, str | bytes] = {name: data, **_json_beside(name, facts), **(beside or {})}
+    return [written.path for written in write_files(folder, files)]
+
+
+def _json_beside(name: str, facts: Mapping[str, Any]) -> dict[str, str]:
+    """The JSON file of a texture's file, with its text."""
     content = {"format": baked.FORMAT, "made_by": f"sssgen {VERSION}", **facts}
     lines = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in content.items()]
-    text = "{\n" + ",\n".join(lines) + "\n}\n"
-    return [written.path for written in write_files(folder, {name: data, baked.sidecar(name): text, **(beside or {})})]
+    return {baked.sidecar(name): "{\n" + ",\n".join(lines) + "\n}\n"}

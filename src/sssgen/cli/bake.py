@@ -384,6 +384,35 @@ def _pack(arguments: Namespace) -> Result:
     return paths, facts, [f"{name}: {text}" for name, text in sources_by_channel.items() if text]
 
 
+def _environment_options(parser: ArgumentParser) -> None:
+    parser.add_argument("SKY", help="an equirectangular .png, .exr or .npy; its top row is up, +y")
+    _add_output(parser, "a .dds: NAME.dds for reflection_map, and NAME_irradiance.dds")
+    parser.add_argument("--intensity", type=float, default=1.0, metavar="F", help="a factor of the light (default: 1)")
+
+
+def _environment(arguments: Namespace) -> Result:
+    from sssgen.bake import baked_files as output
+    from sssgen.bake.cube_dds import cube_bytes
+    from sssgen.harness.evaluate.evaluation import half
+    from sssgen.harness.render import environment_maps as maps
+    from sssgen.harness.scenes.environment import Environment, digest
+
+    output.check_cube_path(arguments.output)
+    output.check_apart(arguments.output, [arguments.SKY])
+    if not 0.0 < arguments.intensity < float("inf"):
+        raise failure(f"the intensity {arguments.intensity:g} is no factor of light", "give a number above 0")
+    environment = Environment((arguments.intensity,) * 3, arguments.SKY, digest(arguments.SKY))
+    reflections, irradiance = (half(make(environment)) for make in (maps.reflection_map, maps.irradiance_map))
+    facts = {
+        "kind": "environment", "holds": None, "parameters": {"reflection_levels": len(reflections.levels) - 1.0},
+        "import": import_settings("Cube", "clamp"),
+    }  # fmt: skip
+    cubes = {"": cube_bytes(reflections.levels), "_irradiance": cube_bytes(irradiance.levels)}
+    paths = output.write_cubes(arguments.output, cubes, facts)
+    sides = [f"{texture.size()[0]}² texels a face" for texture in (reflections, irradiance)]
+    return paths, facts, [f"reflections: {sides[0]}, {len(reflections.levels)} levels", f"irradiance: {sides[1]}"]
+
+
 KINDS = {
     "sdf": Kind(
         "the signed distance to a mesh, as a 3-D texture",
@@ -416,6 +445,13 @@ KINDS = {
         "Bind the pictures to view_harmonics_1, _2 and _3 of the technique view_thickness_map.",
         _view_thickness_options,
         _view_thickness,
+    ),
+    "environment": Kind(
+        "the light of the surroundings, prefiltered into cube maps",
+        "Bind them to reflection_map and irradiance_map of the technique prefiltered_environment, and set\n"
+        "reflection_levels to the number in the JSON. sssgen render needs no files: it makes both maps itself.",
+        _environment_options,
+        _environment,
     ),
     "voronoi": Kind("cells, as in cracked ice: a map of thickness or height", "", _voronoi_options, _voronoi),
     "normal": Kind("the normal map of a height or thickness map", "", _normal_options, _normal),

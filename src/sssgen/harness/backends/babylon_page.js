@@ -32,6 +32,7 @@ class GivenCamera extends Camera {
 
 async function draw(plan, piece) {
   engine ??= await engineFor(plan.renderer);
+  engine._device?.pushErrorScope('validation');
   const scene = new Scene(engine);
   scene.useRightHandedSystem = true;
   scene.clearColor = new Color4(0, 0, 0, 0);
@@ -74,6 +75,8 @@ async function draw(plan, piece) {
   scene.render();
   engine.endFrame();
   const pixels = await target.readPixels();
+  const refused = await engine._device?.popErrorScope();
+  if (refused) throw new Error(refused.message);
   scene.dispose();
   return new Float32Array(pixels.buffer, pixels.byteOffset, plan.width * plan.height * 4);
 }

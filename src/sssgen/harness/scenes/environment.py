@@ -99,7 +99,7 @@ def read_environment(scene: Scene) -> Environment | None:
     if "file" in table.content:
         try:
             file = os.path.join(scene.folder, table.text("file", ""))
-            contents = cache.digest(picture(file).tobytes())
+            contents = digest(file)
         except SssgenError as error:
             table.error("file", error.diagnostics[0].message, error.diagnostics[0].hint)
             return None
@@ -110,6 +110,11 @@ def read_environment(scene: Scene) -> Environment | None:
         )
         return None
     return result
+
+
+def digest(path: str) -> str:
+    """The digest that an environment of this picture has. Raises SssgenError."""
+    return cache.digest(picture(path).tobytes())
 
 
 @lru_cache(4)
