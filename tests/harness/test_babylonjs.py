@@ -57,11 +57,13 @@ QUICK = "wax_mouse"
 
 
 def some_slow(*quick: Any, others: Any) -> list[Any]:
-    """Parameters, all but the quick ones marked slow: the browser draws on the processor."""
+    """Parameters, all but the quick ones marked slow: each engine and each drawing takes seconds on the processor."""
     return [*quick, *(pytest.param(*(one if isinstance(one, tuple) else (one,)), marks=SLOW) for one in others)]
 
 
-@pytest.fixture(scope="module", params=list(BABYLON.renderers))
+@pytest.fixture(
+    scope="module", params=some_slow("webgl", others=[name for name in BABYLON.renderers if name != "webgl"])
+)
 def babylon(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
     renderer: EnginePage = or_skip(partial(EnginePage, BABYLON), request.param)
     yield renderer

@@ -17,7 +17,7 @@ from sssgen.harness.render.scene_render import render
 from sssgen.harness.scenes import scene_loading
 
 ENGINES = [
-    pytest.param(name, marks=[pytest.mark.slow] if record.apart else [])
+    pytest.param(name, marks=[pytest.mark.slow] if record.apart or "-" in name else [])  # one renderer of each
     for name, record in BACKENDS.items()
     if record.scenes_only
 ]
