@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import HEAD, MESHES, SIZE, chain_case, mesh_of, through
+from engine_cases import HEAD, MATERIALS, MESHES, SIZE, chain_case, mesh_of, through
 from folders import ROOT
 from skips import or_skip
 from sssgen.harness.backends import Array
@@ -30,8 +30,17 @@ from sssgen.support.diagnostics import SssgenError
 
 BLACK: Mapping[str, Any] = {"diffuse": 0.0, "useMetalness": False, "specular": 0.0, "enableGGXSpecular": False}
 """PlayCanvas's own reflection is gone: what is left is emission, and the light that comes through."""
+SLOW = pytest.mark.slow
 CLUSTERED = pytest.mark.parametrize("clustered", [True, False], ids=["clustered", "listed"])
 """PlayCanvas has two loops over lights."""
+EXAMPLES = pytest.mark.parametrize(
+    ("name", "clustered"),
+    [
+        pytest.param(name, clustered, marks=[] if (name, clustered) == ("ice", True) else [SLOW])
+        for name in MESHES
+        for clustered in (True, False)
+    ],
+)
 
 
 @pytest.fixture(scope="module", params=list(PLAYCANVAS.renderers))
@@ -46,13 +55,7 @@ def drawn(page: EnginePage, name: str, mesh: PlacedMesh, properties: Mapping[str
     return page_values.shade(sssgen.compile(name, "playcanvas"), shell, page, mesh.size, mesh.points, properties)
 
 
-def few(names: tuple[str, ...]) -> list[Any]:
-    """The first names; the others take longer."""
-    return [*names[:2], *(pytest.param(name, marks=pytest.mark.slow) for name in names[2:])]
-
-
-@CLUSTERED
-@pytest.mark.parametrize("name", few(("ice", "wax_mouse", *sorted({*MESHES} - {"ice", "wax_mouse"}))))
+@EXAMPLES
 def test_light_that_comes_through_is_that_of_the_oracle(playcanvas: EnginePage, name: str, clustered: bool) -> None:
     mesh = mesh_of(name)
     picture = drawn(playcanvas, name, mesh, {**BLACK, "clustered": clustered}, ambient=(0.0, 0.0, 0.0))
@@ -61,8 +64,7 @@ def test_light_that_comes_through_is_that_of_the_oracle(playcanvas: EnginePage, 
     assert (expected[..., :3][mesh.hit].max() > 0.1) == (name != "resin_inlay")  # which reflects only
 
 
-@CLUSTERED
-@pytest.mark.parametrize("name", few(("ice", "wax_mouse", *sorted({*MESHES} - {"ice", "wax_mouse"}))))
+@EXAMPLES
 def test_own_light_is_that_of_the_oracle(playcanvas: EnginePage, name: str, clustered: bool) -> None:
     """All light of the picture, the ambient one as well."""
     mesh = mesh_of(name)
@@ -73,7 +75,8 @@ def test_own_light_is_that_of_the_oracle(playcanvas: EnginePage, name: str, clus
     assert (np.abs(picture - expected) / np.maximum(expected, 1.0))[..., :3][shown].max() < 1.0 / 255.0
 
 
-@pytest.mark.parametrize("name", few(MESHES))
+@SLOW
+@pytest.mark.parametrize("name", MESHES)
 def test_playcanvas_lights_the_surface(playcanvas: EnginePage, name: str) -> None:
     """The reflected light is PlayCanvas's own: not the oracle's numbers, but the same picture."""
     mesh = mesh_of(name)
@@ -86,9 +89,15 @@ def test_playcanvas_lights_the_surface(playcanvas: EnginePage, name: str) -> Non
     assert np.corrcoef(ours.ravel(), theirs.ravel())[0, 1] > 0.95
 
 
-@pytest.mark.parametrize("light", ["point", "direction"])
 @pytest.mark.parametrize(
-    ("name", "front"), [("lit", True), ("lit", False), ("unlit", True), ("unlit", False), ("rays", True)]
+    ("name", "front", "light"),
+    [
+        pytest.param(name, front, light, marks=[] if (front, light) == (True, "point") else [SLOW])
+        for name in MATERIALS
+        for front in (True, False)
+        for light in ("point", "direction")
+        if front or name != "rays"
+    ],
 )
 def test_every_value_of_the_chain(playcanvas: EnginePage, name: str, front: bool, light: str, tmp_path: Path) -> None:
     """A turned, stretched and mirrored body from both sides: every input is in its space, per surface and light."""
@@ -101,6 +110,7 @@ def test_every_value_of_the_chain(playcanvas: EnginePage, name: str, front: bool
         assert difference.max() < 3e-3 and picture[..., :3][case.mesh.hit].std() > 0.02
 
 
+@SLOW
 def test_a_raymarched_material_fills_its_mesh(playcanvas: EnginePage) -> None:
     scene = dataclasses.replace(scene_loading.load(str(ROOT / "examples/jelly_cubes/scene.toml")), size=SIZE)
     numpy = sssgen.compile("jelly_cubes", "numpy")
@@ -110,6 +120,7 @@ def test_a_raymarched_material_fills_its_mesh(playcanvas: EnginePage) -> None:
     assert np.quantile(np.abs(picture - expected)[..., :3], 0.98) < 1.0 / 255.0  # but for edges, where a ray may miss
 
 
+@SLOW
 def test_tangents_come_from_the_texture_coordinates_where_the_mesh_has_none(playcanvas: EnginePage) -> None:
     mesh, compiled = mesh_of("ice"), sssgen.compile("ice", "playcanvas")
     pictures = [
@@ -125,6 +136,7 @@ def test_tangents_come_from_the_texture_coordinates_where_the_mesh_has_none(play
     assert np.quantile(difference, 0.95) < 1.0 / 255.0 and pictures[1][inner].max() > 0.2
 
 
+@SLOW
 def test_properties_have_the_defaults_of_the_material(playcanvas: EnginePage) -> None:
     """Without values and textures, the picture is that of the oracle with the defaults; a volume has its texel, too."""
     for name in ("paper_lantern", "wax_mouse"):
@@ -196,6 +208,7 @@ technique = "wrap_lighting"
 """
 
 
+@SLOW
 @pytest.mark.parametrize("front", [True, False], ids=["front", "back"])
 @pytest.mark.parametrize("behind", [True, False], ids=["lit from behind", "lit from the front"])
 def test_a_leaf_with_two_sides(playcanvas: EnginePage, front: bool, behind: bool, tmp_path: Path) -> None:
@@ -228,6 +241,7 @@ coat_roughness = 0.2
 BASE = '[material]\nname = "made"\n[[surface]]\ntechnique = "pbr_constants"\nsurface_roughness = 0.6\n'
 
 
+@SLOW
 def test_layers_are_those_of_its_own_material(playcanvas: EnginePage, tmp_path: Path) -> None:
     """The same picture as without the stages, with PlayCanvas's properties in their place."""
     own = {"clearCoat": 0.7, "clearCoatGloss": 0.8, "useMetalnessSpecularColor": True, "specular": 0.5 ** (1 / 2.2)}
@@ -242,6 +256,7 @@ def test_layers_are_those_of_its_own_material(playcanvas: EnginePage, tmp_path: 
     assert np.abs(ours - theirs).max() < 1e-3 and np.abs(ours - bare).max() > 8.0 / 255.0
 
 
+@SLOW
 @CLUSTERED
 def test_light_that_comes_through_has_no_shadow(playcanvas: EnginePage, clustered: bool) -> None:
     """The material is drawn into shadow maps, with its mask, and the light that comes through stays."""
@@ -253,6 +268,7 @@ def test_light_that_comes_through_has_no_shadow(playcanvas: EnginePage, clustere
     assert (whole - dark)[..., :3][mesh.hit].max() > 8.0 / 255.0  # what it reflects is in its own shadow
 
 
+@SLOW
 def test_a_texture_that_each_light_reads(playcanvas: EnginePage, tmp_path: Path) -> None:
     """Each pixel has lights of its own in a cluster, where WGSL refuses a read with derivatives if it is not asked."""
     text = HEAD.format("translucency") + "vec3 made(uv_position uv) { return texture(seen, vec2(uv)).rgb; }\n"
@@ -269,6 +285,7 @@ def test_a_texture_that_each_light_reads(playcanvas: EnginePage, tmp_path: Path)
         assert difference.max() < 1.0 / 255.0 and picture[..., :3][mesh.hit].max() > 0.01
 
 
+@SLOW
 def test_another_prefix_draws_the_same(playcanvas: EnginePage) -> None:
     mesh = mesh_of("ice")
     own, other = (
