@@ -16,9 +16,7 @@ from sssgen.material.chain_assembly import DEFAULTS, INPUTS
 from sssgen.material.library import OF_SHELLS, Technique, folder_of, index, load_path
 from sssgen.support.diagnostics import did_you_mean
 
-SECTIONS = (
-    "geometry", "coordinates", "thickness", "surface", "translucency", "lighting", *OF_SHELLS, "output",
-)  # fmt: skip
+SECTIONS = ("geometry", "coordinates", "thickness", "surface", "translucency", "lighting", *OF_SHELLS, "output")
 """The sections of a material file that hold stages, in the order they run."""
 
 OF_LIGHTS = ("shadow", "environment")
