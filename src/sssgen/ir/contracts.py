@@ -63,7 +63,7 @@ def of_name(param: Param, format: Format = FLOAT32) -> Contract | None:
     if param.name == "light_nearness" and param.type == FLOAT:
         return Contract(0.0, NEAREST)
     if param.name == "vertex_color" and param.type == VEC4:
-        return Contract(0.0, COLOR[format.name])
+        return Contract(0.0, 1.0)
     if param.name in _COLORS and param.type == VEC3:
         return Contract(0.0, LIGHT[format.name] if param.name == "light_color" else COLOR[format.name])
     return None

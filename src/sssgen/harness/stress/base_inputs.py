@@ -21,7 +21,7 @@ _PLAIN: dict[str, Any] = {
     "ray_origin": (0, 0, 3), "ray_direction": (0, 0, -1), "uv": (0.3, 0.6), "P": (0.1, 0.2, 0.5),
     "P_object": (0.1, 0.2, 0.5), "V_object": (0, 0, 1), "L_object": (0, 0, -1), "alpha": 1, "time": 1,
     "screen_uv": (0.3, 0.6), "eye_distance": 3, "light_nearness": 0.25, "uv2": (0.7, 0.4),
-    "vertex_color": (0.8, 0.6, 0.4, 0.9),
+    "vertex_color": (0.8, 0.6, 0.4, 0.9), "specular": 0.04,
 }  # fmt: skip
 _OF_QUANTITY = {"thickness": 0.1, "view_thickness": 0.1, "thinness": 0.5, "transmittance": 0.5}
 
