@@ -159,3 +159,9 @@ def test_parameters_are_properties() -> None:
     assert "set veinColor(value: THREE.Color | THREE.ColorRepresentation | number[]);" in compiled.files["ice.d.ts"]
     names = {uniform["source_name"]: uniform["property"] for uniform in compiled.reflection["uniforms"]}
     assert (names["cell_count"], names["metalness"]) == ("cellCount", "metalness_")  # three has a metalness
+
+
+def test_the_head_names_properties() -> None:
+    """Those of the module, not the names in the shaders; a material without a number has an example without values."""
+    head = sssgen.compile("jade_ring", "threejs").files["jade_ring.js"].split("\nimport ")[0]
+    assert "// lightDepthMap: draw " in head and "sss_light_depth_map" not in head and "createMaterial())" in head

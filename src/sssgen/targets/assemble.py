@@ -255,14 +255,21 @@ def _header(target: Target, program: Program) -> list[str]:
     notice = f"Made by sssgen for {target.title}. Change {origin} and emit it again rather than this file."
     head = ["", *map(comment_text, about.head)] if about.head else []
     sides = ["Two-sided: drawn without culling; back faces have the reversed normal."] if about.two_sided else []
-    drawn = [line for uniform in program.module.uniforms for line in textwrap.wrap(_drawn(uniform), 100)]
+    drawn = [
+        line for uniform in program.module.uniforms for line in textwrap.wrap(_drawn(target, program, uniform), 100)
+    ]
     return [comment_text(line) for line in (*textwrap.wrap(description, 100), notice, *sides, *drawn)] + head
 
 
-def _drawn(uniform: Uniform) -> str:
+def _drawn(target: Target, program: Program, uniform: Uniform) -> str:
     """How the program supplies a texture that it draws itself, or ''."""
     _, views = _hint(uniform, "drawn")
-    return f"{uniform.name}: {DRAWN[views[0]]}." if views and isinstance(uniform.type, Sampler) else ""
+    if not views or not isinstance(uniform.type, Sampler):
+        return ""
+    name = uniform.name
+    if target.properties.style != "plain":  # its user sees the property only
+        name = property_name(target, program.source_names.get(name, name))
+    return f"{name}: {DRAWN[views[0]]}."
 
 
 def _entry(target: Target, printer: Printer, kind: str, function: Function, inputs: tuple[str, ...]) -> dict[str, Any]:
