@@ -3,7 +3,7 @@
 # make gallery  the example scenes' pictures, and docs/gallery.md
 # make stability  what fails in the published techniques and holds in ours: docs/stability.md
 # make bake   bakes two meshes, and docs/bake.md with pictures beside the exact reference
-# make accuracy   error against cost of everything, on two cores an hour: docs/accuracy.md
+# make accuracy   error against cost of everything, on two cores 80 minutes: docs/accuracy.md
 # make fuzz   random programs and files for FUZZ_MINUTES (10)
 # make bench  the benchmarks   make bench-gpu  what shaders cost on this GPU, emitted and by hand
 # make setup  what the others need, done once: .venv, system packages, compilers
