@@ -6,21 +6,30 @@ uniform vec3 key_direction;
 uniform float shadow_sharpness;
 uniform vec3 sky_color;
 
-vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
+float lobe(vec3 across, float NoL, float NoV, float NoH, float roughness) {
+    float a = max(roughness, 0.045);
+    a *= a;
+    // in this form the peak of a mirror is exact
+    float spread = dot(across, across) + NoH * NoH * a * a;
+    return a * a / (spread * spread) * 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
+}
+
+vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color,
+        float specular, float clearcoat, float clearcoat_roughness) {
     vec3 H = normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 1.0e-4);
     float NoH = max(dot(N, H), 0.0);
-    float a = max(roughness, 0.045);
-    a *= a;
-    // in this form the peak of a mirror is exact
     vec3 across = cross(N, H);
-    float spread = dot(across, across) + NoH * NoH * a * a;
-    float D = a * a / (spread * spread);
-    float Vis = 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
-    vec3 F0 = mix(vec3(0.04), albedo, metallic);
-    vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
-    return (albedo * (1.0 - metallic) * (1.0 - F) + D * Vis * F) * NoL * light_color;
+    float grazing = pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
+    vec3 F0 = mix(vec3(specular), albedo, metallic);
+    vec3 F = F0 + (1.0 - F0) * grazing;
+    vec3 base = albedo * (1.0 - metallic) * (1.0 - F) + lobe(across, NoL, NoV, NoH, roughness) * F;
+    if (clearcoat > 0.0) {
+        float coat = clearcoat * (0.04 + 0.96 * grazing);
+        base = mix(base, vec3(lobe(across, NoL, NoV, NoH, clearcoat_roughness)), coat);
+    }
+    return base * NoL * light_color;
 }
 
 float scene(vec3 p) {

@@ -270,9 +270,12 @@ def test_shells_and_reflection_say_how(target: str, form: str, folder: Path) -> 
     drawn = {texture["source_name"]: texture["drawn"] for texture in compiled.reflection["textures"]}
     assert drawn["back_face_map"] == "back_faces" and drawn["light_depth_map"] == "distant_light_depth"
     assert drawn["base_color_texture"] is None
-    names = {texture["source_name"]: texture["name"] for texture in compiled.reflection["textures"]}
+    names = {
+        texture["source_name"]: texture.get("property") or texture["name"]
+        for texture in compiled.reflection["textures"]
+    }
     for name, text in compiled.files.items():
-        if not name.endswith((".json", ".txt")):  # the text for Unreal's material editor has no comments
+        if not name.endswith((".json", ".txt", ".shadersubgraph", ".meta")):  # which have no comments
             mark = "# " if target == "numpy" else "// "
             comment = " ".join(line.removeprefix(mark) for line in text.splitlines() if line.startswith(mark))
             assert f"{names['back_face_map']}: draw the translucent body alone with its front faces culled" in comment

@@ -68,8 +68,9 @@ def reserved_everywhere() -> Names:
 
 @functools.cache
 def reserved_of(language: str) -> Names:
-    """The names reserved by a language without an engine: those of its first own target, by name."""
-    return _reserved([target for target in map(load, _own_names()) if target.language == language][:1])
+    """The names reserved by a language: those of its first own target without an engine, by name, if it has one."""
+    targets = [target for target in map(load, _own_names()) if target.language == language]
+    return _reserved([target for target in targets if target.lighting][:1] or targets[:1])
 
 
 def _reserved(targets: list[Target]) -> Names:
