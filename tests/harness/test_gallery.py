@@ -51,8 +51,15 @@ def test_an_example_is_a_picture(name: str, backend: Callable[[str], Backend]) -
     assert (covered_pixels.max(axis=1) - covered_pixels.min(axis=1)).mean() > 0.04
 
 
-@pytest.mark.parametrize("name", examples())
-@pytest.mark.parametrize("compared", ["gl", "webgpu", "browser", "hlsl"])
+EXPENSIVE = "marble_idol"
+DRAWN = [
+    pytest.param(name, compared, marks=[pytest.mark.slow] if name == EXPENSIVE and compared != "gl" else [])
+    for name in examples()
+    for compared in ("gl", "webgpu", "browser", "hlsl")
+]
+
+
+@pytest.mark.parametrize(("name", "compared"), DRAWN)
 def test_every_back_end_draws_the_same(name: str, compared: str, backend: Callable[[str], Backend]) -> None:
     backend(compared)
     far = np.abs(render_example(name, compared).encoded - render_example(name, "numpy").encoded)

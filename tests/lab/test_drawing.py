@@ -202,7 +202,10 @@ CHARTS = {
 }
 
 
-@pytest.mark.parametrize("name", CHARTS)
+DRAWN = [pytest.param(name, marks=[pytest.mark.slow] if name == "docs" else []) for name in CHARTS]
+
+
+@pytest.mark.parametrize("name", DRAWN)
 def test_texts_do_not_overlap(name: str) -> None:
     """No text of a chart covers another text or a marker, or crosses the edge of the picture; few are omitted."""
     pytest.importorskip("textalloc")
@@ -241,9 +244,10 @@ def visible_texts(picture: Any) -> list[Any]:
     return texts
 
 
-def test_axes_show_every_point() -> None:
+@pytest.mark.parametrize("name", DRAWN)
+def test_axes_show_every_point(name: str) -> None:
     pytest.importorskip("textalloc")
-    for chart in [chart for make in CHARTS.values() for chart in make()]:
+    for chart in CHARTS[name]():
         with figure.settings():
             picture = figure.figure_of(chart)
         for axes, panel in zip(picture.axes, chart.panels, strict=True):

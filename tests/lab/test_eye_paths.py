@@ -288,7 +288,15 @@ def test_a_rough_furnace_is_white() -> None:
 # --- Mitsuba ---
 
 
-@pytest.mark.parametrize(("geometry", "anisotropy"), [(CUBE, 0.0), (CUBE, 0.5), (BALL, 0.0), (Torus(0.7, 0.3), 0.0)])
+@pytest.mark.parametrize(
+    ("geometry", "anisotropy"),
+    [
+        (CUBE, 0.0),
+        (BALL, 0.0),
+        pytest.param(CUBE, 0.5, marks=pytest.mark.slow),
+        pytest.param(Torus(0.7, 0.3), 0.0, marks=pytest.mark.slow),
+    ],
+)
 def test_a_matched_boundary_is_that_of_mitsuba(geometry: Geometry, anisotropy: float) -> None:
     medium, sun = grey(0.95, 1.0, 5.0, anisotropy), (0.6, 0.0, -0.8)
     eye = seen(geometry)
@@ -350,6 +358,7 @@ def test_a_rough_surface_is_that_of_mitsuba(monkeypatch: pytest.MonkeyPatch) -> 
 # --- lights ---
 
 
+@pytest.mark.slow
 def test_a_distant_point_is_a_light_from_afar() -> None:
     sun = np.array([0.6, 0.0, -0.8])
     place, eye = 300.0 * sun, seen(CUBE)
