@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import HEAD, MESHES, SIZE, chain_case, mesh_of, through
+from engine_cases import HEAD, MESHES, SIZE, chain_case, check_refusals, mesh_of, through
 from folders import ROOT
 from skips import or_skip
 from sssgen.harness.backends import Array
@@ -237,6 +237,12 @@ def test_an_error_of_babylon_is_reported(babylon: EnginePage) -> None:
     files = {name: re.sub(declared, r"\1 sss_misnamed(", text) for name, text in compiled.files.items()}
     with pytest.raises(SssgenError, match="sss_evaluate_surface"):
         page_values.shade(compiled._replace(files=files), mesh.shell, babylon, mesh.size, mesh.points)
+
+
+def test_values_that_it_does_not_take_are_refused(babylon: EnginePage) -> None:
+    check_refusals(
+        babylon, "babylonjs", "PBRMaterial", "a Color3, or a colour such as '#3070ff'", "a texture, the URL of one"
+    )
 
 
 @pytest.mark.parametrize("form", ["shader", "functions"])

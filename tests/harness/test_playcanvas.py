@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import HEAD, MATERIALS, MESHES, SIZE, chain_case, mesh_of, through
+from engine_cases import HEAD, MATERIALS, MESHES, SIZE, chain_case, check_refusals, mesh_of, through
 from folders import ROOT
 from skips import or_skip
 from sssgen.harness.backends import Array
@@ -305,6 +305,12 @@ def test_an_error_of_playcanvas_is_reported(playcanvas: EnginePage) -> None:
         page_values.shade(compiled._replace(files=files), mesh.shell, playcanvas, mesh.size, mesh.points)
 
 
+def test_values_that_it_does_not_take_are_refused(playcanvas: EnginePage) -> None:
+    check_refusals(
+        playcanvas, "playcanvas", "StandardMaterial", "a pc.Color, or a colour such as '#3070ff'", "a pc.Texture"
+    )
+
+
 @pytest.mark.parametrize("form", ["shader", "functions"])
 def test_the_texts_in_a_module_compile(form: str, compiler: Callable[[str], Compiler]) -> None:
     """Both languages are found in the module, and an error has the line that it has there."""
@@ -322,6 +328,6 @@ def test_parameters_are_properties() -> None:
     compiled = sssgen.compile("ice", "playcanvas")
     described = "type: 'float', default: 10.0, range: [1.0, 200.0], unit: '1', name: 'sss_cell_count'"
     assert f"  cellCount: {{ {described} }},\n" in compiled.files["ice.mjs"]
-    assert "set veinColor(value: number[] | pc.Color | pc.Vec3);" in compiled.files["ice.d.mts"]
+    assert "set veinColor(value: number[] | pc.Color | string | pc.Vec3);" in compiled.files["ice.d.mts"]
     names = {uniform["source_name"]: uniform["property"] for uniform in compiled.reflection["uniforms"]}
     assert (names["cell_count"], names["metalness"]) == ("cellCount", "metalness_")  # PlayCanvas has a metalness

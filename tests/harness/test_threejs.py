@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import HEAD, MESHES, SIZE, chain_case, mesh_of, through
+from engine_cases import HEAD, MESHES, SIZE, chain_case, check_refusals, mesh_of, through
 from folders import ROOT
 from skips import or_skip
 from sssgen.harness.backends.engine_page import EnginePage
@@ -137,6 +137,10 @@ def test_an_error_of_three_is_reported(three: EnginePage) -> None:
     files = {name: re.sub(declared, r"\1 sss_misnamed(", text) for name, text in compiled.files.items()}
     with pytest.raises(SssgenError, match=r"sss_evaluate_surface|fragment_resin_inlay"):
         page_values.shade(compiled._replace(files=files), mesh.shell, three, mesh.size, mesh.points)
+
+
+def test_values_that_it_does_not_take_are_refused(three: EnginePage) -> None:
+    check_refusals(three, "threejs", "MeshPhysicalMaterial", "or a colour as THREE.Color takes it", "a THREE.Texture")
 
 
 @pytest.mark.parametrize("form", ["shader", "functions"])

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
+import pytest
 
 import sssgen
 from folders import ROOT
 from sssgen.harness.backends import Array
+from sssgen.harness.backends.backend_interface import VERTEX_SIZE
+from sssgen.harness.backends.engine_page import EngineDrawing, EnginePage
 from sssgen.harness.render import shade_numpy
 from sssgen.harness.render.scene_render import PlacedMesh, placed
 from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.render.shell_values import Shell
 from sssgen.harness.scenes import scene_loading
 from sssgen.material.material_loading import load_material
+from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import registry
 
 INPUTS = "world_position P, world_direction N, world_direction V, world_direction T, world_direction B"
@@ -109,3 +114,29 @@ def chain_case(name: str, front: bool, light: str, folder: Path) -> ChainCase:
         ray = world / np.linalg.norm(world, axis=1, keepdims=True)
         expected = np.abs(ray + shell.camera_position).reshape(*expected.shape[:2], 3)
     return ChainCase(str(path), mesh, shell, points, expected)
+
+
+def check_refusals(page: EnginePage, target: str, engine_class: str, colors: str, texture: str) -> None:
+    """A value that a property does not take, or a name that there is not, is one error that says what there is."""
+    (module, *_) = sssgen.compile("ice", target).files.values()
+    drawing = EngineDrawing(
+        module, (4, 3), np.zeros((3, VERTEX_SIZE)), [[0, 1, 2]], np.eye(4), (0.0, 0.0, 3.0), np.eye(4)
+    )
+    refused: dict[str, tuple[Any, str]] = {
+        "cellCount": ("six", "a number, not 'six'"),
+        "veinColor": ([0.2, 0.4], f"3 numbers, {colors}, not [0.2, 0.4]"),
+        "coverTexture": (6, f"{texture}, or null, not 6"),
+    }
+    for name, (value, taken) in refused.items():
+        text = f"'{name}' takes {taken}"
+        said = f"TypeError: ice: {re.escape(text)}$"
+        with pytest.raises(SssgenError, match=said):
+            page.draw(drawing._replace(values={name: value}))
+        if name != "veinColor":  # of which the page would make a colour
+            with pytest.raises(SssgenError, match=said):
+                page.draw(drawing._replace(properties={name: value}))  # set later
+    names = rf"ice has no property 'cell_count'\. Its own: variation, .*; the others are those of {engine_class}$"
+    with pytest.raises(SssgenError, match=names):
+        page.draw(drawing._replace(values={"cell_count": 6.0}))
+    color = drawing._replace(values={"veinColor": "#3070ff"})
+    assert np.isfinite(page.draw(color)).all()

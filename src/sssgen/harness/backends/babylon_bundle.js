@@ -1,6 +1,7 @@
 // What the page of Babylon.js has of it, as one file: `make setup` bundles it. Emitted modules import some of these files.
 
 export * from '@babylonjs/core/Engines/engine.js';
+export * from '@babylonjs/core/Engines/engineStore.js';
 export * from '@babylonjs/core/Engines/shaderStore.js';
 export * from '@babylonjs/core/Engines/webgpuEngine.js';
 export * from '@babylonjs/core/scene.js';

@@ -8,6 +8,7 @@
 // A PBRMaterial with a plug-in, for WebGL 2 and WebGPU.
 // Lights, shadows, fog and the environment are Babylon's.
 
+import { EngineStore } from '@babylonjs/core/Engines/engineStore.js';
 import { SerializationHelper } from '@babylonjs/core/Misc/decorators.serialization.js';
 import { MaterialPluginBase } from '@babylonjs/core/Materials/materialPluginBase.js';
 import { PBRMaterial } from '@babylonjs/core/Materials/PBR/pbrMaterial.js';
@@ -875,6 +876,36 @@ function texel({ type, default: name }, scene) {
   return new RawTexture(data, 1, 1, RGBA, scene, false, false, LINEAR, HALF_FLOAT);
 }
 
+/** A value as an error shows it. */
+function shown(value) {
+  if (typeof value === 'string') return `'${value}'`;
+  return Array.isArray(value) ? `[${value.join(', ')}]` : (typeof value === 'object' && value?.constructor?.name) || String(value);
+}
+
+/** Throws an error about a value that a property does not take. */
+function refuse(name, taken, value) {
+  throw new TypeError(`ice: '${name}' takes ${taken}, not ${shown(value)}`);
+}
+
+/** Throws an error if there is a name that neither this module nor PBRMaterial has. */
+function checkNames(material, values) {
+  const unknown = Object.keys(values ?? {}).filter((name) => !(name in material));
+  if (!unknown.length) return;
+  const own = [...Object.keys(parameters), ...Object.keys(textures)].join(', ') || 'none';
+  throw new TypeError(`ice has no property ${unknown.map(shown).join(', ')}. Its own: ${own}; the others are those of PBRMaterial`);
+}
+
+/** The numbers of a parameter's value: a number, an array, a vector, a colour or a matrix; undefined: its default. */
+function checkedNumbers(name, value, colors = '') {
+  const { type, default: start } = parameters[name];
+  const count = start.length ?? 1;
+  const given = value === undefined ? start : value;
+  const listed = typeof given === 'object' && given ? Array.from(given.asArray?.() ?? given.toArray?.() ?? given.data ?? given) : [given];
+  const fits = listed.length === count && listed.every((one) => typeof one === 'boolean' || Number.isFinite(one));
+  if (!fits) refuse(name, (count > 1 ? `${count} numbers` : type === 'bool' ? 'true or false' : 'a number') + colors, value);
+  return listed.map(Number);
+}
+
 /** Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes that melt into it. */
 export class IceMaterial extends PBRMaterial {
   #values = {
@@ -908,7 +939,8 @@ export class IceMaterial extends PBRMaterial {
   #given = {};
   #texels = {};
 
-  constructor(values = {}, scene) {
+  constructor(values = {}, scene = EngineStore.LastCreatedScene) {
+    if (!scene) throw new TypeError('ice: there is no scene: create one first, or give it as the second argument');
     super('ice', scene);
     this.metallic = 0;
     this.roughness = 1;
@@ -917,6 +949,7 @@ export class IceMaterial extends PBRMaterial {
     /** In seconds; null: the page's clock. */
     this.time = null;
     new Plugin(this);
+    checkNames(this, values);
     Object.assign(this, values);
   }
 
@@ -926,9 +959,11 @@ export class IceMaterial extends PBRMaterial {
         get() { return this.#values[name]; },
         set(value) {
           const old = this.#values[name];
-          if (typeof old !== 'object') this.#values[name] = value;
-          else if (old instanceof Color3 && typeof value === 'string') old.copyFrom(Color3.FromHexString(value).toLinearSpace());
-          else old.fromArray(numbersOf(value));
+          const isColor = old instanceof Color3;
+          const color = isColor && /^#[0-9a-f]{6}$/i.test(value) && Color3.FromHexString(value).toLinearSpace();
+          const numbers = checkedNumbers(name, color || value, isColor ? ", a Color3, or a colour such as '#3070ff'" : '');
+          if (typeof old !== 'object') this.#values[name] = typeof old === 'boolean' ? Boolean(numbers[0]) : numbers[0];
+          else old.fromArray(numbers);
         },
       });
     }
@@ -936,6 +971,7 @@ export class IceMaterial extends PBRMaterial {
       Object.defineProperty(this.prototype, name, {
         get() { return this.#given[name] ?? (this.#texels[name] ??= texel(declared, this.getScene())); },
         set(value) {
+          if (!(value == null || typeof value === 'string' || value.getInternalTexture)) refuse(name, 'a texture, the URL of one, or null', value);
           if (typeof value === 'string') value = new Texture(value, this.getScene(), { useSRGBBuffer: declared.color });
           if (declared.color && value?.gammaSpace && value.textureType === 0) {
             console.warn(`ice: ${name} has colours in sRGB: create it with { useSRGBBuffer: true }, or set its URL`);

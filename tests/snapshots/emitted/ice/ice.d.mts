@@ -17,7 +17,7 @@ export interface IceMaterialValues {
   /** The length after which 1/e (37 %) of the light remains; 0 = opaque. Default 0.25. Range 0.0 to 10.0. Unit m. */
   attenuationDistance_?: number;
   /** Multiplies the texture. Default 0.75, 0.9, 1.0, 1.0. */
-  tint?: number[] | pc.Color | pc.Vec4;
+  tint?: number[] | pc.Color | string | pc.Vec4;
   /** 0 = not a metal, 1 = metal. Default 0.0. Range 0.0 to 1.0. */
   metalness_?: number;
   /** 0 = smooth as a mirror, 1 = rough as chalk. Default 0.12. Range 0.0 to 1.0. */
@@ -35,9 +35,9 @@ export interface IceMaterialValues {
   /** Velocity of the blue layer. Default 0.0, -0.025. Unit 1/s. */
   blueSpeed?: number[] | pc.Vec2;
   /** Colour of the light in the red and green layers, where both are bright. Default 0.3, 0.8, 1.0. */
-  veinColor?: number[] | pc.Color | pc.Vec3;
+  veinColor?: number[] | pc.Color | string | pc.Vec3;
   /** Colour of the light in the blue layer. Default 0.6, 0.9, 1.0. */
-  sparkColor?: number[] | pc.Color | pc.Vec3;
+  sparkColor?: number[] | pc.Color | string | pc.Vec3;
   /** The length, in texture coordinates, over which slopes are measured: about one texel. Default 0.002. Range 0.0001 to 0.1. */
   texelSize?: number;
   /** Width of the soft edge, in the texture's values. Default 0.15. Range 0.01 to 1.0. */
@@ -49,7 +49,7 @@ export interface IceMaterialValues {
   /** How far the normal bends the light's direction inside the body: 0 ignores the shape. Default 0.2. Range 0.0 to 1.0. */
   distortion?: number;
   /** Colour of the transmitted light. Default 0.55, 0.85, 1.0. */
-  subsurfaceColor?: number[] | pc.Color | pc.Vec3;
+  subsurfaceColor?: number[] | pc.Color | string | pc.Vec3;
   /** Factor on the whole result. Default 0.8. Range 0.0 to 1.0. */
   attenuation_?: number;
   /** Strength of the glow towards the light. Default 2.0. Range 0.0 to 20.0. */
@@ -110,7 +110,7 @@ export class IceMaterial extends pc.StandardMaterial {
   set attenuationDistance_(value: number);
   /** Multiplies the texture. Default 0.75, 0.9, 1.0, 1.0. */
   get tint(): number[];
-  set tint(value: number[] | pc.Color | pc.Vec4);
+  set tint(value: number[] | pc.Color | string | pc.Vec4);
   /** 0 = not a metal, 1 = metal. Default 0.0. Range 0.0 to 1.0. */
   get metalness_(): number;
   set metalness_(value: number);
@@ -137,10 +137,10 @@ export class IceMaterial extends pc.StandardMaterial {
   set blueSpeed(value: number[] | pc.Vec2);
   /** Colour of the light in the red and green layers, where both are bright. Default 0.3, 0.8, 1.0. */
   get veinColor(): number[];
-  set veinColor(value: number[] | pc.Color | pc.Vec3);
+  set veinColor(value: number[] | pc.Color | string | pc.Vec3);
   /** Colour of the light in the blue layer. Default 0.6, 0.9, 1.0. */
   get sparkColor(): number[];
-  set sparkColor(value: number[] | pc.Color | pc.Vec3);
+  set sparkColor(value: number[] | pc.Color | string | pc.Vec3);
   /** The length, in texture coordinates, over which slopes are measured: about one texel. Default 0.002. Range 0.0001 to 0.1. */
   get texelSize(): number;
   set texelSize(value: number);
@@ -158,7 +158,7 @@ export class IceMaterial extends pc.StandardMaterial {
   set distortion(value: number);
   /** Colour of the transmitted light. Default 0.55, 0.85, 1.0. */
   get subsurfaceColor(): number[];
-  set subsurfaceColor(value: number[] | pc.Color | pc.Vec3);
+  set subsurfaceColor(value: number[] | pc.Color | string | pc.Vec3);
   /** Factor on the whole result. Default 0.8. Range 0.0 to 1.0. */
   get attenuation_(): number;
   set attenuation_(value: number);

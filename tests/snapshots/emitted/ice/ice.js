@@ -874,6 +874,36 @@ function texel({ type, default: name }) {
   return Object.assign(type === 'sampler2D' ? new THREE.DataTexture(data, 1, 1) : new THREE.Data3DTexture(data, 1, 1, 1), settings);
 }
 
+/** A value as an error shows it. */
+function shown(value) {
+  if (typeof value === 'string') return `'${value}'`;
+  return Array.isArray(value) ? `[${value.join(', ')}]` : (typeof value === 'object' && value?.constructor?.name) || String(value);
+}
+
+/** Throws an error about a value that a property does not take. */
+function refuse(name, taken, value) {
+  throw new TypeError(`ice: '${name}' takes ${taken}, not ${shown(value)}`);
+}
+
+/** Throws an error if there is a name that neither this module nor MeshPhysicalMaterial has. */
+function checkNames(material, values) {
+  const unknown = Object.keys(values ?? {}).filter((name) => !(name in material));
+  if (!unknown.length) return;
+  const own = [...Object.keys(parameters), ...Object.keys(textures)].join(', ') || 'none';
+  throw new TypeError(`ice has no property ${unknown.map(shown).join(', ')}. Its own: ${own}; the others are those of MeshPhysicalMaterial`);
+}
+
+/** The numbers of a parameter's value: a number, an array, a vector, a colour or a matrix; undefined: its default. */
+function checkedNumbers(name, value, colors = '') {
+  const { type, default: start } = parameters[name];
+  const count = start.length ?? 1;
+  const given = value === undefined ? start : value;
+  const listed = typeof given === 'object' && given ? Array.from(given.asArray?.() ?? given.toArray?.() ?? given.data ?? given) : [given];
+  const fits = listed.length === count && listed.every((one) => typeof one === 'boolean' || Number.isFinite(one));
+  if (!fits) refuse(name, (count > 1 ? `${count} numbers` : type === 'bool' ? 'true or false' : 'a number') + colors, value);
+  return listed.map(Number);
+}
+
 /** Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes that melt into it. */
 export class IceMaterial extends THREE.MeshPhysicalMaterial {
   #nodes;
@@ -929,10 +959,11 @@ export class IceMaterial extends THREE.MeshPhysicalMaterial {
         get() { return this.#nodes[name].value; },
         set(value) {
           const node = this.#nodes[name];
-          if (typeof node.value !== 'object') node.value = value;
-          else if (Array.isArray(value)) node.value.fromArray(value);
-          else if (node.value.isColor) node.value.set(value);
-          else node.value.copy(value);
+          const isColor = node.value.isColor && (typeof value === 'string' || typeof value === 'number');
+          const color = isColor && new THREE.Color(NaN, NaN, NaN).set(value); // which a string that it does not know leaves
+          const numbers = checkedNumbers(name, color && Number.isFinite(color.r) ? color : value, node.value.isColor ? ', or a colour as THREE.Color takes it' : '');
+          if (typeof node.value === 'object') node.value.fromArray(numbers);
+          else node.value = parameters[name].type === 'bool' ? Boolean(numbers[0]) : numbers[0];
         },
       });
     }
@@ -940,6 +971,7 @@ export class IceMaterial extends THREE.MeshPhysicalMaterial {
       Object.defineProperty(this.prototype, name, {
         get() { return this.#nodes[name].value; },
         set(value) {
+          if (!(value?.isTexture ?? value == null)) refuse(name, 'a THREE.Texture, or null', value);
           const decoded = value?.type === THREE.HalfFloatType || value?.type === THREE.FloatType;
           if (value?.colorSpace === THREE.NoColorSpace && !decoded) value.colorSpace = declared.colorSpace;
           this.#nodes[name].value = value ?? texel(declared);
@@ -950,6 +982,7 @@ export class IceMaterial extends THREE.MeshPhysicalMaterial {
   }
 
   setValues(values) {
+    checkNames(this, values);
     const others = {};
     for (const [name, value] of Object.entries(values ?? {})) {
       if (name in parameters || name in textures) this[name] = value;

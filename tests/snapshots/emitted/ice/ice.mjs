@@ -1026,6 +1026,36 @@ function numbers(value, type) {
   return value?.data ? Array.from(value.data) : value?.toArray ? value.toArray([]) : value;
 }
 
+/** A value as an error shows it. */
+function shown(value) {
+  if (typeof value === 'string') return `'${value}'`;
+  return Array.isArray(value) ? `[${value.join(', ')}]` : (typeof value === 'object' && value?.constructor?.name) || String(value);
+}
+
+/** Throws an error about a value that a property does not take. */
+function refuse(name, taken, value) {
+  throw new TypeError(`ice: '${name}' takes ${taken}, not ${shown(value)}`);
+}
+
+/** Throws an error if there is a name that neither this module nor StandardMaterial has. */
+function checkNames(material, values) {
+  const unknown = Object.keys(values ?? {}).filter((name) => !(name in material));
+  if (!unknown.length) return;
+  const own = [...Object.keys(parameters), ...Object.keys(textures)].join(', ') || 'none';
+  throw new TypeError(`ice has no property ${unknown.map(shown).join(', ')}. Its own: ${own}; the others are those of StandardMaterial`);
+}
+
+/** The numbers of a parameter's value: a number, an array, a vector, a colour or a matrix; undefined: its default. */
+function checkedNumbers(name, value, colors = '') {
+  const { type, default: start } = parameters[name];
+  const count = start.length ?? 1;
+  const given = value === undefined ? start : value;
+  const listed = typeof given === 'object' && given ? Array.from(given.asArray?.() ?? given.toArray?.() ?? given.data ?? given) : [given];
+  const fits = listed.length === count && listed.every((one) => typeof one === 'boolean' || Number.isFinite(one));
+  if (!fits) refuse(name, (count > 1 ? `${count} numbers` : type === 'bool' ? 'true or false' : 'a number') + colors, value);
+  return listed.map(Number);
+}
+
 /** Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes that melt into it. */
 export class IceMaterial extends pc.StandardMaterial {
   #device;
@@ -1033,6 +1063,7 @@ export class IceMaterial extends pc.StandardMaterial {
   time = null;
 
   constructor(device, values = {}) {
+    if (typeof device?.isWebGPU !== 'boolean') refuse('createMaterial', 'a graphics device first, such as app.graphicsDevice', device);
     super();
     this.#device = device;
     this.name = 'ice';
@@ -1063,13 +1094,21 @@ export class IceMaterial extends pc.StandardMaterial {
     for (const [name, { name: uniform, type }] of Object.entries(parameters)) {
       Object.defineProperty(this.prototype, name, {
         get() { return this.getParameter(uniform).data; },
-        set(value) { this.setParameter(uniform, numbers(value, type)); },
+        set(value) {
+          const mayBeColor = type === 'vec3' || type === 'vec4';
+          const color = mayBeColor && /^#([0-9a-f]{2}){3,4}$/i.test(value) ? new pc.Color().fromString(value) : value;
+          const given = checkedNumbers(name, mayBeColor ? numbers(color, type) : color, mayBeColor ? ", a pc.Color, or a colour such as '#3070ff'" : '');
+          this.setParameter(uniform, given.length > 1 ? given : given[0]);
+        },
       });
     }
     for (const [name, declared] of Object.entries(textures)) {
       Object.defineProperty(this.prototype, name, {
         get() { return this.getParameter(declared.name).data; },
-        set(value) { this.setParameter(declared.name, value ?? texel(this.#device, declared)); },
+        set(value) {
+          if (!(value == null || value instanceof pc.Texture)) refuse(name, 'a pc.Texture, or null', value);
+          this.setParameter(declared.name, value ?? texel(this.#device, declared));
+        },
       });
     }
   }
@@ -1085,6 +1124,7 @@ export class IceMaterial extends pc.StandardMaterial {
 
   /** Sets many properties: those of the material, and those of StandardMaterial. */
   set(values) {
+    checkNames(this, values);
     Object.assign(this, values);
     return this;
   }
