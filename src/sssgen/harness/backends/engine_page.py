@@ -48,6 +48,8 @@ class Engine(NamedTuple):
     script: str
     """Its file beside this one."""
     renderers: Mapping[str, Renderer]
+    v_down: bool = False
+    """Whether v is 0 at the top of the engine's own meshes."""
 
 
 class EngineDrawing(NamedTuple):

@@ -16,4 +16,5 @@ def _modules(packages: Path) -> Mapping[str, Path]:
 PLAYCANVAS = Engine(
     "playcanvas", "PlayCanvas", "npm package playcanvas: make setup", _modules, "playcanvas_page.js",
     {"webgl2": Renderer(WEBGL), "webgpu": Renderer(WEBGPU, gpu=True, top_first=True)},
+    v_down=True,
 )  # fmt: skip

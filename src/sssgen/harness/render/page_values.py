@@ -30,6 +30,9 @@ def shade(
     """
     reflection = compiled.reflection
     upright = np.linalg.det(shell.model[:3, :3]) > 0.0  # engines turn the faces of a mirrored body
+    vertices = screen_triangle(shell) if points is None else points
+    if points is None and page.engine.v_down:
+        vertices[:, 11] = 1.0 - vertices[:, 11]
     triangles = [[0, 1, 2]] if points is None else pixel_mesh.triangles(size, shell.front == upright)
     values = {
         uniform["property"]: _value(shell.parameters[uniform["source_name"]])
@@ -43,7 +46,7 @@ def shade(
     module = next(text for name, text in compiled.files.items() if name.endswith((".js", ".mjs")))
     return page.draw(
         EngineDrawing(
-            module, size, screen_triangle(shell) if points is None else points, triangles, shell.view_projection,
+            module, size, vertices, triangles, shell.view_projection,
             shell.camera_position, shell.model, shell.light_positions, shell.light_colors, shell.ambient, values,
             textures, properties or {}, tangents,
         )
