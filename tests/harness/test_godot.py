@@ -20,6 +20,7 @@ from godot_scenes import (
     back_face_deviation,
     deviation,
     layered_deviation,
+    raymarched_deviation,
     standard_material_deviation,
     vertex_deviation,
 )
@@ -184,6 +185,14 @@ def test_reflected_light_is_that_of_the_standard_material(
 def test_back_faces_have_the_reversed_normal(renderer: str, compiler: Callable[[str], Compiler]) -> None:
     compiler(GODOT)
     assert back_face_deviation(renderer).max() <= 1.0 / 255.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("renderer", RENDERERS)
+def test_a_raymarched_scene_is_upright_on_a_quad(renderer: str, compiler: Callable[[str], Compiler]) -> None:
+    compiler(GODOT)
+    difference = raymarched_deviation(renderer)
+    assert np.quantile(difference, 0.98) < 1.0 / 255.0  # but for edges, where a ray may miss
 
 
 @pytest.mark.slow

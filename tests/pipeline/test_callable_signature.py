@@ -63,7 +63,7 @@ def test_every_global_name_has_the_prefix(target: str, assert_compiles: Callable
         ("1x", "functions", "'1x' cannot begin a name"),
         ("a__b", "functions", "'a__b' cannot begin a name"),
         ("gl_", "functions", "names that begin with 'gl_' are reserved"),
-        ("wax_", "shader", "a whole shader for WGSL (WebGPU) has no prefix"),
+        ("wax_", "shader", "whole shaders take none: wgsl"),
     ],
 )
 def test_a_prefix_that_cannot_be(prefix: str, form: str, message: str) -> None:

@@ -77,6 +77,15 @@ def _picture(name: str, engine: str, part: str) -> Array:
         scene_render.shade = usual
 
 
+def raymarched_deviation(renderer: str) -> Array:
+    """A raymarched scene on Godot's own quad, beside the oracle, whose output encodes with 2.2 and clamps near 0.9."""
+    expected = encode_srgb(_picture("jelly_cubes", "numpy", WHOLE)[..., :3]) ** 2.2
+    drawn = _picture("jelly_cubes", renderer, WHOLE)[..., :3]
+    assert np.ptp(expected) > 0.3
+    difference: Array = np.abs(np.clip(expected, 0.0, 0.9) - np.clip(drawn, 0.0, 0.9)).max(axis=2)
+    return difference
+
+
 def _as_godot_stores(points: Array) -> Array:
     """The vertices with the normals and tangents that Godot's meshes have: two numbers of 16 bits each."""
     stored = points.copy()

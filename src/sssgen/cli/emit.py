@@ -90,7 +90,7 @@ def _cached_or_compiled(arguments: Namespace, traces: list[Trace]) -> EmittedFil
 
 def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
     """Compiles every material for every target, and adds to `traces`. Raises SssgenError with all errors."""
-    from sssgen.pipeline.compiler import compile
+    from sssgen.pipeline.compiler import all_targets, compile, without_prefix
     from sssgen.pipeline.trace import Trace
 
     wrong: list[Diagnostic] = []
@@ -101,6 +101,11 @@ def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
     files: dict[str, str] = {}
     sources: dict[str, tuple[str, str]] = {}
     warnings: list[Diagnostic] = []
+    if arguments.prefix and arguments.form == "shader":
+        targets = all_targets()
+        bare = [name for name in names if not targets[name].prefix]
+        wrong += without_prefix(bare).diagnostics if bare else []
+        names = [name for name in names if name not in bare]
     for material in materials:
         for name in names:
             trace = Trace(f"{material.name}.{name}.trace") if arguments.trace else None

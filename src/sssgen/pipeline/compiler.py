@@ -18,7 +18,7 @@ from sssgen.material.model import Material, TechniqueUse
 from sssgen.passes.names import checked_prefix
 from sssgen.pipeline.emitted_cache import installation
 from sssgen.support import cache
-from sssgen.support.diagnostics import Diagnostic, failure
+from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.gc_pause import paused
 from sssgen.support.paths import place
 from sssgen.targets import registry
@@ -116,9 +116,14 @@ def _prefixed(target: Target, prefix: str, form: str) -> Target:
     if not prefix:
         return target
     if form != "functions" and not target.prefix:
-        hint = "the names in a whole shader are its own: add --form functions"
-        raise failure(f"a whole shader for {target.title} has no prefix", hint)
+        raise without_prefix([target.name])
     return target._replace(prefix=checked_prefix(prefix, registry.reserved_everywhere().prefixes))
+
+
+def without_prefix(targets: Sequence[str]) -> SssgenError:
+    """The one error for a prefix of whole shaders that have none."""
+    message = f"--prefix is for text that is pasted into other shaders; whole shaders take none: {', '.join(targets)}"
+    return failure(message, "leave the prefix out, or add --form functions")
 
 
 def _inner(target: Target, embedded: Embedded) -> Target:

@@ -34,7 +34,7 @@ class View(NamedTuple):
     """`towards` or `place`, and the linear `color` and its factor `energy`."""
     model: Array
     vertices: Array | None
-    """(count, `VERTEX_SIZE`) float32, as in `Drawing`; None: a box around the camera."""
+    """(count, `VERTEX_SIZE`) float32, as in `Drawing`; None: Godot's own quad, which fills the view."""
     triangles: Array | None
 
 
@@ -239,8 +239,10 @@ func draw():
         body.mesh = mesh()
         body.transform = transform(plan["model"])
     else:
-        body.mesh = BoxMesh.new()
-        body.position = camera.position
+        var height = 2.0 * tan(deg_to_rad(camera.fov) / 2.0)
+        body.mesh = QuadMesh.new()
+        body.mesh.size = Vector2(height * view.size.x / view.size.y, height)
+        body.transform = camera.transform.translated_local(Vector3(0.0, 0.0, -1.0))
     body.material_override = material(plan)
     view.add_child(body)
     for entry in plan["lights"]:
