@@ -319,6 +319,7 @@ def test_a_text_too_deep_for_a_compiler(run: Run, compiler: Callable[[str], Comp
         (["what.txt", "-t", "wgsl,hlsl"], "the language of the file cannot be determined"),
         (["x.glsl-330.frag", "-t", "wgsl"], "the file is for glsl-330\n  --> x.glsl-330.frag"),
         (["map.wgsl"], "this is not a reflection file of sssgen\n  --> map.wgsl.reflection.json"),
+        (["ice", "-t", "unity-hdrp"], "unknown target 'unity-hdrp'\n  help: its target is 'unity-shadergraph'"),
         (["ice", "-t", "wgls"], "unknown target 'wgls'\n  help: did you mean 'wgsl'?"),
         (["ice", "--compiler", "glslng"], "unknown compiler 'glslng'\n  help: did you mean 'glslang'?"),
         (["ok.frag", "--compiler", "tint"], "no tint reads glsl-330\n  help: compilers that do: gl, glslang"),

@@ -214,3 +214,21 @@ def test_an_error_has_its_line(compiler: Callable[[str], Compiler]) -> None:
     shader = files("wax_mouse")[0].replace("surface.metallic", "surface.metalic")
     line = next(number for number, text in enumerate(shader.splitlines(), 1) if "surface.metalic" in text)
     assert errors(compiler("bevy").check(Source(shader, "bevy", "fragment", "fragment")))[0].line == line
+
+
+@pytest.mark.parametrize(
+    "name", ["standard_material", "extended_material", "handle", "vec2", "self", "standard", "as_bind_group"]
+)
+def test_no_type_has_the_name_of_another(name: str, tmp_path: Path) -> None:
+    """Of Rust's own, of Bevy's, or of those that the file itself reads."""
+    path = tmp_path / "material.toml"
+    path.write_text(f'[material]\nname = "{name}"\n[surface]\ntechnique = "base_color"\n')
+    rust = sssgen.compile(str(path), "bevy").files[f"{name}.rs"]
+    code = re.sub(r"//.*", "", rust)
+    made = re.findall(r"pub (?:type|struct) (\w+)", code)
+    free = sssgen.compile(WAX, "bevy").files["wax.rs"]
+    read = set(re.findall(r"\b[A-Z]\w+", re.sub(r"//.*", "", free))) - {"Wax", "WaxMaterial"}
+    assert len(set(made)) == 2 and not set(made) & read
+    assert (
+        f"ExtendedMaterial<StandardMaterial, {made[1]}>" in code and f"impl MaterialExtension for {made[1]} {{" in code
+    )

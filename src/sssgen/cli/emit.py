@@ -128,6 +128,7 @@ def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
 def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:
     """The targets that `T,T` or `all` names, each once; unknown ones are added to `wrong`."""
     from sssgen.pipeline.compiler import all_targets
+    from sssgen.targets.registry import found_under
 
     targets = list(all_targets())
     names = [name.strip() for name in text.split(",") if name.strip()]
@@ -135,7 +136,9 @@ def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:
         wrong += failure("no target is named", f"targets: {', '.join(targets)}, or all").diagnostics
     for name in names:
         if name not in (*targets, "all"):
-            hint = did_you_mean(name, [*targets, "all"]) or f"targets: {', '.join(targets)}, or all"
+            hint = (
+                found_under(name) or did_you_mean(name, [*targets, "all"]) or f"targets: {', '.join(targets)}, or all"
+            )
             wrong += failure(f"unknown target '{name}'", hint).diagnostics
     return targets if "all" in names else [name for name in dict.fromkeys(names) if name in targets]
 

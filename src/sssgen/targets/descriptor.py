@@ -162,6 +162,8 @@ class Target(NamedTuple):
 
     name: str = ""
     title: str = ""
+    also: tuple[str, ...] = ()
+    """Names under which users look for it; the error for such a name gives the right one."""
     language: str = ""
     """Which printer prints it: glsl, gdshader, hlsl, metal, wgsl or python, or `module:Class` of a plug-in."""
     dialect: str = ""

@@ -42,7 +42,15 @@ def load(name: str) -> Target:
     if name in HALF_PRECISION:
         target: Target = importlib.import_module(HALF_PRECISION[name]).target()
         return target
-    raise failure(f"unknown target '{name}'", did_you_mean(name, names()) or f"targets: {', '.join(names())}")
+    raise failure(
+        f"unknown target '{name}'", found_under(name) or did_you_mean(name, names()) or f"targets: {', '.join(names())}"
+    )
+
+
+def found_under(name: str) -> str:
+    """The hint for a name that a descriptor's `also` lists, or ''."""
+    listing = [own for own, table in _tables().items() if name in table.get("also", ())]
+    return f"its target is '{listing[0]}'" if listing else ""
 
 
 def has_plugins() -> bool:
