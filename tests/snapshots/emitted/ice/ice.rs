@@ -118,12 +118,12 @@ pub struct Ice {
     #[sampler(102)]
     pub base_color_texture: Option<Handle<Image>>,
     /// Cover on the ice (snow, rock): black = bare ice, white = covered.
-    /// Without an image it is white: give it one that is black.
+    /// Without an image it is white: for none of it, give it an image of one black texel, (0, 0, 0).
     #[texture(103)]
     #[sampler(104)]
     pub cover_texture: Option<Handle<Image>>,
     /// Three pictures in one texture: red, green and blue each hold a layer.
-    /// Without an image it is white: give it one that is black.
+    /// Without an image it is white: for none of it, give it an image of one black texel, (0, 0, 0).
     #[texture(105)]
     #[sampler(106)]
     pub packed_texture: Option<Handle<Image>>,
