@@ -90,7 +90,7 @@ def _cached_or_compiled(arguments: Namespace, traces: list[Trace]) -> EmittedFil
 
 def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
     """Compiles every material for every target, and adds to `traces`. Raises SssgenError with all errors."""
-    from sssgen.pipeline.compiler import all_targets, compile, without_prefix
+    from sssgen.pipeline.compiler import compile
     from sssgen.pipeline.trace import Trace
 
     wrong: list[Diagnostic] = []
@@ -102,6 +102,8 @@ def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
     sources: dict[str, tuple[str, str]] = {}
     warnings: list[Diagnostic] = []
     if arguments.prefix and arguments.form == "shader":
+        from sssgen.pipeline.compiler import all_targets, without_prefix
+
         targets = all_targets()
         bare = [name for name in names if not targets[name].prefix]
         wrong += without_prefix(bare).diagnostics if bare else []
