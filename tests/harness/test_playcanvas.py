@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import re
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
@@ -13,14 +12,24 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import HEAD, MATERIALS, MESHES, SIZE, chain_case, check_refusals, mesh_of, through
+from engine_cases import (
+    HEAD,
+    MATERIALS,
+    MESHES,
+    SIZE,
+    chain_case,
+    check_refusals,
+    check_reported_errors,
+    check_texts,
+    mesh_of,
+    through,
+)
 from folders import ROOT
 from skips import or_skip
 from sssgen.harness.backends import Array
 from sssgen.harness.backends.engine_page import EnginePage
 from sssgen.harness.backends.playcanvas_page import PLAYCANVAS
-from sssgen.harness.check.compiler_inputs import sources
-from sssgen.harness.compilers import Compiler, errors
+from sssgen.harness.compilers import Compiler
 from sssgen.harness.render import page_values, shade_numpy
 from sssgen.harness.render.scene_render import PlacedMesh
 from sssgen.harness.render.scene_values import shell_of
@@ -298,11 +307,7 @@ def test_another_prefix_draws_the_same(playcanvas: EnginePage) -> None:
 
 
 def test_an_error_of_playcanvas_is_reported(playcanvas: EnginePage) -> None:
-    mesh, compiled = mesh_of("resin_inlay"), sssgen.compile("resin_inlay", "playcanvas")
-    declared = r"(Surface|fn) sss_evaluate_surface\("
-    files = {name: re.sub(declared, r"\1 sss_misnamed(", text) for name, text in compiled.files.items()}
-    with pytest.raises(SssgenError, match="sss_evaluate_surface"):
-        page_values.shade(compiled._replace(files=files), mesh.shell, playcanvas, mesh.size, mesh.points)
+    check_reported_errors(playcanvas, "playcanvas", "sss_evaluate_surface")
 
 
 def test_values_that_it_does_not_take_are_refused(playcanvas: EnginePage) -> None:
@@ -313,15 +318,7 @@ def test_values_that_it_does_not_take_are_refused(playcanvas: EnginePage) -> Non
 
 @pytest.mark.parametrize("form", ["shader", "functions"])
 def test_the_texts_in_a_module_compile(form: str, compiler: Callable[[str], Compiler]) -> None:
-    """Both languages are found in the module, and an error has the line that it has there."""
-    (name, text), *_ = sssgen.compile("wax_mouse", "playcanvas", form).files.items()
-    read = sources({name: text})
-    assert [source.language for source in read] == ["glsl-es-300", "wgsl"]
-    for source, tool in zip(read, ("glslang", "tint"), strict=True):
-        assert errors(compiler(tool).check(source)) == []
-        wrong = dataclasses.replace(source, text=source.text.replace("max(", "maximum(", 1))
-        (line,) = {said.line for said in errors(compiler(tool).check(wrong))[:1]}
-        assert "max(" in text.splitlines()[line - 1]
+    check_texts("playcanvas", form, compiler)
 
 
 def test_parameters_are_properties() -> None:

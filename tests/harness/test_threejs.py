@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import re
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
@@ -12,18 +11,26 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import HEAD, MESHES, SIZE, chain_case, check_refusals, mesh_of, through
+from engine_cases import (
+    HEAD,
+    MESHES,
+    SIZE,
+    chain_case,
+    check_refusals,
+    check_reported_errors,
+    check_texts,
+    mesh_of,
+    through,
+)
 from folders import ROOT
 from skips import or_skip
 from sssgen.harness.backends.engine_page import EnginePage
 from sssgen.harness.backends.three_page import THREE
-from sssgen.harness.check.compiler_inputs import sources
-from sssgen.harness.compilers import Compiler, errors
+from sssgen.harness.compilers import Compiler
 from sssgen.harness.render import page_values, shade_numpy
 from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.scenes import scene_loading
 from sssgen.material.material_loading import load_material
-from sssgen.support.diagnostics import SssgenError
 
 BLACK = {"color": 0.0, "specularIntensity": 0.0}
 """three's own reflection is gone: what is left is emission, and the light that comes through."""
@@ -132,11 +139,7 @@ def test_another_prefix_draws_the_same(three: EnginePage) -> None:
 
 
 def test_an_error_of_three_is_reported(three: EnginePage) -> None:
-    mesh, compiled = mesh_of("resin_inlay"), sssgen.compile("resin_inlay", "threejs")
-    declared = r"(Surface|fn) sss_evaluate_surface\("
-    files = {name: re.sub(declared, r"\1 sss_misnamed(", text) for name, text in compiled.files.items()}
-    with pytest.raises(SssgenError, match=r"sss_evaluate_surface|fragment_resin_inlay"):
-        page_values.shade(compiled._replace(files=files), mesh.shell, three, mesh.size, mesh.points)
+    check_reported_errors(three, "threejs", r"sss_evaluate_surface|fragment_resin_inlay")
 
 
 def test_values_that_it_does_not_take_are_refused(three: EnginePage) -> None:
@@ -145,15 +148,7 @@ def test_values_that_it_does_not_take_are_refused(three: EnginePage) -> None:
 
 @pytest.mark.parametrize("form", ["shader", "functions"])
 def test_the_texts_in_a_module_compile(form: str, compiler: Callable[[str], Compiler]) -> None:
-    """Both languages are found in the module, and an error has the line that it has there."""
-    (name, text), *_ = sssgen.compile("wax_mouse", "threejs", form).files.items()
-    read = sources({name: text})
-    assert [source.language for source in read] == ["glsl-es-300", "wgsl"]
-    for source, tool in zip(read, ("glslang", "tint"), strict=True):
-        assert errors(compiler(tool).check(source)) == []
-        wrong = dataclasses.replace(source, text=source.text.replace("max(", "maximum(", 1))
-        (line,) = {said.line for said in errors(compiler(tool).check(wrong))[:1]}
-        assert "max(" in text.splitlines()[line - 1]
+    check_texts("threejs", form, compiler)
 
 
 def test_parameters_are_properties() -> None:

@@ -196,7 +196,7 @@ def drawn(backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) ->
     machine = backend("unity-urp")
     assert isinstance(machine, UnityHLSL)
     if machine.unity.real:
-        pytest.skip("the values are those of the stand-in headers")
+        pytest.skip("SSSGEN_UNITY_INCLUDES is set: only the stand-in headers let a test choose the engine's values")
     forward, engine = machine.forward, unity_values._engine
     described = parse_scene(
         f'material = "paper_lantern"\nsamples = 1\n[geometry]\nkind = "ball"\n{SUNS_AND_LAMP}', EXAMPLES / "scene.toml"

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 import runpy
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 
 from folders import ROOT
 from sssgen.harness import backends
-from sssgen.harness.backends import BACKENDS
+from sssgen.harness.backends import BACKENDS, Backend
 
 pytest.importorskip("PIL", reason="Pillow is missing: pip install 'sssgen[dev]'")
 
@@ -28,10 +29,9 @@ def test_every_engine_has_a_row() -> None:
     assert "not run" not in text.partition(engines["START"])[2]
 
 
-def test_the_scene_is_that_of_shadertoy() -> None:
+def test_the_scene_is_that_of_shadertoy(backend: Callable[[str], Backend]) -> None:
     """The page compares Shadertoy's own shell with a scene of this project."""
-    if "gl" not in {backend.name for backend in backends.available()}:
-        pytest.skip("gl is missing")
+    backend("gl")
     engines = page()
     scene = engines["scene_loading"].load(str(engines["FOLDER"] / "scene.toml"))
     reference = engines["render"](scene, backends.get("numpy"), (48, 36)).encoded

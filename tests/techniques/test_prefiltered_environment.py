@@ -40,9 +40,9 @@ def reflected(cosine: float, roughness: float, f0: float, count: int = 512) -> f
     towards = half @ eye
     light = 2.0 * towards * cos_half - cosine
     above = (light > 0.0) & (towards > 0.0)
-    root = lambda c: np.sqrt(alpha * alpha + (1.0 - alpha * alpha) * c * c)  # noqa: E731
     safe = np.where(above, light, 1.0)
-    visible = 2.0 * safe * cosine / (safe * root(cosine) + cosine * root(safe))
+    root_eye, root_light = (np.sqrt(alpha * alpha + (1.0 - alpha * alpha) * c * c) for c in (cosine, safe))
+    visible = 2.0 * safe * cosine / (safe * root_eye + cosine * root_light)
     fresnel = f0 + (1.0 - f0) * (1.0 - np.clip(towards, 0.0, 1.0)) ** 5
     return float(np.where(above, fresnel * visible * towards / (cos_half * cosine), 0.0).mean())
 

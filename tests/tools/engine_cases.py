@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,7 +18,9 @@ from folders import ROOT
 from sssgen.harness.backends import Array
 from sssgen.harness.backends.backend_interface import VERTEX_SIZE
 from sssgen.harness.backends.engine_page import EngineDrawing, EnginePage
-from sssgen.harness.render import shade_numpy
+from sssgen.harness.check.compiler_inputs import sources
+from sssgen.harness.compilers import Compiler, errors
+from sssgen.harness.render import page_values, shade_numpy
 from sssgen.harness.render.scene_render import PlacedMesh, placed
 from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.render.shell_values import Shell
@@ -140,3 +143,24 @@ def check_refusals(page: EnginePage, target: str, engine_class: str, colors: str
         page.draw(drawing._replace(values={"cell_count": 6.0}))
     color = drawing._replace(values={"veinColor": "#3070ff"})
     assert np.isfinite(page.draw(color)).all()
+
+
+def check_reported_errors(page: EnginePage, target: str, named: str) -> None:
+    """An error of the engine's compiler reaches the caller: a function of the shader has another name."""
+    mesh, compiled = mesh_of("resin_inlay"), sssgen.compile("resin_inlay", target)
+    declared = r"(Surface|fn) sss_evaluate_surface\("
+    files = {name: re.sub(declared, r"\1 sss_misnamed(", text) for name, text in compiled.files.items()}
+    with pytest.raises(SssgenError, match=named):
+        page_values.shade(compiled._replace(files=files), mesh.shell, page, mesh.size, mesh.points)
+
+
+def check_texts(target: str, form: str, compiler: Callable[[str], Compiler]) -> None:
+    """Both languages are found in the module, and an error has the line that it has there."""
+    (name, text), *_ = sssgen.compile("wax_mouse", target, form).files.items()
+    read = sources({name: text})
+    assert [source.language for source in read] == ["glsl-es-300", "wgsl"]
+    for source, tool in zip(read, ("glslang", "tint"), strict=True):
+        assert errors(compiler(tool).check(source)) == []
+        wrong = dataclasses.replace(source, text=source.text.replace("max(", "maximum(", 1))
+        (line,) = {said.line for said in errors(compiler(tool).check(wrong))[:1]}
+        assert "max(" in text.splitlines()[line - 1]
