@@ -85,15 +85,27 @@ class EnginePage:
             raise CompilerMissing("chromium (Debian: chromium · elsewhere: Chrome; or set SSSGEN_CHROMIUM)")
         if not modules or not all(file.is_file() for file in modules.values()):
             raise CompilerMissing(f"{engine.title} ({engine.install})")
-        adapter = os.environ.get("SSSGEN_BROWSER_ADAPTER", "swiftshader")
-        scripts = [Path(__file__).with_name(name) for name in (engine.script, "engine_page.js")]
-        script = "\n".join(file.read_text(encoding="utf-8") for file in scripts)
+        self.program, self.modules = program, modules
         try:
-            self.page = Page(program, adapter, script, self.renderer.switches, modules)
-            facts, _ = self.page.receive(START)
+            self._start()
         except LostError as reason:
             raise CompilerMissing(f"chromium that starts: {program} {reason}") from None
+
+    def _start(self) -> None:
+        adapter = os.environ.get("SSSGEN_BROWSER_ADAPTER", "swiftshader")
+        scripts = [Path(__file__).with_name(name) for name in (self.engine.script, "engine_page.js")]
+        script = "\n".join(file.read_text(encoding="utf-8") for file in scripts)
+        self.page = Page(self.program, adapter, script, self.renderer.switches, self.modules)
+        facts, _ = self.page.receive(START)
         self.version = str(facts["version"])
+
+    def restart(self) -> None:
+        """A new page. An engine reports errors of a shader at any time: the next draw does not receive the last one's."""
+        self.page.close()
+        try:
+            self._start()
+        except LostError as reason:
+            raise backend_failure(self.engine.target, f"the browser {reason}") from None
 
     def draw(self, drawing: EngineDrawing) -> Array:
         """The picture in linear light, (height, width, 4) float32, row 0 at the bottom. Raises SssgenError."""
@@ -105,6 +117,9 @@ class EnginePage:
             raise backend_failure(self.engine.target, f"the browser {reason}") from None
         if "error" in answer or answer["complaints"]:
             said = "; ".join([answer.get("error", ""), *answer["complaints"]]).strip("; ")
+            if answer["complaints"]:
+                self.restart()
+            self.restart()
             raise backend_failure(self.engine.target, said)
         width, height = drawing.size
         rows = np.frombuffer(bytearray(picture), np.float32).reshape(height, answer["stride"] // 4)
