@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import stat
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +14,8 @@ import pytest
 
 from folders import UNITY_SAMPLES
 from sssgen.cli import main as cli
+from sssgen.harness import installed
+from sssgen.harness.backend_registry import BACKENDS, ENGINES
 from sssgen.harness.check import compile_check as check
 from sssgen.harness.check.shader_files import of_files, of_material, read
 from sssgen.harness.compiler_registry import COMPILERS
@@ -107,7 +110,7 @@ def test_a_material_in_both_forms(run: Run, compiler: Callable[[str], Compiler])
     compiler("glslang")
     ran = run("ice", "--target", "glsl-330", "-t", "hlsl", "--compiler", "glslang", "--json")
     assert ran.status == 0
-    assert set(ran.data) == {"compilers", "missing", "results"}
+    assert set(ran.data) == {"compilers", "missing", "engines", "results"}
     assert ran.data["compilers"][0]["name"] == "glslang"
     assert {row["file"] for row in ran.data["results"]} == {
         "ice.glsl-330.vert", "ice.glsl-330.frag", "ice.glsl-330.glsl", "ice.hlsl", "ice.functions.hlsl",
@@ -262,6 +265,42 @@ def test_a_missing_compiler_is_reported(run: Run, monkeypatch: pytest.MonkeyPatc
     named = run("a.wgsl", "--compiler", "tint")
     assert (named.status, named.out) == (2, "")
     assert "error: tint is not available\n  help: " in named.err
+
+
+def test_engines_are_named_and_none_is_started(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each with how to get it where its program or its package is missing."""
+    families = ("threejs", "babylonjs", "playcanvas", "godot", "firefox", "bevy", "metal", "unreal")
+    scenes = {name for name, record in BACKENDS.items() if record.scenes_only}
+    assert scenes | set(families) == set(ENGINES)
+    write({"a.py": "x = 1\n"})
+    for variable in ("SSSGEN_NODE_MODULES", "SSSGEN_CHROMIUM", "SSSGEN_FIREFOX", "SSSGEN_GODOT", "PATH"):
+        monkeypatch.setenv(variable, "nowhere")
+    monkeypatch.setattr(installed, "folder", Path)
+    rows = {row["name"]: row for row in run("a.py", "--json").data["engines"]}
+    assert [*rows] == [*ENGINES]
+    assert not any(row["found"] for name, row in rows.items())
+    needs = {
+        "threejs": "Chromium.*npm package three", "babylonjs": "Chromium.*@babylonjs/core",
+        "playcanvas": "Chromium.*npm package playcanvas", "godot": "make engines", "firefox": "firefox-esr",
+        "bevy": "node.*npm package webgpu.*npm package wesl", "metal": r"g\+\+", "unreal": "spirv-cross",
+    }  # fmt: skip
+    for name, row in rows.items():
+        assert re.search(needs[name.partition("-")[0]], row["how"]), row
+    for text in ("threejs, threejs-webgl, threejs-webgl2: not found: ", "metal: not found: g++ (Debian: g++)\n"):
+        assert text in run("a.py").out
+
+
+@pytest.mark.skipif(os.name != "posix", reason="the programs are shell scripts")
+def test_an_engine_is_found_by_its_files_alone(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("websockets")
+    write({"a.py": "x = 1\n", "packages/three/package.json": "{}"})
+    for browser in ("chromium", "firefox"):
+        monkeypatch.setenv(f"SSSGEN_{browser.upper()}", program(browser, f"touch {Path.cwd()}/started"))
+    monkeypatch.setenv("SSSGEN_NODE_MODULES", "packages")
+    rows = {row["name"]: row["found"] for row in run("a.py", "--json").data["engines"]}
+    assert (rows["threejs"], rows["threejs-webgl"], rows["firefox"], rows["playcanvas"]) == (True, True, True, False)
+    assert "firefox" in run("a.py").out.partition(": found")[0].splitlines()[-1]
+    assert not Path("started").exists()
 
 
 def test_a_check_without_a_compilation_fails(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -20,7 +20,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from processes import HANG
-from sssgen.harness.backends.browser_page import find
+from sssgen.harness.installed import chromium
 from sssgen.lab.chart import drawing
 from sssgen.lab.chart.drawing import figure
 from sssgen.lab.chart.drawing.panels import COLORS, charts_of, label_texts, medians, number, styles
@@ -353,11 +353,11 @@ document.title = JSON.stringify(said);
 
 
 def test_page_in_a_browser(folder: Path, tmp_path: Path) -> None:
-    if not (chromium := find()):
+    if not (program := chromium()):
         pytest.skip("there is no Chromium")
     page = tmp_path / "driven.html"
     page.write_text((folder / "chart.html").read_text(encoding="utf-8") + DRIVE, encoding="utf-8")
-    command = [chromium, "--headless", "--no-sandbox", "--dump-dom", page.as_uri()]
+    command = [program, "--headless", "--no-sandbox", "--dump-dom", page.as_uri()]
     dom = subprocess.run(command, capture_output=True, text=True, timeout=HANG, check=True).stdout
     result = re.search("<title>({.*?)</title>", dom, re.S)
     assert result

@@ -71,6 +71,7 @@ def _print(report: Report, shaders: list[Shader]) -> None:
         print(f"{name:8} {visible(version)}")
     for name, instruction in report.missing.items():
         print(f"{name:8} not found: {visible(instruction)}")
+    _print_engines()
     print()
     cells: dict[tuple[str, str], list[Result]] = {}
     for result in report.results:
@@ -87,6 +88,17 @@ def _print(report: Report, shaders: list[Shader]) -> None:
             print(f"--   {visible(shader.name):{width}}  not compiled: {_why_not(language, report)}")
     failed = sum(not result.ok for result in report.results)
     print(f"\n{len(shaders)} files, {len(report.results)} compilations, {failed} failed")
+
+
+def _print_engines() -> None:
+    """The back ends of `render` and `eval` that are engines: those that are found, then those that lack the same."""
+    names: dict[str, list[str]] = {"": []}
+    for name, how in check.engines().items():
+        names.setdefault(how, []).append(name)
+    print("\nEngines as back ends:")
+    for how, alike in names.items():
+        if alike:
+            print(f"  {', '.join(alike)}: {f'not found: {visible(how)}' if how else 'found'}")
 
 
 def _why_not(language: str, report: Report) -> str:

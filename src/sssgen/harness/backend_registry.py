@@ -31,6 +31,8 @@ class BackendRecord(NamedTuple):
     """Whether a driver computes, which may crash."""
     scenes_only: bool = False
     """Whether it is an engine, which draws and lights scenes, and evaluates no functions."""
+    parts: tuple[str, ...] = ()
+    """Of an engine, or a stand-in for one: the parts of `installed` without which it does not start."""
     apart: bool = False
     """Whether `make setup` leaves it out, so that its absence in CI is no failure."""
     default: bool = False
@@ -46,7 +48,9 @@ _NUMPY = "`pip install 'sssgen[numpy]'`"
 _GODOT = "Godot 4.6 (`make engines`, or `SSSGEN_GODOT` names the program)"
 
 
-def _page(target: str, title: str, package: str, renderers: Mapping[str, tuple[str, str]]) -> Iterator[BackendRecord]:
+def _page(
+    target: str, title: str, package: str, part: str, renderers: Mapping[str, tuple[str, str]]
+) -> Iterator[BackendRecord]:
     """The back ends of an engine of the web: a suffix of the name → the renderer's title and name."""
     install = f"`pip install 'sssgen[browser]'`, Chromium or Chrome (Debian: `chromium`), the npm package `{package}`"
     for suffix, (renderer, name) in renderers.items():
@@ -58,6 +62,7 @@ def _page(target: str, title: str, package: str, renderers: Mapping[str, tuple[s
             install,
             {"renderer": name},
             scenes_only=True,
+            parts=("pip browser", "chromium", part),
         )
 
 
@@ -92,7 +97,7 @@ _RECORDS = (
     BackendRecord(
         "firefox", "WGSL through naga, in a headless Firefox", "wgsl", "browser:Browser",
         "`pip install 'sssgen[browser]'`, Firefox (Debian: `firefox-esr`) and Vulkan", {"program": "firefox"},
-        apart=True,
+        parts=("pip browser", "firefox"), apart=True,
     ),
     BackendRecord(
         "hlsl", "HLSL through DXC and SPIR-V, in OpenGL", "hlsl", "hlsl_spirv:HLSL", _DXC, {"compiler": "dxc"},
@@ -112,26 +117,31 @@ _RECORDS = (
     ),
     BackendRecord(
         "bevy", "functions for Bevy: WESL, linked by npm wesl, then through naga, in wgpu", "bevy",
-        "bevy_backend:BevyWGSL", "as `webgpu`, node and the npm package `wesl`",
+        "bevy_backend:BevyWGSL", "as `webgpu`, node and the npm packages `webgpu` and `wesl`",
+        parts=("pip webgpu", "node", "npm webgpu", "npm wesl"),
     ),
     BackendRecord(
         "unreal", "functions for Unreal: behind a stand-in for the engine, through DXC and SPIR-V, in OpenGL", "unreal",
-        "unreal_backend:UnrealHLSL", "as `hlsl`", {"compiler": "dxc"},
+        "unreal_backend:UnrealHLSL", "as `hlsl`", {"compiler": "dxc"}, parts=("pip gl", "pip dxc", "spirv"),
     ),
     BackendRecord(
         "metal", "Metal on the processor: g++ with a stand-in for Metal's library", "metal", "metal_backend:MetalOnCpu",
-        "`g++` (Debian: `g++`)", driver=False,
+        "`g++` (Debian: `g++`)", driver=False, parts=("pip numpy", "g++"),
     ),
-    *_page("threejs", "three.js", "three", {
+    *_page("threejs", "three.js", "three", "npm three", {
         "": ("WebGPURenderer", "webgpu"), "-webgl": ("WebGLRenderer", "webgl"),
         "-webgl2": ("WebGPURenderer on WebGL 2", "webgl2"),
     }),
-    *_page("babylonjs", "Babylon.js", "@babylonjs/core", {"": ("WebGPU", "webgpu"), "-webgl": ("WebGL 2", "webgl")}),
-    *_page("playcanvas", "PlayCanvas", "playcanvas", {"": ("WebGPU", "webgpu"), "-webgl2": ("WebGL 2", "webgl2")}),
+    *_page("babylonjs", "Babylon.js", "@babylonjs/core", "babylon bundle", {
+        "": ("WebGPU", "webgpu"), "-webgl": ("WebGL 2", "webgl"),
+    }),
+    *_page("playcanvas", "PlayCanvas", "playcanvas", "npm playcanvas", {
+        "": ("WebGPU", "webgpu"), "-webgl2": ("WebGL 2", "webgl2"),
+    }),
     *(
         BackendRecord(
             f"godot{suffix}", f"Godot, {title}", "godot", "engine_backend:GodotBackend", _GODOT,
-            {"renderer": renderer}, scenes_only=True, apart=True,
+            {"renderer": renderer}, scenes_only=True, parts=("pip numpy", "godot"), apart=True,
         )
         for suffix, title, renderer in (
             ("", "Forward+", "forward_plus"), ("-mobile", "Mobile", "mobile"),
@@ -141,6 +151,8 @@ _RECORDS = (
 )  # fmt: skip
 
 BACKENDS = {record.name: record for record in _RECORDS}
+ENGINES = tuple(record.name for record in _RECORDS if record.parts)
+"""Engines, and the stand-ins for engines."""
 FUNCTIONS = tuple(record.name for record in _RECORDS if not record.scenes_only)
 """Those that evaluate functions."""
 SINGLE = tuple(name for name in FUNCTIONS if BACKENDS[name].bits == 32)

@@ -16,11 +16,12 @@ from typing import Any
 import numpy as np
 
 from sssgen.harness.backends.backend_interface import Array, Drawing, backend_failure, refused
-from sssgen.harness.backends.browser_page import START, WEBGPU, LostError, Page, find, find_firefox
+from sssgen.harness.backends.browser_page import START, WEBGPU, LostError, Page
 from sssgen.harness.backends.call_program import FRAGMENT
 from sssgen.harness.backends.draw_backend import DrawingBackend
 from sssgen.harness.backends.webgpu_plan import ATTRIBUTE_PLAN, STRIDE, Plan, layout_entries, plan
 from sssgen.harness.compilers import CompilerMissing, Message
+from sssgen.harness.installed import chromium, firefox
 
 SECONDS = 60.0
 """How long a small draw may take; a large one gets more, see `_extra`."""
@@ -83,7 +84,7 @@ class Browser(DrawingBackend):
 
 def _open() -> tuple[Page, dict[str, Any]]:
     """A page in Chromium with a device, and its version and adapter. Raises CompilerMissing where there is none."""
-    program = find()
+    program = chromium()
     if not program:
         raise CompilerMissing("chromium (Debian: chromium · elsewhere: Chrome; or set SSSGEN_CHROMIUM)")
     adapter = os.environ.get("SSSGEN_BROWSER_ADAPTER", "swiftshader")
@@ -92,7 +93,7 @@ def _open() -> tuple[Page, dict[str, Any]]:
 
 def _open_firefox() -> tuple[Page, dict[str, Any]]:
     """The same in Firefox."""
-    program = find_firefox()
+    program = firefox()
     if not program:
         raise CompilerMissing("firefox (Debian: firefox-esr; or set SSSGEN_FIREFOX)")
     return _page("firefox", program, "", None, "")

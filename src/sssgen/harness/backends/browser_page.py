@@ -67,30 +67,6 @@ class LostError(Exception):
     """The page or its browser is gone; the message states the reason and follows the browser's name."""
 
 
-def find_firefox() -> str:
-    """Firefox's program: $SSSGEN_FIREFOX if it is set, else one that is installed; '' where there is none."""
-    configured = os.environ.get("SSSGEN_FIREFOX")
-    places = (
-        [configured] if configured else ["firefox", "firefox-esr", "/Applications/Firefox.app/Contents/MacOS/firefox"]
-    )
-    return next((path for place in places if (path := shutil.which(place))), "")
-
-
-def find() -> str:
-    """Chromium's program: $SSSGEN_CHROMIUM if it is set, else one that is installed; '' where there is none."""
-    configured = os.environ.get("SSSGEN_CHROMIUM")
-    if configured:
-        return shutil.which(configured) or ""
-    roots = [os.environ.get(name, "") for name in ("ProgramFiles", "ProgramFiles(x86)", "LocalAppData")]
-    places = [
-        *("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"),
-        "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
-        "/Applications/Chromium.app/Contents/MacOS/Chromium",
-        *(rf"{root}\Google\Chrome\Application\chrome.exe" for root in roots if root),
-    ]
-    return next((path for place in places if (path := shutil.which(place))), "")
-
-
 class Page:
     """A browser with one page that runs `script`; both end with `close`, with this object, and with this process.
 

@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.harness.backends.backend_interface import ATTRIBUTES, VERTEX_SIZE, Array, backend_failure
-from sssgen.harness.backends.browser_page import START, LostError, Page, find
+from sssgen.harness.backends.browser_page import START, LostError, Page
 from sssgen.harness.compilers import CompilerMissing
-from sssgen.support.paths import folder
+from sssgen.harness.installed import chromium, node_modules
 from sssgen.targets.runtime.numpy_textures import Texture
 
 SECONDS = 120.0
@@ -80,7 +80,7 @@ class EnginePage:
     def __init__(self, engine: Engine, renderer: str, seconds: float = SECONDS) -> None:
         """Raises CompilerMissing without a browser, and without the engine."""
         self.engine, self.name, self.renderer, self.seconds = engine, renderer, engine.renderers[renderer], seconds
-        program, modules = find(), engine.modules(folder("build") / "node" / "node_modules")
+        program, modules = chromium(), engine.modules(node_modules())
         if not program:
             raise CompilerMissing("chromium (Debian: chromium · elsewhere: Chrome; or set SSSGEN_CHROMIUM)")
         if not modules or not all(file.is_file() for file in modules.values()):
@@ -100,7 +100,7 @@ class EnginePage:
         self.version = str(facts["version"])
 
     def restart(self) -> None:
-        """A new page. An engine reports errors of a shader at any time: the next draw does not receive the last one's."""
+        """A new page. An engine reports errors of a shader late: the next draw does not receive the last one's."""
         self.page.close()
         try:
             self._start()

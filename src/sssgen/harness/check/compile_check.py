@@ -10,11 +10,13 @@ from pathlib import Path
 from threading import Event
 from typing import Any
 
+from sssgen.harness.backend_registry import BACKENDS, ENGINES
 from sssgen.harness.check.shader_files import Shader
 from sssgen.harness.check.stage_pairs import disagreements, pairs
 from sssgen.harness.compilers import COMPILERS, CompilerMissing, Message, Source, errors, readers
 from sssgen.harness.compilers import unity_compiler as unity
 from sssgen.harness.compilers.compiler_process import Worker
+from sssgen.harness.installed import lacks
 from sssgen.material.library import TECHNIQUES
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.paths import place, posix
@@ -151,11 +153,19 @@ def source_line(origin: str) -> str:
     return ""
 
 
+def engines() -> dict[str, str]:
+    """Each back end that is an engine or a stand-in for one → how to get what it lacks, '' where it lacks nothing."""
+    return {name: "; ".join(filter(None, map(lacks, BACKENDS[name].parts))) for name in ENGINES}
+
+
 def as_json(report: Report) -> dict[str, Any]:
     """The report for programs."""
     return {
         "compilers": [{"name": name, "version": version} for name, version in report.versions.items()],
         "missing": [{"name": name, "how": instruction} for name, instruction in report.missing.items()],
+        "engines": [
+            {"name": name, "found": not how} | ({"how": how} if how else {}) for name, how in engines().items()
+        ],
         "results": [
             {
                 "file": result.shader.name,

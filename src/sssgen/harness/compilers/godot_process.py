@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sssgen.harness.compilers.compiler_interface import CompilerMissing
-from sssgen.support.paths import folder
+from sssgen.harness.installed import godots
 
 HINT = "Godot 4.6: `make engines` (Debian, as root), or SSSGEN_GODOT=/path/to/godot"
 _PROJECT = 'config_version=5\n\n[application]\n\nconfig/name="sssgen"\n'
@@ -85,12 +85,8 @@ class Godot:
 
 def find() -> Godot:
     """A Godot 4 of this machine. Raises CompilerMissing where there is none."""
-    named = os.environ.get("SSSGEN_GODOT") or shutil.which("godot") or shutil.which("godot4")
-    candidates = [Godot(named)] if named else []
-    system = folder("build") / "engines" / "godot"
-    if (system / "usr" / "bin" / "godot").is_file() and hasattr(os, "geteuid") and os.geteuid() == 0:
-        candidates.append(Godot("godot", str(system.resolve())))
-    for godot in candidates:
+    for program, root in godots():
+        godot = Godot(program, root)
         with contextlib.suppress(OSError, subprocess.SubprocessError):
             if godot.version().startswith("4."):
                 return godot

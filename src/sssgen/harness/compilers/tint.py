@@ -5,15 +5,13 @@ from __future__ import annotations
 import atexit
 import contextlib
 import json
-import os
-import shutil
 import subprocess
 from pathlib import Path
 from typing import Any
 
+from sssgen.harness import installed
 from sssgen.harness.compilers.calling_entry import wgsl_entry
 from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Source
-from sssgen.support.paths import folder
 
 # One process answers for all checks. Dawn prints warnings there as well, so a reply begins with "@@".
 _SERVER = """
@@ -99,16 +97,10 @@ class Tint(Compiler):
 
 
 def node_modules() -> tuple[str, Path]:
-    """node, and the folder that npm filled: SSSGEN_NODE_MODULES names it, else it is build/node/node_modules.
-
-    Raises CompilerMissing where node is lacking.
-    """
-    node = shutil.which("node") or shutil.which("nodejs")
-    if node is None:
+    """node, and the folder that npm filled. Raises CompilerMissing where node is lacking."""
+    if not (node := installed.node()):
         raise CompilerMissing("node (Debian: nodejs npm)")
-    configured = os.environ.get("SSSGEN_NODE_MODULES")
-    modules = Path(configured) if configured else folder("build") / "node" / "node_modules"
-    return node, modules.resolve()
+    return node, installed.node_modules()
 
 
 def find() -> Tint:

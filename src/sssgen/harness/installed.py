@@ -1,0 +1,117 @@
+"""The programs and packages of this machine, found by their files alone: nothing is started or imported.
+
+So a part that is found may still not start; the back end or the compiler that needs it then says why.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Mapping
+from functools import partial
+from importlib.util import find_spec
+from pathlib import Path
+
+from sssgen.support.paths import folder
+
+
+def chromium() -> str:
+    """Chromium's program: $SSSGEN_CHROMIUM if it is set, else one that is installed; '' where there is none."""
+    configured = os.environ.get("SSSGEN_CHROMIUM")
+    if configured:
+        return shutil.which(configured) or ""
+    roots = [os.environ.get(name, "") for name in ("ProgramFiles", "ProgramFiles(x86)", "LocalAppData")]
+    places = [
+        *("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"),
+        "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
+        "/Applications/Chromium.app/Contents/MacOS/Chromium",
+        *(rf"{root}\Google\Chrome\Application\chrome.exe" for root in roots if root),
+    ]
+    return next((path for place in places if (path := shutil.which(place))), "")
+
+
+def firefox() -> str:
+    """Firefox's program: $SSSGEN_FIREFOX if it is set, else one that is installed; '' where there is none."""
+    configured = os.environ.get("SSSGEN_FIREFOX")
+    places = (
+        [configured] if configured else ["firefox", "firefox-esr", "/Applications/Firefox.app/Contents/MacOS/firefox"]
+    )
+    return next((path for place in places if (path := shutil.which(place))), "")
+
+
+def node() -> str:
+    """The program of Node.js; '' where there is none."""
+    return shutil.which("node") or shutil.which("nodejs") or ""
+
+
+def node_modules() -> Path:
+    """The folder that npm filled: $SSSGEN_NODE_MODULES names it, else it is build/node/node_modules."""
+    configured = os.environ.get("SSSGEN_NODE_MODULES")
+    return (Path(configured) if configured else folder("build") / "node" / "node_modules").resolve()
+
+
+def godots() -> list[tuple[str, str]]:
+    """(program, root) of each Godot, the preferred one first. `root` is the folder of the system that it is in, or ''.
+
+    One is $SSSGEN_GODOT or on the path, one is in the system that `make engines` sets up.
+    """
+    named = os.environ.get("SSSGEN_GODOT") or "godot"
+    program = shutil.which(named) or (shutil.which("godot4") if named == "godot" else None)
+    system = folder("build") / "engines" / "godot"
+    apart = (system / "usr" / "bin" / "godot").is_file() and hasattr(os, "geteuid") and os.geteuid() == 0
+    return [*([(program, "")] if program else []), *([("godot", str(system.resolve()))] if apart else [])]
+
+
+def _importable(modules: tuple[str, ...]) -> bool:
+    try:
+        return all(map(find_spec, modules))
+    except ModuleNotFoundError:  # of an import hook
+        return False
+
+
+def _has_package(name: str) -> bool:
+    return (node_modules() / name / "package.json").is_file()
+
+
+def _godot_with_display() -> bool:
+    return any(root or shutil.which("Xvfb") for _, root in godots())
+
+
+_PARTS: Mapping[str, tuple[Callable[[], object], str]] = {
+    "chromium": (chromium, "Chromium or Chrome (Debian: chromium; or SSSGEN_CHROMIUM names it)"),
+    "firefox": (firefox, "Firefox (Debian: firefox-esr; or SSSGEN_FIREFOX names it)"),
+    "godot": (
+        _godot_with_display,
+        "Godot 4.6 and Xvfb: make engines (Debian, as root), or SSSGEN_GODOT=/path/to/godot (and Debian's xvfb)",
+    ),
+    "g++": (lambda: shutil.which("g++"), "g++ (Debian: g++)"),
+    "node": (node, "node (Debian: nodejs npm)"),
+    "spirv": (
+        lambda: shutil.which("spirv-val") and shutil.which("spirv-cross"),
+        "spirv-val and spirv-cross (Debian: spirv-tools spirv-cross)",
+    ),
+    "babylon bundle": (
+        lambda: (node_modules().parent / "babylon.js").is_file(),
+        "the npm package @babylonjs/core, bundled: make setup",
+    ),
+    **{
+        f"npm {package}": (
+            partial(_has_package, package),
+            f"the npm package {package}: make setup, or npm install --prefix build/node {package}",
+        )
+        for package in ("playcanvas", "three", "webgpu", "wesl")
+    },
+    **{
+        f"pip {extra}": (partial(_importable, modules), f"pip install 'sssgen[{extra}]'")
+        for extra, modules in {
+            "browser": ("websockets", "numpy"), "dxc": ("compushady",), "gl": ("moderngl", "numpy"),
+            "numpy": ("numpy",), "webgpu": ("wgpu", "numpy"),
+        }.items()
+    },
+}  # fmt: skip
+
+
+def lacks(part: str) -> str:
+    """How to get a part that this machine lacks; '' where it is there."""
+    found, how = _PARTS[part]
+    return "" if found() else how
