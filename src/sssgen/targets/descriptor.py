@@ -55,6 +55,10 @@ class Names(NamedTuple):
     """Every name that starts with one of these is reserved."""
     local: frozenset[str] = frozenset()
     """Variables of the templates' functions, whose names declarations at file scope must avoid."""
+    types: frozenset[str] = frozenset()
+    """Types that the file beside the shader reads; one that it declares of such a name, in any case, gets `_`."""
+    host_words: frozenset[str] = frozenset()
+    """The words of that file's language."""
     builtins: bool = False
     """Whether declarations at file scope, too, must avoid the names of builtins, which are GLSL's here."""
 
