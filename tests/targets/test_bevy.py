@@ -126,6 +126,52 @@ def test_the_light_that_comes_through(
     np.testing.assert_allclose(actual, np.broadcast_to(expected, actual.shape), atol=2e-5, rtol=2e-3)
 
 
+@pytest.mark.parametrize("material", ["jelly_cubes", "rays"])
+def test_a_raymarched_picture_is_upright(
+    material: str, tmp_path: Path, compiler: Callable[[str], Compiler], backend: Callable[[str], Backend]
+) -> None:
+    """v of Bevy's own meshes is 0 at the top, that of a picture at the bottom; the rays of Bevy's camera have no v."""
+    if material == "rays":
+        (tmp_path / "rays.sss").write_text(RAYS, encoding="utf-8")
+        path = tmp_path / "rays.toml"
+        path.write_text('[material]\nname = "rays"\nshading = "unlit"\n[lighting]\ntechnique = "./rays.sss"\n')
+        material = str(path)
+    shader, _, reflection = files(material)
+    linker = compiler("bevy")
+    assert isinstance(linker, Bevy)
+    lit = in_the_open(linker.linked(shader, CONDITIONS["forward"]), reflection, "")
+    text = lit.replace("fragment(in, true).color.rgb - dark", "dark").replace("globals.time", "2.0")
+    chain = inputs()
+    params = (VEC2, VEC3, VEC3, VEC3, VEC3)
+    calls = [Call("called", params, VEC3, tuple(chain[name] for name in ("uv", "P", "N", "V", "L")))]
+    (actual,) = backend("webgpu").run(Text(text), calls)
+    upward = chain["uv"] if material != "jelly_cubes" else np.stack([chain["uv"][0], 1.0 - chain["uv"][1]])
+    rays = {"ray_origin": chain["P"] + 2.0 * chain["V"], "ray_direction": -chain["V"]}
+    expected, turned = (
+        by_the_oracle(material, {**chain, **rays, "uv": uv, "time": np.full(LANES, 2.0)}, {})[:3]
+        for uv in (upward, np.stack([upward[0], 1.0 - upward[1]]))
+    )
+    if material == "jelly_cubes":
+        expected, turned = expected**2.2, turned**2.2  # decoded: Bevy has no output technique
+        assert np.mean(np.abs(turned - expected)) > 0.1
+    assert np.quantile(np.abs(actual - expected), 0.95) < 1e-3  # but for edges, where a ray may miss
+
+
+RAYS = """/**
+ * Rays.
+ * role: lighting
+ * formula: none
+ * source: none
+ * units: none
+ * limits: none
+ */
+vec3 rays(world_direction ray_direction, world_position ray_origin, uv_position uv)
+{
+    return abs(vec3(ray_direction) + vec3(ray_origin) + vec3(uv, 0.0));
+}
+"""
+
+
 def inputs() -> dict[str, Array]:
     rng = np.random.default_rng(5)
     chain = {"uv": rng.uniform(0.0, 1.0, (2, LANES))}
@@ -145,6 +191,10 @@ def by_the_oracle(material: str, chain: dict[str, Array], textures: dict[str, Te
     for row in compiled.reflection["uniforms"]:
         value = np.array(row["default"], np.float64)
         known[row["name"]] = float(value[0]) if value.size == 1 else value[:, None] * np.ones(LANES)
+    if "evaluate_color" in functions:
+        function = functions["evaluate_color"]
+        color: Array = function(*(known[name] for name in inspect.signature(function).parameters))
+        return color
     for kind in ("surface", "translucency"):
         function = functions[f"evaluate_{kind}"]
         known[kind] = function(*(known[name] for name in inspect.signature(function).parameters))
