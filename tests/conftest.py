@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,8 @@ from skips import compiler_or_skip, or_skip
 from sssgen.harness import backends, compilers
 from sssgen.harness.backends import Backend
 from sssgen.harness.compilers import Compiler, Source, errors
+from sssgen.harness.verify.verification import Machines, start_machines
+from sssgen.harness.verify.verification_report import BACKENDS
 
 settings.register_profile("steady", deadline=None, derandomize=True)
 settings.load_profile("steady")
@@ -31,6 +33,15 @@ def compiler() -> Callable[[str], Compiler]:
 def backend() -> Callable[[str], Backend]:
     """`backend("gl")`: that back end, or a skip (in CI: a failure) with what to install."""
     return lambda name: or_skip(backends.get, name)
+
+
+@pytest.fixture(scope="session")
+def machines(backend: Callable[[str], Backend]) -> Iterator[Machines]:
+    """The back ends of `sssgen transpile --verify`, started once; or a skip."""
+    for name in BACKENDS.values():
+        backend(name)
+    with start_machines() as machines:
+        yield machines
 
 
 @pytest.fixture(scope="session")

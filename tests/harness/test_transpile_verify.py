@@ -8,11 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from sssgen.harness.backends import Backend
 from sssgen.harness.evaluate.deviation import GOAL
 from sssgen.harness.verify.inline_includes import expanded
 from sssgen.harness.verify.stage_variables import plain
-from sssgen.harness.verify.verification import load, verify
+from sssgen.harness.verify.verification import Machines, load, verify
 from sssgen.harness.verify.verification_report import BACKENDS, Comparison, Coverage, Report, Row
 from sssgen.ir.nodes import Module
 from sssgen.ir.old_names import OLD_NAMES
@@ -37,15 +36,18 @@ float shown_where(float x) { if (x < 0.5) discard; return x; }
 """
 
 
-@pytest.fixture(autouse=True)
-def _all_here(backend: Callable[[str], Backend]) -> None:
-    for name in BACKENDS.values():
-        backend(name)
+Rows = Callable[..., dict[str, Row]]
 
 
-def rows(text: str, read: Callable[[str, str], Module] = load) -> dict[str, Row]:
-    """The rows by function."""
-    return {row.function: row for row in verify(text, "shader.glsl", SAMPLES, read=read).rows}
+@pytest.fixture(scope="module")
+def rows(machines: Machines) -> Rows:
+    """`rows(text, read)`: the rows by function."""
+
+    def run(text: str, read: Callable[[str, str], Module] = load) -> dict[str, Row]:
+        report = verify(text, "shader.glsl", SAMPLES, read=read, machines=machines)
+        return {row.function: row for row in report.rows}
+
+    return run
 
 
 def misread(*mistakes: tuple[str, str]) -> Callable[[str, str], Module]:
@@ -60,7 +62,7 @@ def misread(*mistakes: tuple[str, str]) -> Callable[[str, str], Module]:
     return read
 
 
-def test_every_function_runs_in_every_text() -> None:
+def test_every_function_runs_in_every_text(rows: Rows) -> None:
     results = rows(FUNCTIONS)
     assert list(results) == [
         "lit(Lamp,vec3)", "twice(vec2)", "twice(float)", "split(float,float,vec2)", "turned(mat3,vec3)",
@@ -89,7 +91,7 @@ MISTAKES = [
 """One in each function."""
 
 
-def test_errors_of_the_front_end_are_found_in_every_text() -> None:
+def test_errors_of_the_front_end_are_found_in_every_text(rows: Rows) -> None:
     results = rows(FUNCTIONS, misread(*MISTAKES))
     assert len(results) == len(MISTAKES)
     for row in results.values():
@@ -101,7 +103,7 @@ def test_errors_of_the_front_end_are_found_in_every_text() -> None:
 
 
 @pytest.mark.slow
-def test_ill_conditioned_hashes_are_compared_and_wrong_ones_fail() -> None:
+def test_ill_conditioned_hashes_are_compared_and_wrong_ones_fail(rows: Rows) -> None:
     text = "float scatter(vec2 p) { return fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453); }"
     row = rows(text)["scatter(vec2)"]
     assert row.ok and row.comparisons["glsl"] == Comparison(0.0)
@@ -111,21 +113,21 @@ def test_ill_conditioned_hashes_are_compared_and_wrong_ones_fail() -> None:
 
 
 @pytest.mark.slow
-def test_an_edge_in_the_inputs_does_not_hide_other_errors() -> None:
+def test_an_edge_in_the_inputs_does_not_hide_other_errors(rows: Rows) -> None:
     text = "float edge(float x) { return x < 0.7 ? 0.0 : fract(70000.0 * x); }"
     assert rows(text)["edge(float)"].ok
     assert not rows(text, misread(("0.7", "0.71")))["edge(float)"].ok
 
 
 @pytest.mark.slow
-def test_lanes_without_a_result_are_counted() -> None:
+def test_lanes_without_a_result_are_counted(rows: Rows) -> None:
     row = rows("float over(float x) { return 1.0 / x; }")["over(float)"]
     assert row.ok and 0 < row.undefined < SAMPLES
     row = rows("float root(float x) { return sqrt(-1.0 - x * x); }")["root(float)"]
     assert not row.ok and row.reason == "GLSL leaves every result undefined"
 
 
-def test_an_unsupported_function_fails_only_its_own_row() -> None:
+def test_an_unsupported_function_fails_only_its_own_row(rows: Rows) -> None:
     long = ", ".join(f"float x{i}" for i in range(70))
     text = f"float many({long}) {{ return x0; }}\nvoid nothing(float x) {{ }}\nfloat same(float x) {{ return x; }}"
     results = rows(text)
@@ -135,7 +137,7 @@ def test_an_unsupported_function_fails_only_its_own_row() -> None:
 
 
 @pytest.mark.slow
-def test_a_uniform_has_several_values() -> None:
+def test_a_uniform_has_several_values(rows: Rows) -> None:
     text = "uniform float size;\nuniform sampler2D map;\nvec4 f(vec2 p) { return size * texture(map, p); }"
     assert rows(text)["f(vec2)"].ok
     assert not rows(text, misread(("size * tex", "0.5 * tex")))["f(vec2)"].ok
@@ -162,7 +164,7 @@ void main() {
 
 
 @pytest.mark.slow
-def test_a_shader_is_run_function_by_function() -> None:
+def test_a_shader_is_run_function_by_function(rows: Rows) -> None:
     results = rows(SHADER)
     assert list(results) == ["ring(vec2)", "keep(vec3)", "kept()", "main()"]
     for row in results.values():
@@ -176,7 +178,7 @@ def test_a_shader_is_run_function_by_function() -> None:
     assert not any(row.ok for row in rows(SHADER, wrong).values())
 
 
-def test_old_glsl_runs_unchanged() -> None:
+def test_old_glsl_runs_unchanged(rows: Rows) -> None:
     text = """
 #ifdef GL_ES
 precision mediump float;
@@ -193,7 +195,7 @@ void main() {
 
 
 @pytest.mark.slow
-def test_the_tolerance_of_drivers_does_not_hide_larger_errors() -> None:
+def test_the_tolerance_of_drivers_does_not_hide_larger_errors(rows: Rows) -> None:
     text = "float f(float x) { return asin(clamp(x, -1.0, 1.0)); }"
     row = rows(text)["f(float)"]
     assert row.ok and row.comparisons["glsl"] == Comparison(0.0)
@@ -201,28 +203,28 @@ def test_the_tolerance_of_drivers_does_not_hide_larger_errors() -> None:
     assert not any(one.ok for one in wrong.comparisons.values())
 
 
-def test_initial_values_of_variables_need_no_main() -> None:
+def test_initial_values_of_variables_need_no_main(rows: Rows) -> None:
     text = "uniform float time;\nfloat start = time * 2.0;\nfloat next(float x) { return start + x; }"
     assert rows(text)["next(float)"].ok
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("version", ["300 es", "330", "410 core", "450", "120", ""])
-def test_every_version_of_glsl_runs(version: str) -> None:
+def test_every_version_of_glsl_runs(rows: Rows, version: str) -> None:
     head = f"#version {version}\n" if version else ""
     text = f"{head}#ifdef GL_ES\nprecision highp float;\n#endif\nfloat f(vec2 p) {{ return dot(p, p); }}"
     assert rows(text)["f(vec2)"].ok
 
 
-def test_a_scene_of_shadertoy_has_its_uniforms() -> None:
+def test_a_scene_of_shadertoy_has_its_uniforms(machines: Machines) -> None:
     text = """void mainImage(out vec4 color, in vec2 at) {
     color = vec4(at / iResolution.xy, sin(iTime), iChannelTime[1]) + texture(iChannel0, at / 64.0);
 }"""
-    report = verify(text, "scene.glsl", SAMPLES, entry="shadertoy")
+    report = verify(text, "scene.glsl", SAMPLES, entry="shadertoy", machines=machines)
     assert [row.function for row in report.rows] == ["mainImage(vec4,vec2)"] and report.ok
 
 
-def test_refusals_of_the_driver_are_reported() -> None:
+def test_refusals_of_the_driver_are_reported(rows: Rows) -> None:
     text = "float f(samplerCubeShadow map, vec4 p) { return texture(map, p); }"
     text += "\nfloat g(float x) { return later(x); }\nfloat later(float x) { return x; }"
     results = rows(text, misread(("later(x); }\nfloat", "x; }\nfloat")))
@@ -231,8 +233,8 @@ def test_refusals_of_the_driver_are_reported() -> None:
 
 
 @pytest.mark.slow
-def test_the_same_seed_gives_the_same_rows() -> None:
-    once, again = (verify(FUNCTIONS, "shader.glsl", 50, seed) for seed in (3, 3))
+def test_the_same_seed_gives_the_same_rows(machines: Machines) -> None:
+    once, again = (verify(FUNCTIONS, "shader.glsl", 50, seed, machines=machines) for seed in (3, 3))
     assert once == again
 
 
@@ -322,7 +324,7 @@ def test_the_driver_gets_the_new_name_of_every_old_one() -> None:
         assert f"#define {old} {new}\n" in text
 
 
-def test_old_shadow_reads_are_defined_for_the_driver() -> None:
+def test_old_shadow_reads_are_defined_for_the_driver(rows: Rows) -> None:
     text = """
 float shadow(sampler2DShadow map, vec3 p) { return shadow2D(map, p).r + shadow2DProj(map, vec4(p, 2.0)).r; }
 float twice(float x) { return 2.0 * x; }
@@ -331,7 +333,7 @@ float twice(float x) { return 2.0 * x; }
     assert rows(text)["twice(float)"].ok
 
 
-def test_reads_by_their_old_names_run() -> None:
+def test_reads_by_their_old_names_run(rows: Rows) -> None:
     text = """
 vec4 graded(sampler2D map, vec2 p) { return texture2DGradARB(map, p, vec2(0.1, 0.0), vec2(0.0, 0.1)); }
 vec4 fetched(sampler3D map) { return texelFetch3D(map, ivec3(1, 2, 0), 0); }
@@ -352,7 +354,7 @@ def test_includes_are_written_out_once(tmp_path: Path) -> None:
         expanded('#include "lost.glsl"', path)
 
 
-def test_probes_do_not_capture_names_of_the_text() -> None:
+def test_probes_do_not_capture_names_of_the_text(rows: Rows) -> None:
     text = (
         "float sssgen_result = 2.0;\nfloat sssgen_0 = 3.0;\nconst float sssgen_of_x = 5.0;\n"
         "struct sssgen_1 { float a; };\nfloat sssgen_probe_0(float x) { return x; }\n"

@@ -7,22 +7,18 @@ from typing import Any
 
 import pytest
 
-from sssgen.harness.backends import Backend
 from sssgen.harness.verify import verification
-from sssgen.harness.verify.verification import verify
-from sssgen.harness.verify.verification_report import BACKENDS, Coverage, Row
+from sssgen.harness.verify.verification import Machines, verify
+from sssgen.harness.verify.verification_report import Coverage, Row
 from sssgen.pipeline import compiler
 
-
-@pytest.fixture(autouse=True)
-def _all_here(backend: Callable[[str], Backend]) -> None:
-    for name in BACKENDS.values():
-        backend(name)
+Verify = Callable[..., Row]
 
 
-def row(text: str, samples: int = 1000, seed: int = 0) -> Row:
-    """The row of the last function."""
-    return verify(text, "shader.glsl", samples, seed).rows[-1]
+@pytest.fixture(scope="module")
+def row(machines: Machines) -> Verify:
+    """`row(text, samples, seed)` is the row of the last function."""
+    return lambda text, samples=1000, seed=0: verify(text, "shader.glsl", samples, seed, machines=machines).rows[-1]
 
 
 CHANGES = [
@@ -38,7 +34,9 @@ CHANGES = [
 
 
 @pytest.mark.parametrize(("text", "right", "wrong"), CHANGES)
-def test_a_changed_text_is_found(text: str, right: str, wrong: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_changed_text_is_found(
+    row: Verify, text: str, right: str, wrong: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert row(text).ok
     transpile = compiler.transpile
 
@@ -102,26 +100,26 @@ uint f(uint x, int n) {
 
 @pytest.mark.parametrize("name", FINE)
 @pytest.mark.parametrize("seed", [0, 1])
-def test_no_false_alarm(name: str, seed: int) -> None:
+def test_no_false_alarm(row: Verify, name: str, seed: int) -> None:
     result = row(FINE[name], seed=seed)
     assert result.ok, result
     assert result.comparisons["glsl"].deviation is not None
     assert result.lanes - result.undefined >= 100, result
 
 
-def test_undefined_lanes_are_excluded_and_the_others_compared() -> None:
+def test_undefined_lanes_are_excluded_and_the_others_compared(row: Verify) -> None:
     result = row("int f(int a, int b) { return a / b; }")
     assert result.ok and 0 < result.undefined <= 60 and result.lanes == 1000
 
 
-def test_a_hash_is_compared_where_it_does_not_depend_on_rounding() -> None:
+def test_a_hash_is_compared_where_it_does_not_depend_on_rounding(row: Verify) -> None:
     result = row("float f(vec2 p) { return floor(fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453) * 8.0); }")
     oracle = result.comparisons["oracle"]
     assert result.ok and oracle.excluded > 100
     assert result.comparisons["glsl"].deviation == 0.0
 
 
-def test_branches_are_counted_and_those_never_taken_named() -> None:
+def test_branches_are_counted_and_those_never_taken_named(row: Verify) -> None:
     text = """float f(int n, float x) {
     if (n == 123456) x += 1.0;
     if (x > 1e3 && x < 1.001e3) x *= 2.0;
@@ -135,6 +133,6 @@ def test_branches_are_counted_and_those_never_taken_named() -> None:
     assert result.branches == Coverage(11, 12, ("line 6 (if)",))
 
 
-def test_a_function_without_an_end_is_not_run() -> None:
+def test_a_function_without_an_end_is_not_run(row: Verify) -> None:
     result = row("int f(int n) { while (n < 1000000) { n = n & 7; } return n; }")
     assert result.reason == "its loops do not end" or result.ok

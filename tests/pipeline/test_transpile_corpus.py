@@ -6,7 +6,6 @@ UPDATE_SNAPSHOTS=1 writes the snapshots.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from functools import cache
 
 import pytest
@@ -14,11 +13,10 @@ import pytest
 from folders import SNAPSHOTS, TESTS
 from skips import compiler_or_skip
 from snapshot import check_snapshot
-from sssgen.harness.backends import Backend
 from sssgen.harness.compilers import Source, errors, readers
 from sssgen.harness.verify import verification
 from sssgen.harness.verify.inline_includes import expanded
-from sssgen.harness.verify.verification_report import BACKENDS
+from sssgen.harness.verify.verification import Machines
 from sssgen.ir.text import print_module
 from sssgen.lang.plain_glsl import load_glsl, load_glsl_text
 from sssgen.pipeline.compiler import transpile
@@ -101,10 +99,10 @@ def test_a_second_transpilation_changes_nothing(name: str) -> None:
     assert print_module(load_glsl_text(again, file).module) == print_module(once)
 
 
-def check_results(name: str, samples: int) -> None:
+def check_results(name: str, samples: int, machines: Machines) -> None:
     """Fails where a function's result differs from that of the original text in OpenGL's driver."""
     text = expanded((CORPUS / name).read_text("utf-8"), CORPUS / name)
-    report = verification.verify(text, name, samples, 0, entry(name))
+    report = verification.verify(text, name, samples, 0, entry(name), machines=machines)
     failures = [
         f"{row.function} as {target}: {result.error or result.at}"
         for row in report.rows
@@ -115,21 +113,12 @@ def check_results(name: str, samples: int) -> None:
     assert all(row.comparisons or row.reason in NOTHING_TO_COMPARE for row in report.rows), "\n".join(report.lines())
 
 
-@pytest.fixture
-def machines(backend: Callable[[str], Backend]) -> None:
-    """Skips the test if a back end is missing."""
-    for name in BACKENDS.values():
-        backend(name)
-
-
-@pytest.mark.usefixtures("machines")
 @pytest.mark.parametrize("name", QUICK)
-def test_functions_keep_their_results(name: str) -> None:
-    check_results(name, 64)
+def test_functions_keep_their_results(name: str, machines: Machines) -> None:
+    check_results(name, 64, machines)
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("machines")
 @pytest.mark.parametrize("name", FILES)
-def test_all_functions_keep_their_results(name: str) -> None:
-    check_results(name, 512)
+def test_all_functions_keep_their_results(name: str, machines: Machines) -> None:
+    check_results(name, 512, machines)

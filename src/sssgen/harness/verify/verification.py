@@ -18,7 +18,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from functools import partial
 from typing import NamedTuple
 
@@ -74,12 +74,13 @@ def load(text: str, shown: str, version: str = "") -> Module:
 
 def verify(
     text: str, shown: str, samples: int = SAMPLES, seed: int = 0, entry: str = "",
-    read: Callable[[str, str], Module] | None = None,
+    read: Callable[[str, str], Module] | None = None, machines: Machines | None = None,
 ) -> Report:  # fmt: skip
     """Runs every function of a text without `#include` (see `inline_includes`) on `samples` inputs.
 
-    `shown` is the text's name in messages; `entry` as in `load_glsl`; `read(text, shown)` parses it. Raises SssgenError
-    where the front end refuses the text, and without OpenGL, which runs the reference.
+    `shown` is the text's name in messages; `entry` as in `load_glsl`; `read(text, shown)` parses it; without `machines`
+    the back ends are started here. Raises SssgenError where the front end refuses the text, and without OpenGL, which
+    runs the reference.
     """
     written = plain(_scene(text) if entry == "shadertoy" else text)
     read = read or partial(load, version=written.version)
@@ -88,8 +89,8 @@ def verify(
     cases = probed(module, functions, written.text)
     probes = "\n".join(probe.text for case in cases for probe in case.probes)
     with_probes = read(written.text + probes, shown)
-    with _machines() as (machines, missing):
-        rows = [Case(case, written, with_probes, machines, samples, seed).row() for case in cases]
+    with nullcontext(machines) if machines else start_machines() as (running, missing):
+        rows = [Case(case, written, with_probes, running, samples, seed).row() for case in cases]
     return Report(rows, missing)
 
 
@@ -102,9 +103,16 @@ def _scene(text: str) -> str:
     return text[:start] + " ".join(lines) + "\n" + text[start:]
 
 
-@contextmanager
-def _machines() -> Iterator[tuple[dict[str, Isolated], dict[str, str]]]:
+class Machines(NamedTuple):
     """The back ends, each in its own process; and why the others are missing, by name."""
+
+    running: dict[str, Isolated]
+    missing: dict[str, str]
+
+
+@contextmanager
+def start_machines() -> Iterator[Machines]:
+    """The back ends of `verify`; they end with the block. Raises SssgenError without OpenGL."""
     machines: dict[str, Isolated] = {}
     missing: dict[str, str] = {}
 
@@ -120,7 +128,7 @@ def _machines() -> Iterator[tuple[dict[str, Isolated], dict[str, str]]]:
             list(pool.map(start, names))
         if "gl" in missing:
             raise failure("OpenGL is missing: it runs the text as written", missing["gl"])
-        yield machines, missing
+        yield Machines(machines, missing)
     finally:
         for machine in machines.values():
             machine.close()
