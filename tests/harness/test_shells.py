@@ -277,6 +277,6 @@ def test_a_technique_can_use_a_name_of_the_shell(target: str, tmp_path: Path) ->
     (tmp_path / "unlit.sss").write_text(text.replace("0.5 + 0.1", "unit_vector(N) + 0.1"), encoding="utf-8")
     (tmp_path / "unlit.toml").write_text(MATERIALS["unlit"], encoding="utf-8")
     compiled = compile(load_material(str(tmp_path / "unlit.toml")), target)
-    prefix = all_targets()[target].prefix
+    prefix = all_targets()[target].prefix.format(material=compiled.reflection["material"])
     renamed = f"{prefix}unit_vector(" if prefix else "unit_vector_("
     assert any(renamed in text for text in compiled.files.values())

@@ -10,6 +10,7 @@ import json
 import os
 import re
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ import pytest
 
 import sssgen
 from folders import ROOT
+from sssgen.harness.compilers import Compiler, Source, errors
 from sssgen.harness.compilers.calling_entry import functions
 
 LEAF = ROOT / "examples" / "engines" / "unity" / "leaf.toml"
@@ -314,6 +316,17 @@ def test_the_values_of_the_engine(tmp_path: Path) -> None:
         "time": ("Time", "", "Time"), "vertex_color": ("VertexColor", "", "Out"), "Front": ("IsFrontFace", "", "Out"),
     }  # fmt: skip
     assert expected.items() <= sources.items()
+
+
+def test_one_graph_includes_the_files_of_several_materials(compiler: Callable[[str], Compiler]) -> None:
+    """All of them read light and declare functions, constants and types of the same names in the techniques."""
+    graphs = [Graph(path) for path in (str(LEAF), "wax_mouse", "jade_ring")]
+    text = "".join(graph.hlsl for graph in graphs)
+    assert text.count("float3 unit_vector(float3 v)") == len(graphs) == len(re.findall(r"struct \w+_Surface", text))
+    assert errors(compiler("unity").check(Source(text, "unity-shadergraph", "library"))) == []
+    for part in (r"\b(?:leaf|wax_mouse|jade_ring)_", "#ifndef SSSGEN_UNIT_VECTOR"):
+        wrong = re.sub(part, "#if 1" if part[0] == "#" else "", text)
+        assert errors(compiler("unity").check(Source(wrong, "unity-shadergraph", "library")))
 
 
 PACKAGES = [

@@ -49,6 +49,7 @@ def rename(
     prefix: str = "",
     hiding: bool = True,
     uniforms_declared: bool = True,
+    uniform_ports: bool = False,
 ) -> tuple[Module, dict[str, str]]:
     """The module with legal names, and what was renamed, as old → new.
 
@@ -58,13 +59,14 @@ def rename(
     overloaded name gets its parameters' types into its name; without `matrix_overloads` those of a name whose overloads
     differ in a vec4 and a mat2 alone; `loop_scope` as in `rename_locals`; without `member_types` no
     member has a struct's name, and without `hiding` no local variable that of a constant or of a uniform,
-    if `uniforms_declared`; `prefix` begins the name of every declaration. In the result, overloads that got other
+    if `uniforms_declared`; `prefix` begins the name of every declaration, but of uniforms where these
+    are ports of a node, `uniform_ports`. In the result, overloads that got other
     names are listed under their key (as in `box(vec3)`), local names under `function.name`, members under
     `struct.name`.
     """
     return _Namer(
         module, reserved, uniform_name, mangle_overloads, reserved_folded, matrix_overloads, loop_scope,
-        reserved_at_file_scope, member_types, prefix, hiding, uniforms_declared,
+        reserved_at_file_scope, member_types, prefix, hiding, uniforms_declared, uniform_ports,
     ).run()  # fmt: skip
 
 
@@ -93,6 +95,7 @@ class _Namer:
         prefix: str,
         hiding: bool,
         uniforms_declared: bool,
+        uniform_ports: bool,
     ) -> None:
         self.module = module
         self.keyed = [(function.key, function) for function in module.functions]
@@ -100,7 +103,7 @@ class _Namer:
         self.reserved_at_file_scope = reserved_at_file_scope
         self.uniform_name, self.mangle_overloads, self.prefix = uniform_name, mangle_overloads, prefix
         self.matrix_overloads, self.loop_scope, self.member_types = matrix_overloads, loop_scope, member_types
-        self.hiding, self.uniforms_declared = hiding, uniforms_declared
+        self.hiding, self.uniforms_declared, self.uniform_ports = hiding, uniforms_declared, uniform_ports
         self.values: set[str] = set()
         """The new names of uniforms, constants and variables, where no local variable may have them."""
         self.legality: dict[str, bool] = {}
@@ -190,7 +193,8 @@ class _Namer:
             else:
                 wanted["function", function.name] = function.name
         if self.prefix:
-            wanted = {old: f"{self.prefix}{name}" for old, name in wanted.items()}
+            ports = {("global", uniform.name) for uniform in module.uniforms} if self.uniform_ports else set()
+            wanted = {old: name if old in ports else f"{self.prefix}{name}" for old, name in wanted.items()}
         names: dict[tuple[str, str], str] = {}
         # another stage must choose the same names for the interface
         passed = [variable for variable in module.variables if variable.storage != "private" and not variable.builtin]

@@ -93,7 +93,7 @@ def compile(
 
         raise failure(f"unknown form '{form}'", did_you_mean(form, FORMS) or "forms: shader, functions")
     _check_guards(guards)
-    chosen = _prefixed(registry.load(target), prefix, form)
+    chosen = _prefixed(registry.load(target), prefix, form, material.name)
     key = (id(material), target, form, guards, prefix)
     cached = _compiled.get(key) if templates is None and trace is None else None
     if cached is not None and cached[0] is material:
@@ -111,8 +111,10 @@ def compile(
     return _copy(compiled)
 
 
-def _prefixed(target: Target, prefix: str, form: str) -> Target:
+def _prefixed(target: Target, prefix: str, form: str, material: str) -> Target:
     """The target with that prefix of global names. Raises SssgenError for a prefix that cannot be."""
+    if not prefix and "{material}" in target.prefix:
+        return target._replace(prefix=target.prefix.format(material=material) if form == "shader" else "")
     if not prefix:
         return target
     if form != "functions" and not target.prefix:

@@ -233,6 +233,7 @@ def make_names_legal(state: State) -> Module:
         target.prefix,
         target.capabilities.hiding,
         state.form not in target.parameters,
+        state.form == "shader" and bool(target.ports),
     )
     names = zip(module.uniforms, state.module.uniforms, strict=True)
     state.source_names = {new.name: old.name for new, old in names}

@@ -198,7 +198,8 @@ class Target(NamedTuple):
     """Name in the templates → the functions of another target that the files contain, too."""
     properties: Properties = Properties()
     prefix: str = ""
-    """The beginning of every global name; `--prefix` sets another."""
+    """The beginning of every global name; `--prefix` sets another. `{material}` in it is the material's name, and then
+    the functions, which are called by name, have no prefix."""
     lacks: Mapping[str, str] = {}
     """Value of the surface that the engine does not have → what a user can do instead."""
     lighting: str = ""
