@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import sssgen
+from sssgen.cli import main as cli
 from sssgen.harness.check.compiler_inputs import sources
 from sssgen.harness.compilers import Source
 from sssgen.support.diagnostics import SssgenError
@@ -69,6 +70,26 @@ def test_every_global_name_has_the_prefix(target: str, assert_compiles: Callable
 def test_a_prefix_that_cannot_be(prefix: str, form: str, message: str) -> None:
     with pytest.raises(SssgenError, match=re.escape(message)):
         sssgen.compile("ice", "wgsl", form, prefix=prefix)
+
+
+def test_one_error_lists_all_targets_whose_whole_shaders_take_no_prefix(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "wax.toml"
+    path.write_text('[material]\nname = "wax"\n[surface]\ntechnique = "base_color"\n', encoding="utf-8")
+    out = tmp_path / "out"
+    assert cli.main(["emit", str(path), "--target", "all", "--prefix", "wax_", "-o", str(out)]) == 2
+    said = capsys.readouterr()
+    message, hint = said.err.splitlines()
+    listed = message.removeprefix(
+        "error: --prefix is for text that is pasted into other shaders; whole shaders take none: "
+    )
+    assert listed.split(", ") == [name for name, one in sssgen.all_targets().items() if not one.prefix]
+    assert "wgsl" in listed.split(", ") and "threejs" not in listed
+    assert hint == "  help: leave the prefix out, or add --form functions"
+    assert said.out == "" and not out.exists()
+    assert cli.main(["emit", str(path), "--target", "threejs,babylonjs", "--prefix", "wax_", "-o", str(out)]) == 0
+    assert "wax_evaluate_surface" in (out / "wax.js").read_text(encoding="utf-8")
 
 
 def test_two_parameters_of_one_property(tmp_path: Path) -> None:
