@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 import sssgen
+from sssgen.harness.check.compiler_inputs import sources
+from sssgen.harness.compilers import Source
 from sssgen.support.diagnostics import UnsupportedError
 
 HEAD = "/** X.\nrole: surface\n*/\n"
@@ -55,3 +58,21 @@ def test_kinds_of_textures(target: str, tmp_path: Path) -> None:
             sssgen.compile(path, target, form)
         (only,) = raised.value.diagnostics
         assert only.span.line == 1 and "another target" in only.hint
+
+
+def test_a_texture_with_layers_is_declared_as_one(tmp_path: Path, assert_compiles: Callable[[Source], None]) -> None:
+    path = material(tmp_path, "sampler2DArray x", "texture(x, vec3(vec2(uv), 1.0)).rgb")
+    declared = {
+        "threejs": ("uniform sampler2DArray sss_x;", "x: { type: 'sampler2DArray'"),
+        "babylonjs": ("uniform highp sampler2DArray sss_x;", "var sss_x: texture_2d_array<f32>;"),
+        "playcanvas": ("uniform highp sampler2DArray sss_x;", "var sss_x: texture_2d_array<f32>;"),
+        "bevy": ('dimension = "2d_array"', "var x: texture_2d_array<f32>;"),
+        "glsl-es-300": ("precision highp sampler2DArray;", "uniform highp sampler2DArray x;"),
+        "glsl-330": ("uniform sampler2DArray x;",),
+        "wgsl": ("var x: texture_2d_array<f32>;",),
+    }
+    for target, lines in declared.items():
+        files = sssgen.compile(path, target).files
+        assert [line for line in lines if line not in "".join(files.values())] == [], target
+        for source in sources(files):
+            assert_compiles(source)

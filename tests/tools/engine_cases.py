@@ -28,6 +28,7 @@ from sssgen.harness.scenes import scene_loading
 from sssgen.material.material_loading import load_material
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import registry
+from sssgen.targets.runtime.numpy_textures import Texture
 
 INPUTS = "world_position P, world_direction N, world_direction V, world_direction T, world_direction B"
 INPUTS += ", object_position P_object, object_direction N_object, object_direction V_object, vec2 screen_uv"
@@ -138,6 +139,10 @@ def check_refusals(page: EnginePage, target: str, engine_class: str, colors: str
         if name != "veinColor":  # of which the page would make a colour
             with pytest.raises(SssgenError, match=said):
                 page.draw(drawing._replace(properties={name: value}))  # set later
+    volume = Texture(np.zeros((2, 2, 2, 4), np.float32))
+    kinds = "TypeError: ice: 'coverTexture' takes a 2D texture, not a 3D texture$"
+    with pytest.raises(SssgenError, match=kinds):
+        page.draw(drawing._replace(textures={"coverTexture": volume}))
     names = rf"ice has no property 'cell_count'\. Its own: variation, .*; the others are those of {engine_class}$"
     with pytest.raises(SssgenError, match=names):
         page.draw(drawing._replace(values={"cell_count": 6.0}))

@@ -358,7 +358,7 @@ def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:
                 "sampler": printer.sampler(uniform.name),
                 "type": printer.type(uniform.type),
                 "sampler_type": printer.sampler_type(uniform.type),
-                "dim": uniform.type.dim,
+                "dim": uniform.type.dim + "Array" * uniform.type.array,
                 "default": _DEFAULTS.get(_hint(uniform, *_DEFAULTS)[0], "white"),
                 "hint": _hint(uniform, "normal_map")[0] or _hint(uniform, "source_color")[0],
                 "wrap": "clamp" if _hint(uniform, "repeat_disable")[0] else "repeat",

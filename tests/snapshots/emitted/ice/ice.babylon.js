@@ -887,6 +887,12 @@ function refuse(name, taken, value) {
   throw new TypeError(`ice: '${name}' takes ${taken}, not ${shown(value)}`);
 }
 
+/** Throws an error about a texture of another kind than the shader reads. */
+function checkKind(name, { cube, volume, layers }) {
+  const [read, given] = [textures[name].type.replace('sampler', ''), cube ? 'Cube' : volume ? '3D' : layers ? '2DArray' : '2D'];
+  if (read !== given) throw new TypeError(`ice: '${name}' takes a ${read} texture, not a ${given} texture`);
+}
+
 /** Throws an error if there is a name that neither this module nor PBRMaterial has. */
 function checkNames(material, values) {
   const unknown = Object.keys(values ?? {}).filter((name) => !(name in material));
@@ -973,6 +979,7 @@ export class IceMaterial extends PBRMaterial {
         set(value) {
           if (!(value == null || typeof value === 'string' || value.getInternalTexture)) refuse(name, 'a texture, the URL of one, or null', value);
           if (typeof value === 'string') value = new Texture(value, this.getScene(), { useSRGBBuffer: declared.color });
+          if (value?.isCube || value?.getInternalTexture()) checkKind(name, { cube: value.isCube, volume: value.is3D, layers: value.is2DArray });
           if (declared.color && value?.gammaSpace && value.textureType === 0) {
             console.warn(`ice: ${name} has colours in sRGB: create it with { useSRGBBuffer: true }, or set its URL`);
           }

@@ -885,6 +885,12 @@ function refuse(name, taken, value) {
   throw new TypeError(`ice: '${name}' takes ${taken}, not ${shown(value)}`);
 }
 
+/** Throws an error about a texture of another kind than the shader reads. */
+function checkKind(name, { cube, volume, layers }) {
+  const [read, given] = [textures[name].type.replace('sampler', ''), cube ? 'Cube' : volume ? '3D' : layers ? '2DArray' : '2D'];
+  if (read !== given) throw new TypeError(`ice: '${name}' takes a ${read} texture, not a ${given} texture`);
+}
+
 /** Throws an error if there is a name that neither this module nor MeshPhysicalMaterial has. */
 function checkNames(material, values) {
   const unknown = Object.keys(values ?? {}).filter((name) => !(name in material));
@@ -972,6 +978,7 @@ export class IceMaterial extends THREE.MeshPhysicalMaterial {
         get() { return this.#nodes[name].value; },
         set(value) {
           if (!(value?.isTexture ?? value == null)) refuse(name, 'a THREE.Texture, or null', value);
+          if (value) checkKind(name, { cube: value.isCubeTexture, volume: value.isData3DTexture || value.is3DTexture, layers: value.isDataArrayTexture || value.isArrayTexture });
           const decoded = value?.type === THREE.HalfFloatType || value?.type === THREE.FloatType;
           if (value?.colorSpace === THREE.NoColorSpace && !decoded) value.colorSpace = declared.colorSpace;
           this.#nodes[name].value = value ?? texel(declared);

@@ -1037,6 +1037,12 @@ function refuse(name, taken, value) {
   throw new TypeError(`ice: '${name}' takes ${taken}, not ${shown(value)}`);
 }
 
+/** Throws an error about a texture of another kind than the shader reads. */
+function checkKind(name, { cube, volume, layers }) {
+  const [read, given] = [textures[name].type.replace('sampler', ''), cube ? 'Cube' : volume ? '3D' : layers ? '2DArray' : '2D'];
+  if (read !== given) throw new TypeError(`ice: '${name}' takes a ${read} texture, not a ${given} texture`);
+}
+
 /** Throws an error if there is a name that neither this module nor StandardMaterial has. */
 function checkNames(material, values) {
   const unknown = Object.keys(values ?? {}).filter((name) => !(name in material));
@@ -1107,6 +1113,7 @@ export class IceMaterial extends pc.StandardMaterial {
         get() { return this.getParameter(declared.name).data; },
         set(value) {
           if (!(value == null || value instanceof pc.Texture)) refuse(name, 'a pc.Texture, or null', value);
+          if (value) checkKind(name, { cube: value.cubemap, volume: value.volume, layers: value.array });
           this.setParameter(declared.name, value ?? texel(this.#device, declared));
         },
       });
