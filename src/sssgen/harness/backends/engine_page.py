@@ -119,7 +119,6 @@ class EnginePage:
             said = "; ".join([answer.get("error", ""), *answer["complaints"]]).strip("; ")
             if answer["complaints"]:
                 self.restart()
-            self.restart()
             raise backend_failure(self.engine.target, said)
         width, height = drawing.size
         rows = np.frombuffer(bytearray(picture), np.float32).reshape(height, answer["stride"] // 4)
