@@ -10,7 +10,7 @@ from sssgen.harness.scenes.inside_intervals import in_object_space, intervals
 from sssgen.harness.scenes.light_view import LightView, directional_view, point_view
 from sssgen.harness.scenes.placed import Array
 
-BLOCK = 1 << 15
+BLOCK = 1 << 16
 """The number of rays that are cast at once."""
 TEXELS = 512
 """Width and height of a light's depth map."""
@@ -44,9 +44,10 @@ def light_depth(geometry: Geometry, light: Array, layers: bool = False) -> tuple
 def _nearest(geometry: Geometry, origins: Array, directions: Array, side: int, count: int = 1) -> Array:
     """The distances to the nearest entries (side 0) or exits (1) in front of each origin, (n, count); inf for none."""
     nearest = np.full((len(directions), count), np.inf)
+    needed = 2 * count - 1 + side
     for start in range(0, len(directions), BLOCK):
         part = slice(start, start + BLOCK)
-        ends = geometry.scale * intervals(geometry, *in_object_space(geometry, origins[part], directions[part]))
+        ends = geometry.scale * intervals(geometry, *in_object_space(geometry, origins[part], directions[part]), needed)
         ahead = (ends[..., 0] < ends[..., 1]) & (ends[..., side] > 0.0)
         found = np.sort(np.where(ahead, ends[..., side], np.inf), axis=1)[:, :count]
         nearest[part, : found.shape[1]] = found

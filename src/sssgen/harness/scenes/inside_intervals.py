@@ -25,11 +25,12 @@ def in_object_space(geometry: Geometry, origins: Array, directions: Array) -> tu
 
 
 @singledispatch
-def intervals(geometry: Geometry, origins: Array, directions: Array) -> Array:
+def intervals(geometry: Geometry, origins: Array, directions: Array, needed: int | None = None) -> Array:
     """The intervals of lines inside the body, in object space: (n, k, 2), start and end, disjoint and in order.
 
     They include the part behind the origin, except for meshes and distance functions. A line with fewer than k
-    intervals has empty ones.
+    intervals has empty ones. With `needed`, only that many crossings of the surface in front of an origin outside the
+    body must be right, and one more in front of an origin inside: the march along a distance function ends there.
     """
     raise NotImplementedError(type(geometry).__name__)  # every shape of a scene is registered below
 
@@ -41,7 +42,7 @@ def _single(enters: Array, leaves: Array) -> Array:
 
 
 @intervals.register
-def _(geometry: Ball, origins: Array, directions: Array) -> Array:
+def _(geometry: Ball, origins: Array, directions: Array, needed: int | None = None) -> Array:
     middle = -np.einsum("nc,nc->n", origins, directions)
     closest = origins + middle[:, None] * directions
     half = np.sqrt(np.maximum(geometry.radius**2 - np.einsum("nc,nc->n", closest, closest), 0.0))
@@ -59,22 +60,22 @@ def _box(size: Array, origins: Array, directions: Array) -> Array:
 
 
 @intervals.register
-def _(geometry: Box, origins: Array, directions: Array) -> Array:
+def _(geometry: Box, origins: Array, directions: Array, needed: int | None = None) -> Array:
     return _box(np.array(geometry.size), origins, directions)
 
 
 @intervals.register
-def _(geometry: Slab, origins: Array, directions: Array) -> Array:
+def _(geometry: Slab, origins: Array, directions: Array, needed: int | None = None) -> Array:
     return _box(np.array([geometry.width, geometry.height, geometry.thickness]), origins, directions)
 
 
 @intervals.register
-def _(geometry: Capsule, origins: Array, directions: Array) -> Array:
+def _(geometry: Capsule, origins: Array, directions: Array, needed: int | None = None) -> Array:
     return _single(*geometry.interval(origins, directions))
 
 
 @intervals.register
-def _(geometry: Torus, origins: Array, directions: Array) -> Array:
+def _(geometry: Torus, origins: Array, directions: Array, needed: int | None = None) -> Array:
     """Between the roots of a quartic (the eigenvalues of its companion matrix), where the middle is inside."""
     middle = -np.einsum("nc,nc->n", origins, directions)
     closest = origins + middle[:, None] * directions
@@ -103,8 +104,10 @@ def _(geometry: Torus, origins: Array, directions: Array) -> Array:
 
 
 @intervals.register
-def _(geometry: Union, origins: Array, directions: Array) -> Array:
-    parts = [part.scale * intervals(part, *in_object_space(part, origins, directions)) for part in geometry.parts]
+def _(geometry: Union, origins: Array, directions: Array, needed: int | None = None) -> Array:
+    parts = [
+        part.scale * intervals(part, *in_object_space(part, origins, directions), needed) for part in geometry.parts
+    ]
     return merged(np.concatenate(parts, axis=1))
 
 
@@ -127,7 +130,7 @@ def merged(parts: Array) -> Array:
 
 
 @intervals.register
-def _(geometry: Mesh, origins: Array, directions: Array) -> Array:
+def _(geometry: Mesh, origins: Array, directions: Array, needed: int | None = None) -> Array:
     """The triangles that a ray crosses: it leaves along a face's normal, and enters against it."""
     mesh = geometry.triangles
     size = float(np.linalg.norm(mesh.places.max(axis=0) - mesh.places.min(axis=0)))
@@ -158,7 +161,7 @@ def _(geometry: Mesh, origins: Array, directions: Array) -> Array:
 
 
 @intervals.register
-def _(geometry: Distance, origins: Array, directions: Array) -> Array:
+def _(geometry: Distance, origins: Array, directions: Array, needed: int | None = None) -> Array:
     """The sign changes of the function, bracketed by sphere tracing as in `Distance`."""
     shortest = 1e-4 * geometry.reach
     nearest = -np.einsum("nc,nc->n", origins, directions)
@@ -168,6 +171,7 @@ def _(geometry: Distance, origins: Array, directions: Array) -> Array:
     t = np.full(len(origins), 2.0 * shortest)  # past the surface that the ray starts from
     value = geometry.distance(origins + t[:, None] * directions).copy()
     starts_inside = np.flatnonzero(value < 0.0)
+    left = (np.inf if needed is None else needed) + (value < 0.0)
     brackets: list[tuple[Any, Array, Array]] = []
     active = t < end
     while active.any():
@@ -178,7 +182,8 @@ def _(geometry: Distance, origins: Array, directions: Array) -> Array:
         crossed = (new < 0.0) != (value[rays] < 0.0)
         brackets.append((rays[crossed], t[rays[crossed]], after[crossed]))
         t[rays], value[rays] = after, new
-        active[rays] = after < end[rays]
+        left[rays[crossed]] -= 1
+        active[rays] = (after < end[rays]) & (left[rays] > 0)
     rays, low, high = (np.concatenate(parts) for parts in zip(*brackets, strict=True)) if brackets else (t[:0],) * 3
     rays = rays.astype(np.int64)
     at = _bisected(geometry, origins[rays], directions[rays], low, high)
