@@ -5,9 +5,12 @@ from __future__ import annotations
 import re
 from importlib.util import find_spec
 
+import pytest
+
 from folders import ROOT
-from sssgen.harness.backend_registry import BACKENDS, DEFAULT, DRIVERS, FUNCTIONS, HALF, SINGLE
+from sssgen.harness.backend_registry import BACKENDS, DEFAULT, DRIVERS, FUNCTIONS, HALF, SCENES, SINGLE, chosen
 from sssgen.harness.compiler_registry import COMPILERS
+from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import registry
 
 
@@ -26,6 +29,20 @@ def test_the_lists_of_back_ends() -> None:
     assert {name for name, record in BACKENDS.items() if record.scenes_only} == set(BACKENDS) - set(FUNCTIONS)
     assert set(DRIVERS) < set(SINGLE)
     assert set(DEFAULT) < set(SINGLE)
+
+
+def test_what_draws_no_scenes_is_refused_for_a_scene() -> None:
+    """No other back end is: `sssgen render --help` lists exactly these."""
+    for name, record in BACKENDS.items():
+        assert not (record.functions_only and record.scenes_only)
+        if name in SCENES:
+            assert chosen(name, scenes=True) == [name]
+            continue
+        with pytest.raises(
+            SssgenError, match=f"{name} evaluates functions and draws no scenes\n.*choose from: numpy, "
+        ):
+            chosen(name, scenes=True)
+    assert {"bevy", "unreal", "webgpu-f16"} == set(BACKENDS) - set(SCENES)
 
 
 def test_the_documentation_lists_every_back_end() -> None:

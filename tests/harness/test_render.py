@@ -248,6 +248,7 @@ def test_a_scene_that_does_not_fit_its_material(
         (["SCENE", "--size", "0x10"], "is not a size"),
         (["SCENE", "--size", "8192x8192"], "samples are too many"),
         (["SCENE", "--backend", "opengl"], "unknown back end"),
+        (["SCENE", "--backend", "bevy"], "error: bevy evaluates functions and draws no scenes"),
         (["SCENE", "--backend", "gl,webgpu"], "are several back ends"),
         (["SCENE", "--time", "nan"], "is not a time"),
         (["SCENE", "--time", "1e39"], "is not a time"),
@@ -266,6 +267,11 @@ def test_wrong_arguments(
     path = scene(f'material = "paper_lantern"\n{BALL}')
     assert main(["render", *[path if argument == "SCENE" else argument for argument in arguments]]) == 2
     assert message in capsys.readouterr().err
+
+
+def test_a_back_end_for_functions_draws_nothing(backend: Callable[[str], Backend], scene: Callable[..., str]) -> None:
+    with pytest.raises(SssgenError, match="unreal evaluates functions and draws no scenes"):
+        render(load(scene(f'material = "paper_lantern"\n{BALL}')), backend("unreal"), (8, 8))
 
 
 def test_outputs_that_cannot_be_written(

@@ -9,7 +9,7 @@ from time import perf_counter
 
 from sssgen.cli.options import add_guards
 from sssgen.cli.output import OK, print_json
-from sssgen.harness.backend_registry import BACKENDS, PREFERRED
+from sssgen.harness.backend_registry import PREFERRED, SCENES
 from sssgen.support.diagnostics import failure
 
 
@@ -22,7 +22,7 @@ def add_options(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("SCENE", nargs="?", help="a scene's .toml file, or an example")
     add("-o", "--output", metavar="FILE", help="a .png or .exr file (default: SCENE's name with .png)")
-    add("--backend", "-b", metavar="NAME", default=PREFERRED, help=f"{', '.join(BACKENDS)} (default: {PREFERRED})")
+    add("--backend", "-b", metavar="NAME", default=PREFERRED, help=f"{', '.join(SCENES)} (default: {PREFERRED})")
     add_guards(parser)
     add("--size", metavar="WxH", help="the size in pixels (default: the scene's size)")
     add("--time", type=float, metavar="T", help="the time in seconds (default: the scene's time)")

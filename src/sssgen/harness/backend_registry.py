@@ -31,6 +31,8 @@ class BackendRecord(NamedTuple):
     """Whether a driver computes, which may crash."""
     scenes_only: bool = False
     """Whether it is an engine, which draws and lights scenes, and evaluates no functions."""
+    functions_only: bool = False
+    """Whether it evaluates functions, and draws no scenes."""
     parts: tuple[str, ...] = ()
     """Of an engine, or a stand-in for one: the parts of `installed` without which it does not start."""
     apart: bool = False
@@ -89,6 +91,7 @@ _RECORDS = (
     BackendRecord(
         "webgpu-f16", "the same in half precision", "wgsl-f16", "webgpu:WebGPU",
         "as `webgpu`, and an adapter with the feature shader-f16, which Mesa's lavapipe has", bits=16,
+        functions_only=True,
     ),
     BackendRecord(
         "browser", "WGSL through Tint, in a headless Chromium", "wgsl", "browser:Browser",
@@ -118,11 +121,12 @@ _RECORDS = (
     BackendRecord(
         "bevy", "functions for Bevy: WESL, linked by npm wesl, then through naga, in wgpu", "bevy",
         "bevy_backend:BevyWGSL", "as `webgpu`, node and the npm packages `webgpu` and `wesl`",
-        parts=("pip webgpu", "node", "npm webgpu", "npm wesl"),
+        functions_only=True, parts=("pip webgpu", "node", "npm webgpu", "npm wesl"),
     ),
     BackendRecord(
         "unreal", "functions for Unreal: behind a stand-in for the engine, through DXC and SPIR-V, in OpenGL", "unreal",
-        "unreal_backend:UnrealHLSL", "as `hlsl`", {"compiler": "dxc"}, parts=("pip gl", "pip dxc", "spirv"),
+        "unreal_backend:UnrealHLSL", "as `hlsl`", {"compiler": "dxc"}, functions_only=True,
+        parts=("pip gl", "pip dxc", "spirv"),
     ),
     BackendRecord(
         "metal", "Metal on the processor: g++ with a stand-in for Metal's library", "metal", "metal_backend:MetalOnCpu",
@@ -155,6 +159,8 @@ ENGINES = tuple(record.name for record in _RECORDS if record.parts)
 """Engines, and the stand-ins for engines."""
 FUNCTIONS = tuple(record.name for record in _RECORDS if not record.scenes_only)
 """Those that evaluate functions."""
+SCENES = tuple(record.name for record in _RECORDS if not record.functions_only)
+"""Those that draw scenes."""
 SINGLE = tuple(name for name in FUNCTIONS if BACKENDS[name].bits == 32)
 """Those that compute in float32."""
 HALF = tuple(record.name for record in _RECORDS if record.bits == 16)
@@ -166,18 +172,27 @@ PREFERRED = "gl"
 
 
 def chosen(text: str, scenes: bool = False) -> list[str]:
-    """The back ends that `NAME,NAME` names, each once; those that draw scenes only, where `scenes` are drawn.
+    """The back ends that `NAME,NAME` names, each once: of those that draw scenes, or of those that evaluate functions.
 
     Raises SssgenError for others.
     """
     names = list(dict.fromkeys(name.strip() for name in text.split(",")))
+    possible = SCENES if scenes else FUNCTIONS
     for name in names:
         if name not in BACKENDS:
-            hint = did_you_mean(name, BACKENDS) or f"choose from: {', '.join(BACKENDS if scenes else FUNCTIONS)}"
+            hint = did_you_mean(name, possible) or f"choose from: {', '.join(possible)}"
             raise failure(f"unknown back end '{name}'", hint)
+        if scenes:
+            check_draws(name)
         if BACKENDS[name].scenes_only and not scenes:
             raise failure(f"{name} draws scenes and evaluates no functions", f"choose from: {', '.join(FUNCTIONS)}")
     return names
+
+
+def check_draws(name: str) -> None:
+    """Raises SssgenError for a back end that draws no scenes."""
+    if BACKENDS[name].functions_only:
+        raise failure(f"{name} evaluates functions and draws no scenes", f"choose from: {', '.join(SCENES)}")
 
 
 def in_half(names: list[str]) -> list[str]:

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sssgen.harness.backend_registry import check_draws
 from sssgen.harness.backends import Array, Backend
 from sssgen.harness.evaluate.evaluation import half
 from sssgen.harness.pictures.images import decode_srgb, encode_srgb
@@ -58,8 +59,9 @@ def render(
     """The picture of a scene. `size` and `time` override the scene's; `guards` as in `compile`.
 
     Raises SssgenError for a scene that does not fit its material, a picture that is too large, and a back end that
-    refuses.
+    draws no scenes or refuses this one.
     """
+    check_draws(backend.name)
     if not scene.material:
         raise failure("the scene names no material", 'add: material = "…"', scene.document.reporter.file)
     scene = dataclasses.replace(scene, size=size or scene.size, time=scene.time if time is None else time)
