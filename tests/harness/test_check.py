@@ -303,6 +303,27 @@ def test_an_engine_is_found_by_its_files_alone(run: Run, monkeypatch: pytest.Mon
     assert not Path("started").exists()
 
 
+@pytest.mark.skipif(os.name != "posix" or os.geteuid() != 0, reason="the system that `make engines` sets up needs root")
+def test_the_godot_that_is_named_is_the_only_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As with the browsers; else the path comes first, then the system that `make engines` sets up."""
+    write({"build/engines/godot/usr/bin/godot": ""})
+    monkeypatch.setattr(installed, "folder", lambda name: Path(name).resolve())
+    system = [("godot", str(Path("build/engines/godot").resolve()))]
+    monkeypatch.delenv("SSSGEN_GODOT", raising=False)
+    monkeypatch.setenv("PATH", "nowhere")
+    assert installed.godots() == system
+    own = program("own", "true")
+    monkeypatch.setenv("PATH", str(Path(program("godot4", "true")).parent))
+    (on_path, root), *others = installed.godots()
+    assert (Path(on_path).name, root, others) == ("godot4", "", system)
+    monkeypatch.setenv("SSSGEN_GODOT", own)
+    assert installed.godots() == [(own, "")]
+    for missing in ("none", "godot", "/nowhere/godot"):
+        monkeypatch.setenv("SSSGEN_GODOT", missing)
+        assert installed.godots() == []
+    assert "SSSGEN_GODOT" in installed.lacks("godot")
+
+
 def test_a_check_without_a_compilation_fails(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     write({"a.hlsl": HLSL, "a.shader": 'Shader "A/B" { }\n'})
     monkeypatch.setenv("PATH", "nowhere")

@@ -53,10 +53,13 @@ def node_modules() -> Path:
 def godots() -> list[tuple[str, str]]:
     """(program, root) of each Godot, the preferred one first. `root` is the folder of the system that it is in, or ''.
 
-    One is $SSSGEN_GODOT or on the path, one is in the system that `make engines` sets up.
+    Where $SSSGEN_GODOT is set, it is that program alone; else one on the path, and one in the system of
+    `make engines`.
     """
-    named = os.environ.get("SSSGEN_GODOT") or "godot"
-    program = shutil.which(named) or (shutil.which("godot4") if named == "godot" else None)
+    configured = os.environ.get("SSSGEN_GODOT")
+    program = shutil.which(configured) if configured else shutil.which("godot") or shutil.which("godot4")
+    if configured:
+        return [(program, "")] if program else []
     system = folder("build") / "engines" / "godot"
     apart = (system / "usr" / "bin" / "godot").is_file() and hasattr(os, "geteuid") and os.geteuid() == 0
     return [*([(program, "")] if program else []), *([("godot", str(system.resolve()))] if apart else [])]
