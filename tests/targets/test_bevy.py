@@ -273,7 +273,7 @@ def test_no_type_has_the_name_of_another(name: str, tmp_path: Path) -> None:
     """Of Rust's own, of Bevy's, or of those that the file itself reads."""
     path = tmp_path / "material.toml"
     path.write_text(f'[material]\nname = "{name}"\n[surface]\ntechnique = "base_color"\n')
-    rust = sssgen.compile(str(path), "bevy").files[f"{name}.rs"]
+    rust = next(text for file, text in sssgen.compile(str(path), "bevy").files.items() if file.endswith(".rs"))
     code = re.sub(r"//.*", "", rust)
     made = re.findall(r"pub (?:type|struct) (\w+)", code)
     free = sssgen.compile(WAX, "bevy").files["wax.rs"]
@@ -282,3 +282,15 @@ def test_no_type_has_the_name_of_another(name: str, tmp_path: Path) -> None:
     assert (
         f"ExtendedMaterial<StandardMaterial, {made[1]}>" in code and f"impl MaterialExtension for {made[1]} {{" in code
     )
+
+
+@pytest.mark.parametrize("name", ["fn", "self", "crate", "mod", "main", "lib", "bevy", "Main", "wax", "main_"])
+def test_rust_has_a_module_of_the_file_s_name(name: str, tmp_path: Path) -> None:
+    """No word of Rust, not the program itself, and not a crate that the file reads."""
+    path = tmp_path / "material.toml"
+    path.write_text(f'[material]\nname = "{name}"\n[surface]\ntechnique = "base_color"\n', encoding="utf-8")
+    compiled = sssgen.compile(str(path), "bevy")
+    module = name if name in ("wax", "main_") else f"{name}_"
+    assert [*compiled.files][:2] == [f"{name}.wesl", f"{module}.rs"]
+    assert [file["name"] for file in compiled.reflection["files"]][:2] == [f"{name}.wesl", f"{module}.rs"]
+    assert f"shaders/{name}.wesl" in compiled.files[f"{module}.rs"]

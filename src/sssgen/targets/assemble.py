@@ -150,7 +150,7 @@ def emit(target: Target, program: Program, form: str, templates: str | None = No
     files: dict[str, str] = {}
     lines: dict[str, dict[int, Span]] = {}
     for output in target.files.get(form, ()):
-        name = output.name.format(material=program.about.name)
+        name = target.file_name(output, program.about.name)
         own = context if not output.without else _without(output.without, context, program, marks)
         text = render(output.template, own, templates, target.folder)
         if text.strip():  # a template may have nothing to say about a material

@@ -28,7 +28,8 @@ class OutputFile(NamedTuple):
     """One file that a target writes."""
 
     name: str = ""
-    """With `{material}` for the material's name."""
+    """With `{material}` for the material's name, and `{module}` for that of a module in another language than the
+    shader's: the same, with `_` where `[names]` has it in `modules` or `host_words`."""
     template: str = ""
     stages: Mapping[str, str] = {}
     """Stage (vertex, fragment, library) → its entry point; '' for a library."""
@@ -59,6 +60,8 @@ class Names(NamedTuple):
     """Types that the file beside the shader reads; one that it declares of such a name, in any case, gets `_`."""
     host_words: frozenset[str] = frozenset()
     """The words of that file's language."""
+    modules: frozenset[str] = frozenset()
+    """Names of modules that are not free there, in any case of their letters."""
     builtins: bool = False
     """Whether declarations at file scope, too, must avoid the names of builtins, which are GLSL's here."""
 
@@ -237,6 +240,11 @@ class Target(NamedTuple):
     def declares(self, form: str) -> bool:
         """Whether the text of a form declares the uniforms and textures."""
         return form not in self.parameters or form in self.declared
+
+    def file_name(self, output: OutputFile, material: str) -> str:
+        """The name of a material's file."""
+        taken = material.lower() in self.names.host_words | self.names.modules
+        return output.name.format(material=material, module=f"{material}_" if taken else material)
 
 
 _REQUIRED = ("title", "language", "types", "files")

@@ -57,7 +57,7 @@ def reflect(
         "target": target.name,
         "form": form,
         "files": [
-            {"name": output.name.format(material=program.about.name), "stages": output.stages}
+            {"name": target.file_name(output, program.about.name), "stages": output.stages}
             for output in target.files.get(form, ())
         ],
         **_stage(program),

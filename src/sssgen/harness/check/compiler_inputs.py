@@ -55,7 +55,7 @@ def outputs(name: str) -> list[tuple[descriptor.Target, str, descriptor.OutputFi
     base = name.rpartition("/")[2]
     for target in map(registry.load, registry.names()):
         for output in (entry for entries in target.files.values() for entry in entries):
-            pattern = re.escape(output.name).replace(re.escape("{material}"), r"(\w+)")
+            pattern = re.sub(r"\\{(?:material|module)\\}", r"(\\w+)", re.escape(output.name))
             match = re.fullmatch(pattern, base)
             if match and (target.name, output.name) not in seen:
                 seen.add((target.name, output.name))
