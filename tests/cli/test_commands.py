@@ -68,6 +68,10 @@ def test_arguments_that_do_not_begin_with_a_command(words: list[str], run: Run) 
         ("missing_arguments", ["emit"]),
         ("unknown_list", ["list", "technique"]),
         ("unknown_form", ["emit", "wax.toml", "-t", "wgsl", "-o", "out", "--form", "function"]),
+        ("no_folder", ["emit", "wax.toml", "-t", "wgsl", "-o", ""]),
+        ("no_prefix", ["emit", "wax.toml", "-t", "wgsl", "-o", "out", "--form", "functions", "--prefix", ""]),
+        ("no_file", ["transpile", "twice.glsl", "-t", "wgsl", "-o", " "]),
+        ("technique_beside", ["show", "beside"]),
         ("unknown_role", ["list", "techniques", "--role", "thicknes"]),
         ("role_of_targets", ["list", "targets", "--role", "thickness"]),
         ("unknown_technique", ["show", "lobe_normalised"]),
@@ -87,6 +91,7 @@ def test_arguments_that_do_not_begin_with_a_command(words: list[str], run: Run) 
 )
 def test_wrong_arguments(name: str, arguments: list[str], run: Run, compiler: FakeCompiler) -> None:
     Path("twice.glsl").write_text(GLSL, encoding="utf-8")
+    Path("beside.sss").write_text("", encoding="utf-8")
     ran = run(*arguments)
     assert (ran.status, ran.out) == (2, "")
     check_snapshot(f"cli/arguments/{name}.txt", ran.err)

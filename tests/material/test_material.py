@@ -249,6 +249,9 @@ BAD = {
     "technique_breaks_its_role": LOBE + '[surface]\ntechnique = "breaks_role.sss"\n',
     "all_at_once": '[material]\nname = "a b"\nshading = "x"\n[coordinates]\ntechnique = "parallax"\n'
     + '[surface]\ntechnique = "base_color"\ntint = [2.0, "x"]\nzzz = 1\n[thing]\n',
+    "file_without_its_suffix": HEAD
+    + '[surface]\ntechnique = "breaks_role"\n'
+    + '[translucency]\ntechnique = "slotted.sss"\nbind.body_distance = "faulty"\n',
     "escape_sequence_in_a_key": LOBE + '"\\u001b[31mred" = 1\n',
 }
 FAULTY = "void faulty(out vec3 albedo)\n{\n    albedo = vec2(1.0);\n    nothing();\n}\n"

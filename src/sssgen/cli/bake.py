@@ -7,7 +7,7 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from sssgen.cli.options import add_json, add_seed, add_workers
+from sssgen.cli.options import add_json, add_seed, add_workers, given
 from sssgen.cli.output import OK, print_json
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
@@ -59,7 +59,7 @@ def _add_mesh(parser: ArgumentParser) -> None:
 
 
 def _add_output(parser: ArgumentParser, help: str) -> None:
-    parser.add_argument("-o", "--output", metavar="FILE", required=True, help=help)
+    parser.add_argument("-o", "--output", type=given, metavar="FILE", required=True, help=help)
 
 
 def _add_size(parser: ArgumentParser) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from sssgen.cli.engine_options import add_condition_options, conditions_of, device_of
-from sssgen.cli.options import add_seed, add_workers
+from sssgen.cli.options import add_seed, add_workers, given
 from sssgen.cli.output import OK, print_json
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.progress import ProgressBar
@@ -27,7 +27,7 @@ def add_options(parser: ArgumentParser) -> None:
         "[medium] of a scene states the medium of its body. Without a scene, it charts all of examples/lab."
     )
     parser.add_argument("SCENE", nargs="*", help="a scene's .toml file, or one of examples/lab")
-    parser.add_argument("-o", "--output", metavar="DIR", help="the folder for PNG, SVG, HTML, CSV and JSON")
+    parser.add_argument("-o", "--output", type=given, metavar="DIR", help="the folder for PNG, SVG, HTML, CSV and JSON")
     parser.add_argument("--role", metavar="R,R", help="some of the charts, such as thickness,material (default: all)")
     parser.add_argument(
         "--cost", choices=("static", "gpu", "bytes"), default="static",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
-from sssgen.cli.options import add_guards, add_targets
+from sssgen.cli.options import add_guards, add_targets, given
 from sssgen.cli.output import OK, print_json, print_warnings
 from sssgen.pipeline import emitted_cache
 from sssgen.pipeline.emitted_cache import EmittedFiles
@@ -26,7 +26,7 @@ def add_options(parser: ArgumentParser) -> None:
     parser.epilog = "examples:\n  sssgen emit ice --target all -o out\n  sssgen emit wax.toml -t wgsl,unity-urp -o out"
     parser.add_argument("MATERIAL", nargs="+", help="a .toml file, or an example from `sssgen list materials`")
     add_targets(parser, required=True)
-    parser.add_argument("-o", "--output", metavar="DIR", required=True, help="the folder to write to")
+    parser.add_argument("-o", "--output", type=given, metavar="DIR", required=True, help="the folder to write to")
     parser.add_argument(
         "--form",
         choices=("shader", "functions"),
@@ -43,7 +43,7 @@ def add_options(parser: ArgumentParser) -> None:
         "material's own (ROLE=none)",
     )
     parser.add_argument(
-        "--prefix", default="", metavar="NAME", help="begin every global name with NAME, to fit in your own shader"
+        "--prefix", type=given, metavar="NAME", help="begin every global name with NAME, to fit in your own shader"
     )
     parser.add_argument(
         "--trace", action="store_true", help="also write the IR after each pass to DIR/NAME.TARGET.trace/NN-PASS.ir"
@@ -78,7 +78,7 @@ def _cached_or_compiled(arguments: Namespace, traces: list[Trace]) -> EmittedFil
     """The cached result of the same command; with own templates or a trace it is compiled again."""
     if arguments.templates is not None or arguments.trace:
         return _compile_all(arguments, traces)
-    options = (arguments.form, arguments.guards, arguments.prefix, arguments.shell)
+    options = (arguments.form, arguments.guards, arguments.prefix or "", arguments.shell)
     command = (arguments.MATERIAL, arguments.target, *options)
     cached = emitted_cache.load(*command)
     if cached is not None:
@@ -113,7 +113,9 @@ def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
             trace = Trace(f"{material.name}.{name}.trace") if arguments.trace else None
             traces += [trace] if trace is not None else []
             try:
-                compiled = compile(material, name, arguments.form, templates, arguments.guards, trace, arguments.prefix)
+                compiled = compile(
+                    material, name, arguments.form, templates, arguments.guards, trace, arguments.prefix or ""
+                )
             except SssgenError as error:
                 if every and isinstance(error, UnsupportedError):
                     warnings += _left_out(error, material, name)

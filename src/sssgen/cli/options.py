@@ -34,6 +34,13 @@ class Parser(argparse.ArgumentParser):
         raise failure(message, hint)
 
 
+def given(text: str) -> str:
+    """The value of an option that names something. Raises ArgumentTypeError for the empty text."""
+    if not text.strip():
+        raise argparse.ArgumentTypeError("the name is empty")
+    return text
+
+
 def add_json(parser: argparse.ArgumentParser) -> None:
     """Every command has `--json`."""
     parser.add_argument("--json", action="store_true", help="print the result, or the errors, as JSON")

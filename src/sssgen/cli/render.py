@@ -7,7 +7,7 @@ import re
 from argparse import ArgumentParser, Namespace
 from time import perf_counter
 
-from sssgen.cli.options import add_guards
+from sssgen.cli.options import add_guards, given
 from sssgen.cli.output import OK, print_json
 from sssgen.harness.backend_registry import PREFERRED, SCENES
 from sssgen.support.diagnostics import failure
@@ -21,7 +21,7 @@ def add_options(parser: ArgumentParser) -> None:
     )
     add = parser.add_argument
     add("SCENE", nargs="?", help="a scene's .toml file, or an example")
-    add("-o", "--output", metavar="FILE", help="a .png or .exr file (default: SCENE's name with .png)")
+    add("-o", "--output", type=given, metavar="FILE", help="a .png or .exr file (default: SCENE's name with .png)")
     add("--backend", "-b", metavar="NAME", default=PREFERRED, help=f"{', '.join(SCENES)} (default: {PREFERRED})")
     add_guards(parser)
     add("--size", metavar="WxH", help="the size in pixels (default: the scene's size)")

@@ -8,7 +8,7 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from sssgen.cli.options import add_guards, add_seed, add_workers
+from sssgen.cli.options import add_guards, add_seed, add_workers, given
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.harness.backend_registry import DEFAULT, HALF, SINGLE, chosen, in_half
 from sssgen.harness.testing.outcome import in_ci
@@ -44,7 +44,7 @@ def add_options(parser: ArgumentParser) -> None:
     )
     add("--precision", choices=("f32", "f16"), help="f16 runs numpy and webgpu in half precision (default: f32)")
     add_guards(parser)
-    add("-o", "--output", metavar="REPORT", help="a .md or .json file to write the report to")
+    add("-o", "--output", type=given, metavar="REPORT", help="a .md or .json file to write the report to")
     add_workers(parser)
 
 

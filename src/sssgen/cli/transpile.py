@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from sssgen.cli.emit import chosen_targets
-from sssgen.cli.options import add_guards, add_seed
+from sssgen.cli.options import add_guards, add_seed, given
 from sssgen.cli.output import CHECK_FAILED, OK, print_json, print_warnings
 from sssgen.ir.nodes import Module
 from sssgen.lang.loader import load_file
@@ -61,7 +61,7 @@ def add_options(parser: ArgumentParser) -> None:
     )
     add("--prune", action="store_true", help="omit functions that the file itself never calls")
     add_guards(parser, default="none")
-    add("-o", "--output", metavar="FILE", help="the file to write; its reflection is written next to it")
+    add("-o", "--output", type=given, metavar="FILE", help="the file to write; its reflection is written next to it")
     add(
         "--trace",
         action="store_true",

@@ -90,6 +90,12 @@ def shown_name(path: str) -> str:
     return posix(path.removeprefix(TECHNIQUES + os.sep))
 
 
+def file_meant(name: str, folder: str = "") -> str:
+    """The hint for a name that the library does not have, but a file of the folder; '' where it has no such file."""
+    files = [file for file in (f"{name}.sss", f"{name}.glsl") if os.path.isfile(os.path.join(folder, file))]
+    return f"did you mean the file '{files[0]}'?" if files else ""
+
+
 def load(name: str) -> Technique:
     """A technique of the library by name, or of a file by path (`my/lobe.sss`).
 
@@ -99,7 +105,8 @@ def load(name: str) -> Technique:
         return load_path(name)
     path = index().get(name)
     if path is None:
-        raise failure(f"unknown technique '{name}'", did_you_mean(name, index()) or "see: sssgen list techniques")
+        hint = file_meant(name) or did_you_mean(name, index()) or "see: sssgen list techniques"
+        raise failure(f"unknown technique '{name}'", hint)
     return load_path(path)
 
 

@@ -226,7 +226,8 @@ class _Reader:
                 technique = library.load(name)
             else:
                 names = _of_roles(allowed)
-                near = did_you_mean(name, names) or did_you_mean(name, library.index())
+                beside = library.file_meant(name, os.path.dirname(self.path))
+                near = beside or did_you_mean(name, names) or did_you_mean(name, library.index())
                 hint = near or f"techniques: {', '.join(names)}"
                 error(span, f"unknown technique '{name}'", hint)
                 return None

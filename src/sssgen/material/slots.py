@@ -102,7 +102,8 @@ def find(text: str, slot: Function, folder: str) -> tuple[Module, Function]:
         name = name or stem(path)
     else:
         if source not in library.index():
-            hint = did_you_mean(source, library.index()) or f"functions that fit: {', '.join(candidates(slot))}"
+            near = library.file_meant(source, folder) or did_you_mean(source, library.index())
+            hint = near or f"functions that fit: {', '.join(candidates(slot))}"
             raise failure(f"unknown function '{source}'", hint)
         module = library.load(source).module
         name = name or source
