@@ -1,4 +1,4 @@
-"""docs/engines.md has a row for each engine and back end that draws, and its pictures are those of the reference."""
+"""docs/engines.md has a row for each engine and back end that draws; the examples in pages say what they need."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+import sssgen
 from folders import ROOT
 from sssgen.harness import backends
 from sssgen.harness.backends import BACKENDS, Backend
@@ -38,3 +39,17 @@ def test_the_scene_is_that_of_shadertoy(backend: Callable[[str], Backend]) -> No
     drawn = engines["_shadertoy"]((48, 36), scene.samples)
     tile = engines["_compared"]("Shadertoy", "ours", drawn, reference, True)
     assert reference.max() - reference.min() > 0.5 and tile.difference < 2.0 / 255.0
+
+
+@pytest.mark.parametrize("target", ["threejs", "babylonjs", "playcanvas"])
+def test_example_pages_name_the_module_that_they_import(target: str) -> None:
+    """A page whose module is missing gives the command that writes it."""
+    folder = ROOT / "examples" / "engines" / target
+    named = re.search(
+        r"'(\S+)': 'sssgen emit ice --target (\w+) -o (\S+),", (folder / "index.html").read_text(encoding="utf-8")
+    )
+    imported = re.findall(r"from '\./(\S+)'", (folder / "main.js").read_text(encoding="utf-8"))
+    assert named is not None
+    assert imported == [named[1]]
+    assert named.groups()[1:] == (target, f"examples/engines/{target}")
+    assert named[1] in sssgen.compile("ice", target=target).files

@@ -1,5 +1,5 @@
-// A sheet of ice with the sun behind it. ?engine=webgl or webgpu (default, where the browser has it) chooses the engine;
-// the material is the same object for both.
+// A sheet of ice with the sun behind it. ?engine=webgl or webgpu (default) chooses the engine; a browser without WebGPU gets WebGL.
+// The material is the same object for both.
 
 import { ArcRotateCamera } from '@babylonjs/core/Cameras/arcRotateCamera.js';
 import { Engine } from '@babylonjs/core/Engines/engine.js';
@@ -18,8 +18,9 @@ import { Scene } from '@babylonjs/core/scene.js';
 import { createMaterial } from './ice.babylon.js';
 
 const canvas = document.querySelector('canvas');
-const kind = new URLSearchParams(location.search).get('engine') ?? ((await WebGPUEngine.IsSupportedAsync) ? 'webgpu' : 'webgl');
-const engine = kind === 'webgl' ? new Engine(canvas, true) : await WebGPUEngine.CreateAsync(canvas, { antialias: true });
+const kind = new URLSearchParams(location.search).get('engine') ?? 'webgpu';
+const hasWebGPU = kind === 'webgpu' && await WebGPUEngine.IsSupportedAsync;
+const engine = hasWebGPU ? await WebGPUEngine.CreateAsync(canvas, { antialias: true }) : new Engine(canvas, true);
 
 const scene = new Scene(engine);
 scene.clearColor = Color4.FromHexString('#1b2838ff');

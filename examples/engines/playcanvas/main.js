@@ -14,7 +14,9 @@ app.init(options);
 app.setCanvasFillMode(pc.FILLMODE_FILL_WINDOW);
 app.setCanvasResolution(pc.RESOLUTION_AUTO);
 app.scene.ambientLight = new pc.Color(0.25, 0.28, 0.35);
-Object.assign(app.scene.fog, { type: pc.FOG_LINEAR, color: new pc.Color(0.11, 0.16, 0.22), start: 6, end: 16 });
+// PlayCanvas tone-maps the fog and not the clear colour: both colours are #1b2838 on the screen.
+const [fogColor, clearColor] = ['#26323d', '#1b2838'].map((text) => new pc.Color().fromString(text));
+Object.assign(app.scene.fog, { type: pc.FOG_LINEAR, color: fogColor, start: 6, end: 16 });
 
 function add(name, components, place = [0, 0, 0], turn = [0, 0, 0]) {
   const entity = new pc.Entity(name);
@@ -39,7 +41,7 @@ ice.setLocalScale(2.2, 2.2, 0.15);
 const sun = { type: 'directional', color: new pc.Color(1, 0.89, 0.72), intensity: 1.6, castShadows: true, shadowDistance: 20, shadowBias: 0.3, normalOffsetBias: 0.05 };
 add('sun', { light: sun }, [0, 0, 0], [-58, 27, 0]);
 add('lamp', { light: { type: 'omni', intensity: 1.2, range: 12 } }, [2, 3, 3]);
-const camera = add('camera', { camera: { fov: 35, clearColor: app.scene.fog.color, toneMapping: pc.TONEMAP_ACES } }, [1.5, 1.8, 5]);
+const camera = add('camera', { camera: { fov: 35, clearColor, toneMapping: pc.TONEMAP_ACES } }, [1.5, 1.8, 5]);
 camera.lookAt(0, 1.1, 0);
 
 let seconds = 0;

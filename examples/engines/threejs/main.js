@@ -15,8 +15,10 @@ renderer.setSize(innerWidth, innerHeight);
 document.body.append(renderer.domElement);
 
 const scene = new THREE.Scene();
-scene.fog = new THREE.Fog(0x1b2838, 6, 14);
-scene.background = new THREE.Color(0x1b2838);
+// WebGPURenderer tone-maps fog and background, WebGLRenderer does not: both colours are #1b2838 on the screen.
+const air = new THREE.Color(kind === 'webgl' ? 0x1b2838 : 0x2c3845);
+scene.fog = new THREE.Fog(air, 6, 14);
+scene.background = air;
 scene.environment = sky();
 
 const material = createMaterial({ erosion: 0.05, cellCount: 6, uvPerUnit: [0.45, 0.45], relief: 0.03, tint: [0.1, 0.16, 0.2, 1], ambient: 0.05 });
