@@ -60,6 +60,30 @@ def test_kinds_of_textures(target: str, tmp_path: Path) -> None:
         assert only.span.line == 1 and "another target" in only.hint
 
 
+NUMBERS = {
+    "isampler2D": "float(texelFetch(x, ivec2(0), 0).x)",
+    "usampler2DArray": "float(texelFetch(x, ivec3(0), 0).x)",
+    "usamplerCube": "float(textureSize(x, 0).x)",
+    "sampler2DShadow": "texture(x, vec3(vec2(uv), 0.5))",
+    "samplerCubeShadow": "texture(x, vec4(vec2(uv), 0.5, 0.5))",
+}
+
+
+@pytest.mark.parametrize("kind", NUMBERS)
+def test_textures_that_no_material_of_an_engine_sets(
+    kind: str, tmp_path: Path, assert_compiles: Callable[[Source], None]
+) -> None:
+    """Of integers, and for shadows: a whole shader is refused, functions are not."""
+    path = material(tmp_path, f"{kind} x", NUMBERS[kind])
+    for target in ("threejs", "babylonjs", "playcanvas", "bevy"):
+        with pytest.raises(UnsupportedError, match=f"cannot supply 'x': its materials set no {kind}") as raised:
+            sssgen.compile(path, target)
+        (only,) = raised.value.diagnostics
+        assert only.span.line == 1 and only.hint.endswith("another target, or --form functions")
+        for source in sources(sssgen.compile(path, target, "functions").files):
+            assert_compiles(source)
+
+
 def test_a_texture_with_layers_is_declared_as_one(tmp_path: Path, assert_compiles: Callable[[Source], None]) -> None:
     path = material(tmp_path, "sampler2DArray x", "texture(x, vec3(vec2(uv), 1.0)).rgb")
     declared = {

@@ -228,6 +228,8 @@ class Target(NamedTuple):
     """GLSL: uniforms are printed as constants with the material's values, as the engine sets no uniform."""
     parameter_types: tuple[str, ...] = ()
     """The types that the parameters of a whole shader may have; () for all."""
+    texture_types: tuple[str, ...] = ()
+    """The same of its textures, where the engine sets fewer kinds than the functions can read."""
     channels: tuple[str, ...] = ()
     """The engine's own names for textures; a material's textures get them in order, and there are no more of them."""
     integer_property: str = ""

@@ -29,6 +29,8 @@ def check_uniforms(
             refuse(texture, f"{lacks}: no program draws it there")
         elif spell(texture.type) not in target.types:
             refuse(texture, f"{lacks}: it has no {spell(texture.type)}")
+        elif form == "shader" and target.texture_types and spell(texture.type) not in target.texture_types:
+            refuse(texture, f"{lacks}: its materials set no {spell(texture.type)}", f"{_INSTEAD}, or --form functions")
     if target.channels and len(textures) > len(target.channels) and not wrong:
         read = ", ".join(names.get(texture.name, texture.name) for texture in textures)
         message = f"{target.title} has {len(target.channels)} textures, the material reads {len(textures)}: {read}"
