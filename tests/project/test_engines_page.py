@@ -53,3 +53,15 @@ def test_example_pages_name_the_module_that_they_import(target: str) -> None:
     assert imported == [named[1]]
     assert named.groups()[1:] == (target, f"examples/engines/{target}")
     assert named[1] in sssgen.compile("ice", target=target).files
+
+
+@pytest.mark.parametrize("name", ["paper_lantern", "ice"])
+def test_the_page_of_shadertoy_finds_the_pictures_of_an_example(name: str) -> None:
+    """The page reads from the head of the text which picture a channel shows."""
+    page_text = (ROOT / "examples" / "engines" / "shadertoy" / "index.html").read_text(encoding="utf-8")
+    assert r"`// iChannel${channel} is (\\w+)_texture`" in page_text
+    compiled = sssgen.compile(name, "shadertoy")
+    pictures = re.findall(r"// iChannel\d is (\w+)_texture", compiled.files[f"{name}.shadertoy.glsl"])
+    assert len(pictures) == len(compiled.reflection["textures"]) > 0
+    for picture in pictures:
+        assert (ROOT / "examples" / name / "textures" / f"{picture}.png").is_file()
