@@ -20,7 +20,7 @@ from sssgen.harness.scenes.scene_loading import load
 from sssgen.support.diagnostics import SssgenError
 
 for package in ("trimesh", "igl", "embreex", "scipy", "psutil"):
-    pytest.importorskip(package, reason=f"{package} is missing: pip install 'sssgen[bake]'")
+    pytest.importorskip(package, reason=f"{package} is missing: pip install -e '.[bake]'")
 
 pytestmark = pytest.mark.usefixtures("folder")
 

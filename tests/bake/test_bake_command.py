@@ -19,13 +19,13 @@ from bake_meshes import MeshData, bake, facts, write
 from processes import HANG, wait_until, wait_until_busy
 from sssgen.cli.main import main
 
-pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
-pytest.importorskip("igl", reason="libigl is missing: pip install 'sssgen[bake]'")
-pytest.importorskip("embreex", reason="embreex is missing: pip install 'sssgen[bake]'")
-pytest.importorskip("scipy", reason="SciPy is missing: pip install 'sssgen[bake]'")
-pytest.importorskip("xatlas", reason="xatlas is missing: pip install 'sssgen[bake]'")
-pytest.importorskip("psutil", reason="psutil is missing: pip install 'sssgen[bake]'")
-pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install 'sssgen[bake]'")
+pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[bake]'")
+pytest.importorskip("igl", reason="libigl is missing: pip install -e '.[bake]'")
+pytest.importorskip("embreex", reason="embreex is missing: pip install -e '.[bake]'")
+pytest.importorskip("scipy", reason="SciPy is missing: pip install -e '.[bake]'")
+pytest.importorskip("xatlas", reason="xatlas is missing: pip install -e '.[bake]'")
+pytest.importorskip("psutil", reason="psutil is missing: pip install -e '.[bake]'")
+pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install -e '.[bake]'")
 
 from sssgen.bake.distance_encoding import ENCODINGS
 from sssgen.harness.pictures import images

@@ -23,7 +23,7 @@ from sssgen.pipeline.compiler import compile
 from sssgen.support.diagnostics import SssgenError
 
 for package in ("trimesh", "igl", "embreex", "xatlas", "scipy", "psutil"):
-    pytest.importorskip(package, reason=f"{package} is missing: pip install 'sssgen[bake]'")
+    pytest.importorskip(package, reason=f"{package} is missing: pip install -e '.[bake]'")
 
 MESHES = ROOT.parent / "shared" / "data" / "meshes"
 NAMES = ("spot", "suzanne")

@@ -16,7 +16,7 @@ from sssgen.bake.normal_map import from_height
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.runtime.numpy_textures import Texture
 
-pytest.importorskip("PIL", reason="Pillow is missing: pip install 'sssgen[render]'")
+pytest.importorskip("PIL", reason="Pillow is missing: pip install -e '.[render]'")
 
 from sssgen.harness.pictures.images import png_bytes, read, write_png
 

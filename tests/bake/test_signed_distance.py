@@ -14,9 +14,9 @@ from bake_meshes import SPOT, SUZANNE, Array, MeshData, joined, needs_meshes, wr
 from oracle import technique
 from sssgen.support.diagnostics import SssgenError
 
-pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
-pytest.importorskip("igl", reason="libigl is missing: pip install 'sssgen[bake]'")
-pytest.importorskip("embreex", reason="embreex is missing: pip install 'sssgen[bake]'")
+pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[bake]'")
+pytest.importorskip("igl", reason="libigl is missing: pip install -e '.[bake]'")
+pytest.importorskip("embreex", reason="embreex is missing: pip install -e '.[bake]'")
 
 from sssgen.bake.distance_encoding import ENCODINGS
 from sssgen.bake.distance_texture import Volume, sdf

@@ -14,11 +14,11 @@ from bake_meshes import SPOT, SUZANNE, Array, MeshData, needs_meshes, write
 from oracle import technique
 from sssgen.support.diagnostics import SssgenError
 
-pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
-pytest.importorskip("embreex", reason="embreex is missing: pip install 'sssgen[bake]'")
-pytest.importorskip("scipy", reason="SciPy is missing: pip install 'sssgen[bake]'")
-pytest.importorskip("xatlas", reason="xatlas is missing: pip install 'sssgen[bake]'")
-pytest.importorskip("psutil", reason="psutil is missing: pip install 'sssgen[bake]'")
+pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[bake]'")
+pytest.importorskip("embreex", reason="embreex is missing: pip install -e '.[bake]'")
+pytest.importorskip("scipy", reason="SciPy is missing: pip install -e '.[bake]'")
+pytest.importorskip("xatlas", reason="xatlas is missing: pip install -e '.[bake]'")
+pytest.importorskip("psutil", reason="psutil is missing: pip install -e '.[bake]'")
 
 from sssgen.bake import texture_unwrap as unwrap
 from sssgen.bake.atlas import Atlas, atlas
@@ -381,7 +381,7 @@ def test_a_light_in_the_body_is_refused(globe: str) -> None:
 
 
 def test_gltf_keeps_its_parts_and_their_texture_coordinates() -> None:
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
+    trimesh = pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[bake]'")
     solid_mesh = meshes.box((1.0, 0.6, 0.4))
     assert solid_mesh.uv is not None
     corners = solid_mesh.triangles.reshape(-1, 3)
@@ -423,7 +423,7 @@ def test_a_mesh_that_xatlas_loses_is_unwrapped_in_parts(monkeypatch: pytest.Monk
 
 @pytest.mark.slow
 def test_a_ball_that_xatlas_crashes_on() -> None:
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is missing: pip install 'sssgen[bake]'")
+    trimesh = pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[bake]'")
     trimesh.creation.icosphere(subdivisions=6).export("ball.ply")
     result = thickness_map("ball.ply", (64, 64), Request(mode="chord"))
     assert result.facts["mean"] == pytest.approx(2.0, rel=1e-2) and result.facts["mesh"]["new_uv"]

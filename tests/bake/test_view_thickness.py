@@ -21,7 +21,7 @@ from sssgen.harness.scenes.scene_loading import load
 from sssgen.targets.runtime.numpy_textures import Texture
 
 for package in ("trimesh", "igl", "embreex", "xatlas", "scipy", "psutil"):
-    pytest.importorskip(package, reason=f"{package} is missing: pip install 'sssgen[bake]'")
+    pytest.importorskip(package, reason=f"{package} is missing: pip install -e '.[bake]'")
 
 pytestmark = pytest.mark.usefixtures("folder")
 

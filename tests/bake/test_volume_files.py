@@ -131,7 +131,7 @@ def test_the_keys_are_sorted_ended_and_filled_up() -> None:
 @pytest.mark.parametrize("dtype", TYPES)
 @pytest.mark.parametrize("size", SIZES)
 def test_a_sheet_follows_its_layout(size: tuple[int, int, int], dtype: str) -> None:
-    pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install 'sssgen[render]'")
+    pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install -e '.[render]'")
     texels = volume(size, dtype)
     Path("sheet.exr").write_bytes(file_of(texels, "exr-slices"))
     picture = images.read("sheet.exr")

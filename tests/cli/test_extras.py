@@ -15,6 +15,7 @@ import pytest
 
 from folders import ROOT
 from sssgen.cli.main import COMMANDS, WRONG_INPUT
+from sssgen.support.installation import install_hint
 
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
 
@@ -85,14 +86,14 @@ def test_a_command_without_the_optional_packages(command: str, tmp_path: Path) -
         assert done.returncode == WRONG_INPUT, done
         (diagnostic,) = result["diagnostics"]
         assert diagnostic["message"] == "the package 'numpy' is missing"
-        assert diagnostic["help"] == f'pip install "sssgen[{extra}]"'
+        assert diagnostic["help"] == install_hint(extra)
 
 
 def named_extras() -> Iterator[tuple[str, str]]:
     """The extras that hints and documents name, each with its place."""
     for path in [*(ROOT / "src").rglob("*.py"), ROOT / "README.md", *(ROOT / "docs").glob("*.md")]:
         text = path.read_text(encoding="utf-8")
-        for listed in re.findall(r"sssgen\[([\w,-]+)\]", text):
+        for listed in re.findall(r"sssgen-shaders\[([\w,-]+)\]", text):
             yield from ((name, path.name) for name in listed.split(","))
         if path.suffix == ".py":
             yield from ((name, path.name) for name in extras_of_calls(ast.parse(text)))

@@ -32,6 +32,7 @@ from sssgen.harness.backends.browser import Browser
 from sssgen.ir.types import BY_NAME, FLOAT, INT, VEC2, VEC3, VEC4
 from sssgen.lang.loader import load_text
 from sssgen.support.diagnostics import SssgenError
+from sssgen.support.installation import install_hint
 from sssgen.targets.runtime.numpy_textures import Texture
 from validate import code
 
@@ -226,7 +227,7 @@ def test_a_missing_package() -> None:
     )
     process = subprocess.run([sys.executable, "-c", script], capture_output=True, encoding="utf-8")
     assert "CompilerMissing: the Python package websockets" in process.stderr
-    assert "pip install 'sssgen[browser]' and Chromium or Chrome" in process.stderr
+    assert f"{install_hint('browser')} and Chromium or Chrome" in process.stderr
 
 
 def test_a_program_that_is_not_a_browser(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,7 +18,7 @@ from sssgen.harness.backends import Backend
 from sssgen.harness.pictures import images
 from sssgen.material.material_loading import examples
 
-pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip install 'sssgen[render]'")
+pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip install -e '.[render]'")
 
 EXAMPLE = EXAMPLES / "ci"
 NO_DRIVER = {"__EGL_VENDOR_LIBRARY_FILENAMES": os.devnull}

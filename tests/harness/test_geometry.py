@@ -211,7 +211,7 @@ def test_rotation_is_about_x_then_y_then_z() -> None:
 @pytest.fixture
 def needs_trimesh() -> None:
     for package in ("trimesh", "embreex"):
-        pytest.importorskip(package, reason=f"{package} is missing: pip install 'sssgen[render]'")
+        pytest.importorskip(package, reason=f"{package} is missing: pip install -e '.[render]'")
 
 
 def write_ball(path: Path, rings: int = 48, with_uv: bool = True) -> None:
@@ -276,7 +276,7 @@ def test_real_meshes(name: str, centre: tuple[float, float, float]) -> None:
     assert np.abs(np.cross(world - CAMERA.position, directions)).max() < 1e-9
     assert np.abs(np.einsum("nc,nc->n", normal, tangent)).max() < 1e-9
     assert set(np.unique(w)) <= {-1.0, 1.0}
-    pytest.importorskip("igl", reason="libigl is missing: pip install 'sssgen[render]'")
+    pytest.importorskip("igl", reason="libigl is missing: pip install -e '.[render]'")
     assert np.abs(mesh.distance(local)).max() < 1e-6
 
 

@@ -17,8 +17,8 @@ from sssgen.harness.scenes.camera import Camera
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.extras import need
 
-Image = pytest.importorskip("PIL.Image", reason="Pillow is missing: pip install 'sssgen[render]'")
-pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install 'sssgen[render]'")
+Image = pytest.importorskip("PIL.Image", reason="Pillow is missing: pip install -e '.[render]'")
+pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install -e '.[render]'")
 
 RAMP = np.linspace(0.0, 1.0, 5 * 7 * 4).reshape(5, 7, 4)
 

@@ -8,7 +8,7 @@ import pytest
 from sssgen.harness.pictures.picture_difference import compare
 from sssgen.support.diagnostics import SssgenError
 
-pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip install 'sssgen[render]'")
+pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip install -e '.[render]'")
 
 GRAY = np.full((20, 30, 3), 0.5)
 

@@ -110,7 +110,7 @@ def test_the_table_is_complete() -> None:
 
 def test_dangerous_row_meshes(tmp_path: Path) -> None:
     """The distance to an open box is negative inside, positive outside. An error names a mesh without triangles."""
-    reason = "a mesh's distance needs libigl and trimesh: pip install 'sssgen[render]'"
+    reason = "a mesh's distance needs libigl and trimesh: pip install -e '.[render]'"
     pytest.importorskip("igl", reason=reason)
     trimesh = pytest.importorskip("trimesh", reason=reason)
     from sssgen.harness.scenes.mesh import Mesh

@@ -20,7 +20,7 @@ from sssgen.lab.scene import measured_scene
 from sssgen.lab.scene.scene_body import body
 from sssgen.support.diagnostics import SssgenError
 
-pytest.importorskip("scipy", reason="scipy is missing: pip install 'sssgen[chart]'")
+pytest.importorskip("scipy", reason="scipy is missing: pip install -e '.[chart]'")
 
 NS = (0.05, 0.4, 7.0, 2.0)
 DRIVER = Driver("A device", "4.6", False)

@@ -9,8 +9,8 @@ from sssgen.lab.measure import candidates
 from sssgen.lab.measure.fitting import Fitted
 from sssgen.lab.measure.measurement import View, measure_candidate
 
-pytest.importorskip("scipy", reason="scipy is missing: pip install 'sssgen[chart]'")
-pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip install 'sssgen[chart]'")
+pytest.importorskip("scipy", reason="scipy is missing: pip install -e '.[chart]'")
+pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip install -e '.[chart]'")
 
 pytestmark = pytest.mark.usefixtures("no_cache")
 

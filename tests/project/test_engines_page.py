@@ -14,7 +14,7 @@ from folders import ROOT
 from sssgen.harness import backends
 from sssgen.harness.backends import BACKENDS, Backend
 
-pytest.importorskip("PIL", reason="Pillow is missing: pip install 'sssgen[dev]'")
+pytest.importorskip("PIL", reason="Pillow is missing: pip install -e '.[dev]'")
 
 
 def page() -> dict[str, Any]:

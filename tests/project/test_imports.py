@@ -47,6 +47,7 @@ LAZY_IMPORTS = {
     "sssgen.pipeline.emitted_cache": EMIT,
     "sssgen.pipeline.trace": "only --trace needs it",
     "sssgen.support.diagnostics": EMIT,
+    "sssgen.support.extras": EMIT,
     "sssgen.support.paths": EMIT,
     "sssgen.support.progress": EXTRA,
     "sssgen.support.toml_source": EMIT,

@@ -72,12 +72,12 @@ def test_the_wheel_has_exactly_its_data(wheel: Path) -> None:
         inside = path.relative_to(ROOT / "src")
         if path.is_file() and not any(part.startswith((".", "__pycache__")) for part in inside.parts):
             assert inside.as_posix() in names
-    assert {name.split("/")[0] for name in names} == {"sssgen", f"sssgen-{VERSION}.dist-info"}
+    assert {name.split("/")[0] for name in names} == {"sssgen", f"sssgen_shaders-{VERSION}.dist-info"}
     assert not any("__pycache__" in name or "qualification" in name for name in names)
     assert not [name for name, text in texts.items() if str(ROOT).encode() in text]
-    metadata = texts[f"sssgen-{VERSION}.dist-info/METADATA"].decode()
+    metadata = texts[f"sssgen_shaders-{VERSION}.dist-info/METADATA"].decode()
     assert f"Version: {VERSION}" in metadata
-    assert b"sssgen = sssgen.cli.main:main" in texts[f"sssgen-{VERSION}.dist-info/entry_points.txt"]
+    assert b"sssgen = sssgen.cli.main:main" in texts[f"sssgen_shaders-{VERSION}.dist-info/entry_points.txt"]
 
 
 def test_the_source_distribution_carries_the_qualification() -> None:

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.installation import install_hint
 
 
 class BackendRecord(NamedTuple):
@@ -41,11 +42,11 @@ class BackendRecord(NamedTuple):
     """Whether it runs where no back end is named: one for each compiler, and NumPy."""
 
 
-_GL = "`pip install 'sssgen[gl]'` and a driver (Debian, without a GPU: `libegl1 libgl1 libgl1-mesa-dri`)"
+_GL = f"`{install_hint('gl')}` and a driver (Debian, without a GPU: `libegl1 libgl1 libgl1-mesa-dri`)"
 _SPIRV = "spirv-val and spirv-cross (Debian: `spirv-tools spirv-cross`)"
-_DXC = f"as `gl`, `pip install 'sssgen[dxc]'`, {_SPIRV}"
+_DXC = f"as `gl`, `{install_hint('dxc')}`, {_SPIRV}"
 _GLSLANG = f"as `gl`, `glslangValidator` (Debian: `glslang-tools`), {_SPIRV}"
-_NUMPY = "`pip install 'sssgen[numpy]'`"
+_NUMPY = f"`{install_hint('numpy')}`"
 
 _GODOT = "Godot 4.6 (`make engines`, or `SSSGEN_GODOT` names the program)"
 
@@ -54,7 +55,7 @@ def _page(
     target: str, title: str, package: str, part: str, renderers: Mapping[str, tuple[str, str]]
 ) -> Iterator[BackendRecord]:
     """The back ends of an engine of the web: a suffix of the name → the renderer's title and name."""
-    install = f"`pip install 'sssgen[browser]'`, Chromium or Chrome (Debian: `chromium`), the npm package `{package}`"
+    install = f"`{install_hint('browser')}`, Chromium or Chrome (Debian: `chromium`), the npm package `{package}`"
     for suffix, (renderer, name) in renderers.items():
         yield BackendRecord(
             target + suffix,
@@ -85,7 +86,7 @@ _RECORDS = (
     BackendRecord("gl-es", "GLSL ES 3.00 in OpenGL", "glsl-es-300", "opengl:OpenGL", _GL),
     BackendRecord(
         "webgpu", "WGSL through naga, in wgpu", "wgsl", "webgpu:WebGPU",
-        "`pip install 'sssgen[webgpu]'` and Vulkan or Metal (Debian, without a GPU: `mesa-vulkan-drivers libvulkan1`)",
+        f"`{install_hint('webgpu')}` and Vulkan or Metal (Debian, without a GPU: `mesa-vulkan-drivers libvulkan1`)",
         half="webgpu-f16", default=True,
     ),
     BackendRecord(
@@ -95,11 +96,11 @@ _RECORDS = (
     ),
     BackendRecord(
         "browser", "WGSL through Tint, in a headless Chromium", "wgsl", "browser:Browser",
-        "`pip install 'sssgen[browser]'` and Chromium or Chrome (Debian: `chromium`)", default=True,
+        f"`{install_hint('browser')}` and Chromium or Chrome (Debian: `chromium`)", default=True,
     ),
     BackendRecord(
         "firefox", "WGSL through naga, in a headless Firefox", "wgsl", "browser:Browser",
-        "`pip install 'sssgen[browser]'`, Firefox (Debian: `firefox-esr`) and Vulkan", {"program": "firefox"},
+        f"`{install_hint('browser')}`, Firefox (Debian: `firefox-esr`) and Vulkan", {"program": "firefox"},
         parts=("pip browser", "firefox"), apart=True,
     ),
     BackendRecord(

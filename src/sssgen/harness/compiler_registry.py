@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from sssgen.support.installation import install_hint
+
 
 class CompilerRecord(NamedTuple):
     """One compiler, whether or not this machine has it."""
@@ -23,17 +25,17 @@ class CompilerRecord(NamedTuple):
 _RECORDS = (
     CompilerRecord(
         "gl", "the OpenGL driver", frozenset({"glsl-330", "glsl-es-300", "shadertoy"}), "gl_driver",
-        "`pip install 'sssgen[gl]'` and a driver (Debian, without a GPU: `libegl1 libgl1 libgl1-mesa-dri`)",
+        f"`{install_hint('gl')}` and a driver (Debian, without a GPU: `libegl1 libgl1 libgl1-mesa-dri`)",
     ),
     CompilerRecord(
         "glslang", "Khronos' reference compiler", frozenset({"glsl-330", "glsl-es-300", "shadertoy", "hlsl"}),
         "glslang",
         "`glslangValidator` (Debian: `glslang-tools`)",
     ),
-    CompilerRecord("dxc", "Microsoft's compiler", frozenset({"hlsl"}), "dxc", "`pip install 'sssgen[dxc]'`"),
+    CompilerRecord("dxc", "Microsoft's compiler", frozenset({"hlsl"}), "dxc", f"`{install_hint('dxc')}`"),
     CompilerRecord(
         "naga", "wgpu's compiler", frozenset({"wgsl"}), "naga",
-        "`pip install 'sssgen[webgpu]'` and Vulkan or Metal (Debian, without a GPU: `mesa-vulkan-drivers libvulkan1`)",
+        f"`{install_hint('webgpu')}` and Vulkan or Metal (Debian, without a GPU: `mesa-vulkan-drivers libvulkan1`)",
     ),
     CompilerRecord("tint", "Chrome's compiler", frozenset({"wgsl"}), "tint", "node and the npm package `webgpu`"),
     CompilerRecord(
@@ -43,7 +45,7 @@ _RECORDS = (
     ),
     CompilerRecord(
         "unreal", "DXC behind a stand-in for Unreal's material shaders", frozenset({"unreal"}), "unreal_compiler",
-        "`pip install 'sssgen[dxc]'`",
+        f"`{install_hint('dxc')}`",
     ),
     CompilerRecord(
         "godot", "Godot's own parser", frozenset({"godot"}), "godot_parser",

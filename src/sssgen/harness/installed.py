@@ -12,6 +12,7 @@ from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 
+from sssgen.support.installation import install_hint
 from sssgen.support.paths import folder
 
 
@@ -105,7 +106,7 @@ _PARTS: Mapping[str, tuple[Callable[[], object], str]] = {
         for package in ("playcanvas", "three", "webgpu", "wesl")
     },
     **{
-        f"pip {extra}": (partial(_importable, modules), f"pip install 'sssgen[{extra}]'")
+        f"pip {extra}": (partial(_importable, modules), install_hint(extra))
         for extra, modules in {
             "browser": ("websockets", "numpy"), "dxc": ("compushady",), "gl": ("moderngl", "numpy"),
             "numpy": ("numpy",), "webgpu": ("wgpu", "numpy"),

@@ -22,6 +22,8 @@ def need(module: str, package: str = "", extra: str = "render") -> Any:
         with _delayed_interrupts():
             return importlib.import_module(module)
     except ImportError as error:
+        from sssgen.support.installation import install_hint
+
         raise failure(f"the package '{package or module}' is missing: {error}", install_hint(extra)) from None
 
 
@@ -33,12 +35,9 @@ def missing_package(error: ModuleNotFoundError, extra: str) -> Exception:
     name = (error.name or "").partition(".")[0]
     if name in ("", "sssgen") or name in sys.stdlib_module_names:
         return error
+    from sssgen.support.installation import install_hint
+
     return failure(f"the package '{name}' is missing", install_hint(extra))
-
-
-def install_hint(extra: str) -> str:
-    """The command that installs an extra; double quotes work in every shell."""
-    return f'pip install "sssgen[{extra}]"'
 
 
 @contextlib.contextmanager

@@ -13,6 +13,7 @@ from functools import cache
 from sssgen.harness.compilers.calling_entry import hlsl_entry
 from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Severity, Source
 from sssgen.harness.compilers.glslang import LIBRARY_ENTRY
+from sssgen.support.installation import install_hint
 from sssgen.support.worker_process import LostError, Process
 
 _PROFILES = {"vertex": "vs_6_0", "fragment": "ps_6_0", "library": "ps_6_0"}
@@ -81,7 +82,7 @@ def serve(_: str) -> tuple[str, Callable[[Question], bytes]]:
 
         from compushady.shaders import hlsl
     except Exception as error:
-        hint = "pip install compushady (Debian, to build it: g++ libvulkan-dev)"
+        hint = f"{install_hint('dxc')} (Debian, to build it: g++ libvulkan-dev)"
         raise CompilerMissing(hint if isinstance(error, ImportError) else f"{hint}: {error}") from None
 
     def answer(question: Question) -> bytes:

@@ -9,6 +9,7 @@ from typing import Any
 from sssgen.harness.compilers.calling_entry import glsl_entry
 from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Severity, Source
 from sssgen.harness.compilers.shadertoy_page import as_program
+from sssgen.support.installation import install_hint
 
 _ES = "#version 300 es\nprecision highp float;\nprecision highp sampler3D;\n"
 _HEADERS = {
@@ -75,7 +76,7 @@ def find() -> Compiler:
     try:
         import moderngl
     except ImportError:
-        raise CompilerMissing("pip install moderngl") from None
+        raise CompilerMissing(install_hint("gl")) from None
     try:
         return DriverGL(moderngl.create_context(standalone=True, **_EGL))
     except Exception as egl:

@@ -7,6 +7,7 @@ from typing import Any
 
 from sssgen.harness.compilers.calling_entry import wgsl_entry
 from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Source
+from sssgen.support.installation import install_hint
 
 
 class Naga(Compiler):
@@ -45,7 +46,7 @@ def find() -> Naga:
     try:
         import wgpu
     except ImportError:
-        raise CompilerMissing("pip install wgpu") from None
+        raise CompilerMissing(install_hint("webgpu")) from None
     os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.gettempdir())  # EGL complains on stderr without it
     try:
         adapter = wgpu.gpu.request_adapter_sync(power_preference="low-power")

@@ -27,7 +27,7 @@ from sssgen.harness.testing.outcome import Outcome, beside, missing_part
 from sssgen.material.library import ROLES
 from sssgen.support import json_source
 from sssgen.support.diagnostics import SssgenError, failure
-from sssgen.support.extras import install_hint
+from sssgen.support.installation import install_hint
 from sssgen.support.paths import posix, stem
 from sssgen.support.text_files import read_text
 

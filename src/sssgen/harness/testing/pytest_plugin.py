@@ -253,7 +253,7 @@ def _need(module: str) -> None:
     from importlib import import_module
 
     from sssgen.harness.testing.outcome import missing_part
-    from sssgen.support.extras import install_hint
+    from sssgen.support.installation import install_hint
 
     try:
         import_module(module)

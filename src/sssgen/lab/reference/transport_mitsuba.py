@@ -17,6 +17,7 @@ import numpy.typing as npt
 from sssgen.harness.scenes.geometry import Ball, Box, Geometry, Slab
 from sssgen.lab.reference.geometry_mesh import RESOLUTION, box_size, mesh_of
 from sssgen.support.diagnostics import failure
+from sssgen.support.installation import install_hint
 
 Array = npt.NDArray[np.float64]
 
@@ -204,6 +205,6 @@ def mitsuba() -> Any:
     try:
         module = importlib.import_module("mitsuba")
     except ImportError as error:
-        raise failure(f"the package 'mitsuba' is missing: {error}", "pip install 'sssgen[reference]'") from None
+        raise failure(f"the package 'mitsuba' is missing: {error}", install_hint("reference")) from None
     module.set_variant("scalar_rgb")
     return module
