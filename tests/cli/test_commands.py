@@ -25,35 +25,6 @@ from sssgen.support.file_writer import write_files
 # The frame
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["emit", "--help"], ["--version"]])
-def test_help_and_version(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
-        cli.main(arguments)
-    assert ended.value.code == 0
-    assert capsys.readouterr().out.startswith(("usage: sssgen", "sssgen 0."))
-
-
-def test_help_and_emit_start_light() -> None:
-    """The modules that `--help` and reading a material import."""
-    code = """
-import sys, sssgen.cli.emit, sssgen.cli.main, sssgen.material.material_loading
-try:
-    sssgen.cli.main.main(["--help"])
-except SystemExit:
-    print(sorted({"numpy", "lark", "jinja2", "json", "tomllib", "subprocess", "difflib"} & set(sys.modules)))
-"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines()[-1] == "[]"
-
-
-@pytest.mark.parametrize("name", cli.COMMANDS)
-def test_the_help_of_every_command(name: str, run: Run, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
-        cli.main([name, "--help"])
-    assert ended.value.code == 0
-    assert capsys.readouterr().out.startswith(f"usage: sssgen {name} ")
-
-
 @pytest.mark.parametrize("words", [["--", "list"], ["--json", "list"], ["-x"]])
 def test_arguments_that_do_not_begin_with_a_command(words: list[str], run: Run) -> None:
     assert run(*words).status == cli.WRONG_INPUT
@@ -62,8 +33,9 @@ def test_arguments_that_do_not_begin_with_a_command(words: list[str], run: Run) 
 @pytest.mark.parametrize(
     ("name", "arguments"),
     [
-        ("no_command", []),
         ("unknown_command", ["emmit"]),
+        ("unknown_command_of_help", ["help", "emmit"]),
+        ("unknown_texture_of_help", ["help", "bake", "thicknes"]),
         ("unknown_option", ["list", "targets", "--jsn"]),
         ("missing_arguments", ["emit"]),
         ("unknown_list", ["list", "technique"]),

@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 
 from folders import ROOT
-from sssgen.cli.main import COMMANDS, WRONG_INPUT
+from sssgen.cli.commands import COMMANDS
+from sssgen.cli.main import WRONG_INPUT
 from sssgen.support.installation import install_hint
 
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
@@ -62,6 +63,7 @@ NEEDS: dict[str, str | None] = {
     "bake normal a.png -o b.png": "bake",
     "bake pack --red 0.5 -o b.png": "bake",
     "new wood": None,
+    "help emit": None,
 }
 """Command → the extra that it needs."""
 

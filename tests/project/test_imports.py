@@ -20,6 +20,7 @@ LAZY_IMPORTS = {
     "sssgen.cli.eval": HELP,
     "sssgen.cli.listing": HELP,
     "sssgen.cli.fit": HELP,
+    "sssgen.cli.layout": EMIT,
     "sssgen.cli.lint": HELP,
     "sssgen.cli.main": "only an internal error needs it, and `sssgen emit` starts faster",
     "sssgen.cli.output": EMIT,

@@ -1,37 +1,8 @@
-"""The options that several commands share, and the parser that reports errors as sssgen does."""
+"""The options that several commands share."""
 
 from __future__ import annotations
 
 import argparse
-import re
-from typing import Any, NoReturn
-
-from sssgen.support.diagnostics import did_you_mean, failure
-
-
-class Parser(argparse.ArgumentParser):
-    """An `argparse` parser without abbreviations, whose errors are SssgenErrors with a hint."""
-
-    def __init__(self, prog: str, description: str, epilog: str = "", **settings: Any) -> None:
-        super().__init__(
-            prog=prog,
-            description=f"{description[0].upper()}{description[1:]}.",
-            epilog=epilog,
-            allow_abbrev=False,
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-            **settings,
-        )
-
-    def error(self, message: str) -> NoReturn:
-        hint = f"see: {self.prog} --help"
-        if match := re.match(r"argument ([^:]+): invalid choice: '?(.*?)'? \(choose from (.*)\)", message):
-            argument, word, listed = match.groups()
-            choices = re.findall(r"[\w-]+", listed)
-            message = f"unknown {argument.lower()} '{word}'"
-            hint = did_you_mean(word, choices) or f"choose from: {', '.join(choices)}"
-        elif match := re.match(r"argument (?:\S+/)?(--[\w-]+): expected one argument", message):
-            hint = f"write a value that begins with - as {match[1]}=VALUE"
-        raise failure(message, hint)
 
 
 def given(text: str) -> str:

@@ -34,7 +34,7 @@ def add_options(parser: ArgumentParser) -> None:
         "examples:\n"
         "  sssgen transpile noise.glsl --target wgsl -o noise.wgsl\n"
         "  sssgen transpile scene.glsl --entry shadertoy --target hlsl\n"
-        "  sssgen transpile library/fbm.glsl -I library -D OCTAVES=5 --prune --target unity-urp\n"
+        "  sssgen transpile library/fbm.glsl -I library -D OCTAVES=5 --prune -t unity-urp\n"
         "  sssgen transpile water.frag --with water.vert --target wgsl\n"
         "  sssgen transpile noise.glsl --verify\n"
         "  sssgen transpile noise.glsl --as technique --function snoise\n"

@@ -1,0 +1,41 @@
+"""`sssgen help`: the list of commands, or the help of one."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from argparse import ArgumentParser, Namespace
+
+from sssgen.cli.commands import COMMANDS, Overview, command_parser
+from sssgen.cli.output import OK, print_json
+from sssgen.support.diagnostics import did_you_mean, failure
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = "examples:\n  sssgen help\n  sssgen help emit\n  sssgen help bake thickness"
+    parser.add_argument("COMMAND", nargs="*", help="a command, and for bake the kind of texture")
+
+
+def run(arguments: Namespace) -> int:
+    """Prints the help of the command; with `--json` the commands and their groups."""
+    if not arguments.COMMAND:
+        if arguments.json:
+            rows = [
+                {"name": name, "group": command.group, "summary": command.help} for name, command in COMMANDS.items()
+            ]
+            print_json({"ok": True, "commands": rows})
+        else:
+            print(Overview().format_help(), end="")
+        return OK
+    name, *rest = arguments.COMMAND
+    if name not in COMMANDS:
+        hint = did_you_mean(name, COMMANDS) or f"choose from: {', '.join(COMMANDS)}"
+        raise failure(f"unknown command '{name}'", hint)
+    text = io.StringIO()
+    with contextlib.redirect_stdout(text), contextlib.suppress(SystemExit):
+        command_parser(name).parse_args([*rest, "--help"])
+    if arguments.json:
+        print_json({"ok": True, "command": " ".join(arguments.COMMAND), "help": text.getvalue()})
+    else:
+        print(text.getvalue(), end="")
+    return OK
