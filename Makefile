@@ -4,6 +4,7 @@
 # make stability  what fails in the published techniques and holds in ours: docs/stability.md
 # make bake   bakes two meshes, and docs/bake.md with pictures beside the exact reference
 # make accuracy   error against cost of everything, on two cores 80 minutes: docs/accuracy.md
+# make site   the documents as static pages: build/site/index.html
 # make fuzz   random programs and files for FUZZ_MINUTES (10)
 # make bench  the benchmarks   make bench-gpu  what shaders cost on this GPU, emitted and by hand
 # make setup  what the others need, done once: .venv, system packages, compilers
@@ -24,7 +25,7 @@ MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notd
 
 export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:
-.PHONY: setup accuracy bake demo test test-long fuzz lint bench bench-gpu gallery stability engines clean
+.PHONY: setup accuracy bake demo test test-long fuzz lint bench bench-gpu gallery stability engines site clean
 
 setup: .venv/done build/node/done
 
@@ -37,7 +38,7 @@ demo: setup
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
-test-long: setup
+test-long: setup .venv/docs
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m slow
 
 FUZZ_MINUTES ?= 10
@@ -69,6 +70,9 @@ bake: setup
 accuracy: setup
 	$(BIN)/python docs/accuracy.py
 
+site: setup .venv/docs
+	$(BIN)/python docs/site/build_site.py build/site
+
 engines: build/engines/godot/usr/bin/godot
 
 build/engines/godot/usr/bin/godot:
@@ -92,6 +96,11 @@ build/wheels/done: Makefile | .venv/pyvenv.cfg
 
 .venv/done: pyproject.toml build/wheels/done | .venv/pyvenv.cfg
 	$(PIP) install --find-links build/wheels --editable '.[dev]'
+	@touch $@
+
+# What the site needs: beside the development's packages, as nothing else needs it.
+.venv/docs: pyproject.toml .venv/done
+	$(PIP) install --editable '.[docs]'
 	@touch $@
 
 build/node/done: Makefile $(BABYLON_BUNDLE) | build/system

@@ -93,7 +93,7 @@ def test_a_command_without_the_optional_packages(command: str, tmp_path: Path) -
 
 def named_extras() -> Iterator[tuple[str, str]]:
     """The extras that hints and documents name, each with its place."""
-    for path in [*(ROOT / "src").rglob("*.py"), ROOT / "README.md", *(ROOT / "docs").glob("*.md")]:
+    for path in [*(ROOT / "src").rglob("*.py"), ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]:
         text = path.read_text(encoding="utf-8")
         for listed in re.findall(r"sssgen-shaders\[([\w,-]+)\]", text):
             yield from ((name, path.name) for name in listed.split(","))

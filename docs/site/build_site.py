@@ -1,0 +1,35 @@
+"""Builds the documents as a site of static pages: python docs/site/build_site.py FOLDER
+
+A warning of Sphinx, such as a link or an anchor that leads nowhere, is an error.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from sphinx.cmd.build import build_main
+
+from menu import ROOT, documents, problems
+from staging import Staging
+
+
+def main(folder: Path) -> int:
+    """Writes the site into the folder, and returns the exit status."""
+    sources = folder.with_name(f"{folder.name}-sources")
+    pages = documents()
+    if found := problems(pages):
+        print("\n".join(found), file=sys.stderr)
+        return 1
+    staging = Staging(sources)
+    for page in pages:
+        staging.write(page, (ROOT / page).read_text(encoding="utf-8"))
+    settings = ["-c", str(Path(__file__).parent), "-b", "html", "-q", "-W", "--keep-going", "-d", f"{sources}-cache"]
+    status = build_main([*settings, str(sources), str(folder)])
+    if not status:
+        print(f"wrote {folder}/index.html: {len(pages)} pages")
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))

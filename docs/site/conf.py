@@ -1,0 +1,21 @@
+"""Sphinx's settings for the documents; build_site.py runs it. Nothing on a page is fetched from another place."""
+
+project = "sssgen"
+copyright = "The sssgen authors"
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
+source_suffix = {".md": "markdown"}
+
+html_theme = "furo"
+html_title = "sssgen"
+html_copy_source = False
+html_show_sphinx = False
+
+myst_heading_anchors = 6
+myst_enable_extensions = ["html_image"]
+suppress_warnings = [
+    "misc.highlighting_failure",  # outputs and excerpts are not always whole programs
+    "myst.header",  # generated pages can begin below the first level
+]
+
+autodoc_typehints = "signature"
+autodoc_member_order = "bysource"
