@@ -26,6 +26,7 @@ LAZY_IMPORTS = {
     "sssgen.cli.output": EMIT,
     "sssgen.cli.pick": HELP,
     "sssgen.cli.render": HELP,
+    "sssgen.cli.sizes": HELP,
     "sssgen.cli.stress": HELP,
     "sssgen.cli.transpile": EXTRA,
     "sssgen.harness.backends.opengl": EXTRA,

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from sssgen.cli.options import add_json, add_seed, add_workers, given
 from sssgen.cli.output import OK, print_json
+from sssgen.cli.sizes import pair, picture_size, whole_numbers
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
 from sssgen.support.progress import ProgressBar
@@ -22,10 +23,11 @@ Result = tuple[list[str], dict[str, Any], list[str]]
 
 
 class Kind(NamedTuple):
-    """A kind of texture: its help, its options, and the function that bakes it."""
+    """A kind of texture: its help, an example and a note for it, its options, and the function that bakes it."""
 
     help: str
-    epilog: str
+    example: str
+    note: str
     add_options: Callable[[ArgumentParser], None]
     bake: Callable[[Namespace], Result]
 
@@ -39,7 +41,8 @@ def add_options(parser: ArgumentParser) -> None:
     )
     kinds = parser.add_subparsers(metavar="TEXTURE", dest="TEXTURE", required=True)
     for name, kind in KINDS.items():
-        options = kinds.add_parser(name, help=kind.help, description=kind.help, epilog=kind.epilog)
+        epilog = f"example:\n  sssgen bake {name} {kind.example}\n{kind.note}"
+        options = kinds.add_parser(name, help=kind.help, description=kind.help, epilog=epilog)
         add_json(options)
         kind.add_options(options)
 
@@ -95,7 +98,7 @@ def _sdf(arguments: Namespace) -> Result:
     with ProgressBar() as bar:
         baked = sdf(
             arguments.MESH,
-            _wholes(arguments.resolution, "resolution"),
+            whole_numbers(arguments.resolution, "resolution"),
             arguments.padding,
             arguments.encode,
             arguments.range,
@@ -148,7 +151,7 @@ def _thickness(arguments: Namespace) -> Result:
         arguments.attenuation or 0.0,
         arguments.seed,
     )
-    size = _size(arguments.size)
+    size = picture_size(arguments.size)
     with ProgressBar() as bar:
         baked = thickness_map(
             arguments.MESH, size, request, arguments.unwrap, arguments.processes, arguments.scheduler, bar
@@ -182,7 +185,7 @@ def _depth(arguments: Namespace) -> Result:
 
     output.picture_suffix(arguments.output, (".exr", ".npy"))
     output.check_apart(arguments.output, [arguments.MESH, arguments.direction])
-    light, size = bake_light.read(arguments.direction), _size(arguments.size)
+    light, size = bake_light.read(arguments.direction), picture_size(arguments.size)
     with ProgressBar() as bar:
         values, facts = depth_map(arguments.MESH, light, size, bar)
     paths = output.write_picture(arguments.output, values, facts)
@@ -262,7 +265,7 @@ def _view_thickness(arguments: Namespace) -> Result:
     output.picture_suffix(arguments.output)
     mesh, length = view_thickness.body(arguments.BODY, arguments.mean_free_path, arguments.medium, arguments.unit_mm)
     output.check_apart(arguments.output, [arguments.BODY, mesh.path])
-    size = _size(arguments.size)
+    size = picture_size(arguments.size)
     with ProgressBar() as bar:
         baked = view_thickness.bake(
             mesh, size, length, arguments.rays, arguments.unwrap, arguments.processes, arguments.scheduler, bar
@@ -311,7 +314,7 @@ def _voronoi(arguments: Namespace) -> Result:
     from sssgen.bake import cells
 
     output.picture_suffix(arguments.output)
-    size, count, tiles = _size(arguments.size), _pair(arguments.cells, "number of cells"), not arguments.no_tile
+    size, count, tiles = picture_size(arguments.size), pair(arguments.cells, "number of cells"), not arguments.no_tile
     texels = cells.voronoi(
         size, count, arguments.jitter, arguments.seed, tiles, arguments.feature, arguments.bevel, arguments.variation
     )
@@ -416,12 +419,14 @@ def _environment(arguments: Namespace) -> Result:
 KINDS = {
     "sdf": Kind(
         "the signed distance to a mesh, as a 3-D texture",
+        "bunny.glb -o bunny.ktx2 --resolution 96",
         "Bind it to distance_map of the technique distance_texture.",
         _sdf_options,
         _sdf,
     ),
     "thickness": Kind(
         "the thickness of a body below each texel of its texture coordinates",
+        "bunny.glb -o bunny_thickness.png --size 1024",
         "The map has the exact lengths inside the mesh along rays. Bind it to thickness_texture of thickness_map,\n"
         "or, for --mode transmittance, to transmittance_texture of transmittance_map.",
         _thickness_options,
@@ -429,12 +434,14 @@ KINDS = {
     ),
     "depth": Kind(
         "the distance to the first surface that a light hits, as a map from the light's view",
+        "bunny.glb -o bunny_depth.exr --direction 0.3,0.8,0.5",
         "Bind it to light_depth_map of the technique depth_map_thickness.",
         _depth_options,
         _depth,
     ),
     "fluence": Kind(
         "the light inside a body, as volumes for any distant light, or for one",
+        "bunny.glb --medium marble --unit-mm 4 -o bunny.dds",
         "Bind the files to the textures of the technique that their JSON names: fluence_factored_8,\n"
         "fluence_factored_4 or fluence_fixed, each with the ending _refracted for a medium with an index.",
         _fluence_options,
@@ -442,49 +449,39 @@ KINDS = {
     ),
     "view_thickness": Kind(
         "the length inside a body along any ray of the eye, below each texel of its texture coordinates",
+        "bunny.glb --medium marble -o bunny_view.png",
         "Bind the pictures to view_harmonics_1, _2 and _3 of the technique view_thickness_map.",
         _view_thickness_options,
         _view_thickness,
     ),
     "environment": Kind(
         "the light of the surroundings, prefiltered into cube maps",
+        "sky.exr -o sky.dds",
         "Bind them to reflection_map and irradiance_map of the technique prefiltered_environment, and set\n"
         "reflection_levels to the number in the JSON. sssgen render needs no files: it makes both maps itself.",
         _environment_options,
         _environment,
     ),
-    "voronoi": Kind("cells, as in cracked ice: a map of thickness or height", "", _voronoi_options, _voronoi),
-    "normal": Kind("the normal map of a height or thickness map", "", _normal_options, _normal),
+    "voronoi": Kind(
+        "cells, as in cracked ice: a map of thickness or height",
+        "-o cells.png --size 256 --cells 6",
+        "",
+        _voronoi_options,
+        _voronoi,
+    ),
+    "normal": Kind(
+        "the normal map of a height or thickness map",
+        "cells.png -o cells_normal.png --strength 0.03",
+        "",
+        _normal_options,
+        _normal,
+    ),
     "pack": Kind(
         "channels of pictures in one texture",
+        "-o packed.png --red metal.png --green rough.png:g --blue 1-gloss.png",
         "A source is FILE, FILE:CHANNEL, 1-FILE (inverted) or a number from 0 to 1.",
         _pack_options,
         _pack,
     ),
 }
 """The kinds of textures, by the name of the subcommand."""
-
-
-def _size(text: str) -> tuple[int, int]:
-    """A picture's width and height. Raises SssgenError."""
-    from sssgen.harness.pictures.images import LARGEST_SIDE
-
-    size = _pair(text, "size")
-    if not all(1 <= side <= LARGEST_SIDE for side in size):
-        raise failure(f"'{text}' is not a size", f"N or WIDTHxHEIGHT in texels, each from 1 to {LARGEST_SIDE}")
-    return size
-
-
-def _pair(text: str, name: str) -> tuple[int, int]:
-    numbers = _wholes(text, name)
-    if len(numbers) > 2:
-        raise failure(f"'{text}' is not a {name}", "one or two whole numbers")
-    return numbers[0], numbers[-1]
-
-
-def _wholes(text: str, name: str) -> list[int]:
-    """Whole numbers, separated by commas or crosses. Raises SssgenError."""
-    parts = text.replace("x", ",").replace("×", ",").split(",")
-    if not all(part.isdecimal() and len(part) < 10 for part in parts):
-        raise failure(f"'{text}' is not a {name}", "whole numbers, separated by commas or x")
-    return [int(part) for part in parts]

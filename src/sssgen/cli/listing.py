@@ -16,6 +16,9 @@ LISTS = ("techniques", "targets", "materials", "media")
 
 
 def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = (
+        "examples:\n  sssgen list techniques --role thickness\n  sssgen list materials\n  sssgen list targets"
+    )
     parser.add_argument("KIND", choices=LISTS, help="techniques, targets, materials, or media of bodies")
     parser.add_argument("--role", metavar="R", help="list only the techniques of this role")
 

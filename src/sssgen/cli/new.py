@@ -57,6 +57,7 @@ subsurface_color = "#ffb36b"  # sRGB, as color pickers show it; a list [1.0, 0.4
 
 
 def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = "examples:\n  sssgen new wood\n  sssgen new materials/soap.toml"
     parser.add_argument("MATERIAL", help="the material's name, or a .toml file; no file is overwritten")
 
 

@@ -18,6 +18,7 @@ _OTHERWISE_SHOWN = ("hint_range", "unit", "alias", "holds", "sample_range", "bou
 
 
 def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = "examples:\n  sssgen show beer_lambert\n  sssgen show mine.sss --json"
     parser.add_argument("TECHNIQUE", help="a name from `sssgen list techniques`, or a .sss file")
 
 
