@@ -17,7 +17,7 @@ from sssgen.harness import backends
 from sssgen.harness.backends import Backend
 from sssgen.harness.pictures import images
 from sssgen.harness.render import pixel_mesh
-from sssgen.harness.render.scene_render import render
+from sssgen.harness.render.scene_render import render, with_samples
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball
 from sssgen.harness.scenes.scene_loading import load
@@ -168,6 +168,34 @@ def test_background_exposure_and_averaging(scene: Callable[..., str]) -> None:
     assert result.covered.max() == 0.0
 
 
+def test_samples_are_averaged_in_linear_light(scene: Callable[..., str], tmp_path: Path) -> None:
+    """A pixel of N × N samples is the mean of the linear pixels of a picture of N times the size; edges are, too."""
+    path = scene(f'material = "paper_lantern"\nsamples = 1\nbackground = [0.2, 0.5, 0.1]\n{BALL}{LAMP}')
+    numpy = backends.get("numpy")
+    large = render(load(path), numpy, (36, 27)).linear
+    small = render(with_samples(load(path), 3), numpy, (12, 9))
+    np.testing.assert_allclose(small.linear, large.reshape(9, 3, 12, 3, 3).mean(axis=(1, 3)), rtol=1e-5, atol=1e-7)
+    assert ((small.covered > 0.0) & (small.covered < 1.0)).sum() > 5
+    written = str(tmp_path / "x.exr")
+    assert main(["render", path, "-o", written, "--backend", "numpy", "--size", "12x9", "--samples", "3"]) == 0
+    np.testing.assert_allclose(images.read(written), small.linear, rtol=1e-3, atol=1e-4)
+
+
+def test_a_scene_chooses_parts_of_the_shell(
+    backend: Callable[[str], Backend], scene: Callable[..., str], tmp_path: Path
+) -> None:
+    """Tone mapping, surroundings and shadows of [shell] are drawn, the same on two back ends."""
+    bright = LAMP.replace("color = [", "color = [9.0, 9.0, 9.0] # [")
+    text = f'material = "paper_lantern"\n{BALL}{bright}[environment]\ncolor = [0.2, 0.3, 0.4]\n'
+    chosen = '[shell]\ntone_mapping = "agx"\nenvironment = "prefiltered_environment"\nshadow = "shadow_map"\n'
+    plain, mapped = (render(load(scene(text + part)), backends.get("numpy"), SIZE) for part in ("", chosen))
+    assert plain.linear.max() > 1.5 and mapped.linear.max() <= 1.0
+    assert largest_difference(render(load(scene(text + chosen)), backend("gl"), SIZE), mapped) < 0.5
+    for wrong, message in (('tone_mapping = "agxx"', "did you mean 'agx'"), ('fog = "agx"', "unknown key 'fog'")):
+        with pytest.raises(SssgenError, match=message):
+            load(scene(f"{text}[shell]\n{wrong}\n"))
+
+
 def test_dicing_places_a_vertex_at_each_pixels_centre() -> None:
     """The vertex of a hit projects to the centre of the pixel, within a thousandth of a pixel in float32."""
     camera, size, ball = Camera((0.3, 0.4, 3.0)), (40, 30), Ball(radius=1.0, rotation=(10.0, 20.0, 30.0), scale=0.8)
@@ -250,6 +278,9 @@ def test_a_scene_that_does_not_fit_its_material(
         (["SCENE", "--backend", "opengl"], "unknown back end"),
         (["SCENE", "--backend", "bevy"], "error: bevy evaluates functions and draws no scenes"),
         (["SCENE", "--backend", "gl,webgpu"], "are several back ends"),
+        (["SCENE", "--samples", "0"], "is not a number of samples"),
+        (["SCENE", "--samples", "9"], "from 1 to 8"),
+        (["SCENE", "--samples", "8", "--size", "2000x1000"], "samples are too many"),
         (["SCENE", "--time", "nan"], "is not a time"),
         (["SCENE", "--time", "1e39"], "is not a time"),
         (["SCENE", "-o", "x.jpg"], "'.jpg'"),

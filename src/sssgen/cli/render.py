@@ -17,6 +17,7 @@ def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
         "examples:\n"
         "  sssgen render scenes/lantern.toml -o lantern.png\n"
+        "  sssgen render paper_lantern --size 1280x960 --samples 3 -o large.png\n"
         "  sssgen render --compare lantern.png golden.png -o difference.png"
     )
     add = parser.add_argument
@@ -25,6 +26,7 @@ def add_options(parser: ArgumentParser) -> None:
     add("--backend", "-b", metavar="NAME", default=PREFERRED, help=f"{', '.join(SCENES)} (default: {PREFERRED})")
     add_guards(parser)
     add("--size", metavar="WxH", help="the size in pixels (default: the scene's size)")
+    add("--samples", type=int, metavar="N", help="draw N × N samples per pixel (default: the scene's samples)")
     add("--time", type=float, metavar="T", help="the time in seconds (default: the scene's time)")
     add(
         "--compare",
@@ -46,8 +48,9 @@ def run(arguments: Namespace) -> int:
 def _render(arguments: Namespace) -> int:
     from sssgen.harness import backends
     from sssgen.harness.pictures import images
-    from sssgen.harness.render.scene_render import render
+    from sssgen.harness.render.scene_render import render, with_samples
     from sssgen.harness.scenes.scene_loading import load
+    from sssgen.harness.scenes.scene_reader import MAX_SAMPLES
 
     size = _size(arguments.size) if arguments.size else None
     name, *more = backends.chosen(arguments.backend, scenes=True)
@@ -55,7 +58,10 @@ def _render(arguments: Namespace) -> int:
         raise failure(f"{arguments.backend} are several back ends", "name one")
     if arguments.time is not None and not abs(arguments.time) < 1e9:
         raise failure(f"--time {arguments.time:g} is not a time", "seconds, less than 1e9")
+    if arguments.samples is not None and not 1 <= arguments.samples <= MAX_SAMPLES:
+        raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 1 to {MAX_SAMPLES}")
     scene = load(arguments.SCENE)
+    scene = with_samples(scene, arguments.samples or scene.samples)
     output = arguments.output or f"{os.path.splitext(os.path.basename(arguments.SCENE))[0]}.png"
     if images.check_suffix(output) == ".npy":
         raise failure("a picture is written as .png or .exr", "", output)

@@ -32,13 +32,17 @@ def with_shell(material: Material, options: Sequence[str]) -> Material:
     return material._replace(stages=tuple(stages))
 
 
+def choices(role: str) -> tuple[str, ...]:
+    """The techniques of a role, and `NONE`."""
+    return (*(technique for technique, path in index().items() if folder_of(path) == role), NONE)
+
+
 def _parsed(option: str) -> tuple[str, str]:
     role, _, name = option.partition("=")
     if role not in OF_SHELLS:
         raise failure(f"'{role}' is no part of a shell", did_you_mean(role, OF_SHELLS) or _listed(OF_SHELLS))
-    names = [technique for technique, path in index().items() if folder_of(path) == role]
-    if name not in (*names, NONE):
-        hint = did_you_mean(name, (*names, NONE)) or _listed([f"{role}={choice}" for choice in (*names, NONE)])
+    if name not in (names := choices(role)):
+        hint = did_you_mean(name, names) or _listed([f"{role}={choice}" for choice in names])
         raise failure(f"unknown technique '{name}' for {role}", hint)
     return role, name
 

@@ -30,6 +30,7 @@ from sssgen.harness.scenes.scene import Scene
 from sssgen.harness.scenes.scene_reader import MAX_COUNT
 from sssgen.ir.drawn import BACK_FACES
 from sssgen.material.material_loading import load_material
+from sssgen.material.shell_stages import with_shell
 from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.support.diagnostics import failure
 from sssgen.targets.descriptor import Target
@@ -65,7 +66,9 @@ def render(
     if not scene.material:
         raise failure("the scene names no material", 'add: material = "…"', scene.document.reporter.file)
     scene = dataclasses.replace(scene, size=size or scene.size, time=scene.time if time is None else time)
-    material = load_material(scene.material)
+    # an engine has its own shadows, surroundings and tone mapping
+    shell_roles = [f"{role}={name}" for role, name in scene.shell.items() if role in backend.target.shell]
+    material = with_shell(load_material(scene.material), shell_roles)
     compiled = compile(material, backend.target.name, guards=guards)
     reflection = compiled.reflection
     width, height = (side * scene.samples for side in scene.size)

@@ -107,6 +107,8 @@ class Scene:
     """The text with its positions, for later errors: report them with `document.error`, at
     `document.place("parameters", "power").value`, then raise them with `document.reporter.check()`"""
     title: str = ""
+    shell: Mapping[str, str] = field(default_factory=dict)
+    """Role → technique, which take the place of the material's own in shells without an engine"""
     measured: Mapping[str, Any] = field(default_factory=dict)
     """The physical description, as the tables of the file: `medium`, `inlay`, `environment`; the lab reads them"""
     folder: str = ""

@@ -13,7 +13,9 @@ from sssgen.harness.scenes.distance_field import PROJECTIONS
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.harness.scenes.scene import DistanceTexture, Light, Picture, Scene
 from sssgen.harness.scenes.toml_table import ANY, NOT_NEGATIVE, POSITIVE, Table
+from sssgen.material.library import OF_SHELLS
 from sssgen.material.material_loading import examples
+from sssgen.material.shell_stages import choices
 from sssgen.support.diagnostics import SssgenError, did_you_mean
 from sssgen.support.paths import posix
 from sssgen.support.toml_source import Document, Path
@@ -23,7 +25,7 @@ MEASURED = ("title", "medium", "inlay", "environment")
 
 _KEYS = (
     "material", "size", "samples", "time", "background", "ambient", "exposure",
-    "geometry", "camera", "light", "parameters", "textures", *MEASURED,
+    "geometry", "camera", "light", "shell", "parameters", "textures", *MEASURED,
 )  # fmt: skip
 _PLACE = ("position", "rotation", "scale")
 _SHAPES = {
@@ -80,6 +82,7 @@ class _Reader:
             self.textures(top.content.get("textures", {}), "geometry" in top.content),
             self.document,
             top.text("title", ""),
+            self.shell(top.content.get("shell", {})),
             {key: top.content[key] for key in MEASURED[1:] if key in top.content},
             self.folder,
         )
@@ -151,6 +154,13 @@ class _Reader:
             table.error("direction", "the direction has length 0", "it must point towards the light")
             length = 1.0
         return Light(None, (x / length, y / length, z / length), color)
+
+    def shell(self, content: Any) -> dict[str, str]:
+        table = Table(self.document, ("shell",), content, OF_SHELLS)
+        chosen: dict[str, str] = {}
+        for role in (role for role in OF_SHELLS if role in table.content):
+            chosen[role] = table.text(role, "", choices(role))
+        return chosen
 
     # Geometry
 
