@@ -8,6 +8,7 @@
 # make fuzz   random programs and files for FUZZ_MINUTES (10)
 # make bench  the benchmarks   make bench-gpu  what shaders cost on this GPU, emitted and by hand
 # make setup  what the others need, done once: .venv, system packages, compilers
+# make dist   the source distribution and the wheel, in dist/, and the tests of both in an empty environment
 # make engines  Godot 4.6 in build/engines, 1.2 GB, and Firefox, as root: make test-long then runs the shaders in them
 
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
@@ -25,7 +26,7 @@ MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notd
 
 export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:
-.PHONY: setup accuracy bake demo test test-long fuzz lint bench bench-gpu gallery stability engines site clean
+.PHONY: setup accuracy bake demo test test-long fuzz lint bench bench-gpu gallery stability engines site dist clean
 
 setup: .venv/done build/node/done
 
@@ -78,8 +79,20 @@ engines: build/engines/godot/usr/bin/godot
 build/engines/godot/usr/bin/godot:
 	sh tools/install_engines.sh build/engines/godot
 
+# What it needs is kept apart from .venv, as nothing else needs it.
+dist: setup build/release/done
+	rm -rf dist
+	build/release/bin/pyproject-build --outdir dist
+	build/release/bin/twine check --strict dist/*
+	DIST=dist $(BIN)/python -m pytest -m "" tests/project/test_packaging.py tests/project/test_distribution_name.py
+
+build/release/done: Makefile | build/system
+	$(PYTHON) -m venv build/release
+	build/release/bin/python -m pip --disable-pip-version-check --quiet install 'build>=1.2' 'twine>=6'
+	@touch $@
+
 clean:
-	rm -rf .venv build out
+	rm -rf .venv build out dist
 
 build/system: tools/install_system.sh
 	@test -n "$(PYTHON)" || { echo "Python 3.11 or later is needed"; exit 1; }

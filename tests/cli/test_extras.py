@@ -116,3 +116,20 @@ def test_every_named_extra_exists() -> None:
     named = list(named_extras())
     assert {"numpy", "render", "chart", "bake", "cluster", "reference"} <= {name for name, _ in named}
     assert [place for place in named if place[0] not in EXTRAS] == []
+
+
+WITHOUT_OTHER_EXTRAS = """
+import sys
+for name in ("websockets", "wgpu", "compushady", "mitsuba", "matplotlib"):
+    sys.modules[name] = None
+from sssgen.cli.main import main
+sys.exit(main(sys.argv[1:]))
+"""
+"""A process without the packages that only other extras than `render`, `numpy` and `gl` have."""
+
+
+def test_a_picture_needs_no_package_of_another_back_end(tmp_path: Path) -> None:
+    command = [sys.executable, "-c", WITHOUT_OTHER_EXTRAS, "render", "ice", "--backend", "numpy-f32", "--size", "8x6"]
+    done = subprocess.run([*command, "-o", "ice.png"], capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "ice.png").is_file()

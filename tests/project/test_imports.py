@@ -29,6 +29,7 @@ LAZY_IMPORTS = {
     "sssgen.cli.sizes": HELP,
     "sssgen.cli.stress": HELP,
     "sssgen.cli.transpile": EXTRA,
+    "sssgen.harness.backends.browser_page": EXTRA,
     "sssgen.harness.backends.opengl": EXTRA,
     "sssgen.harness.backends.webgpu": EXTRA,
     "sssgen.harness.compilers.dxc": EXTRA,

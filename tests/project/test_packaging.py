@@ -1,9 +1,16 @@
-"""The wheel has the data of `sssgen emit`, and emits the same files in an empty environment as the checkout."""
+"""The wheel has the data of `sssgen emit`, and emits the same files in an empty environment as the checkout.
+
+`make dist` runs these tests with the wheel that it built: DIST names its folder.
+"""
 
 from __future__ import annotations
 
 import ast
+import json
 import os
+import re
+import shlex
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -15,13 +22,15 @@ from pathlib import Path
 import pytest
 
 from folders import ROOT
+from sssgen.cli.output import WRONG_INPUT
 from sssgen.material.material_loading import examples
+from sssgen.support.installation import DISTRIBUTION
 from sssgen.support.paths import folder
 from sssgen.version import VERSION
 
 
-def run(*command: str | Path, cwd: Path, **variables: str) -> str:
-    """The output of a command that has to succeed, run without this environment's Python settings."""
+def run(*command: str | Path, cwd: Path, status: int = 0, **variables: str) -> str:
+    """The output of a command that has to end with the status, run without this environment's Python settings."""
     stored = [name for name in os.environ if not name.startswith(("PYTHON", "SSSGEN"))]
     environment = {name: os.environ[name] for name in stored}
     done = subprocess.run(
@@ -32,7 +41,7 @@ def run(*command: str | Path, cwd: Path, **variables: str) -> str:
         text=True,
         check=False,
     )
-    assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
+    assert done.returncode == status, f"{command}\n{done.stdout}\n{done.stderr}"
     return done.stdout
 
 
@@ -43,7 +52,10 @@ def pip(programs: Path) -> tuple[str | Path, ...]:
 
 @pytest.fixture(scope="session")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The wheel of this checkout."""
+    """The wheel of this checkout, or the one in the folder $DIST."""
+    if built := os.environ.get("DIST"):
+        (given,) = Path(built).resolve().glob("*.whl")
+        return given
     path = tmp_path_factory.mktemp("wheel")
     run(sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", path, ROOT, cwd=path)
     (made,) = path.glob("*.whl")
@@ -131,6 +143,84 @@ def test_the_installed_program(installed: Path, tmp_path: Path) -> None:
     assert "numpy" not in packages
     listed = run(installed / "sssgen", "list", "targets", cwd=tmp_path)
     assert {line.split()[0] for line in listed.splitlines()} == {path.stem for path in folder("targets").glob("*.toml")}
+
+
+HINT = re.compile(r"install (?:-e )?\"(?P<path>.+)\[(?P<extra>[\w,]+)\]\"$")
+
+
+def test_a_hint_of_the_installed_program(installed: Path, wheel: Path, tmp_path: Path) -> None:
+    """It names the wheel and the environment that lack the extra."""
+    command = [installed / "sssgen", "eval", "lobe_exp2", "--samples", "10", "--json"]
+    (diagnostic,) = json.loads(run(*command, cwd=tmp_path, status=WRONG_INPUT))["diagnostics"]
+    found = HINT.search(diagnostic["help"])
+    assert found is not None
+    assert (found["path"], found["extra"]) == (str(wheel), "numpy")
+    assert diagnostic["help"].startswith(str(installed))
+
+
+def pip_steps(text: str, wheel: Path) -> list[str]:
+    """The shell blocks of a document that install the project with pip; `wheel` stands in for the project."""
+    steps = []
+    for block in re.findall(r"^```(?:sh|bash|console)\n(.*?)^```", text, re.MULTILINE | re.DOTALL):
+        own = re.compile(rf"""(\binstall )(?:-e )?(["']?)(?:\.|{DISTRIBUTION})(\[[\w,]+\])?\2(?=\s)""")
+        replaced, count = own.subn(lambda match: f"{match[1]}'{wheel}{match[3] or ''}'", block)
+        if count:
+            lines = [line.removeprefix("$ ") for line in replaced.splitlines(keepends=True)]
+            steps.append("".join(line for line in lines if not line.startswith(("git clone ", "cd "))))
+    return steps
+
+
+def test_the_pip_steps_of_a_document() -> None:
+    text = "```sh\ngit clone x\ncd x\npip install '.[gl]'  # y\nsssgen\n```\n\n```sh\npip install moderngl\n```\n"
+    assert pip_steps(text, Path("a.whl")) == ["pip install 'a.whl[gl]'  # y\nsssgen\n"]
+    text = f"```sh\n.venv/bin/pip install {DISTRIBUTION}\n```\n```sh\npip install -e .\n```\n"
+    assert pip_steps(text, Path("a.whl")) == [".venv/bin/pip install 'a.whl'\n", "pip install 'a.whl'\n"]
+
+
+@pytest.fixture
+def empty(tmp_path: Path) -> tuple[Path, dict[str, str]]:
+    """A folder, and variables with which the commands of an empty environment are found first."""
+    venv.create(tmp_path / "environment", with_pip=True)
+    path = os.pathsep.join([str(tmp_path / "environment" / "bin"), os.environ.get("PATH", "")])
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    return folder, {"PATH": path, "PIP_QUIET": "1"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("document", ["README.md", "examples/ci/README.md"])
+def test_the_pip_steps_work_in_an_empty_environment(
+    document: str, wheel: Path, empty: tuple[Path, dict[str, str]]
+) -> None:
+    """In an empty folder, or in a copy of the example's folder."""
+    folder, variables = empty
+    if document.startswith("examples/"):
+        shutil.copytree((ROOT / document).parent, folder, dirs_exist_ok=True)
+    steps = pip_steps((ROOT / document).read_text(encoding="utf-8"), wheel)
+    assert steps
+    for step in steps:
+        run("bash", "-euc", step, cwd=folder, **variables)
+
+
+@pytest.mark.slow
+def test_pip_finds_every_package_of_the_extras(wheel: Path, empty: tuple[Path, dict[str, str]]) -> None:
+    """All together; wheels that `make setup` built are found in build/wheels."""
+    folder, variables = empty
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    every = ",".join(extras)
+    found = ("--find-links", ROOT / "build" / "wheels")
+    run("bash", "-euc", 'pip install --dry-run "$@"', "pip", *found, f"{wheel}[{every}]", cwd=folder, **variables)
+
+
+@pytest.mark.slow
+def test_following_a_hint(wheel: Path, empty: tuple[Path, dict[str, str]]) -> None:
+    folder, variables = empty
+    run("bash", "-euc", f"pip install {shlex.quote(str(wheel))}", cwd=folder, **variables)
+    evaluate = "sssgen eval lobe_exp2 --samples 10 --json"
+    answer = run("bash", "-uc", evaluate, cwd=folder, status=WRONG_INPUT, **variables)
+    hint = json.loads(answer)["diagnostics"][0]["help"]
+    assert hint == f'pip install "{wheel}[numpy]"'
+    run("bash", "-euc", f"{hint}; {evaluate}", cwd=folder, **variables)
 
 
 def test_the_version_is_in_the_changelog_or_unreleased() -> None:

@@ -23,12 +23,11 @@ import weakref
 from collections.abc import Iterator, Mapping, Sequence
 from http import HTTPStatus
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
-from websockets.datastructures import Headers
-from websockets.exceptions import WebSocketException
-from websockets.http11 import Request, Response
-from websockets.sync.server import Server, ServerConnection, serve
+if TYPE_CHECKING:
+    from websockets.http11 import Request, Response
+    from websockets.sync.server import Server, ServerConnection
 
 START = 60.0
 """Seconds that a browser has to start; one takes about one second."""
@@ -82,6 +81,9 @@ class Page:
         switches: Sequence[str] | None = WEBGPU,
         modules: Mapping[str, Path] = {},
     ) -> None:
+        from websockets.exceptions import WebSocketException
+
+        self._failures = (OSError, ValueError, WebSocketException)
         folder = tempfile.mkdtemp(prefix="sssgen-browser-")
         ending = contextlib.ExitStack()
         self.close = weakref.finalize(self, ending.close)
@@ -143,7 +145,7 @@ class Page:
         timer.start()
         try:
             yield
-        except (OSError, ValueError, WebSocketException):
+        except self._failures:
             self.close()
             if timed_out.is_set():
                 raise LostError(f"did not answer within {seconds:.3g} seconds, and was ended") from None
@@ -163,6 +165,10 @@ def _server(
     ending: contextlib.ExitStack,
 ) -> Server:
     """A server that answers a GET of `path` with the page, and adds its WebSocket to `connections`."""
+    from websockets.datastructures import Headers
+    from websockets.http11 import Response
+    from websockets.sync.server import serve
+
     closed = threading.Event()
 
     def respond(connection: ServerConnection, request: Request) -> Response | None:
