@@ -1,5 +1,10 @@
 """Sphinx's settings for the documents; build_site.py runs it. Nothing on a page is fetched from another place."""
 
+from __future__ import annotations
+
+import re
+from typing import Any
+
 project = "sssgen"
 copyright = "The sssgen authors"
 extensions = ["myst_parser", "sphinx.ext.autodoc"]
@@ -19,3 +24,14 @@ suppress_warnings = [
 
 autodoc_typehints = "signature"
 autodoc_member_order = "bysource"
+default_role = "code"
+
+
+def setup(app: Any) -> None:
+    """Omits the docstrings that Python itself gives the fields of a NamedTuple."""
+    app.connect("autodoc-process-docstring", _without_aliases)
+
+
+def _without_aliases(app: Any, what: str, name: str, value: Any, options: Any, lines: list[str]) -> None:
+    if lines and re.fullmatch(r"Alias for field number \d+", lines[0]):
+        lines.clear()

@@ -9,20 +9,66 @@ from pathlib import Path
 
 import pytest
 
+import commands_page
+import generated
 import menu
+import python_page
+import records
+import sssgen
+import technique_pages
 from folders import ROOT
+from sssgen.cli.commands import COMMANDS, command_parser
+from sssgen.material import library, slots
 
 
 def test_every_page_is_in_the_menu_once() -> None:
-    found = menu.problems(menu.documents())
+    found = menu.problems([*menu.documents(), *generated.names()])
     assert not found, "\n".join(found)
 
 
 def test_a_page_that_the_menu_lacks_is_reported_with_what_to_do() -> None:
-    pages = menu.documents()
+    pages = [*menu.documents(), *generated.names()]
     added, removed = menu.problems([*pages, "docs/new.md"]), menu.problems(pages[1:])
     assert added == ["docs/new.md is not in the menu: add its path to a section of docs/site/menu.toml"]
     assert removed == [f"{pages[0]} is in the menu, but there is no such page: remove it there"]
+
+
+def test_the_generated_pages_are_those_of_the_menu() -> None:
+    assert list(generated.pages()) == generated.names()
+
+
+def test_every_command_and_option_is_in_the_reference() -> None:
+    text = commands_page.page()
+    for name in COMMANDS:
+        assert f"\n### sssgen {name}\n" in text
+        for option in command_parser(name)._option_string_actions:
+            assert option in text or option == "--help", f"{name} {option}"
+
+
+def test_every_public_name_is_in_the_reference() -> None:
+    text = python_page.page()
+    for name in sssgen.__all__:
+        assert name == "__version__" or f"\n## {name}\n" in text
+
+
+@pytest.mark.parametrize("name", sorted(library.index()))
+def test_the_page_of_a_technique(name: str) -> None:
+    """It has the parameters, the formula, the source, the units, and the function as GLSL."""
+    technique = library.load(name)
+    text = technique_pages.page(technique)
+    formula = text.partition("\n## Formula\n\n```text\n")[2].partition("```")[0]
+    assert formula.split() == technique.doc["formula"].split()
+    assert "\n## Source\n" in text and "\n## Units\n" in text
+    read, _ = slots.needs(technique.module, technique.function)
+    assert all(f"\n| `{uniform.name}` | " in text for uniform in technique.uniforms if uniform.name in read)
+    assert f" {name}(" in text.partition("\n## In GLSL\n")[2]
+
+
+def test_the_errors_of_a_technique_are_those_of_the_chart() -> None:
+    points = [point for point in records.points_of("march_view") if point["label"] == "march_view, 8 steps"]
+    errors = [point["error"]["value"] for point in points]
+    row = rf"\n\| view thickness \| march\\_view, 8 steps \| \S+ \| {max(errors):.3f} \| \d+ \| {len(points)} \|\n"
+    assert points and re.search(row, technique_pages.page(library.load("march_view")))
 
 
 @pytest.fixture(scope="module")
