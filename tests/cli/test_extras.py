@@ -63,6 +63,7 @@ NEEDS: dict[str, str | None] = {
     "bake normal a.png -o b.png": "bake",
     "bake pack --red 0.5 -o b.png": "bake",
     "new wood": None,
+    "doctor": None,
     "help emit": None,
 }
 """Command → the extra that it needs."""

@@ -36,6 +36,7 @@ LAZY_IMPORTS = {
     "sssgen.harness.compilers.gl_driver": EXTRA,
     "sssgen.harness.compilers.naga": EXTRA,
     "sssgen.harness.lint_findings": EXTRA,
+    "sssgen.harness.machine_facts": EXTRA,
     "sssgen.harness.scenes.mesh_files": EXTRA,
     "sssgen.harness.testing.project_run": EXTRA,
     "sssgen.harness.testing.pytest_plugin": "pytest imports it in every test run, of other projects, too",

@@ -158,6 +158,16 @@ def test_a_hint_of_the_installed_program(installed: Path, wheel: Path, tmp_path:
     assert diagnostic["help"].startswith(str(installed))
 
 
+def test_the_doctor_of_the_installed_program(installed: Path, wheel: Path, tmp_path: Path) -> None:
+    found = json.loads(run(installed / "sssgen", "doctor", "--json", cwd=tmp_path))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert {row["name"] for row in found["extras"]} == set(project["optional-dependencies"]) - {"dev"}
+    assert [row["name"] for row in found["extras"] if row["found"]] == []
+    assert {"jinja2", "lark"} == set(found["packages"])
+    assert found["source"] == f"installed from {wheel}"
+    assert {f'"{wheel}[{row["name"]}]"' in row["how"] for row in found["extras"]} == {True}
+
+
 def pip_steps(text: str, wheel: Path) -> list[str]:
     """The shell blocks of a document that install the project with pip; `wheel` stands in for the project."""
     steps = []

@@ -50,6 +50,7 @@ COMMANDS = {
     "pick": Command("pick", "measure", "pick the cheapest techniques that are good enough for a scene", "chart"),
     "fit": Command("fit", "measure", "fit the parameters of techniques to a scene's medium", "chart"),
     "transpile": Command("transpile", "import", "translate functions or whole shaders to a target's language"),
+    "doctor": Command("doctor", "tool", "print versions, and the compilers and back ends found and missing"),
     "help": Command("help", "tool", "print the list of commands, or the help of one"),
 }
 

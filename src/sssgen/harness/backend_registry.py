@@ -35,7 +35,9 @@ class BackendRecord(NamedTuple):
     functions_only: bool = False
     """Whether it evaluates functions, and draws no scenes."""
     parts: tuple[str, ...] = ()
-    """Of an engine, or a stand-in for one: the parts of `installed` without which it does not start."""
+    """The parts of `installed` without which it does not start."""
+    engine: bool = False
+    """Whether it is an engine, a stand-in for one, or a browser apart: `sssgen check` tells which of them are found."""
     apart: bool = False
     """Whether `make setup` leaves it out, so that its absence in CI is no failure."""
     default: bool = False
@@ -66,72 +68,76 @@ def _page(
             {"renderer": name},
             scenes_only=True,
             parts=("pip browser", "chromium", part),
+            engine=True,
         )
 
 
 _RECORDS = (
     BackendRecord(
         "numpy", "the oracle: NumPy in float64", "numpy", "numpy_reference:Reference", _NUMPY, {"dtype": "float64"},
-        bits=64, half="numpy-f16", driver=False,
+        bits=64, half="numpy-f16", driver=False, parts=("pip numpy",),
     ),
     BackendRecord(
         "numpy-f32", "the same in float32", "numpy", "numpy_reference:Reference", _NUMPY, {"dtype": "float32"},
-        driver=False, default=True,
+        driver=False, default=True, parts=("pip numpy",),
     ),
     BackendRecord(
         "numpy-f16", "the same in float16", "numpy-f16", "numpy_reference:Reference", _NUMPY, {"dtype": "float16"},
-        bits=16, driver=False,
+        bits=16, driver=False, parts=("pip numpy",),
     ),
-    BackendRecord("gl", "GLSL 3.30 in OpenGL", "glsl-330", "opengl:OpenGL", _GL, default=True),
-    BackendRecord("gl-es", "GLSL ES 3.00 in OpenGL", "glsl-es-300", "opengl:OpenGL", _GL),
+    BackendRecord("gl", "GLSL 3.30 in OpenGL", "glsl-330", "opengl:OpenGL", _GL, default=True, parts=("pip gl",)),
+    BackendRecord("gl-es", "GLSL ES 3.00 in OpenGL", "glsl-es-300", "opengl:OpenGL", _GL, parts=("pip gl",)),
     BackendRecord(
         "webgpu", "WGSL through naga, in wgpu", "wgsl", "webgpu:WebGPU",
         f"`{install_hint('webgpu')}` and Vulkan or Metal (Debian, without a GPU: `mesa-vulkan-drivers libvulkan1`)",
-        half="webgpu-f16", default=True,
+        half="webgpu-f16", default=True, parts=("pip webgpu",),
     ),
     BackendRecord(
         "webgpu-f16", "the same in half precision", "wgsl-f16", "webgpu:WebGPU",
         "as `webgpu`, and an adapter with the feature shader-f16, which Mesa's lavapipe has", bits=16,
-        functions_only=True,
+        functions_only=True, parts=("pip webgpu",),
     ),
     BackendRecord(
         "browser", "WGSL through Tint, in a headless Chromium", "wgsl", "browser:Browser",
         f"`{install_hint('browser')}` and Chromium or Chrome (Debian: `chromium`)", default=True,
+        parts=("pip browser", "chromium"),
     ),
     BackendRecord(
         "firefox", "WGSL through naga, in a headless Firefox", "wgsl", "browser:Browser",
         f"`{install_hint('browser')}`, Firefox (Debian: `firefox-esr`) and Vulkan", {"program": "firefox"},
-        parts=("pip browser", "firefox"), apart=True,
+        parts=("pip browser", "firefox"), engine=True, apart=True,
     ),
     BackendRecord(
         "hlsl", "HLSL through DXC and SPIR-V, in OpenGL", "hlsl", "hlsl_spirv:HLSL", _DXC, {"compiler": "dxc"},
-        default=True,
+        default=True, parts=("pip gl", "pip dxc", "spirv"),
     ),
     BackendRecord(
         "hlsl-glslang", "HLSL through glslang and SPIR-V, in OpenGL", "hlsl", "hlsl_spirv:HLSL", _GLSLANG,
-        {"compiler": "glslang"},
+        {"compiler": "glslang"}, parts=("pip gl", "glslang", "spirv"),
     ),
     BackendRecord(
         "unity", "Unity's built-in pipeline: preprocessed, through glslang and SPIR-V, in OpenGL", "unity-builtin",
         "unity_backend:UnityHLSL", "as `hlsl-glslang`, and a C preprocessor (Debian: `gcc`)", {"compiler": "dx9"},
+        parts=("pip gl", "glslang", "spirv", "c preprocessor"),
     ),
     BackendRecord(
         "unity-urp", "Unity's URP: preprocessed, through DXC and SPIR-V, in OpenGL", "unity-urp",
         "unity_backend:UnityHLSL", "as `hlsl`, and a C preprocessor (Debian: `gcc`)", {"compiler": "dxc"},
+        parts=("pip gl", "pip dxc", "spirv", "c preprocessor"),
     ),
     BackendRecord(
         "bevy", "functions for Bevy: WESL, linked by npm wesl, then through naga, in wgpu", "bevy",
         "bevy_backend:BevyWGSL", "as `webgpu`, node and the npm packages `webgpu` and `wesl`",
-        functions_only=True, parts=("pip webgpu", "node", "npm webgpu", "npm wesl"),
+        functions_only=True, parts=("pip webgpu", "node", "npm webgpu", "npm wesl"), engine=True,
     ),
     BackendRecord(
         "unreal", "functions for Unreal: behind a stand-in for the engine, through DXC and SPIR-V, in OpenGL", "unreal",
         "unreal_backend:UnrealHLSL", "as `hlsl`", {"compiler": "dxc"}, functions_only=True,
-        parts=("pip gl", "pip dxc", "spirv"),
+        parts=("pip gl", "pip dxc", "spirv"), engine=True,
     ),
     BackendRecord(
         "metal", "Metal on the processor: g++ with a stand-in for Metal's library", "metal", "metal_backend:MetalOnCpu",
-        "`g++` (Debian: `g++`)", driver=False, parts=("pip numpy", "g++"),
+        "`g++` (Debian: `g++`)", driver=False, parts=("pip numpy", "g++"), engine=True,
     ),
     *_page("threejs", "three.js", "three", "npm three", {
         "": ("WebGPURenderer", "webgpu"), "-webgl": ("WebGLRenderer", "webgl"),
@@ -146,7 +152,7 @@ _RECORDS = (
     *(
         BackendRecord(
             f"godot{suffix}", f"Godot, {title}", "godot", "engine_backend:GodotBackend", _GODOT,
-            {"renderer": renderer}, scenes_only=True, parts=("pip numpy", "godot"), apart=True,
+            {"renderer": renderer}, scenes_only=True, parts=("pip numpy", "godot"), engine=True, apart=True,
         )
         for suffix, title, renderer in (
             ("", "Forward+", "forward_plus"), ("-mobile", "Mobile", "mobile"),
@@ -156,8 +162,8 @@ _RECORDS = (
 )  # fmt: skip
 
 BACKENDS = {record.name: record for record in _RECORDS}
-ENGINES = tuple(record.name for record in _RECORDS if record.parts)
-"""Engines, and the stand-ins for engines."""
+ENGINES = tuple(record.name for record in _RECORDS if record.engine)
+"""Engines, the stand-ins for engines, and a browser that is found apart."""
 FUNCTIONS = tuple(record.name for record in _RECORDS if not record.scenes_only)
 """Those that evaluate functions."""
 SCENES = tuple(record.name for record in _RECORDS if not record.functions_only)

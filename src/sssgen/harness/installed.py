@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -51,6 +51,16 @@ def node_modules() -> Path:
     return (Path(configured) if configured else folder("build") / "node" / "node_modules").resolve()
 
 
+def glslang() -> str:
+    """The program of glslang: $SSSGEN_GLSLANG if it is set, else one on the path; '' where there is none."""
+    return shutil.which(os.environ.get("SSSGEN_GLSLANG", "glslangValidator")) or shutil.which("glslang") or ""
+
+
+def c_preprocessor() -> str:
+    """gcc's or clang's program; '' where there is none."""
+    return next((path for name in ("gcc", "clang", "cc") if (path := shutil.which(name))), "")
+
+
 def godots() -> list[tuple[str, str]]:
     """(program, root) of each Godot, the preferred one first. `root` is the folder of the system that it is in, or ''.
 
@@ -88,6 +98,9 @@ _PARTS: Mapping[str, tuple[Callable[[], object], str]] = {
         _godot_with_display,
         "Godot 4.6 and Xvfb: make engines (Debian, as root), or SSSGEN_GODOT=/path/to/godot (and Debian's xvfb)",
     ),
+    "godot parser": (godots, "Godot 4.6: make engines (Debian, as root), or SSSGEN_GODOT=/path/to/godot"),
+    "glslang": (glslang, "glslangValidator (Debian: glslang-tools; elsewhere: the Vulkan SDK)"),
+    "c preprocessor": (c_preprocessor, "a C preprocessor (Debian: gcc; elsewhere: clang)"),
     "g++": (lambda: shutil.which("g++"), "g++ (Debian: g++)"),
     "node": (node, "node (Debian: nodejs npm)"),
     "spirv": (
@@ -119,3 +132,8 @@ def lacks(part: str) -> str:
     """How to get a part that this machine lacks; '' where it is there."""
     found, how = _PARTS[part]
     return "" if found() else how
+
+
+def all_lacks(parts: Iterable[str]) -> str:
+    """How to get those of the parts that this machine lacks; '' where all are there."""
+    return "; ".join(filter(None, map(lacks, parts)))

@@ -16,7 +16,7 @@ from sssgen.harness.check.stage_pairs import disagreements, pairs
 from sssgen.harness.compilers import COMPILERS, CompilerMissing, Message, Source, errors, readers
 from sssgen.harness.compilers import unity_compiler as unity
 from sssgen.harness.compilers.compiler_process import Worker
-from sssgen.harness.installed import lacks
+from sssgen.harness.installed import all_lacks
 from sssgen.material.library import TECHNIQUES
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.paths import place, posix
@@ -155,7 +155,7 @@ def source_line(origin: str) -> str:
 
 def engines() -> dict[str, str]:
     """Each back end that is an engine or a stand-in for one → how to get what it lacks, '' where it lacks nothing."""
-    return {name: "; ".join(filter(None, map(lacks, BACKENDS[name].parts))) for name in ENGINES}
+    return {name: all_lacks(BACKENDS[name].parts) for name in ENGINES}
 
 
 def as_json(report: Report) -> dict[str, Any]:

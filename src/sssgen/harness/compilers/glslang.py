@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import re
-import shutil
 import subprocess
 import tempfile
 from pathlib import Path
 from subprocess import CompletedProcess
 
+from sssgen.harness import installed
 from sssgen.harness.compilers.calling_entry import glsl_entry, hlsl_entry
 from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Severity, Source
 from sssgen.harness.compilers.gl_driver import with_version
@@ -79,8 +78,8 @@ def _messages_of(completed: CompletedProcess[str]) -> list[Message]:
 
 def find() -> Glslang:
     """The program on the path; SSSGEN_GLSLANG names another. Raises CompilerMissing where there is none."""
-    program = shutil.which(os.environ.get("SSSGEN_GLSLANG", "glslangValidator")) or shutil.which("glslang")
-    if program is None:
+    program = installed.glslang()
+    if not program:
         raise CompilerMissing("Debian: glslang-tools · elsewhere: the Vulkan SDK")
     return Glslang(program)
 

@@ -13,12 +13,12 @@ from __future__ import annotations
 import json
 import os
 import re
-import shutil
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from sssgen.harness import installed
 from sssgen.harness.compilers import dxc, glslang, shaderlab
 from sssgen.harness.compilers import surface_shader as surface
 from sssgen.harness.compilers.calling_entry import Opaque, hlsl_entry
@@ -337,8 +337,8 @@ def holds_headers(root: Path) -> bool:
 
 def preprocessor() -> Callable[[str, list[str], list[Path]], str]:
     """A C preprocessor: gcc's or clang's."""
-    program = next(filter(None, map(shutil.which, ("gcc", "clang", "cc"))), None)
-    if program is None:
+    program = installed.c_preprocessor()
+    if not program:
         raise CompilerMissing("a C preprocessor (Debian: gcc · elsewhere: clang)")
     command = [program, "-E", "-x", "c", "-undef", "-nostdinc", "-w"]
 

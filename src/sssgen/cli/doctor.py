@@ -1,0 +1,67 @@
+"""`sssgen doctor`: what this machine has for sssgen, for a report of a problem. It never fails."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser, Namespace
+from collections.abc import Sequence
+
+from sssgen.cli.layout import table_rows, table_width
+from sssgen.cli.output import OK, print_json
+from sssgen.harness.machine_facts import VARIABLES, Facts, Item, facts
+from sssgen.support.diagnostics import visible
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = "examples:\n  sssgen doctor\n  sssgen doctor --run"
+    parser.add_argument(
+        "--run",
+        action="store_true",
+        help="also start each compiler and back end that is found, with its browser or driver",
+    )
+
+
+def run(arguments: Namespace) -> int:
+    """Prints what is found and what is missing, with how to get it."""
+    found = facts(arguments.run)
+    if arguments.json:
+        print_json({"ok": True, **found.as_json()})
+        return OK
+    rows = [("sssgen", f"{found.sssgen}, {found.source}"), ("Python", found.python), ("platform", found.platform)]
+    rows.append(("cache", found.cache or "none: nothing is cached"))
+    _print_rows(rows)
+    print("\nEnvironment variables:")
+    _print_rows(_variables(found) or [("none is set", "")])
+    print("\nPackages:")
+    _print_rows([("", ", ".join(f"{name} {version}" for name, version in found.packages.items()) or "none")], first=0)
+    for title, items in (("Extras", found.extras), ("Compilers", found.compilers), ("Back ends", found.backends)):
+        print(f"\n{title}:")
+        _print_items(items)
+    if not arguments.run:
+        print("\nfound: its programs and packages are there; sssgen doctor --run starts it, too")
+    return OK
+
+
+def _variables(found: Facts) -> list[tuple[str, str]]:
+    unknown = {name: f"{value}  (sssgen reads no such variable)" for name, value in found.variables.items()}
+    return [
+        (name, f"{value!r}: {VARIABLES[name]}" if name in VARIABLES else unknown[name])
+        for name, value in found.variables.items()
+    ]
+
+
+def _print_items(items: Sequence[Item]) -> None:
+    _print_rows([(item.name, _state(item)) for item in items])
+
+
+def _state(item: Item) -> str:
+    if not item.found:
+        return f"missing: {item.how}"
+    if item.failure:
+        return f"does not start: {' '.join(item.failure.split())}"
+    return f"starts: {item.started}" if item.started else f"found: {item.description}"
+
+
+def _print_rows(rows: Sequence[tuple[str, str]], first: int | None = None) -> None:
+    width = max(len(name) for name, _ in rows) if first is None else first
+    for line in table_rows([(visible(name), visible(text)) for name, text in rows], width, table_width()):
+        print(line)
