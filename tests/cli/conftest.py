@@ -10,6 +10,7 @@ import pytest
 from command_line import WAX, CommandResult, FakeCompiler, Run
 from sssgen.cli import listing, transpile
 from sssgen.cli import main as cli
+from sssgen.cli.shown import shown_material  # noqa: F401 - imported before the fake compiler is, which it would keep
 from sssgen.pipeline import emitted_cache
 
 

@@ -44,6 +44,14 @@ def test_arguments_that_do_not_begin_with_a_command(words: list[str], run: Run) 
         ("no_prefix", ["emit", "wax.toml", "-t", "wgsl", "-o", "out", "--form", "functions", "--prefix", ""]),
         ("no_file", ["transpile", "twice.glsl", "-t", "wgsl", "-o", " "]),
         ("technique_beside", ["show", "beside"]),
+        ("unknown_name", ["show", "nomalise"]),
+        ("unlike_any_name", ["show", "zzz"]),
+        ("unknown_target_of_show", ["show", "--kind", "target", "unity-upr"]),
+        ("unknown_scene_of_show", ["show", "--kind", "scene", "cub"]),
+        ("unknown_builtin_of_show", ["show", "--kind", "builtin", "nrmalize"]),
+        ("unknown_backend_of_show", ["show", "--kind", "backend", "webgp"]),
+        ("unknown_medium_of_show", ["show", "--kind", "medium", "marbl"]),
+        ("missing_toml_of_show", ["show", "no.toml"]),
         ("unknown_role", ["list", "techniques", "--role", "thicknes"]),
         ("role_of_targets", ["list", "targets", "--role", "thickness"]),
         ("unknown_technique", ["show", "lobe_normalised"]),
@@ -120,7 +128,7 @@ def test_a_terminal_without_unicode() -> None:
     assert (done.returncode, done.stderr) == (0, b"")
 
 
-# list, show, new
+# list, new
 
 
 def test_list_techniques(run: Run) -> None:
@@ -137,24 +145,12 @@ def test_list_techniques(run: Run) -> None:
 def test_list_materials_and_targets(run: Run, compiler: FakeCompiler) -> None:
     rows = json.loads(run("list", "materials", "--json").out)["materials"]
     assert "ice" in [row["name"] for row in rows]
+    scenes = json.loads(run("list", "scenes", "--json").out)["scenes"]
+    assert {"ice", "cube"} <= {row["name"] for row in scenes}
+    assert all(row["summary"].endswith(".") for row in scenes)
+    assert "normalize" in run("list", "builtins").out
+    assert "unity-urp" in run("list", "backends").out
     assert run("list", "targets").out == "  glsl-330  GLSL 3.30\n  wgsl      WGSL\n"
-
-
-@pytest.mark.parametrize("name", ["beer_lambert", "thinness_uniform", "base_color"])
-def test_show(name: str, run: Run) -> None:
-    ran = run("show", name)
-    assert (ran.status, ran.err) == (0, "")
-    check_snapshot(f"cli/show/{name}.txt", ran.out)
-
-
-def test_show_every_technique(run: Run) -> None:
-    from sssgen.material import library
-
-    for name in library.index():
-        facts = json.loads(run("show", name, "--json").out)
-        assert facts["ok"]
-        assert facts["summary"]
-        assert {"source"} <= facts["doc"].keys()
 
 
 @pytest.mark.parametrize("argument", ["wood", "wood.toml", "sub/wood"])

@@ -14,6 +14,7 @@ import pytest
 from sssgen.cli.main import main
 from sssgen.harness.evaluate.evaluation import half
 from sssgen.harness.scenes.bounds import bounds, placed_corners
+from sssgen.harness.scenes.example_scenes import measured_scenes
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.harness.scenes.scene_loading import parse_scene
 from sssgen.lab.measure import scene_references as references
@@ -51,7 +52,7 @@ def test_a_capsule_and_a_union_are_read() -> None:
 
 
 def test_every_scene_of_the_library_loads() -> None:
-    for name in measured_scene.names():
+    for name in measured_scenes():
         scene = measured_scene.load(name)
         assert scene.name == name and scene.title
         assert (scene.medium is None) == name.startswith("inlay") == (scene.inlay is not None)

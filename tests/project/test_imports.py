@@ -26,6 +26,8 @@ LAZY_IMPORTS = {
     "sssgen.cli.output": EMIT,
     "sssgen.cli.pick": HELP,
     "sssgen.cli.render": HELP,
+    "sssgen.cli.show": HELP,
+    "sssgen.cli.shown.shown_scene": EXTRA,
     "sssgen.cli.sizes": HELP,
     "sssgen.cli.stress": HELP,
     "sssgen.cli.transpile": EXTRA,

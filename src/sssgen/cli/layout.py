@@ -25,6 +25,11 @@ def table_width() -> int | None:
     return max(shutil.get_terminal_size().columns - 1, 20)
 
 
+def text_width() -> int:
+    """The width of printed texts: that of the terminal; `WIDEST` in a pipe."""
+    return min(table_width() or WIDEST, WIDEST)
+
+
 def wrapped(text: str, width: int, first: str = "", rest: str = "") -> list[str]:
     """The lines of a text; they begin with `first` and `rest`. Names with hyphens are not broken."""
     import textwrap

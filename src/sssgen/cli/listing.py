@@ -1,25 +1,31 @@
-"""`sssgen list`: the techniques, the targets, the example materials, the media."""
+"""`sssgen list`: the techniques, the targets, the example materials and scenes, and so on."""
 
 from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 from typing import Any
 
+from sssgen.cli.layout import table_rows, table_width
 from sssgen.cli.output import OK, print_json
+from sssgen.harness.backend_registry import BACKENDS
+from sssgen.harness.scenes.example_scenes import all_scenes, summary
+from sssgen.ir.intrinsics import BUILTINS
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
 from sssgen.pipeline.compiler import all_targets
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
 
-LISTS = ("techniques", "targets", "materials", "media")
+LISTS = ("techniques", "targets", "materials", "scenes", "media", "builtins", "backends")
 
 
 def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
         "examples:\n  sssgen list techniques --role thickness\n  sssgen list materials\n  sssgen list targets"
     )
-    parser.add_argument("KIND", choices=LISTS, help="techniques, targets, materials, or media of bodies")
+    parser.add_argument(
+        "KIND", metavar="KIND", choices=LISTS, help=f"{', '.join(LISTS)}; `sssgen show NAME` explains one"
+    )
     parser.add_argument("--role", metavar="R", help="list only the techniques of this role")
 
 
@@ -32,19 +38,22 @@ def run(arguments: Namespace) -> int:
         if arguments.role not in library.ROLES:
             hint = did_you_mean(arguments.role, library.ROLES) or f"roles: {', '.join(library.ROLES)}"
             raise failure(f"unknown role '{arguments.role}'", hint)
-    rows = {"techniques": _techniques, "targets": _targets, "materials": _materials, "media": _media}[kind]()
+    rows = {
+        "techniques": _techniques, "targets": _targets, "materials": _materials, "scenes": _scenes, "media": _media,
+        "builtins": _builtins, "backends": _backends,
+    }[kind]()  # fmt: skip
     if arguments.role is not None:
         rows = [row for row in rows if row["role"] == arguments.role]
     if arguments.json:
         print_json({"ok": True, kind: rows})
         return OK
-    width = max((len(row["name"]) for row in rows), default=0)
+    longest, width = max((len(row["name"]) for row in rows), default=0), table_width()
     role = ""
     for row in rows:
         if row.get("role", "") != role:
             print(f"{chr(10) if role else ''}{row['role']}")
             role = row["role"]
-        print(f"  {row['name']:{width}}  {row['summary']}".rstrip())
+        print("\n".join(table_rows([(row["name"], row["summary"])], longest, width)))
     return OK
 
 
@@ -87,3 +96,15 @@ def _media() -> list[dict[str, Any]]:
     from sssgen.lab.scene import media
 
     return [{"name": name, "summary": medium.source} for name, medium in media.media().items()]
+
+
+def _scenes() -> list[dict[str, Any]]:
+    return [{"name": name, "summary": summary(path), "file": posix(path)} for name, path in all_scenes().items()]
+
+
+def _builtins() -> list[dict[str, Any]]:
+    return [{"name": name, "summary": row.doc} for name, row in BUILTINS.items()]
+
+
+def _backends() -> list[dict[str, Any]]:
+    return [{"name": name, "summary": record.description, "target": record.target} for name, record in BACKENDS.items()]

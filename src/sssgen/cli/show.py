@@ -1,128 +1,102 @@
-"""`sssgen show`: the documentation of one technique."""
+"""`sssgen show`: what a name stands for: a technique, a material, a target, a builtin, a scene and so on."""
 
 from __future__ import annotations
 
-import textwrap
+import importlib
+import os
 from argparse import ArgumentParser, Namespace
-from typing import Any
+from collections.abc import Collection
+from typing import Any, NamedTuple
 
+from sssgen.cli.layout import text_width
 from sssgen.cli.output import OK, print_json
-from sssgen.ir.nodes import Uniform
-from sssgen.ir.types import Sampler, kind_of, spell
-from sssgen.material import library, slots
-from sssgen.material.library import Technique
+from sssgen.material import library
+from sssgen.support.diagnostics import did_you_mean, failure
 
-WIDTH = 100
-_OTHERWISE_SHOWN = ("hint_range", "unit", "alias", "holds", "sample_range", "bound_range")
-"""Hints that are shown elsewhere, and those of tests."""
+
+class Kind(NamedTuple):
+    """A kind of thing with a name."""
+
+    title: str
+    module: str
+    """Of `sssgen.cli.shown`"""
+
+    def about(self) -> Any:
+        """The module that describes it."""
+        return importlib.import_module(f"sssgen.cli.shown.{self.module}")
+
+
+KINDS = {
+    "material": Kind("material", "shown_material"),
+    "technique": Kind("technique", "shown_technique"),
+    "target": Kind("target", "shown_target"),
+    "builtin": Kind("builtin function", "shown_builtin"),
+    "scene": Kind("scene", "shown_scene"),
+    "backend": Kind("back end", "shown_backend"),
+    "medium": Kind("medium", "shown_medium"),
+}
+"""The kinds: a name of several is shown as the first of them."""
 
 
 def add_options(parser: ArgumentParser) -> None:
-    parser.epilog = "examples:\n  sssgen show beer_lambert\n  sssgen show mine.sss --json"
-    parser.add_argument("TECHNIQUE", help="a name from `sssgen list techniques`, or a .sss file")
+    parser.epilog = (
+        "examples:\n"
+        "  sssgen show beer_lambert\n"
+        "  sssgen show mine.sss --json\n"
+        "  sssgen show ice\n"
+        "  sssgen show --kind scene ice\n"
+        "  sssgen show unity-urp\n"
+        "  sssgen show normalize\n"
+        f"A name of several kinds is shown as the first of: {', '.join(KINDS)}."
+    )
+    parser.add_argument(
+        "NAME", help="a name from `sssgen list`, a technique's .sss file, or the .toml file of a material or scene"
+    )
+    help = f"what the name stands for, if several have it: {', '.join(KINDS)}"
+    parser.add_argument("--kind", metavar="KIND", choices=tuple(KINDS), help=help)
 
 
 def run(arguments: Namespace) -> int:
-    """Prints the documentation of a technique."""
-    facts = describe(library.load(arguments.TECHNIQUE))
+    """Prints the facts, and the other kinds that have the name."""
+    name = arguments.NAME
+    kinds = [arguments.kind] if arguments.kind else _kinds_of(name)
+    about = KINDS[kinds[0]].about()
+    facts = about.describe(name)
     if arguments.json:
-        print_json({"ok": True, **facts})
-    else:
-        print(_text(facts))
+        print_json({"ok": True, "kind": kinds[0], "other_kinds": kinds[1:], **facts})
+        return OK
+    text = about.lines(facts, text_width())
+    if len(kinds) > 1:
+        text += ["", *(f"also a {KINDS[kind].title}: sssgen show --kind {kind} {name}" for kind in kinds[1:])]
+    print("\n".join(text))
     return OK
 
 
-def describe(technique: Technique) -> dict[str, Any]:
-    """Everything about a technique, for JSON."""
-    doc = dict(technique.doc)
-    names, called = slots.needs(technique.module, technique.function)
-    read = [uniform for uniform in technique.uniforms if uniform.name in names]
-    return {
-        "name": technique.name,
-        "role": technique.role,
-        "summary": doc.pop("summary", ""),
-        "signature": slots.signature(technique.function),
-        "parameters": [_uniform(uniform) for uniform in read if not isinstance(uniform.type, Sampler)],
-        "textures": [_uniform(uniform) for uniform in read if isinstance(uniform.type, Sampler)],
-        "slots": [
-            {
-                "name": slot.name,
-                "signature": slots.signature(slot),
-                "doc": slot.doc,
-                "functions": slots.candidates(slot),
-            }
-            for slot in called
-        ],
-        "doc": {key: text for key, text in doc.items() if key != "role"},
-        "baseline": technique.baseline,
-        "file": library.shown_name(technique.path),
-    }
+def names_of(kind: str) -> Collection[str]:
+    """The names of one kind."""
+    names: Collection[str] = KINDS[kind].about().names()
+    return names
 
 
-def _uniform(uniform: Uniform) -> dict[str, Any]:
-    hints = dict(uniform.hints)
-    facts: dict[str, Any] = {"name": uniform.name, "type": spell(uniform.type)}
-    if not isinstance(uniform.type, Sampler):
-        facts["default"] = _default(uniform)
-    if "hint_range" in hints:
-        facts["range"] = list(hints["hint_range"])
-    if "unit" in hints:
-        facts["unit"] = hints["unit"][0]
-    remaining_hints = [name for name in hints if name not in _OTHERWISE_SHOWN]
-    if remaining_hints:
-        facts["hints"] = remaining_hints
-    if uniform.quantity:
-        facts["holds"] = uniform.quantity
-    return {**facts, "aliases": list(hints.get("alias", ())), "doc": uniform.doc}
+def _kinds_of(name: str) -> list[str]:
+    """The kinds that have the name, in the order of KINDS. Raises SssgenError for an unknown name."""
+    if name.endswith((".sss", ".glsl")):
+        return ["technique"]
+    if name.endswith(".toml"):
+        return ["material" if _is_material(name) else "scene"]
+    names = {kind: names_of(kind) for kind in KINDS}
+    kinds = [kind for kind, listed in names.items() if name in listed]
+    if not kinds:
+        file = f"did you mean the file '{name}.toml'?" if os.path.isfile(f"{name}.toml") else library.file_meant(name)
+        near = did_you_mean(name, dict.fromkeys(one for listed in names.values() for one in listed))
+        raise failure(f"nothing is called '{name}'", file or near or "see: sssgen list materials, or sssgen help list")
+    return kinds
 
 
-def _default(uniform: Uniform) -> list[float] | list[int] | list[bool]:
-    kind = kind_of(uniform.type)
-    if kind == "bool":
-        return [bool(value) for value in uniform.default]
-    return [int(value) for value in uniform.default] if kind in ("int", "uint") else list(uniform.default)
+def _is_material(path: str) -> bool:
+    """Whether a file describes a material, in a table; a scene names one, in a text."""
+    from sssgen.support.paths import posix
+    from sssgen.support.text_files import read_text
+    from sssgen.support.toml_source import parse
 
-
-def _text(facts: dict[str, Any]) -> str:
-    def wrapped(text: str, indent: str) -> list[str]:
-        return textwrap.wrap(text, WIDTH, initial_indent=indent, subsequent_indent=indent, break_on_hyphens=False)
-
-    lines = [
-        f"{facts['name']} ({facts['role']})",
-        *wrapped(facts["summary"], "  "),
-        "",
-        f"  {facts['signature']}",
-    ]
-    for kind in ("parameters", "textures"):
-        if facts[kind]:
-            lines += ["", f"{kind}:"]
-            for uniform in facts[kind]:
-                lines.append(f"  {uniform['name']}: {_facts_of(uniform)}")
-                lines += wrapped(uniform["doc"], "      ")
-    if facts["slots"]:
-        lines += ["", "slots, to be bound by the material:"]
-        for slot in facts["slots"]:
-            lines += [f"  {slot['signature']}", *wrapped(slot["doc"], "      ")]
-            lines += wrapped(f"functions that fit: {', '.join(slot['functions']) or 'none in the library'}", "      ")
-    lines.append("")
-    for key, text in facts["doc"].items():
-        lines += [f"{key}:", *wrapped(text, "  ")]
-    return "\n".join([*lines, "", f"file: {facts['file']}"])
-
-
-def _facts_of(uniform: dict[str, Any]) -> str:
-    parts = [uniform["type"]]
-    if "default" in uniform:
-        values = [f"{value:g}" for value in uniform["default"]]
-        parts.append(f"default {values[0] if len(values) == 1 else '(' + ', '.join(values) + ')'}")
-    if "range" in uniform:
-        low, high, *step = uniform["range"]
-        parts.append(f"{low:g} to {high:g}" + (f" by {step[0]:g}" if step else ""))
-    if uniform.get("unit", "1") != "1":
-        parts.append(uniform["unit"])
-    parts += uniform.get("hints", [])
-    if "holds" in uniform:
-        parts.append(f"holds {uniform['holds']}")
-    if uniform["aliases"]:
-        parts.append(f"also called {', '.join(uniform['aliases'])}")
-    return ", ".join(parts)
+    return not isinstance(parse(read_text(path, posix(path)), posix(path)).data.get("material", {}), str)

@@ -58,9 +58,19 @@ def text(name: str, language: str, types: Sequence[Type]) -> str:
     match = overload(name, types)
     if match is None:
         raise KeyError(name, *types)
+    return _text(name, language, match.params)
+
+
+def texts(name: str, language: str) -> dict[str, str]:
+    """How each signature of a builtin is written in a language or dialect, by the signature's parameters."""
+    signatures = [",".join(parse(signature)[1:]) for signature in BUILTINS[name].signatures]
+    return {params: _text(name, language, params) for params in signatures}
+
+
+def _text(name: str, language: str, params: str) -> str:
     texts = BUILTINS[name].texts
     base = language.partition("-")[0]
-    for key in (f"{language}/{match.params}", language, f"{base}/{match.params}", base):
+    for key in (f"{language}/{params}", language, f"{base}/{params}", base):
         if key in texts:
             return texts[key]
     return name

@@ -45,8 +45,14 @@ def requirements(uses: Iterable[TechniqueUse]) -> tuple[str, ...]:
 
 def baked_textures(uses: Iterable[TechniqueUse]) -> list[Uniform]:
     """The baked textures that the techniques read, each once."""
-    read = [uniform for use in uses for module, function in _functions(use) for uniform in _read(module, function)]
+    read = [uniform for use in uses for uniform in read_uniforms(use)]
     return list({uniform.name: uniform for uniform in read if is_baked(uniform)}.values())
+
+
+def read_uniforms(use: TechniqueUse) -> Iterator[Uniform]:
+    """The parameters and textures that a technique reads, itself and in the functions that are bound to its slots."""
+    for module, function in _functions(use):
+        yield from _read(module, function)
 
 
 def is_baked(uniform: Uniform) -> bool:

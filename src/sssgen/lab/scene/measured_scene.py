@@ -17,6 +17,7 @@ import numpy as np
 from sssgen.harness.scenes.body_identity import contents
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.environment import Environment, read_environment
+from sssgen.harness.scenes.example_scenes import measured_scenes
 from sssgen.harness.scenes.geometry import Geometry
 from sssgen.harness.scenes.scene import Light, Scene
 from sssgen.harness.scenes.scene_loading import load as load_scene
@@ -26,7 +27,7 @@ from sssgen.lab.scene import media
 from sssgen.lab.scene.media import Medium
 from sssgen.support import cache
 from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.support.paths import place, posix, stem
+from sssgen.support.paths import posix, stem
 
 SIDE = 64
 """Pixels along the longer side of a measured picture."""
@@ -103,15 +104,9 @@ class MeasuredScene:
         return dataclasses.replace(self, camera=dataclasses.replace(self.camera, position=(x, y, z)))
 
 
-def names() -> dict[str, str]:
-    """The scenes of the project: name → path."""
-    folder = os.path.join(place("examples"), "lab")
-    return {stem(name): os.path.join(folder, name) for name in sorted(os.listdir(folder)) if name.endswith(".toml")}
-
-
 def load(name: str) -> MeasuredScene:
     """The scene of a scene file, or a scene of the project by name. Raises SssgenError with all errors in it."""
-    scenes = names()
+    scenes = measured_scenes()
     if not name.endswith(".toml") and "/" not in name and os.sep not in name:
         if name not in scenes:
             hint = did_you_mean(name, scenes) or f"give a path that ends in .toml, or one of: {', '.join(scenes)}"

@@ -1,0 +1,50 @@
+"""`sssgen show BACKEND`: what it runs, what it needs, and whether this machine has it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from sssgen.cli.layout import wrapped
+from sssgen.harness.backend_registry import BACKENDS
+from sssgen.support.diagnostics import did_you_mean, failure
+
+
+def names() -> Collection[str]:
+    """The back ends."""
+    return BACKENDS
+
+
+def describe(name: str) -> dict[str, Any]:
+    """Everything about a back end. Raises SssgenError."""
+    if name not in BACKENDS:
+        raise failure(
+            f"unknown back end '{name}'", did_you_mean(name, BACKENDS) or f"choose from: {', '.join(BACKENDS)}"
+        )
+    record = BACKENDS[name]
+    return {
+        "name": name,
+        "summary": record.description,
+        "target": record.target,
+        "bits": record.bits,
+        "evaluates": not record.scenes_only,
+        "draws": not record.functions_only,
+        "half": record.half,
+        "needs": record.install,
+    }
+
+
+def lines(facts: Mapping[str, Any], width: int) -> list[str]:
+    """The facts as text."""
+    uses = ["evaluates functions (sssgen eval, stress)"] if facts["evaluates"] else []
+    uses += ["draws scenes (sssgen render, ci)"] if facts["draws"] else []
+    text = [*wrapped(f"{facts['name']} (back end): {facts['summary']}", width, "", "  "), ""]
+    for sentence in (
+        f"runs the text of the target {facts['target']}, in floats of {facts['bits']} bits",
+        " and ".join(uses),
+    ):
+        text += wrapped(sentence, width, "", "  ")
+    if facts["half"]:
+        text.append(f"in half precision: {facts['half']}")
+    needs = facts["needs"].replace("`", "")
+    return [*text, *wrapped(f"needs: {needs}", width, "", "  "), "what this machine has: sssgen check"]

@@ -1,0 +1,94 @@
+"""`sssgen show BUILTIN`: its signatures, where it is defined, and how each language writes it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from sssgen.cli.layout import wrapped
+from sssgen.ir import signatures
+from sssgen.ir.intrinsics import BUILTINS, Builtin
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.targets import registry
+
+
+def names() -> Collection[str]:
+    """The builtin functions."""
+    return BUILTINS
+
+
+def describe(name: str) -> dict[str, Any]:
+    """Everything about a builtin function. Raises SssgenError."""
+    if name not in BUILTINS:
+        raise failure(f"unknown builtin '{name}'", did_you_mean(name, BUILTINS) or "docs/intrinsics.md lists them")
+    row = BUILTINS[name]
+    return {
+        "name": name,
+        "summary": row.doc,
+        "signatures": [signature.replace("(", f" {name}(", 1) for signature in row.signatures],
+        "domain": row.domain,
+        "uniform_flow": row.uniform_flow,
+        "cost_kind": row.kind,
+        "operations_per_component": row.cost,
+        "ulp": row.ulp,
+        "absolute": row.absolute,
+        "clause": row.clause,
+        "languages": _languages(row),
+        "polyfill": row.polyfill.strip(),
+        "guards": [
+            {"problem": guard.problem, "replaces": guard.replaces or "call", "text": guard.text} for guard in row.guards
+        ],
+    }
+
+
+def _languages(row: Builtin) -> dict[str, dict[str, str]]:
+    """Language or dialect of a target → the parameters of a signature → the text; '' for a polyfill or none.
+
+    A dialect is left out if it writes the same as its language.
+    """
+    dialects = {registry.load(target).dialect for target in registry.names()}
+    languages = sorted(dialects | {dialect.partition("-")[0] for dialect in dialects})
+    texts = {language: signatures.texts(row.name, language) for language in languages}
+    return {language: text for language, text in texts.items() if _is_own(language, texts)}
+
+
+def _is_own(language: str, texts: Mapping[str, Mapping[str, str]]) -> bool:
+    base = language.partition("-")[0]
+    return language == base or texts[language] != texts[base]
+
+
+def lines(facts: Mapping[str, Any], width: int) -> list[str]:
+    """The facts as text."""
+    text = [f"{facts['name']} (builtin)", *wrapped(facts["summary"], width, "  ", "  "), ""]
+    text += [f"  {signature}" for signature in facts["signatures"]]
+    text.append("")
+    if facts["domain"]:
+        text += wrapped(f"defined for: {facts['domain']}", width, "", "  ")
+    if facts["uniform_flow"]:
+        text.append("called in uniform control flow only: it compares neighbouring pixels")
+    limit = f"{facts['ulp']:g} ulp" + (f" or {facts['absolute']:.2g}" if facts["absolute"] else "")
+    clause = f" ({facts['clause']})" if facts["clause"] else ""
+    text += wrapped(f"error of float32: at most {limit}{clause}", width, "", "  ")
+    text += ["", "as each language writes it:"]
+    longest = max(map(len, facts["languages"]))
+    for language, texts in facts["languages"].items():
+        same = len(set(texts.values())) == 1
+        for index, (parameters, written) in enumerate(texts.items()):
+            if index == 0 or not same:
+                head = language if index == 0 else ""
+                which = "" if same else f"({parameters.replace(',', ', ')})  "
+                text.append(f"  {head:{longest}}  {which}{_written(written, bool(facts['polyfill']))}")
+    if facts["polyfill"]:
+        text += ["", "polyfill:", *(f"  {line}" for line in facts["polyfill"].split("\n"))]
+    if facts["guards"]:
+        text += ["", "guards, where a call is not proven safe:"]
+        for guard in facts["guards"]:
+            instead = f"{guard['replaces']} becomes {guard['text']}" if guard["text"] else "the polyfill, guarded"
+            text += wrapped(f"{guard['problem']}: {instead}", width, "  ", "      ")
+    return text
+
+
+def _written(text: str, polyfill: bool) -> str:
+    if text.startswith("op:"):
+        return f"operator {text[3:]}"
+    return text or ("polyfill" if polyfill else "not available")

@@ -1,0 +1,151 @@
+"""`sssgen show MATERIAL`: its chain with all parameters, what it requires and costs, the targets that refuse it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from sssgen.cli.layout import wrapped
+from sssgen.cli.shown.shown_technique import uniform_facts, uniform_text, value_text
+from sssgen.ir.types import Sampler
+from sssgen.material.material_loading import examples, load_material
+from sssgen.material.model import Material, TechniqueUse
+from sssgen.material.requirements import read_uniforms, requirements
+from sssgen.passes.cost import Cost
+from sssgen.pipeline.compiler import all_targets, compile
+from sssgen.support.diagnostics import SssgenError
+from sssgen.support.paths import posix
+
+REQUIREMENTS = {
+    "bake": "a texture that is baked from the body",
+    "depth-map": "the light's depth map",
+    "depth-layers": "a depth map with further layers",
+    "back-faces": "a picture of the body's back faces",
+    "rigid": "a body that keeps its shape",
+    "fixed-light": "a light that does not move relative to the body",
+}
+"""The requirements of a material, for people."""
+
+
+def names() -> Collection[str]:
+    """The example materials."""
+    return examples()
+
+
+def describe(name: str) -> dict[str, Any]:
+    """Everything about an example material, or about that of a .toml file. Raises SssgenError."""
+    material = load_material(name)
+    refused, reflection = _compiled(material)
+    values = {uniform["source_name"]: uniform["default"] for uniform in reflection.get("uniforms", ())}
+    costs = {entry["function"]: _cost(Cost(**entry["cost"])) for entry in reflection.get("entries", {}).values()}
+    return {
+        "name": material.name,
+        "title": material.title,
+        "summary": material.doc,
+        "shading": material.shading,
+        "alpha_mode": material.alpha_mode,
+        "two_sided": material.two_sided,
+        "stages": [_stage(use, values) for use in material.stages],
+        "requires": list(requirements(material.stages)),
+        "cost": costs,
+        "refused": refused,
+        "file": posix(material.file),
+    }
+
+
+def _stage(use: TechniqueUse, values: Mapping[str, Any]) -> dict[str, Any]:
+    """A stage; `values` are those of the shader's parameters, which stages share by their names."""
+    uniforms = list(read_uniforms(use))
+    parameters = []
+    for uniform in uniforms:
+        if not isinstance(uniform.type, Sampler):
+            own = uniform_facts(uniform._replace(default=use.values.get(uniform.name, uniform.default)))
+            own["value"] = values.get(uniform.name, own.pop("default"))
+            parameters.append({**own, "fixed": uniform.name in use.fixed})
+    textures = [
+        {**uniform_facts(uniform), "picture": use.textures.get(uniform.name, "")}
+        for uniform in uniforms
+        if isinstance(uniform.type, Sampler)
+    ]
+    return {
+        "role": use.technique.role,
+        "technique": use.technique.name,
+        "summary": use.technique.doc.get("summary", ""),
+        "uv": use.uv,
+        "parameters": parameters,
+        "textures": textures,
+        "slots": {slot: binding.function.name for slot, binding in use.bindings.items()},
+    }
+
+
+def _compiled(material: Material) -> tuple[dict[str, dict[str, str]], dict[str, Any]]:
+    """The targets that refuse the material, with the reason and the hint; and the reflection of the first other target.
+
+    The values and the cost in it are the same for all: they are counted before the program is rewritten for one target.
+    """
+    refused: dict[str, dict[str, str]] = {}
+    reflection: dict[str, Any] = {}
+    for target in all_targets():
+        try:
+            compiled = compile(material, target)
+        except SssgenError as error:
+            first = error.diagnostics[0]
+            refused[target] = {"message": first.message, "help": first.hint}
+        else:
+            reflection = reflection or compiled.reflection
+    return refused, reflection
+
+
+def _cost(cost: Cost) -> dict[str, int]:
+    return {**cost._asdict(), "weight": cost.weight}
+
+
+def lines(facts: Mapping[str, Any], width: int) -> list[str]:
+    """The facts as text."""
+    sides = "front and back faces" if facts["two_sided"] else "front faces"
+    text = [
+        f"{facts['name']} (material): {facts['title']}",
+        *wrapped(facts["summary"], width, "  ", "  "),
+        "",
+        f"  {facts['shading']}, alpha: {facts['alpha_mode']}, {sides}",
+        "",
+        "chain, in the order it runs:",
+    ]
+    column = max(len(stage["role"]) for stage in facts["stages"])
+    for stage in facts["stages"]:
+        text.append(f"  {stage['role']:{column}}  {stage['technique']}" + _second_uv(stage))
+        for row in (*map(_parameter, stage["parameters"]), *map(_texture, stage["textures"])):
+            text += wrapped(row, width, "      ", "          ")
+        text += [f"      {slot} = {function}" for slot, function in stage["slots"].items()]
+    needed = [f"{name} ({REQUIREMENTS[name]})" for name in facts["requires"]]
+    text += ["", *wrapped(f"requires: {', '.join(needed) or 'nothing besides its parameters'}", width, "", "  ")]
+    if facts["cost"]:
+        text += ["", "cost, in operations, counted before the target's compiler optimises:"]
+        longest = max(map(len, facts["cost"]))
+        text += [f"  {function:{longest}}  {_cost_text(cost)}" for function, cost in facts["cost"].items()]
+    count = len(all_targets()) - len(facts["refused"])
+    text += ["", f"targets: {count}" + (", all but:" if facts["refused"] else ", which are all")]
+    for target, why in facts["refused"].items():
+        reason = why["message"] + (f" ({why['help']})" if why["help"] else "")
+        text += wrapped(f"{target}: {reason}", width, "  ", "      ")
+    return [*text, "", f"file: {facts['file']}", "a technique in detail: sssgen show TECHNIQUE"]
+
+
+def _second_uv(stage: Mapping[str, Any]) -> str:
+    return "" if stage["uv"] == "uv" else f", with {stage['uv']}"
+
+
+def _parameter(parameter: Mapping[str, Any]) -> str:
+    about = uniform_text({**parameter, "aliases": ()})
+    fixed = ", fixed" if parameter["fixed"] else ""
+    return f"{parameter['name']} = {value_text(parameter['value'])}: {about}{fixed}"
+
+
+def _texture(texture: Mapping[str, Any]) -> str:
+    about = uniform_text({**texture, "aliases": ()})
+    return f"{texture['name']}: {about}" + (f", {texture['picture']}" if texture["picture"] else "")
+
+
+def _cost_text(cost: Mapping[str, int]) -> str:
+    kinds = ("operations", "transcendentals", "fetches", "distance_evaluations")
+    return ", ".join(f"{cost[kind]} {kind.replace('_', ' ')}" for kind in kinds if cost[kind] or kind == "operations")
