@@ -105,3 +105,15 @@ def test_all_names_of_shells(kind: str, tmp_path: Path, assert_compiles: Callabl
     words = words_of_shells()
     assert {"Varyings", "clip_position", "to_light", "MAX_LIGHTS"} <= words
     compile_everywhere(material(tmp_path, kind, words), assert_compiles)
+
+
+def test_a_name_of_a_reserved_beginning_gets_another(tmp_path: Path) -> None:
+    """An ending does not help: shells reserve every name that begins with `_AdditionalLights`."""
+    name = "_AdditionalLightsBuffer"
+    body = f"void made(out vec3 albedo) {{ albedo = vec3({name}(1.0)); }}\n"
+    text = f"{declaration('function', name)}\n{DOC.format('surface')}{body}"
+    (tmp_path / "made.sss").write_text(text, "utf-8")
+    (tmp_path / "made.toml").write_text('[material]\nname = "m"\n[[surface]]\ntechnique = "./made.sss"\n', "utf-8")
+    for target in sssgen.all_targets():
+        renamed = sssgen.compile(str(tmp_path / "made.toml"), target).reflection["renames"][name]
+        assert re.fullmatch(r"[a-z]+_AdditionalLightsBuffer", renamed), target

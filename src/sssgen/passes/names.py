@@ -166,7 +166,7 @@ class _Namer:
             return f"{base}_"
         base, count = base.rstrip("_"), 2
         if not self.legal(f"{base}_{count}"):  # its beginning is reserved, so that no ending helps
-            base = f"own_{base}"
+            base = f"own_{base.lstrip('_')}"
             if self.free(base, taken):
                 return base
         while not self.free(f"{base}_{count}", taken):
