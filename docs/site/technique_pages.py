@@ -8,7 +8,7 @@ from typing import Any
 
 from markup import escaped, fenced, folded, number, table
 from records import points_of
-from sssgen.cli.show import describe
+from sssgen.cli.shown.shown_technique import facts_of
 from sssgen.harness.evaluate import probes
 from sssgen.ir.types import VOID, spell
 from sssgen.material import library
@@ -67,7 +67,7 @@ def _summary(technique: Technique) -> str:
 
 def page(technique: Technique, picture: str = "", caption: str = "") -> str:
     """The page of a technique. `picture` is the name of a file beside the page."""
-    facts = describe(technique)
+    facts = facts_of(technique)
     doc = dict(facts["doc"])
     lines = [f"# {technique.name}", "", escaped(facts["summary"]), ""]
     if picture:
