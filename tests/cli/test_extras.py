@@ -24,9 +24,11 @@ ALONE = """
 import sys
 from sssgen.cli.main import main
 
+REQUIRED = {"sssgen", "jinja2", "markupsafe", "lark", "argcomplete"}
+
 class Blocked:
     def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in {"sssgen", "jinja2", "markupsafe", "lark", *sys.stdlib_module_names}:
+        if name.partition(".")[0] in {*REQUIRED, *sys.stdlib_module_names}:
             return None
         raise ModuleNotFoundError(f"No module named {name!r}", name=name)
 
@@ -65,6 +67,7 @@ NEEDS: dict[str, str | None] = {
     "new wood": None,
     "doctor": None,
     "help emit": None,
+    "completion bash": None,
 }
 """Command → the extra that it needs."""
 

@@ -15,6 +15,7 @@ LAZY_IMPORTS = {
     "sssgen.cli.bake": HELP,
     "sssgen.cli.chart": HELP,
     "sssgen.cli.ci": EXTRA,
+    "sssgen.cli.completion": HELP,
     "sssgen.cli.emit": EMIT,
     "sssgen.cli.engine_options": HELP,
     "sssgen.cli.eval": HELP,

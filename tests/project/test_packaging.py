@@ -163,7 +163,7 @@ def test_the_doctor_of_the_installed_program(installed: Path, wheel: Path, tmp_p
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert {row["name"] for row in found["extras"]} == set(project["optional-dependencies"]) - {"dev"}
     assert [row["name"] for row in found["extras"] if row["found"]] == []
-    assert {"jinja2", "lark"} == set(found["packages"])
+    assert {"jinja2", "lark", "argcomplete"} == set(found["packages"])
     assert found["source"] == f"installed from {wheel}"
     assert {f'"{wheel}[{row["name"]}]"' in row["how"] for row in found["extras"]} == {True}
 

@@ -18,6 +18,10 @@ from sssgen.support.extras import missing_package
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs a command line and returns the exit status. Raises nothing but SystemExit, for `--help` and `--version`."""
+    if "_ARGCOMPLETE" in os.environ and argv is None:  # a shell asks what may follow
+        from sssgen.cli.candidates import complete
+
+        complete()
     words = list(sys.argv[1:] if argv is None else argv)
     if sys.stdout is None:  # the shell has closed it
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - until the process ends

@@ -50,6 +50,8 @@ class HelpFormatter(argparse.HelpFormatter):
         return wrapped(" ".join(text.split()), max(width, 1))
 
     def _fill_text(self, text: str, width: int, indent: str) -> str:
+        if len(text) <= width and "\n" not in text:
+            return text
         paragraphs = []
         for command, lines in _paragraphs(text):
             if command:

@@ -47,4 +47,4 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     if facts["half"]:
         text.append(f"in half precision: {facts['half']}")
     needs = facts["needs"].replace("`", "")
-    return [*text, *wrapped(f"needs: {needs}", width, "", "  "), "what this machine has: sssgen check"]
+    return [*text, *wrapped(f"needs: {needs}", width, "", "  "), "what this machine has: sssgen doctor"]
