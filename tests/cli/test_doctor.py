@@ -70,6 +70,8 @@ def test_on_a_bare_machine_everything_is_missing_with_how_to_get_it(run: Run) ->
 
 
 def test_versions_and_variables(run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    for variable in machine_facts.VARIABLES:
+        monkeypatch.delenv(variable, raising=False)
     monkeypatch.setenv("SSSGEN_CACHE", str(tmp_path / "cache"))
     monkeypatch.setenv("SSSGEN_GLSLANK", "x")
     result = run("doctor")

@@ -29,6 +29,7 @@ def maps_of(table: Array, rank: int) -> Array:
 
 @pytest.mark.parametrize("name", ["fluence_factored_4", "fluence_factored_8"])
 def test_the_techniques_read_what_the_bake_writes(name: str) -> None:
+    pytest.importorskip("scipy", reason="SciPy is missing: pip install -e '.[chart]'")
     rank = int(name[-1])
     medium = Medium("test", (0.6,) * 3, (5.4,) * 3, 0.0, 1.0, "the test")
     scene = MeasuredScene("body", "body", Ball(0.5), Camera(), (), medium, None)
