@@ -26,15 +26,26 @@ MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notd
 
 export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:
-.PHONY: setup accuracy bake demo test test-long fuzz lint bench bench-gpu gallery stability engines site dist clean
+.PHONY: setup accuracy bake demo first test test-long fuzz lint bench bench-gpu gallery stability engines site dist clean
 
 setup: .venv/done build/node/done
 
-demo: setup
+demo: first setup
 	rm -rf out
+	@echo "every example, for every target, in both forms:"
 	$(BIN)/sssgen emit $(MATERIALS) --target all --form shader -o out
 	$(BIN)/sssgen emit $(MATERIALS) --target all --form functions -o out
+	@echo "every compiler that this machine has, on all of it, for a minute or two:"
 	$(BIN)/sssgen check out
+
+# A shader within seconds, in a small environment: the setup of the whole takes minutes, the first time.
+FIRST := build/first/bin
+first:
+	@test -n "$(PYTHON)" || { echo "Python 3.11 or later is needed"; exit 1; }
+	@{ test -x $(FIRST)/sssgen || { $(PYTHON) -m venv build/first && $(FIRST)/python -m pip --quiet install --editable .; }; } \
+		&& $(FIRST)/sssgen emit wax_mouse --target threejs -o out \
+		|| { rm -rf build/first; echo "the first shader follows after the setup, which installs what it needs"; }
+	@test -e .venv/done || echo "installing what the rest of the demo needs, once, for minutes: packages, compilers"
 
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
