@@ -10,7 +10,8 @@ import pytest
 from command_line import WAX, CommandResult, FakeCompiler, Run
 from sssgen.cli import listing, transpile
 from sssgen.cli import main as cli
-from sssgen.cli.shown import shown_material  # noqa: F401 - imported before the fake compiler is, which it would keep
+from sssgen.cli.shown import shown_material  # noqa: F401 - before the fake compiler, which it would keep
+from sssgen.harness.scenes import scene_loading  # noqa: F401 - the same
 from sssgen.pipeline import emitted_cache
 
 

@@ -192,6 +192,7 @@ def test_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captu
     pytest.importorskip("rich")
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr("sssgen.support.progress.DELAY", 0.0)
     with ProgressBar() as progress:
         progress(3, 4, "cube [one]")
     output = capsys.readouterr()
@@ -201,6 +202,7 @@ def test_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Captu
 def test_no_bar_without_rich(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     monkeypatch.setitem(sys.modules, "rich.console", None)
+    monkeypatch.setattr("sssgen.support.progress.DELAY", 0.0)
     with ProgressBar() as progress:
         progress(3, 4, "cube")
     assert capsys.readouterr() == ("", "")

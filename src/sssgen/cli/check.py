@@ -13,6 +13,7 @@ from sssgen.harness.check.shader_files import Shader, read
 from sssgen.harness.compiler_registry import COMPILERS, readers
 from sssgen.ir.spans import Span
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure, visible
+from sssgen.support.progress import ProgressBar
 
 SHOWN = 8
 """The number of messages shown per compiler and file; later ones mostly follow from the first."""
@@ -42,7 +43,8 @@ def run(arguments: Namespace) -> int:
     if wrong:
         raise SssgenError(wrong)
     shaders = read(arguments.FILE, targets)
-    report = check.run(shaders, compilers, arguments.unity_includes)
+    with ProgressBar() as progress:
+        report = check.run(shaders, compilers, arguments.unity_includes, progress)
     if arguments.json:
         print_json(check.as_json(report))
     else:

@@ -10,6 +10,7 @@ from sssgen.harness.testing import junit
 from sssgen.harness.testing import project_run as ci
 from sssgen.harness.testing.project_run import Case, CaseResult
 from sssgen.support.diagnostics import visible
+from sssgen.support.progress import ProgressBar
 
 WORDS = {"passed": "ok  ", "failed": "FAIL", "skipped": "skip"}
 
@@ -44,11 +45,13 @@ def run(arguments: Namespace) -> int:
     width = max(len(case.name) for case in cases)
     results: list[CaseResult] = []
     try:
-        with ci.Run(arguments.update, flip) as check:
+        with ci.Run(arguments.update, flip) as check, ProgressBar() as progress:
             for case in cases:
+                progress(len(results), len(cases), f"{case.kind} {case.name}")
                 results.append(check(case))
                 if not arguments.json:
-                    _print(results[-1], width)
+                    with progress.erased():
+                        _print(results[-1], width)
     finally:
         if arguments.junit:
             junit.write(arguments.junit, results)

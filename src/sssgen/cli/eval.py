@@ -106,8 +106,10 @@ def _report(subject: Any, fit: Any, name: str, as_json: bool, guards: str) -> in
 
 def _several(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bool, guards: str) -> int:
     from sssgen.harness.evaluate.deviation import GOAL, compared
+    from sssgen.support.progress import ProgressBar
 
-    oracle, rows = compared(subject, fit, names, guards)
+    with ProgressBar() as progress:
+        oracle, rows = compared(subject, fit, names, guards, progress)
     here = [row for row in rows if not row.missing]
     lacking = any(row.missing and not BACKENDS[row.name].apart for row in rows)
     good = bool(here) and all(row.ok for row in here) and not (in_ci() and lacking)

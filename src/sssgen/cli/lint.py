@@ -7,6 +7,7 @@ from collections import Counter
 
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.support.diagnostics import Diagnostic, SssgenError
+from sssgen.support.progress import ProgressBar
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -28,11 +29,14 @@ def run(arguments: Namespace) -> int:
 
     wrong: list[Diagnostic] = []
     rows: list[tuple[str, list[Finding]]] = []
-    for name in dict.fromkeys(arguments.NAME):
-        try:
-            rows.append((name, lint(name, not arguments.no_examples)))
-        except SssgenError as error:
-            wrong += error.diagnostics
+    names = list(dict.fromkeys(arguments.NAME))
+    with ProgressBar() as progress:
+        for index, name in enumerate(names):
+            progress(index, len(names), name)
+            try:
+                rows.append((name, lint(name, not arguments.no_examples)))
+            except SssgenError as error:
+                wrong += error.diagnostics
     if wrong:
         raise SssgenError(wrong)
     unguarded = any(not finding.guarded and finding.verdict != PROVEN for _, findings in rows for finding in findings)

@@ -8,12 +8,16 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+import time
 from collections.abc import Sequence
 
 from sssgen.cli.commands import COMMANDS, Overview, command_module, command_parser
-from sssgen.cli.output import BROKEN_PIPE, INTERNAL_ERROR, INTERRUPTED, WRONG_INPUT, print_json
+from sssgen.cli.output import BROKEN_PIPE, INTERNAL_ERROR, INTERRUPTED, WRONG_INPUT, coloured, print_json
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.extras import missing_package
+
+LONG = 2.0
+"""Seconds after which the time of a command is printed."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -30,8 +34,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         if hasattr(stream, "reconfigure"):  # a terminal that cannot show a character shows '?'
             stream.reconfigure(errors="replace")
     try:
+        start = time.monotonic()
         status = _run(words)
         sys.stdout.flush()
+        _print_time(time.monotonic() - start)
         return status
     except SssgenError as error:
         return _report(error, as_json, WRONG_INPUT)
@@ -68,13 +74,20 @@ def _run(words: list[str]) -> int:
     return status
 
 
+def _print_time(seconds: float) -> None:
+    """Prints the time of a command that took long, if somebody watches."""
+    if seconds >= LONG and sys.stderr is not None and sys.stderr.isatty():
+        print(f"{seconds:.1f} s", file=sys.stderr)
+
+
 def _report(error: SssgenError, as_json: bool, status: int) -> int:
     """Prints an error and returns the exit status; the reader may have closed the output."""
     try:
         if as_json:
             print_json({"ok": False, "diagnostics": [diagnostic.as_json() for diagnostic in error.diagnostics]})
         else:
-            print("\n\n".join(diagnostic.render() for diagnostic in error.diagnostics), file=sys.stderr)
+            texts = [coloured(diagnostic.render()) for diagnostic in error.diagnostics]
+            print("\n\n".join(texts), file=sys.stderr)
             if len(error.diagnostics) > 1:
                 print(f"\n{len(error.diagnostics)} errors", file=sys.stderr)
         sys.stdout.flush()

@@ -1,7 +1,9 @@
-"""The output of commands: exit statuses, JSON, warnings."""
+"""The output of commands: exit statuses, JSON, warnings, colours."""
 
 from __future__ import annotations
 
+import os
+import re
 import sys
 from collections.abc import Iterable
 
@@ -21,4 +23,23 @@ def print_json(data: object) -> None:
 def print_warnings(warnings: Iterable[Diagnostic]) -> None:
     """Prints warnings to the standard error stream, so that they are not part of the result."""
     for warning in warnings:
-        print(f"{warning.render()}\n", file=sys.stderr)
+        print(f"{coloured(warning.render())}\n", file=sys.stderr)
+
+
+_COLOURS = {"error": "1;31", "warning": "1;33", "help": "1;36"}
+"""The word that begins a line of a diagnostic → its colour."""
+
+
+def coloured(text: str) -> str:
+    """A diagnostic's text for the standard error stream: error, warning and help are coloured on a terminal."""
+    if not _shows_colours():
+        return text
+    words = re.compile(rf"^( *)({'|'.join(_COLOURS)}):", re.MULTILINE)
+    return words.sub(lambda match: f"{match[1]}\033[{_COLOURS[match[2]]}m{match[2]}:\033[0m", text)
+
+
+def _shows_colours() -> bool:
+    """Whether it is a terminal with colours, and the user has not switched them off (https://no-color.org)."""
+    if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb" or not sys.stderr.isatty():
+        return False
+    return sys.platform != "win32" or "WT_SESSION" in os.environ  # older consoles of Windows print the codes

@@ -11,6 +11,7 @@ from sssgen.cli.options import add_guards, given
 from sssgen.cli.output import OK, print_json
 from sssgen.harness.backend_registry import PREFERRED, SCENES
 from sssgen.support.diagnostics import failure
+from sssgen.support.progress import ProgressBar
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -67,7 +68,8 @@ def _render(arguments: Namespace) -> int:
         raise failure("a picture is written as .png or .exr", "", output)
     backend = backends.needed(name)
     start = perf_counter()
-    picture = render(scene, backend, size, arguments.time, arguments.guards)
+    with ProgressBar() as progress:
+        picture = render(scene, backend, size, arguments.time, arguments.guards, progress)
     seconds = perf_counter() - start
     write = {
         ".png": lambda: images.write_png(output, picture.encoded),

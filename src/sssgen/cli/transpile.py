@@ -23,6 +23,7 @@ from sssgen.pipeline.trace import Trace
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_writer import write_files
 from sssgen.support.paths import posix
+from sssgen.support.progress import ProgressBar
 from sssgen.support.text_files import read_text
 from sssgen.targets.registry import load, names
 
@@ -264,7 +265,10 @@ def _verify(arguments: Namespace, path: Path) -> int:
     if arguments.define:
         raise failure("-D cannot be used with --verify", "write the #define into the file")
     text = includes.expanded(read_text(path, path.as_posix()), path, arguments.include)
-    report = transpiled.verify(text, path.as_posix(), arguments.samples, arguments.seed, arguments.entry)
+    with ProgressBar() as progress:
+        report = transpiled.verify(
+            text, path.as_posix(), arguments.samples, arguments.seed, arguments.entry, progress=progress
+        )
     if arguments.json:
         print_json({"ok": report.ok, **report.as_json()})
     else:

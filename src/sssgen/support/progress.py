@@ -4,48 +4,119 @@ from __future__ import annotations
 
 import contextlib
 import sys
+import threading
 import time
+from collections.abc import Callable, Iterator
 from types import TracebackType
+from typing import Any
 
+Progress = Callable[[float, int, str], None]
+"""Called with how many of all items are done, the number of all, and the name of the current one."""
+
+DELAY = 1.0
+"""Seconds before the bar: what is quick shows none, and does not import rich."""
 QUIET = 10.0
-"""Seconds between the lines, and before the first: what is quick prints none."""
+"""Seconds between the lines, and before the first."""
+
+
+def silent(done: float, total: int, name: str) -> None:
+    """The progress that nobody wants to see."""
 
 
 class ProgressBar:
     """`with ProgressBar() as progress: run(items, progress=progress)`: on the standard error stream.
 
-    On a terminal with rich it is a bar that is erased at the end; in a pipe or a log, a line every 10 seconds.
+    On a terminal with rich it is a bar that is erased at the end; in a pipe or a log, a line every 10 seconds, also
+    while one item takes longer.
     """
 
     def __init__(self) -> None:
-        self.bar = None
-        self.shown = time.monotonic()
-        if sys.stderr is not None and sys.stderr.isatty():
-            with contextlib.suppress(ImportError):
-                from rich.console import Console
-                from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-                columns = (BarColumn(), MofNCompleteColumn(), TimeRemainingColumn(), TextColumn("{task.description}"))
-                self.bar = Progress(*columns, console=Console(stderr=True), transient=True)
-                self.task = self.bar.add_task("", total=None)
+        self.bar: Any = None
+        self.state: tuple[float, int, str] | None = None
+        self.started = self.shown = time.monotonic()
+        self.lock = threading.RLock()
+        self.ended = threading.Event()
+        self.terminal = sys.stderr is not None and sys.stderr.isatty()
 
     def __enter__(self) -> ProgressBar:
-        if self.bar is not None:
-            self.bar.start()
+        if self.terminal and DELAY == 0.0:
+            self._open()
+        elif sys.stderr is not None:
+            threading.Thread(target=self._watch, daemon=True).start()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self.bar is not None:
-            self.bar.stop()
+        self.ended.set()
+        with self.lock:
+            if self.bar is not None:
+                self.bar.stop()
 
     def __call__(self, done: float, total: int, name: str) -> None:
         """Shows how many of `total` items are done, and the name of the current one."""
+        with self.lock:
+            self.state = done, total, name
+            self._show()
+
+    @contextlib.contextmanager
+    def erased(self) -> Iterator[None]:
+        """Erases the bar while the command prints a part of its result."""
+        with self.lock:
+            if self.bar is not None:
+                self.bar.stop()
+            try:
+                yield
+            finally:
+                if self.bar is not None:
+                    self.bar.start()
+
+    def _watch(self) -> None:
+        """Opens the bar when the work is not quick, or prints the lines."""
+        while not self.ended.wait(DELAY or QUIET):
+            with self.lock:
+                if self.ended.is_set():
+                    return
+                if self.terminal and self.bar is None:
+                    self._open()
+                if self.bar is not None:
+                    return  # which has a thread of its own
+                self._show()
+
+    def _open(self) -> None:
+        try:
+            from rich.console import Console
+            from rich.progress import (
+                BarColumn,
+                MofNCompleteColumn,
+                Progress,
+                TextColumn,
+                TimeElapsedColumn,
+                TimeRemainingColumn,
+            )
+        except ImportError:
+            self.terminal = False  # lines are all that it gets
+            return
+        columns = (
+            BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn(),
+            TextColumn("{task.description}"),
+        )  # fmt: skip
+        # the result goes to the standard output, and not through the bar
+        console = Console(stderr=True)
+        self.bar = Progress(*columns, console=console, transient=True, redirect_stdout=False, redirect_stderr=False)
+        self.task = self.bar.add_task("", total=None)
+        self.bar.tasks[0].start_time = self.bar.get_time() - (time.monotonic() - self.started)
+        self._show()
+        self.bar.start()
+
+    def _show(self) -> None:
+        if self.state is None:
+            return
+        done, total, name = self.state
         if self.bar is not None:
             from rich.markup import escape
 
             self.bar.update(self.task, completed=done, total=total, description=escape(name))
-        elif sys.stderr is not None and time.monotonic() - self.shown >= QUIET:
+        elif not self.terminal and sys.stderr is not None and time.monotonic() - self.shown >= QUIET:
             self.shown = time.monotonic()
             print(f"{done:.4g} of {total}: {name}", file=sys.stderr, flush=True)

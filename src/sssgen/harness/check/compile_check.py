@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
-from threading import Event
+from threading import Event, Lock
 from typing import Any
 
 from sssgen.harness.backend_registry import BACKENDS, ENGINES
@@ -20,6 +20,7 @@ from sssgen.harness.installed import all_lacks
 from sssgen.material.library import TECHNIQUES
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.paths import place, posix
+from sssgen.support.progress import Progress, silent
 from sssgen.support.text_files import read_text
 
 INTERFACE = "interface"
@@ -54,7 +55,12 @@ class Report:
     results: list[Result]
 
 
-def run(shaders: Sequence[Shader], names: Sequence[str] = (), unity_includes: str | None = None) -> Report:
+def run(
+    shaders: Sequence[Shader],
+    names: Sequence[str] = (),
+    unity_includes: str | None = None,
+    progress: Progress = silent,
+) -> Report:
     """Compiles every shader with every compiler for its language, or only those in `names`, each in its own process.
 
     Raises SssgenError where one in `names` is missing, or where none of them reads any of the shaders.
@@ -72,7 +78,16 @@ def run(shaders: Sequence[Shader], names: Sequence[str] = (), unity_includes: st
         hint = f"compilers that do: {', '.join(able)}" if able else ""
         raise failure(f"no {requested} reads {', '.join(languages)}", hint)
     environment = {"SSSGEN_UNITY_INCLUDES": _headers(unity_includes)} if unity_includes is not None else {}
-    stop = Event()
+    stop, lock = Event(), Lock()
+    total, done = sum(name in readers(source.language) for name in selected for _, source in programs), 0
+
+    def compiled(worker: Worker, name: str, shader: Shader, source: Source) -> Result:
+        nonlocal done
+        result = Result(shader, source, name, _within(shader, worker.check(source)))
+        with lock:
+            done += 1
+            progress(done, total, f"{name}: {shader.name}")
+        return result
 
     def work(name: str) -> tuple[str, bool, list[Result]]:
         """(version or how to get it, whether it is available, results)."""
@@ -80,7 +95,7 @@ def run(shaders: Sequence[Shader], names: Sequence[str] = (), unity_includes: st
         try:
             version = worker.version()
             results = [
-                Result(shader, source, name, _within(shader, worker.check(source)))
+                compiled(worker, name, shader, source)
                 for shader, source in programs
                 if name in readers(source.language) and not stop.is_set()
             ]

@@ -20,6 +20,7 @@ from sssgen.harness.backends.isolated import started
 from sssgen.harness.evaluate.evaluation import Inputs, run
 from sssgen.harness.evaluate.probes import Subject
 from sssgen.support.diagnostics import SssgenError
+from sssgen.support.progress import Progress, silent
 
 GOAL = 1e-5
 """The largest deviation that a technique in float32 should have."""
@@ -160,12 +161,17 @@ def errors(actual: Array, expected: Array) -> Array:
 
 
 def compared(
-    subject: Subject, inputs: Inputs, names: Sequence[str], guards: str = "auto"
+    subject: Subject, inputs: Inputs, names: Sequence[str], guards: str = "auto", progress: Progress = silent
 ) -> tuple[dict[str, Array], list[Row]]:
     """The oracle's outputs, and each back end's deviation. Each back end runs in a process of its own."""
+    progress(0, len(names) + 1, "numpy, the oracle")
     oracle = run(subject, inputs, get("numpy"), guards)
     rounding = cache(lambda: rounding_deviation(subject, inputs, oracle, guards))
-    return oracle, [_row(subject, inputs, oracle, rounding, name, guards) for name in names]
+    rows = []
+    for index, name in enumerate(names):
+        progress(index + 1, len(names) + 1, name)
+        rows.append(_row(subject, inputs, oracle, rounding, name, guards))
+    return oracle, rows
 
 
 def _row(

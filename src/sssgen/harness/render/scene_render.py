@@ -33,11 +33,15 @@ from sssgen.material.material_loading import load_material
 from sssgen.material.shell_stages import with_shell
 from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.support.diagnostics import failure
+from sssgen.support.progress import Progress, silent
 from sssgen.targets.descriptor import Target
 from sssgen.targets.runtime.numpy_textures import Texture
 
 LARGEST = 8192
 """The largest number of samples along a side: the largest picture that every driver supports."""
+
+STEPS = 3
+"""Of a render: compile, cast rays, draw."""
 
 
 class Rendered(NamedTuple):
@@ -55,7 +59,12 @@ class Rendered(NamedTuple):
 
 
 def render(
-    scene: Scene, backend: Backend, size: tuple[int, int] | None = None, time: float | None = None, guards: str = "auto"
+    scene: Scene,
+    backend: Backend,
+    size: tuple[int, int] | None = None,
+    time: float | None = None,
+    guards: str = "auto",
+    progress: Progress = silent,
 ) -> Rendered:
     """The picture of a scene. `size` and `time` override the scene's; `guards` as in `compile`.
 
@@ -69,6 +78,7 @@ def render(
     # an engine has its own shadows, surroundings and tone mapping
     shell_roles = [f"{role}={name}" for role, name in scene.shell.items() if role in backend.target.shell]
     material = with_shell(load_material(scene.material), shell_roles)
+    progress(0, STEPS, "compiling the material")
     compiled = compile(material, backend.target.name, guards=guards)
     reflection = compiled.reflection
     width, height = (side * scene.samples for side in scene.size)
@@ -84,10 +94,11 @@ def render(
         )
     shell = shell_of(scene, material, reflection)
     if raymarched:
+        progress(2, STEPS, f"drawing on {backend.name}")
         shell = dataclasses.replace(shell, view_projection=_matrix(scene, backend.target, width / height))
         samples, hit = shade(backend, compiled, shell, (width, height), None), np.ones((height, width), bool)
     else:
-        samples, hit = _surface(scene, compiled, shell, backend, (width, height))
+        samples, hit = _surface(scene, compiled, shell, backend, (width, height), progress)
     return _developed(scene, reflection, samples, hit)
 
 
@@ -101,12 +112,14 @@ def _reads_rays(entry: Mapping[str, Any]) -> bool:
 
 
 def _surface(
-    scene: Scene, compiled: Compiled, shell: Shell, backend: Backend, size: tuple[int, int]
+    scene: Scene, compiled: Compiled, shell: Shell, backend: Backend, size: tuple[int, int], progress: Progress
 ) -> tuple[Array, Array]:
     """The samples of a surface, and which of them hit it."""
     (width, height), edge = size, pixel_mesh.BORDER
+    progress(1, STEPS, "casting the eye's rays")
     mesh = placed(scene, compiled, shell, backend.target, size)
     inner = slice(edge, edge + height), slice(edge, edge + width)
+    progress(2, STEPS, f"drawing on {backend.name}")
     picture = shade(backend, compiled, mesh.shell, mesh.size, mesh.points)
     if compiled.reflection["two_sided"] and not mesh.front.all():
         # which triangle covers a pixel's centre is the driver's choice, so each side is drawn on its own

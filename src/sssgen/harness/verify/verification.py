@@ -46,6 +46,7 @@ from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError, failure
+from sssgen.support.progress import Progress, silent
 from sssgen.targets import registry
 from sssgen.targets.runtime.numpy_textures import Texture
 
@@ -75,6 +76,7 @@ def load(text: str, shown: str, version: str = "") -> Module:
 def verify(
     text: str, shown: str, samples: int = SAMPLES, seed: int = 0, entry: str = "",
     read: Callable[[str, str], Module] | None = None, machines: Machines | None = None,
+    progress: Progress = silent,
 ) -> Report:  # fmt: skip
     """Runs every function of a text without `#include` (see `inline_includes`) on `samples` inputs.
 
@@ -90,7 +92,10 @@ def verify(
     probes = "\n".join(probe.text for case in cases for probe in case.probes)
     with_probes = read(written.text + probes, shown)
     with nullcontext(machines) if machines else start_machines() as (running, missing):
-        rows = [Case(case, written, with_probes, running, samples, seed).row() for case in cases]
+        rows = []
+        for index, case in enumerate(cases):
+            progress(index, len(cases), case.function.name)
+            rows.append(Case(case, written, with_probes, running, samples, seed).row())
     return Report(rows, missing)
 
 
