@@ -99,7 +99,7 @@ def named_extras() -> Iterator[tuple[str, str]]:
     """The extras that hints and documents name, each with its place."""
     for path in [*(ROOT / "src").rglob("*.py"), ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]:
         text = path.read_text(encoding="utf-8")
-        for listed in re.findall(r"sssgen-shaders\[([\w,-]+)\]", text):
+        for listed in re.findall(r"(?:sssgen-shaders|['\"]\.)\[([\w,-]+)\]", text):
             yield from ((name, path.name) for name in listed.split(","))
         if path.suffix == ".py":
             yield from ((name, path.name) for name in extras_of_calls(ast.parse(text)))

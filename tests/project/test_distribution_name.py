@@ -23,7 +23,7 @@ from sssgen.support.installation import DISTRIBUTION, install_hint
 
 OWN = "sssgen"
 FOREIGN = re.compile(
-    rf"""\b(?:pipx?3?|uvx?|poetry|conda)\b[^\n]*\b(?:install|add|download|run)\b[^\n]*?["'` ]{OWN}(?![-\w/.])"""
+    rf"""\b(?:pipx?3?|uvx?|poetry|conda)\b[^\n]*\b(?:install|add|download|run)\b[^\n`;&|]*?["' ]{OWN}(?![-\w/.])"""
     rf"""|(?<![-\w.\\]){OWN}\[(?=[a-z])"""
 )
 """A command that installs that package, or a requirement of it with extras."""
@@ -54,6 +54,7 @@ def texts() -> Iterator[tuple[Path, str]]:
         ("pip install '{}-shaders[gl]'", False),
         (".venv/bin/pip install . && {}-vulkan", False),
         ("pip install ./{}_vulkan", False),
+        ("`pip install '.[render]'` adds what it needs, and `{} doctor` lists it", False),
     ],
 )
 def test_what_is_looked_for(text: str, wrong: bool) -> None:
