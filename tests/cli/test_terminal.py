@@ -1,16 +1,20 @@
-"""What differs on a terminal: colours of errors, the time of long commands."""
+"""What differs on a terminal: colours of errors, the progress and the time of long commands."""
 
 from __future__ import annotations
 
 import io
+import json
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
+from command_line import Run
 from sssgen.cli import main as cli
 from sssgen.cli import show
 from sssgen.cli.output import coloured
+from sssgen.support.progress import ProgressBar
 
 TEXT = "error: no such file\n  --> a.toml\n  help: an error: as a word"
 SHOWN = "\033[1;31merror:\033[0m no such file\n  --> a.toml\n  \033[1;36mhelp:\033[0m an error: as a word"
@@ -75,3 +79,32 @@ def test_the_time_of_a_long_command(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(show, "run", lambda _: work(12.34))
     cli.main(["show", "x"])
     assert terminal.getvalue() == "12.3 s\n"
+
+
+STEPS = {
+    "emit wax.toml --target wgsl,hlsl -o out": ["wax for wgsl", "wax for hlsl"],
+    "lint half.glsl wax.toml --no-examples": ["half.glsl", "wax.toml"],
+    "check wax.toml --target numpy --compiler python": ["python: wax.py", "python: wax_functions.py"],
+    "render paper_lantern --size 16x12 --backend numpy-f32 -o a.png": [
+        "compiling the material", "casting the eye's rays", "drawing on numpy-f32",
+    ],
+    "eval lobe_exp2 --samples 10 --backend numpy-f32,numpy-f16": ["numpy, the oracle", "numpy-f32", "numpy-f16"],
+    "ci numbers --backend numpy-f32": ["eval numbers/lobe.eval.json [numpy-f32]"],
+}  # fmt: skip
+"""Command → the names of the steps of its progress."""
+
+
+@pytest.mark.parametrize("command", STEPS)
+def test_the_progress_of_a_command(command: str, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    Path("half.glsl").write_text("float halved(float x) { return 0.5 * x; }\n", encoding="utf-8")
+    Path("numbers").mkdir()
+    numbers = {"technique": "lobe_gdc2011", "inputs": {"N": [[0, 0, 1]]}, "tolerance": 1e-5}
+    Path("numbers/lobe.eval.json").write_text(json.dumps(numbers), encoding="utf-8")
+    shown: list[tuple[float, int, str]] = []
+    monkeypatch.setattr(ProgressBar, "__call__", lambda _, *state: shown.append(state))
+    assert run(*command.split()).err == ""
+    assert [name for _, _, name in shown] == STEPS[command]
+    (total,) = {total for _, total, _ in shown}
+    done = [done for done, _, _ in shown]
+    assert done == sorted(done)
+    assert done[0] >= 0 and done[-1] <= total

@@ -405,7 +405,11 @@ def _environment(arguments: Namespace) -> Result:
     if not 0.0 < arguments.intensity < float("inf"):
         raise failure(f"the intensity {arguments.intensity:g} is no factor of light", "give a number above 0")
     environment = Environment((arguments.intensity,) * 3, arguments.SKY, digest(arguments.SKY))
-    reflections, irradiance = (half(make(environment)) for make in (maps.reflection_map, maps.irradiance_map))
+    with ProgressBar() as bar:
+        bar(0, 2, "reflections")
+        reflections = half(maps.reflection_map(environment))
+        bar(1, 2, "irradiance")
+        irradiance = half(maps.irradiance_map(environment))
     facts = {
         "kind": "environment", "holds": None, "parameters": {"reflection_levels": len(reflections.levels) - 1.0},
         "import": import_settings("Cube", "clamp"),

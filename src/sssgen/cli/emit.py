@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 from typing import TYPE_CHECKING
 
@@ -92,6 +93,7 @@ def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
     """Compiles every material for every target, and adds to `traces`. Raises SssgenError with all errors."""
     from sssgen.pipeline.compiler import compile
     from sssgen.pipeline.trace import Trace
+    from sssgen.support.progress import ProgressBar
 
     wrong: list[Diagnostic] = []
     names = chosen_targets(arguments.target, wrong)
@@ -108,8 +110,9 @@ def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
         bare = [name for name in names if not targets[name].prefix]
         wrong += without_prefix(bare).diagnostics if bare else []
         names = [name for name in names if name not in bare]
-    for material in materials:
-        for name in names:
+    with ProgressBar() as progress:
+        for index, (material, name) in enumerate(itertools.product(materials, names)):
+            progress(index, len(materials) * len(names), f"{material.name} for {name}")
             trace = Trace(f"{material.name}.{name}.trace") if arguments.trace else None
             traces += [trace] if trace is not None else []
             try:
