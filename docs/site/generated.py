@@ -22,6 +22,12 @@ def pages() -> dict[str, str]:
     }
 
 
-def technique_page(name: str, picture: str = "", caption: str = "") -> tuple[str, str]:
-    """The path and the text of a technique's page."""
+def technique_picture(name: str) -> str:
+    """The path of the picture on a technique's page."""
+    return f"{technique_pages.FOLDER}/{name}.png"
+
+
+def technique_page(name: str, caption: str = "") -> tuple[str, str]:
+    """The path and the text of a technique's page; with a caption it has a picture."""
+    picture = f"{name}.png" if caption else ""
     return f"{technique_pages.FOLDER}/{name}.md", technique_pages.page(library.load(name), picture, caption)

@@ -12,6 +12,8 @@ import shutil
 from pathlib import Path
 
 from menu import HOME, ROOT, sections
+from sssgen.harness.backends import Array
+from sssgen.harness.pictures.images import write_png
 
 _LINK = re.compile(r"(?P<before>\]\(|<img [^>]*?src=\")(?P<path>[^)\s\"#:]+)(?=[)#\"])")
 _FENCE = re.compile(r"^```.*?^```$", re.DOTALL | re.MULTILINE)
@@ -34,6 +36,11 @@ class Staging:
             end = fence.end()
         text = "".join([*pieces, self._linked(page, text[end:])])
         self._put("index.md" if page == HOME else page, text + _contents() if page == HOME else text)
+
+    def add_picture(self, place: str, colors: Array) -> None:
+        """A picture that is drawn for the site."""
+        (self.folder / place).parent.mkdir(parents=True, exist_ok=True)
+        write_png(str(self.folder / place), colors)
 
     def _put(self, page: str, text: str) -> None:
         path = self.folder / page

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -16,8 +17,10 @@ import python_page
 import records
 import sssgen
 import technique_pages
+import technique_pictures
 from folders import ROOT
 from sssgen.cli.commands import COMMANDS, command_parser
+from sssgen.harness.backends import Backend
 from sssgen.material import library, slots
 
 
@@ -73,10 +76,10 @@ def test_the_errors_of_a_technique_are_those_of_the_chart() -> None:
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The whole site."""
+    """The whole site, but the pictures of the techniques."""
     pytest.importorskip("sphinx", reason="`make site` installs it")
     folder = tmp_path_factory.mktemp("site") / "site"
-    command = [sys.executable, str(ROOT / "docs" / "site" / "build_site.py"), str(folder)]
+    command = [sys.executable, str(ROOT / "docs" / "site" / "build_site.py"), str(folder), "--without-pictures"]
     done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     return folder
@@ -103,3 +106,22 @@ def test_no_page_fetches_anything_from_elsewhere(site: Path) -> None:
         assert not fetched, f"{page.relative_to(site)}: {fetched}"
     for style in site.rglob("*.css"):
         assert not re.search(r"(?:url\(|@import)\s*[\"']?(?:https?:)?//", style.read_text(encoding="utf-8")), style
+
+
+PICTURED = ("beer_lambert", "voronoi_normal", "torus")
+"""One on the ring of the chart, one on a ball, one as the body."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PICTURED)
+def test_the_picture_of_a_technique(name: str, backend: Callable[[str], Backend]) -> None:
+    picture = technique_pictures.draw(library.load(name), backend("gl"))
+    assert picture is not None and picture.caption
+    rows, columns = picture.colors.shape[:2]
+    corner, middle = picture.colors[:4, :4], picture.colors[rows // 4 : -rows // 4, columns // 4 : -columns // 4]
+    assert corner.std(axis=(0, 1)).max() < 0.01  # the background
+    assert middle.std() > 0.05 and middle.max() > 0.5  # the body
+
+
+def test_a_technique_that_only_bakes_serve_has_no_picture(backend: Callable[[str], Backend]) -> None:
+    assert technique_pictures.draw(library.load("distance_texture"), backend("gl")) is None

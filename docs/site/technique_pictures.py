@@ -1,0 +1,205 @@
+"""Pictures of techniques, drawn with OpenGL by the shaders that sssgen emits.
+
+A technique of transmitted light is drawn on the ring of examples/lab, in the most accurate charted chain that has it
+and needs no baked texture. Others are drawn on a ball with a checker; a distance function is drawn as the body. There
+is no picture where that shows nothing: for a technique that needs a bake, and for cameras and marches.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import tempfile
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from records import Point, points
+from sssgen.harness.backends import Array, Backend
+from sssgen.harness.pictures.images import encode_srgb, write_png
+from sssgen.harness.render.scene_render import Rendered, render
+from sssgen.harness.scenes import scene_loading
+from sssgen.harness.scenes.example_scenes import measured_scenes
+from sssgen.ir.nodes import Uniform
+from sssgen.ir.types import Sampler
+from sssgen.lab.chart.picked_material import stages_of
+from sssgen.lab.measure.measured_chain import MaterialSection, material_text
+from sssgen.lab.scene import measured_scene, scene_body
+from sssgen.material import library
+from sssgen.material.library import Technique
+from sssgen.support.diagnostics import SssgenError
+
+SIZE = 200, 150
+SAMPLES = 2
+MEASURED = "torus"
+"""The scene of the chart."""
+BACKGROUND = 0.05
+BRIGHT = 0.7
+"""The linear light of the brightest hundredth of a measured body: the scales of its fits differ."""
+VISIBLE = 0.02
+"""The least difference in sRGB between a picture with a technique and one without."""
+SATURATED = 0.25
+"""The largest share of a body that may be white."""
+CHECKER, BUMPS, BUMPS_Y_DOWN = "checker.png", "bumps.png", "bumps_y_down.png"
+TEXELS, SQUARES = 256, 8
+ON_A_BALL = ("coordinates", "surface", "shadow", "environment", "tone_mapping")
+
+SCENE = """
+material = "material.toml"
+background = [[0.05, 0.05, 0.05], [0.05, 0.05, 0.05]]
+ambient = [0.12, 0.12, 0.13]
+[camera]
+position = {}
+field_of_view = 36.0
+[[light]]
+direction = [0.6, 0.9, 0.8]
+color = [1.8, 1.75, 1.7]
+[environment]
+color = [0.5, 0.6, 0.8]
+"""
+BALL = """[geometry]
+kind = "ball"
+radius = 1.0
+"""
+FRONT, CORNER = [0.0, 0.5, 3.4], [2.0, 1.4, 2.6]
+"""Positions of the camera."""
+FUNCTION = """[geometry]
+kind = "distance"
+technique = "{}"
+"""
+
+
+class Picture(NamedTuple):
+    """A picture with what it shows."""
+
+    colors: Array
+    """(height, width, 3), sRGB"""
+    caption: str
+
+
+def draw(technique: Technique, backend: Backend) -> Picture | None:
+    """The picture of a technique; None if there is none."""
+    if point := _best(technique.name):
+        return _measured(point, backend)
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            if technique.role == "distance":
+                return _body(technique, Path(folder), backend)
+            if technique.role in ON_A_BALL:
+                return _on_a_ball(technique, Path(folder), backend)
+        except SssgenError:  # it needs more than a ball has
+            return None
+    return None
+
+
+def _best(name: str) -> Point | None:
+    """The most accurate whole chain on the scene that has the technique and that needs no baked texture."""
+    found = [
+        point
+        for point in points()
+        if point["scene"] == MEASURED
+        and point["role"] == "material"
+        and not point["failed"]
+        and name in (*point["chain"], point.get("path", ""))
+        and not any(map(_is_baked, (*point["chain"], *filter(None, [point.get("path", "")]))))
+    ]
+    return min(found, key=lambda point: float(point["error"]["value"]), default=None)
+
+
+def _is_baked(name: str) -> bool:
+    return any(not _is_drawn(uniform) for uniform in _textures(library.load(name.partition(":")[0])))
+
+
+def _textures(technique: Technique) -> list[Uniform]:
+    return [uniform for uniform in technique.uniforms if isinstance(uniform.type, Sampler)]
+
+
+def _is_drawn(uniform: Uniform) -> bool:
+    """Whether the renderer draws the texture for each picture."""
+    return "drawn" in dict(uniform.hints)
+
+
+def _measured(point: Point, backend: Backend) -> Picture:
+    scene = measured_scene.load(MEASURED)
+    body = scene_body.body(scene.geometry)
+    albedo, color = library.setter("albedo")
+    matte = MaterialSection("surface", albedo, ((color, [*point["matte"], 1.0]),))
+    rough, roughness = library.setter("roughness")
+    stages = [*stages_of(point, body, scene.medium), matte, MaterialSection("surface", rough, ((roughness, 1.0),))]
+    with tempfile.TemporaryDirectory() as folder:
+        for file, text in {"material.toml": material_text("material", stages), **body.files}.items():
+            Path(folder, file).write_text(text, encoding="utf-8")
+        drawn = dataclasses.replace(
+            scene_loading.load(measured_scenes()[MEASURED]),
+            material=str(Path(folder, "material.toml")), background=((0.0,) * 3,) * 2, ambient=(0.0,) * 3,
+            size=SIZE, samples=SAMPLES,
+        )  # fmt: skip
+        rendered = render(drawn, backend)
+    light = rendered.linear * (BRIGHT / max(float(np.percentile(rendered.linear[rendered.covered > 0.5], 99)), 1e-3))
+    colors = encode_srgb(light + BACKGROUND * (1.0 - rendered.covered[..., None]))
+    chain = " → ".join(point["chain"]) + (f" with {point['path']}" if point.get("path") else "")
+    return Picture(colors, f"{scene.title}: {chain}")
+
+
+def _body(technique: Technique, folder: Path, backend: Backend) -> Picture | None:
+    if _textures(technique):
+        return None
+    name, color = library.setter("albedo")
+    stages = [MaterialSection("surface", name, ((color, [0.6, 0.6, 0.6, 1.0]),))]
+    rendered = _rendered(folder, stages, SCENE.format(CORNER) + FUNCTION.format(technique.name), backend)
+    return Picture(rendered.encoded, "The body whose distance it is") if rendered.covered.any() else None
+
+
+def _on_a_ball(technique: Technique, folder: Path, backend: Backend) -> Picture | None:
+    """The technique with its defaults on a checkered ball. None if the picture is that of the ball without it."""
+    for file, texels in {CHECKER: _checker(), BUMPS: _bumps(), BUMPS_Y_DOWN: _bumps() * [1, -1, 1] + [0, 1, 0]}.items():
+        write_png(str(folder / file), texels)
+    name, _ = library.setter("albedo")
+    checker = _stage(library.load(name))
+    stages = [] if technique.name == name else [_stage(technique)]
+    stages.insert(0 if technique.role != "coordinates" else len(stages), checker)
+    rendered = _rendered(folder, stages, SCENE.format(FRONT) + BALL, backend)
+    body = rendered.encoded[rendered.covered > 0.5]
+    if (body.min(axis=-1) > 0.99).mean() > SATURATED:
+        return None
+    if len(stages) > 1:
+        plain = _rendered(folder, [checker], SCENE.format(FRONT) + BALL, backend)
+        if np.abs(rendered.encoded - plain.encoded).max() < VISIBLE:
+            return None
+    return Picture(rendered.encoded, "A ball with a checker, and the technique with its defaults")
+
+
+def _stage(technique: Technique) -> MaterialSection:
+    """The technique with its defaults and a picture as each of its textures."""
+    textures = [uniform for uniform in _textures(technique) if not _is_drawn(uniform)]
+    return MaterialSection(technique.role, technique.name, tuple((one.name, _picture_for(one)) for one in textures))
+
+
+def _picture_for(texture: Uniform) -> str:
+    if "normal_map" not in dict(texture.hints):
+        return CHECKER
+    return BUMPS_Y_DOWN if texture.name.endswith("y_down") else BUMPS
+
+
+def _rendered(folder: Path, stages: list[MaterialSection], scene: str, backend: Backend) -> Rendered:
+    (folder / "material.toml").write_text(material_text("material", stages), encoding="utf-8")
+    (folder / "scene.toml").write_text(scene, encoding="utf-8")
+    loaded = scene_loading.load(str(folder / "scene.toml"))
+    return render(dataclasses.replace(loaded, size=SIZE, samples=SAMPLES), backend)
+
+
+def _checker() -> Array:
+    """Squares of two colours: (texels, texels, 3)."""
+    rows, columns = np.indices((TEXELS, TEXELS)) * SQUARES // TEXELS
+    even = ((rows + columns) % 2 == 0)[..., None]
+    return np.where(even, [0.8, 0.5, 0.3], [0.25, 0.4, 0.55])
+
+
+def _bumps() -> Array:
+    """A normal map with y up: a dome in each square."""
+    place = (np.arange(TEXELS) + 0.5) * SQUARES / TEXELS % 1.0 * 2.0 - 1.0
+    x, y = np.meshgrid(place, -place)
+    inside = x * x + y * y < 1.0
+    normals = np.stack([x * inside, y * inside, np.full_like(x, 1.0)], axis=-1)
+    unit: Array = normals / np.linalg.norm(normals, axis=-1, keepdims=True)
+    return 0.5 + 0.5 * unit
