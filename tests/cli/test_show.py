@@ -93,6 +93,13 @@ def test_a_builtin(run: Run) -> None:
     assert "polyfill:\n  genF mod(genF x, genF y) { return x - y * floor(x / y); }" in run("show", "mod").out
 
 
+def test_a_builtin_that_is_a_function_and_an_old_name(run: Run) -> None:
+    assert "genF modf(genF x, out genF whole) {" in run("show", "modf").out
+    old, new = run("show", "texture2D").out, run("show", "texture").out
+    assert old.splitlines()[0] == "texture2D (builtin), an old name of texture"
+    assert old.splitlines()[1:] == new.splitlines()[1:]
+
+
 def test_tables_fit_a_terminal_and_stay_whole_in_a_pipe(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = run("list", "scenes").out.splitlines()
     assert len(whole) == len(show.names_of("scene"))

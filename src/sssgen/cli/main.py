@@ -62,6 +62,8 @@ def _run(words: list[str]) -> int:
     name, rest = "help", []
     if words and words[0] in COMMANDS:
         name, *rest = words
+    elif words and words[0].startswith("--") and words[0] not in ("--", "--help", "--version"):
+        raise failure(f"unknown option '{words[0]}'", "options follow the command: sssgen COMMAND --json")
     elif words:
         name = str(Overview().parse_args(words).COMMAND)  # most end here: with the help, the version, or an error
     command = COMMANDS[name]

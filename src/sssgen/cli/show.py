@@ -12,6 +12,7 @@ from sssgen.cli.layout import text_width
 from sssgen.cli.output import OK, print_json
 from sssgen.material import library
 from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.targets import registry
 
 
 class Kind(NamedTuple):
@@ -88,8 +89,9 @@ def _kinds_of(name: str) -> list[str]:
     kinds = [kind for kind, listed in names.items() if name in listed]
     if not kinds:
         file = f"did you mean the file '{name}.toml'?" if os.path.isfile(f"{name}.toml") else library.file_meant(name)
-        near = did_you_mean(name, dict.fromkeys(one for listed in names.values() for one in listed))
-        raise failure(f"nothing is called '{name}'", file or near or "see: sssgen list materials, or sssgen help list")
+        every = dict.fromkeys(one for listed in names.values() for one in listed)
+        hint = file or registry.found_under(name) or did_you_mean(name, every)
+        raise failure(f"nothing is called '{name}'", hint or "see: sssgen list materials, or sssgen help list")
     return kinds
 
 

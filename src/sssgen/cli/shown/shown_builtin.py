@@ -2,30 +2,44 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping
 from typing import Any
 
 from sssgen.cli.layout import wrapped
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS, Builtin
+from sssgen.ir.old_names import OLD_NAMES
+from sssgen.ir.out_builtins import OUT_BUILTINS
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.targets import registry
 
 
 def names() -> Collection[str]:
-    """The builtin functions."""
-    return BUILTINS
+    """The builtin functions, with their names in old versions of GLSL."""
+    return (*BUILTINS, *OUT_BUILTINS, *OLD_NAMES)
 
 
 def describe(name: str) -> dict[str, Any]:
     """Everything about a builtin function. Raises SssgenError."""
-    if name not in BUILTINS:
-        raise failure(f"unknown builtin '{name}'", did_you_mean(name, BUILTINS) or "docs/intrinsics.md lists them")
-    row = BUILTINS[name]
+    if name not in names():
+        raise failure(f"unknown builtin '{name}'", did_you_mean(name, names()) or "see: sssgen list builtins")
+    new = OLD_NAMES[name][0] if name in OLD_NAMES else name
+    facts = _of_function(new) if new in OUT_BUILTINS else _of_row(BUILTINS[new])
+    return {"name": name, "new_name": new, **facts}
+
+
+def _of_function(name: str) -> dict[str, Any]:
+    """A builtin that is written as a function wherever it is called: it has out parameters, or reads projectively."""
+    text = OUT_BUILTINS[name].strip()
+    heads = re.findall(rf"^(\w+ {name}\([^)]*\))", text, re.MULTILINE)
+    return {"summary": "", "signatures": heads, "languages": {}, "polyfill": text, "guards": []}
+
+
+def _of_row(row: Builtin) -> dict[str, Any]:
     return {
-        "name": name,
         "summary": row.doc,
-        "signatures": [signature.replace("(", f" {name}(", 1) for signature in row.signatures],
+        "signatures": [signature.replace("(", f" {row.name}(", 1) for signature in row.signatures],
         "domain": row.domain,
         "uniform_flow": row.uniform_flow,
         "cost_kind": row.kind,
@@ -59,8 +73,12 @@ def _is_own(language: str, texts: Mapping[str, Mapping[str, str]]) -> bool:
 
 def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     """The facts as text."""
-    text = [f"{facts['name']} (builtin)", *wrapped(facts["summary"], width, "  ", "  "), ""]
+    old = f", an old name of {facts['new_name']}" if facts["new_name"] != facts["name"] else ""
+    text = [f"{facts['name']} (builtin){old}", *wrapped(facts["summary"], width, "  ", "  "), ""]
     text += [f"  {signature}" for signature in facts["signatures"]]
+    if not facts["languages"]:
+        function = [f"  {line}" for line in facts["polyfill"].split("\n")]
+        return [*text, "", "in every language, this function:", *function]
     text.append("")
     if facts["domain"]:
         text += wrapped(f"defined for: {facts['domain']}", width, "", "  ")
