@@ -1,6 +1,6 @@
 """Pictures of techniques, drawn with OpenGL by the shaders that sssgen emits.
 
-A technique of transmitted light is drawn on the ring of examples/lab, in the most accurate charted chain that has it
+A technique of transmitted light is drawn on the cube of examples/lab, in the most accurate charted chain that has it
 and needs no baked texture. Others are drawn on a ball with a checker; a distance function is drawn as the body. There
 is no picture where that shows nothing: for a technique that needs a bake, and for cameras and marches.
 """
@@ -8,7 +8,9 @@ is no picture where that shows nothing: for a technique that needs a bake, and f
 from __future__ import annotations
 
 import dataclasses
+import functools
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -31,7 +33,7 @@ from sssgen.support.diagnostics import SssgenError
 
 SIZE = 200, 150
 SAMPLES = 2
-MEASURED = "torus"
+MEASURED = "cube"
 """The scene of the chart."""
 BACKGROUND = 0.05
 BRIGHT = 0.7
@@ -81,14 +83,13 @@ def draw(technique: Technique, backend: Backend) -> Picture | None:
     """The picture of a technique; None if there is none."""
     if point := _best(technique.name):
         return _measured(point, backend)
-    with tempfile.TemporaryDirectory() as folder:
-        try:
-            if technique.role == "distance":
-                return _body(technique, Path(folder), backend)
-            if technique.role in ON_A_BALL:
-                return _on_a_ball(technique, Path(folder), backend)
-        except SssgenError:  # it needs more than a ball has
-            return None
+    try:
+        if technique.role == "distance":
+            return _body(technique, backend)
+        if technique.role in ON_A_BALL:
+            return _on_a_ball(technique, backend)
+    except SssgenError:  # it needs more than a ball has
+        return None
     return None
 
 
@@ -141,32 +142,39 @@ def _measured(point: Point, backend: Backend) -> Picture:
     return Picture(colors, f"{scene.title}: {chain}")
 
 
-def _body(technique: Technique, folder: Path, backend: Backend) -> Picture | None:
+def _body(technique: Technique, backend: Backend) -> Picture | None:
     if _textures(technique):
         return None
     name, color = library.setter("albedo")
     stages = [MaterialSection("surface", name, ((color, [0.6, 0.6, 0.6, 1.0]),))]
-    rendered = _rendered(folder, stages, SCENE.format(CORNER) + FUNCTION.format(technique.name), backend)
+    with tempfile.TemporaryDirectory() as folder:
+        scene = SCENE.format(CORNER) + FUNCTION.format(technique.name)
+        rendered = _rendered(Path(folder), stages, scene, backend)
     return Picture(rendered.encoded, "The body whose distance it is") if rendered.covered.any() else None
 
 
-def _on_a_ball(technique: Technique, folder: Path, backend: Backend) -> Picture | None:
+def _on_a_ball(technique: Technique, backend: Backend) -> Picture | None:
     """The technique with its defaults on a checkered ball. None if the picture is that of the ball without it."""
-    for file, texels in {CHECKER: _checker(), BUMPS: _bumps(), BUMPS_Y_DOWN: _bumps() * [1, -1, 1] + [0, 1, 0]}.items():
-        write_png(str(folder / file), texels)
     name, _ = library.setter("albedo")
     checker = _stage(library.load(name))
     stages = [] if technique.name == name else [_stage(technique)]
     stages.insert(0 if technique.role != "coordinates" else len(stages), checker)
-    rendered = _rendered(folder, stages, SCENE.format(FRONT) + BALL, backend)
+    rendered = _ball(tuple(stages), backend)
     body = rendered.encoded[rendered.covered > 0.5]
     if (body.min(axis=-1) > 0.99).mean() > SATURATED:
         return None
-    if len(stages) > 1:
-        plain = _rendered(folder, [checker], SCENE.format(FRONT) + BALL, backend)
-        if np.abs(rendered.encoded - plain.encoded).max() < VISIBLE:
-            return None
+    if len(stages) > 1 and np.abs(rendered.encoded - _ball((checker,), backend).encoded).max() < VISIBLE:
+        return None
     return Picture(rendered.encoded, "A ball with a checker, and the technique with its defaults")
+
+
+@functools.cache
+def _ball(stages: tuple[MaterialSection, ...], backend: Backend) -> Rendered:
+    pictures = {CHECKER: _checker(), BUMPS: _bumps(), BUMPS_Y_DOWN: _bumps() * [1, -1, 1] + [0, 1, 0]}
+    with tempfile.TemporaryDirectory() as folder:
+        for file, texels in pictures.items():
+            write_png(str(Path(folder, file)), texels)
+        return _rendered(Path(folder), stages, SCENE.format(FRONT) + BALL, backend)
 
 
 def _stage(technique: Technique) -> MaterialSection:
@@ -181,7 +189,7 @@ def _picture_for(texture: Uniform) -> str:
     return BUMPS_Y_DOWN if texture.name.endswith("y_down") else BUMPS
 
 
-def _rendered(folder: Path, stages: list[MaterialSection], scene: str, backend: Backend) -> Rendered:
+def _rendered(folder: Path, stages: Sequence[MaterialSection], scene: str, backend: Backend) -> Rendered:
     (folder / "material.toml").write_text(material_text("material", stages), encoding="utf-8")
     (folder / "scene.toml").write_text(scene, encoding="utf-8")
     loaded = scene_loading.load(str(folder / "scene.toml"))

@@ -109,7 +109,7 @@ def test_no_page_fetches_anything_from_elsewhere(site: Path) -> None:
 
 
 PICTURED = ("beer_lambert", "voronoi_normal", "torus")
-"""One on the ring of the chart, one on a ball, one as the body."""
+"""One on the cube of the chart, one on a ball, one as the body."""
 
 
 @pytest.mark.slow
