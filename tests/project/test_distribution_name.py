@@ -19,7 +19,7 @@ from sssgen.harness import installed
 from sssgen.harness.backend_registry import BACKENDS
 from sssgen.harness.compiler_registry import COMPILERS
 from sssgen.support import installation
-from sssgen.support.installation import DISTRIBUTION, install_hint
+from sssgen.support.installation import DISTRIBUTION, install_hint, make_hint, npm_hint
 
 OWN = "sssgen"
 FOREIGN = re.compile(
@@ -114,6 +114,16 @@ class TestHints:
         assert install_hint("gl") == f'pip install -e "{ROOT}[gl]"'
         monkeypatch.chdir(ROOT.parent)
         assert install_hint("gl") == f'pip install -e ".{os.sep}{ROOT.name}[gl]"'
+
+    def test_packages_of_npm_and_what_make_installs(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+        monkeypatch.chdir(ROOT)
+        assert npm_hint("three") == f"make setup, or npm install --prefix {Path('build', 'node')} three"
+        assert make_hint("engines", "another way", "as root") == "make engines (as root), or another way"
+        monkeypatch.chdir(tmp_path)
+        assert npm_hint("three") == f"make -C {ROOT} setup, or npm install --prefix {ROOT / 'build' / 'node'} three"
+        fake_package(tmp_path, monkeypatch)
+        assert npm_hint("three") == "npm install three, and SSSGEN_NODE_MODULES=/path/to/node_modules"
+        assert make_hint("engines", "another way", "as root") == "another way"
 
     def test_from_an_index(self, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
         fake_package(tmp_path, monkeypatch)

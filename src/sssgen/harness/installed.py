@@ -12,7 +12,7 @@ from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 
-from sssgen.support.installation import install_hint
+from sssgen.support.installation import install_hint, make_hint, npm_hint
 from sssgen.support.paths import folder
 
 
@@ -91,14 +91,16 @@ def _godot_with_display() -> bool:
     return any(root or shutil.which("Xvfb") for _, root in godots())
 
 
+_GODOT = make_hint("engines", "SSSGEN_GODOT=/path/to/godot", "Debian, as root")
+
 _PARTS: Mapping[str, tuple[Callable[[], object], str]] = {
     "chromium": (chromium, "Chromium or Chrome (Debian: chromium; or SSSGEN_CHROMIUM names it)"),
     "firefox": (firefox, "Firefox (Debian: firefox-esr; or SSSGEN_FIREFOX names it)"),
     "godot": (
         _godot_with_display,
-        "Godot 4.6 and Xvfb: make engines (Debian, as root), or SSSGEN_GODOT=/path/to/godot (and Debian's xvfb)",
+        f"Godot 4.6 and Xvfb: {_GODOT} (and Debian's xvfb)",
     ),
-    "godot parser": (godots, "Godot 4.6: make engines (Debian, as root), or SSSGEN_GODOT=/path/to/godot"),
+    "godot parser": (godots, f"Godot 4.6: {_GODOT}"),
     "glslang": (glslang, "glslangValidator (Debian: glslang-tools; elsewhere: the Vulkan SDK)"),
     "c preprocessor": (c_preprocessor, "a C preprocessor (Debian: gcc; elsewhere: clang)"),
     "g++": (lambda: shutil.which("g++"), "g++ (Debian: g++)"),
@@ -109,12 +111,12 @@ _PARTS: Mapping[str, tuple[Callable[[], object], str]] = {
     ),
     "babylon bundle": (
         lambda: (node_modules().parent / "babylon.js").is_file(),
-        "the npm package @babylonjs/core, bundled: make setup",
+        "the npm package @babylonjs/core, bundled: make setup, in a checkout",
     ),
     **{
         f"npm {package}": (
             partial(_has_package, package),
-            f"the npm package {package}: make setup, or npm install --prefix build/node {package}",
+            f"the npm package {package}: {npm_hint(package)}",
         )
         for package in ("playcanvas", "three", "webgpu", "wesl")
     },

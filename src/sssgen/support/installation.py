@@ -27,6 +27,25 @@ def install_hint(extra: str) -> str:
     return f'{_pip()} install {"-e " if editable else ""}"{_shown(path) if path else DISTRIBUTION}[{extra}]"'
 
 
+def npm_hint(package: str) -> str:
+    """The command that installs an npm package where the back ends look for it."""
+    path, checkout = source()
+    if not checkout:
+        return f"npm install {package}, and SSSGEN_NODE_MODULES=/path/to/node_modules"
+    folder = os.path.join(path, "build", "node")
+    return make_hint("setup", f"npm install --prefix {_quoted(folder)} {package}")
+
+
+def make_hint(target: str, otherwise: str, note: str = "") -> str:
+    """`make TARGET`, which only a checkout has, or else another way; `note` is about make."""
+    path, checkout = source()
+    if not checkout:
+        return otherwise
+    shown = _quoted(path)
+    command = f"make {target}" if shown == os.curdir else f"make -C {shown} {target}"
+    return f"{command}{f' ({note})' if note else ''}, or {otherwise}"
+
+
 def source() -> tuple[str, bool]:
     """The checkout or the wheel that sssgen was installed from, '' for a package index; whether a checkout is run."""
     top = os.path.dirname(os.path.dirname(PACKAGE))

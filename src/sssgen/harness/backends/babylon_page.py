@@ -18,6 +18,7 @@ def _modules(packages: Path) -> Mapping[str, Path]:
 
 
 BABYLON = Engine(
-    "babylonjs", "Babylon.js", "npm package @babylonjs/core, bundled: make setup", _modules, "babylon_page.js",
+    "babylonjs", "Babylon.js", "npm package @babylonjs/core, bundled: make setup, in a checkout", _modules,
+    "babylon_page.js",
     {"webgl": Renderer(WEBGL), "webgpu": Renderer(WEBGPU, gpu=True)},
 )  # fmt: skip

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from sssgen.harness.backends.browser_page import WEBGL, WEBGPU
 from sssgen.harness.backends.engine_page import Engine, Renderer
+from sssgen.support.installation import npm_hint
 
 
 def _modules(packages: Path) -> Mapping[str, Path]:
@@ -14,7 +15,7 @@ def _modules(packages: Path) -> Mapping[str, Path]:
 
 
 PLAYCANVAS = Engine(
-    "playcanvas", "PlayCanvas", "npm package playcanvas: make setup", _modules, "playcanvas_page.js",
+    "playcanvas", "PlayCanvas", f"npm package playcanvas: {npm_hint('playcanvas')}", _modules, "playcanvas_page.js",
     {"webgl2": Renderer(WEBGL), "webgpu": Renderer(WEBGPU, gpu=True, top_first=True)},
     v_down=True,
 )  # fmt: skip

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from sssgen.harness.backends.browser_page import WEBGL, WEBGPU
 from sssgen.harness.backends.engine_page import Engine, Renderer
+from sssgen.support.installation import npm_hint
 
 _IMPORTED = {"three": "three.module.js", "three/webgpu": "three.webgpu.js", "three/tsl": "three.tsl.js"}
 
@@ -19,6 +20,6 @@ def _modules(packages: Path) -> Mapping[str, Path]:
 
 
 THREE = Engine(
-    "threejs", "three.js", "npm package three: make setup", _modules, "three_page.js",
+    "threejs", "three.js", f"npm package three: {npm_hint('three')}", _modules, "three_page.js",
     {"webgl": Renderer(WEBGL), "webgpu": Renderer(WEBGPU, gpu=True, top_first=True), "webgl2": Renderer(WEBGL)},
 )  # fmt: skip

@@ -14,6 +14,7 @@ from typing import Any
 
 from sssgen.harness.compilers import naga, tint
 from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Source
+from sssgen.support.installation import npm_hint
 
 STANDIN = Path(__file__).with_name("bevy_standin")
 PACKAGE = "wesl@0.7.31"
@@ -140,5 +141,5 @@ def find() -> Bevy:
     """node, npm wesl, naga and Tint. Raises CompilerMissing where one of them is lacking."""
     node, folder = tint.node_modules()
     if not (folder / "wesl" / "package.json").is_file():
-        raise CompilerMissing(f"npm install --prefix build/node {PACKAGE} (make setup does it)")
+        raise CompilerMissing(npm_hint(PACKAGE))
     return Bevy(node, folder)

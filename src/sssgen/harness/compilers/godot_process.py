@@ -16,9 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sssgen.harness.compilers.compiler_interface import CompilerMissing
-from sssgen.harness.installed import godots
+from sssgen.harness.installed import godots, lacks
 
-HINT = "Godot 4.6: `make engines` (Debian, as root), or SSSGEN_GODOT=/path/to/godot"
 _PROJECT = 'config_version=5\n\n[application]\n\nconfig/name="sssgen"\n'
 
 
@@ -90,4 +89,4 @@ def find() -> Godot:
         with contextlib.suppress(OSError, subprocess.SubprocessError):
             if godot.version().startswith("4."):
                 return godot
-    raise CompilerMissing(HINT)
+    raise CompilerMissing(lacks("godot parser") or "Godot 4.6, which starts")

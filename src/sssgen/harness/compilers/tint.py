@@ -12,6 +12,7 @@ from typing import Any
 from sssgen.harness import installed
 from sssgen.harness.compilers.calling_entry import wgsl_entry
 from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Source
+from sssgen.support.installation import npm_hint
 
 # One process answers for all checks. Dawn prints warnings there as well, so a reply begins with "@@".
 _SERVER = """
@@ -107,5 +108,5 @@ def find() -> Tint:
     """Tint in node. Raises CompilerMissing where node or the package is lacking."""
     node, modules = node_modules()
     if not (modules / "webgpu" / "package.json").is_file():
-        raise CompilerMissing("npm install --prefix build/node webgpu@0.6.2 (make setup does it)")
+        raise CompilerMissing(npm_hint("webgpu@0.6.2"))
     return Tint(node, modules)
