@@ -1,13 +1,14 @@
-"""Draws the example scenes into docs/gallery/ and writes docs/gallery.md: python docs/gallery.py [--processes N]
+"""Draws the example scenes into docs/gallery/ and writes docs/gallery.md: python docs/gallery.py [SCENE …]
 
 The emitted GLSL draws the pictures. The page has the description, the techniques and the cost of each, and the
-differences between the back ends.
+differences between the back ends. Where scenes are named, only these are drawn and measured.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -17,7 +18,6 @@ from sssgen.cli.options import add_workers
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
 from sssgen.lab.jobs.executor import Item, failures, run
-from sssgen.lab.jobs.render_items import PictureDifference
 from sssgen.lab.jobs.result_store import Store
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
@@ -30,10 +30,17 @@ PICTURES = Path(__file__).with_name("gallery")
 BACKENDS = tuple(name for name in backends.DEFAULT if backends.BACKENDS[name].driver)
 SMALL = (160, 120)
 """The size in pixels of the pictures that are compared."""
+MARCHED = ("leaves", "jelly", "ice_body")
+"""The scenes whose shaders march through distance functions, which takes NumPy minutes in the full size."""
 
 CAPTIONS = {
-    "jelly_cubes": "42yeah's raymarched scene, drawn by the shader alone: it marches rays through distance functions. "
-    "Where a cube is thin, at its edges and corners, the light of the evening sky passes through.",
+    "leaves": "Sheets that are lit from both sides. The thickness technique of this example counts a leaf's veins and "
+    "all leaves between it and the sun, so that leaves show the shadows of others.",
+    "jelly": "The length towards the light in place of the depth of the nearest face, which makes "
+    "[the X](stability.md#thinness-from-a-distance-field-cheap-sss-xt95) of `jelly_cubes` below. The light that comes "
+    "through the cubes falls on the plate; the shell's shadow map keeps the other light from there.",
+    "ice_body": "Ice as a body: it absorbs red before blue and scatters little, the eye's ray is refracted at its "
+    "surface, and cracks inside it scatter the sun.",
     "paper_lantern": "Alisavakis's simple subsurface scattering, on paper and wood. The lamp is inside, so every side "
     "is lit from behind. A map holds the thickness of the paper fibres; the hoops are opaque.",
     "wax_mouse": "Subsurface scattering with 3-D distance fields, on a candle. The shader marches the light's path "
@@ -51,10 +58,16 @@ CAPTIONS = {
     "marble_idol": "Baked light inside a body, on marble. `sssgen bake fluence` has traced light through the bust, for "
     "lights from everywhere: the sun may move. Two volumes of 8 bits and a table hold it, 90 kB together. What is "
     "scattered once is computed exactly, with the same two drawn textures as in `jade_ring`.",
+    "jelly_cubes": "42yeah's raymarched scene as it was published, drawn by the shader alone: it marches rays through "
+    "distance functions. Where a cube is thin, at its edges and corners, the light of the evening sky passes through. "
+    "The X on the faces is the published technique's: see `jelly` above.",
 }
 """A caption for the picture of each example, in the order of the page."""
 
 ALTERNATIVE_TEXTS = {
+    "leaves": "A twig with five bright green leaves against the light, with dark veins",
+    "jelly": "Two cubes of red jelly on a white plate, with red light in their shadows",
+    "ice_body": "A block of clear blue ice with white cracks inside",
     "jelly_cubes": "Two red cubes of jelly on a checkered floor, their edges lit by the evening sky behind them",
     "paper_lantern": "A round paper lantern with dark wooden hoops and a red tassel, lit from inside, at dusk",
     "wax_mouse": "A sitting mouse of amber wax with large round ears that glow in the light behind it",
@@ -67,21 +80,19 @@ ALTERNATIVE_TEXTS = {
 """The alternative text of each picture."""
 
 
-def items() -> list[Item]:
-    """For each scene: its picture, the differences of small pictures, and those of large ones with one sample per "
-    "pixel."""
-    jobs = [Item("sssgen.lab.jobs.render_items:picture", (name,), name) for name in CAPTIONS]
-    for title, size, samples in (("small", SMALL, None), ("one sample", None, 1)):
+def items(names: Sequence[str]) -> list[Item]:
+    """For each scene: its picture, the differences of small pictures, and of large ones with one sample per pixel."""
+    jobs = [Item("sssgen.lab.jobs.render_items:picture", (name,), name) for name in names]
+    large = [name for name in names if name not in MARCHED]
+    for title, size, samples, compared in (("small", SMALL, None, names), ("one sample", None, 1, large)):
         jobs += [
             Item("sssgen.lab.jobs.render_items:compare_backends", (name, BACKENDS, size, samples), f"{name}, {title}")
-            for name in CAPTIONS
+            for name in compared
         ]
     return jobs
 
 
-def page(
-    present: list[Backend], small: dict[str, list[PictureDifference]], large: dict[str, list[PictureDifference]]
-) -> str:
+def page(present: list[Backend], small: dict[str, list[str]], large: dict[str, list[str]]) -> str:
     """The page's text, with the figures of this machine."""
     lines = [
         "# Gallery",
@@ -105,9 +116,7 @@ def page(
         f"| Scene | {' | '.join(f'`{backend.name}`' for backend in present)} |",
         f"|---|{'---|' * len(present)}",
     ]
-    lines += [
-        _row(name, [f"{difference.worst:.3f}" for difference in differences]) for name, differences in small.items()
-    ]
+    lines += [_row(name, small[name]) for name in CAPTIONS]
     lines += [
         "",
         *_paragraph(
@@ -115,12 +124,12 @@ def page(
             "each. There float32 and float64 decide differently: `jelly_cubes` finds its surface itself, and a ray at "
             "the edge of a cube, a tile or a shadow can fall on either side. `jade_ring` and `marble_idol` read a "
             "depth map between two texels at the edge that the light sees, where drivers interpolate with different "
-            "weights."
+            "weights. Scenes whose shaders march through distance functions are compared in the small size only."
         ),
         f"| Scene | {' | '.join(f'`{backend.name}`' for backend in present)} |",
         f"|---|{'---|' * len(present)}",
     ]
-    lines += [_row(name, [f"{difference.beyond}" for difference in differences]) for name, differences in large.items()]
+    lines += [_row(name, large[name]) for name in CAPTIONS if name not in MARCHED]
     lines += [
         "",
         *(
@@ -129,6 +138,14 @@ def page(
         ),
     ]
     return "\n".join(lines) + "\n"
+
+
+def stored_rows() -> tuple[dict[str, list[str]], dict[str, list[str]]]:
+    """The rows of the page's two tables, by scene: the largest differences, and the numbers of pixels."""
+    tables: tuple[dict[str, list[str]], dict[str, list[str]]] = ({}, {})
+    for name, *cells in re.findall(r"^\| `(\w+)` \|" + r" ([\d.]+) \|" * len(BACKENDS), PAGE.read_text("utf-8"), re.M):
+        tables[0 if "." in cells[0] else 1][name] = cells
+    return tables
 
 
 def _row(name: str, cells: list[str]) -> str:
@@ -191,20 +208,29 @@ def _item(text: str) -> list[str]:
 def main() -> None:
     """Draws the pictures, measures the differences, and writes the page."""
     parser = argparse.ArgumentParser(description="draws the gallery")
+    parser.add_argument("SCENE", nargs="*", help=f"{', '.join(CAPTIONS)} (default: all)")
     add_workers(parser)
     arguments = parser.parse_args()
+    chosen = arguments.SCENE or list(CAPTIONS)
+    if unknown := set(chosen) - set(CAPTIONS):
+        parser.error(f"not in the gallery: {', '.join(sorted(unknown))}")
+    names = [name for name in CAPTIONS if name in chosen]
     processes = arguments.processes if arguments.scheduler or arguments.processes else 0
     with ProgressBar() as progress:
-        results = run(items(), arguments.scheduler, processes, Store(""), progress)
+        results = run(items(names), arguments.scheduler, processes, Store(""), progress)
     if failed := failures(results):
         raise SystemExit("\n".join(f"{failure.name}: {failure.message}" for failure in failed))
-    count = len(CAPTIONS)
-    pictures, small, large = (
-        dict(zip(CAPTIONS, results[start : start + count], strict=True)) for start in range(0, 3 * count, count)
+    count = len(names)
+    pictures, small = (dict(zip(names, results[start : start + count], strict=True)) for start in (0, count))
+    large = dict(zip([name for name in names if name not in MARCHED], results[2 * count :], strict=True))
+    rows = stored_rows() if PAGE.exists() else ({}, {})
+    rows[0].update({name: [f"{difference.worst:.3f}" for difference in small[name]] for name in names})
+    rows[1].update(
+        {name: [f"{difference.beyond}" for difference in differences] for name, differences in large.items()}
     )
     files = {f"{name}.png": data for name, data in pictures.items()}
     write_files(str(PICTURES), files)
-    PAGE.write_text(page([backends.get(name) for name in BACKENDS], small, large), encoding="utf-8")
+    PAGE.write_text(page([backends.get(name) for name in BACKENDS], *rows), encoding="utf-8")
     print(f"wrote {PAGE.name} and {len(files)} pictures, {sum(map(len, files.values())) / 1000:.0f} kB")
 
 

@@ -15,6 +15,7 @@ import numpy.typing as npt
 import pytest
 from PIL import Image
 
+from example_cases import ALIKE, example_cases, marks
 from folders import ROOT
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
@@ -35,7 +36,7 @@ def render_example(name: str, backend: str, samples: int = 1) -> Rendered:
     return render(dataclasses.replace(scene, size=SMALL, samples=samples), backends.get(backend))
 
 
-@pytest.mark.parametrize("name", examples())
+@pytest.mark.parametrize("name", example_cases())
 def test_an_example_is_a_picture(name: str, backend: Callable[[str], Backend]) -> None:
     backend("gl")
     picture = render_example(name, "gl")
@@ -51,9 +52,9 @@ def test_an_example_is_a_picture(name: str, backend: Callable[[str], Backend]) -
     assert (covered_pixels.max(axis=1) - covered_pixels.min(axis=1)).mean() > 0.04
 
 
-EXPENSIVE = "marble_idol"
+EXPENSIVE = {"marble_idol", *ALIKE}
 DRAWN = [
-    pytest.param(name, compared, marks=[pytest.mark.slow] if name == EXPENSIVE and compared != "gl" else [])
+    pytest.param(name, compared, marks=[pytest.mark.slow] if name in EXPENSIVE and compared != "gl" else marks(name))
     for name in examples()
     for compared in ("gl", "webgpu", "browser", "hlsl")
 ]
@@ -125,10 +126,10 @@ def test_every_example_has_a_scene() -> None:
 
 def test_the_gallery_shows_every_example() -> None:
     page = (ROOT / "docs" / "gallery.md").read_text(encoding="utf-8")
-    linked = re.findall(r"\]\(gallery/(\w+)\.png\)", page)
-    assert sorted(linked) == sorted(examples())
-    assert sorted(linked) == sorted(path.stem for path in (ROOT / "docs" / "gallery").iterdir())
-    for name in linked:
+    linked = re.findall(r"\]\(gallery/(\w+\.\w+)\)", page)
+    assert sorted(linked) == sorted(f"{name}.png" for name in examples())
+    assert sorted(linked) == sorted(path.name for path in (ROOT / "docs" / "gallery").iterdir())
+    for name in examples():
         assert f"`sssgen render {name} -o {name}.png`" in page
         assert re.search(rf"^\| `{name}` \|( 0\.\d{{3}} \|){{4}}$", page, re.MULTILINE), "a difference is 1/255 or more"
 
@@ -141,15 +142,15 @@ def test_the_gallery_is_small() -> None:
             assert (picture.format, picture.mode, picture.size) == ("PNG", "RGB", (640, 480))
 
 
-def test_the_gallery_is_current(backend: Callable[[str], Backend]) -> None:
+@pytest.mark.parametrize("name", example_cases())
+def test_the_gallery_is_current(name: str, backend: Callable[[str], Backend]) -> None:
     """A small picture of the scene equals the scaled picture of the gallery."""
     backend("gl")
-    for name in examples():
-        stored = images.decode_srgb(_picture(ROOT / "docs" / "gallery" / f"{name}.png"))
-        small = stored.reshape(48, 10, 64, 10, 3).mean(axis=(1, 3))
-        # the samples differ, so edges may differ, but not the mean
-        far = np.abs(images.encode_srgb(small) - render_example(name, "gl", 4).encoded)
-        assert far.mean() < 0.006, name
+    stored = images.decode_srgb(_picture(ROOT / "docs" / "gallery" / f"{name}.png"))
+    small = stored.reshape(48, 10, 64, 10, 3).mean(axis=(1, 3))
+    # the samples differ, so edges may differ, but not the mean
+    far = np.abs(images.encode_srgb(small) - render_example(name, "gl", 4).encoded)
+    assert far.mean() < 0.006
 
 
 def _picture(path: Path) -> npt.NDArray[np.float64]:

@@ -6,6 +6,7 @@ Unity's own headers (SSSGEN_UNITY_INCLUDES), only pictures that do not depend on
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -94,7 +95,8 @@ def example(name: str) -> Scene:
     """The scene of an example, with one sample per pixel."""
     text = (EXAMPLES / name / "scene.toml").read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if not line.startswith("samples")]
-    return scene("\n".join(["samples = 1", *lines]), EXAMPLES / name)
+    described = scene("\n".join(["samples = 1", *lines]), EXAMPLES / name)
+    return dataclasses.replace(described, shell={})  # Unity has its own
 
 
 def picture_of(described: Scene, machine: Backend) -> Rendered:

@@ -12,6 +12,7 @@ import pytest
 
 import sssgen
 from carried import carrying
+from example_cases import marks
 from sssgen.harness.check.compiler_inputs import sources
 from sssgen.harness.compilers import Source
 from sssgen.material.material_loading import examples
@@ -19,7 +20,7 @@ from sssgen.material.material_loading import examples
 FORMS = ("shader", "functions")
 LACKING = {name: {"shadertoy"} for name in ("jade_ring", "marble_idol", "wax_mouse")}
 """The targets that cannot express an example: its textures are volumes, or a program draws them."""
-CASES = [(name, form) for name in examples() for form in FORMS]
+CASES = [pytest.param(name, form, marks=marks(name)) for name in examples() for form in FORMS]
 
 
 def emitted(name: str, form: str) -> dict[str, str]:

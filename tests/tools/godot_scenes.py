@@ -35,7 +35,7 @@ _THROUGH = "    // Light that comes through"
 def scene_of(name: str) -> Scene:
     """An example, small and without ambient light: Godot counts that in another way. Time stands still at 0."""
     scene = scene_loading.load(str(ROOT / "examples" / name / "scene.toml"))
-    return dataclasses.replace(scene, size=SIZE, samples=1, time=0.0, ambient=(0.0, 0.0, 0.0))
+    return dataclasses.replace(scene, size=SIZE, samples=1, time=0.0, ambient=(0.0, 0.0, 0.0), shell={})
 
 
 def text_of(compiled: Compiled, part: str) -> str:
