@@ -139,7 +139,7 @@ def _measured(point: Point, backend: Backend) -> Picture:
     light = rendered.linear * (BRIGHT / max(float(np.percentile(rendered.linear[rendered.covered > 0.5], 99)), 1e-3))
     colors = encode_srgb(light + BACKGROUND * (1.0 - rendered.covered[..., None]))
     chain = " → ".join(point["chain"]) + (f" with {point['path']}" if point.get("path") else "")
-    return Picture(colors, f"{scene.title}: {chain}")
+    return Picture(colors, f"{scene.title}, scaled to the same brightness on each page: {chain}")
 
 
 def _body(technique: Technique, backend: Backend) -> Picture | None:
