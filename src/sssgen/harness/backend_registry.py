@@ -198,7 +198,7 @@ def chosen(text: str, scenes: bool = False) -> list[str]:
 
 def check_draws(name: str) -> None:
     """Raises SssgenError for a back end that draws no scenes."""
-    if BACKENDS[name].functions_only:
+    if name in BACKENDS and BACKENDS[name].functions_only:
         raise failure(f"{name} evaluates functions and draws no scenes", f"choose from: {', '.join(SCENES)}")
 
 

@@ -55,7 +55,7 @@ class Names(NamedTuple):
     prefixes: tuple[str, ...] = ()
     """Every name that starts with one of these is reserved."""
     local: frozenset[str] = frozenset()
-    """Variables of the templates' functions, whose names declarations at file scope must avoid."""
+    """Names that only declarations at file scope must avoid: of variables in the templates' functions, of a library."""
     types: frozenset[str] = frozenset()
     """Types that the file beside the shader reads; one that it declares of such a name, in any case, gets `_`."""
     host_words: frozenset[str] = frozenset()
