@@ -30,10 +30,15 @@ PICTURES = Path(__file__).with_name("gallery")
 BACKENDS = tuple(name for name in backends.DEFAULT if backends.BACKENDS[name].driver)
 SMALL = (160, 120)
 """The size in pixels of the pictures that are compared."""
-MARCHED = ("leaves", "jelly", "ice_body")
+MARCHED = ("candle", "skin_ear", "leaves", "jelly", "ice_body")
 """The scenes whose shaders march through distance functions, which takes NumPy minutes in the full size."""
 
 CAPTIONS = {
+    "candle": "A point light above the wax: the flame. The lengths inside the wax, from the eye and to the flame, are "
+    "marched through its distance function, so that the flame may move and the candle may burn down. The flame itself "
+    "is a surface technique beside the material.",
+    "skin_ear": "An ear with the low sun behind it. The medium is near that of measured skin: red light goes farther "
+    "than green and blue. Nothing is baked, and nothing is drawn before the picture.",
     "leaves": "Sheets that are lit from both sides. The thickness technique of this example counts a leaf's veins and "
     "all leaves between it and the sun, so that leaves show the shadows of others.",
     "jelly": "The length towards the light in place of the depth of the nearest face, which makes "
@@ -65,6 +70,8 @@ CAPTIONS = {
 """A caption for the picture of each example, in the order of the page."""
 
 ALTERNATIVE_TEXTS = {
+    "candle": "A burning candle in the dark: its upper half glows, its foot is dark",
+    "skin_ear": "An ear beside a dark cheek, glowing orange in the light behind it",
     "leaves": "A twig with five bright green leaves against the light, with dark veins",
     "jelly": "Two cubes of red jelly on a white plate, with red light in their shadows",
     "ice_body": "A block of clear blue ice with white cracks inside",
