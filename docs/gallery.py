@@ -1,7 +1,7 @@
 """Draws the example scenes into docs/gallery/ and writes docs/gallery.md: python docs/gallery.py [SCENE …]
 
 The emitted GLSL draws the pictures. The page has the description, the techniques and the cost of each, and the
-differences between the back ends. Where scenes are named, only these are drawn and measured.
+differences between the back ends. Where scenes or `loop` are named, only these are drawn.
 """
 
 from __future__ import annotations
@@ -12,6 +12,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
+
+import gallery_loop
 
 import sssgen
 from sssgen.cli.options import add_workers
@@ -70,6 +72,7 @@ CAPTIONS = {
 """A caption for the picture of each example, in the order of the page."""
 
 ALTERNATIVE_TEXTS = {
+    "loop": "Two cubes of red jelly on a plate; the light goes around them, and red light falls on the plate",
     "candle": "A burning candle in the dark: its upper half glows, its foot is dark",
     "skin_ear": "An ear beside a dark cheek, glowing orange in the light behind it",
     "leaves": "A twig with five bright green leaves against the light, with dark veins",
@@ -108,6 +111,11 @@ def page(present: list[Backend], small: dict[str, list[str]], large: dict[str, l
             "One scene for each example material, drawn by the emitted GLSL. `make gallery` (`docs/gallery.py`) writes "
             "this page; `examples/textures.py` draws the textures of the scenes. Costs are static, as in the "
             "reflection: the maximum for one evaluation, for each fragment and in addition for each light."
+        ),
+        f"![{ALTERNATIVE_TEXTS['loop']}](gallery/{gallery_loop.LOOP})",
+        "",
+        *_paragraph(
+            f"The window goes around the scene of `{gallery_loop.SCENE}`: nothing is baked, so any light may move."
         ),
     ]
     for name, caption in CAPTIONS.items():
@@ -215,11 +223,11 @@ def _item(text: str) -> list[str]:
 def main() -> None:
     """Draws the pictures, measures the differences, and writes the page."""
     parser = argparse.ArgumentParser(description="draws the gallery")
-    parser.add_argument("SCENE", nargs="*", help=f"{', '.join(CAPTIONS)} (default: all)")
+    parser.add_argument("SCENE", nargs="*", help=f"{', '.join(CAPTIONS)}, loop (default: all)")
     add_workers(parser)
     arguments = parser.parse_args()
-    chosen = arguments.SCENE or list(CAPTIONS)
-    if unknown := set(chosen) - set(CAPTIONS):
+    chosen = arguments.SCENE or [*CAPTIONS, "loop"]
+    if unknown := set(chosen) - {*CAPTIONS, "loop"}:
         parser.error(f"not in the gallery: {', '.join(sorted(unknown))}")
     names = [name for name in CAPTIONS if name in chosen]
     processes = arguments.processes if arguments.scheduler or arguments.processes else 0
@@ -236,6 +244,8 @@ def main() -> None:
         {name: [f"{difference.beyond}" for difference in differences] for name, differences in large.items()}
     )
     files = {f"{name}.png": data for name, data in pictures.items()}
+    if "loop" in chosen:
+        files[gallery_loop.LOOP] = gallery_loop.drawn()
     write_files(str(PICTURES), files)
     PAGE.write_text(page([backends.get(name) for name in BACKENDS], *rows), encoding="utf-8")
     print(f"wrote {PAGE.name} and {len(files)} pictures, {sum(map(len, files.values())) / 1000:.0f} kB")

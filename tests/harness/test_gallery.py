@@ -27,6 +27,7 @@ from sssgen.lab.scene import measured_scene
 from sssgen.material.material_loading import examples
 
 SMALL = (64, 48)
+LOOP = "light_around.webp"
 
 
 @cache
@@ -127,7 +128,7 @@ def test_every_example_has_a_scene() -> None:
 def test_the_gallery_shows_every_example() -> None:
     page = (ROOT / "docs" / "gallery.md").read_text(encoding="utf-8")
     linked = re.findall(r"\]\(gallery/(\w+\.\w+)\)", page)
-    assert sorted(linked) == sorted(f"{name}.png" for name in examples())
+    assert sorted(linked) == sorted([*(f"{name}.png" for name in examples()), LOOP])
     assert sorted(linked) == sorted(path.name for path in (ROOT / "docs" / "gallery").iterdir())
     for name in examples():
         assert f"`sssgen render {name} -o {name}.png`" in page
@@ -137,9 +138,22 @@ def test_the_gallery_shows_every_example() -> None:
 def test_the_gallery_is_small() -> None:
     files = list((ROOT / "docs" / "gallery").iterdir())
     assert sum(file.stat().st_size for file in files) < 1_500_000
-    for file in files:
+    for file in (file for file in files if file.name != LOOP):
         with Image.open(file) as picture:
             assert (picture.format, picture.mode, picture.size) == ("PNG", "RGB", (640, 480))
+
+
+def test_the_light_goes_around() -> None:
+    """The loop goes on for ever, and its light moves in even steps, also from the last frame to the first."""
+    frames = []
+    with Image.open(ROOT / "docs" / "gallery" / LOOP) as loop:
+        assert loop.format == "WEBP" and loop.info["loop"] == 0
+        for number in range(getattr(loop, "n_frames", 1)):
+            loop.seek(number)
+            frames.append(np.asarray(loop.convert("RGB"), np.float64) / 255.0)
+    assert len(frames) >= 16
+    steps = [np.abs(frames[number] - frames[number - 1]).mean() for number in range(len(frames))]
+    assert min(steps) > 0.002 and max(steps) < 4.0 * np.median(steps)
 
 
 @pytest.mark.parametrize("name", example_cases())
