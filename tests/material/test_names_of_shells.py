@@ -68,6 +68,8 @@ def material(folder: Path, kind: str, words: Collection[str]) -> Path:
     """A material of two techniques that declare and use these names."""
     names = sorted(name for name in words if declarable(kind, name))
     assert {"Surface", "surface", "light", "_FORWARD_PLUS", "ENDCG"} <= {*names}
+    if kind == "uniform":  # some targets make one property of names that differ in this only
+        names = list({name.replace("_", "").lower(): name for name in names}.values())
     head = "\n".join([declaration(kind, name) for name in names]) + "\n"
     body = "float sum = 0.0;\n" + "\n".join([use(kind, name) for name in names]) + "\n"
     surface = "albedo = vec3(sum); alpha = sum; normal = normalize(normal + tangent_direction(vec3(uv, sum))); }\n"
@@ -104,7 +106,11 @@ def test_structs_with_names_of_the_chain(tmp_path: Path, assert_compiles: Callab
 def test_all_names_of_shells(kind: str, tmp_path: Path, assert_compiles: Callable[[Source], None]) -> None:
     words = words_of_shells()
     assert {"Varyings", "clip_position", "to_light", "MAX_LIGHTS"} <= words
-    compile_everywhere(material(tmp_path, kind, words), assert_compiles)
+    for part in range(3):  # the time of some compilers grows faster than the text
+        folder = tmp_path / str(part)
+        folder.mkdir()
+        some = {*sorted(words)[part::3], "Surface", "surface", "light", "_FORWARD_PLUS", "ENDCG"}
+        compile_everywhere(material(folder, kind, some), assert_compiles)
 
 
 def test_a_name_of_a_reserved_beginning_gets_another(tmp_path: Path) -> None:
