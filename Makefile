@@ -71,6 +71,7 @@ bench-gpu: setup
 
 gallery: setup
 	$(BIN)/python docs/gallery.py
+	$(BIN)/python docs/before_after.py
 
 stability: setup
 	$(BIN)/python -m qualification.pages.stability

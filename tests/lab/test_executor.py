@@ -292,7 +292,7 @@ def test_no_scheduler(monkeypatch: pytest.MonkeyPatch) -> None:
         with pytest.raises(SssgenError, match="no Dask scheduler answers"):
             run([Item("executor_items:echo", (1,))], address, store=Store(""))
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(SssgenError, match=r"sssgen\[cluster\]"):
+    with pytest.raises(SssgenError, match=r"\[cluster\]"):
         run([Item("executor_items:echo", (1,))], "tcp://127.0.0.1:9", store=Store(""))
 
 

@@ -104,7 +104,7 @@ def test_whole_shaders_are_refused(capsys: pytest.CaptureFixture[str], backend: 
     backend("webgpu-f16")
     scene = EXAMPLES / "paper_lantern" / "scene.toml"
     assert cli.main(["render", str(scene), "-b", "webgpu-f16", "-o", str(tmp_path / "no.png")]) == 2
-    assert "functions only" in capsys.readouterr().err
+    assert "evaluates functions and draws no scenes" in capsys.readouterr().err
 
 
 # Results on the back end

@@ -15,7 +15,7 @@ from sssgen.material import attributes
 from sssgen.material.attributes import Attributes
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.file_memo import CachedResult, remembered
-from sssgen.support.paths import PACKAGE, posix, stem
+from sssgen.support.paths import PACKAGE, place, posix, stem
 
 TECHNIQUES = os.path.join(PACKAGE, "techniques")
 
@@ -86,7 +86,10 @@ def folder_of(path: str) -> str:
 
 
 def shown_name(path: str) -> str:
-    """A file's name in messages and reflection: library files by their place in the library."""
+    """A file's name in messages and reflection: files of the library and of the examples by their place there."""
+    examples = place("examples")
+    if path.startswith(examples + os.sep):
+        return posix(f"examples{path.removeprefix(examples)}")
     return posix(path.removeprefix(TECHNIQUES + os.sep))
 
 

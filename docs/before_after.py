@@ -1,0 +1,145 @@
+"""Draws docs/accuracy/before_after.png: bodies by the default shading of engines, by their material, and path traced.
+
+All three have the same highlight, light and tone mapping. The path-traced medium is that of the material's numbers.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from sssgen.harness import backends
+from sssgen.harness.backends import Array
+from sssgen.harness.evaluate.evaluation import evaluate
+from sssgen.harness.evaluate.probes import subject
+from sssgen.harness.pictures.images import encode_srgb
+from sssgen.harness.render.scene_render import Rendered, render
+from sssgen.harness.scenes import scene_loading
+from sssgen.harness.scenes.geometry import Distance
+from sssgen.harness.scenes.scene import Scene
+from sssgen.lab.measure import scene_references
+from sssgen.lab.scene.measured_scene import MeasuredScene
+from sssgen.lab.scene.media import Medium
+from sssgen.lab.scene.view_points import points
+from sssgen.material.material_loading import load_material
+from sssgen.material.model import Material
+
+PICTURE = Path(__file__).parent / "accuracy" / "before_after.png"
+PANEL = (256, 192)
+"""The size in pixels of a picture of the comparison; the path traced one has half of it along each side."""
+GAP, HEAD = 6, 24
+"""Between the pictures, and above them for the titles."""
+BLACK = (0.0, 0.0, 0.0)
+
+
+class Compared(NamedTuple):
+    """A row of the comparison."""
+
+    scene: str
+    body: str
+    """The distance function of what is path traced; "" for the scene's."""
+    samples: int
+    """The number of paths of a pixel."""
+
+
+COMPARED = (Compared("skin_ear", "", 256), Compared("candle", "candle.sss:wax", 256))
+COLUMNS = ("engine default: Lambert + GGX", "sssgen", "path traced")
+
+
+def before_after() -> bytes:
+    """A PNG with a row for each compared scene, and a column for each way to shade it."""
+    rows = [panels(compared) for compared in COMPARED]
+    width = len(COLUMNS) * (PANEL[0] + GAP) - GAP
+    sheet = Image.new("RGB", (width, HEAD + len(rows) * (PANEL[1] + GAP) - GAP), (18, 18, 20))
+    font = ImageFont.load_default(13)
+    for column, title in enumerate(COLUMNS):
+        ImageDraw.Draw(sheet).text((column * (PANEL[0] + GAP) + 6, 4), title, (225, 225, 225), font)
+    for row, pictures in enumerate(rows):
+        for column, picture in enumerate(pictures):
+            sheet.paste(_image(picture), (column * (PANEL[0] + GAP), HEAD + row * (PANEL[1] + GAP)))
+    file = io.BytesIO()
+    sheet.save(file, "PNG", optimize=True)
+    return file.getvalue()
+
+
+def panels(compared: Compared) -> list[Array]:
+    """The pictures of a row, encoded. All have the same highlight and tone mapping."""
+    scene = scene_loading.load(compared.scene)
+    scene = dataclasses.replace(scene, size=PANEL, samples=2, shell={}, ambient=BLACK)
+    medium = medium_of(load_material(scene.material))
+    default = _drawn(scene, {"octaves": [0.0] * 4, "tint": [*half_space(medium), 1.0]})
+    ours = _drawn(scene, {})
+    surface = _drawn(scene, {"octaves": [0.0] * 4, "tint": [*BLACK, 1.0]})
+    body, share = traced(scene, compared, medium)
+    path_traced = surface.linear + surface.covered[..., None] * body * (share > 0.05)
+    return [encode_srgb(mapped(picture)) for picture in (default.linear, ours.linear, path_traced)]
+
+
+def medium_of(material: Material) -> Medium:
+    """The medium whose light a material computes, from the values of its stages."""
+    values: dict[str, Any] = {}
+    for stage in material.stages:
+        values |= stage.values
+    extinction, albedo = (np.array(values[name]) for name in ("extinction", "scattering_albedo"))
+    absorption, scattering = (tuple(map(float, part)) for part in (extinction * (1.0 - albedo), extinction * albedo))
+    return Medium(material.name, absorption, scattering)  # type: ignore[arg-type]  # three each
+
+
+def half_space(medium: Medium) -> Array:
+    """The share of light that a deep body of a medium reflects: the base colour that an artist would take.
+
+    Van de Hulst's fit for isotropic scattering (Multiple Light Scattering, 1980).
+    """
+    s = np.sqrt(1.0 - np.array(medium.albedo))
+    result: Array = (1.0 - s) * (1.0 - 0.139 * s) / (1.0 + 1.17 * s)
+    return result
+
+
+def traced(scene: Scene, compared: Compared, medium: Medium) -> tuple[Array, Array]:
+    """The light from inside the body, (height, width, 3), and the share of each pixel that shows the body, (…, 1)."""
+    width, height = PANEL[0] // 2, PANEL[1] // 2
+    assert isinstance(scene.geometry, Distance)
+    body = dataclasses.replace(scene.geometry, technique=compared.body or scene.geometry.technique)
+    measured = MeasuredScene(
+        scene.material, scene.title, body, scene.camera, scene.lights, medium, None, (width, height)
+    )
+    readings = scene_references.traced(measured, compared.samples, 0)
+    light = sum(mean * np.array(light.color)[:, None] for (mean, _), light in zip(readings, scene.lights, strict=True))
+    visible = points(measured)
+    shown = visible.picture(np.ones((1, visible.count)))
+    share = _enlarged(shown)
+    return _enlarged(visible.picture(np.asarray(light))) / np.maximum(share, 1e-3), share
+
+
+def mapped(picture: Array) -> Array:
+    """The picture in the range of a display."""
+    colors = evaluate(subject("khronos_neutral"), {"color": picture.reshape(-1, 3)}, backends.get("numpy"))["result"]
+    result: Array = colors.reshape(picture.shape)
+    return result
+
+
+def _drawn(scene: Scene, parameters: dict[str, object]) -> Rendered:
+    return render(dataclasses.replace(scene, parameters={**scene.parameters, **parameters}), backends.get("gl"))
+
+
+def _enlarged(picture: Array) -> Array:
+    """The picture with the pixels of a panel, by bilinear filtering."""
+    channels = [
+        Image.fromarray(picture[..., channel].astype(np.float32)).resize(PANEL, Image.Resampling.BILINEAR)
+        for channel in range(picture.shape[2])
+    ]
+    result: Array = np.stack([np.asarray(channel, np.float64) for channel in channels], axis=-1)
+    return result
+
+
+def _image(encoded: Array) -> Image.Image:
+    return Image.fromarray(np.rint(255.0 * encoded).astype(np.uint8))
+
+
+if __name__ == "__main__":
+    PICTURE.write_bytes(before_after())
