@@ -274,15 +274,25 @@ def test_a_crashed_back_end_is_restarted(backend: Callable[[str], Backend]) -> N
         gpu.close()
 
 
-def test_a_lost_device_is_reported_and_replaced(backend: Callable[[str], Backend]) -> None:
+def test_a_lost_device_is_replaced(backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) -> None:
     """Imitates the reset of a driver. Lost browsers are in test_browser.py, lost processes below."""
-    gpu = backend("webgpu")
+    gpu: Any = backend("webgpu")
     technique, write_inputs = subject("beer_lambert"), {"d": [0.1, 0.2], "attenuation_distance": 0.1}
-    gpu.gpu.destroy()  # type: ignore[attr-defined]
-    with pytest.raises(SssgenError, match="webgpu: the device was lost"):
-        evaluate(technique, write_inputs, gpu)
+    gpu.gpu.destroy()
     assert evaluate(technique, write_inputs, gpu)["result"] == pytest.approx(np.exp([-1.0, -2.0]))
     assert compilers.get("naga").check(compilers.Source("fn f() -> f32 { return 1.0; }", "wgsl", "library")) == []
+    start = gpu.start
+
+    def start_and_lose(naga: Any) -> None:
+        start(naga)
+        gpu.gpu.destroy()
+
+    with monkeypatch.context() as patch:
+        patch.setattr(gpu, "start", start_and_lose)
+        gpu.gpu.destroy()
+        with pytest.raises(SssgenError, match="webgpu: the device was lost twice"):
+            evaluate(technique, write_inputs, gpu)
+    assert evaluate(technique, write_inputs, gpu)["result"] == pytest.approx(np.exp([-1.0, -2.0]))
 
 
 def test_a_back_end_that_hangs_is_ended(backend: Callable[[str], Backend]) -> None:

@@ -45,17 +45,27 @@ class WebGPU(DrawingBackend):
         return self.naga.version()
 
     def draw(self, drawing: Drawing) -> Array:
-        import wgpu
-
+        """Tries a second time on a new device: software drivers lose one now and then, whatever the text is."""
         self.check(drawing)
         drawing_plan = plan(drawing)
+        result = self.drawn(drawing, drawing_plan)
+        if result is None:
+            result = self.drawn(drawing, drawing_plan)
+        if result is None:
+            raise backend_failure(self.name, "the device was lost twice", "the next run uses a new one")
+        return result
+
+    def drawn(self, drawing: Drawing, drawing_plan: Plan) -> Array | None:
+        """The picture; None where the device was lost, and there is a new one."""
+        import wgpu
+
         try:
             return self.execute(drawing_plan)
         except wgpu.GPUError as error:
             if self.lost():
                 self.naga.gpu = find().gpu  # the compiler's device is the same
                 self.start(self.naga)
-                raise backend_failure(self.name, "the device was lost", "the next run uses a new one") from None
+                return None
             messages = self.naga.complaints(drawing_plan.code)
             if messages:
                 raise refused(self.name, drawing.fragment.text, messages) from None
