@@ -85,9 +85,10 @@ def medium_of(material: Material) -> Medium:
     values: dict[str, Any] = {}
     for stage in material.stages:
         values |= stage.values
-    extinction, albedo = (np.array(values[name]) for name in ("extinction", "scattering_albedo"))
-    absorption, scattering = (tuple(map(float, part)) for part in (extinction * (1.0 - albedo), extinction * albedo))
-    return Medium(material.name, absorption, scattering)  # type: ignore[arg-type]  # three each
+    red, green, blue = values["extinction"]
+    red_albedo, green_albedo, blue_albedo = values["scattering_albedo"]
+    absorption = (red * (1.0 - red_albedo), green * (1.0 - green_albedo), blue * (1.0 - blue_albedo))
+    return Medium(material.name, absorption, (red * red_albedo, green * green_albedo, blue * blue_albedo))
 
 
 def half_space(medium: Medium) -> Array:

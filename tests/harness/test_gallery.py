@@ -169,3 +169,22 @@ def test_the_gallery_is_current(name: str, backend: Callable[[str], Backend]) ->
 
 def _picture(path: Path) -> npt.NDArray[np.float64]:
     return images.read(path)
+
+
+@pytest.mark.slow
+def test_the_comparison_with_path_tracing_is_current(backend: Callable[[str], Backend]) -> None:
+    """The picture of `docs/before_after.py`; few paths of light are as bright on average as many."""
+    backend("gl")
+    script = runpy.run_path(str(ROOT / "docs" / "before_after.py"))
+    (width, height), gap, head = script["PANEL"], script["GAP"], script["HEAD"]
+    with Image.open(script["PICTURE"]) as picture:
+        stored = np.asarray(picture.convert("RGB"), np.float64) / 255.0
+    for row, compared in enumerate(script["COMPARED"]):
+        top = head + row * (height + gap)
+        for column, panel in enumerate(script["panels"](compared._replace(samples=16))):
+            left = column * (width + gap)
+            expected = stored[top : top + height, left : left + width]
+            if script["COLUMNS"][column] == "path traced":
+                assert abs(panel.mean() - expected.mean()) < 0.02
+            else:
+                assert np.abs(panel - expected).mean() < 1.0 / 255.0

@@ -95,6 +95,7 @@ def _add_completers(parser: ArgumentParser, command: str) -> None:
             for inner in action.choices.values():
                 _add_completers(inner, command)
         elif action.choices is None and action.nargs != 0:
+            # argcomplete reads this attribute, which argparse's own type does not declare
             action.completer = functools.partial(_candidates, values_of(action, command))  # type: ignore[attr-defined]
 
 

@@ -5,10 +5,10 @@ Nothing is imported for it, so that help texts and reports may list what this ma
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import NamedTuple
 
-from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.installation import install_hint
 
 
@@ -187,13 +187,18 @@ def chosen(text: str, scenes: bool = False) -> list[str]:
     possible = SCENES if scenes else FUNCTIONS
     for name in names:
         if name not in BACKENDS:
-            hint = did_you_mean(name, possible) or f"choose from: {', '.join(possible)}"
-            raise failure(f"unknown back end '{name}'", hint)
+            raise unknown(name, possible)
         if scenes:
             check_draws(name)
         if BACKENDS[name].scenes_only and not scenes:
             raise failure(f"{name} draws scenes and evaluates no functions", f"choose from: {', '.join(FUNCTIONS)}")
     return names
+
+
+def unknown(name: str, possible: Collection[str]) -> SssgenError:
+    """The error for a name that no back end has; the hint names those that are possible."""
+    hint = did_you_mean(name, possible) or f"choose from: {', '.join(possible)}"
+    return failure(f"unknown back end '{name}'", hint)
 
 
 def check_draws(name: str) -> None:

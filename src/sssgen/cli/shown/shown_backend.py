@@ -6,8 +6,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from sssgen.cli.layout import wrapped
-from sssgen.harness.backend_registry import BACKENDS
-from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.harness.backend_registry import BACKENDS, unknown
 
 
 def names() -> Collection[str]:
@@ -18,9 +17,7 @@ def names() -> Collection[str]:
 def describe(name: str) -> dict[str, Any]:
     """Everything about a back end. Raises SssgenError."""
     if name not in BACKENDS:
-        raise failure(
-            f"unknown back end '{name}'", did_you_mean(name, BACKENDS) or f"choose from: {', '.join(BACKENDS)}"
-        )
+        raise unknown(name, BACKENDS)
     record = BACKENDS[name]
     return {
         "name": name,
