@@ -22,7 +22,7 @@ IRRADIANCE_SIDE = 16
 REFLECTION_SIDE = 64
 LEVELS = 5
 """Of the reflections: roughness 0, 1/4, 1/2, 3/4 and 1. The last has faces of 4 × 4 texels."""
-_BLOCK = 1 << 19
+_BLOCK = 1 << 17
 """The number of weights that are computed at once."""
 
 
@@ -86,10 +86,12 @@ def _pixels(environment: Environment, height: int) -> tuple[Array, Array, Array]
 def _mean(side: int, pixels: Array, ways: Array, angles: Array, weight: Callable[[Array], Array]) -> Array:
     """(6, side, side, 3): the mean of the pixels around each texel's direction, weighted by the cosine between them."""
     directions, across = cube_directions(side).reshape(-1, 3).astype(np.float32), ways.T.astype(np.float32)
+    # the light and, last, the weight itself, in single precision as the weights: the products are most of the time
+    summed = (np.column_stack([pixels, np.ones(len(pixels))]) * angles[:, None]).astype(np.float32)
     result = np.zeros((len(directions), 3))
     step = max(1, _BLOCK // len(ways))
     for start in range(0, len(directions), step):
         part = slice(start, start + step)
-        weights = weight(directions[part] @ across) * angles.astype(np.float32)
-        result[part] = weights @ pixels / weights.sum(axis=1, keepdims=True)
+        sums = (weight(directions[part] @ across) @ summed).astype(np.float64)
+        result[part] = sums[:, :3] / sums[:, 3:]
     return result.reshape(6, side, side, 3)
