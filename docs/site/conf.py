@@ -14,6 +14,8 @@ html_theme = "furo"
 html_title = "sssgen"
 html_copy_source = False
 html_show_sphinx = False
+html_static_path = ["static"]
+html_css_files = ["site.css"]
 
 myst_heading_anchors = 6
 myst_enable_extensions = ["html_image"]

@@ -6,7 +6,8 @@ import statistics
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from markup import escaped, fenced, folded, number, table
+import formula_math
+from markup import escaped, fenced, number, table
 from records import points_of
 from sssgen.cli.shown.shown_technique import facts_of
 from sssgen.harness.evaluate import probes
@@ -74,7 +75,7 @@ def page(technique: Technique, picture: str = "", caption: str = "") -> str:
         lines += [f"![{escaped(caption)}]({picture})", "", f"*{escaped(caption)}*", ""]
     lines += table(("", ""), _at_a_glance(technique, facts))
     if formula := doc.pop("formula", ""):
-        lines += ["", "## Formula", "", *fenced(folded(formula), "text")]
+        lines += ["", "## Formula", "", formula_math.typeset(formula)]
     lines += ["", *_uniforms("Parameters", facts["parameters"]), *_uniforms("Textures", facts["textures"])]
     lines += _slots(facts["slots"])
     for key in [*(key for key in TITLES if key in doc), *(key for key in doc if key not in {*TITLES, *OMITTED})]:

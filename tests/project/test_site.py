@@ -7,10 +7,12 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
 import commands_page
+import formula_math
 import generated
 import menu
 import python_page
@@ -22,6 +24,7 @@ from folders import ROOT
 from sssgen.cli.commands import COMMANDS, command_parser
 from sssgen.harness.backends import Backend
 from sssgen.material import library, slots
+from sssgen.material.library import Technique
 
 
 def test_every_page_is_in_the_menu_once() -> None:
@@ -59,12 +62,61 @@ def test_the_page_of_a_technique(name: str) -> None:
     """It has the parameters, the formula, the source, the units, and the function as GLSL."""
     technique = library.load(name)
     text = technique_pages.page(technique)
-    formula = text.partition("\n## Formula\n\n```text\n")[2].partition("```")[0]
-    assert formula.split() == technique.doc["formula"].split()
+    assert _letters(text.partition("\n## Formula\n")[2].partition("</div>\n</div>")[0]) >= _names(technique)
     assert "\n## Source\n" in text and "\n## Units\n" in text
     read, _ = slots.needs(technique.module, technique.function)
     assert all(f"\n| `{uniform.name}` | " in text for uniform in technique.uniforms if uniform.name in read)
     assert f" {name}(" in text.partition("\n## In GLSL\n")[2]
+
+
+def _letters(page: str) -> set[str]:
+    """The names, numbers and words of a typeset formula, which is well-formed."""
+    formula = ElementTree.fromstring(page + "</div>\n</div>")
+    assert formula.find(".//*") is not None
+    return set(re.findall(r"\w+", " ".join(formula.itertext())))
+
+
+def _names(technique: Technique) -> set[str]:
+    """The words of the formula as it is written, but those that typesetting replaces by signs or lowers."""
+    words = re.findall(r"[^\W\d_]\w*", re.sub(r"\b\w+(?=\()", "", technique.doc["formula"]))
+    return {word for word in words if "_" not in word and word not in formula_math.GREEK and not word[-1].isdigit()}
+
+
+@pytest.mark.parametrize(
+    ("formula", "expected"),
+    [
+        ("2 reach", "<mn>2</mn>_<mi>reach</mi>"),
+        ("w_i", "<msub><mi>w</mi><mi>i</mi></msub>"),
+        ("t_i+1", '<msub><mi>t</mi><mrow><mi>i</mi><mo form="infix">+</mo><mn>1</mn></mrow></msub>'),
+        ("sigma_t", "<msub><mi>σ</mi><mi>t</mi></msub>"),
+        ("attenuation_distance", "<mi>attenuation_distance</mi>"),
+        ("a b / 2", "<mfrac><mrow><mi>a</mi>_<mi>b</mi></mrow><mrow><mn>2</mn></mrow></mfrac>"),
+        ("a / b / c", "<mfrac><mrow><mi>a</mi></mrow><mrow><mi>b</mi>_<mi>c</mi></mrow></mfrac>"),
+        ("x^-1", "<msup><mrow><mi>x</mi></mrow><mrow><mo>−</mo><mn>1</mn></mrow></msup>"),
+        ("a dot(n, l)", '<mi>a</mi>_<mrow>(<mrow><mi>n</mi><mo form="infix">·</mo><mi>l</mi></mrow>)</mrow>'),
+        ("|(|x|, y)|", "<mrow>|<mrow>(<mrow>|<mi>x</mi>|</mrow><mo>,</mo><mi>y</mi>)</mrow>|</mrow>"),
+        ("sqrt(.5)", "<msqrt><mn>0.5</mn></msqrt>"),
+        ("uv'", "<msup><mrow><mi>uv</mi></mrow><mo>′</mo></msup>"),
+        ("sum_k", "<munder><mo>∑</mo><mi>k</mi></munder>"),
+    ],
+)
+def test_the_notation_of_formulas(formula: str, expected: str) -> None:
+    text = formula_math.typeset(formula)
+    text = re.sub(r'<mo fence="true"[^>]*>(.)</mo>', r"\1", text)
+    text = re.sub(r"<mspace[^>]*></mspace>", "_", re.sub(r"</?math[^>]*>|<wbr/>", "", text))
+    assert text == f'<div class="formula">\n<div>{expected}</div>\n</div>'
+
+
+@pytest.mark.parametrize("formula", ["x over 2", "a = (b", "the light of x", "x ="])
+def test_what_is_no_formula_is_refused_with_its_place(formula: str) -> None:
+    with pytest.raises(formula_math.FormulaError, match="⟨here⟩"):
+        formula_math.typeset(formula)
+
+
+def test_each_clause_of_a_formula_is_a_line() -> None:
+    text = formula_math.typeset('a = b, k = 1, 2, "until" a < b; c')
+    lines = [re.sub("<[^>]*>", "", line) for line in text.splitlines()[1:-1]]
+    assert lines == ["a=b", "k=1, 2", "until a&lt;b", "c"]
 
 
 def test_the_errors_of_a_technique_are_those_of_the_chart() -> None:
