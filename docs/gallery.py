@@ -46,8 +46,8 @@ CAPTIONS = {
     "jelly": "The length towards the light in place of the depth of the nearest face, which makes "
     "[the X](stability.md#thinness-from-a-distance-field-cheap-sss-xt95) of `jelly_cubes` below. The light that comes "
     "through the cubes falls on the plate; the shell's shadow map keeps the other light from there.",
-    "ice_body": "Ice as a body: it absorbs red before blue and scatters little, the eye's ray is refracted at its "
-    "surface, and cracks inside it scatter the sun.",
+    "ice_body": "Ice as a body: the eye's ray is refracted at its surface and mirrored at the faces behind, which "
+    "show the surroundings; the ice absorbs red before blue and scatters little, and cracks inside it scatter the sun.",
     "paper_lantern": "Alisavakis's simple subsurface scattering, on paper and wood. The lamp is inside, so every side "
     "is lit from behind. A map holds the thickness of the paper fibres; the hoops are opaque.",
     "wax_mouse": "Subsurface scattering with 3-D distance fields, on a candle. The shader marches the light's path "
@@ -78,7 +78,7 @@ ALTERNATIVE_TEXTS = {
     "skin_ear": "An ear beside a dark cheek, glowing orange in the light behind it",
     "leaves": "A twig with five bright green leaves against the light, with dark veins",
     "jelly": "Two cubes of red jelly on a white plate, with red light in their shadows",
-    "ice_body": "A block of clear blue ice with white cracks inside",
+    "ice_body": "A block of clear dark blue ice with bright cracks inside and bright lower edges",
     "jelly_cubes": "Two red cubes of jelly on a checkered floor, their edges lit by the evening sky behind them",
     "paper_lantern": "A round paper lantern with dark wooden hoops and a red tassel, lit from inside, at dusk",
     "wax_mouse": "A sitting mouse of amber wax with large round ears that glow in the light behind it",
