@@ -32,7 +32,7 @@ PICTURES = Path(__file__).with_name("gallery")
 BACKENDS = tuple(name for name in backends.DEFAULT if backends.BACKENDS[name].driver)
 SMALL = (160, 120)
 """The size in pixels of the pictures that are compared."""
-MARCHED = ("candle", "skin_ear", "leaves", "jelly", "ice_body")
+MARCHED = ("candle", "skin_ear", "leaves", "jelly", "ice_body", "soap", "milk_glass")
 """The scenes whose shaders march through distance functions, which takes NumPy minutes in the full size."""
 
 CAPTIONS = {
@@ -48,6 +48,10 @@ CAPTIONS = {
     "through the cubes falls on the plate; the shell's shadow map keeps the other light from there.",
     "ice_body": "Ice as a body: the eye's ray is refracted at its surface and mirrored at the faces behind, which "
     "show the surroundings; the ice absorbs red before blue and scatters little, and cracks inside it scatter the sun.",
+    "soap": "A bar of glycerin soap with an engraved leaf. Both lengths inside it are marched through its distance "
+    "function, so that the bar may be used up; the shadow on the slate is the shell's.",
+    "milk_glass": "A lamp of milk glass. The bulb is a point light inside the dome, whose thin glass scatters its "
+    "light; the stem is brass, and both mirror the lamps of a studio.",
     "paper_lantern": "Alisavakis's simple subsurface scattering, on paper and wood. The lamp is inside, so every side "
     "is lit from behind. A map holds the thickness of the paper fibres; the hoops are opaque.",
     "wax_mouse": "Subsurface scattering with 3-D distance fields, on a candle. The shader marches the light's path "
@@ -79,6 +83,8 @@ ALTERNATIVE_TEXTS = {
     "leaves": "A twig with five bright green leaves against the light, with dark veins",
     "jelly": "Two cubes of red jelly on a white plate, with red light in their shadows",
     "ice_body": "A block of clear dark blue ice with bright cracks inside and bright lower edges",
+    "soap": "A bar of amber soap with an engraved leaf, on a slab of slate with the light behind it",
+    "milk_glass": "A table lamp with a glowing dome of white glass on a brass stem",
     "jelly_cubes": "Two red cubes of jelly on a checkered floor, their edges lit by the evening sky behind them",
     "paper_lantern": "A round paper lantern with dark wooden hoops and a red tassel, lit from inside, at dusk",
     "wax_mouse": "A sitting mouse of amber wax with large round ears that glow in the light behind it",

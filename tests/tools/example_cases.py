@@ -8,7 +8,7 @@ import pytest
 
 from sssgen.material.material_loading import examples
 
-ALIKE = ("jelly", "candle", "ice_body", "leaves", "skin_ear")
+ALIKE = ("jelly", "candle", "ice_body", "leaves", "skin_ear", "soap", "milk_glass")
 """Examples whose chains march through a distance function, or that have techniques of their own."""
 
 
