@@ -16,6 +16,9 @@ import pytest
 from folders import ROOT
 from sssgen.cli.commands import COMMANDS
 from sssgen.cli.main import WRONG_INPUT
+from sssgen.lab.chart.charting import Settings, results_of
+from sssgen.lab.jobs.executor import Item
+from sssgen.support.diagnostics import SssgenError
 from sssgen.support.installation import install_hint
 
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
@@ -55,9 +58,9 @@ NEEDS: dict[str, str | None] = {
     "render ice": "render",
     "render --compare a.png b.png": "render",
     "ci .": None,
-    "chart cube": "chart",
-    "pick cube --max-error 0.5": "chart",
-    "fit cube lobe_exp2": "chart",
+    "chart cube": "chart,reference",
+    "pick cube --max-error 0.5": "chart,reference",
+    "fit cube lobe_exp2": "chart,reference",
     "bake sdf a.obj -o a.npy": "bake",
     "bake thickness a.obj -o a.npy": "bake",
     "bake depth a.obj --direction 0,0,1 -o a.npy": "bake",
@@ -69,7 +72,7 @@ NEEDS: dict[str, str | None] = {
     "help emit": None,
     "completion bash": None,
 }
-"""Command → the extra that it needs."""
+"""Command → the extra that it needs, or several."""
 
 
 def test_every_command_is_here() -> None:
@@ -103,7 +106,7 @@ def named_extras() -> Iterator[tuple[str, str]]:
             yield from ((name, path.name) for name in listed.split(","))
         if path.suffix == ".py":
             yield from ((name, path.name) for name in extras_of_calls(ast.parse(text)))
-    yield from ((command.extra, name) for name, command in COMMANDS.items())
+    yield from ((extra, name) for name, command in COMMANDS.items() for extra in command.extra.split(","))
 
 
 def extras_of_calls(tree: ast.Module) -> Iterator[str]:
@@ -120,6 +123,16 @@ def test_every_named_extra_exists() -> None:
     named = list(named_extras())
     assert {"numpy", "render", "chart", "bake", "cluster", "reference"} <= {name for name, _ in named}
     assert [place for place in named if place[0] not in EXTRAS] == []
+
+
+def test_a_reference_without_mitsuba_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+    item = Item("sssgen.lab.reference.transport_mitsuba:mitsuba", (), "reference of cube")
+    monkeypatch.setitem(sys.modules, "mitsuba", None)
+    with pytest.raises(SssgenError) as caught:
+        results_of([item], Settings(processes=0))
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.message.startswith("reference of cube: the package 'mitsuba' is missing")
+    assert diagnostic.hint == install_hint("reference")
 
 
 WITHOUT_OTHER_EXTRAS = """

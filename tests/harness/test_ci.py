@@ -179,7 +179,7 @@ def test_an_empty_report() -> None:
     [
         (["--backend", "gll"], "did you mean 'gl'"),
         (["--flip", "2"], "not a threshold for FLIP"),
-        (["--flip", "much"], "invalid float value"),
+        (["--flip", "much"], "--flip: expected a number, not 'much'"),
         (["--junit", "lamp.toml/report.xml"], "cannot write"),
     ],
 )

@@ -220,6 +220,7 @@ def test_failures_are_named() -> None:
     with pytest.raises(SssgenError) as caught:
         chart.results_of([executor.Item("executor_items:fail", ("said",), "fit this")], settings())
     assert "fit this: the scene has no light" in str(caught.value)
+    assert caught.value.diagnostics[0].hint == "add one"
     names = ("one", "two", "two", "three")
     again = [executor.Item("executor_items:fail", ("said",), name) for name in names]
     with pytest.raises(SssgenError) as caught:

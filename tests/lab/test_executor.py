@@ -127,7 +127,7 @@ def test_a_failure_affects_only_its_item(processes: int) -> None:
     *failed, good = run(jobs, processes=processes, store=store)
     assert good == (1, 1)
     assert [failure.name for failure in failed] == ["said", "raised", "exit", "missing", "module"]
-    assert failed[0].message == "the scene has no light"
+    assert (failed[0].message, failed[0].hint) == ("the scene has no light", "add one")
     assert failed[1].message.startswith("ValueError: no such thing (executor_items.py:")
     assert "no_such_module" in failed[4].message
     assert len(store.memory) == 1  # failed items are run again

@@ -166,6 +166,14 @@ def test_an_unknown_scene_gets_a_suggestion() -> None:
     assert "did you mean 'bracket'" in str(caught.value)
 
 
+def test_a_scene_for_pictures_says_which_can_be_measured() -> None:
+    with pytest.raises(SssgenError) as caught:
+        measured_scene.load("wax_mouse")
+    (diagnostic,) = caught.value.diagnostics
+    assert "'wax_mouse' is for pictures" in diagnostic.message
+    assert all(name in diagnostic.hint for name in measured_scenes())
+
+
 def test_a_scene_without_a_material_is_not_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     scene = tmp_path / "scene.toml"
     scene.write_text('[medium]\npreset = "cream"\n' + BALL + LIT, encoding="utf-8")

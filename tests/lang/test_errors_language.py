@@ -329,3 +329,21 @@ def test_did_you_mean() -> None:
     assert did_you_mean("N_WORLD", ["n_world"]) == "did you mean 'n_world'?"
     assert did_you_mean("zork", ["density"]) == ""
     assert did_you_mean("a" * 1000, ["a" * 999]) == ""
+    assert did_you_mean("", ["density"]) == ""
+
+
+def test_did_you_mean_prefers_names_that_begin_with_the_word() -> None:
+    assert did_you_mean("glsl", ["wgsl", "glsl-330", "hlsl", "glsl-es-300"]) == (
+        "did you mean 'glsl-330' or 'glsl-es-300'?"
+    )
+    assert did_you_mean("uni", [f"unit{number}" for number in range(9)]).count("unit") == 5
+    assert did_you_mean("un", ["unity", "uno"]) == "did you mean 'uno'?"
+    assert did_you_mean("glsk", ["glsk_table", "glsl"]) == "did you mean 'glsk_table'?"
+
+
+def test_did_you_mean_prefers_names_with_the_word_to_aliases() -> None:
+    assert did_you_mean("roughness", ["surface_roughness", "rough"], ["roughnessFactor"]) == (
+        "did you mean 'surface_roughness'?"
+    )
+    assert did_you_mean("roughness", ["gloss"], ["roughnessFactor"]) == "did you mean 'roughnessFactor'?"
+    assert did_you_mean("color", ["base_color", "colour"]) == "did you mean 'colour'?"

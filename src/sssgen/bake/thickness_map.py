@@ -158,5 +158,5 @@ def _measured(
             items.append(Item("sssgen.bake.chord_lengths:inward", (path, digest, points, flat, *sampling), name))
     results = run(items, scheduler, processes, Store(""), progress)
     if failed := failures(results):
-        raise failure(f"a part of the map failed: {failed[0].message}", file=posix(path))
+        raise failure(f"a part of the map failed: {failed[0].message}", failed[0].hint, file=posix(path))
     return results

@@ -161,5 +161,5 @@ def _fitted(
     ]  # fmt: skip
     results = run(items, scheduler, processes, Store(""), progress)
     if failed := failures(results):
-        raise failure(f"a part of the map failed: {failed[0].message}", file=posix(path))
+        raise failure(f"a part of the map failed: {failed[0].message}", failed[0].hint, file=posix(path))
     return view_harmonics.Fit(*(np.concatenate(parts) for parts in zip(*results, strict=True)))

@@ -31,7 +31,7 @@ class Command(NamedTuple):
     group: str
     help: str
     extra: str = "numpy"
-    """The extra of the distribution that installs the packages that the command needs."""
+    """The extra of the distribution that installs the packages that the command needs, or several as `a,b`."""
 
 
 COMMANDS = {
@@ -46,9 +46,11 @@ COMMANDS = {
     "eval": Command("eval", "check", "evaluate a technique on arrays of inputs, on one or all back ends"),
     "stress": Command("stress", "check", "run techniques on dangerous, boundary and random inputs"),
     "ci": Command("ci", "check", "check all materials of a folder, and its scenes' golden pictures", "render"),
-    "chart": Command("chart", "measure", "chart error against cost of every technique and baseline", "chart"),
-    "pick": Command("pick", "measure", "pick the cheapest techniques that are good enough for a scene", "chart"),
-    "fit": Command("fit", "measure", "fit the parameters of techniques to a scene's medium", "chart"),
+    "chart": Command("chart", "measure", "chart error against cost of every technique and baseline", "chart,reference"),
+    "pick": Command(
+        "pick", "measure", "pick the cheapest techniques that are good enough for a scene", "chart,reference"
+    ),
+    "fit": Command("fit", "measure", "fit the parameters of techniques to a scene's medium", "chart,reference"),
     "transpile": Command("transpile", "import", "translate functions or whole shaders to a target's language"),
     "doctor": Command("doctor", "tool", "print versions, and the compilers and back ends found and missing"),
     "completion": Command("completion", "tool", "print the script that makes a shell complete commands and names"),

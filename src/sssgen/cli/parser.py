@@ -32,6 +32,11 @@ class Parser(argparse.ArgumentParser):
             choices = re.findall(r"[\w-]+", listed)
             message = f"unknown {argument.lower()} '{word}'"
             hint = did_you_mean(word, choices) or f"choose from: {', '.join(choices)}"
+            if f"--{word}" in self._option_string_actions:
+                hint = f"it is an option: {self.prog} --{word}"
+        elif match := re.match(r"argument (.+): invalid (int|float) value: (.*)", message, re.DOTALL):
+            option = max(match[1].split("/"), key=len)
+            message = f"{option}: expected a {'whole ' if match[2] == 'int' else ''}number, not {match[3]}"
         elif match := re.match(r"argument (?:\S+/)?(--[\w-]+): expected one argument", message):
             hint = f"write a value that begins with - as {match[1]}=VALUE"
         raise failure(message, hint)

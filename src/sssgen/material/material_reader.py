@@ -245,11 +245,12 @@ class _Reader:
 
     def unknown_parameter(self, technique: Technique, uniforms: list[Uniform], path: tuple[str | int, ...]) -> None:
         key = str(path[-1])
-        hint = did_you_mean(key, [name for uniform in uniforms for name in _names(uniform)])
+        names = [uniform.name for uniform in uniforms]
+        hint = did_you_mean(key, names, [name for uniform in uniforms for name in _names(uniform)[1:]])
         if any(slot.name == key for slot in technique.slots):
             hint = f"'{key}' is a slot: write bind = {{ {key} = … }}"
         if not hint:
-            hint = f"parameters: {', '.join(uniform.name for uniform in uniforms)}" if uniforms else "it has none"
+            hint = f"parameters: {', '.join(names)}" if uniforms else "it has none"
         message = f"unknown parameter '{key}' of '{technique.name}'"
         if any(uniform.name == key for uniform in technique.uniforms):
             message = f"'{technique.name}' does not read '{key}'"

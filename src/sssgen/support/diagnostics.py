@@ -5,7 +5,8 @@ A run collects every error it can find and raises them together as one `SssgenEr
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from sssgen.ir.spans import NOWHERE, Span
@@ -15,6 +16,13 @@ MAX_ERRORS = 100
 
 MAX_MESSAGE = 500
 """The largest length of a message: a name in it may be a megabyte long."""
+
+MIN_PART = 3
+"""The letters that a word needs before longer names are suggested for it."""
+MAX_SUGGESTIONS = 5
+"""The largest number of names in one suggestion."""
+ONE_LETTER, SIMILAR = 0.85, 0.6
+"""Similarities, from 0 to 1: of words of usual length that differ in a letter or two; the least for a suggestion."""
 
 
 class Diagnostic(NamedTuple):
@@ -147,15 +155,38 @@ def _cut(text: str) -> str:
     return text if len(text) <= MAX_MESSAGE else f"{text[:MAX_MESSAGE]}…"
 
 
-def did_you_mean(word: str, candidates: Iterable[str]) -> str:
-    """`did you mean 'x'?` for the most similar candidate, or ''."""
+def did_you_mean(word: str, candidates: Iterable[str], aliases: Iterable[str] = ()) -> str:
+    """`did you mean 'x'?` for the candidates most like the word, or ''.
+
+    The order: names that begin with the word; a name that differs in a letter or two; names with the word as a part;
+    `aliases`, which are other names of the candidates, that begin with it; the most similar of all names.
+    """
     import difflib
 
-    if len(word) > 100:
+    if not word or len(word) > 100:
         return ""
-    names = [name for name in candidates if len(name) <= 100][:2000]
-    near = difflib.get_close_matches(word, names, n=1, cutoff=0.6)
-    if not near:
-        folded = {name.lower(): name for name in names}
-        near = [folded[word.lower()]] if word.lower() in folded else []
-    return f"did you mean '{near[0]}'?" if near else ""
+    names, others = ([name for name in group if len(name) <= 100][:2000] for group in (candidates, aliases))
+    every, folded = [*names, *others], word.lower()
+    if same := [name for name in every if name.lower() == folded]:
+        return _question(same[:1])
+    if longer := _beginning(folded, names):
+        return _question(longer)
+    if near := difflib.get_close_matches(word, every, n=1, cutoff=ONE_LETTER):
+        return _question(near)
+    part = re.compile(rf"(?<![a-z0-9]){re.escape(folded)}(?![a-z0-9])")
+    holding = [name for name in names if len(word) >= MIN_PART and part.search(name.lower())]
+    return _question(
+        holding or _beginning(folded, others) or difflib.get_close_matches(word, every, n=1, cutoff=SIMILAR)
+    )
+
+
+def _beginning(folded: str, names: Sequence[str]) -> list[str]:
+    return [name for name in names if len(folded) >= MIN_PART and name.lower().startswith(folded)]
+
+
+def _question(names: Sequence[str]) -> str:
+    """`did you mean 'x', 'y' or 'z'?`; '' without a name."""
+    if not names:
+        return ""
+    *first, last = [f"'{name}'" for name in dict.fromkeys(names)][:MAX_SUGGESTIONS]
+    return f"did you mean {', '.join(first)}{' or ' if first else ''}{last}?"

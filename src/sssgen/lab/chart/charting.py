@@ -271,15 +271,15 @@ def results_of(items: Sequence[Item], settings: Settings) -> list[Any]:
     """The items' results. Raises SssgenError with all failures."""
     with settings.progress_bar() as progress:
         results = run(items, settings.scheduler, settings.processes, progress=progress)
-    failed: dict[str, dict[str, None]] = {}
+    failed: dict[tuple[str, str], dict[str, None]] = {}
     for result in results:
         if isinstance(result, Failure):
-            failed.setdefault(result.message, {})[result.name] = None
+            failed.setdefault((result.message, result.hint), {})[result.name] = None
     if failed:
         diagnostics = []
-        for message, names in failed.items():  # an error of a scene appears in all of its items
+        for (message, hint), names in failed.items():  # an error of a scene appears in all of its items
             first, more = next(iter(names)), f" and {len(names) - 1} more" if len(names) > 1 else ""
-            diagnostics.append(failure(f"{first}{more}: {message}").diagnostics[0])
+            diagnostics.append(failure(f"{first}{more}: {message}", hint).diagnostics[0])
         raise SssgenError(diagnostics)
     return results
 

@@ -196,7 +196,7 @@ def of_directions(
     results = run(items(scene, directions, settings), scheduler, processes, progress=progress)
     for result in results:
         if isinstance(result, Failure):
-            raise failure(f"{result.name}: {result.message}")
+            raise failure(f"{result.name}: {result.message}", result.hint)
     estimates, error = (_mean if _by_walks(scene) else _joined)(results, len(directions))
     noise = error / max(float(estimates.mean()), 1e-30)
     values = projection.texels(estimates.reshape(-1, grid.voxels)).reshape(3, len(directions), -1)

@@ -38,7 +38,9 @@ def run_stress(
     with ProgressBar() as progress:
         results = run(items, scheduler, processes, Store(""), progress)
     if failed := failures(results):
-        raise SssgenError([Diagnostic("error", f"{failure.name}: {failure.message}") for failure in failed])
+        raise SssgenError(
+            [Diagnostic("error", f"{failure.name}: {failure.message}", hint=failure.hint) for failure in failed]
+        )
     devices: dict[str, str] = {}
     missing: dict[str, str] = {}
     for _, worker_devices, worker_missing in results:

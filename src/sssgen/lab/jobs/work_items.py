@@ -30,6 +30,8 @@ class Failure(NamedTuple):
     """The item's name."""
     message: str
     """The error and its position."""
+    hint: str = ""
+    """What to do, where it is known."""
 
 
 class Item(NamedTuple):
@@ -74,7 +76,9 @@ def execute(task: Task) -> bytes:
         function = getattr(importlib.import_module(module), name)
         return encoded(function(*decoded(task.arguments)))
     except SssgenError as error:
-        return encoded(Failure(task.name, "; ".join(diagnostic.message for diagnostic in error.diagnostics)))
+        hints = dict.fromkeys(diagnostic.hint for diagnostic in error.diagnostics if diagnostic.hint)
+        messages = "; ".join(diagnostic.message for diagnostic in error.diagnostics)
+        return encoded(Failure(task.name, messages, "; ".join(hints)))
     except (Exception, SystemExit) as error:
         frame = traceback.extract_tb(error.__traceback__)[-1]
         position = f"{os.path.basename(frame.filename)}:{frame.lineno}"

@@ -17,7 +17,7 @@ import numpy as np
 from sssgen.harness.scenes.body_identity import contents
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.environment import Environment, read_environment
-from sssgen.harness.scenes.example_scenes import measured_scenes
+from sssgen.harness.scenes.example_scenes import drawn_scenes, measured_scenes
 from sssgen.harness.scenes.geometry import Geometry
 from sssgen.harness.scenes.scene import Light, Scene
 from sssgen.harness.scenes.scene_loading import load as load_scene
@@ -109,7 +109,11 @@ def load(name: str) -> MeasuredScene:
     scenes = measured_scenes()
     if not name.endswith(".toml") and "/" not in name and os.sep not in name:
         if name not in scenes:
-            hint = did_you_mean(name, scenes) or f"give a path that ends in .toml, or one of: {', '.join(scenes)}"
+            listed = f"give a path that ends in .toml, or one of: {', '.join(scenes)}"
+            if name in drawn_scenes():
+                message = f"the scene '{name}' is for pictures: it describes no medium, so there is nothing to measure"
+                raise failure(message, listed)
+            hint = did_you_mean(name, scenes) or listed
             raise failure(f"unknown scene '{name}'", hint)
         name = scenes[name]
     return of_scene(load_scene(name), name)
