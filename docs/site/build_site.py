@@ -16,7 +16,8 @@ from menu import ROOT, documents, problems
 from sssgen.harness import backends
 from sssgen.material import library
 from staging import Staging
-from technique_pictures import draw
+from technique_curves import curves_at_the_ends
+from technique_pictures import draw, why_none
 
 
 def main(folder: Path, pictures: bool) -> int:
@@ -30,10 +31,14 @@ def main(folder: Path, pictures: bool) -> int:
     backend = backends.get("gl") if pictures else None
     for technique in library.load_all():
         picture = draw(technique, backend) if backend is not None else None
-        if picture is not None:
-            staging.add_picture(generated.technique_picture(technique.name), picture.colors)
-        page, text = generated.technique_page(technique.name, picture.caption if picture is not None else "")
+        ends = curves_at_the_ends(technique) if pictures else None
+        above, below = (shown.caption if shown is not None else "" for shown in (picture, ends))
+        without = why_none(technique) if pictures and picture is None else ""
+        page, text, places = generated.technique_page(technique.name, above, below, without)
         texts[page] = text
+        for place, shown in zip(places, (picture, ends), strict=True):
+            if shown is not None:
+                staging.add_picture(place, shown.colors)
     for page, text in texts.items():
         staging.write(page, text)
     settings = ["-c", str(Path(__file__).parent), "-b", "html", "-q", "-W", "--keep-going", "-d", f"{sources}-cache"]

@@ -22,12 +22,13 @@ def pages() -> dict[str, str]:
     }
 
 
-def technique_picture(name: str) -> str:
-    """The path of the picture on a technique's page."""
-    return f"{technique_pages.FOLDER}/{name}.png"
+def technique_page(name: str, picture: str = "", ends: str = "", without: str = "") -> tuple[str, str, tuple[str, str]]:
+    """The path and the text of a technique's page, and the paths of its pictures.
 
-
-def technique_page(name: str, caption: str = "") -> tuple[str, str]:
-    """The path and the text of a technique's page; with a caption it has a picture."""
-    picture = f"{name}.png" if caption else ""
-    return f"{technique_pages.FOLDER}/{name}.md", technique_pages.page(library.load(name), picture, caption)
+    `picture` and `ends` are the captions of its picture and of that of the ends of its parameters' ranges; '' is none.
+    """
+    files = f"{name}.png", f"{name}_ends.png"
+    shown = [technique_pages.Shown(file, caption) for file, caption in zip(files, (picture, ends), strict=True)]
+    text = technique_pages.page(library.load(name), shown[0] if picture else None, shown[1] if ends else None, without)
+    folder = technique_pages.FOLDER
+    return f"{folder}/{name}.md", text, (f"{folder}/{files[0]}", f"{folder}/{files[1]}")

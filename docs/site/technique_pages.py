@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import formula_math
 from markup import escaped, fenced, number, table
@@ -66,13 +66,23 @@ def _summary(technique: Technique) -> str:
     return escaped(technique.doc.get("summary", "")) + (" *Baseline.*" if technique.baseline else "")
 
 
-def page(technique: Technique, picture: str = "", caption: str = "") -> str:
-    """The page of a technique. `picture` is the name of a file beside the page."""
+class Shown(NamedTuple):
+    """A picture on a page."""
+
+    file: str
+    """Beside the page."""
+    caption: str
+
+
+def page(technique: Technique, picture: Shown | None = None, ends: Shown | None = None, without: str = "") -> str:
+    """The page of a technique, with its picture, or why it has none, and one of the ends of its parameters' ranges."""
     facts = facts_of(technique)
     doc = dict(facts["doc"])
     lines = [f"# {technique.name}", "", escaped(facts["summary"]), ""]
-    if picture:
-        lines += [f"![{escaped(caption)}]({picture})", "", f"*{escaped(caption)}*", ""]
+    if picture is not None:
+        lines += _shown(picture)
+    elif without:
+        lines += [f"*{escaped(without)}*", ""]
     lines += table(("", ""), _at_a_glance(technique, facts))
     if formula := doc.pop("formula", ""):
         lines += ["", "## Formula", "", formula_math.typeset(formula)]
@@ -81,8 +91,13 @@ def page(technique: Technique, picture: str = "", caption: str = "") -> str:
     for key in [*(key for key in TITLES if key in doc), *(key for key in doc if key not in {*TITLES, *OMITTED})]:
         text = f"[{doc[key]}]({doc[key]}.md)" if doc[key] in library.index() else escaped(doc[key])
         lines += [f"## {TITLES.get(key, key.replace('_', ' ').capitalize())}", "", text, ""]
+        lines += _shown(ends) if key == "limits" and ends is not None else []
     lines += [*_measured(technique), "## In GLSL", "", *fenced(emitted(technique), "glsl"), ""]
     return "\n".join(lines)
+
+
+def _shown(picture: Shown) -> list[str]:
+    return [f"![{escaped(picture.caption)}]({picture.file})", "", f"*{escaped(picture.caption)}.*", ""]
 
 
 def _at_a_glance(technique: Technique, facts: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -1,8 +1,9 @@
 """Pictures of techniques, drawn with OpenGL by the shaders that sssgen emits.
 
 A technique of transmitted light is drawn on the cube of examples/lab, in the most accurate charted chain that has it
-and needs no baked texture. Others are drawn on a ball with a checker; a distance function is drawn as the body. There
-is no picture where that shows nothing: for a technique that needs a bake, and for cameras and marches.
+and needs no baked texture. Others are drawn on a ball with a checker; a distance function is drawn as the body, a
+quantity as a grey. What none of these shows is a curve. There is no picture where no rule applies: for a technique that
+needs a bake, and for cameras and marches; the page says why.
 """
 
 from __future__ import annotations
@@ -10,13 +11,14 @@ from __future__ import annotations
 import dataclasses
 import functools
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
+from picture import Picture
 from records import Point, points
+from sssgen.cli.shown.shown_technique import facts_of
 from sssgen.harness.backends import Array, Backend
 from sssgen.harness.pictures.images import encode_srgb, write_png
 from sssgen.harness.render.scene_render import Rendered, render
@@ -25,11 +27,13 @@ from sssgen.harness.scenes.example_scenes import measured_scenes
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler
 from sssgen.lab.chart.picked_material import stages_of
+from sssgen.lab.measure.candidates import PROBES
 from sssgen.lab.measure.measured_chain import MaterialSection, material_text
 from sssgen.lab.scene import measured_scene, scene_body
 from sssgen.material import library
 from sssgen.material.library import Technique
 from sssgen.support.diagnostics import SssgenError
+from technique_curves import default_curve
 
 SIZE = 200, 150
 SAMPLES = 2
@@ -65,32 +69,46 @@ radius = 1.0
 """
 FRONT, CORNER = [0.0, 0.5, 3.4], [2.0, 1.4, 2.6]
 """Positions of the camera."""
+BODY = "box"
+"""The shape in the slots."""
 FUNCTION = """[geometry]
 kind = "distance"
 technique = "{}"
 """
 
 
-class Picture(NamedTuple):
-    """A picture with what it shows."""
-
-    colors: Array
-    """(height, width, 3), sRGB"""
-    caption: str
-
-
 def draw(technique: Technique, backend: Backend) -> Picture | None:
     """The picture of a technique; None if there is none."""
     if point := _best(technique.name):
         return _measured(point, backend)
+    return _drawn(technique, backend) or default_curve(technique)
+
+
+def _drawn(technique: Technique, backend: Backend) -> Picture | None:
     try:
         if technique.role == "distance":
             return _body(technique, backend)
         if technique.role in ON_A_BALL:
             return _on_a_ball(technique, backend)
+        if technique.role == "thickness":
+            return _quantity(technique, backend)
     except SssgenError:  # it needs more than a ball has
         return None
     return None
+
+
+def why_none(technique: Technique) -> str:
+    """Why a technique has no picture."""
+    for param in technique.function.params:
+        if param.direction == "inout" and param.quantity:
+            return f"It has no picture here: it changes the {param.quantity} that other techniques give."
+    if baked := [texture.name for texture in _textures(technique) if not _is_drawn(texture)]:
+        return f"It has no picture here: it reads `{baked[0]}`, which is made for one body or one surface."
+    if technique.role == "geometry":
+        return "It has no picture here: it makes the rays of a whole picture."
+    if technique.slots:
+        return "It has no picture here: what it shows is that of the function in its slot."
+    return "It has no picture here: on a ball with the defaults of all other techniques it changes nothing."
 
 
 def _best(name: str) -> Point | None:
@@ -136,10 +154,8 @@ def _measured(point: Point, backend: Backend) -> Picture:
             size=SIZE, samples=SAMPLES,
         )  # fmt: skip
         rendered = render(drawn, backend)
-    light = rendered.linear * (BRIGHT / max(float(np.percentile(rendered.linear[rendered.covered > 0.5], 99)), 1e-3))
-    colors = encode_srgb(light + BACKGROUND * (1.0 - rendered.covered[..., None]))
     chain = " → ".join(point["chain"]) + (f" with {point['path']}" if point.get("path") else "")
-    return Picture(colors, f"{scene.title}, scaled to the same brightness on each page: {chain}")
+    return Picture(_scaled(rendered), f"{scene.title}, scaled to the same brightness on each page: {chain}")
 
 
 def _body(technique: Technique, backend: Backend) -> Picture | None:
@@ -154,18 +170,64 @@ def _body(technique: Technique, backend: Backend) -> Picture | None:
 
 
 def _on_a_ball(technique: Technique, backend: Backend) -> Picture | None:
-    """The technique with its defaults on a checkered ball. None if the picture is that of the ball without it."""
+    """The technique on a checkered ball, with its defaults, or with the first parameter that shows it.
+
+    None if every picture is that of the ball without it.
+    """
     name, _ = library.setter("albedo")
     checker = _stage(library.load(name))
-    stages = [] if technique.name == name else [_stage(technique)]
-    stages.insert(0 if technique.role != "coordinates" else len(stages), checker)
-    rendered = _ball(tuple(stages), backend)
-    body = rendered.encoded[rendered.covered > 0.5]
-    if (body.min(axis=-1) > 0.99).mean() > SATURATED:
+    for settings, with_what in (((), "its defaults"), *_tried(technique)):
+        stages = [] if technique.name == name else [_stage(technique, settings)]
+        stages.insert(0 if technique.role != "coordinates" else len(stages), checker)
+        rendered = _ball(tuple(stages), backend)
+        alone = len(stages) == 1
+        if not alone and np.abs(rendered.encoded - _ball((checker,), backend).encoded).max() < VISIBLE:
+            continue
+        caption = f"A ball with a checker, and the technique with {with_what}"
+        if (rendered.encoded[rendered.covered > 0.5].min(axis=-1) > 0.99).mean() > SATURATED:
+            return Picture(_scaled(rendered), caption + ", darkened")
+        return Picture(rendered.encoded, caption)
+    return None
+
+
+def _tried(technique: Technique) -> Iterator[tuple[tuple[tuple[str, object], ...], str]]:
+    """Parameters that may show a technique whose defaults change nothing: numbers as they can be, colours as white."""
+    for parameter in facts_of(technique)["parameters"]:
+        name = parameter["name"]
+        if parameter["type"] == "float" and "range" in parameter:
+            highest = float(parameter["range"][1])
+            yield ((name, highest),), f"{name} at {highest:g}, the highest value of its range"
+            yield ((name, highest / 8),), f"{name} at {highest / 8:g}"
+        elif "source_color" in parameter.get("hints", ()) and parameter["type"] == "vec3":
+            yield ((name, (1.0, 1.0, 1.0)),), f"{name} white"
+
+
+def _quantity(technique: Technique, backend: Backend) -> Picture | None:
+    """The quantity as a grey, scaled: on a ball with a checker as each texture, or on the body in the slot."""
+    quantity = technique.function.quantity
+    given = [texture for texture in _textures(technique) if not _is_drawn(texture)]
+    if not quantity or len(given) > 1:  # several textures hold the parts of one number: a checker says nothing
         return None
-    if len(stages) > 1 and np.abs(rendered.encoded - _ball((checker,), backend).encoded).max() < VISIBLE:
-        return None
-    return Picture(rendered.encoded, "A ball with a checker, and the technique with its defaults")
+    shown = MaterialSection("translucency", str(Path(PROBES, f"shown_{quantity}.sss")))
+    name, color = library.setter("albedo")
+    black = MaterialSection("surface", name, ((color, (0.0, 0.0, 0.0, 1.0)),))
+    rough, roughness = library.setter("roughness")
+    stages = [_stage(technique), shown, black, MaterialSection("surface", rough, ((roughness, 1.0),))]
+    what = quantity.replace("_", " ")
+    if not technique.slots:
+        return Picture(_scaled(_ball(tuple(stages), backend)), f"The {what} on a ball with a checker, brighter is more")
+    body = next(one for one in library.load_all() if one.attributes.shape == BODY)
+    stages[0] = stages[0]._replace(bind=tuple((slot.name, body.name) for slot in technique.slots))
+    with tempfile.TemporaryDirectory() as folder:
+        scene = SCENE.format(CORNER) + FUNCTION.format(body.name)
+        rendered = _rendered(Path(folder), stages, scene, backend)
+    return Picture(_scaled(rendered), f"The {what} of a cube, brighter is more")
+
+
+def _scaled(rendered: Rendered) -> Array:
+    """The picture of light with the brightest hundredth of the body at the same brightness for all."""
+    light = rendered.linear * (BRIGHT / max(float(np.percentile(rendered.linear[rendered.covered > 0.5], 99)), 1e-3))
+    return encode_srgb(light * rendered.covered[..., None] + BACKGROUND * (1.0 - rendered.covered[..., None]))
 
 
 @functools.cache
@@ -177,10 +239,12 @@ def _ball(stages: tuple[MaterialSection, ...], backend: Backend) -> Rendered:
         return _rendered(Path(folder), stages, SCENE.format(FRONT) + BALL, backend)
 
 
-def _stage(technique: Technique) -> MaterialSection:
-    """The technique with its defaults and a picture as each of its textures."""
+def _stage(technique: Technique, values: tuple[tuple[str, object], ...] = ()) -> MaterialSection:
+    """The technique with a picture as each of its textures, and defaults for all but the given values."""
     textures = [uniform for uniform in _textures(technique) if not _is_drawn(uniform)]
-    return MaterialSection(technique.role, technique.name, tuple((one.name, _picture_for(one)) for one in textures))
+    return MaterialSection(
+        technique.role, technique.name, (*values, *((one.name, _picture_for(one)) for one in textures))
+    )
 
 
 def _picture_for(texture: Uniform) -> str:
