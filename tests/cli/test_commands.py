@@ -69,6 +69,8 @@ def test_arguments_that_do_not_begin_with_a_command(words: list[str], run: Run) 
         ("option_as_a_command", ["version"]),
         ("no_number", ["pick", "cube", "--max-error", "abc"]),
         ("no_whole_number", ["chart", "cube", "--samples", "1.5"]),
+        ("verify_with_a_target", ["transpile", "twice.glsl", "--verify", "-t", "wgsl"]),
+        ("technique_with_a_target", ["transpile", "twice.glsl", "--as", "technique", "-t", "wgsl"]),
         ("new_with_a_bad_name", ["new", "my wax"]),
         ("new_over_an_old_one", ["new", "wax"]),
         ("new_in_no_folder", ["new", "there/wood"]),

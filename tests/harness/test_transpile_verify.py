@@ -318,6 +318,27 @@ def test_old_names_are_renamed_for_the_driver_alone() -> None:
     assert "#define texture2D texture\n" not in plain("#define texture2D tex\nvec4 v = texture2D(a);").for_driver("330")
 
 
+HINTED = """uniform vec3 paint : source_color, alias("my (paint)", "p") = vec3(1.0, vec2(0.5)), // a colour ; of
+    other = vec3(2.0);
+uniform float strength : hint_range(0.0, 1.0) = 0.5;
+vec3 tinted(vec3 color) { return mix(color, color * paint, color.r > 0.0 ? strength : 0.1); }
+"""
+
+
+def test_the_driver_gets_uniforms_without_hints() -> None:
+    desktop, mobile = (plain(HINTED).for_driver(version) for version in ("450 core", "300 es"))
+    assert "uniform vec3 paint  = vec3(1.0, vec2(0.5)), // a colour ; of\n    other = vec3(2.0);" in desktop
+    assert "uniform float strength  = 0.5;" in desktop
+    assert "uniform vec3 paint  , // a colour ; of\n    other ;\nuniform float strength  ;" in mobile  # as ES requires
+    for text in (desktop, mobile, plain(HINTED).text):
+        assert "color.r > 0.0 ? strength : 0.1" in text
+    assert "hint_range" in plain(HINTED).text  # which our front end reads
+
+
+def test_functions_of_hinted_uniforms_run(rows: Rows) -> None:
+    assert rows(HINTED)["tinted(vec3)"].ok
+
+
 def test_the_driver_gets_the_new_name_of_every_old_one() -> None:
     for old, (new, _) in OLD_NAMES.items():
         text = plain(f"float f(float x) {{ return {old}(x); }}").for_driver("330")

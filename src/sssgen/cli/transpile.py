@@ -127,8 +127,12 @@ def _targets(arguments: Namespace, wrong: list[Diagnostic]) -> list[str]:
     """The requested target; none if nothing is translated."""
     if arguments.verify or arguments.as_:
         if arguments.target is not None:
-            message = "--target cannot be used with --verify or --as"
-            wrong.append(Diagnostic("error", message, hint="leave one of them out"))
+            if arguments.verify:
+                message = "--verify takes no --target: it runs the translations to GLSL, HLSL, WGSL and NumPy together"
+                hint = f"sssgen transpile {arguments.FILE} --verify"
+            else:
+                message, hint = "--as takes no --target", f"sssgen transpile {arguments.FILE} --as {arguments.as_}"
+            wrong.append(Diagnostic("error", message, hint=hint))
         return []
     if arguments.target is None:
         wrong.append(

@@ -10,10 +10,12 @@ uniforms become variables.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from typing import NamedTuple
 
 from sssgen.ir.old_names import OLD_NAMES
 from sssgen.ir.out_builtins import OUT_BUILTINS
+from sssgen.lang.check.uniform_hints import HINTS
 
 MAIN = "sssgen_written_main"
 """The new name of `main`."""
@@ -42,6 +44,10 @@ _LAYOUT = re.compile(r"layout\s*\([^()]*\)")
 _REQUALIFIED = re.compile(r"(?:invariant|precise)\s+\w+(?:\s*,\s*\w+)*\s*;")
 _UNIFORM = re.compile(r"uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s+\w+\s*(\[?)")
 _BLOCK = re.compile(r"uniform\s+(\w+)\s*\{([^{}]*)\}\s*(\w*)\s*;")
+_HINT = rf"(?:{'|'.join(HINTS)})\b\s*" + r"""(?:\((?:"[^"\n]*"|[^()"])*\))?"""
+_HINTS = re.compile(rf":\s*{_HINT}(?:\s*,\s*{_HINT})*")
+_DEFAULT = re.compile(r"=(?:\((?:[^()]|\([^()]*\))*\)|[^;,()])*")
+_DECLARATION = re.compile(r"uniform\b(?://[^\n]*|/\*.*?\*/|[^;{}])*;", re.DOTALL)
 _BASIC = re.compile(r"float|u?int|bool|[iub]?vec[234]|mat[234](?:x[234])?|[iu]?sampler\w*")
 _DROPPED = frozenset(
     {"in", "out", "varying", "attribute", "flat", "smooth", "noperspective", "centroid", "sample", "invariant"}
@@ -65,10 +71,12 @@ class Plain(NamedTuple):
         return self.version.endswith("es")
 
     def for_driver(self, version: str) -> str:
-        """The text with this `#version`; old functions get their new names, by macros, or are defined."""
+        """The text with this `#version`, without the hints of uniforms, which are no GLSL, and in GLSL ES without their
+        default values; old functions get their new names, by macros, or are defined.
+        """
         renames = [f"#define {old} {new}" for old, (new, _) in OLD_NAMES.items() if _uses(self.text, old)]
         extensions = _EXTENSION.findall(self.text)
-        text = _EXTENSION.sub("", self.text)
+        text = _replaced(_EXTENSION.sub("", self.text), _without_default if version.endswith("es") else _without_hints)
         precision = _ES_PRECISION if version.endswith("es") else []
         definitions = [OUT_BUILTINS[name].strip() for name in _SHADOW_READS if _uses(self.text, name)]
         return "\n".join([f"#version {version}", *extensions, *precision, *definitions, *renames, text])
@@ -100,6 +108,11 @@ def _uses(text: str, name: str) -> bool:
 
 def without_interface(text: str) -> str:
     """A text without the qualifiers that connect declarations at file scope with a stage."""
+    return _replaced(text, _replacement)
+
+
+def _replaced(text: str, replacement: Callable[[str, re.Match[str]], tuple[str, int] | None]) -> str:
+    """A text with what `replacement` gives for the names at file scope: a text and the end of what it replaces."""
     parts: list[str] = []
     depth = done = 0
     for match in _PART.finditer(text):
@@ -108,12 +121,24 @@ def without_interface(text: str) -> str:
         if match["mark"]:
             depth += 1 if match["mark"] in "{(" else -1
         elif match["name"] and depth == 0:
-            replacement = _replacement(text, match)
-            if replacement is not None:
-                parts += [text[done : match.start()], replacement[0]]
-                done = replacement[1]
+            replaced = replacement(text, match)
+            if replaced is not None:
+                parts += [text[done : match.start()], replaced[0]]
+                done = replaced[1]
     parts.append(text[done:])
     return "".join(parts)
+
+
+def _without_hints(text: str, name: re.Match[str]) -> tuple[str, int] | None:
+    """The declaration of uniforms at a name without their hints; None where there is none."""
+    declaration = _DECLARATION.match(text, name.start())
+    return (_HINTS.sub("", declaration[0]), declaration.end()) if declaration else None
+
+
+def _without_default(text: str, name: re.Match[str]) -> tuple[str, int] | None:
+    """The declaration of uniforms at a name without their hints and default values; None where there is none."""
+    hintless = _without_hints(text, name)
+    return (_DEFAULT.sub("", hintless[0]), hintless[1]) if hintless else None
 
 
 def _replacement(text: str, name: re.Match[str]) -> tuple[str, int] | None:
