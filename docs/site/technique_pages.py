@@ -15,12 +15,12 @@ from sssgen.ir.types import VOID, spell
 from sssgen.material import library
 from sssgen.material.library import ROLES, Technique
 from sssgen.pipeline import compiler
+from stability_pictures import PAGE, comparisons_of
 
 OVERVIEW = "docs/reference/techniques.md"
 FOLDER = "docs/reference/techniques"
 LANGUAGE = "glsl-330"
 TITLES = {
-    "limits": "Limits",
     "corrects": "What it corrects",
     "baseline": "What is published",
     "superseded_by": "Use instead",
@@ -88,16 +88,29 @@ def page(technique: Technique, picture: Shown | None = None, ends: Shown | None 
         lines += ["", "## Formula", "", formula_math.typeset(formula)]
     lines += ["", *_uniforms("Parameters", facts["parameters"]), *_uniforms("Textures", facts["textures"])]
     lines += _slots(facts["slots"])
+    limits = [*_compared(technique.name), *(_shown(ends) if ends is not None else [])]
+    if text := doc.pop("limits", ""):
+        limits = [escaped(text), "", *limits]
+    lines += ["## Limits", "", *limits] if limits else []
     for key in [*(key for key in TITLES if key in doc), *(key for key in doc if key not in {*TITLES, *OMITTED})]:
         text = f"[{doc[key]}]({doc[key]}.md)" if doc[key] in library.index() else escaped(doc[key])
         lines += [f"## {TITLES.get(key, key.replace('_', ' ').capitalize())}", "", text, ""]
-        lines += _shown(ends) if key == "limits" and ends is not None else []
     lines += [*_measured(technique), "## In GLSL", "", *fenced(emitted(technique), "glsl"), ""]
     return "\n".join(lines)
 
 
 def _shown(picture: Shown) -> list[str]:
     return [f"![{escaped(picture.caption)}]({picture.file})", "", f"*{escaped(picture.caption)}.*", ""]
+
+
+def _compared(technique: str) -> list[str]:
+    """What goes wrong with a published technique, beside what to use instead."""
+    up = "../" * (FOLDER.count("/") + 1)
+    lines = []
+    for one in comparisons_of(technique):
+        lines += [f"![{escaped(one.shown)}]({up}{one.file})", ""]
+        lines += [f"{one.caption} Left as published, right what to use instead: [measured]({up}{PAGE}).", ""]
+    return lines
 
 
 def _at_a_glance(technique: Technique, facts: Mapping[str, Any]) -> list[tuple[str, str]]:

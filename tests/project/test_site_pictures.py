@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+import stability_pictures
 import technique_curves
 import technique_pages
 import technique_pictures
@@ -56,6 +57,12 @@ def test_a_page_without_a_picture_says_why() -> None:
     why = technique_pictures.why_none(technique)
     assert why == "It has no picture here: it reads `fluence_volume`, which is made for one body or one surface."
     assert "reads `fluence_volume`" in technique_pages.page(technique, without=why)
+
+
+def test_a_published_technique_is_shown_beside_what_to_use_instead() -> None:
+    text = technique_pages.page(library.load("cheap_sss_thinness"))
+    assert "dark X" in text and "](../../../docs/stability/cube.png)" in text.partition("\n## Limits\n")[2]
+    assert stability_pictures.comparisons_of("lobe_normalized") == []  # in both materials, and no baseline
 
 
 @pytest.mark.slow
