@@ -1,4 +1,4 @@
-# make demo   emit every example for every target into out/ and compile all of it
+# make demo   emit every example for every target into out/demo and compile all of it
 # make test   the tests, but the slow ones (make test-long)      make lint   ruff, mypy, import contracts
 # make gallery  the example scenes' pictures, and docs/gallery.md
 # make stability  what fails in the published techniques and holds in ours: docs/stability.md
@@ -30,20 +30,21 @@ export PYTHONUTF8 := 1
 
 setup: .venv/done build/node/done
 
+DEMO := out/demo
 demo: first setup
-	rm -rf out
+	rm -rf $(DEMO)
 	@echo "every example, for every target, in both forms:"
-	$(BIN)/sssgen emit $(MATERIALS) --target all --form shader -o out
-	$(BIN)/sssgen emit $(MATERIALS) --target all --form functions -o out
+	$(BIN)/sssgen emit $(MATERIALS) --target all --form shader -o $(DEMO)
+	$(BIN)/sssgen emit $(MATERIALS) --target all --form functions -o $(DEMO)
 	@echo "every compiler that this machine has, on all of it, for a minute or two:"
-	$(BIN)/sssgen check out
+	$(BIN)/sssgen check $(DEMO)
 
 # A shader within seconds, in a small environment: the setup of the whole takes minutes, the first time.
 FIRST := build/first/bin
 first:
 	@test -n "$(PYTHON)" || { echo "Python 3.11 or later is needed"; exit 1; }
 	@{ test -x $(FIRST)/sssgen || { $(PYTHON) -m venv build/first && $(FIRST)/python -m pip --quiet install --editable .; }; } \
-		&& $(FIRST)/sssgen emit wax_mouse --target threejs -o out \
+		&& $(FIRST)/sssgen emit ice --target threejs -o $(DEMO) \
 		|| { rm -rf build/first; echo "the first shader follows after the setup, which installs what it needs"; }
 	@test -e .venv/done || echo "installing what the rest of the demo needs, once, for minutes: packages, compilers"
 

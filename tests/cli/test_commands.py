@@ -195,6 +195,7 @@ def test_emit(run: Run, compiler: FakeCompiler) -> None:
         "wrote out/shaders/wax.wgsl.reflection.json",
         "wrote out/shaders/wax.glsl-330.txt",
         "wrote out/shaders/wax.glsl-330.reflection.json",
+        "wax requires a texture that is baked from the body (transmittance_texture)",
     ]
 
 

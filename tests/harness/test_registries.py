@@ -52,6 +52,6 @@ def test_the_documentation_lists_every_back_end() -> None:
     assert {name for row in rows for name in re.findall(r"`([\w-]+)`", row[1] + row[2])} >= set(BACKENDS)
     needs = " ".join(row[3] for row in rows)
     for record in BACKENDS.values():
-        install = re.sub(r'`[^`]* install [^`]*\[([\w,]+)\]"`', r"`pip install 'sssgen-shaders[\1]'`", record.install)
+        install = re.sub(r'`[^`]* install [^`]*\[([\w,]+)\]"`', r"`pip install '.[\1]'`", record.install)
         for package in re.findall(r"`([^`]+)`", install):
             assert all(word in needs or word in BACKENDS for word in package.split()), (record.name, package)

@@ -23,7 +23,8 @@ each = pytest.mark.parametrize("tutorial", TUTORIALS, ids=lambda path: path.stem
 
 @pytest.fixture
 def reader(tmp_path: Path) -> Reader:
-    """A reader in an empty folder."""
+    """A reader in a checkout without anything but the examples."""
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
     environment = {"PYTHONPATH": str(ROOT / "src"), "SSSGEN_CACHE": str(tmp_path / "cache")}
     return Reader(tmp_path, programs(tmp_path / "programs"), environment)
 

@@ -67,11 +67,15 @@ def run(arguments: Namespace) -> int:
             for file, (material, target) in zip(written, emitted.sources.values(), strict=True)
         ]
         diagnostics = [warning.as_json() for warning in emitted.warnings]
-        print_json({"ok": True, "form": arguments.form, "files": rows, "diagnostics": diagnostics})
+        report = {"files": rows, "requires": emitted.requires, "diagnostics": diagnostics}
+        print_json({"ok": True, "form": arguments.form, **report})
         return OK
     print_warnings(emitted.warnings)
     for file in written:
         print(f"{'wrote' if file.changed else 'kept '} {posix(file.path)}")
+    for material, requires in emitted.requires.items():
+        if requires:
+            print(f"{material} requires {', '.join(requires)}")
     return OK
 
 
@@ -91,6 +95,7 @@ def _cached_or_compiled(arguments: Namespace, traces: list[Trace]) -> EmittedFil
 
 def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
     """Compiles every material for every target, and adds to `traces`. Raises SssgenError with all errors."""
+    from sssgen.material.requirements import described
     from sssgen.pipeline.compiler import compile
     from sssgen.pipeline.trace import Trace
     from sssgen.support.progress import ProgressBar
@@ -129,7 +134,8 @@ def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
                 warnings += compiled.warnings
     if wrong:
         raise SssgenError(dict.fromkeys(wrong))
-    return EmittedFiles(files, sources, list(dict.fromkeys(warnings)))
+    required = {material.name: described(material.stages) for material in materials}
+    return EmittedFiles(files, sources, list(dict.fromkeys(warnings)), required)
 
 
 def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:

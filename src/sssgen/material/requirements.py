@@ -7,8 +7,9 @@ draws. A technique states the rest: `requires: fixed-light`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
+from sssgen.ir.baked import is_baked, is_volume
 from sssgen.ir.drawn import BACK_FACES, CUBES, DISTANT, LAYERS, LIGHT, SHADOW
 from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.ir.types import Sampler
@@ -23,6 +24,15 @@ DRAWN = {
     SHADOW: ("depth-map",), **dict.fromkeys(CUBES, ()),
 }  # fmt: skip
 """A picture that the engine draws → the requirements."""
+DESCRIPTIONS = {
+    "bake": "a texture that is baked from the body",
+    "depth-map": "the light's depth map",
+    "depth-layers": "a depth map with further layers",
+    "back-faces": "a picture of the body's back faces",
+    "rigid": "a body that keeps its shape",
+    "fixed-light": "a light that does not move relative to the body",
+}
+"""The requirements, for people."""
 TEXEL_BYTES = 4
 """The bytes of a baked texel without the hint `texel_bytes`: four channels of 8 bits."""
 
@@ -34,13 +44,36 @@ def requirements(uses: Iterable[TechniqueUse]) -> tuple[str, ...]:
         for module, function in _functions(use):
             found.update(_declared(function))
             textures = [uniform for uniform in _read(module, function) if isinstance(uniform.type, Sampler)]
-            volume = any(_is_volume(uniform) for uniform in textures)
+            volume = any(is_volume(uniform) for uniform in textures)
             slots = needs(module, function)[1]
             for texture in textures:
                 found.update(*(DRAWN[str(view)] for view in dict(texture.hints).get("drawn", ())))
             found.update({"bake"} if any(map(is_baked, textures)) else ())
             found.update({"rigid"} if volume or any(map(_is_distance, slots)) else ())
     return tuple(name for name in REQUIREMENTS if name in found)
+
+
+def described(uses: Sequence[TechniqueUse]) -> list[str]:
+    """The requirements of a material in words, with the names of the baked textures and of the body."""
+    named = {"bake": [texture.name for texture in baked_textures(uses)], "rigid": bodies(uses)}
+    return [
+        f"{DESCRIPTIONS[name]} ({', '.join(named[name])})" if named.get(name) else DESCRIPTIONS[name]
+        for name in requirements(uses)
+    ]
+
+
+def bodies(uses: Iterable[TechniqueUse]) -> list[str]:
+    """The distance functions that a material is bound to, each once: it is right on these bodies only.
+
+    A function that reads a volume is left out: it describes the body that the volume was baked from.
+    """
+    found = [
+        binding.function.name
+        for use in uses
+        for binding in use.bindings.values()
+        if _is_distance(binding.function) and not any(map(is_volume, _read(binding.module, binding.function)))
+    ]
+    return list(dict.fromkeys(found))
 
 
 def baked_textures(uses: Iterable[TechniqueUse]) -> list[Uniform]:
@@ -55,19 +88,9 @@ def read_uniforms(use: TechniqueUse) -> Iterator[Uniform]:
         yield from _read(module, function)
 
 
-def is_baked(uniform: Uniform) -> bool:
-    """Whether a texture is baked from the body: a volume, a map that holds a quantity, or one with `texel_bytes`."""
-    declared = bool(uniform.quantity) or "texel_bytes" in dict(uniform.hints)
-    return isinstance(uniform.type, Sampler) and (declared or _is_volume(uniform))
-
-
 def texel_bytes(uniform: Uniform) -> int:
     """The bytes of a texel of a baked texture."""
     return int(float(dict(uniform.hints).get("texel_bytes", (TEXEL_BYTES,))[0]))
-
-
-def _is_volume(uniform: Uniform) -> bool:
-    return isinstance(uniform.type, Sampler) and uniform.type.dim == "3D"
 
 
 def _is_distance(slot: Function) -> bool:

@@ -15,6 +15,7 @@ from sssgen.ir.types import kind_of
 from sssgen.lang.loader import key_of
 from sssgen.material import library
 from sssgen.material.model import Material, TechniqueUse
+from sssgen.material.requirements import bodies
 from sssgen.passes.names import checked_prefix
 from sssgen.pipeline.emitted_cache import installation
 from sssgen.support import cache
@@ -263,6 +264,7 @@ def _about(material: Material) -> About:
         material.alpha_mode,
         material.two_sided,
         raymarched,
+        bodies=tuple(bodies(material.stages)),
     )
 
 

@@ -23,6 +23,8 @@ class EmittedFiles(NamedTuple):
     sources: dict[str, tuple[str, str]]
     """File name → the material and the target of the text."""
     warnings: list[Diagnostic]
+    requires: dict[str, list[str]]
+    """Material → what it requires besides its parameters, in words."""
 
 
 def load(

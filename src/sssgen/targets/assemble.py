@@ -11,6 +11,7 @@ import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from sssgen.ir.baked import is_baked
 from sssgen.ir.drawn import DRAWN
 from sssgen.ir.nodes import Function, Local, Module, Param, Span, Uniform
 from sssgen.ir.types import Sampler, Struct, spell
@@ -40,6 +41,8 @@ class About(NamedTuple):
     """Whether the chain makes its own geometry, so that the shell needs no mesh."""
     head: tuple[str, ...] = ()
     """The author's comment at the head of the file, such as a licence."""
+    bodies: tuple[str, ...] = ()
+    """The distance functions of the bodies that the material is made for."""
 
 
 class Program(NamedTuple):
@@ -255,21 +258,23 @@ def _header(target: Target, program: Program) -> list[str]:
     notice = f"Made by sssgen for {target.title}. Change {origin} and emit it again rather than this file."
     head = ["", *map(comment_text, about.head)] if about.head else []
     sides = ["Two-sided: drawn without culling; back faces have the reversed normal."] if about.two_sided else []
-    drawn = [
-        line for uniform in program.module.uniforms for line in textwrap.wrap(_drawn(target, program, uniform), 100)
-    ]
-    return [comment_text(line) for line in (*textwrap.wrap(description, 100), notice, *sides, *drawn)] + head
+    made_for = f"Made for the body of {' and '.join(about.bodies)}: on another mesh the light inside is wrong."
+    supplied = [_supplied(target, program, uniform) for uniform in program.module.uniforms]
+    needed = [*([made_for] if about.bodies and not about.raymarched else []), *supplied]
+    lines = [line for text in needed for line in textwrap.wrap(text, 100)]
+    return [comment_text(line) for line in (*textwrap.wrap(description, 100), notice, *sides, *lines)] + head
 
 
-def _drawn(target: Target, program: Program, uniform: Uniform) -> str:
-    """How the program supplies a texture that it draws itself, or ''."""
+def _supplied(target: Target, program: Program, uniform: Uniform) -> str:
+    """How the program supplies a texture that is drawn or baked, or ''."""
     _, views = _hint(uniform, "drawn")
-    if not views or not isinstance(uniform.type, Sampler):
+    baked = bool(program.entries) and is_baked(uniform)  # a texture of plain GLSL may hold anything
+    if not isinstance(uniform.type, Sampler) or not (views or baked):
         return ""
     name = uniform.name
     if target.properties.style != "plain":  # its user sees the property only
         name = property_name(target, program.source_names.get(name, name))
-    return f"{name}: {DRAWN[views[0]]}."
+    return f"{name}: {DRAWN[views[0]]}." if views else f"{name}: bake it from the body (sssgen bake)."
 
 
 def _entry(target: Target, printer: Printer, kind: str, function: Function, inputs: tuple[str, ...]) -> dict[str, Any]:

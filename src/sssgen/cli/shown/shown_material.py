@@ -10,21 +10,11 @@ from sssgen.cli.shown.shown_technique import uniform_facts, uniform_text, value_
 from sssgen.ir.types import Sampler
 from sssgen.material.material_loading import examples, load_material
 from sssgen.material.model import Material, TechniqueUse
-from sssgen.material.requirements import read_uniforms, requirements
+from sssgen.material.requirements import DESCRIPTIONS, read_uniforms, requirements
 from sssgen.passes.cost import Cost
 from sssgen.pipeline.compiler import all_targets, compile
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import posix
-
-REQUIREMENTS = {
-    "bake": "a texture that is baked from the body",
-    "depth-map": "the light's depth map",
-    "depth-layers": "a depth map with further layers",
-    "back-faces": "a picture of the body's back faces",
-    "rigid": "a body that keeps its shape",
-    "fixed-light": "a light that does not move relative to the body",
-}
-"""The requirements of a material, for people."""
 
 
 def names() -> Collection[str]:
@@ -117,7 +107,7 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
         for row in (*map(_parameter, stage["parameters"]), *map(_texture, stage["textures"])):
             text += wrapped(row, width, "      ", "          ")
         text += [f"      {slot} = {function}" for slot, function in stage["slots"].items()]
-    needed = [f"{name} ({REQUIREMENTS[name]})" for name in facts["requires"]]
+    needed = [f"{name} ({DESCRIPTIONS[name]})" for name in facts["requires"]]
     text += ["", *wrapped(f"requires: {', '.join(needed) or 'nothing besides its parameters'}", width, "", "  ")]
     if facts["cost"]:
         text += ["", "cost, in operations, counted before the target's compiler optimises:"]
