@@ -1,12 +1,18 @@
-"""Draws docs/accuracy/before_after.png: bodies by the default shading of engines, by their material, and path traced.
+"""Draws bodies by the default shading of engines, by their material, and path traced.
 
-All three have the same highlight, light and tone mapping. The path-traced medium is that of the material's numbers.
+Run: python docs/before_after.py [PICTURE …]
+
+All three have the same highlight, light and tone mapping. The path-traced medium is that of the material's numbers. The
+pictures in docs/accuracy/ are before_after.png and gallery_traced.png, which has the other scenes of the gallery whose
+materials describe a medium.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import io
+import sys
+import tempfile
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,6 +26,7 @@ from sssgen.harness.evaluate.probes import subject
 from sssgen.harness.pictures.images import encode_srgb
 from sssgen.harness.render.scene_render import Rendered, render
 from sssgen.harness.scenes import scene_loading
+from sssgen.harness.scenes.environment import Environment, digest
 from sssgen.harness.scenes.geometry import Distance
 from sssgen.harness.scenes.scene import Scene
 from sssgen.lab.measure import scene_references
@@ -29,12 +36,14 @@ from sssgen.lab.scene.view_points import points
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 
-PICTURE = Path(__file__).parent / "accuracy" / "before_after.png"
+FOLDER = Path(__file__).parent / "accuracy"
 PANEL = (256, 192)
 """The size in pixels of a picture of the comparison; the path traced one has half of it along each side."""
 GAP, HEAD = 6, 24
 """Between the pictures, and above them for the titles."""
 BLACK = (0.0, 0.0, 0.0)
+SKY_ROWS = 64
+"""The height of the picture of the surroundings that a technique computes, for path tracing."""
 
 
 class Compared(NamedTuple):
@@ -45,15 +54,33 @@ class Compared(NamedTuple):
     """The distance function of what is path traced; "" for the scene's."""
     samples: int
     """The number of paths of a pixel."""
+    left_out: tuple[str, ...] = ()
+    """Strengths of what is not in the medium: 0 in all columns."""
+    sky: str = ""
+    """The function, FILE:FUNCTION, of the surroundings that are seen through the body; "" where none are."""
+    sky_colors: tuple[str, ...] = ()
+    """Its colours among the parameters: black where the body is opaque."""
 
 
-COMPARED = (Compared("skin_ear", "", 256), Compared("candle", "candle.sss:wax", 256))
+PICTURES = {
+    "before_after.png": (Compared("skin_ear", "", 256), Compared("candle", "candle.sss:wax", 256)),
+    "gallery_traced.png": (
+        Compared("jade_ring", "", 256),
+        Compared("soap", "bar.sss:bar", 256),
+        Compared("milk_glass", "lamp.sss:dome", 256),
+        Compared(
+            "ice_body", "", 256, ("fracture_strength",), "clear_view.sss:surroundings",
+            ("sky_above", "sky_below", "sky_bright"),
+        ),
+    ),
+}  # fmt: skip
+"""The rows of each picture."""
 COLUMNS = ("engine default: Lambert + GGX", "sssgen", "path traced")
 
 
-def before_after() -> bytes:
+def drawn(name: str) -> bytes:
     """A PNG with a row for each compared scene, and a column for each way to shade it."""
-    rows = [panels(compared) for compared in COMPARED]
+    rows = [panels(compared) for compared in PICTURES[name]]
     width = len(COLUMNS) * (PANEL[0] + GAP) - GAP
     sheet = Image.new("RGB", (width, HEAD + len(rows) * (PANEL[1] + GAP) - GAP), (18, 18, 20))
     font = ImageFont.load_default(13)
@@ -72,11 +99,13 @@ def panels(compared: Compared) -> list[Array]:
     scene = scene_loading.load(compared.scene)
     scene = dataclasses.replace(scene, size=PANEL, samples=2, shell={}, ambient=BLACK)
     medium = medium_of(load_material(scene.material))
-    default = _drawn(scene, {"octaves": [0.0] * 4, "tint": [*half_space(medium), 1.0]})
-    ours = _drawn(scene, {})
-    surface = _drawn(scene, {"octaves": [0.0] * 4, "tint": [*BLACK, 1.0]})
+    left_out: dict[str, object] = dict.fromkeys(compared.left_out, 0.0)
+    opaque: dict[str, object] = {**left_out, **{name: [*BLACK] for name in compared.sky_colors}, "octaves": [0.0] * 4}
+    default = _drawn(scene, {**opaque, "tint": [*half_space(medium), 1.0]})
+    ours = _drawn(scene, left_out)
+    surface = _drawn(scene, {**opaque, "tint": [*BLACK, 1.0]})
     body, share = traced(scene, compared, medium)
-    path_traced = surface.linear + surface.covered[..., None] * body * (share > 0.05)
+    path_traced = surface.linear + surface.covered[..., None] * body * np.clip((share - 0.15) / 0.3, 0.0, 1.0)
     return [encode_srgb(mapped(picture)) for picture in (default.linear, ours.linear, path_traced)]
 
 
@@ -88,7 +117,8 @@ def medium_of(material: Material) -> Medium:
     red, green, blue = values["extinction"]
     red_albedo, green_albedo, blue_albedo = values["scattering_albedo"]
     absorption = (red * (1.0 - red_albedo), green * (1.0 - green_albedo), blue * (1.0 - blue_albedo))
-    return Medium(material.name, absorption, (red * red_albedo, green * green_albedo, blue * blue_albedo))
+    scattering = (red * red_albedo, green * green_albedo, blue * blue_albedo)
+    return Medium(material.name, absorption, scattering, ior=values.get("ior", (1.0,))[0])
 
 
 def half_space(medium: Medium) -> Array:
@@ -104,17 +134,34 @@ def half_space(medium: Medium) -> Array:
 def traced(scene: Scene, compared: Compared, medium: Medium) -> tuple[Array, Array]:
     """The light from inside the body, (height, width, 3), and the share of each pixel that shows the body, (…, 1)."""
     width, height = PANEL[0] // 2, PANEL[1] // 2
-    assert isinstance(scene.geometry, Distance)
-    body = dataclasses.replace(scene.geometry, technique=compared.body or scene.geometry.technique)
-    measured = MeasuredScene(
-        scene.material, scene.title, body, scene.camera, scene.lights, medium, None, (width, height)
-    )
-    readings = scene_references.traced(measured, compared.samples, 0)
-    light = sum(mean * np.array(light.color)[:, None] for (mean, _), light in zip(readings, scene.lights, strict=True))
+    body = scene.geometry
+    assert body is not None
+    if isinstance(body, Distance):
+        body = dataclasses.replace(body, technique=compared.body or body.technique)
+    with tempfile.TemporaryDirectory() as folder:
+        sky = surroundings(compared, scene.folder, folder) if compared.sky else None
+        measured = MeasuredScene(
+            scene.material, scene.title, body, scene.camera, scene.lights, medium, None, (width, height), "", sky
+        )
+        readings = scene_references.traced(measured, compared.samples, 0)
+    colors = [light.color for light in scene.lights] + ([(1.0, 1.0, 1.0)] if sky else [])
+    light = sum(mean * np.array(color)[:, None] for (mean, _), color in zip(readings, colors, strict=True))
     visible = points(measured)
     shown = visible.picture(np.ones((1, visible.count)))
     share = _enlarged(shown)
     return _enlarged(visible.picture(np.asarray(light))) / np.maximum(share, 1e-3), share
+
+
+def surroundings(compared: Compared, scene_folder: str, folder: str) -> Environment:
+    """The surroundings that a technique computes, as a picture in a folder; with the values of the technique."""
+    v, u = np.mgrid[0:SKY_ROWS, 0 : 2 * SKY_ROWS]
+    polar, around = np.pi * (v.ravel() + 0.5) / SKY_ROWS, np.pi * ((u.ravel() + 0.5) / SKY_ROWS - 1.0)
+    ways = np.stack([np.sin(polar) * np.cos(around), np.cos(polar), np.sin(polar) * np.sin(around)], axis=1)
+    function = subject(str(Path(scene_folder, compared.sky)))
+    light = evaluate(function, {"way": ways}, backends.get("numpy"))["result"]
+    file = str(Path(folder, "surroundings.npy"))
+    np.save(file, light.reshape(SKY_ROWS, 2 * SKY_ROWS, 3)[::-1])  # row 0 of the file is at the bottom
+    return Environment((1.0, 1.0, 1.0), file, digest(file))
 
 
 def mapped(picture: Array) -> Array:
@@ -143,4 +190,5 @@ def _image(encoded: Array) -> Image.Image:
 
 
 if __name__ == "__main__":
-    PICTURE.write_bytes(before_after())
+    for name in sys.argv[1:] or PICTURES:
+        (FOLDER / name).write_bytes(drawn(name))

@@ -172,14 +172,15 @@ def _picture(path: Path) -> npt.NDArray[np.float64]:
 
 
 @pytest.mark.slow
-def test_the_comparison_with_path_tracing_is_current(backend: Callable[[str], Backend]) -> None:
-    """The picture of `docs/before_after.py`; few paths of light are as bright on average as many."""
+@pytest.mark.parametrize("name", ["before_after.png", "gallery_traced.png"])
+def test_the_comparison_with_path_tracing_is_current(name: str, backend: Callable[[str], Backend]) -> None:
+    """The pictures of `docs/before_after.py`; few paths of light are as bright on average as many."""
     backend("gl")
     script = runpy.run_path(str(ROOT / "docs" / "before_after.py"))
     (width, height), gap, head = script["PANEL"], script["GAP"], script["HEAD"]
-    with Image.open(script["PICTURE"]) as picture:
+    with Image.open(script["FOLDER"] / name) as picture:
         stored = np.asarray(picture.convert("RGB"), np.float64) / 255.0
-    for row, compared in enumerate(script["COMPARED"]):
+    for row, compared in enumerate(script["PICTURES"][name]):
         top = head + row * (height + gap)
         for column, panel in enumerate(script["panels"](compared._replace(samples=16))):
             left = column * (width + gap)
