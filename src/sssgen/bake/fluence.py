@@ -17,6 +17,7 @@ from sssgen.bake.bake_light import BakeLight
 from sssgen.harness.scenes import body_identity
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Mesh
+from sssgen.harness.scenes.mesh_files import SUFFIXES
 from sssgen.lab.fluence import fluence_field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence.fluence_field import Field, Settings
@@ -27,6 +28,7 @@ from sssgen.lab.scene import measured_scene, media
 from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix, stem
+from sssgen.support.text_files import refuse_folder
 from sssgen.targets.texture_import import import_settings
 
 RANKS = (4, 8)
@@ -64,10 +66,9 @@ def body(path: str, medium: str, unit_mm: float) -> MeasuredScene:
         return measured_scene.load(path).body_alone()
     if not medium:
         raise failure("a mesh has no medium", "name one with --medium", posix(path))
+    refuse_folder(path, SUFFIXES)
     if not os.path.isfile(path):
-        raise failure(
-            "this is a folder" if os.path.isdir(path) else "there is no such file", "name a mesh", posix(path)
-        )
+        raise failure("there is no such file", "name a mesh", posix(path))
     geometry = Mesh(path=path)
     name = stem(path)
     preset = media.preset(medium, unit_mm)

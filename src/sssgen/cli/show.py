@@ -88,6 +88,9 @@ def _kinds_of(name: str) -> list[str]:
     names = {kind: names_of(kind) for kind in KINDS}
     kinds = [kind for kind, listed in names.items() if name in listed]
     if not kinds:
+        from sssgen.support.text_files import refuse_folder
+
+        refuse_folder(name)
         file = f"did you mean the file '{name}.toml'?" if os.path.isfile(f"{name}.toml") else library.file_meant(name)
         every = dict.fromkeys(one for listed in names.values() for one in listed)
         hint = file or registry.found_under(name) or did_you_mean(name, every)

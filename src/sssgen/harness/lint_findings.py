@@ -24,6 +24,7 @@ from sssgen.passes.ranges.sites import Site
 from sssgen.pipeline.compiler import guarded_sites
 from sssgen.pipeline.programs import library_sites
 from sssgen.support.diagnostics import Diagnostic, did_you_mean, failure
+from sssgen.support.text_files import refuse_folder
 from sssgen.targets import registry
 
 LONGEST = 40
@@ -117,6 +118,7 @@ def lint(name: str, with_examples: bool = True) -> list[Finding]:
         return _findings(sites, [specimen] if with_examples else [])
     if name.endswith((".glsl", ".frag", ".vert", ".inc")) or os.path.isfile(name):
         return _plain(name, with_examples)
+    refuse_folder(name, (".glsl", ".sss", ".toml", ".frag", ".vert"))
     names = [*library.index(), *examples()]
     raise failure(
         f"'{name}' is neither a technique nor a material nor a file",

@@ -16,6 +16,7 @@ from sssgen.material.attributes import Attributes
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.file_memo import CachedResult, remembered
 from sssgen.support.paths import PACKAGE, place, posix, stem
+from sssgen.support.text_files import refuse_folder
 
 TECHNIQUES = os.path.join(PACKAGE, "techniques")
 
@@ -108,6 +109,7 @@ def load(name: str) -> Technique:
         return load_path(name)
     path = index().get(name)
     if path is None:
+        refuse_folder(name, (".sss", ".glsl"))
         hint = file_meant(name) or did_you_mean(name, index()) or "see: sssgen list techniques"
         raise failure(f"unknown technique '{name}'", hint)
     return load_path(path)

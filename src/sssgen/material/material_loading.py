@@ -9,7 +9,7 @@ from sssgen.material.model import Material
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.file_memo import CachedResult, note, remembered
 from sssgen.support.paths import place, posix
-from sssgen.support.text_files import read_text
+from sssgen.support.text_files import read_text, refuse_folder
 
 
 def examples() -> dict[str, str]:
@@ -32,6 +32,7 @@ def load_material(path_or_name: str | os.PathLike[str]) -> Material:
         note(text)
         path = os.path.join(place("examples"), text, f"{text}.toml")
         if not os.path.isfile(path):
+            refuse_folder(text, (".toml",))
             names = examples()
             file_hint = f"did you mean '{text}.toml'?" if os.path.isfile(f"{text}.toml") else ""
             hint = f"give a path that ends in .toml, or one of: {', '.join(names)}"

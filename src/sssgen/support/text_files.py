@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import os
 import stat
+from collections.abc import Sequence
 
 from sssgen.ir.spans import Span
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_memo import note
+from sssgen.support.paths import posix, stem
 
 MAX_BYTES = 4 << 20
 """The largest text file that is read. Shader libraries of thousands of functions stay below 1 MB."""
+
+TEXTS = (".toml", ".sss", ".glsl")
+"""The suffixes of the texts that most commands read."""
 
 
 def read_text(path: str | os.PathLike[str], shown: str) -> str:
@@ -29,6 +34,7 @@ def read_text(path: str | os.PathLike[str], shown: str) -> str:
     except FileNotFoundError:
         raise failure("no such file", file=shown) from None
     except OSError as error:
+        refuse_folder(path)
         raise failure(f"cannot read the file: {error.strerror}", file=shown) from None
     except ValueError:  # a zero byte or a lone surrogate in its name
         raise failure("this is not a valid file name", file=shown) from None
@@ -46,6 +52,28 @@ def refuse_special(path: str | os.PathLike[str], shown: str) -> None:
     mode = os.stat(path).st_mode
     if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
         raise failure("this is not a file", "write its content into a file first", shown)
+
+
+def refuse_folder(path: str | os.PathLike[str], suffixes: Sequence[str] = TEXTS, usual: str = "") -> None:
+    """Raises SssgenError for a folder; the hint names a file in it that ends in one of the suffixes, if possible
+    `usual`, or the one with the folder's name.
+    """
+    if not os.path.isdir(path):
+        return
+    try:
+        names = sorted(os.listdir(path))
+    except OSError:
+        names = []
+    shown = posix(os.path.normpath(path))
+    hint = f"it has no file that ends in {' or '.join(suffixes)}: name one"
+    for suffix in suffixes:
+        if files := [name for name in names if name.endswith(suffix)]:
+            preferred = next((name for name in (usual, f"{stem(shown)}{suffix}") if name in files), "")
+            hint = f"name a file in it, such as {shown}/{preferred or files[0]}"
+            if len(files) > 1 and not preferred:
+                hint += f", or all where the command takes several: {shown}/*{suffix}"
+            break
+    raise failure("this is a folder, not a file", hint, shown)
 
 
 def _not_text(message: str, data: bytes, position: int, shown: str) -> SssgenError:

@@ -9,6 +9,7 @@ from sssgen.cli.layout import wrapped
 from sssgen.harness.scenes.example_scenes import all_scenes, summary
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
+from sssgen.support.text_files import refuse_folder
 
 if TYPE_CHECKING:
     from sssgen.harness.scenes.scene import Light, Scene
@@ -26,6 +27,7 @@ def describe(name: str) -> dict[str, Any]:
 
     scenes = all_scenes()
     if not name.endswith(".toml") and name not in scenes:
+        refuse_folder(name, (".toml",), "scene.toml")
         hint = did_you_mean(name, scenes) or f"give a path that ends in .toml, or one of: {', '.join(scenes)}"
         raise failure(f"unknown scene '{name}'", hint)
     path = scenes.get(name, name)

@@ -16,6 +16,7 @@ from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.extras import need
 from sssgen.support.file_writer import write_files
 from sssgen.support.paths import posix
+from sssgen.support.text_files import refuse_folder
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -40,10 +41,10 @@ def read(path: str | os.PathLike[str]) -> Array:
     faulty, or of another kind.
     """
     shown = posix(path)
+    refuse_folder(path, TEXTURES)
     suffix = check_suffix(path, TEXTURES)
     if not os.path.isfile(path):
-        hint = "this is a folder: name a file in it" if os.path.isdir(path) else ""
-        raise failure("cannot find the picture", hint, shown)
+        raise failure("cannot find the picture", "", shown)
     reader = {".png": _read_png, ".exr": _read_exr, ".npy": _read_npy}.get(suffix, volumes.read)
     picture = reader(os.fspath(path), shown)
     if 0 in picture.shape:

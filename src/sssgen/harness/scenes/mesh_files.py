@@ -14,6 +14,7 @@ from sssgen.harness.scenes.placed import Array
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.extras import need
 from sssgen.support.paths import posix
+from sssgen.support.text_files import refuse_folder
 
 Indices: TypeAlias = npt.NDArray[np.int64]
 
@@ -45,6 +46,7 @@ def check_suffix(path: str) -> None:
 
 def read(path: str) -> FileContent:
     """All triangles of a file, with the transforms of its parts. Raises SssgenError for a missing or faulty file."""
+    refuse_folder(path, SUFFIXES)
     check_suffix(path)
     if not os.path.isfile(path):
         raise failure("cannot find the mesh", "", posix(path))

@@ -9,7 +9,7 @@ from sssgen.harness.scenes.scene_reader import read_scene
 from sssgen.material.material_loading import examples
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
-from sssgen.support.text_files import read_text
+from sssgen.support.text_files import read_text, refuse_folder
 from sssgen.support.toml_source import parse
 
 
@@ -19,6 +19,7 @@ def load(path: str | os.PathLike[str]) -> Scene:
     if not text.endswith(".toml") and "/" not in text and "\\" not in text and not os.path.isfile(text):
         names = examples()
         if text not in names:
+            refuse_folder(text, (".toml",), "scene.toml")
             hint = did_you_mean(text, names) or f"give a path that ends in .toml, or one of: {', '.join(names)}"
             raise failure(f"unknown scene '{text}'", hint)
         path = os.path.join(os.path.dirname(names[text]), "scene.toml")

@@ -13,6 +13,7 @@ from sssgen.material.material_loading import examples, load_material
 from sssgen.material.model import Material
 from sssgen.passes.link import LinkInput
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+from sssgen.support.text_files import refuse_folder
 
 
 class Specimen(NamedTuple):
@@ -81,6 +82,7 @@ def named(name: str) -> list[Specimen]:
     if name.endswith(".toml") or name in examples():
         return stages(load_material(name))
     if name not in library.index() and not name.rpartition(":")[0] and not name.endswith((".sss", ".glsl")):
+        refuse_folder(name, (".sss", ".toml", ".glsl"))
         names = [*library.index(), *examples()]
         hint = did_you_mean(name, names) or "see: sssgen list techniques, sssgen list materials"
         raise failure(f"'{name}' is neither a technique nor a material", hint)

@@ -28,6 +28,7 @@ from sssgen.lab.scene.media import Medium
 from sssgen.support import cache
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix, stem
+from sssgen.support.text_files import refuse_folder
 
 SIDE = 64
 """Pixels along the longer side of a measured picture."""
@@ -109,6 +110,7 @@ def load(name: str) -> MeasuredScene:
     scenes = measured_scenes()
     if not name.endswith(".toml") and "/" not in name and os.sep not in name:
         if name not in scenes:
+            refuse_folder(name, (".toml",), "scene.toml")
             listed = f"give a path that ends in .toml, or one of: {', '.join(scenes)}"
             if name in drawn_scenes():
                 message = f"the scene '{name}' is for pictures: it describes no medium, so there is nothing to measure"
