@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from folders import UNITY_SAMPLES
+from sssgen.cli import check as check_command
 from sssgen.cli import main as cli
 from sssgen.harness import installed
 from sssgen.harness.backend_registry import BACKENDS, ENGINES
@@ -110,7 +111,7 @@ def test_a_material_in_both_forms(run: Run, compiler: Callable[[str], Compiler])
     compiler("glslang")
     ran = run("ice", "--target", "glsl-330", "-t", "hlsl", "--compiler", "glslang", "--json")
     assert ran.status == 0
-    assert set(ran.data) == {"compilers", "missing", "engines", "results"}
+    assert set(ran.data) == {"compilers", "missing", "engines", "results", "not_compiled"}
     assert ran.data["compilers"][0]["name"] == "glslang"
     assert {row["file"] for row in ran.data["results"]} == {
         "ice.glsl-330.vert", "ice.glsl-330.frag", "ice.glsl-330.glsl", "ice.hlsl", "ice.functions.hlsl",
@@ -331,6 +332,28 @@ def test_a_check_without_a_compilation_fails(run: Run, monkeypatch: pytest.Monke
     ran = run("a.shader")
     assert ran.status == 1
     assert "not compiled: unity not found" in ran.out
+    summary = ran.out.partition("\n\n1 files, ")[2].split("\n")
+    assert summary[:2] == ["0 compilations, 0 failed, 1 not compiled", "  1 file: unity not found"]
+    assert summary[2].startswith("  to get unity: ") and summary[3:] == [""]
+    assert run("a.shader", "--json").data["not_compiled"] == {"a.shader": "unity not found"}
+
+
+def test_many_files_are_counted_and_only_failures_are_listed(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(check_command, "LISTED", 3)
+    monkeypatch.setenv("SSSGEN_GODOT", "nowhere")
+    names = ["m0.py", "m1.py", "m2.py"]
+    write(dict.fromkeys(names, "x = 1\n"))
+    few = run(*names).out
+    assert few.count("\nok   ") == 3 and "--verbose" not in few
+    write({"bad.py": "x = \n", "a.gdshader": "shader_type spatial;\n"})
+    names += ["bad.py", "a.gdshader"]
+    many = run(*names).out
+    assert "\nok   " not in many and "\n--   " not in many
+    assert "\nFAIL bad.py" in many and "\n3 of 4 are ok; --verbose lists them\n" in many
+    assert "\n5 files, 4 compilations, 1 failed, 1 not compiled\n  1 file: godot not found\n  to get godot: " in many
+    for option in ("-v", "--verbose"):
+        listed = run(*names, option).out
+        assert listed.count("\nok   ") == 3 and "not compiled: godot not found" in listed and "lists them" not in listed
 
 
 @pytest.mark.skipif(os.name != "posix", reason="the programs are shell scripts")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 from argparse import ArgumentParser, Namespace
+from collections import Counter
+from collections.abc import Mapping
 
 from sssgen.cli.emit import chosen_targets
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
@@ -15,6 +17,8 @@ from sssgen.ir.spans import Span
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure, visible
 from sssgen.support.progress import ProgressBar
 
+LISTED = 200
+"""The largest number of files and compilers that are listed one by one without --verbose."""
 SHOWN = 8
 """The number of messages shown per compiler and file; later ones mostly follow from the first."""
 
@@ -32,11 +36,13 @@ def add_options(parser: ArgumentParser) -> None:
         help="check only these targets; also the language of a shader whose file name does not determine it",
     )
     parser.add_argument("--compiler", metavar="NAME", action="append", help="use only this compiler; repeatable")
+    help = f"list every file and compiler, where more than {LISTED} are compiled, too; else only failures"
+    parser.add_argument("-v", "--verbose", action="store_true", help=help)
     parser.add_argument("--unity-includes", metavar="DIR", help="the folder of Unity's own headers")
 
 
 def run(arguments: Namespace) -> int:
-    """Compiles everything, and prints one line for each file and compiler."""
+    """Compiles everything, and prints one line for each file and compiler, or for each that fails."""
     wrong: list[Diagnostic] = []
     targets = chosen_targets(",".join(arguments.target), wrong) if arguments.target else []
     compilers = _compilers(arguments.compiler or [], wrong)
@@ -46,9 +52,9 @@ def run(arguments: Namespace) -> int:
     with ProgressBar() as progress:
         report = check.run(shaders, compilers, arguments.unity_includes, progress)
     if arguments.json:
-        print_json(check.as_json(report))
+        print_json(check.as_json(report) | {"not_compiled": _not_compiled(report, shaders)})
     else:
-        _print(report, shaders)
+        _print(report, shaders, arguments.verbose)
     return OK if _passed(report, shaders) else CHECK_FAILED
 
 
@@ -68,7 +74,7 @@ def _passed(report: Report, shaders: list[Shader]) -> bool:
     return all(result.ok for result in report.results) and bool(report.results) and not (in_ci and missing)
 
 
-def _print(report: Report, shaders: list[Shader]) -> None:
+def _print(report: Report, shaders: list[Shader], verbose: bool) -> None:
     for name, version in report.versions.items():
         print(f"{name:8} {visible(version)}")
     for name, instruction in report.missing.items():
@@ -79,17 +85,45 @@ def _print(report: Report, shaders: list[Shader]) -> None:
     for result in report.results:
         cells.setdefault((result.shader.name, result.compiler), []).append(result)
     width = max((len(shader.name) for shader in shaders), default=0)
+    not_compiled = _not_compiled(report, shaders)
+    every = verbose or len(cells) + len(not_compiled) <= LISTED
     for (name, compiler), results in cells.items():
-        word = "ok  " if all(result.ok for result in results) else "FAIL"
-        print(f"{word} {visible(name):{width}}  {compiler}")
-        _print_messages(results)
-    done = {result.shader.name for result in report.results}
-    for shader in shaders:
-        if shader.name not in done:
-            language = shader.sources[0].language
-            print(f"--   {visible(shader.name):{width}}  not compiled: {_why_not(language, report)}")
+        passed = all(result.ok for result in results)
+        if every or not passed:
+            print(f"{'ok  ' if passed else 'FAIL'} {visible(name):{width}}  {compiler}")
+            _print_messages(results)
+    for name, why in not_compiled.items() if every else ():
+        print(f"--   {visible(name):{width}}  not compiled: {why}")
+    if not every:
+        good = sum(all(result.ok for result in results) for results in cells.values())
+        warned = sum(all(result.ok for result in results) and _has_messages(results) for results in cells.values())
+        print(f"{good} of {len(cells)} are ok{f', {warned} with warnings' if warned else ''}; --verbose lists them")
     failed = sum(not result.ok for result in report.results)
-    print(f"\n{len(shaders)} files, {len(report.results)} compilations, {failed} failed")
+    last = f"{len(shaders)} files, {len(report.results)} compilations, {failed} failed"
+    print(f"\n{last}{f', {len(not_compiled)} not compiled' if not_compiled else ''}")
+    _print_not_compiled(report, shaders, not_compiled)
+
+
+def _print_not_compiled(report: Report, shaders: list[Shader], not_compiled: Mapping[str, str]) -> None:
+    """How many files were not compiled for each reason, and how to get the compilers that they lack."""
+    for why, count in Counter(not_compiled.values()).items():
+        print(f"  {count} file{'s' * (count != 1)}: {why}")
+    languages = {shader.sources[0].language for shader in shaders if shader.name in not_compiled}
+    wanted = {name for language in languages for name in readers(language)}
+    for name, instruction in report.missing.items():
+        if name in wanted:
+            print(f"  to get {name}: {visible(instruction)}")
+
+
+def _has_messages(results: list[Result]) -> bool:
+    return any(result.messages for result in results)
+
+
+def _not_compiled(report: Report, shaders: list[Shader]) -> dict[str, str]:
+    """The files that no compiler compiled, with the reason."""
+    done = {result.shader.name for result in report.results}
+    left = [shader for shader in shaders if shader.name not in done]
+    return {shader.name: _why_not(shader.sources[0].language, report) for shader in left}
 
 
 def _print_engines() -> None:
