@@ -12,12 +12,16 @@ from pathlib import Path
 from sphinx.cmd.build import build_main
 
 import generated
+from chart_pictures import beside_path_tracing
 from menu import ROOT, documents, problems
+from picture import Picture
 from sssgen.harness import backends
+from sssgen.harness.backends import Backend
 from sssgen.material import library
+from sssgen.material.library import Technique
 from staging import Staging
 from technique_curves import curves_at_the_ends
-from technique_pictures import draw, why_none
+from technique_pictures import best_point, draw, why_none
 
 
 def main(folder: Path, pictures: bool) -> int:
@@ -30,15 +34,13 @@ def main(folder: Path, pictures: bool) -> int:
     staging = Staging(sources)
     backend = backends.get("gl") if pictures else None
     for technique in library.load_all():
-        picture = draw(technique, backend) if backend is not None else None
-        ends = curves_at_the_ends(technique) if pictures else None
-        above, below = (shown.caption if shown is not None else "" for shown in (picture, ends))
-        without = why_none(technique) if pictures and picture is None else ""
-        page, text, places = generated.technique_page(technique.name, above, below, without)
+        drawn = _pictures(technique, backend) if backend is not None else {}
+        for kind, picture in drawn.items():
+            staging.add_picture(generated.technique_picture(technique.name, kind), picture.colors)
+        captions = {kind: picture.caption for kind, picture in drawn.items()}
+        without = why_none(technique) if pictures and "picture" not in drawn else ""
+        page, text = generated.technique_page(technique.name, captions, without)
         texts[page] = text
-        for place, shown in zip(places, (picture, ends), strict=True):
-            if shown is not None:
-                staging.add_picture(place, shown.colors)
     for page, text in texts.items():
         staging.write(page, text)
     settings = ["-c", str(Path(__file__).parent), "-b", "html", "-q", "-W", "--keep-going", "-d", f"{sources}-cache"]
@@ -46,6 +48,17 @@ def main(folder: Path, pictures: bool) -> int:
     if not status:
         print(f"wrote {folder}/index.html: {len(texts)} pages")
     return status
+
+
+def _pictures(technique: Technique, backend: Backend) -> dict[str, Picture]:
+    """By their kinds, as in `generated.PICTURES`."""
+    point = best_point(technique.name)
+    found = {
+        "picture": draw(technique, backend),
+        "traced": beside_path_tracing(point) if point is not None else None,
+        "ends": curves_at_the_ends(technique),
+    }
+    return {kind: picture for kind, picture in found.items() if picture is not None}
 
 
 if __name__ == "__main__":

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import commands_page
 import python_page
 import technique_pages
@@ -22,13 +24,18 @@ def pages() -> dict[str, str]:
     }
 
 
-def technique_page(name: str, picture: str = "", ends: str = "", without: str = "") -> tuple[str, str, tuple[str, str]]:
-    """The path and the text of a technique's page, and the paths of its pictures.
+PICTURES = {"picture": ".png", "traced": "_traced.png", "ends": "_ends.png"}
+"""The pictures of a technique's page: its picture, one beside path tracing, one of the ends of ranges."""
 
-    `picture` and `ends` are the captions of its picture and of that of the ends of its parameters' ranges; '' is none.
-    """
-    files = f"{name}.png", f"{name}_ends.png"
-    shown = [technique_pages.Shown(file, caption) for file, caption in zip(files, (picture, ends), strict=True)]
-    text = technique_pages.page(library.load(name), shown[0] if picture else None, shown[1] if ends else None, without)
-    folder = technique_pages.FOLDER
-    return f"{folder}/{name}.md", text, (f"{folder}/{files[0]}", f"{folder}/{files[1]}")
+
+def technique_picture(name: str, kind: str) -> str:
+    """The path of a picture on a technique's page."""
+    return f"{technique_pages.FOLDER}/{name}{PICTURES[kind]}"
+
+
+def technique_page(name: str, captions: Mapping[str, str] | None = None, without: str = "") -> tuple[str, str]:
+    """The path and the text of a technique's page; it has the pictures that have a caption."""
+    shown = {kind: technique_pages.Shown(name + PICTURES[kind], text) for kind, text in (captions or {}).items()}
+    limits = [shown[kind] for kind in ("traced", "ends") if kind in shown]
+    text = technique_pages.page(library.load(name), shown.get("picture"), limits, without)
+    return f"{technique_pages.FOLDER}/{name}.md", text

@@ -74,8 +74,8 @@ class Shown(NamedTuple):
     caption: str
 
 
-def page(technique: Technique, picture: Shown | None = None, ends: Shown | None = None, without: str = "") -> str:
-    """The page of a technique, with its picture, or why it has none, and one of the ends of its parameters' ranges."""
+def page(technique: Technique, picture: Shown | None = None, limits: Sequence[Shown] = (), without: str = "") -> str:
+    """The page of a technique, with its picture, or why it has none, and with pictures of its limits."""
     facts = facts_of(technique)
     doc = dict(facts["doc"])
     lines = [f"# {technique.name}", "", escaped(facts["summary"]), ""]
@@ -88,10 +88,10 @@ def page(technique: Technique, picture: Shown | None = None, ends: Shown | None 
         lines += ["", "## Formula", "", formula_math.typeset(formula)]
     lines += ["", *_uniforms("Parameters", facts["parameters"]), *_uniforms("Textures", facts["textures"])]
     lines += _slots(facts["slots"])
-    limits = [*_compared(technique.name), *(_shown(ends) if ends is not None else [])]
+    below = [*_compared(technique.name), *(line for shown in limits for line in _shown(shown))]
     if text := doc.pop("limits", ""):
-        limits = [escaped(text), "", *limits]
-    lines += ["## Limits", "", *limits] if limits else []
+        below = [escaped(text), "", *below]
+    lines += ["## Limits", "", *below] if below else []
     for key in [*(key for key in TITLES if key in doc), *(key for key in doc if key not in {*TITLES, *OMITTED})]:
         text = f"[{doc[key]}]({doc[key]}.md)" if doc[key] in library.index() else escaped(doc[key])
         lines += [f"## {TITLES.get(key, key.replace('_', ' ').capitalize())}", "", text, ""]

@@ -79,7 +79,7 @@ technique = "{}"
 
 def draw(technique: Technique, backend: Backend) -> Picture | None:
     """The picture of a technique; None if there is none."""
-    if point := _best(technique.name):
+    if point := best_point(technique.name):
         return _measured(point, backend)
     return _drawn(technique, backend) or default_curve(technique)
 
@@ -111,7 +111,7 @@ def why_none(technique: Technique) -> str:
     return "It has no picture here: on a ball with the defaults of all other techniques it changes nothing."
 
 
-def _best(name: str) -> Point | None:
+def best_point(name: str) -> Point | None:
     """The most accurate whole chain on the scene that has the technique and that needs no baked texture."""
     found = [
         point

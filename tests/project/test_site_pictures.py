@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+import chart_pictures
 import stability_pictures
 import technique_curves
 import technique_pages
@@ -48,7 +49,7 @@ def test_what_needs_a_body_has_no_curve(name: str) -> None:
 
 def test_the_picture_of_the_ends_is_below_the_limits() -> None:
     ends = technique_pages.Shown("beer_lambert_ends.png", "At both ends")
-    text = technique_pages.page(library.load("beer_lambert"), ends=ends)
+    text = technique_pages.page(library.load("beer_lambert"), limits=[ends])
     assert "![At both ends](beer_lambert_ends.png)\n\n*At both ends.*" in text.partition("\n## Limits\n")[2]
 
 
@@ -63,6 +64,17 @@ def test_a_published_technique_is_shown_beside_what_to_use_instead() -> None:
     text = technique_pages.page(library.load("cheap_sss_thinness"))
     assert "dark X" in text and "](../../../docs/stability/cube.png)" in text.partition("\n## Limits\n")[2]
     assert stability_pictures.comparisons_of("lobe_normalized") == []  # in both materials, and no baseline
+
+
+@pytest.mark.slow
+def test_a_charted_chain_is_shown_beside_path_tracing() -> None:
+    """Both halves are the body in the same scale: alike, but not equal."""
+    point = technique_pictures.best_point("lobe_gdc2011")
+    assert point is not None
+    picture = chart_pictures.beside_path_tracing(point)
+    left, right = picture.colors[:, : chart_pictures.SIDE * 2], picture.colors[:, -chart_pictures.SIDE * 2 :]
+    assert picture.caption.startswith("What remains: ") and f"{point['error']['value']:.2f}" in picture.caption
+    assert 0.7 < left.mean() / right.mean() < 1.4 and np.abs(left - right).mean() > 0.01
 
 
 @pytest.mark.slow
