@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -91,6 +92,21 @@ def cube() -> MeasuredScene:
     return measured_scene.load("cube")
 
 
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A cache folder for tests that need the results of `cube` and not their measurement."""
+    return tmp_path_factory.mktemp("measured")
+
+
+@pytest.fixture
+def cube_measured(measured: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """The record of `cube`. The first test that asks measures it; each has its own copy of the cache."""
+    in_cache(measured, monkeypatch)
+    record = chart.chart_record([cube()], settings())
+    in_cache(shutil.copytree(measured, tmp_path / "copy"), monkeypatch)
+    return record
+
+
 def record_titles(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The titles of the items that are computed from now on, in this process."""
     ran: list[str] = []
@@ -104,16 +120,15 @@ def record_titles(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return ran
 
 
-def test_measurements_are_cached(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_measurements_are_cached(
+    cube_measured: dict[str, Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     ran = record_titles(monkeypatch)
-    scene = cube()
-    first = chart.chart_record([scene], settings())
-    assert len(ran) > 20
-    del ran[:]
+    scene, first = cube(), cube_measured
     assert to_json(chart.chart_record([scene], settings())) == to_json(first)
     assert not ran
     # without the file of the scene, the stored results of the items are used
-    (stored,) = (tmp_path / "cache").glob("chart-*.json")
+    (stored,) = (tmp_path / "copy").glob("chart-*.json")
     stored.unlink()
     assert to_json(chart.chart_record([scene], settings())) == to_json(first)
     assert not ran
@@ -123,14 +138,17 @@ def test_measurements_are_cached(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     assert not ran
     # an interrupted run continues
     stored.unlink()
-    lost = sorted((tmp_path / "cache" / "lab" / "results").glob("*/*"))[::5]
+    results = sorted((tmp_path / "copy" / "lab" / "results").glob("*/*"))
+    assert len(results) > 20
+    lost = results[::5]
     for path in lost:
         path.unlink()
     assert to_json(chart.chart_record([scene], settings())) == to_json(first)
     assert 0 < len(ran) <= len(lost)
     # a chart with another seed is measured
-    chart.chart_record([scene], settings(seed=1))
-    assert len(ran) > 20
+    del ran[:]
+    chart.chart_record([scene], settings(seed=1, roles=("thickness",)))
+    assert ran
 
 
 def test_roles_without_light_need_no_reference(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -154,7 +172,7 @@ def test_results_do_not_depend_on_processes(monkeypatch: pytest.MonkeyPatch, tmp
     assert json.loads(expected)["points"]
 
 
-def test_a_record_is_valid_and_complete() -> None:
+def test_a_record_is_valid_and_complete(cube_measured: dict[str, Any]) -> None:
     scenes = [cube(), measured_scene.load("inlay_plate")]
     record = chart.chart_record(scenes, settings())
     assert checked(record) == record == json.loads(to_json(record))
@@ -316,8 +334,8 @@ def test_more_expensive_lengths_with_the_same_requirements_are_used_if_they_halv
     assert labels == ["march_light, 4 steps", "march_light_traced, 4 steps", "depth_map_path", "depth_layers_path"]
 
 
-def test_a_record_restores_its_candidates() -> None:
-    record = json.loads(to_json(chart.chart_record([cube()], settings())))
+def test_a_record_restores_its_candidates(cube_measured: dict[str, Any]) -> None:
+    record = json.loads(to_json(cube_measured))
     (point,) = (
         point
         for point in record["points"]

@@ -247,10 +247,8 @@ def fluxes(depth: float, medium: Medium, samples: int) -> list[tuple[float, floa
     return results
 
 
-BEAMS = [SLABS[0], *(pytest.param(*slab, marks=pytest.mark.slow) for slab in SLABS[1:])]
-
-
-@pytest.mark.parametrize(("depth", "albedo", "anisotropy", "ior"), BEAMS)
+@pytest.mark.slow
+@pytest.mark.parametrize(("depth", "albedo", "anisotropy", "ior"), SLABS)
 def test_slabs_in_a_beam_by_adding_and_doubling(depth: float, albedo: float, anisotropy: float, ior: float) -> None:
     reflected, through, _, _ = iadpython.Sample(a=albedo, b=depth, g=anisotropy, n=ior, quad_pts=24).rt()
     front, back = unscattered(depth, ior)

@@ -104,6 +104,7 @@ def test_the_source_distribution_carries_the_qualification() -> None:
         assert "from qualification" not in text, path
 
 
+@pytest.mark.slow
 def test_the_wheel_and_the_checkout_emit_equal_files(installed: Path, tmp_path: Path) -> None:
     """Every example for every target, each side with its own hash seed and with no cache to begin with."""
     names = list(examples())
@@ -123,6 +124,7 @@ def test_the_wheel_and_the_checkout_emit_equal_files(installed: Path, tmp_path: 
     assert theirs == ours
 
 
+@pytest.mark.slow
 def test_the_wheel_checks_and_runs_unitys_text(
     wheel: Path, tmp_path: Path, compiler: Callable[[str], object], backend: Callable[[str], object]
 ) -> None:
@@ -174,7 +176,7 @@ def pip_steps(text: str, wheel: Path) -> list[str]:
     """The shell blocks of a document that install the project with pip; `wheel` stands in for the project."""
     steps = []
     for block in re.findall(r"^```(?:sh|bash|console)\n(.*?)^```", text, re.MULTILINE | re.DOTALL):
-        own = re.compile(rf"""(\binstall )(?:-e )?(["']?)(?:\.|{DISTRIBUTION})(\[[\w,]+\])?\2(?=\s)""")
+        own = re.compile(rf"""(\binstall )(?:-e )?(["']?)(?:\.|(?:\./)?{DISTRIBUTION})(\[[\w,]+\])?\2(?=\s)""")
         replaced, count = own.subn(lambda match: f"{match[1]}'{wheel}{match[3] or ''}'", block)
         if count:
             lines = [line.removeprefix("$ ") for line in replaced.splitlines(keepends=True)]
@@ -185,6 +187,9 @@ def pip_steps(text: str, wheel: Path) -> list[str]:
 def test_the_pip_steps_of_a_document() -> None:
     text = "```sh\ngit clone x\ncd x\npip install '.[gl]'  # y\nsssgen\n```\n\n```sh\npip install moderngl\n```\n"
     assert pip_steps(text, Path("a.whl")) == ["pip install 'a.whl[gl]'  # y\nsssgen\n"]
+    assert pip_steps(f"```sh\npip install './{DISTRIBUTION}[gl]' b\n```\n", Path("a.whl")) == [
+        "pip install 'a.whl[gl]' b\n"
+    ]
     text = f"```sh\n.venv/bin/pip install {DISTRIBUTION}\n```\n```sh\npip install -e .\n```\n"
     assert pip_steps(text, Path("a.whl")) == [".venv/bin/pip install 'a.whl'\n", "pip install 'a.whl'\n"]
 
