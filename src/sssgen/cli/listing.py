@@ -12,6 +12,7 @@ from sssgen.harness.scenes.example_scenes import all_scenes, summary
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
+from sssgen.material.requirements import requirements
 from sssgen.pipeline.compiler import all_targets
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
@@ -53,7 +54,8 @@ def run(arguments: Namespace) -> int:
         if row.get("role", "") != role:
             print(f"{chr(10) if role else ''}{row['role']}")
             role = row["role"]
-        print("\n".join(table_rows([(row["name"], row["summary"])], longest, width)))
+        required = f" Requires: {', '.join(row['requires'])}." if row.get("requires") else ""
+        print("\n".join(table_rows([(row["name"], row["summary"] + required)], longest, width)))
     return OK
 
 
@@ -86,6 +88,7 @@ def _materials() -> list[dict[str, Any]]:
             "title": material.title,
             "summary": material.doc,
             "shading": material.shading,
+            "requires": list(requirements(material.stages)),
             "file": posix(material.file),
         }
         for material in materials
