@@ -130,7 +130,7 @@ def test_sizes_that_they_reach(size: float) -> None:
 
 WRONG: list[tuple[list[str], str]] = [
     (["sdf", "no.obj", "-o", "o.npy"], "cannot find the mesh"),
-    (["sdf", ".", "-o", "o.npy"], "not a mesh file's suffix"),
+    (["sdf", ".", "-o", "o.npy"], "this is a folder"),
     (["sdf", "box.obj", "-o", "o.tga"], "'.tga' is not the suffix of a volume file"),
     (["sdf", "box.obj", "-o", "o"], "not the suffix of a volume file"),
     (["sdf", "box.obj", "-o", "o.npy", "--format", "dss"], "did you mean 'dds'?"),

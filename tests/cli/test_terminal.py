@@ -8,12 +8,20 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from command_line import Run
+from sssgen.cli import chart as chart_command
+from sssgen.cli import check as check_command
+from sssgen.cli import eval as eval_command
 from sssgen.cli import main as cli
 from sssgen.cli import show
 from sssgen.cli.output import coloured
+from sssgen.harness.check.compile_check import Report, Result
+from sssgen.harness.check.shader_files import Shader
+from sssgen.harness.compilers import Message, Source
+from sssgen.harness.evaluate.deviation import Row
 from sssgen.support.progress import ProgressBar
 
 TEXT = "error: no such file\n  --> a.toml\n  help: an error: as a word"
@@ -90,6 +98,9 @@ STEPS = {
     ],
     "eval lobe_exp2 --samples 10 --backend numpy-f32,numpy-f16": ["numpy, the oracle", "numpy-f32", "numpy-f16"],
     "ci numbers --backend numpy-f32": ["eval numbers/lobe.eval.json [numpy-f32]"],
+    "bake voronoi --size 256 -o cells.npy": ["rows of cells"] * 3,
+    "bake normal height.npy -o normals.npy": ["reading height.npy", "normals", "writing normals.npy"],
+    "bake pack --red height.npy --green 0.5 -o packed.npy": ["reading height.npy"],
 }  # fmt: skip
 """Command → the names of the steps of its progress."""
 
@@ -97,6 +108,7 @@ STEPS = {
 @pytest.mark.parametrize("command", STEPS)
 def test_the_progress_of_a_command(command: str, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     Path("half.glsl").write_text("float halved(float x) { return 0.5 * x; }\n", encoding="utf-8")
+    np.save("height.npy", np.zeros((4, 4)))
     Path("numbers").mkdir()
     numbers = {"technique": "lobe_gdc2011", "inputs": {"N": [[0, 0, 1]]}, "tolerance": 1e-5}
     Path("numbers/lobe.eval.json").write_text(json.dumps(numbers), encoding="utf-8")
@@ -108,3 +120,45 @@ def test_the_progress_of_a_command(command: str, run: Run, monkeypatch: pytest.M
     done = [done for done, _, _ in shown]
     assert done == sorted(done)
     assert done[0] >= 0 and done[-1] <= total
+
+
+LONG = "a version of a compiler on a device (with all that it tells of itself, and more)"
+SOURCE = Source("x", "wgsl")
+RESULTS = [
+    Result(Shader(f"{'f' * length}.wgsl", "x", (SOURCE,)), SOURCE, "naga", [Message("warning", 0, 0, LONG)])
+    for length in (5, 45)
+]
+REPORT = Report({"naga": LONG}, {"tint": LONG}, RESULTS)
+ROWS = [Row("webgpu", LONG, None, LONG, missing=True)]
+POINT = {"scene": "s", "role": "material", "front": True, "failed": "", "baseline": True, "label": LONG}
+CHART = {
+    "hypervolume": [{"scene": "s", "role": "material", "ours": 1.0, "baselines": 0.5}],
+    "points": [{**POINT, "error": {"value": 0.5}, "cost": {"value": 10.0}}],
+}
+
+
+def table(name: str) -> None:
+    """Prints one of the tables of results."""
+    if name == "check":
+        shaders = [result.shader for result in REPORT.results] + [Shader("a.txt", "", (Source("", "gdshader"),))]
+        check_command._print(REPORT, shaders, verbose=False)
+    elif name == "eval":
+        eval_command._print_rows(ROWS)
+    else:
+        print(chart_command.summary(CHART))
+
+
+@pytest.mark.parametrize("name", ["check", "eval", "chart"])
+def test_tables_fit_a_narrow_terminal_and_are_one_line_each_in_a_pipe(
+    name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table(name)
+    piped = capsys.readouterr().out
+    monkeypatch.setenv("COLUMNS", "60")
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stdout", terminal)
+    table(name)
+    lines = terminal.getvalue().splitlines()
+    assert LONG in piped and LONG not in terminal.getvalue()
+    assert [line for line in lines if len(line) >= 60] == []
+    assert "".join(terminal.getvalue().split()) == "".join(piped.split())

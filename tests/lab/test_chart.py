@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from sssgen.cli.chart import summary
+from sssgen.cli.chart import announce, summary
 from sssgen.cli.main import main
 from sssgen.harness.backends import Backend
 from sssgen.lab.chart import charting as chart
@@ -489,3 +489,15 @@ def test_materials_select_their_thickness_technique(monkeypatch: pytest.MonkeyPa
             ("translucency",),
     ]  # fmt: skip
     assert [inputs.samples for inputs in requests] == [512] * 3
+
+
+def test_the_scenes_that_take_minutes_are_announced(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scenes = [measured_scene.load(name) for name in ("cube", "torus", "inlay_plate")]
+    monkeypatch.setattr(chart, "cached", lambda scene, _: {} if scene.name == "torus" else None)
+    announce(scenes, settings())
+    shown = capsys.readouterr()
+    assert shown.err.startswith("measuring cube: minutes") and shown.out == ""  # an inlay takes seconds
+    announce(scenes[1:], settings())
+    assert capsys.readouterr().err == ""

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from sssgen.harness.pictures.images import LARGEST_SIDE
 from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.progress import Progress, silent
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Bits: TypeAlias = npt.NDArray[np.uint32]
@@ -32,6 +33,7 @@ def voronoi(
     feature: str = "faceted",
     bevel: float = 0.35,
     variation: float = 0.6,
+    progress: Progress = silent,
 ) -> Array:
     """Voronoi cells as heights 0..1, (height, width), row 0 at the top (v = 1).
 
@@ -63,6 +65,7 @@ def voronoi(
     x = (np.arange(width) + 0.5) * across / width
     rows = max(1, _BLOCK // width)
     for top in range(0, height, rows):
+        progress(top, height, "rows of cells")
         y = (height - np.arange(top, min(top + rows, height)) - 0.5) * up / height
         first, second, owner = _nearest(x, y, cells if tileable else None, jitter, seed)
         if feature == "faceted":
@@ -71,6 +74,7 @@ def voronoi(
         else:
             block = (first if feature == "f1" else second - first) / scale(feature, jitter)
         picture[top : top + rows] = block
+    progress(height, height, "rows of cells")
     return picture
 
 

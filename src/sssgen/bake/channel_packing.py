@@ -11,6 +11,7 @@ import numpy.typing as npt
 from sssgen.harness.pictures import images
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
+from sssgen.support.progress import Progress, silent
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
@@ -55,13 +56,16 @@ def parse(text: str) -> Source:
     return Source(file, channel.lower(), inverted)
 
 
-def load(sources: Sequence[Source | None]) -> list[Array | float | None]:
+def load(sources: Sequence[Source | None], progress: Progress = silent) -> list[Array | float | None]:
     """The channels of sources, each (height, width) as stored, or a number; None stays None.
 
     Raises SssgenError for pictures that cannot be read, and for a channel that a picture does not have.
     """
-    files = {source.file for source in sources if source is not None and source.file}
-    pictures = {file: images.upright(file) for file in sorted(files)}
+    files = sorted({source.file for source in sources if source is not None and source.file})
+    pictures = {}
+    for index, file in enumerate(files):
+        progress(index, len(files), f"reading {file}")
+        pictures[file] = images.upright(file)
     return [None if source is None else _channel(source, pictures) for source in sources]
 
 

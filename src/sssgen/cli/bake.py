@@ -315,17 +315,19 @@ def _voronoi(arguments: Namespace) -> Result:
 
     output.picture_suffix(arguments.output)
     size, count, tiles = picture_size(arguments.size), pair(arguments.cells, "number of cells"), not arguments.no_tile
-    texels = cells.voronoi(
-        size, count, arguments.jitter, arguments.seed, tiles, arguments.feature, arguments.bevel, arguments.variation
-    )
-    facts = {
-        "kind": "cells", "holds": "thickness", "feature": arguments.feature,
-        "cells": list(count), "jitter": arguments.jitter, "seed": arguments.seed, "tiles": tiles,
-        "bevel": arguments.bevel, "variation": arguments.variation,
-        "one_stands_for": cells.scale(arguments.feature, arguments.jitter), "parameters": {},
-        "import": import_settings(wrap="repeat" if tiles else "clamp"),
-    }  # fmt: skip
-    paths = output.write_picture(arguments.output, texels, facts)
+    with ProgressBar() as bar:
+        texels = cells.voronoi(
+            size, count, arguments.jitter, arguments.seed, tiles, arguments.feature, arguments.bevel,
+            arguments.variation, bar,
+        )  # fmt: skip
+        facts = {
+            "kind": "cells", "holds": "thickness", "feature": arguments.feature,
+            "cells": list(count), "jitter": arguments.jitter, "seed": arguments.seed, "tiles": tiles,
+            "bevel": arguments.bevel, "variation": arguments.variation,
+            "one_stands_for": cells.scale(arguments.feature, arguments.jitter), "parameters": {},
+            "import": import_settings(wrap="repeat" if tiles else "clamp"),
+        }  # fmt: skip
+        paths = output.write_picture(arguments.output, texels, facts)
     return paths, facts, [f"{count[0]} × {count[1]} cells, {arguments.feature}{', tileable' if tiles else ''}"]
 
 
@@ -349,15 +351,19 @@ def _normal(arguments: Namespace) -> Result:
 
     output.picture_suffix(arguments.output)
     output.check_apart(arguments.output, [arguments.HEIGHT])
-    height = images.upright(arguments.HEIGHT)
     tiles = not arguments.no_tile
-    texels = normals.from_height(height[..., 0], arguments.strength, tiles, arguments.green)
-    facts = {
-        "kind": "normal", "holds": None, "strength": arguments.strength,
-        "green": arguments.green, "tiles": tiles, "parameters": {},
-        "import": import_settings(wrap="repeat" if tiles else "clamp", normal_map=True),
-    }  # fmt: skip
-    paths = output.write_picture(arguments.output, texels, facts, arguments.bits)
+    with ProgressBar() as bar:
+        bar(0, 3, f"reading {arguments.HEIGHT}")
+        height = images.upright(arguments.HEIGHT)
+        bar(1, 3, "normals")
+        texels = normals.from_height(height[..., 0], arguments.strength, tiles, arguments.green)
+        bar(2, 3, f"writing {arguments.output}")
+        facts = {
+            "kind": "normal", "holds": None, "strength": arguments.strength,
+            "green": arguments.green, "tiles": tiles, "parameters": {},
+            "import": import_settings(wrap="repeat" if tiles else "clamp", normal_map=True),
+        }  # fmt: skip
+        paths = output.write_picture(arguments.output, texels, facts, arguments.bits)
     return paths, facts, [f"tangent-space normals, green as in {GREEN[arguments.green]}"]
 
 
@@ -378,12 +384,13 @@ def _pack(arguments: Namespace) -> Result:
         raise failure("there is nothing to pack", "--red a.png --green b.png --blue 1-c.png")
     sources = [packing.parse(text) if text else None for text in sources_by_channel.values()]
     output.check_apart(arguments.output, [source.file for source in sources if source and source.file])
-    texels = packing.pack(packing.load(sources))
-    facts = {
-        "kind": "packed", "holds": None, "channels": sources_by_channel, "parameters": {},
-        "import": import_settings(),
-    }  # fmt: skip
-    paths = output.write_picture(arguments.output, texels, facts, arguments.bits)
+    with ProgressBar() as bar:
+        texels = packing.pack(packing.load(sources, bar))
+        facts = {
+            "kind": "packed", "holds": None, "channels": sources_by_channel, "parameters": {},
+            "import": import_settings(),
+        }  # fmt: skip
+        paths = output.write_picture(arguments.output, texels, facts, arguments.bits)
     return paths, facts, [f"{name}: {text}" for name, text in sources_by_channel.items() if text]
 
 

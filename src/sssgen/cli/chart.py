@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from argparse import ArgumentParser, Namespace
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from sssgen.cli.engine_options import add_condition_options, conditions_of, device_of
+from sssgen.cli.layout import table_rows, table_width
 from sssgen.cli.options import add_seed, add_workers, given
 from sssgen.cli.output import OK, print_json
 from sssgen.support.diagnostics import did_you_mean, failure
@@ -14,6 +16,7 @@ from sssgen.support.progress import ProgressBar
 
 if TYPE_CHECKING:
     from sssgen.lab.chart.charting import Settings
+    from sssgen.lab.scene.measured_scene import MeasuredScene
 
 MAX_SAMPLES = 1 << 16
 
@@ -63,6 +66,7 @@ def run(arguments: Namespace) -> int:
             raise failure(
                 f"two scenes are called '{name}'", "a scene has the name of its file: rename one of the files"
             )
+    announce(scenes, settings)
     record = chart.chart_record(scenes, settings)
     if device is not None:
         from sssgen.lab.gpu.device_costs import by_device
@@ -84,6 +88,16 @@ def run(arguments: Namespace) -> int:
     for file in files:
         print(f"wrote {file}")
     return OK
+
+
+def announce(scenes: Sequence[MeasuredScene], settings: Settings) -> None:
+    """Says which scenes are measured first, if that takes minutes: those with light transport that are not cached."""
+    from sssgen.lab.chart.charting import cached
+
+    names = [scene.name for scene in scenes if scene.medium is not None and cached(scene, settings) is None]
+    if names and sys.stderr is not None:
+        text = f"measuring {', '.join(names)}: minutes for each the first time, then cached; each finished step is kept"
+        print(text, file=sys.stderr, flush=True)
 
 
 def settings_of(arguments: Namespace) -> Settings:
@@ -113,10 +127,9 @@ def summary(record: Mapping[str, Any]) -> str:
         best = sorted((point for point in of_it if point["front"]), key=lambda point: float(point["cost"]["value"]))
         failed = sum(bool(point["failed"]) for point in of_it)
         lines += ["", f"{scene}, {role}: {len(of_it)} points" + (f", {failed} failed" if failed else "")]
-        lines += [
-            f"  {point['error']['value']:8.4f}  {point['cost']['value']:8.4g}  {point['label']}"
-            + ("  (published)" if point["baseline"] else "")
-            for point in best
-        ]
+        for point in best:
+            numbers = f"{point['error']['value']:8.4f}  {point['cost']['value']:8.4g}"
+            label = point["label"] + ("  (published)" if point["baseline"] else "")
+            lines += table_rows([(numbers, label)], len(numbers), table_width())
         lines.append(f"  hypervolume {volume['ours']:.3f}, of the baselines {volume['baselines']:.3f}")
     return "\n".join(["   error      cost", *lines[1:]])

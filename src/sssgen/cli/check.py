@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 from argparse import ArgumentParser, Namespace
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from sssgen.cli.emit import chosen_targets
+from sssgen.cli.layout import table_rows, table_width, wrapped
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.harness.check import compile_check as check
 from sssgen.harness.check.compile_check import Report, Result
@@ -75,10 +76,9 @@ def _passed(report: Report, shaders: list[Shader]) -> bool:
 
 
 def _print(report: Report, shaders: list[Shader], verbose: bool) -> None:
-    for name, version in report.versions.items():
-        print(f"{name:8} {visible(version)}")
-    for name, instruction in report.missing.items():
-        print(f"{name:8} not found: {visible(instruction)}")
+    found = [(name, visible(version)) for name, version in report.versions.items()]
+    missing = [(name, f"not found: {visible(instruction)}") for name, instruction in report.missing.items()]
+    _print_rows(found + missing, 7)
     _print_engines()
     print()
     cells: dict[tuple[str, str], list[Result]] = {}
@@ -90,10 +90,10 @@ def _print(report: Report, shaders: list[Shader], verbose: bool) -> None:
     for (name, compiler), results in cells.items():
         passed = all(result.ok for result in results)
         if every or not passed:
-            print(f"{'ok  ' if passed else 'FAIL'} {visible(name):{width}}  {compiler}")
+            _print_rows([(f"{'ok  ' if passed else 'FAIL'} {visible(name)}", compiler)], 5 + width)
             _print_messages(results)
     for name, why in not_compiled.items() if every else ():
-        print(f"--   {visible(name):{width}}  not compiled: {why}")
+        _print_rows([(f"--   {visible(name)}", f"not compiled: {why}")], 5 + width)
     if not every:
         good = sum(all(result.ok for result in results) for results in cells.values())
         warned = sum(all(result.ok for result in results) and _has_messages(results) for results in cells.values())
@@ -112,7 +112,18 @@ def _print_not_compiled(report: Report, shaders: list[Shader], not_compiled: Map
     wanted = {name for language in languages for name in readers(language)}
     for name, instruction in report.missing.items():
         if name in wanted:
-            print(f"  to get {name}: {visible(instruction)}")
+            _print_text(f"to get {name}: {visible(instruction)}")
+
+
+def _print_rows(rows: Sequence[tuple[str, str]], first: int, indent: int = 0) -> None:
+    """Rows of a name and a text, wrapped on a terminal."""
+    print("\n".join(table_rows(rows, first, table_width(), indent)))
+
+
+def _print_text(text: str) -> None:
+    """A text, indented, and wrapped on a terminal."""
+    width = table_width()
+    print("\n".join(wrapped(text, width, "  ", "    ")) if width else f"  {text}")
 
 
 def _has_messages(results: list[Result]) -> bool:
@@ -134,7 +145,7 @@ def _print_engines() -> None:
     print("\nEngines as back ends:")
     for how, alike in names.items():
         if alike:
-            print(f"  {', '.join(alike)}: {f'not found: {visible(how)}' if how else 'found'}")
+            _print_text(f"{', '.join(alike)}: {f'not found: {visible(how)}' if how else 'found'}")
 
 
 def _why_not(language: str, report: Report) -> str:
@@ -150,7 +161,7 @@ def _print_messages(results: list[Result]) -> None:
     lines = result.shader.text.split("\n")
     messages = list(dict.fromkeys(message for result in results for message in result.messages))
     for message in messages[:SHOWN]:
-        print(f"  {message.severity}: {visible(' '.join(message.text.split()))}")
+        _print_text(f"{message.severity}: {visible(' '.join(message.text.split()))}")
         if message.line:
             place = f"{message.line}:{message.column}" if message.column else str(message.line)
             print(f"    --> {visible(result.shader.name)}:{place}")

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
+from sssgen.cli.layout import table_rows, table_width
 from sssgen.cli.options import add_guards, add_seed
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.harness.backend_registry import BACKENDS, FUNCTIONS, HALF, chosen, in_half
 from sssgen.harness.testing.outcome import in_ci
 from sssgen.support.diagnostics import failure
+
+if TYPE_CHECKING:
+    from sssgen.harness.evaluate.deviation import Row
 
 SHOWN = 12
 """The number of lanes that are printed."""
@@ -121,11 +125,17 @@ def _several(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bo
     print(f"{subject.name}, {fit.lanes} lane{'s' * (fit.lanes != 1)}, against the oracle in float64")
     if listed:
         _print_outputs(oracle)
+    _print_rows(rows)
+    return OK if good else CHECK_FAILED
+
+
+def _print_rows(rows: Sequence[Row]) -> None:
+    """A row for each back end, wrapped on a terminal."""
+    from sssgen.harness.evaluate.deviation import GOAL
+
     width = max(len(row.name) for row in rows)
     print(f"\n{'':{width}}  largest deviation (goal: {GOAL:g})")
-    for row in rows:
-        print(f"{row.name:{width}}  {row.text}")
-    return OK if good else CHECK_FAILED
+    print("\n".join(table_rows([(row.name, row.text) for row in rows], width, table_width(), 0)))
 
 
 def _plain(value: Any) -> Any:

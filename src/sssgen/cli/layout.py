@@ -40,12 +40,18 @@ def wrapped(text: str, width: int, first: str = "", rest: str = "") -> list[str]
 
 
 def table_rows(rows: Iterable[tuple[str, str]], first: int, width: int | None, indent: int = 2) -> list[str]:
-    """Rows of a name and a text. The names have `first` columns; the texts are wrapped at `width`, if there is one."""
+    """Rows of a name and a text. The names have `first` columns; the texts are wrapped at `width`, if there is one.
+
+    Where not even the first word fits behind the name, the text is below it.
+    """
     lines = []
     for name, text in rows:
         start = f"{' ' * indent}{name:{first}}  "
         if width is None or len(start) + len(text) <= width:
             lines.append(f"{start}{text}".rstrip())
+        elif len(start) + len(text.split(" ", 1)[0]) > width:
+            below = " " * (2 * indent + 4)
+            lines += [start.rstrip(), *wrapped(text, width, below, below)]
         else:
             rest = len(start) if width > 2 * len(start) else 2 * indent
             lines += wrapped(text, width, start, " " * rest)

@@ -7,7 +7,7 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from sssgen.cli.chart import add_reference_options, settings_of
+from sssgen.cli.chart import add_reference_options, announce, settings_of
 from sssgen.cli.emit import chosen_targets
 from sssgen.cli.engine_options import add_condition_options, conditions_of, device_of
 from sssgen.cli.options import add_targets
@@ -54,6 +54,7 @@ def run(arguments: Namespace) -> int:
     from sssgen.lab.scene import measured_scene
 
     scene = measured_scene.load(arguments.SCENE)
+    announce([scene], settings)
     record = chart.chart_record([scene], settings)
     if device is not None:
         from sssgen.lab.gpu.device_costs import by_device
