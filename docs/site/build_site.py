@@ -21,7 +21,7 @@ from sssgen.material import library
 from sssgen.material.library import Technique
 from staging import Staging
 from technique_curves import curves_at_the_ends
-from technique_pictures import best_point, draw, why_none
+from technique_pictures import ball_at_the_ends, best_point, draw, why_none
 
 
 def main(folder: Path, pictures: bool) -> int:
@@ -56,7 +56,7 @@ def _pictures(technique: Technique, backend: Backend) -> dict[str, Picture]:
     found = {
         "picture": draw(technique, backend),
         "traced": beside_path_tracing(point) if point is not None else None,
-        "ends": curves_at_the_ends(technique),
+        "ends": curves_at_the_ends(technique) or ball_at_the_ends(technique, backend),
     }
     return {kind: picture for kind, picture in found.items() if picture is not None}
 

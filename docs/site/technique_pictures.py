@@ -190,6 +190,32 @@ def _on_a_ball(technique: Technique, backend: Backend) -> Picture | None:
     return None
 
 
+def ball_at_the_ends(technique: Technique, backend: Backend) -> Picture | None:
+    """The ball with the first number that changes it at the lowest and at the highest value of its range."""
+    if technique.role not in ON_A_BALL:
+        return None
+    name, _ = library.setter("albedo")
+    for parameter in facts_of(technique)["parameters"]:
+        if parameter["type"] != "float" or "range" not in parameter:
+            continue
+        low, high = (float(end) for end in parameter["range"][:2])
+        pair = []
+        for value in (low, high):
+            stages = [_stage(technique, ((parameter["name"], value),))]
+            if technique.name != name:
+                stages.insert(0 if technique.role != "coordinates" else 1, _stage(library.load(name)))
+            try:
+                pair.append(_ball(tuple(stages), backend).encoded)
+            except SssgenError:  # it needs more than a ball has
+                return None
+        if np.abs(pair[0] - pair[1]).max() >= VISIBLE:
+            caption = (
+                f"The ball with {parameter['name']} at {low:g} (left) and at {high:g} (right), the ends of its range"
+            )
+            return Picture(np.concatenate(pair, axis=1), caption)
+    return None
+
+
 def _tried(technique: Technique) -> Iterator[tuple[tuple[tuple[str, object], ...], str]]:
     """Parameters that may show a technique whose defaults change nothing: numbers as they can be, colours as white."""
     for parameter in facts_of(technique)["parameters"]:

@@ -67,6 +67,15 @@ def test_a_published_technique_is_shown_beside_what_to_use_instead() -> None:
 
 
 @pytest.mark.slow
+def test_a_ball_is_shown_at_the_ends_of_a_range(backend: Callable[[str], Backend]) -> None:
+    picture = technique_pictures.ball_at_the_ends(library.load("clearcoat_constants"), backend("gl"))
+    assert picture is not None and "at 0 (left) and at 1 (right)" in picture.caption
+    left, right = np.split(picture.colors, 2, axis=1)
+    assert np.abs(left - right).max() > technique_pictures.VISIBLE
+    assert technique_pictures.ball_at_the_ends(library.load("beer_lambert"), backend("gl")) is None  # no ball shows it
+
+
+@pytest.mark.slow
 def test_a_charted_chain_is_shown_beside_path_tracing() -> None:
     """Both halves are the body in the same scale: alike, but not equal."""
     point = technique_pictures.best_point("lobe_gdc2011")
