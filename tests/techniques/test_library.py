@@ -13,6 +13,7 @@ import pytest
 from sssgen.harness import compilers
 from sssgen.harness.check.compiler_inputs import sources
 from sssgen.harness.compilers import Compiler, errors
+from sssgen.ir.baked_textures import is_baked
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Matrix, Sampler, Scalar
 from sssgen.lang.check.quantities import SCALARS
@@ -22,7 +23,7 @@ from sssgen.material import attributes, library
 from sssgen.material.library import Technique
 from sssgen.material.material_loading import parse_material
 from sssgen.material.model import Material
-from sssgen.material.requirements import DRAWN, baked_textures, is_baked, requirements, texel_bytes
+from sssgen.material.requirements import DRAWN, baked_textures, requirements, texel_bytes
 from sssgen.material.slots import candidates
 from sssgen.pipeline.compiler import FORMS, Compiled
 from sssgen.pipeline.compiler import compile as compile_material

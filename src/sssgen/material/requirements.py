@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from sssgen.ir.baked import is_baked, is_volume
+from sssgen.ir.baked_textures import is_baked, is_volume
 from sssgen.ir.drawn import BACK_FACES, CUBES, DISTANT, LAYERS, LIGHT, SHADOW
 from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.ir.types import Sampler

@@ -11,7 +11,7 @@ import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from sssgen.ir.baked import is_baked
+from sssgen.ir.baked_textures import is_baked
 from sssgen.ir.drawn import DRAWN
 from sssgen.ir.nodes import Function, Local, Module, Param, Span, Uniform
 from sssgen.ir.types import Sampler, Struct, spell
