@@ -18,7 +18,6 @@ import numpy as np
 
 from picture import Picture
 from records import Point, points
-from sssgen.cli.shown.shown_technique import facts_of
 from sssgen.harness.backends import Array, Backend
 from sssgen.harness.pictures.images import encode_srgb, write_png
 from sssgen.harness.render.scene_render import Rendered, render
@@ -32,6 +31,7 @@ from sssgen.lab.measure.measured_chain import MaterialSection, material_text
 from sssgen.lab.scene import measured_scene, scene_body
 from sssgen.material import library
 from sssgen.material.library import Technique
+from sssgen.material.technique_facts import facts_of
 from sssgen.support.diagnostics import SssgenError
 from technique_curves import default_curve
 

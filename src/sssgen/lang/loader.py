@@ -13,7 +13,7 @@ from typing import Any
 
 from sssgen.ir.nodes import Module, Span
 from sssgen.lang.source_lines import keep_lines, source_line
-from sssgen.support import cache
+from sssgen.support import cache, unsaved
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.support.file_memo import note
 from sssgen.support.paths import PACKAGE
@@ -21,6 +21,9 @@ from sssgen.support.text_files import read_text
 
 MAX_INCLUDED = 50
 """How deeply files may include files. The library's own do so two deep."""
+
+MAX_MODULES = 1024
+"""The number of modules in memory before the oldest is dropped: a program that runs for days may read many texts."""
 
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"\n]*)"', re.MULTILINE)
 
@@ -76,9 +79,13 @@ def _load(text: str, shown: str, roots: tuple[str, ...], within: tuple[str, ...]
         from sssgen.lang.syntax.parser import parse
 
         module = check(parse(text, shown), text, included)
-        cache.write(f"{key}.ir", cache.pickled(module))
+        if not unsaved.any_kept():
+            cache.write(f"{key}.ir", cache.pickled(module))
     _modules[key] = module
     _keys[id(module)] = key
+    if len(_modules) > MAX_MODULES:
+        oldest = _modules.pop(next(iter(_modules)))
+        _keys.pop(id(oldest), None)
     return module, key
 
 

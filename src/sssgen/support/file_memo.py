@@ -10,6 +10,8 @@ import os
 from collections.abc import Callable
 from typing import NamedTuple, TypeVar
 
+from sssgen.support import unsaved
+
 _T = TypeVar("_T")
 
 MAX_RESULTS = 1024
@@ -61,9 +63,12 @@ def remembered(memory: dict[str, CachedResult], key: str, make: Callable[[], _T]
 
 
 def _state(files: tuple[str, ...]) -> list[tuple[int, int]]:
-    """Each file's time and size; (0, -1) for a missing one."""
+    """Each file's time and size; (0, -1) for a missing one, (-1, N) for the Nth text that is not saved."""
     state = []
     for path in files:
+        if change := unsaved.change_of(path):
+            state.append((-1, change))
+            continue
         try:
             status = os.stat(path)
         except OSError:

@@ -7,6 +7,7 @@ import stat
 from collections.abc import Sequence
 
 from sssgen.ir.spans import Span
+from sssgen.support import unsaved
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_memo import note
 from sssgen.support.paths import posix, stem
@@ -21,15 +22,18 @@ TEXTS = (".toml", ".sss", ".glsl")
 def read_text(path: str | os.PathLike[str], shown: str) -> str:
     """The text of a UTF-8 file, its lines ended by `\\n`; `shown` is its name in messages.
 
+    An editor's unsaved text is read in place of the file's.
+
     Raises SssgenError where the file is missing, too large, not a regular file (a pipe, a device), or not text.
     """
     note(path)
+    if (kept := unsaved.text_of(path)) is not None:
+        return _checked_text(kept.encode("utf-8", "surrogatepass"), shown)
     try:
         refuse_special(path, shown)
         with open(path, "rb") as file:
             size = os.fstat(file.fileno()).st_size
-            if size > MAX_BYTES:
-                raise failure(f"the file is too large: {size} bytes; at most {MAX_BYTES} are read", file=shown)
+            _check_size(size, shown)
             data = file.read()
     except FileNotFoundError:
         raise failure("no such file", file=shown) from None
@@ -38,6 +42,17 @@ def read_text(path: str | os.PathLike[str], shown: str) -> str:
         raise failure(f"cannot read the file: {error.strerror}", file=shown) from None
     except ValueError:  # a zero byte or a lone surrogate in its name
         raise failure("this is not a valid file name", file=shown) from None
+    return _checked_text(data, shown)
+
+
+def _check_size(size: int, shown: str) -> None:
+    if size > MAX_BYTES:
+        raise failure(f"the file is too large: {size} bytes; at most {MAX_BYTES} are read", file=shown)
+
+
+def _checked_text(data: bytes, shown: str) -> str:
+    """The text of a file's bytes. Raises SssgenError where they are too many, or no text."""
+    _check_size(len(data), shown)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

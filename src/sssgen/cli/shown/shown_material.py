@@ -6,11 +6,11 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from sssgen.cli.layout import wrapped
-from sssgen.cli.shown.shown_technique import uniform_facts, uniform_text, value_text
 from sssgen.ir.types import Sampler
 from sssgen.material.material_loading import examples, load_material
 from sssgen.material.model import Material, TechniqueUse
 from sssgen.material.requirements import DESCRIPTIONS, read_uniforms, requirements
+from sssgen.material.technique_facts import uniform_facts, uniform_text, value_text
 from sssgen.passes.cost import Cost
 from sssgen.pipeline.compiler import all_targets, compile
 from sssgen.support.diagnostics import SssgenError
