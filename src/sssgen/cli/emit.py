@@ -10,8 +10,8 @@ from sssgen.cli.options import add_guards, add_targets, given
 from sssgen.cli.output import OK, print_json, print_warnings
 from sssgen.pipeline import emitted_cache
 from sssgen.pipeline.emitted_cache import EmittedFiles
-from sssgen.support import file_memo as watch
 from sssgen.support.diagnostics import Diagnostic, SssgenError, UnsupportedError, did_you_mean, failure
+from sssgen.support.file_memo import changed_files, noted_files
 from sssgen.support.file_writer import write_files
 from sssgen.support.paths import posix
 
@@ -88,8 +88,10 @@ def _cached_or_compiled(arguments: Namespace, traces: list[Trace]) -> EmittedFil
     cached = emitted_cache.load(*command)
     if cached is not None:
         return cached
-    emitted, files = watch.watched(lambda: _compile_all(arguments, traces))
-    emitted_cache.store(*command, emitted, files)
+    with noted_files() as files:
+        emitted = _compile_all(arguments, traces)
+    if not changed_files(files):
+        emitted_cache.store(*command, emitted, files)
     return emitted
 
 

@@ -107,6 +107,7 @@ def _include(
     line = source_line(span)
     for root in roots:
         path = os.path.join(root, name)
+        note(path)
         if os.path.isfile(path):
             if name in within:
                 message = f"'{name}' includes itself: {' → '.join((*within, name))}"
@@ -118,7 +119,6 @@ def _include(
                 inner_roots = tuple(dict.fromkeys((os.path.dirname(path), *roots)))
                 loaded[path, roots] = _load(read_text(path, name), name, inner_roots, within, loaded)
             return loaded[path, roots]
-        note(path)
     hint = "it is looked for beside the file and in the technique library"
     raise SssgenError([Diagnostic("error", f"cannot find '{name}' to include", span, hint, line)])
 

@@ -94,8 +94,8 @@ def find(text: str, slot: Function, folder: str) -> tuple[Module, Function]:
         source, name = name, ""
     if source.endswith((".sss", ".glsl")):
         paths = [os.path.join(root, source) for root in (folder, library.TECHNIQUES)]
-        path = next((path for path in paths if os.path.isfile(path)), None)
         note(paths[0])
+        path = next((path for path in paths if os.path.isfile(path)), None)
         if path is None:
             raise failure(f"cannot find the file '{source}'", "the path is relative to the material")
         module = load_file(path, library.shown_name(path), (library.TECHNIQUES,))

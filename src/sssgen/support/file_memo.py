@@ -7,7 +7,10 @@ unchanged one costs a few calls of `stat`.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+import time
+import zlib
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import NamedTuple, TypeVar
 
 from sssgen.support import unsaved
@@ -17,62 +20,104 @@ _T = TypeVar("_T")
 MAX_RESULTS = 1024
 """The number of results in one memory before it is emptied."""
 
+CLOCK_STEP = 20_000_000
+"""Nanoseconds: two writes of a file within one step of the system's clock may have the same time."""
+
+
+class FileState(NamedTuple):
+    """What shows whether a file has changed: its time, size and number; of a missing file (0, -1, 0).
+
+    A file that was written a moment ago may be written again at the same time, so it has a checksum of its content.
+    """
+
+    modified: int
+    size: int
+    inode: int
+    checksum: int | None = None
+
+
+MISSING = FileState(0, -1, 0)
+
 
 class CachedResult(NamedTuple):
-    """A result, the files that it depends on, and their state."""
+    """A result, and the files that it depends on, each with the state in which it was read."""
 
-    files: tuple[str, ...]
-    state: list[tuple[int, int]]
+    files: dict[str, FileState]
     value: object
 
 
-_watching: list[set[str]] = []
+_watching: list[dict[str, FileState]] = []
 
 
 def note(path: str | os.PathLike[str]) -> None:
-    """Records that the results which are being computed depend on a file."""
+    """Records that the results which are being computed depend on a file; to be called before it is read."""
     if _watching:
         full = os.path.abspath(path)
+        state = file_state(full)
         for files in _watching:
-            files.add(full)
+            files.setdefault(full, state)
 
 
-def watched(make: Callable[[], _T]) -> tuple[_T, list[str]]:
-    """The result of `make`, and the files that it read or searched for."""
-    files: set[str] = set()
+@contextmanager
+def noted_files() -> Iterator[dict[str, FileState]]:
+    """The files that are read or searched for in the block, also by what fails, each with its state before."""
+    files: dict[str, FileState] = {}
     _watching.append(files)
     try:
-        return make(), sorted(files)
+        yield files
     finally:
-        _watching.pop()
+        _watching[:] = [other for other in _watching if other is not files]
 
 
 def remembered(memory: dict[str, CachedResult], key: str, make: Callable[[], _T]) -> _T:
     """The result of `make`, or the earlier one for this key if none of its files has changed."""
     cached = memory.get(key)
-    if cached is not None and _state(cached.files) == cached.state:
-        for path in cached.files:
-            note(path)
+    if cached is not None and not changed_files(cached.files):
+        for files in _watching:
+            for path, state in cached.files.items():
+                files.setdefault(path, state)
         return cached.value  # type: ignore[return-value]  # a memory has results of one type
-    value, files = watched(make)
-    names = tuple(files)
+    with noted_files() as read:
+        value = make()
     if len(memory) >= MAX_RESULTS:
         memory.clear()
-    memory[key] = CachedResult(names, _state(names), value)
+    memory[key] = CachedResult(read, value)
     return value
 
 
-def _state(files: tuple[str, ...]) -> list[tuple[int, int]]:
-    """Each file's time and size; (0, -1) for a missing one, (-1, N) for the Nth text that is not saved."""
-    state = []
-    for path in files:
-        if change := unsaved.change_of(path):
-            state.append((-1, change))
-            continue
-        try:
-            status = os.stat(path)
-        except OSError:
-            state.append((0, -1))
-        else:
-            state.append((status.st_mtime_ns, status.st_size))
-    return state
+def changed_files(files: Mapping[str, FileState]) -> dict[str, FileState]:
+    """Those of the files whose state is another one now, with that state."""
+    changed = {}
+    for path, state in files.items():
+        now = file_state(path, state.checksum is not None)
+        if now[:3] != state[:3] or (state.checksum is not None and now.checksum != state.checksum):
+            changed[path] = now
+    return changed
+
+
+def file_state(path: str, with_checksum: bool = False) -> FileState:
+    """The state of a file. It has a checksum if that is requested, or if the file was written a moment ago.
+
+    Of an editor's unsaved text it is (-1, N, 0) for the Nth.
+    """
+    if change := unsaved.change_of(path):
+        return FileState(-1, change, 0)
+    try:
+        status = os.stat(path)
+    except (OSError, ValueError):
+        return MISSING
+    checksum = None
+    if with_checksum or status.st_mtime_ns > time.time_ns() - CLOCK_STEP:
+        checksum = _checksum(path)
+    return FileState(status.st_mtime_ns, status.st_size, status.st_ino, checksum)
+
+
+def _checksum(path: str) -> int:
+    """The checksum of a regular file's content; -1 where it cannot be read."""
+    if not os.path.isfile(path):
+        return -1
+    try:
+        with open(path, "rb") as file:
+            return zlib.crc32(file.read())
+    except OSError:
+        return -1
