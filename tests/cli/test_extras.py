@@ -67,6 +67,7 @@ NEEDS: dict[str, str | None] = {
     "bake voronoi -o a.png": "bake",
     "bake normal a.png -o b.png": "bake",
     "bake pack --red 0.5 -o b.png": "bake",
+    "lsp": "lsp",
     "new wood": None,
     "doctor": None,
     "help emit": None,
@@ -94,7 +95,8 @@ def test_a_command_without_the_optional_packages(command: str, tmp_path: Path) -
     else:
         assert done.returncode == WRONG_INPUT, done
         (diagnostic,) = result["diagnostics"]
-        assert diagnostic["message"] == "the package 'numpy' is missing"
+        first = "lsprotocol" if extra == "lsp" else "numpy"
+        assert diagnostic["message"] == f"the package '{first}' is missing"
         assert diagnostic["help"] == install_hint(extra)
 
 
