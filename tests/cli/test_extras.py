@@ -55,6 +55,7 @@ NEEDS: dict[str, str | None] = {
     "lint half.glsl": "numpy",
     "eval lobe_exp2 --samples 10": "numpy",
     "stress lobe_exp2 --samples 10": "numpy",
+    "preview ice": "preview",
     "render ice": "render",
     "render --compare a.png b.png": "render",
     "ci .": None,
@@ -67,7 +68,6 @@ NEEDS: dict[str, str | None] = {
     "bake voronoi -o a.png": "bake",
     "bake normal a.png -o b.png": "bake",
     "bake pack --red 0.5 -o b.png": "bake",
-    "lsp": "lsp",
     "new wood": None,
     "doctor": None,
     "help emit": None,
@@ -95,8 +95,7 @@ def test_a_command_without_the_optional_packages(command: str, tmp_path: Path) -
     else:
         assert done.returncode == WRONG_INPUT, done
         (diagnostic,) = result["diagnostics"]
-        first = "lsprotocol" if extra == "lsp" else "numpy"
-        assert diagnostic["message"] == f"the package '{first}' is missing"
+        assert diagnostic["message"] == "the package 'numpy' is missing"
         assert diagnostic["help"] == install_hint(extra)
 
 

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from sssgen.harness.pictures import png16, volumes
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.extras import need
+from sssgen.support.file_memo import note
 from sssgen.support.file_writer import write_files
 from sssgen.support.paths import posix
 from sssgen.support.text_files import refuse_folder
@@ -40,6 +41,7 @@ def read(path: str | os.PathLike[str]) -> Array:
     and uint16 as in a PNG. .dds and .ktx2: volumes, see `volumes.read`. Raises SssgenError for a file that is missing,
     faulty, or of another kind.
     """
+    note(path)
     shown = posix(path)
     refuse_folder(path, TEXTURES)
     suffix = check_suffix(path, TEXTURES)

@@ -13,6 +13,7 @@ from sssgen.harness.pictures.images import decode_srgb
 from sssgen.harness.scenes.placed import Array
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.extras import need
+from sssgen.support.file_memo import note
 from sssgen.support.paths import posix
 from sssgen.support.text_files import refuse_folder
 
@@ -48,6 +49,7 @@ def read(path: str) -> FileContent:
     """All triangles of a file, with the transforms of its parts. Raises SssgenError for a missing or faulty file."""
     refuse_folder(path, SUFFIXES)
     check_suffix(path)
+    note(path)
     if not os.path.isfile(path):
         raise failure("cannot find the mesh", "", posix(path))
     trimesh = need("trimesh")

@@ -101,18 +101,48 @@ def _level(distance: Callable[[Array], Array], reach: float, resolution: int) ->
         return values
 
     igl = need("igl", "libigl")
-    count = resolution + 1
-    side = np.linspace(-1.0, 1.0, count) * reach * (1.0 + 2.0 / resolution)
-    z, y, x = np.meshgrid(side, side, side, indexing="ij")
-    grid = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
+    half = reach * (1.0 + 2.0 / resolution)
+    cells = _cells_near(cut, half, resolution)
+    corners = cells[:, None] + _CORNERS
+    keys = corners @ [1, resolution + 1, (resolution + 1) ** 2]
+    unique, places = np.unique(keys, return_inverse=True)
+    x, y, z = unique % (resolution + 1), unique // (resolution + 1) % (resolution + 1), unique // (resolution + 1) ** 2
+    grid = half * (np.stack([x, y, z], axis=1) * (2.0 / resolution) - 1.0)
     values = np.concatenate([cut(part) for part in np.array_split(grid, 16)])
     if not (values < 0.0).any():
         raise failure("the distance function has no negative value: the body has no inside", "widen its reach")
     # a value of exactly 0 at a grid point makes triangles without area
     values = np.where(np.abs(values) < 1e-9 * reach, 1e-9 * reach, values)
-    result = igl.marching_cubes(values, grid, count, count, count, 0.0)
+    result = igl.marching_cubes(values, grid, np.ascontiguousarray(places.reshape(-1, 8), np.int64), 0.0)
     vertices, faces = np.asarray(result[0], np.float64), np.asarray(result[1], np.int64)
-    return _on_level(cut, vertices, 0.5 * float(side[1] - side[0])), faces
+    return _on_level(cut, vertices, 2.0 * half / resolution), faces
+
+
+_CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]])
+"""Of a cell, in the order of libigl."""
+_CAUTION = 1.5
+"""By how much a distance function may grow faster than the distance before a cell is missed."""
+
+
+def _cells_near(cut: Callable[[Array], Array], half: float, resolution: int) -> Indices:
+    """The cells (c, 3) of a grid over ±`half` that the zero level may cross: a coarse grid, divided near the level."""
+    divisions = 1
+    while resolution % (2 * divisions) == 0 and resolution // (2 * divisions) >= _COARSEST:
+        divisions *= 2
+    side = np.arange(resolution // divisions)
+    cells = np.stack(np.meshgrid(side, side, side, indexing="ij"), axis=-1).reshape(-1, 3)
+    while True:
+        size = 2.0 * half * divisions / resolution
+        near = np.abs(cut(np.asarray((cells + 0.5) * size - half, np.float64))) <= _CAUTION * 0.5 * np.sqrt(3.0) * size
+        cells = np.asarray(cells[near], np.int64)
+        if divisions == 1:
+            return cells
+        divisions //= 2
+        cells = (2 * cells[:, None] + _CORNERS).reshape(-1, 3)
+
+
+_COARSEST = 12
+"""The fewest cells along a side of the coarse grid."""
 
 
 def _on_level(cut: Callable[[Array], Array], vertices: Array, farthest: float) -> Array:

@@ -1,0 +1,107 @@
+// The page of `sssgen preview`: it shows what the server sends, and sends back what is to be saved.
+
+import { Panel } from './panel.js';
+import { Stage } from './stage.js';
+
+const element = (id) => document.getElementById(id);
+const pieces = new Map();
+let stage = null;
+let last = null;
+let waiting = Promise.resolve();
+
+const say = (text) => { element('status').textContent = text; };
+
+/** A piece of the picture, fetched once while pictures name it. */
+async function pieceOf(digest) {
+  if (!pieces.has(digest)) {
+    const answer = await fetch(`piece/${digest}`);
+    if (!answer.ok) throw new Error('the picture has changed meanwhile');
+    pieces.set(digest, await answer.arrayBuffer());
+  }
+  return pieces.get(digest);
+}
+
+const panel = new Panel(element('controls'), (property, numbers) => {
+  stage?.set(property, numbers);
+  buttons();
+});
+
+function buttons() {
+  element('save').disabled = element('reset').disabled = panel.values.size === 0;
+}
+
+function complain(text) {
+  element('error').hidden = !text;
+  element('error').textContent = text;
+}
+
+/** A stage with the chosen renderer; without WebGPU that of WebGL 2, which is said. */
+async function stageFor(kind) {
+  const next = new Stage(element('stage'), kind, pieceOf);
+  try {
+    await next.start();
+    next.environment(element('environment').checked);
+    return next;
+  } catch (error) {
+    next.dispose();
+    if (kind !== 'webgpu') throw error;
+    say(`WebGPU is not available here (${error.message}): this is its WebGL 2 fallback.`);
+    element('renderer').value = 'webgl2';
+    return stageFor('webgl2');
+  }
+}
+
+async function show(message) {
+  last = message;
+  const { picture, error } = message;
+  complain(error);
+  element('title').textContent = picture.title;
+  document.title = `${picture.title} · sssgen preview`;
+  const shapes = picture.shapes.map((shape) => new Option(shape || "the scene's own", shape));
+  element('shape').replaceChildren(...shapes);
+  element('shape').value = picture.shape;
+  panel.show(picture.controls);
+  buttons();
+  try {
+    stage ??= await stageFor(element('renderer').value);
+    await stage.show(picture, panel.values);
+    document.body.dataset.version = message.version;
+  } catch (reason) {
+    complain(error || `the page cannot draw it: ${reason.message}`);
+  }
+  const named = new Set([picture.body, ...picture.textures.flatMap((texture) => texture.texels?.levels.map((level) => level.data) ?? [])]);
+  for (const digest of pieces.keys()) if (!named.has(digest)) pieces.delete(digest);
+}
+
+/** One picture after the other. */
+const next = (work) => { waiting = waiting.then(work, work); return waiting; };
+
+function connect() {
+  const socket = new WebSocket(new URL('events', location.href).href.replace(/^http/, 'ws'));
+  socket.addEventListener('message', ({ data }) => {
+    const message = JSON.parse(data);
+    if (message.kind === 'picture') next(() => show(message));
+    else say(message.text);
+  });
+  socket.addEventListener('close', () => {
+    say('sssgen preview has ended. Start it again, and open its new address.');
+    element('save').disabled = true;
+  });
+  return socket;
+}
+
+const socket = connect();
+const send = (message) => { if (socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message)); };
+
+element('shape').addEventListener('change', () => send({ kind: 'shape', shape: element('shape').value }));
+element('environment').addEventListener('change', () => stage?.environment(element('environment').checked));
+element('renderer').addEventListener('change', () => next(async () => {
+  stage?.dispose();
+  stage = null;
+  if (last) await show(last);
+}));
+element('save').addEventListener('click', () => send({ kind: 'save', values: Object.fromEntries(panel.values) }));
+element('reset').addEventListener('click', () => panel.reset());
+addEventListener('error', (event) => say(event.message));
+addEventListener('unhandledrejection', (event) => say(String(event.reason?.message ?? event.reason)));
+globalThis.preview = { get stage() { return stage; }, panel };

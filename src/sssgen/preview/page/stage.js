@@ -1,0 +1,272 @@
+// The picture: a body with an emitted material, lamps that can be dragged, an eye that goes around.
+
+import * as THREE from 'three';
+import { WebGPURenderer } from 'three/webgpu';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { DrawnViews } from './drawn_views.js';
+
+const WRAPS = { repeat: THREE.RepeatWrapping, clamp: THREE.ClampToEdgeWrapping, mirror: THREE.MirroredRepeatWrapping };
+const HANDLE = 0.055;
+
+/** One renderer on one canvas. Another renderer is another stage. */
+export class Stage {
+  constructor(root, kind, pieceOf) {
+    Object.assign(this, { root, kind, pieceOf, textures: new Map(), lamps: [], handles: [] });
+    this.scene = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(35, 1, 0.05, 100);
+  }
+
+  async start() {
+    const canvas = document.createElement('canvas');
+    this.renderer = this.kind === 'webgl'
+      ? new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true })
+      : new WebGPURenderer({ canvas, antialias: true, alpha: true, forceWebGL: this.kind === 'webgl2' });
+    if (this.renderer.init) await this.renderer.init();
+    if (this.kind === 'webgpu' && !this.renderer.backend.isWebGPUBackend) throw new Error('this browser has no WebGPU adapter');
+    this.renderer.autoClear = true;
+    this.renderer.setClearColor(0x000000, 0);
+    this.renderer.shadowMap.enabled = true;
+    this.root.replaceChildren(canvas);
+    this.orbit = new OrbitControls(this.camera, canvas);
+    this.orbit.addEventListener('change', () => this.ask());
+    this.follow(canvas);
+    this.sizes = new ResizeObserver(() => this.fit());
+    this.sizes.observe(this.root);
+    this.fit();
+  }
+
+  fit() {
+    const { clientWidth: width, clientHeight: height } = this.root;
+    if (!width || !height) return;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.ask();
+  }
+
+  /** Shows a picture; `values` are the numbers that differ from the file's. */
+  async show(picture, values) {
+    const body = await this.pieceOf(picture.body);
+    const textures = {};
+    for (const row of picture.textures.filter((one) => one.texels)) textures[row.property] = await this.textureOf(row.texels);
+    const url = URL.createObjectURL(new Blob([picture.module], { type: 'text/javascript' }));
+    const { createMaterial } = await import(url).finally(() => URL.revokeObjectURL(url));
+    const numbers = Object.fromEntries(picture.controls.filter((control) => !control.drawn)
+      .map((control) => [control.property, valueOf(control, values.get(control.property) ?? control.value)]));
+    const material = createMaterial({ ...numbers, ...textures });
+    if (picture.two_sided) material.side = THREE.DoubleSide;
+    this.views?.dispose();
+    this.views = new DrawnViews(this.kind, picture.textures, picture.controls);
+    this.place(picture, body, material);
+    this.light(picture);
+    if (this.shown !== `${picture.name} ${picture.shape}`) this.look(picture);
+    this.shown = `${picture.name} ${picture.shape}`;
+    this.picture = picture;
+    this.renderer.toneMapping = picture.tone_mapping ? THREE.NeutralToneMapping : THREE.LinearToneMapping;
+    this.renderer.toneMappingExposure = picture.exposure;
+    this.root.style.background = `linear-gradient(to top, ${picture.background.map(styleOf).join(', ')})`;
+    await this.frame();
+  }
+
+  place(picture, body, material) {
+    if (this.mesh?.userData.body !== picture.body) {
+      const corners = new THREE.InterleavedBuffer(new Float32Array(body), 8);
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.InterleavedBufferAttribute(corners, 3, 0));
+      geometry.setAttribute('normal', new THREE.InterleavedBufferAttribute(corners, 3, 3));
+      geometry.setAttribute('uv', new THREE.InterleavedBufferAttribute(corners, 2, 6));
+      geometry.computeBoundingSphere();
+      if (this.mesh) { this.scene.remove(this.mesh); this.mesh.geometry.dispose(); this.mesh.material.dispose(); }
+      this.mesh = new THREE.Mesh(geometry, material);
+      this.mesh.userData.body = picture.body;
+      this.mesh.castShadow = this.mesh.receiveShadow = true;
+      this.mesh.matrixAutoUpdate = false;
+      this.scene.add(this.mesh);
+    } else {
+      this.mesh.material.dispose();
+      this.mesh.material = material;
+    }
+    this.mesh.matrix.fromArray(picture.model);
+    this.mesh.updateMatrixWorld(true);
+    material.envMap = this.sky ?? null;
+  }
+
+  light(picture) {
+    const key = JSON.stringify([picture.lights, picture.ambient, picture.shadows, picture.body]);
+    if (key === this.lit) return;
+    this.lit = key;
+    this.scene.remove(...this.lamps, ...this.handles, ...(this.even ? [this.even] : []));
+    this.even = new THREE.AmbientLight(new THREE.Color(...picture.ambient), Math.PI);
+    // three's lights are irradiance, those of a scene radiance: their ratio is pi
+    this.lamps = picture.lights.map(({ position: [x, y, z, w], color }) => {
+      const lamp = new (w ? THREE.PointLight : THREE.DirectionalLight)(new THREE.Color(...color), Math.PI);
+      lamp.position.set(x, y, z);
+      return lamp;
+    });
+    if (picture.shadows && this.lamps.length) this.shadow(this.lamps[0]);
+    this.handles = this.lamps.map((lamp) => {
+      const color = lamp.color.clone().multiplyScalar(1 / Math.max(lamp.color.r, lamp.color.g, lamp.color.b, 1e-6));
+      const handle = new THREE.Mesh(new THREE.SphereGeometry(1, 16, 12), new THREE.MeshBasicMaterial({ color, toneMapped: false }));
+      handle.userData.lamp = lamp;
+      return handle;
+    });
+    this.scene.add(this.even, ...this.lamps, ...this.handles);
+  }
+
+  /** Shadows of a lamp, in a map around the body. */
+  shadow(lamp) {
+    const ball = this.mesh.geometry.boundingSphere.clone().applyMatrix4(this.mesh.matrixWorld);
+    lamp.castShadow = true;
+    lamp.shadow.mapSize.set(2048, 2048);
+    lamp.shadow.normalBias = 0.01 * ball.radius;
+    if (lamp.isDirectionalLight) {
+      const reach = 1.1 * ball.radius;
+      Object.assign(lamp.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0, far: 6 * reach });
+      lamp.position.normalize().multiplyScalar(3 * reach);
+    }
+  }
+
+  look(picture) {
+    this.camera.fov = picture.camera.field_of_view;
+    this.camera.position.set(...picture.camera.position);
+    this.orbit.target.set(...picture.camera.target);
+    this.camera.updateProjectionMatrix();
+    this.orbit.update();
+  }
+
+  set(property, numbers) {
+    const control = this.picture?.controls.find((one) => one.property === property);
+    if (!control || !this.mesh) return;
+    this.mesh.material[property] = valueOf(control, numbers);
+    this.ask();
+  }
+
+  environment(on) {
+    this.sky = on ? sky() : null;
+    this.scene.environment = this.sky;
+    if (this.mesh) { this.mesh.material.envMap = this.sky; this.mesh.material.needsUpdate = true; }
+    this.ask();
+  }
+
+  async textureOf({ dim, filter, wrap, levels }) {
+    const key = levels.map((level) => level.data).join();
+    if (!this.textures.has(key)) {
+      const texels = await Promise.all(levels.map(async (level) => new Uint16Array(await this.pieceOf(level.data))));
+      const Kind = dim === '3D' ? THREE.Data3DTexture : THREE.DataTexture;
+      const texture = new Kind(texels[0], ...levels[0].size);
+      const mag = filter === 'nearest' ? THREE.NearestFilter : THREE.LinearFilter;
+      if (levels.length > 1) texture.mipmaps = levels.map((level, index) => ({ data: texels[index], width: level.size[0], height: level.size[1] }));
+      Object.assign(texture, {
+        format: THREE.RGBAFormat, type: THREE.HalfFloatType, magFilter: mag, minFilter: levels.length > 1 ? THREE.LinearMipmapLinearFilter : mag,
+        wrapS: WRAPS[wrap], wrapT: WRAPS[wrap], wrapR: WRAPS[wrap], generateMipmaps: false, unpackAlignment: 1, needsUpdate: true,
+      });
+      this.textures.set(key, texture);
+    }
+    return this.textures.get(key);
+  }
+
+  ask() {
+    if (this.asked) return;
+    this.asked = requestAnimationFrame(() => { this.asked = 0; this.frame(); });
+  }
+
+  async frame() {
+    if (!this.mesh) return;
+    this.hold();
+    const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
+    const distant = this.lamps.find((lamp) => lamp.isDirectionalLight) ?? this.lamps[0];
+    if (distant) this.views.draw(this.renderer, this.mesh, this.mesh.material, this.camera, distant, size);
+    this.renderer.render(this.scene, this.camera);
+    this.drawn = (this.drawn ?? 0) + 1;
+  }
+
+  /** The lamps' handles: a point light's at its place, that of a light from afar beside the body. */
+  hold() {
+    const ball = this.mesh.geometry.boundingSphere.clone().applyMatrix4(this.mesh.matrixWorld);
+    for (const handle of this.handles) {
+      const { lamp } = handle.userData;
+      handle.position.copy(lamp.position);
+      if (lamp.isDirectionalLight) handle.position.normalize().multiplyScalar(1.35 * ball.radius).add(ball.center);
+      handle.scale.setScalar(HANDLE * ball.radius);
+      lamp.updateMatrixWorld();
+    }
+    this.ball = ball;
+  }
+
+  follow(canvas) {
+    const rays = new THREE.Raycaster();
+    let held = null;
+    const aim = (event) => {
+      const box = canvas.getBoundingClientRect();
+      rays.setFromCamera(new THREE.Vector2(2 * (event.clientX - box.left) / box.width - 1, 1 - 2 * (event.clientY - box.top) / box.height), this.camera);
+    };
+    canvas.addEventListener('pointerdown', (event) => {
+      aim(event);
+      held = rays.intersectObjects(this.handles)[0]?.object ?? null;
+      if (!held) return;
+      this.orbit.enabled = false;
+      canvas.setPointerCapture(event.pointerId);
+    }, { capture: true });
+    canvas.addEventListener('pointermove', (event) => {
+      if (!held) return;
+      aim(event);
+      const { lamp } = held.userData;
+      if (lamp.isDirectionalLight) {
+        const off = lamp.position.length();
+        lamp.position.copy(this.onSphere(rays.ray, 1.35 * this.ball.radius, held.position)).sub(this.ball.center).setLength(off);
+      }
+      else rays.ray.intersectPlane(new THREE.Plane().setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new THREE.Vector3()), lamp.position), lamp.position);
+      this.ask();
+    });
+    const release = () => { held = null; this.orbit.enabled = true; };
+    canvas.addEventListener('pointerup', release);
+    canvas.addEventListener('pointercancel', release);
+  }
+
+  /** The point of a sphere around the body on a ray, on the side where the handle is; beside it the nearest one. */
+  onSphere(ray, radius, before) {
+    const middle = ray.direction.dot(this.ball.center.clone().sub(ray.origin));
+    const nearest = ray.at(middle, new THREE.Vector3());
+    const off = nearest.distanceTo(this.ball.center);
+    if (off >= radius) return nearest.sub(this.ball.center).setLength(radius).add(this.ball.center);
+    const half = Math.sqrt(radius * radius - off * off);
+    const behind = ray.direction.dot(before.clone().sub(this.ball.center)) > 0;
+    return ray.at(middle + (behind ? half : -half), new THREE.Vector3());
+  }
+
+  dispose() {
+    cancelAnimationFrame(this.asked);
+    this.sizes?.disconnect();
+    this.orbit?.dispose();
+    this.views?.dispose();
+    this.mesh?.geometry.dispose();
+    this.mesh?.material.dispose();
+    this.textures.forEach((texture) => texture.dispose());
+    this.renderer?.dispose();
+  }
+}
+
+function valueOf(control, numbers) {
+  if (control.type === 'bool') return numbers[0] !== 0;
+  return numbers.length > 1 ? numbers : numbers[0];
+}
+
+function styleOf(linear) {
+  return `#${new THREE.Color(...linear.map((number) => Math.min(Math.max(number, 0), 1))).getHexString()}`;
+}
+
+/** A studio as an environment: dark below, bright above, with a window. */
+function sky() {
+  const [width, height] = [64, 32];
+  const data = new Float32Array(width * height * 4);
+  for (let y = 0; y < height; y++) {
+    for (let x = 0; x < width; x++) {
+      const up = (y + 0.5) / height;
+      const window = x > 38 && x < 50 && y > 17 && y < 27 ? 6 : 0;
+      data.set([0.08 + 0.25 * up + window, 0.09 + 0.27 * up + window, 0.1 + 0.32 * up + window, 1], 4 * (y * width + x));
+    }
+  }
+  const texture = new THREE.DataTexture(data, width, height, THREE.RGBAFormat, THREE.FloatType);
+  return Object.assign(texture, { mapping: THREE.EquirectangularReflectionMapping, magFilter: THREE.LinearFilter, minFilter: THREE.LinearFilter, needsUpdate: true });
+}

@@ -1,0 +1,203 @@
+"""The server of the live preview: a page, and an event for it whenever a file that the picture depends on changes.
+
+It listens on 127.0.0.1 only. The URL has a random token, and requests of pages of other origins are refused, so that
+another page in the same browser can neither read the picture nor write a file.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import hmac
+import secrets
+import threading
+import webbrowser
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+from sssgen.harness.installed import node_modules
+from sssgen.preview.picture import SHAPES
+from sssgen.preview.shown_picture import ShownPicture
+from sssgen.support.diagnostics import SssgenError, failure
+from sssgen.support.extras import need
+from sssgen.support.file_changes import changes
+from sssgen.support.installation import npm_hint
+
+HOST = "127.0.0.1"
+PAGE = Path(__file__).with_name("page")
+FILES = {"index.html": "text/html", "style.css": "text/css", **dict.fromkeys(
+    ("preview.js", "stage.js", "drawn_views.js", "panel.js"), "text/javascript")}  # fmt: skip
+"""The files of the page and their types; no other file of the folder is sent."""
+LIBRARY = {
+    **{f"three/build/three.{name}.js": f"three/build/three.{name}.js" for name in ("module", "webgpu", "tsl", "core")},
+    "three/addons/controls/OrbitControls.js": "three/examples/jsm/controls/OrbitControls.js",
+}
+"""What the page imports → the file among npm's packages."""
+POLICY = (
+    "default-src 'none'; script-src 'self' 'unsafe-inline' blob:; style-src 'self' 'unsafe-inline'; "
+    "connect-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+"""Nothing is fetched from elsewhere, and no other page shows this one in a frame. The import map is inline."""
+MOST_BYTES = 1 << 20
+"""The largest message of a page."""
+
+
+class PreviewServer:
+    """The pages of one preview, and the picture that they show."""
+
+    def __init__(self, shown: ShownPicture) -> None:
+        self.web = need("aiohttp.web", "aiohttp", "preview")
+        self.shown, self.token, self.port = shown, secrets.token_urlsafe(16), 0
+        self.pages: set[Any] = set()
+        self._making = asyncio.Lock()
+
+    @property
+    def url(self) -> str:
+        return f"http://{HOST}:{self.port}/{self.token}/"
+
+    def application(self) -> Any:
+        """The aiohttp application."""
+
+        async def guarded(request: Any, handler: Callable[[Any], Awaitable[Any]]) -> Any:
+            return await self._guarded(request, handler)
+
+        application = self.web.Application(middlewares=[self.web.middleware(guarded)])
+        application.router.add_get("/{token}/", self._index)
+        application.router.add_get("/{token}/page/{name}", self._page_file)
+        application.router.add_get("/{token}/library/{name:.+}", self._library_file)
+        application.router.add_get("/{token}/piece/{digest}", self._piece)
+        application.router.add_get("/{token}/events", self._events)
+        return application
+
+    async def run(self, port: int, opened: bool, ready: Callable[[str], None]) -> None:
+        """Serves until it is cancelled. Raises SssgenError where the port is in use or three.js is missing."""
+        if not all((node_modules() / file).is_file() for file in LIBRARY.values()):
+            raise failure("the page needs the npm package three", npm_hint("three"))
+        runner = self.web.AppRunner(self.application())
+        await runner.setup()
+        try:
+            site = self.web.TCPSite(runner, HOST, port)
+            try:
+                await site.start()
+            except OSError as error:
+                hint = "leave out --port, and a free one is taken"
+                raise failure(f"port {port} cannot be used: {error.strerror or error}", hint) from None
+            self.port = site._server.sockets[0].getsockname()[1]
+            ready(self.url)
+            if opened and not await asyncio.to_thread(webbrowser.open, self.url):
+                ready("no browser was found: open this address in one")
+            await self._watch()
+        finally:
+            for page in list(self.pages):
+                with contextlib.suppress(Exception):
+                    await page.close()
+            await runner.cleanup()
+
+    # Requests
+
+    async def _guarded(self, request: Any, handler: Callable[[Any], Awaitable[Any]]) -> Any:
+        """Refuses what does not come from this page: another host, another origin, another token."""
+        own = {f"{HOST}:{self.port}", f"localhost:{self.port}"}
+        origin = request.headers.get("Origin")
+        foreign = origin is not None and urlsplit(origin).netloc not in own
+        token = request.match_info.get("token", "")
+        if (
+            request.headers.get("Host") not in own
+            or foreign
+            or not hmac.compare_digest(token.encode(), self.token.encode())
+        ):
+            raise self.web.HTTPForbidden(text="not this page")
+        response = await handler(request)
+        if not response.prepared:  # that of a web socket is
+            response.headers.update(
+                {
+                    "Content-Security-Policy": POLICY,
+                    "X-Content-Type-Options": "nosniff",
+                    "Referrer-Policy": "no-referrer",
+                    "Cross-Origin-Resource-Policy": "same-origin",
+                    "Cache-Control": "no-store",
+                }
+            )
+        return response
+
+    async def _index(self, request: Any) -> Any:
+        return self._file(PAGE / "index.html", FILES["index.html"])
+
+    async def _page_file(self, request: Any) -> Any:
+        name = request.match_info["name"]
+        if name not in FILES:
+            raise self.web.HTTPNotFound
+        return self._file(PAGE / name, FILES[name])
+
+    async def _library_file(self, request: Any) -> Any:
+        file = LIBRARY.get(request.match_info["name"])
+        if not file:
+            raise self.web.HTTPNotFound
+        return self._file(node_modules() / file, "text/javascript")
+
+    def _file(self, path: Path, type_: str) -> Any:
+        return self.web.Response(body=path.read_bytes(), content_type=type_, charset="utf-8")
+
+    async def _piece(self, request: Any) -> Any:
+        data = self.shown.pieces.get(request.match_info["digest"])
+        if data is None:  # of a picture that is no longer shown
+            raise self.web.HTTPNotFound
+        return self.web.Response(body=data, content_type="application/octet-stream")
+
+    async def _events(self, request: Any) -> Any:
+        """The messages of a page, until it closes."""
+        page = self.web.WebSocketResponse(max_msg_size=MOST_BYTES, heartbeat=20.0)
+        await page.prepare(request)
+        self.pages.add(page)
+        try:
+            await page.send_json(self.shown.message())
+            async for message in page:
+                try:
+                    await self._answer(message.json())
+                except (ValueError, TypeError, KeyError, AttributeError):
+                    await page.send_json({"kind": "error", "text": "the page sent a message that is not understood"})
+                except SssgenError as error:
+                    await page.send_json({"kind": "error", "text": str(error)})
+        finally:
+            self.pages.discard(page)
+        return page
+
+    async def _answer(self, message: dict[str, Any]) -> None:
+        """Does what a page asks: another shape, or parameters to save. Raises SssgenError."""
+        if message["kind"] == "shape":
+            if message["shape"] not in ("", *SHAPES):
+                raise ValueError(message["shape"])
+            self.shown.shape = message["shape"]
+            await self._renew()
+        elif message["kind"] == "save":
+            changes = {str(name): [float(number) for number in value] for name, value in message["values"].items()}
+            await asyncio.to_thread(self.shown.save, changes)
+            await self._renew()
+        else:
+            raise ValueError(message["kind"])
+
+    # Changes
+
+    async def _renew(self) -> None:
+        """Makes the picture again, and sends it, or the errors, to all pages."""
+        async with self._making:
+            await asyncio.to_thread(self.shown.renew)
+            message = self.shown.message()
+        for page in list(self.pages):
+            with contextlib.suppress(ConnectionError, RuntimeError):  # a page that closes
+                await page.send_json(message)
+
+    async def _watch(self) -> None:
+        """Renews the picture after each change of the files that it was made of, until it is cancelled."""
+        loop, stop = asyncio.get_running_loop(), threading.Event()
+
+        def wait() -> None:
+            for _ in changes(lambda: self.shown.files, stop):
+                asyncio.run_coroutine_threadsafe(self._renew(), loop).result()
+
+        try:
+            await asyncio.to_thread(wait)
+        finally:
+            stop.set()

@@ -1,0 +1,72 @@
+"""Writes changed parameters back to a material's or a scene's TOML file; comments and order are kept."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from sssgen.material.model import Material
+from sssgen.support.diagnostics import failure
+from sssgen.support.extras import need
+from sssgen.support.file_writer import write_files
+from sssgen.support.paths import posix
+from sssgen.support.text_files import read_text
+
+
+def save_to_material(material: Material, changes: Mapping[tuple[str, str], Sequence[float]]) -> None:
+    """Writes (technique, parameter) → numbers into the material's file, at every stage of that technique that sets it.
+
+    A parameter that no stage sets is written into the first stage of its technique; one that a stage fixes keeps
+    `fixed`. Raises SssgenError for a file that cannot be read or written, and for a stage that is gone.
+    """
+    document = _parsed(material.file)
+    stages = [(stage.technique.role, stage.technique.name) for stage in material.stages]
+    for (technique, parameter), numbers in changes.items():
+        tables = [
+            table
+            for role in dict.fromkeys(role for role, name in stages if name == technique)
+            for table in _stages(document, role)
+            if os.path.splitext(os.path.basename(str(table.get("technique"))))[0] == technique
+        ]
+        if not tables:
+            raise failure(f"the file has no stage of '{technique}' any more", "reload the page", posix(material.file))
+        chosen = [table for table in tables if parameter in table] or tables[:1]
+        for table in chosen:
+            old = table.get(parameter)
+            if isinstance(old, dict) and "value" in old:
+                old["value"] = _value(numbers)
+            else:
+                table[parameter] = _value(numbers)
+    _write(material.file, document)
+
+
+def save_to_scene(path: str, changes: Mapping[str, Sequence[float]]) -> None:
+    """Writes parameter → numbers into [parameters] of a scene's file. Raises SssgenError."""
+    document = _parsed(path)
+    table = document.setdefault("parameters", need("tomlkit", "tomlkit", "preview").table())
+    for parameter, numbers in changes.items():
+        table[parameter] = _value(numbers)
+    _write(path, document)
+
+
+def _parsed(path: str) -> Any:
+    return need("tomlkit", "tomlkit", "preview").parse(read_text(path, posix(path)))
+
+
+def _stages(document: Any, role: str) -> list[Any]:
+    """The tables of a role: one, or an array of them."""
+    content = document.get(role)
+    return [content] if isinstance(content, dict) else list(content or ())
+
+
+def _value(numbers: Sequence[float]) -> Any:
+    """The shortest decimal of float32 for each number."""
+    short = [float(np.format_float_positional(np.float32(number), trim="0")) for number in numbers]
+    return short if len(short) > 1 else short[0]
+
+
+def _write(path: str, document: Any) -> None:
+    write_files(os.path.dirname(os.path.abspath(path)), {os.path.basename(path): document.as_string()})

@@ -1,0 +1,241 @@
+"""The page in a headless Chromium: it shows the examples, changes with the files and by hand, and saves."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import threading
+import time
+from collections.abc import Iterator
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from folders import ROOT
+from sssgen.harness.installed import chromium, node_modules
+from sssgen.preview.preview_server import LIBRARY, PreviewServer
+from sssgen.preview.shown_picture import ShownPicture
+
+pytest.importorskip("aiohttp")
+pytest.importorskip("watchfiles")
+playwright = pytest.importorskip("playwright.sync_api")
+Image = pytest.importorskip("PIL.Image")
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not chromium(), reason="Chromium is missing"),
+    pytest.mark.skipif(
+        not all((node_modules() / file).is_file() for file in LIBRARY.values()), reason="npm's three is missing"
+    ),
+]
+
+SWITCHES = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+SECONDS = 90.0
+"""After which a page that does not answer has failed."""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    with playwright.sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=chromium(), args=SWITCHES)
+        yield browser
+        browser.close()
+
+
+class Shown:
+    """A server in a thread of its own, and a page that shows it."""
+
+    def __init__(self, browser: Any, name: str, renderer: str = "webgl2") -> None:
+        self.server = PreviewServer(ShownPicture(name))
+        started = threading.Event()
+        self.loop = asyncio.new_event_loop()
+        self.task = self.loop.create_task(self.server.run(0, False, lambda _: started.set()))
+        self.thread = threading.Thread(target=self._run)
+        self.thread.start()
+        assert started.wait(SECONDS)
+        self.page = browser.new_page(viewport={"width": 640, "height": 300})
+        self.faults: list[str] = []
+        self.page.on("pageerror", lambda error: self.faults.append(str(error)))
+        self.page.goto(self.server.url)
+        if renderer != "webgpu":
+            self.page.select_option("#renderer", renderer)
+        self.until(lambda: self.page.evaluate("preview.stage?.drawn ?? 0") or self.error())
+
+    def _run(self) -> None:
+        asyncio.set_event_loop(self.loop)
+        with contextlib.suppress(asyncio.CancelledError):
+            self.loop.run_until_complete(self.task)
+
+    def close(self) -> None:
+        self.page.close()
+        self.loop.call_soon_threadsafe(self.task.cancel)
+        self.thread.join()
+
+    def until(self, holds: Any) -> None:
+        end = time.monotonic() + SECONDS
+        while not holds():
+            assert time.monotonic() < end, f"{self.error()} {self.faults}"
+            self.page.wait_for_timeout(20)
+
+    def version(self) -> int:
+        return int(self.page.evaluate("document.body.dataset.version ?? 0"))
+
+    def error(self) -> str:
+        return str(self.page.inner_text("#error"))
+
+    def picture(self) -> Any:
+        """The canvas, (height, width, 3), 0 to 255."""
+        self.page.wait_for_timeout(300)
+        return np.asarray(Image.open(BytesIO(self.page.locator("canvas").screenshot())).convert("RGB"), float)
+
+
+@pytest.fixture
+def stone(tmp_path: Path) -> Path:
+    path = tmp_path / "stone.toml"
+    path.write_text(
+        '# a stone\n[material]\nname = "stone"\nshading = "lit"\n[[surface]]\ntechnique = "base_color"\n'
+        'tint = [0.8, 0.1, 0.1, 1.0]\n[[surface]]\ntechnique = "pbr_constants"\nsurface_roughness = 0.5\n',
+        encoding="utf-8",
+    )
+    return path
+
+
+@pytest.fixture
+def shown(browser: Any, stone: Path) -> Iterator[Shown]:
+    shown = Shown(browser, str(stone))
+    yield shown
+    shown.close()
+
+
+def color(picture: Any) -> Any:
+    """The mean colour around the middle."""
+    height, width = picture.shape[:2]
+    return picture[height // 2 - 20 : height // 2 + 20, width // 2 - 20 : width // 2 + 20].mean(axis=(0, 1))
+
+
+def test_a_save_shows_the_new_picture_and_an_error_keeps_it(shown: Shown, stone: Path) -> None:
+    red = color(shown.picture())
+    assert red[0] > 1.5 * red[1]
+    text = stone.read_text(encoding="utf-8")
+    stone.write_text(text.replace("[0.8, 0.1, 0.1", "[0.1, 0.8, 0.1"), encoding="utf-8")
+    shown.until(lambda: shown.version() == 2)
+    green = color(shown.picture())
+    assert green[1] > 1.5 * green[0]
+    stone.write_text(text.replace("base_color", "base_colour"), encoding="utf-8")
+    shown.until(shown.error)
+    assert "stone.toml:6" in shown.error() and "did you mean" in shown.error()
+    assert color(shown.picture()) == pytest.approx(green, abs=1.0)
+    stone.write_text(text, encoding="utf-8")
+    shown.until(lambda: not shown.error() and shown.version() == 3)
+    assert color(shown.picture()) == pytest.approx(red, abs=1.0)
+    assert not shown.faults
+
+
+def test_a_control_changes_the_picture_and_save_writes_the_file(shown: Shown, stone: Path) -> None:
+    before = color(shown.picture())
+    shown.page.evaluate(
+        "const field = document.querySelector('[data-property=tint] input[type=color]');"
+        "field.value = '#2020ff'; field.dispatchEvent(new Event('input'))"
+    )
+    after = color(shown.picture())
+    assert after[2] > 1.5 * after[0] and before[2] < before[0]
+    assert "tint = [0.8" in stone.read_text(encoding="utf-8")
+    shown.page.click("#save")
+    shown.until(lambda: "tint = [0.8" not in stone.read_text(encoding="utf-8"))
+    shown.until(lambda: shown.page.is_disabled("#save"))
+    assert stone.read_text(encoding="utf-8").startswith("# a stone\n[material]\n")
+    assert color(shown.picture()) == pytest.approx(after, abs=2.0)
+
+
+def test_undo_gives_the_values_of_the_file(shown: Shown) -> None:
+    before = color(shown.picture())
+    shown.page.fill("[data-property=tint] input[type=number]", "0.5")
+    shown.page.evaluate("preview.panel.reset()")
+    assert shown.page.is_disabled("#save")
+    assert color(shown.picture()) == pytest.approx(before, abs=1.0)
+
+
+def test_lamps_and_the_eye_are_dragged(shown: Shown) -> None:
+    before = shown.picture()
+    box = shown.page.locator("canvas").bounding_box()
+    place = shown.page.evaluate(
+        "(() => { const { handles, camera } = preview.stage; const at = handles[1].position.clone().project(camera);"
+        " return [at.x, at.y]; })()"
+    )
+    x, y = box["x"] + (place[0] + 1) / 2 * box["width"], box["y"] + (1 - place[1]) / 2 * box["height"]
+    mouse = shown.page.mouse
+    lamp = "preview.stage.lamps[1].position.toArray()"
+    was, eye = shown.page.evaluate(lamp), shown.page.evaluate("preview.stage.camera.position.toArray()")
+    mouse.move(x, y), mouse.down(), mouse.move(x - 60, y + 20, steps=4), mouse.up()
+    assert shown.page.evaluate(lamp) != pytest.approx(was)
+    assert shown.page.evaluate("preview.stage.camera.position.toArray()") == pytest.approx(eye)
+    assert np.abs(shown.picture() - before).mean() > 0.3
+    (
+        mouse.move(box["x"] + 20, box["y"] + 200),
+        mouse.down(),
+        mouse.move(box["x"] + 120, box["y"] + 200, steps=4),
+        mouse.up(),
+    )
+    assert shown.page.evaluate("preview.stage.camera.position.toArray()") != pytest.approx(eye)
+
+
+def test_without_webgpu_the_fallback_is_used_and_named(browser: Any, stone: Path) -> None:
+    shown = Shown(browser, str(stone), "webgpu")
+    try:
+        if shown.page.evaluate("preview.stage.kind") != "webgpu":
+            assert "WebGL 2" in shown.page.inner_text("#status")
+            assert shown.page.input_value("#renderer") == "webgl2"
+        assert color(shown.picture())[0] > 20.0
+    finally:
+        shown.close()
+
+
+def test_a_file_that_vanishes_and_a_page_that_closes(browser: Any, shown: Shown, stone: Path) -> None:
+    text = stone.read_text(encoding="utf-8")
+    other = browser.new_page()
+    other.goto(shown.server.url)
+    other.close()
+    stone.unlink()
+    shown.until(shown.error)
+    stone.write_text(text.replace("0.8", "0.7"), encoding="utf-8")
+    shown.until(lambda: not shown.error())
+    assert color(shown.picture())[0] > 20.0
+
+
+def test_many_saves_end_on_the_newest(shown: Shown, stone: Path) -> None:
+    text = stone.read_text(encoding="utf-8")
+    for number in range(100):
+        stone.write_text(
+            text.replace("surface_roughness = 0.5", f"surface_roughness = {number / 200}"), encoding="utf-8"
+        )
+    value = "preview.panel.controls.find((one) => one.property === 'surfaceRoughness').value[0]"
+    shown.until(lambda: abs(shown.page.evaluate(value) - 99 / 200) < 1e-6)
+
+
+EXAMPLES = sorted(
+    path.parent.name for path in (ROOT / "examples").glob("*/scene.toml") if path.parent.name != "jelly_cubes"
+)
+
+
+@pytest.mark.parametrize("renderer", ["webgl", "webgl2"])
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_every_example_is_as_in_the_gallery(browser: Any, name: str, renderer: str, tmp_path: Path) -> None:
+    """The lights and their units are three's, so that the pictures are near, not equal."""
+    shown = Shown(browser, name, renderer)
+    try:
+        picture = shown.picture()
+        assert not shown.error() and not shown.faults
+        gallery = Image.open(ROOT / "docs" / "gallery" / f"{name}.png").convert("RGB")
+        height, width = picture.shape[:2]
+        shape = (width, round(width * gallery.height / gallery.width))
+        scaled = gallery.resize((round(gallery.width * height / gallery.height), height))
+        middle = np.asarray(scaled, float)
+        common = min(middle.shape[1], width)
+        cut = [array[:, (array.shape[1] - common) // 2 :][:, :common] for array in (picture, middle)]
+        assert shape[1] > 0
+        assert np.abs(cut[0] - cut[1]).mean() < 24.0
+    finally:
+        shown.close()

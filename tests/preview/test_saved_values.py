@@ -1,0 +1,93 @@
+"""Parameters that are changed on the page, in the TOML file: comments and order stay."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from folders import ROOT
+from sssgen.preview.shown_picture import ShownPicture
+from sssgen.support.diagnostics import SssgenError
+
+pytest.importorskip("tomlkit")
+pytest.importorskip("igl")
+
+TEXT = """# A plain stone.
+[material]
+name = "stone"   # its name
+shading = "lit"
+
+[thickness]
+technique = "constant_thickness"
+thickness_factor = 0.25  # metres
+
+[translucency]
+technique = "absorption_tint"
+
+[[surface]]
+technique = "base_color"
+tint = [0.1, 0.2, 0.3, 1.0]
+
+[[surface]]
+technique = "pbr_constants"
+surface_roughness = { value = 0.5, fixed = false }
+"""
+
+
+@pytest.fixture
+def stone(tmp_path: Path) -> Path:
+    path = tmp_path / "stone.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    return path
+
+
+def test_comments_and_order_stay(stone: Path) -> None:
+    shown = ShownPicture(str(stone))
+    shown.save(
+        {"thicknessFactor": [0.4], "tint": [0.1, 0.25, 0.3, 1.0], "surfaceRoughness": [0.7], "metalness_": [1.0]}
+    )
+    expected = TEXT.replace("= 0.25", "= 0.4").replace("0.2, 0.3", "0.25, 0.3").replace("value = 0.5", "value = 0.7")
+    assert stone.read_text(encoding="utf-8") == f"{expected}metalness = 1.0\n"
+    shown.renew()
+    values = {control["property"]: control["value"] for control in shown.picture.head["controls"]}
+    assert (values["thicknessFactor"], values["metalness_"], values["surfaceRoughness"]) == ([0.4], [1.0], [0.7])
+
+
+def test_numbers_are_the_shortest_of_float32(stone: Path) -> None:
+    ShownPicture(str(stone)).save({"thicknessFactor": [0.1 + 0.2]})
+    assert "thickness_factor = 0.3  # metres" in stone.read_text(encoding="utf-8")
+
+
+def test_a_value_of_the_scene_is_saved_in_the_scene(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "examples" / "wax_mouse", tmp_path / "wax")
+    scene = tmp_path / "wax" / "scene.toml"
+    scene.write_text(scene.read_text(encoding="utf-8").replace('"wax_mouse"', '"wax_mouse.toml"', 1), encoding="utf-8")
+    before = (tmp_path / "wax" / "wax_mouse.toml").read_bytes()
+    shown = ShownPicture(str(scene))
+    shown.save({"weight": [0.5]})
+    assert "weight = 0.5\n" in scene.read_text(encoding="utf-8")
+    assert (tmp_path / "wax" / "wax_mouse.toml").read_bytes() == before
+
+
+@pytest.mark.parametrize("values", [{"nothing": [1.0]}, {"tint": [1.0]}, {"thicknessFactor": []}])
+def test_what_the_material_does_not_have_is_refused(stone: Path, values: dict[str, list[float]]) -> None:
+    with pytest.raises(SssgenError, match="has no parameter"):
+        ShownPicture(str(stone)).save(values)
+    assert stone.read_text(encoding="utf-8") == TEXT
+
+
+def test_the_last_good_picture_stays_beside_errors(stone: Path) -> None:
+    shown = ShownPicture(str(stone))
+    module, version = shown.picture.head["module"], shown.version
+    for broken in (TEXT[:60], TEXT.replace("base_color", "base_colour"), TEXT.replace("0.25", '"thick"'), "\udcff"):
+        stone.write_bytes(broken.encode("utf-8", "surrogateescape"))
+        shown.renew()
+        assert shown.error.startswith("error: ") and shown.picture.head["module"] == module, broken
+    stone.unlink()
+    shown.renew()
+    assert shown.error and shown.version == version and str(stone) in shown.files
+    stone.write_text(TEXT, encoding="utf-8")
+    shown.renew()
+    assert not shown.error and shown.version == version + 1
