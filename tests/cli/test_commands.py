@@ -213,6 +213,30 @@ def test_emit_all_as_json(run: Run, compiler: FakeCompiler) -> None:
     assert compiler.calls[0] == ("wax", "glsl-330", "functions", "tpl")
 
 
+def test_emit_without_target_and_folder(run: Run, compiler: FakeCompiler) -> None:
+    ran = run("emit", "wax.toml")
+    assert (ran.status, ran.err) == (0, "the target is glsl-330; --target chooses others (sssgen list targets)\n")
+    assert list(folder_content()) == ["wax.glsl-330.reflection.json", "wax.glsl-330.txt"]
+    assert run("emit", "wax.toml", "--json").err == ""
+
+
+def test_emit_to_the_standard_output(run: Run, compiler: FakeCompiler) -> None:
+    """One text alone, several after their names; the reflections only as JSON; nothing is written."""
+    assert run("emit", "wax.toml", "-t", "wgsl", "-o", "-") == (0, "text 1\n", "")
+    several = "// wax.glsl-330.txt\ntext 1\n\n// wax.wgsl.txt\ntext 1\n"
+    assert run("emit", "wax.toml", "-t", "all", "-o", "-") == (0, several, "")
+    report = json.loads(run("emit", "wax.toml", "-t", "wgsl", "-o", "-", "--json").out)
+    assert [(row["file"], row["target"], row["text"]) for row in report["files"]] == [
+        ("wax.wgsl.txt", "wgsl", "text 1\n"),
+        ("wax.wgsl.reflection.json", "wgsl", "{}\n"),
+    ]
+    assert "--trace writes files" in run("emit", "wax.toml", "-o", "-", "--trace").err
+    compiler.failing = {"wgsl": failure("no such thing")}
+    ran = run("emit", "wax.toml", "-t", "all", "-o", "-")
+    assert (ran.status, ran.out) == (2, "")
+    assert sorted(Path().iterdir()) == [Path("wax.toml")]
+
+
 def test_a_file_that_would_not_change_is_left_alone(run: Run, compiler: FakeCompiler) -> None:
     run("emit", "wax.toml", "-t", "wgsl", "-o", "out")
     before = Path("out/wax.wgsl.txt").stat().st_mtime_ns

@@ -47,6 +47,7 @@ NEEDS: dict[str, str | None] = {
     "list materials": None,
     "show beer_lambert": None,
     "emit wax.toml -t all -o out": None,
+    "watch wax.toml": "preview",
     "check mine.frag": None,
     "transpile half.glsl -t wgsl": None,
     "transpile half.glsl --as technique": None,
@@ -95,7 +96,8 @@ def test_a_command_without_the_optional_packages(command: str, tmp_path: Path) -
     else:
         assert done.returncode == WRONG_INPUT, done
         (diagnostic,) = result["diagnostics"]
-        assert diagnostic["message"] == "the package 'numpy' is missing"
+        package = {"preview": "watchfiles"}.get(extra, "numpy")
+        assert diagnostic["message"].startswith(f"the package '{package}' is missing")
         assert diagnostic["help"] == install_hint(extra)
 
 

@@ -55,6 +55,7 @@ VALUES = {
     "shell": Values(_stages_of_shells),
     "medium": Values(_of("medium")),
     "emit MATERIAL": Values(_of("material"), _MATERIAL),
+    "watch MATERIAL": Values(_of("material"), _MATERIAL),
     "TECHNIQUE": Values(_of("technique"), _TECHNIQUE),
     "show NAME": Values(_of(*KINDS), (*_TECHNIQUE, *_MATERIAL)),
     "lint NAME": Values(_of("technique", "material"), (*_TECHNIQUE, *_MATERIAL, ".glsl", ".frag", ".vert")),

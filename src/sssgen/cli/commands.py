@@ -37,6 +37,7 @@ class Command(NamedTuple):
 COMMANDS = {
     "new": Command("new", "make", "write a commented material to start from"),
     "emit": Command("emit", "make", "write the shaders of materials"),
+    "watch": Command("watch", "make", "write the shaders of materials after every change", "preview"),
     "bake": Command("bake", "make", "bake textures: distances, thickness, depth, light, cells, normals", "bake"),
     "list": Command("listing", "see", "list techniques, targets, materials, scenes, builtins and so on"),
     "show": Command("show", "see", "explain what a name stands for: a technique, a material, a target"),

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import itertools
 import os
-from typing import TYPE_CHECKING
+import sys
+from typing import TYPE_CHECKING, Any
 
-from sssgen.cli.options import add_guards, add_targets, given
+from sssgen.cli.options import DEFAULT_TARGET, add_guards, add_optional_targets, given
 from sssgen.cli.output import OK, print_json, print_warnings
 from sssgen.pipeline import emitted_cache
 from sssgen.pipeline.emitted_cache import EmittedFiles
 from sssgen.support.diagnostics import Diagnostic, SssgenError, UnsupportedError, did_you_mean, failure
 from sssgen.support.file_memo import changed_files, noted_files
-from sssgen.support.file_writer import write_files
+from sssgen.support.file_writer import Written, write_files
 from sssgen.support.paths import posix
 
 if TYPE_CHECKING:
@@ -22,12 +23,35 @@ if TYPE_CHECKING:
     from sssgen.pipeline.compiler import Compiled
     from sssgen.pipeline.trace import Trace
 
+STANDARD_OUTPUT = "-"
+
 
 def add_options(parser: ArgumentParser) -> None:
-    parser.epilog = "examples:\n  sssgen emit ice --target all -o out\n  sssgen emit wax.toml -t wgsl,unity-urp -o out"
+    parser.epilog = (
+        "examples:\n"
+        "  sssgen emit ice\n"
+        "  sssgen emit ice --target all -o out\n"
+        "  sssgen emit wax.toml -t wgsl,unity-urp -o out\n"
+        "  sssgen emit ice -t wgsl -o -"
+    )
+    add_emission_options(parser)
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=given,
+        metavar="DIR",
+        default="out",
+        help="the folder to write to (default: out), or - to print the shaders and write nothing",
+    )
+    parser.add_argument(
+        "--trace", action="store_true", help="also write the IR after each pass to DIR/NAME.TARGET.trace/NN-PASS.ir"
+    )
+
+
+def add_emission_options(parser: ArgumentParser) -> None:
+    """What is emitted, and how: the options of `emit` and `watch`."""
     parser.add_argument("MATERIAL", nargs="+", help="a .toml file, or an example from `sssgen list materials`")
-    add_targets(parser, required=True)
-    parser.add_argument("-o", "--output", type=given, metavar="DIR", required=True, help="the folder to write to")
+    add_optional_targets(parser)
     parser.add_argument(
         "--form",
         choices=("shader", "functions"),
@@ -46,30 +70,31 @@ def add_options(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--prefix", type=given, metavar="NAME", help="begin every global name with NAME, to fit in your own shader"
     )
-    parser.add_argument(
-        "--trace", action="store_true", help="also write the IR after each pass to DIR/NAME.TARGET.trace/NN-PASS.ir"
-    )
     parser.add_argument("--templates", metavar="DIR", help="a folder of templates that replace those of sssgen")
 
 
 def run(arguments: Namespace) -> int:
-    """Compiles everything, then writes everything: if one text fails, none is written."""
+    """Compiles everything, then writes or prints everything: if one text fails, none is written."""
+    take_default_target(arguments)
+    printed = arguments.output == STANDARD_OUTPUT
+    if printed and arguments.trace:
+        raise failure("--trace writes files", "name a folder with -o")
     traces: list[Trace] = []
     try:
         emitted = _cached_or_compiled(arguments, traces)
     finally:
         for trace in traces:
             trace.write(arguments.output)
-    written = write_files(arguments.output, emitted.files)
     if arguments.json:
-        rows = [
-            {"file": posix(file.path), "material": material, "target": target, "changed": file.changed}
-            for file, (material, target) in zip(written, emitted.sources.values(), strict=True)
-        ]
-        diagnostics = [warning.as_json() for warning in emitted.warnings]
-        report = {"files": rows, "requires": emitted.requires, "diagnostics": diagnostics}
-        print_json({"ok": True, "form": arguments.form, **report})
+        written = [] if printed else write_files(arguments.output, emitted.files)
+        rows = _printed_rows(emitted) if printed else written_rows(emitted, written)
+        print_json({"ok": True, "form": arguments.form, **report(rows, emitted)})
         return OK
+    if printed:
+        print_warnings(emitted.warnings)
+        _print_texts(emitted.files)
+        return OK
+    written = write_files(arguments.output, emitted.files)
     print_warnings(emitted.warnings)
     for file in written:
         print(f"{'wrote' if file.changed else 'kept '} {posix(file.path)}")
@@ -79,24 +104,65 @@ def run(arguments: Namespace) -> int:
     return OK
 
 
+def take_default_target(arguments: Namespace) -> None:
+    """Sets the target where none is given, and says so."""
+    if arguments.target is None:
+        arguments.target = DEFAULT_TARGET
+        if not arguments.json:
+            message = f"the target is {DEFAULT_TARGET}; --target chooses others (sssgen list targets)"
+            print(message, file=sys.stderr, flush=True)
+
+
+def report(rows: list[dict[str, Any]], emitted: EmittedFiles) -> dict[str, Any]:
+    """The JSON report of an emission."""
+    diagnostics = [warning.as_json() for warning in emitted.warnings]
+    return {"files": rows, "requires": emitted.requires, "diagnostics": diagnostics}
+
+
+def written_rows(emitted: EmittedFiles, written: list[Written]) -> list[dict[str, Any]]:
+    return [
+        {"file": posix(file.path), "material": material, "target": target, "changed": file.changed}
+        for file, (material, target) in zip(written, emitted.sources.values(), strict=True)
+    ]
+
+
+def _printed_rows(emitted: EmittedFiles) -> list[dict[str, Any]]:
+    return [
+        {"file": name, "material": material, "target": target, "text": emitted.files[name]}
+        for name, (material, target) in emitted.sources.items()
+    ]
+
+
+def _print_texts(files: dict[str, str]) -> None:
+    """Prints the shaders without their reflections, as UTF-8; each of several follows a comment with its name."""
+    texts = {name: text for name, text in files.items() if not name.endswith(".reflection.json")}
+    if len(texts) == 1:
+        (printed,) = texts.values()
+    else:
+        printed = "\n".join(f"{'#' if name.endswith('.py') else '//'} {name}\n{text}" for name, text in texts.items())
+    sys.stdout.flush()
+    sys.stdout.buffer.write(printed.encode("utf-8"))
+    sys.stdout.buffer.flush()
+
+
 def _cached_or_compiled(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
     """The cached result of the same command; with own templates or a trace it is compiled again."""
     if arguments.templates is not None or arguments.trace:
-        return _compile_all(arguments, traces)
+        return compile_all(arguments, traces if arguments.trace else None)
     options = (arguments.form, arguments.guards, arguments.prefix or "", arguments.shell)
     command = (arguments.MATERIAL, arguments.target, *options)
     cached = emitted_cache.load(*command)
     if cached is not None:
         return cached
     with noted_files() as files:
-        emitted = _compile_all(arguments, traces)
+        emitted = compile_all(arguments)
     if not changed_files(files):
         emitted_cache.store(*command, emitted, files)
     return emitted
 
 
-def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
-    """Compiles every material for every target, and adds to `traces`. Raises SssgenError with all errors."""
+def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> EmittedFiles:
+    """Compiles every material for every target; `traces` gets their traces. Raises SssgenError with all errors."""
     from sssgen.material.requirements import described
     from sssgen.pipeline.compiler import compile
     from sssgen.pipeline.trace import Trace
@@ -120,8 +186,10 @@ def _compile_all(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
     with ProgressBar() as progress:
         for index, (material, name) in enumerate(itertools.product(materials, names)):
             progress(index, len(materials) * len(names), f"{material.name} for {name}")
-            trace = Trace(f"{material.name}.{name}.trace") if arguments.trace else None
-            traces += [trace] if trace is not None else []
+            trace = None
+            if traces is not None:
+                trace = Trace(f"{material.name}.{name}.trace")
+                traces.append(trace)
             try:
                 compiled = compile(
                     material, name, arguments.form, templates, arguments.guards, trace, arguments.prefix or ""

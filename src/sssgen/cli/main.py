@@ -12,7 +12,7 @@ import time
 from collections.abc import Sequence
 
 from sssgen.cli.commands import COMMANDS, Overview, command_module, command_parser
-from sssgen.cli.output import BROKEN_PIPE, INTERNAL_ERROR, INTERRUPTED, WRONG_INPUT, coloured, print_json
+from sssgen.cli.output import BROKEN_PIPE, INTERNAL_ERROR, INTERRUPTED, WRONG_INPUT, failed, print_errors, print_json
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.extras import missing_package
 
@@ -86,12 +86,9 @@ def _report(error: SssgenError, as_json: bool, status: int) -> int:
     """Prints an error and returns the exit status; the reader may have closed the output."""
     try:
         if as_json:
-            print_json({"ok": False, "diagnostics": [diagnostic.as_json() for diagnostic in error.diagnostics]})
+            print_json(failed(error.diagnostics))
         else:
-            texts = [coloured(diagnostic.render()) for diagnostic in error.diagnostics]
-            print("\n\n".join(texts), file=sys.stderr)
-            if len(error.diagnostics) > 1:
-                print(f"\n{len(error.diagnostics)} errors", file=sys.stderr)
+            print_errors(error.diagnostics)
         sys.stdout.flush()
     except BrokenPipeError:
         return _pipe_closed()

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import argparse
 
+DEFAULT_TARGET = "glsl-330"
+"""The target of a command that is called without one: plain text that the preferred back end draws."""
+
 
 def given(text: str) -> str:
     """The value of an option that names something. Raises ArgumentTypeError for the empty text."""
@@ -19,8 +22,20 @@ def add_json(parser: argparse.ArgumentParser) -> None:
 
 def add_targets(parser: argparse.ArgumentParser, required: bool = False, default: str | None = None) -> None:
     """The targets to emit for: `--target`. Without a default it is required, or None."""
+    _add_targets(parser, default, required=required, value=default)
+
+
+def add_optional_targets(parser: argparse.ArgumentParser) -> None:
+    """The same; None where it is not given, as the command then says which target it takes."""
+    _add_targets(parser, DEFAULT_TARGET)
+
+
+def _add_targets(
+    parser: argparse.ArgumentParser, default: str | None, required: bool = False, value: str | None = None
+) -> None:
+    """`default` is what the help tells, `value` what the arguments then have."""
     help = "targets from `sssgen list targets`, or all" + (f" (default: {default})" if default else "")
-    parser.add_argument("--target", "-t", metavar="T,T|all", required=required, default=default, help=help)
+    parser.add_argument("--target", "-t", metavar="T,T|all", help=help, required=required, default=value)
 
 
 def add_guards(parser: argparse.ArgumentParser, default: str = "auto") -> None:

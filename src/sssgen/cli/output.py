@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from sssgen.support.diagnostics import Diagnostic
 
@@ -18,6 +18,18 @@ def print_json(data: object) -> None:
     import json
 
     print(json.dumps(data, indent=2, ensure_ascii=False))
+
+
+def failed(errors: Iterable[Diagnostic]) -> dict[str, object]:
+    """The JSON report of a command that failed."""
+    return {"ok": False, "diagnostics": [error.as_json() for error in errors]}
+
+
+def print_errors(errors: Sequence[Diagnostic]) -> None:
+    """Prints errors to the standard error stream, and how many there are."""
+    print("\n\n".join(coloured(error.render()) for error in errors), file=sys.stderr)
+    if len(errors) > 1:
+        print(f"\n{len(errors)} errors", file=sys.stderr)
 
 
 def print_warnings(warnings: Iterable[Diagnostic]) -> None:

@@ -31,6 +31,7 @@ def load_material(path_or_name: str | os.PathLike[str]) -> Material:
     if not text.endswith(".toml") and "/" not in text and "\\" not in text and not os.path.isfile(text):
         note(text)
         path = os.path.join(place("examples"), text, f"{text}.toml")
+        note(path)
         if not os.path.isfile(path):
             refuse_folder(text, (".toml",))
             names = examples()

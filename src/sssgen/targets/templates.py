@@ -12,12 +12,16 @@ from typing import TYPE_CHECKING, Any
 from sssgen.ir.spans import Span
 from sssgen.support import cache
 from sssgen.support.diagnostics import MAX_MESSAGE, Diagnostic, SssgenError
+from sssgen.support.file_memo import FileState, note, noted_files
 from sssgen.support.paths import place, posix
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
 _environments: dict[tuple[str | None, str], Environment] = {}
+
+_user_files: dict[str, dict[str, FileState]] = {}
+"""The user's folder → its templates, as they were when Jinja read them."""
 
 
 def render(template: str, context: dict[str, Any], templates: str | None, folder: str) -> str:
@@ -28,6 +32,8 @@ def render(template: str, context: dict[str, Any], templates: str | None, folder
     from jinja2 import TemplateNotFound, TemplateSyntaxError
 
     environment = _environment(templates, folder)
+    if templates is not None:
+        _drop_changed(templates)
     if templates is not None:
         from copy import deepcopy
 
@@ -42,6 +48,24 @@ def render(template: str, context: dict[str, Any], templates: str | None, folder
         message = f"the template cannot be rendered: {str(error) or type(error).__name__}"
         hint = "docs/templates.md lists what a template may use"
         raise _failure(message, hint, _place(error) or (template, 0)) from None
+
+
+def _drop_changed(templates: str) -> None:
+    """Empties Jinja's memory if one of the user's templates has changed, or one is new in place of another.
+
+    The text depends on all of them, and on those that may yet be written in place of the project's.
+    """
+    with noted_files() as files:
+        for top in (templates, place("templates")):
+            for folder, _, names in os.walk(top):
+                for name in names:
+                    if name.endswith(".j2"):
+                        note(os.path.join(templates, os.path.relpath(folder, top), name))
+    if _user_files.get(templates) != files:
+        for (folder_of_user, _), environment in _environments.items():
+            if folder_of_user == templates and environment.cache is not None:
+                environment.cache.clear()
+    _user_files[templates] = files
 
 
 def _failure(message: str, hint: str, place: tuple[str, int]) -> SssgenError:
@@ -80,7 +104,7 @@ def _environment(templates: str | None, folder: str) -> Environment:
             lstrip_blocks=True,
             keep_trailing_newline=True,
             bytecode_cache=FileSystemBytecodeCache(cached, pattern) if cached else None,
-            auto_reload=templates is not None,
+            auto_reload=False,
         )
         environment.filters["digest"] = _digest
         _environments[key] = environment
