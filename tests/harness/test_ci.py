@@ -51,6 +51,8 @@ def test_cases_are_collected_from_folders() -> None:
             ".hidden/lamp.toml": MATERIAL,
             "node_modules/lamp.toml": MATERIAL,
             "env/pyvenv.cfg": "",
+            "sssgen-shaders/.git": "gitdir: elsewhere",
+            "sssgen-shaders/examples/lamp.toml": MATERIAL,
             "env/lib/lamp.toml": MATERIAL,
         },
     )

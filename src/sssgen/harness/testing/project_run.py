@@ -98,8 +98,9 @@ def _files(folder: str) -> Iterator[str]:
 
 
 def _is_excluded(parent: str, name: str) -> bool:
-    environment = os.path.join(parent, name, "pyvenv.cfg")
-    return name.startswith(".") or name in ("node_modules", "__pycache__") or os.path.isfile(environment)
+    """Whether a folder is of other tools or of another project: a virtual environment, a repository, a submodule."""
+    own = [os.path.join(parent, name, file) for file in ("pyvenv.cfg", ".git")]
+    return name.startswith(".") or name in ("node_modules", "__pycache__") or any(map(os.path.exists, own))
 
 
 def _kind(path: str) -> Kind | None:
