@@ -69,6 +69,7 @@ NEEDS: dict[str, str | None] = {
     "bake voronoi -o a.png": "bake",
     "bake normal a.png -o b.png": "bake",
     "bake pack --red 0.5 -o b.png": "bake",
+    "lsp": "lsp",
     "new wood": None,
     "doctor": None,
     "help emit": None,
@@ -96,7 +97,7 @@ def test_a_command_without_the_optional_packages(command: str, tmp_path: Path) -
     else:
         assert done.returncode == WRONG_INPUT, done
         (diagnostic,) = result["diagnostics"]
-        package = {"preview": "watchfiles"}.get(extra, "numpy")
+        package = {"watch": "watchfiles", "lsp": "lsprotocol"}.get(command.split()[0], "numpy")
         assert diagnostic["message"].startswith(f"the package '{package}' is missing")
         assert diagnostic["help"] == install_hint(extra)
 

@@ -16,8 +16,10 @@ from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean
 from sssgen.support.toml_source import Document, parse
 
 _TEXTS = ("name", "title", "doc", "shading", "alpha_mode")
-_MATERIAL_KEYS = (*_TEXTS, "two_sided")
-_CHOICES = {
+MATERIAL_KEYS = (*_TEXTS, "two_sided")
+STAGE_KEYS = ("technique", "bind", "uv")
+"""The keys of a stage that are not parameters."""
+CHOICES = {
     "shading": (SHADINGS, "lit: the engine lights it; unlit: the chain gives the color"),
     "alpha_mode": (ALPHA_MODES, "opaque: alpha is ignored; mask: cut off at one half; blend: transparent"),
 }
@@ -69,9 +71,7 @@ class _Reader:
             elif isinstance(content, dict | list) and not _is_plain_list(content):
                 error(place(key).key, f"unknown section '{key}'", _section_hint(key, sections))
             else:
-                hint = (
-                    f"sections: {', '.join(sections)}" if key not in _MATERIAL_KEYS else "it belongs below [material]"
-                )
+                hint = f"sections: {', '.join(sections)}" if key not in MATERIAL_KEYS else "it belongs below [material]"
                 error(place(key).key, f"'{key}' is outside any section", hint)
         name, title, doc, shading, alpha_mode = self.head(data.get("material"))
         stages = [stage for section in roles.SECTIONS for stage in self.section(section, data.get(section))]
@@ -97,8 +97,8 @@ class _Reader:
             error(place("material").key, "one file describes one material", "write [material], once")
             return "", "", "", "lit", "opaque"
         for key in table:
-            if key not in _MATERIAL_KEYS:
-                hint = did_you_mean(key, _MATERIAL_KEYS) or f"keys: {', '.join(_MATERIAL_KEYS)}"
+            if key not in MATERIAL_KEYS:
+                hint = did_you_mean(key, MATERIAL_KEYS) or f"keys: {', '.join(MATERIAL_KEYS)}"
                 error(place("material", key).key, f"unknown key '{key}' in [material]", hint)
         texts = {key: self.text(table.get(key, ""), key) for key in _TEXTS}
         name = texts["name"]
@@ -107,7 +107,7 @@ class _Reader:
         elif isinstance(table["name"], str) and (wrong := wrong_name(name)):
             error(place("material", "name").value, *wrong)
         chosen = {}
-        for key, (words, meaning) in _CHOICES.items():
+        for key, (words, meaning) in CHOICES.items():
             chosen[key] = texts[key] or words[0]
             if chosen[key] not in words:
                 message = f"unknown {key.replace('_', ' ')} '{chosen[key]}'"
@@ -173,7 +173,7 @@ class _Reader:
         stage = TechniqueUse(technique, {}, frozenset(), {}, bindings, span)
         key_of: dict[Span, str] = {}
         for key, raw in table.items():
-            if key in ("technique", "bind", "uv"):
+            if key in STAGE_KEYS:
                 continue
             matches = [uniform for uniform in uniforms.values() if key in _names(uniform)]
             if not matches:

@@ -23,12 +23,13 @@ from sssgen.support.toml_source import Document, Path
 MEASURED = ("title", "medium", "inlay", "environment")
 """Keys that describe the physical scene, for measuring materials; shells with an environment draw with its key."""
 
-_KEYS = (
+KEYS = (
     "material", "size", "samples", "time", "background", "ambient", "exposure",
     "geometry", "camera", "light", "shell", "parameters", "textures", *MEASURED,
 )  # fmt: skip
-_PLACE = ("position", "rotation", "scale")
-_SHAPES = {
+"""The keys and sections of a scene."""
+PLACE = ("position", "rotation", "scale")
+SHAPES = {
     "ball": ("radius",),
     "box": ("size",),
     "slab": ("width", "height", "thickness"),
@@ -38,6 +39,9 @@ _SHAPES = {
     "mesh": ("file",),
     "distance": ("technique", "parameters", "reach", "projection"),
 }
+"""Kind of geometry → its own keys."""
+CAMERA = ("position", "target", "field_of_view")
+LIGHT = ("position", "direction", "color")
 MAX_LIGHTS = 4
 MAX_PARTS = 64
 MAX_SIDE = 8192
@@ -60,7 +64,7 @@ class _Reader:
         self.document, self.folder = document, folder
 
     def scene(self) -> Scene:
-        top = Table(self.document, (), self.document.data, _KEYS)
+        top = Table(self.document, (), self.document.data, KEYS)
         size = top.wholes("size", (640, 480), (1, MAX_SIDE))
         samples = top.whole("samples", 2, (1, MAX_SAMPLES))
         if size[0] * size[1] * samples**2 > MAX_COUNT:
@@ -117,7 +121,7 @@ class _Reader:
 
     def camera(self, content: Any) -> Camera:
         default = Camera()
-        table = Table(self.document, ("camera",), content, ("position", "target", "field_of_view"))
+        table = Table(self.document, ("camera",), content, CAMERA)
         camera = Camera(
             table.vector("position", default.position),
             table.vector("target", default.target),
@@ -140,7 +144,7 @@ class _Reader:
         return tuple(self.light(("light", index), light) for index, light in enumerate(content[:MAX_LIGHTS]))
 
     def light(self, path: Path, content: Any) -> Light:
-        table = Table(self.document, path, content, ("position", "direction", "color"))
+        table = Table(self.document, path, content, LIGHT)
         color = table.vector("color", (1.0, 1.0, 1.0), NOT_NEGATIVE)
         if ("position" in table.content) == ("direction" in table.content):
             hint = "position: a point light; direction: towards a distant light"
@@ -168,21 +172,21 @@ class _Reader:
         if content is None:
             return None
         kind = content.get("kind") if isinstance(content, dict) else None
-        own = _SHAPES.get(kind, ()) if isinstance(kind, str) else ()
-        keys = ("kind", *_PLACE, *(own or {key for keys in _SHAPES.values() for key in keys}))
+        own = SHAPES.get(kind, ()) if isinstance(kind, str) else ()
+        keys = ("kind", *PLACE, *(own or {key for keys in SHAPES.values() for key in keys}))
         table = Table(self.document, path, content, keys)
         if not isinstance(content, dict):
             return None
         if kind is None:
             span = self.document.place(*path).value
-            self.document.error(span, "the geometry has no kind", f"write kind = one of: {', '.join(_SHAPES)}")
+            self.document.error(span, "the geometry has no kind", f"write kind = one of: {', '.join(SHAPES)}")
             return None
         place: dict[str, Any] = {
             "position": table.vector("position", (0.0, 0.0, 0.0)),
             "rotation": table.vector("rotation", (0.0, 0.0, 0.0)),
             "scale": table.number("scale", 1.0, POSITIVE),
         }
-        return self.shape(table, table.text("kind", "", _SHAPES), place)
+        return self.shape(table, table.text("kind", "", SHAPES), place)
 
     def shape(self, table: Table, kind: str, place: dict[str, Any]) -> Geometry | None:
         if kind == "ball":

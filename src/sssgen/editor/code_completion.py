@@ -1,0 +1,109 @@
+"""Completions in techniques and plain GLSL: builtins, what the file declares and includes, quantities, hints, roles."""
+
+from __future__ import annotations
+
+import os
+import re
+
+from sssgen.editor import explanations
+from sssgen.editor.analysis import Analysis
+from sssgen.editor.completion_item import Item, plain
+from sssgen.editor.documents import TECHNIQUE, Document
+from sssgen.editor.lookup import is_in_comment
+from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.nodes import Declare, Function
+from sssgen.ir.out_builtins import OUT_BUILTINS
+from sssgen.ir.types import spell
+from sssgen.ir.walk import statements
+from sssgen.lang.check.quantities import QUANTITIES
+from sssgen.lang.check.uniform_hints import HINTS
+from sssgen.lang.syntax.lexer import KEYWORDS
+from sssgen.material import library
+from sssgen.material.attributes import ATTRIBUTES, REQUIREMENTS, SHAPES
+from sssgen.material.library import ROLES
+from sssgen.material.slots import signature
+from sssgen.material.technique_facts import uniform_facts, uniform_text
+from sssgen.support.paths import posix
+
+_INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"[^"]*$')
+_ATTRIBUTE = re.compile(r"^[\s/*]*(?P<word>[a-z_]*)$")
+_ATTRIBUTE_VALUE = re.compile(r"^[\s/*]*(?P<key>[a-z_]+)[ \t]*:")
+_HINT = re.compile(r"^[ \t]*uniform\b[^;=]*:[^;=]*$")
+_MEMBER = re.compile(r"\.\w*$")
+_OF_ATTRIBUTES = {"role": ROLES, "shape": SHAPES, "requires": REQUIREMENTS}
+
+
+def in_code(document: Document, analysis: Analysis, line: int, column: int) -> list[Item]:
+    """Completions in shader text."""
+    before = document.line(line)[:column]
+    technique = document.kind == TECHNIQUE
+    if _INCLUDE.match(before):
+        return plain(_includable(document), "file") if technique else []
+    if is_in_comment(document, line, column):
+        return _in_comment(before) if technique else []
+    if _MEMBER.search(before):
+        return []
+    if technique and _HINT.match(before):
+        return plain(HINTS, "keyword")
+    items = [*_locals(document, analysis, line), *_declared(analysis)]
+    if technique:
+        items += [Item(name, "type", explanations.of_quantity(name).partition(": ")[2]) for name in QUANTITIES]
+    items += [
+        Item(row.name, "function", row.signatures[0].replace("(", f" {row.name}(", 1), row.doc, rank=1)
+        for row in BUILTINS.values()
+    ]
+    items += plain(OUT_BUILTINS, "function", rank=1)
+    return items + plain(KEYWORDS, "keyword", rank=2)
+
+
+def _in_comment(before: str) -> list[Item]:
+    value = _ATTRIBUTE_VALUE.match(before)
+    if value is not None:
+        return plain(_OF_ATTRIBUTES.get(value["key"], ()), "value")
+    return [Item(name, "keyword", text=f"{name}: ") for name in ATTRIBUTES] if _ATTRIBUTE.match(before) else []
+
+
+def _includable(document: Document) -> list[str]:
+    """The files that `#include` finds: beside the document, and in the library."""
+    names = []
+    for root, folders in ((document.folder, ("",)), (library.TECHNIQUES, sorted(os.listdir(library.TECHNIQUES)))):
+        for folder in folders:
+            path = os.path.join(root, folder)
+            found = sorted(os.listdir(path)) if os.path.isdir(path) else []
+            names += [posix(os.path.join(folder, name)) for name in found if name.endswith(".sss")]
+    return [name for name in dict.fromkeys(names) if name != os.path.basename(document.path)]
+
+
+def _declared(analysis: Analysis) -> list[Item]:
+    module = analysis.module
+    if module is None:
+        return []
+    items = [Item(function.name, "function", signature(function), function.doc) for function in module.functions]
+    items += [
+        Item(uniform.name, "parameter", uniform_text(uniform_facts(uniform)), uniform.doc)
+        for uniform in module.uniforms
+    ]
+    items += [Item(constant.name, "constant", spell(constant.type)) for constant in module.constants]
+    items += [Item(variable.name, "parameter", spell(variable.type), variable.doc) for variable in module.variables]
+    items += [Item(spell(struct.type), "type", "struct", struct.doc) for struct in module.structs]
+    return list({item.label: item for item in items}.values())
+
+
+def _locals(document: Document, analysis: Analysis, line: int) -> list[Item]:
+    """The parameters and variables of the function around a line, as it was when the text was last right."""
+    own = (document.shown, library.shown_name(document.path))
+    functions = [
+        function
+        for function in (analysis.module.functions if analysis.module else ())
+        if function.span.file in own and function.span.line <= line + 1
+    ]
+    around: Function | None = max(functions, key=lambda function: function.span.line, default=None)
+    if around is None:
+        return []
+    items = [Item(param.name, "parameter", param.quantity or spell(param.type)) for param in around.params]
+    items += [
+        Item(statement.name, "parameter", spell(statement.type))
+        for statement in statements(around.body or ())
+        if isinstance(statement, Declare) and statement.span.line <= line + 1
+    ]
+    return list({item.label: item for item in items}.values())

@@ -1,0 +1,243 @@
+"""What the name at a place stands for: a technique, parameter, slot, function, constant, builtin, quantity, file."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, NamedTuple
+
+from sssgen.editor import toml_places
+from sssgen.editor.analysis import Analysis
+from sssgen.editor.documents import MATERIAL, SCENE, TECHNIQUE, Document, Word
+from sssgen.editor.scene_parameters import uniforms_of
+from sssgen.editor.source_files import path_of
+from sssgen.ir.nodes import Function, Module, Uniform
+from sssgen.ir.walk import all_expressions
+from sssgen.lang.check.quantities import QUANTITIES
+from sssgen.material import library, slots
+from sssgen.material.library import Technique
+from sssgen.material.material_loading import examples
+from sssgen.support.diagnostics import SssgenError
+from sssgen.targets import builtin_facts
+
+
+class Meaning(NamedTuple):
+    """What a name stands for. `thing` is a node of the IR, a Technique, a Material, a Type, a builtin's or a quantity's
+    name, or the path of a file.
+    """
+
+    kind: str
+    """technique, uniform, function, constant, struct, variable, value, builtin, quantity, material, or file."""
+    thing: Any
+    word: Word
+    path: str = ""
+    """The file that declares it; '' for what no file declares."""
+
+
+def meaning_at(document: Document, analysis: Analysis, line: int, column: int) -> Meaning | None:
+    """What is at a place of a document."""
+    if document.kind in (MATERIAL, SCENE):
+        return _in_toml(document, analysis, line, column)
+    include = document.include_at(line)
+    if include is not None:
+        path = path_of(include.text, document, analysis.files)
+        return Meaning("file", path, include, path) if path else None
+    word = document.word_at(line, column)
+    if word is None or is_in_comment(document, line, word.start):
+        return None
+    return _in_code(document, analysis, word)
+
+
+def is_in_comment(document: Document, line: int, column: int) -> bool:
+    """Whether a place in shader text is in a comment."""
+    before = document.line(line)[:column]
+    earlier = "\n".join(document.lines[:line])
+    return "//" in before or f"{earlier}\n{before}".rfind("/*") > f"{earlier}\n{before}".rfind("*/")
+
+
+# Shader text
+
+
+def _in_code(document: Document, analysis: Analysis, word: Word) -> Meaning | None:
+    module = analysis.module
+    if module is not None:
+        for meaning in (_local(document, module, word), _declared(document, analysis, module, word)):
+            if meaning is not None:
+                return meaning
+    if word.text in builtin_facts.names():
+        return Meaning("builtin", word.text, word)
+    if document.kind == TECHNIQUE and word.text in QUANTITIES:
+        return Meaning("quantity", word.text, word)
+    return None
+
+
+def _declared(document: Document, analysis: Analysis, module: Module, word: Word) -> Meaning | None:
+    groups: tuple[tuple[str, Any], ...] = (
+        ("function", module.functions),
+        ("uniform", module.uniforms),
+        ("constant", module.constants),
+        ("variable", module.variables),
+    )
+    for kind, declarations in groups:
+        named = [declaration for declaration in declarations if declaration.name == word.text]
+        if named:
+            chosen = _called(document, module, word, named) if kind == "function" else named[-1]
+            return Meaning(kind, chosen, word, path_of(chosen.span.file, document, analysis.files))
+    for struct in module.structs:
+        if getattr(struct.type, "name", "") == word.text:
+            return Meaning("struct", struct, word, path_of(struct.span.file, document, analysis.files))
+    return None
+
+
+def _called(document: Document, module: Module, word: Word, named: list[Function]) -> Function:
+    """The overload that is called, or declared, at a place; the last one where neither is found."""
+    at = (word.line + 1, word.start + 1)
+    for function in named:
+        if (function.span.line, function.span.column) <= at < (function.span.end_line, function.span.end_column):
+            return function
+    for expr in _expressions_at(document, module, word):
+        key = getattr(expr, "function", "")
+        for function in named:
+            if function.key == key:
+                return function
+    return named[-1]
+
+
+def _own_functions(document: Document, module: Module) -> list[Function]:
+    own = (document.shown, library.shown_name(document.path))
+    return [function for function in module.functions if function.span.file in own]
+
+
+def _expressions_at(document: Document, module: Module, word: Word) -> list[Any]:
+    """The expressions that begin with a word, the smallest first."""
+    at = (word.line + 1, word.start + 1)
+    found = [
+        expr
+        for function in _own_functions(document, module)
+        for expr in all_expressions(function.body or ())
+        if (expr.span.line, expr.span.column) == at and expr.span.file == function.span.file
+    ]
+    return sorted(found, key=lambda expr: (expr.span.end_line, expr.span.end_column))
+
+
+def _local(document: Document, module: Module, word: Word) -> Meaning | None:
+    """A parameter of a function, or a local variable, with its type."""
+    functions = [function for function in _own_functions(document, module) if function.span.line <= word.line + 1]
+    enclosing = max(functions, key=lambda function: function.span.line, default=None)
+    for param in enclosing.params if enclosing else ():
+        if param.name == word.text:
+            return Meaning("param", param, word, document.path)
+    for expr in _expressions_at(document, module, word):
+        if type(expr).__name__ == "Local" and expr.name == word.text:
+            return Meaning("value", (word.text, expr.type), word)
+    return None
+
+
+# Materials and scenes
+
+
+def _in_toml(document: Document, analysis: Analysis, line: int, column: int) -> Meaning | None:
+    place = toml_places.place_at(document, line, column)
+    text, start, end = toml_places.text_at(document, line, column)
+    key = place.inner_key or place.key
+    if place.in_value and text:
+        return _of_text(document, analysis, key, place, Word(text, line, start, end))
+    word = document.word_at(line, column)
+    if word is None or place.in_header:
+        return None
+    if place.in_value and place.key == "bind":
+        return _slot(document, place.technique, word)
+    uniform = uniforms_at(document, analysis, place).get(word.text)
+    if uniform is None:
+        return None
+    return Meaning("uniform", uniform, word, path_of(uniform.span.file, document, analysis.files))
+
+
+def _of_text(
+    document: Document, analysis: Analysis, key: str, place: toml_places.TomlPlace, word: Word
+) -> Meaning | None:
+    if key == "technique" or place.section == "shell":
+        technique = technique_named(word.text, document)
+        return Meaning("technique", technique, word, technique.path) if technique else None
+    if place.key == "bind":
+        return _bound(document, place.technique, key, word)
+    if key == "material" and not place.section:
+        path = examples().get(word.text, os.path.join(document.folder, word.text))
+        known = analysis.material if analysis.material and analysis.scene else None
+        return Meaning("material", known, word, path) if os.path.isfile(path) else None
+    path = os.path.join(document.folder, word.text)
+    return Meaning("file", path, word, path) if os.path.isfile(path) else None
+
+
+def technique_named(name: str, document: Document) -> Technique | None:
+    """The technique that a material or scene names; None for an unknown or faulty one."""
+    try:
+        if name.endswith((".sss", ".glsl")):
+            path = os.path.join(document.folder, name)
+            return library.load_path(path if os.path.isfile(path) else os.path.join(library.TECHNIQUES, name))
+        return library.load(name) if name in library.index() else None
+    except SssgenError:
+        return None
+
+
+def slots_of(technique: Technique) -> dict[str, Function]:
+    """The slots that a technique calls."""
+    return {slot.name: slot for slot in slots.needs(technique.module, technique.function)[1]}
+
+
+def _slot(document: Document, name: str, word: Word) -> Meaning | None:
+    technique = technique_named(name, document)
+    slot = slots_of(technique).get(word.text) if technique else None
+    if technique is None or slot is None:
+        return None
+    return Meaning("function", slot, word, path_of(slot.span.file, document, (technique.path,)))
+
+
+def _bound(document: Document, name: str, slot_name: str, word: Word) -> Meaning | None:
+    """The function that a slot is bound to."""
+    technique = technique_named(name, document)
+    slot = slots_of(technique).get(slot_name) if technique else None
+    try:
+        if slot is not None:
+            _, function = slots.find(word.text, slot, document.folder)
+            return Meaning("function", function, word, path_of(function.span.file, document))
+    except SssgenError:
+        return None
+    return None
+
+
+def uniforms_at(document: Document, analysis: Analysis, place: toml_places.TomlPlace) -> dict[str, Uniform]:
+    """The parameters and textures that the table around a place can set, by names and aliases."""
+    if document.kind == SCENE:
+        if place.section not in ("parameters", "textures") or not analysis.scene or not analysis.material:
+            return {}
+        return uniforms_of(analysis.scene, analysis.material)
+    technique = technique_named(place.technique, document)
+    if technique is None:
+        return {}
+    modules = [(technique.module, technique.function), *_bound_functions(document, place, technique)]
+    found = {
+        uniform.span: uniform
+        for module, function in modules
+        for uniform in module.uniforms
+        if uniform.name in slots.needs(module, function)[0]
+    }
+    return {name: uniform for uniform in found.values() for name in names_of(uniform)}
+
+
+def names_of(uniform: Uniform) -> list[str]:
+    """A parameter's name, then its aliases."""
+    return [uniform.name, *(str(name) for hint, names in uniform.hints if hint == "alias" for name in names)]
+
+
+def _bound_functions(
+    document: Document, place: toml_places.TomlPlace, technique: Technique
+) -> list[tuple[Module, Function]]:
+    text = "\n".join(document.lines[place.first_line + 1 : place.last_line + 1])
+    found = []
+    for name, slot in slots_of(technique).items():
+        for bound in toml_places.bound_texts(text, name):
+            try:
+                found.append(slots.find(bound, slot, document.folder))
+            except SssgenError:
+                continue
+    return found

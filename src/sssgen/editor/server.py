@@ -1,0 +1,238 @@
+"""The language server: the protocol's messages, over pygls (Apache License 2.0), to the functions of this package.
+
+Places are counted in the client's units here (UTF-16 by default) and in characters everywhere else.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
+
+from lsprotocol import types as lsp
+from pygls.lsp.server import LanguageServer
+from pygls.uris import from_fs_path
+from pygls.workspace import PositionCodec
+
+from sssgen.editor.analysis import Analysis
+from sssgen.editor.completion import TRIGGERS, completions_at
+from sssgen.editor.completion_item import Item
+from sssgen.editor.definition import definition_at
+from sssgen.editor.documents import Document
+from sssgen.editor.hover import hover_at
+from sssgen.editor.open_documents import OpenDocuments
+from sssgen.editor.problems import Problem, Range, fixes_of
+from sssgen.support.diagnostics import SssgenError
+from sssgen.version import VERSION
+
+QUIET = 0.01
+"""Seconds without a change before a text is read: a burst of changes is read once."""
+
+_SEVERITIES = {"error": lsp.DiagnosticSeverity.Error, "warning": lsp.DiagnosticSeverity.Warning}
+_KINDS = {
+    "technique": lsp.CompletionItemKind.Module,
+    "parameter": lsp.CompletionItemKind.Variable,
+    "texture": lsp.CompletionItemKind.File,
+    "function": lsp.CompletionItemKind.Function,
+    "constant": lsp.CompletionItemKind.Constant,
+    "type": lsp.CompletionItemKind.Class,
+    "keyword": lsp.CompletionItemKind.Keyword,
+    "section": lsp.CompletionItemKind.Struct,
+    "value": lsp.CompletionItemKind.Value,
+    "file": lsp.CompletionItemKind.File,
+}
+
+_Result = TypeVar("_Result")
+Place = tuple[Document, Analysis, int, int]
+
+
+class Server(LanguageServer):
+    """The server and the documents that its client has open."""
+
+    def __init__(self) -> None:
+        super().__init__("sssgen", VERSION)
+        self.documents = OpenDocuments()
+
+    @property
+    def codec(self) -> PositionCodec:
+        return self.workspace.position_codec
+
+    def path_of(self, uri: str) -> str:
+        """The path of a document; '' for one that is no file."""
+        return str(self.workspace.get_text_document(uri).path) if uri.startswith("file:") else ""
+
+    def range_to_client(self, lines: Sequence[str], part: Range) -> lsp.Range:
+        """A range in the client's units."""
+        start, end = lsp.Position(part.line, part.column), lsp.Position(part.end_line, part.end_column)
+        return lsp.Range(self.position_to_client(lines, start), self.position_to_client(lines, end))
+
+    def position_to_client(self, lines: Sequence[str], place: lsp.Position) -> lsp.Position:
+        line = lines[place.line] if place.line < len(lines) else ""
+        return lsp.Position(place.line, self.codec.client_num_units(line[: place.character]))
+
+    def place(self, uri: str, position: lsp.Position) -> Place | None:
+        """A document, what it says, and a line and column in it."""
+        found = self.documents.get(path) if (path := self.path_of(uri)) else None
+        if found is None:
+            return None
+        document, analysis = found
+        own = self.codec.position_from_client_units(document.lines or [""], position)
+        return document, analysis, own.line, own.character
+
+    def publish(self, path: str, version: int | None = None) -> None:
+        """Reads a document again and sends its problems."""
+        problems = self.documents.problems(path)
+        found = self.documents.get(path)
+        lines = found[0].lines if found else []
+        uri = from_fs_path(path) or ""
+        diagnostics = [self.diagnostic(lines, problem) for problem in problems]
+        self.text_document_publish_diagnostics(lsp.PublishDiagnosticsParams(uri, diagnostics, version))
+
+    def diagnostic(self, lines: Sequence[str], problem: Problem) -> lsp.Diagnostic:
+        """A problem as the protocol has it; the hint is part of the message."""
+        related = None
+        if problem.related_path:
+            place = problem.related_range
+            start, end = lsp.Position(place.line, place.column), lsp.Position(place.end_line, place.end_column)
+            location = lsp.Location(from_fs_path(problem.related_path) or "", lsp.Range(start, end))
+            related = [lsp.DiagnosticRelatedInformation(location, problem.message)]
+        return lsp.Diagnostic(
+            self.range_to_client(lines, problem.range),
+            f"{problem.message}\n{problem.hint}" if problem.hint else problem.message,
+            _SEVERITIES.get(problem.severity, lsp.DiagnosticSeverity.Information),
+            source="sssgen",
+            related_information=related,
+        )
+
+
+def _safe(handler: Callable[[Server, Any], _Result]) -> Callable[[Server, Any], _Result | None]:
+    """A handler that answers nothing where a file that it needs has errors of its own, or has vanished."""
+
+    @functools.wraps(handler)
+    def answer(server: Server, params: Any) -> _Result | None:
+        try:
+            return handler(server, params)
+        except (SssgenError, OSError):
+            return None
+
+    return answer
+
+
+def _opened(server: Server, params: lsp.DidOpenTextDocumentParams) -> None:
+    path = server.path_of(params.text_document.uri)
+    if path:
+        server.documents.change(path, params.text_document.text)
+        server.publish(path, params.text_document.version)
+
+
+async def _changed(server: Server, params: lsp.DidChangeTextDocumentParams) -> None:
+    uri, version = params.text_document.uri, params.text_document.version
+    path = server.path_of(uri)
+    if not path:
+        return
+    server.documents.change(path, server.workspace.get_text_document(uri).source)
+    await asyncio.sleep(QUIET)
+    if server.workspace.get_text_document(uri).version not in (version, None):
+        return  # a newer change is read in place of this one
+    server.publish(path, version)
+    for other in server.documents.depending_on(path):
+        await asyncio.sleep(0)
+        server.publish(other)
+
+
+def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:
+    path = server.path_of(params.text_document.uri)
+    if path:
+        dependent = server.documents.depending_on(path)
+        server.documents.close(path)
+        server.publish(path)
+        for other in dependent:
+            server.publish(other)
+
+
+def _files_changed(server: Server, params: lsp.DidChangeWatchedFilesParams) -> None:
+    paths = [path for change in params.changes if (path := server.path_of(change.uri))]
+    for other in dict.fromkeys(other for path in paths for other in server.documents.depending_on(path)):
+        server.publish(other)
+
+
+def _hover(server: Server, params: lsp.HoverParams) -> lsp.Hover | None:
+    place = server.place(params.text_document.uri, params.position)
+    hover = hover_at(*place) if place else None
+    if place is None or hover is None:
+        return None
+    word = hover.word
+    part = server.range_to_client(place[0].lines, Range(word.line, word.start, word.line, word.end))
+    return lsp.Hover(lsp.MarkupContent(lsp.MarkupKind.Markdown, hover.markdown), part)
+
+
+def _completion(server: Server, params: lsp.CompletionParams) -> list[lsp.CompletionItem] | None:
+    place = server.place(params.text_document.uri, params.position)
+    if place is None:
+        return None
+    return [_item(number, item) for number, item in enumerate(completions_at(*place))]
+
+
+def _item(number: int, item: Item) -> lsp.CompletionItem:
+    return lsp.CompletionItem(
+        item.label,
+        kind=_KINDS[item.kind],
+        detail=item.detail or None,
+        documentation=lsp.MarkupContent(lsp.MarkupKind.Markdown, item.doc) if item.doc else None,
+        insert_text=item.text or None,
+        sort_text=f"{item.rank}{number:05}",
+    )
+
+
+def _definition(server: Server, params: lsp.DefinitionParams) -> lsp.Location | None:
+    place = server.place(params.text_document.uri, params.position)
+    target = definition_at(*place) if place else None
+    if target is None:
+        return None
+    part = target.range
+    start, end = lsp.Position(part.line, part.column), lsp.Position(part.end_line, part.end_column)
+    return lsp.Location(from_fs_path(target.path) or "", lsp.Range(start, end))
+
+
+def _fixes(server: Server, params: lsp.CodeActionParams) -> list[lsp.CodeAction] | None:
+    uri = params.text_document.uri
+    place = server.place(uri, params.range.start)
+    if place is None:
+        return None
+    document = place[0]
+    actions = []
+    for problem in server.documents.problems(document.path):
+        if not problem.range.line <= params.range.end.line or problem.range.end_line < params.range.start.line:
+            continue
+        fixes = fixes_of(document, problem)
+        for fix in fixes:
+            edit = lsp.TextEdit(server.range_to_client(document.lines, fix.range), fix.text)
+            actions.append(
+                lsp.CodeAction(
+                    fix.title,
+                    lsp.CodeActionKind.QuickFix,
+                    [server.diagnostic(document.lines, problem)],
+                    is_preferred=len(fixes) == 1,
+                    edit=lsp.WorkspaceEdit({uri: [edit]}),
+                )
+            )
+    return actions
+
+
+def make_server() -> Server:
+    """A server that answers; `start_io` of it reads from standard input."""
+    server = Server()
+    server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)(_opened)
+    server.feature(lsp.TEXT_DOCUMENT_DID_CHANGE)(_changed)
+    server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)(_closed)
+    server.feature(lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES)(_files_changed)
+    server.feature(lsp.TEXT_DOCUMENT_HOVER)(_safe(_hover))
+    server.feature(lsp.TEXT_DOCUMENT_COMPLETION, lsp.CompletionOptions(trigger_characters=list(TRIGGERS)))(
+        _safe(_completion)
+    )
+    server.feature(lsp.TEXT_DOCUMENT_DEFINITION)(_safe(_definition))
+    server.feature(
+        lsp.TEXT_DOCUMENT_CODE_ACTION, lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix])
+    )(_safe(_fixes))
+    return server
