@@ -70,6 +70,7 @@ NEEDS: dict[str, str | None] = {
     "bake normal a.png -o b.png": "bake",
     "bake pack --red 0.5 -o b.png": "bake",
     "lsp": "lsp",
+    "fmt wax.toml": None,
     "new wood": None,
     "doctor": None,
     "help emit": None,

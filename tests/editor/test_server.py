@@ -103,6 +103,12 @@ async def test_a_session_of_an_editor(client: LanguageClient, tmp_path: Path) ->
     assert hover is not None and isinstance(hover.contents, lsp.MarkupContent) and "builtin" in hover.contents.value
     assert hover.range is not None and hover.range.start == position(text, "clamp")
 
+    untidy = text.replace("return clamp", "return    clamp")
+    assert await session.change(uri, untidy) == []
+    options = lsp.FormattingOptions(4, True)
+    edits = await client.text_document_formatting_async(lsp.DocumentFormattingParams(document, options))
+    assert edits and edits[0].new_text == text
+
     uri = (tmp_path / "glass.toml").as_uri()
     text = FILES["glass.toml"][0]
     document = lsp.TextDocumentIdentifier(uri)

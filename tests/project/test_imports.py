@@ -21,6 +21,7 @@ LAZY_IMPORTS = {
     "sssgen.cli.eval": HELP,
     "sssgen.cli.listing": HELP,
     "sssgen.cli.fit": HELP,
+    "sssgen.cli.fmt": HELP,
     "sssgen.cli.layout": EMIT,
     "sssgen.cli.lint": HELP,
     "sssgen.cli.lsp": HELP,

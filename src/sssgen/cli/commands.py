@@ -44,6 +44,7 @@ COMMANDS = {
     "preview": Command("preview", "see", "show a material in a browser while its files change", "preview"),
     "render": Command("render", "see", "render a scene, or compare two pictures", "render"),
     "check": Command("check", "check", "compile shaders with the compilers of this machine"),
+    "fmt": Command("fmt", "check", "lay out techniques and TOML files"),
     "lint": Command("lint", "check", "report operations that may divide by 0, overflow or give NaN"),
     "eval": Command("eval", "check", "evaluate a technique on arrays of inputs, on one or all back ends"),
     "stress": Command("stress", "check", "run techniques on dangerous, boundary and random inputs"),

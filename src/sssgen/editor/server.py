@@ -21,6 +21,7 @@ from sssgen.editor.completion_item import Item
 from sssgen.editor.definition import definition_at
 from sssgen.editor.documents import Document
 from sssgen.editor.hover import hover_at
+from sssgen.editor.layout import laid_out
 from sssgen.editor.open_documents import OpenDocuments
 from sssgen.editor.problems import Problem, Range, fixes_of
 from sssgen.support.diagnostics import SssgenError
@@ -220,6 +221,16 @@ def _fixes(server: Server, params: lsp.CodeActionParams) -> list[lsp.CodeAction]
     return actions
 
 
+def _formatting(server: Server, params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit] | None:
+    place = server.place(params.text_document.uri, lsp.Position(0, 0))
+    if place is None:
+        return None
+    document = place[0]
+    text = laid_out(document.text, document.path)
+    whole = Range(0, 0, len(document.lines), 0)
+    return [lsp.TextEdit(server.range_to_client(document.lines, whole), text)] if text != document.text else []
+
+
 def make_server() -> Server:
     """A server that answers; `start_io` of it reads from standard input."""
     server = Server()
@@ -235,4 +246,5 @@ def make_server() -> Server:
     server.feature(
         lsp.TEXT_DOCUMENT_CODE_ACTION, lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix])
     )(_safe(_fixes))
+    server.feature(lsp.TEXT_DOCUMENT_FORMATTING)(_safe(_formatting))
     return server

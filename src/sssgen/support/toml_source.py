@@ -137,7 +137,9 @@ def _report(message: str, text: str, reporter: Reporter) -> int:
     return 0
 
 
-class _Token(NamedTuple):
+class Token(NamedTuple):
+    """A piece of a text: newline, skip (blanks or a comment), string, mark, bare (part of a key or value) or other."""
+
     kind: str
     text: str
     start: int
@@ -152,14 +154,17 @@ _TOKEN = re.compile(
 )
 
 
-def _tokens(text: str) -> Iterator[_Token]:
+def all_tokens(text: str) -> Iterator[Token]:
+    """The tokens of a text, which together are the text: blanks and comments, too."""
     for match in _TOKEN.finditer(text):
-        kind = str(match.lastgroup)
-        if kind != "skip":
-            yield _Token(kind, match.group(), match.start(), match.end())
+        yield Token(str(match.lastgroup), match.group(), match.start(), match.end())
 
 
-def _too_much(tokens: list[_Token]) -> Iterator[tuple[_Token, str]]:
+def _tokens(text: str) -> Iterator[Token]:
+    return (token for token in all_tokens(text) if token.kind != "skip")
+
+
+def _too_much(tokens: list[Token]) -> Iterator[tuple[Token, str]]:
     """The places where brackets or dotted keys nest too deeply, or a word is too long."""
     depth = dots = 0
     for token in tokens:
@@ -189,7 +194,7 @@ class _Positions:
 class _Scanner:
     """Finds the places in a text that tomllib has accepted, so it need not look for errors."""
 
-    def __init__(self, tokens: list[_Token], place_of: _Positions) -> None:
+    def __init__(self, tokens: list[Token], place_of: _Positions) -> None:
         self.tokens = tokens
         self.place_of = place_of
         self.at = 0
@@ -279,7 +284,7 @@ class _Scanner:
         return False
 
 
-def _ends_value(token: _Token) -> bool:
+def _ends_value(token: Token) -> bool:
     return token.kind == "newline" or (token.kind == "mark" and token.text in ",]}")
 
 
@@ -290,7 +295,7 @@ def _unescape(quoted: str) -> str:
     return str(tomllib.loads(f"key = {quoted}")["key"])
 
 
-def _unquoted(token: _Token) -> str:
+def _unquoted(token: Token) -> str:
     if token.kind != "string":
         return token.text
     return _unescape(token.text) if "\\" in token.text else token.text[1:-1]

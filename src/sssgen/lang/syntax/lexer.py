@@ -168,6 +168,11 @@ class Lexer(dict[str, tuple[str, str, int, int]]):
         return tokens, comments
 
 
+def pieces(text: str) -> list[str]:
+    """A text in pieces, which together are the text: tokens with the blanks after them, comments, blanks."""
+    return _PIECE.findall(text)
+
+
 def _closed(comment: str) -> bool:
     return comment.startswith("//") or (len(comment) > 3 and comment.endswith("*/"))
 
