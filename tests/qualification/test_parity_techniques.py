@@ -185,7 +185,7 @@ def test_inputs_of_eval_replace_samples(tmp_path: Path, capsys: pytest.CaptureFi
     [
         (["--samples", "0"], "--samples 0 is not a number of samples"),
         (["--samples", "2000000"], "from 1 to 1000000"),
-        (["--samples", "many"], "invalid int value"),
+        (["--samples", "many"], "expected a whole number, not 'many'"),
         (["--samples", "5", "--seed", "-1"], "--seed -1 is negative"),
     ],
 )
