@@ -64,8 +64,7 @@ def test_a_technique_is_read_again_after_each_unsaved_change(file: Path) -> None
 def test_the_modules_in_memory_are_limited(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(loader, "MAX_MODULES", 5)
     monkeypatch.setattr(loader, "_modules", {})
-    monkeypatch.setattr(loader, "_keys", {})
-    for number in range(20):
-        module = loader.load_text(f"const float X = {number}.0;\n", "x.sss")
-    assert len(loader._modules) == len(loader._keys) == 5
-    assert loader.key_of(module)
+    modules = [loader.load_text(f"const float X = {number}.0;\n", "x.sss") for number in range(20)]
+    assert len(loader._modules) == 5
+    assert len({loader.key_of(module) for module in modules} - {""}) == 20  # the key lives as long as the module
+    assert loader.key_of(modules[0]._replace(constants=())) == ""

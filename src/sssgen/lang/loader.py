@@ -27,12 +27,19 @@ MAX_MODULES = 1024
 
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"\n]*)"', re.MULTILINE)
 
-_modules: dict[str, Module] = {}
-_keys: dict[int, str] = {}
+_modules: dict[str, LoadedModule] = {}
+"""Key → module; the one used last is at the end."""
 _front_end_stamp = ""
 
-Loaded = dict[tuple[str, tuple[str, ...]], tuple[Module, str]]
-"""The files included so far, by path and roots, each with its module and key: a file is read once per load."""
+
+class LoadedModule(Module):
+    """A module as its source text declares it. The copy that `_replace` makes has no key."""
+
+    key: str = ""
+
+
+Loaded = dict[tuple[str, tuple[str, ...]], LoadedModule]
+"""The files included so far, by path and roots: a file is read once per load."""
 
 
 def load_file(path: str | os.PathLike[str], shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Module:
@@ -46,12 +53,12 @@ def load_file(path: str | os.PathLike[str], shown: str, roots: Sequence[str | os
 
 def load_text(text: str, shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Module:
     """The checked module of a source text; see `load_file`."""
-    return _load(text, shown, tuple([os.fspath(root) for root in roots]), (), {})[0]
+    return _load(text, shown, tuple([os.fspath(root) for root in roots]), (), {})
 
 
 def key_of(module: Module) -> str:
     """The key of a loaded module; '' for a module that was not loaded here."""
-    return _keys.get(id(module), "")
+    return module.key if isinstance(module, LoadedModule) else ""
 
 
 def merge(first: Module, second: Module) -> Module:
@@ -64,16 +71,25 @@ def _union(first: tuple[Any, ...], second: tuple[Any, ...]) -> tuple[Any, ...]:
     return first + tuple(declaration for declaration in second if declaration.span not in spans)
 
 
-def _load(text: str, shown: str, roots: tuple[str, ...], within: tuple[str, ...], loaded: Loaded) -> tuple[Module, str]:
-    """The module of a text, and its key. `within` are the files that include it."""
+def _load(text: str, shown: str, roots: tuple[str, ...], within: tuple[str, ...], loaded: Loaded) -> LoadedModule:
+    """The module of a text. `within` are the files that include it."""
     keep_lines({shown: text})
     included, parts = Module(), [_stamp(), shown, text]
     for name, span in _includes(text, shown).items():
-        module, key = _include(name, span, roots, (*within, shown), loaded)
-        included = merge(included, module)
-        parts.append(key)
+        part = _include(name, span, roots, (*within, shown), loaded)
+        included = merge(included, part)
+        parts.append(part.key)
     key = cache.digest("\0".join(parts))
-    module = _modules.get(key) or cache.unpickled(cache.read(f"{key}.ir"))
+    module = _modules.pop(key, None) or _loaded(text, shown, included, key)
+    _modules[key] = module
+    if len(_modules) > MAX_MODULES:
+        _modules.pop(next(iter(_modules)))
+    return module
+
+
+def _loaded(text: str, shown: str, included: Module, key: str) -> LoadedModule:
+    """The module with this key, from the cache folder or from its text."""
+    module = cache.unpickled(cache.read(f"{key}.ir"))
     if not isinstance(module, Module):
         from sssgen.lang.check.module_checker import check
         from sssgen.lang.syntax.parser import parse
@@ -81,12 +97,9 @@ def _load(text: str, shown: str, roots: tuple[str, ...], within: tuple[str, ...]
         module = check(parse(text, shown), text, included)
         if not unsaved.any_kept():
             cache.write(f"{key}.ir", cache.pickled(module))
-    _modules[key] = module
-    _keys[id(module)] = key
-    if len(_modules) > MAX_MODULES:
-        oldest = _modules.pop(next(iter(_modules)))
-        _keys.pop(id(oldest), None)
-    return module, key
+    loaded = LoadedModule(*module)
+    loaded.key = key
+    return loaded
 
 
 def _includes(text: str, shown: str) -> dict[str, Span]:
@@ -100,10 +113,8 @@ def _includes(text: str, shown: str) -> dict[str, Span]:
     return names
 
 
-def _include(
-    name: str, span: Span, roots: tuple[str, ...], within: tuple[str, ...], loaded: Loaded
-) -> tuple[Module, str]:
-    """The module of an included file, and its key."""
+def _include(name: str, span: Span, roots: tuple[str, ...], within: tuple[str, ...], loaded: Loaded) -> LoadedModule:
+    """The module of an included file."""
     line = source_line(span)
     for root in roots:
         path = os.path.join(root, name)
