@@ -256,7 +256,7 @@ FRONT_ENDS = {
 
 WHOLE = re.compile(
     "the file (is too large|is empty|has no function)|no such file"
-    "|this is not a (file|reflection|valid file name)|cannot read|cannot find the (picture|mesh|light)"
+    "|this is (a folder|not a (file|reflection|valid file name))|cannot read|cannot find the (picture|mesh|light)"
     "|no technique is named|nothing to compile|there is nothing to check|the lists are nested"
     "|a number has thousands|the inputs are no"
     "|this is of another format|'parameters' and|the light has|a light's|this direction"

@@ -246,7 +246,7 @@ def test_results_on_dask_survive_a_dead_worker(tmp_path: Path, dask: Any) -> Non
             open_gate(remote)
 
     *results, failed = run(jobs, dask.scheduler_address, store=store, progress=kill)
-    assert killed and failed == Failure("said", "the scene has no light")
+    assert killed and failed == Failure("said", "the scene has no light", "add one")
     assert [result.name for result in results] == [f"item {number}" for number in range(12)]
     assert set(runs(remote)) == set(range(12))
     assert as_bytes(results) == as_bytes(run(jobs[:-1], processes=0, store=Store("")))
