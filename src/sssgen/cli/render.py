@@ -1,4 +1,4 @@
-"""`sssgen render`: a scene's picture, or how two pictures differ."""
+"""`sssgen render`: the picture of a scene or a material, or how two pictures differ."""
 
 from __future__ import annotations
 
@@ -18,11 +18,13 @@ def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
         "examples:\n"
         "  sssgen render scenes/lantern.toml -o lantern.png\n"
+        "  sssgen render wax.toml -o wax.png\n"
         "  sssgen render paper_lantern --size 1280x960 --samples 3 -o large.png\n"
-        "  sssgen render --compare lantern.png golden.png -o difference.png"
+        "  sssgen render --compare lantern.png golden.png -o difference.png\n"
+        "A material is drawn in the scene.toml beside it, or as a ball lit from behind."
     )
     add = parser.add_argument
-    add("SCENE", nargs="?", help="a scene's .toml file, or an example")
+    add("SCENE", nargs="?", help="the .toml file of a scene or a material, or an example")
     add("-o", "--output", type=given, metavar="FILE", help="a .png or .exr file (default: SCENE's name with .png)")
     add("--backend", "-b", metavar="NAME", default=PREFERRED, help=f"{', '.join(SCENES)} (default: {PREFERRED})")
     add_guards(parser)
@@ -50,7 +52,7 @@ def _render(arguments: Namespace) -> int:
     from sssgen.harness import backends
     from sssgen.harness.pictures import images
     from sssgen.harness.render.scene_render import render, with_samples
-    from sssgen.harness.scenes.scene_loading import load
+    from sssgen.harness.scenes.preview_scene import scene_of
     from sssgen.harness.scenes.scene_reader import MAX_SAMPLES
 
     size = _size(arguments.size) if arguments.size else None
@@ -61,7 +63,7 @@ def _render(arguments: Namespace) -> int:
         raise failure(f"--time {arguments.time:g} is not a time", "seconds, less than 1e9")
     if arguments.samples is not None and not 1 <= arguments.samples <= MAX_SAMPLES:
         raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 1 to {MAX_SAMPLES}")
-    scene = load(arguments.SCENE)
+    scene = scene_of(arguments.SCENE)
     scene = with_samples(scene, arguments.samples or scene.samples)
     output = arguments.output or f"{os.path.splitext(os.path.basename(arguments.SCENE))[0]}.png"
     if images.check_suffix(output) == ".npy":

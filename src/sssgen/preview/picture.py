@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
-import os
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -14,18 +13,13 @@ from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.render.shell_values import Shell
 from sssgen.harness.scenes.geometry import Ball, Box, Geometry, Slab
 from sssgen.harness.scenes.scene import Scene
-from sssgen.harness.scenes.scene_loading import load as load_scene
-from sssgen.harness.scenes.scene_loading import parse_scene
 from sssgen.ir.drawn import BACK_FACES, DISTANT, LIGHT
-from sssgen.material.material_loading import examples, load_material
+from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.preview.body_triangles import body_triangles
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import CachedResult, remembered
-from sssgen.support.paths import posix
-from sssgen.support.text_files import read_text
-from sssgen.support.toml_source import parse
 from sssgen.targets.runtime.numpy_textures import Texture
 
 TARGET = "threejs"
@@ -40,22 +34,6 @@ SHAPES: Mapping[str, Geometry] = {
 DRAWN_BY_PAGE = (BACK_FACES, LIGHT, DISTANT)
 """The textures that the page draws for each frame; the others are made once, for the scene's own light."""
 
-_DEFAULT_SCENE = """material = {material}
-background = [[0.10, 0.11, 0.13], [0.20, 0.22, 0.26]]
-ambient = [0.12, 0.13, 0.15]
-[geometry]
-kind = "ball"
-[camera]
-position = [0.0, 0.5, 4.2]
-field_of_view = 35.0
-[[light]]
-direction = [-0.6, 0.5, -0.6]
-color = [3.0, 2.8, 2.6]
-[[light]]
-direction = [0.7, 0.6, 0.5]
-color = [0.6, 0.65, 0.7]
-"""
-
 
 class Picture(NamedTuple):
     """A picture as the page gets it."""
@@ -65,25 +43,6 @@ class Picture(NamedTuple):
     pieces: dict[str, bytes]
     """Digest → triangles or texels."""
     material: Material
-
-
-def scene_of(name: str) -> Scene:
-    """The scene that a name or a path stands for: a scene, or a material in the scene beside it or in a plain one.
-
-    Raises SssgenError.
-    """
-    if name.endswith(".toml") and os.path.isfile(name):
-        if not isinstance(parse(read_text(name, posix(name)), posix(name)).data.get("material"), dict):
-            return load_scene(name)
-        beside = os.path.join(os.path.dirname(name), "scene.toml")
-        if os.path.isfile(beside):
-            scene = load_scene(beside)
-            if load_material(scene.material).name == load_material(name).name:
-                return dataclasses.replace(scene, material=os.path.abspath(name))
-    elif name in examples():
-        return load_scene(name)
-    material = load_material(name)  # its errors name what there is
-    return parse_scene(_DEFAULT_SCENE.format(material=_quoted(os.path.abspath(material.file))), material.file)
 
 
 def picture_of(scene: Scene, shape: str = "") -> Picture:
@@ -189,7 +148,3 @@ def _texels(texture: Texture, piece: Any) -> dict[str, Any]:
         for number, level in enumerate(texture.levels)
     ]
     return {"dim": texture.dim, "filter": texture.filter, "wrap": texture.wrap, "levels": levels}
-
-
-def _quoted(path: str) -> str:
-    return '"' + path.replace("\\", "/").replace('"', '\\"') + '"'

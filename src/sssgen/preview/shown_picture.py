@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sssgen.preview.picture import picture_of, scene_of
+from sssgen.harness.scenes.preview_scene import scene_of
+from sssgen.preview.picture import picture_of
 from sssgen.preview.saved_values import save_to_material, save_to_scene
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.file_memo import FileState, noted_files

@@ -1,0 +1,70 @@
+"""The scene in which a material is shown that is named alone: the one beside it, or a plain one."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+
+from sssgen.harness.scenes.scene import Scene
+from sssgen.harness.scenes.scene_loading import load, parse_scene
+from sssgen.harness.scenes.scene_reader import KEYS
+from sssgen.material.material_loading import load_material
+from sssgen.material.model import Material
+from sssgen.material.roles import SECTIONS
+from sssgen.support.paths import posix
+from sssgen.support.text_files import read_text
+from sssgen.support.toml_source import parse
+
+_ONLY_IN_MATERIALS = set(SECTIONS) - set(KEYS)
+
+_PLAIN_SCENE = """material = {material}
+background = [[0.10, 0.11, 0.13], [0.20, 0.22, 0.26]]
+ambient = [0.12, 0.13, 0.15]
+[camera]
+position = [0.0, 0.5, 4.2]
+field_of_view = 35.0
+[[light]]
+direction = [-0.6, 0.5, -0.6]
+color = [3.0, 2.8, 2.6]
+[[light]]
+direction = [0.7, 0.6, 0.5]
+color = [0.6, 0.65, 0.7]
+"""
+"""The larger light stands behind the body, as light that comes through is what the materials are about."""
+
+_BALL = '[geometry]\nkind = "ball"\n'
+
+
+def scene_of(name: str) -> Scene:
+    """The scene that a name or a path stands for: a scene, or a material in the scene beside it or in a plain one.
+
+    Raises SssgenError.
+    """
+    if not (name.endswith(".toml") and os.path.isfile(name) and _is_material(name)):
+        return load(name)  # its errors name what there is
+    material = load_material(name)
+    return _scene_beside(material, name) or _plain_scene(material)
+
+
+def _is_material(path: str) -> bool:
+    data = parse(read_text(path, posix(path)), posix(path)).data
+    return isinstance(data.get("material"), dict) or not _ONLY_IN_MATERIALS.isdisjoint(data)
+
+
+def _scene_beside(material: Material, path: str) -> Scene | None:
+    """The scene in the material's folder, if it is a scene of this material."""
+    beside = os.path.join(os.path.dirname(path), "scene.toml")
+    if not os.path.isfile(beside):
+        return None
+    scene = load(beside)
+    if not scene.material or load_material(scene.material).name != material.name:
+        return None
+    return dataclasses.replace(scene, material=os.path.abspath(path))
+
+
+def _plain_scene(material: Material) -> Scene:
+    """A ball in front of a plain background; a material that makes its own rays has no body."""
+    text = _PLAIN_SCENE.format(material=json.dumps(os.path.abspath(material.file), ensure_ascii=False))
+    raymarched = any(stage.technique.role == "geometry" for stage in material.stages)
+    return parse_scene(text if raymarched else text + _BALL, material.file)
