@@ -16,13 +16,12 @@ from sssgen.harness.scenes.scene import Scene
 from sssgen.ir.drawn import BACK_FACES, DISTANT, LIGHT
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
-from sssgen.pipeline.compiler import Compiled, compile
+from sssgen.pipeline.compiler import compile
 from sssgen.preview.body_triangles import body_triangles
+from sssgen.preview.emitted_head import TARGET, emitted_head
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import CachedResult, remembered
 from sssgen.targets.runtime.numpy_textures import Texture
-
-TARGET = "threejs"
 
 SHAPES: Mapping[str, Geometry] = {
     "ball": Ball(radius=1.0),
@@ -64,16 +63,13 @@ def picture_of(scene: Scene, shape: str = "") -> Picture:
         pieces[digest] = data
         return digest
 
-    head = {
-        "name": material.name,
-        "title": material.title,
+    head = emitted_head(material, compiled, shell.parameters, scene.parameters)
+    head |= {
         "shape": shape,
         "shapes": ["", *SHAPES],
-        "module": next(text for name, text in compiled.files.items() if name.endswith(".js")),
         "body": piece(_body(geometry)),
         "model": geometry.to_world().T.ravel().tolist(),
-        "controls": _controls(compiled, shell, scene),
-        "textures": _textures(compiled, shell, piece),
+        "textures": [_with_texels(row, shell, piece) for row in head["textures"]],
         "lights": [
             {"position": position.tolist(), "color": color.tolist()}
             for position, color in zip(shell.light_positions, shell.light_colors, strict=True)
@@ -88,8 +84,6 @@ def picture_of(scene: Scene, shape: str = "") -> Picture:
             "target": list(scene.camera.target),
             "field_of_view": scene.camera.field_of_view,
         },
-        "two_sided": compiled.reflection["two_sided"],
-        "cost": {kind: entry["cost"] for kind, entry in compiled.reflection["entries"].items() if "cost" in entry},
     }
     return Picture(head, pieces, material)
 
@@ -108,38 +102,12 @@ def _body(geometry: Geometry) -> bytes:
 _bodies: dict[str, CachedResult] = {}
 
 
-def _controls(compiled: Compiled, shell: Shell, scene: Scene) -> list[dict[str, Any]]:
-    """The parameters that a person may change, with what a control needs to know."""
-    return [
-        {
-            "property": uniform["property"],
-            "technique": uniform["technique"],
-            "name": uniform["technique_name"],
-            "label": uniform["source_name"],
-            "doc": uniform["doc"],
-            "type": uniform["type"],
-            "range": uniform["range"],
-            "unit": uniform["unit"],
-            "color": uniform["color"],
-            "default": [float(number) for number in uniform["default"]],
-            "value": [float(number) for number in shell.parameters.get(uniform["source_name"], uniform["default"])],
-            "drawn": uniform["drawn"],
-            "in_scene": uniform["source_name"] in scene.parameters,
-        }
-        for uniform in compiled.reflection["uniforms"]
-    ]
-
-
-def _textures(compiled: Compiled, shell: Shell, piece: Any) -> list[dict[str, Any]]:
-    """The textures; those that the page draws itself have no texels."""
-    rows = []
-    for texture in compiled.reflection["textures"]:
-        row = {"property": texture["property"], "doc": texture["doc"], "drawn": texture["drawn"] or ""}
-        bound = shell.textures.get(texture["source_name"])
-        if bound is not None and texture["drawn"] not in DRAWN_BY_PAGE:
-            row["texels"] = _texels(bound, piece)
-        rows.append(row)
-    return rows
+def _with_texels(row: Mapping[str, Any], shell: Shell, piece: Any) -> dict[str, Any]:
+    """The row of a texture with its texels; one that the page draws itself has none."""
+    bound = shell.textures.get(row["source_name"])
+    return (
+        {**row, "texels": _texels(bound, piece)} if bound is not None and row["drawn"] not in DRAWN_BY_PAGE else {**row}
+    )
 
 
 def _texels(texture: Texture, piece: Any) -> dict[str, Any]:
