@@ -17,6 +17,8 @@ BIN := .venv/bin
 NODE_PACKAGES := webgpu@0.6.2 three@0.187.0 playcanvas@2.23.3 wesl@0.7.31 @babylonjs/core@9.34.0 esbuild@0.28.2
 # Babylon.js is thousands of files: a page loads one.
 BABYLON_BUNDLE := src/sssgen/harness/backends/babylon_bundle.js
+# What the preview's page imports, as one file: the wheel has it.
+PREVIEW_BUNDLE := src/sssgen/preview/library_bundle.js
 # The index has its source only: built here once, for two minutes, and kept apart from .venv.
 BUILT_PACKAGES := compushady==0.17.5
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
@@ -28,7 +30,7 @@ export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:
 .PHONY: setup accuracy bake demo first test test-long fuzz lint bench bench-gpu gallery stability engines site dist clean
 
-setup: .venv/done build/node/done
+setup: .venv/done build/node/done build/preview/library.js
 
 DEMO := out/demo
 demo: first setup
@@ -134,3 +136,8 @@ build/node/done: Makefile $(BABYLON_BUNDLE) | build/system
 	NODE_PATH=build/node/node_modules build/node/node_modules/.bin/esbuild $(BABYLON_BUNDLE) --bundle --format=esm \
 		--outfile=build/node/babylon.js --log-level=error
 	@touch $@
+
+build/preview/library.js: $(PREVIEW_BUNDLE) build/node/done
+	@mkdir -p build/preview && cp build/node/node_modules/three/LICENSE build/preview/three.LICENSE
+	NODE_PATH=build/node/node_modules build/node/node_modules/.bin/esbuild $(PREVIEW_BUNDLE) --bundle --minify \
+		--format=esm --legal-comments=inline --outfile=$@ --log-level=error

@@ -15,21 +15,29 @@ import numpy as np
 import pytest
 
 from folders import ROOT
-from sssgen.harness.installed import chromium, node_modules
-from sssgen.preview.preview_server import LIBRARY, PreviewServer
+from sssgen.harness.installed import chromium
+from sssgen.preview.library import library
+from sssgen.preview.preview_server import PreviewServer
 from sssgen.preview.shown_picture import ShownPicture
+from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("aiohttp")
 pytest.importorskip("watchfiles")
 playwright = pytest.importorskip("playwright.sync_api")
 Image = pytest.importorskip("PIL.Image")
 
+
+def lacks_three() -> bool:
+    try:
+        return not library().files
+    except SssgenError:
+        return True
+
+
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(not chromium(), reason="Chromium is missing"),
-    pytest.mark.skipif(
-        not all((node_modules() / file).is_file() for file in LIBRARY.values()), reason="npm's three is missing"
-    ),
+    pytest.mark.skipif(lacks_three(), reason="npm's three is missing"),
 ]
 
 SWITCHES = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from sssgen.preview.library import Library
 from sssgen.preview.preview_server import FILES, HOST, PAGE, PreviewServer
 from sssgen.preview.shown_picture import ShownPicture
 from sssgen.support.diagnostics import SssgenError
@@ -120,7 +121,7 @@ def test_a_port_in_use_is_an_error(server: PreviewServer, monkeypatch: pytest.Mo
 
     from sssgen.preview import preview_server
 
-    monkeypatch.setattr(preview_server, "LIBRARY", {})
+    monkeypatch.setattr(preview_server, "library", lambda: Library({}, {}))
     with socket.socket() as taken:
         taken.bind((HOST, 0))
         taken.listen()

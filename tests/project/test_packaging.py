@@ -62,6 +62,45 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return made
 
 
+BUNDLE = ROOT / "build" / "preview"
+
+
+def test_the_wheel_has_the_libraries_of_the_preview(wheel: Path) -> None:
+    """With their licence, where `make setup` made the bundle."""
+    with zipfile.ZipFile(wheel) as archive:
+        carried = {name: archive.read(name) for name in archive.namelist() if name.startswith("sssgen/_data/preview/")}
+    made = (BUNDLE / "library.js").is_file()
+    assert set(carried) == (
+        {f"sssgen/_data/preview/{name}" for name in ("library.js", "three.LICENSE")} if made else set()
+    )
+    if made:
+        assert b"The MIT License" in carried["sssgen/_data/preview/three.LICENSE"]
+        assert carried["sssgen/_data/preview/library.js"] == (BUNDLE / "library.js").read_bytes()
+
+
+@pytest.mark.slow
+def test_a_checkout_without_npm_is_installed(tmp_path: Path) -> None:
+    ignored = shutil.ignore_patterns(
+        "build", ".venv", ".git", "dist", "out", "tests", "docs", ".*_cache", "__pycache__"
+    )
+    shutil.copytree(ROOT, tmp_path / "checkout", ignore=ignored)
+    run(
+        sys.executable,
+        "-m",
+        "pip",
+        "wheel",
+        "--quiet",
+        "--no-deps",
+        "-w",
+        tmp_path,
+        tmp_path / "checkout",
+        cwd=tmp_path,
+    )
+    (made,) = tmp_path.glob("*.whl")
+    with zipfile.ZipFile(made) as archive:
+        assert not [name for name in archive.namelist() if "_data/preview" in name]
+
+
 @pytest.fixture(scope="session")
 def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The programs of an environment that has only the wheel and its dependencies."""

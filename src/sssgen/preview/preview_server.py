@@ -17,29 +17,25 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-from sssgen.harness.installed import node_modules
+from sssgen.preview.library import Library, library
 from sssgen.preview.picture import SHAPES
 from sssgen.preview.shown_picture import ShownPicture
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.extras import need
 from sssgen.support.file_changes import changes
-from sssgen.support.installation import npm_hint
 
 HOST = "127.0.0.1"
 PAGE = Path(__file__).with_name("page")
 FILES = {"index.html": "text/html", "style.css": "text/css", **dict.fromkeys(
     ("preview.js", "stage.js", "drawn_views.js", "panel.js"), "text/javascript")}  # fmt: skip
 """The files of the page and their types; no other file of the folder is sent."""
-LIBRARY = {
-    **{f"three/build/three.{name}.js": f"three/build/three.{name}.js" for name in ("module", "webgpu", "tsl", "core")},
-    "three/addons/controls/OrbitControls.js": "three/examples/jsm/controls/OrbitControls.js",
-}
-"""What the page imports → the file among npm's packages."""
 POLICY = (
     "default-src 'none'; script-src 'self' 'unsafe-inline' blob:; style-src 'self' 'unsafe-inline'; "
     "connect-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
 """Nothing is fetched from elsewhere, and no other page shows this one in a frame. The import map is inline."""
+IMPORT_MAP = '{"imports": {}}'
+"""The text in index.html that the server replaces by the import map."""
 MOST_BYTES = 1 << 20
 """The largest message of a page."""
 
@@ -51,6 +47,7 @@ class PreviewServer:
         self.web = need("aiohttp.web", "aiohttp", "preview")
         self.shown, self.token, self.port = shown, secrets.token_urlsafe(16), 0
         self.pages: set[Any] = set()
+        self.library = Library({}, {})
         self._making = asyncio.Lock()
 
     @property
@@ -73,8 +70,7 @@ class PreviewServer:
 
     async def run(self, port: int, opened: bool, ready: Callable[[str], None]) -> None:
         """Serves until it is cancelled. Raises SssgenError where the port is in use or three.js is missing."""
-        if not all((node_modules() / file).is_file() for file in LIBRARY.values()):
-            raise failure("the page needs the npm package three", npm_hint("three"))
+        self.library = library()
         runner = self.web.AppRunner(self.application())
         await runner.setup()
         try:
@@ -123,7 +119,8 @@ class PreviewServer:
         return response
 
     async def _index(self, request: Any) -> Any:
-        return self._file(PAGE / "index.html", FILES["index.html"])
+        text = (PAGE / "index.html").read_text(encoding="utf-8").replace(IMPORT_MAP, self.library.import_map())
+        return self.web.Response(text=text, content_type=FILES["index.html"], charset="utf-8")
 
     async def _page_file(self, request: Any) -> Any:
         name = request.match_info["name"]
@@ -132,10 +129,10 @@ class PreviewServer:
         return self._file(PAGE / name, FILES[name])
 
     async def _library_file(self, request: Any) -> Any:
-        file = LIBRARY.get(request.match_info["name"])
-        if not file:
+        path = self.library.files.get(request.match_info["name"])
+        if not path:
             raise self.web.HTTPNotFound
-        return self._file(node_modules() / file, "text/javascript")
+        return self._file(path, "text/javascript")
 
     def _file(self, path: Path, type_: str) -> Any:
         return self.web.Response(body=path.read_bytes(), content_type=type_, charset="utf-8")

@@ -1,0 +1,54 @@
+"""What the page imports: the bundle that `make setup` makes and the wheel has, or else npm's own files."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import NamedTuple
+
+from sssgen.harness.installed import node_modules
+from sssgen.support.diagnostics import failure
+from sssgen.support.installation import npm_hint
+from sssgen.support.paths import PACKAGE, folder
+
+BUNDLE = "library.js"
+NPM = {
+    "three": "three/build/three.module.js",
+    "three/webgpu": "three/build/three.webgpu.js",
+    "three/tsl": "three/build/three.tsl.js",
+    "three/addons/controls/OrbitControls.js": "three/examples/jsm/controls/OrbitControls.js",
+}
+"""What the page imports → the file among npm's packages. `library_bundle.js` exports the same."""
+_IMPORTED_BY_THESE = ("three/build/three.core.js",)
+
+
+class Library(NamedTuple):
+    """The files of the page's libraries."""
+
+    imports: dict[str, str]
+    """The name in an `import` → the file, as the page asks for it."""
+    files: dict[str, Path]
+    """The file, as the page asks for it → its path."""
+
+    def import_map(self) -> str:
+        """The import map of the page, for files in its folder `library`."""
+        return json.dumps({"imports": {name: f"./library/{file}" for name, file in self.imports.items()}}, indent=2)
+
+
+def bundle() -> Path:
+    """Where the bundle is: in an installed wheel, or in a checkout's build folder."""
+    packaged = Path(PACKAGE, "_data", "preview", BUNDLE)
+    return packaged if packaged.is_file() else folder("build") / "preview" / BUNDLE
+
+
+def library() -> Library:
+    """The bundle, or npm's files where it is not made or $SSSGEN_NODE_MODULES is set. Raises SssgenError."""
+    made = bundle()
+    if made.is_file() and not os.environ.get("SSSGEN_NODE_MODULES"):
+        return Library(dict.fromkeys(NPM, BUNDLE), {BUNDLE: made})
+    packages = node_modules()
+    files = {file: packages / file for file in (*NPM.values(), *_IMPORTED_BY_THESE)}
+    if not all(path.is_file() for path in files.values()):
+        raise failure("the page needs the npm package three", npm_hint("three"))
+    return Library(dict(NPM), files)

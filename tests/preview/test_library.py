@@ -1,0 +1,58 @@
+"""The libraries of the page: the bundle, npm's files, or a hint."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from sssgen.preview import library as module
+from sssgen.preview.library import BUNDLE, NPM, bundle, library
+from sssgen.support.diagnostics import SssgenError
+
+PAGE = Path(module.__file__).with_name("page")
+EXPORTED = Path(module.__file__).with_name("library_bundle.js")
+
+
+@pytest.fixture
+def empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A checkout in which nothing was built."""
+    monkeypatch.setattr(module, "folder", lambda name: tmp_path / name)
+    monkeypatch.setenv("SSSGEN_NODE_MODULES", str(tmp_path / "node_modules"))
+    return tmp_path
+
+
+def written(path: Path) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("", encoding="utf-8")
+
+
+def test_without_npm_the_command_that_helps_is_named(empty: Path) -> None:
+    with pytest.raises(SssgenError, match="npm package three") as caught:
+        library()
+    assert "npm install" in str(caught.value)
+
+
+def test_the_bundle_is_one_file_for_every_import(empty: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SSSGEN_NODE_MODULES")
+    written(bundle())
+    found = library()
+    assert found.files == {BUNDLE: empty / "build" / "preview" / BUNDLE}
+    assert set(json.loads(found.import_map())["imports"].values()) == {f"./library/{BUNDLE}"}
+
+
+def test_npms_files_serve_where_there_is_no_bundle(empty: Path) -> None:
+    for file in (*NPM.values(), "three/build/three.core.js"):
+        written(empty / "node_modules" / file)
+    found = library()
+    assert set(found.imports.values()) <= set(found.files)
+    assert json.loads(found.import_map())["imports"]["three"] == "./library/three/build/three.module.js"
+
+
+def test_all_that_the_page_imports_is_in_the_bundle() -> None:
+    text = "\n".join(path.read_text(encoding="utf-8") for path in PAGE.glob("*.js"))
+    imported = {name for name in re.findall(r"from '([^']+)'", text) if not name.startswith(".")}
+    exported = set(re.findall(r"from '([^']+)'", EXPORTED.read_text(encoding="utf-8")))
+    assert imported <= exported == set(NPM)
