@@ -1,3 +1,4 @@
+# make preview  a page that shows skin_ear, or MATERIAL=file.toml, while its files change
 # make demo   emit every example for every target into out/demo and compile all of it
 # make test   the tests, but the slow ones (make test-long)      make lint   ruff, mypy, import contracts
 # make gallery  the example scenes' pictures, and docs/gallery.md
@@ -14,7 +15,8 @@
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 BIN := .venv/bin
-NODE_PACKAGES := webgpu@0.6.2 three@0.187.0 playcanvas@2.23.3 wesl@0.7.31 @babylonjs/core@9.34.0 esbuild@0.28.2
+BUNDLED_PACKAGES := three@0.187.0 esbuild@0.28.2
+NODE_PACKAGES := webgpu@0.6.2 playcanvas@2.23.3 wesl@0.7.31 @babylonjs/core@9.34.0 $(BUNDLED_PACKAGES)
 # Babylon.js is thousands of files: a page loads one.
 BABYLON_BUNDLE := src/sssgen/harness/backends/babylon_bundle.js
 # What the preview's page imports, as one file: the wheel has it.
@@ -28,7 +30,7 @@ MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notd
 
 export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:
-.PHONY: setup accuracy bake demo first test test-long fuzz lint bench bench-gpu gallery stability engines site dist clean
+.PHONY: setup accuracy bake demo preview first test test-long fuzz lint bench bench-gpu gallery stability engines site dist clean
 
 setup: .venv/done build/node/done build/preview/library.js
 
@@ -49,6 +51,19 @@ first:
 		&& $(FIRST)/sssgen emit ice --target threejs -o $(DEMO) \
 		|| { rm -rf build/first; echo "the first shader follows after the setup, which installs what it needs"; }
 	@test -e .venv/done || echo "installing what the rest of the demo needs, once, for minutes: packages, compilers"
+
+# In a small environment too, or in the whole one where it exists.
+MATERIAL ?= skin_ear
+VIEW := $(if $(wildcard .venv/done),$(BIN),build/view/bin)
+preview: $(VIEW)/sssgen build/preview/library.js
+	$(VIEW)/sssgen preview $(MATERIAL)
+
+build/view/bin/sssgen: pyproject.toml
+	@test -n "$(PYTHON)" || { echo "Python 3.11 or later is needed"; exit 1; }
+	@echo "installing what the preview needs, once, for a minute"
+	$(PYTHON) -m venv build/view
+	build/view/bin/python -m pip --disable-pip-version-check --quiet install --editable '.[preview]'
+	@touch $@
 
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
@@ -137,7 +152,10 @@ build/node/done: Makefile $(BABYLON_BUNDLE) | build/system
 		--outfile=build/node/babylon.js --log-level=error
 	@touch $@
 
-build/preview/library.js: $(PREVIEW_BUNDLE) build/node/done
-	@mkdir -p build/preview && cp build/node/node_modules/three/LICENSE build/preview/three.LICENSE
-	NODE_PATH=build/node/node_modules build/node/node_modules/.bin/esbuild $(PREVIEW_BUNDLE) --bundle --minify \
+# Apart from build/node, as whoever only looks at a material needs no more than this.
+NPM_BY_SYSTEM := $(if $(shell command -v npm),,build/system)
+build/preview/library.js: $(PREVIEW_BUNDLE) Makefile | $(NPM_BY_SYSTEM)
+	npm install --prefix build/preview --no-audit --no-fund --loglevel=error $(BUNDLED_PACKAGES)
+	cp build/preview/node_modules/three/LICENSE build/preview/three.LICENSE
+	NODE_PATH=build/preview/node_modules build/preview/node_modules/.bin/esbuild $(PREVIEW_BUNDLE) --bundle --minify \
 		--format=esm --legal-comments=inline --outfile=$@ --log-level=error
