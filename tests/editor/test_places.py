@@ -53,6 +53,7 @@ def at(text: str, before: str, mark: str = "‸", count: int = 1) -> str:
         ("gain *", 1, ("float, default 1, 0 to 2", "own.sss")),
         ("power,", 1, ("power", "common/lobe.sss")),
         ("near) *", 1, ("float near",)),
+        ("near = ", 1, ("float near",)),
         ("V, N)", 1, ("world_direction V",)),
         ("SHARP;", 1, ("const float SHARP = 4.0",)),
         ("world_direction V,", 1, ("a world direction", "vec3")),
@@ -190,6 +191,8 @@ def test_completion_in_a_technique(opened: Callable[..., Any]) -> None:
     assert {"clamp", "part", "gain", "power", "near", "V", "through", "SHARP", "world_direction", "vec3"} <= set(found)
     assert found.index("near") < found.index("clamp") < found.index("return")
     assert "hint_range" in labels(opened("own.sss", LOBE.replace(": hint_range(0.0, 2.0)", ": ‸"), right=LOBE))
+    texture = LOBE.replace(": hint_range(0.0, 2.0)", ": drawn(‸").replace("uniform float", "uniform sampler2D", 1)
+    assert "back_faces" in labels(opened("own.sss", texture, right=LOBE))
     assert "translucency" in labels(opened("own.sss", LOBE.replace("role: translucency", "role: ‸"), right=LOBE))
     assert "formula" in labels(opened("own.sss", LOBE.replace(" * role:", " * ‸\n * role:"), right=LOBE))
     assert "common/lobe.sss" in labels(opened("own.sss", LOBE.replace("common/lobe.sss", "‸"), right=LOBE))

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 import pytest_asyncio
 from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcException
 from pytest_lsp import LanguageClient, client_capabilities
 from pytest_lsp.client import make_test_lsp_client
 
@@ -108,6 +109,27 @@ async def test_a_session_of_an_editor(client: LanguageClient, tmp_path: Path) ->
     options = lsp.FormattingOptions(4, True)
     edits = await client.text_document_formatting_async(lsp.DocumentFormattingParams(document, options))
     assert edits and edits[0].new_text == text
+
+    lenses = await client.text_document_code_lens_async(lsp.CodeLensParams(document))
+    assert lenses and lenses[0].command is not None and "operation" in lenses[0].command.title
+    assert lenses[0].range.start == position(text, "own(")
+    assert await session.change(uri, text.replace("own(", "own((")) != []
+    assert len(await client.text_document_code_lens_async(lsp.CodeLensParams(document)) or []) == len(lenses)
+    assert await session.change(uri, text) == []
+    refused = lsp.RenameParams(document, position(text, "clamp"), "other")
+    with pytest.raises(JsonRpcException, match="nothing here can be renamed"):
+        await client.text_document_rename_async(refused)
+    with pytest.raises(JsonRpcException, match="a quantity of the chain"):
+        await client.text_document_prepare_rename_async(lsp.PrepareRenameParams(document, position(text, "N.x")))
+
+    plain = text.replace("/**", "uniform float gain = 1.0;\n/**", 1).replace("clamp(N.x", "clamp(gain * N.x")
+    assert await session.change(uri, plain) == []
+    place = position(plain, "gain * ")
+    prepared = await client.text_document_prepare_rename_async(lsp.PrepareRenameParams(document, place))
+    assert isinstance(prepared, lsp.Range) and prepared.start == place
+    edit = await client.text_document_rename_async(lsp.RenameParams(document, place, "strength"))
+    assert edit is not None and edit.changes is not None
+    assert [change.range.start for change in edit.changes[uri]] == [position(plain, "gain = 1.0"), place]
 
     uri = (tmp_path / "glass.toml").as_uri()
     text = FILES["glass.toml"][0]

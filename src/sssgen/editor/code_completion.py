@@ -10,12 +10,13 @@ from sssgen.editor.analysis import Analysis
 from sssgen.editor.completion_item import Item, plain
 from sssgen.editor.documents import TECHNIQUE, Document
 from sssgen.editor.lookup import is_in_comment
+from sssgen.ir.drawn import DRAWN
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Declare, Function
 from sssgen.ir.out_builtins import OUT_BUILTINS
 from sssgen.ir.types import spell
 from sssgen.ir.walk import statements
-from sssgen.lang.check.quantities import QUANTITIES
+from sssgen.lang.check.quantities import QUANTITIES, SCALARS
 from sssgen.lang.check.uniform_hints import HINTS
 from sssgen.lang.syntax.lexer import KEYWORDS
 from sssgen.material import library
@@ -29,6 +30,7 @@ _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"[^"]*$')
 _ATTRIBUTE = re.compile(r"^[\s/*]*(?P<word>[a-z_]*)$")
 _ATTRIBUTE_VALUE = re.compile(r"^[\s/*]*(?P<key>[a-z_]+)[ \t]*:")
 _HINT = re.compile(r"^[ \t]*uniform\b[^;=]*:[^;=]*$")
+_HINT_ARGUMENT = re.compile(r"^[ \t]*uniform\b[^;=]*:[^;=]*\b(?P<hint>drawn|holds)\(\w*$")
 _MEMBER = re.compile(r"\.\w*$")
 _OF_ATTRIBUTES = {"role": ROLES, "shape": SHAPES, "requires": REQUIREMENTS}
 
@@ -43,6 +45,9 @@ def in_code(document: Document, analysis: Analysis, line: int, column: int) -> l
         return _in_comment(before) if technique else []
     if _MEMBER.search(before):
         return []
+    argument = _HINT_ARGUMENT.match(before) if technique else None
+    if argument is not None:
+        return plain(DRAWN if argument["hint"] == "drawn" else SCALARS, "value")
     if technique and _HINT.match(before):
         return plain(HINTS, "keyword")
     items = [*_locals(document, analysis, line), *_declared(analysis)]

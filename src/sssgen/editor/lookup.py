@@ -10,8 +10,8 @@ from sssgen.editor.analysis import Analysis
 from sssgen.editor.documents import MATERIAL, SCENE, TECHNIQUE, Document, Word
 from sssgen.editor.scene_parameters import uniforms_of
 from sssgen.editor.source_files import path_of
-from sssgen.ir.nodes import Function, Module, Uniform
-from sssgen.ir.walk import all_expressions
+from sssgen.ir.nodes import Declare, Function, Module, Uniform
+from sssgen.ir.walk import all_expressions, statements
 from sssgen.lang.check.quantities import QUANTITIES
 from sssgen.material import library, slots
 from sssgen.material.library import Technique
@@ -129,6 +129,10 @@ def _local(document: Document, module: Module, word: Word) -> Meaning | None:
     for expr in _expressions_at(document, module, word):
         if type(expr).__name__ == "Local" and expr.name == word.text:
             return Meaning("value", (word.text, expr.type), word)
+    end = (word.line + 1, word.end + 1)
+    for statement in statements(enclosing.body or ()) if enclosing else ():
+        if isinstance(statement, Declare) and (statement.span.end_line, statement.span.end_column) == end:
+            return Meaning("value", (word.text, statement.type), word)
     return None
 
 

@@ -8,6 +8,7 @@ from sssgen.editor.analysis import Analysis, analyse
 from sssgen.editor.documents import Document
 from sssgen.editor.problems import Problem, problems_of
 from sssgen.support import unsaved
+from sssgen.support.text_files import read_text
 
 
 class OpenDocuments:
@@ -49,6 +50,22 @@ class OpenDocuments:
         if path not in self._analyses:
             self._analyses[path] = analyse(document)
         return document, self._analyses[path]
+
+    def opened(self, path: str) -> tuple[Document, Analysis] | None:
+        """As `get`, of the text as it is: where its analysis is of an older one, it is read again."""
+        if path in self._documents:
+            self.problems(path)
+        return self.get(path)
+
+    def lines_of(self, path: str) -> list[str]:
+        """The lines of a file, open or not."""
+        document = self._documents.get(path)
+        return document.lines if document else Document(path, read_text(path, path)).lines
+
+    @property
+    def paths(self) -> list[str]:
+        """The paths of the open documents."""
+        return list(self._documents)
 
     def depending_on(self, path: str) -> list[str]:
         """The other open documents that read a file."""

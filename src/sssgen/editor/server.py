@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcContentModified, JsonRpcException
 from pygls.lsp.server import LanguageServer
 from pygls.uris import from_fs_path
 from pygls.workspace import PositionCodec
@@ -22,13 +23,18 @@ from sssgen.editor.definition import definition_at
 from sssgen.editor.documents import Document
 from sssgen.editor.hover import hover_at
 from sssgen.editor.layout import laid_out
+from sssgen.editor.lenses import Lens, lenses_of
 from sssgen.editor.open_documents import OpenDocuments
+from sssgen.editor.preparation import prepare
 from sssgen.editor.problems import Problem, Range, fixes_of
+from sssgen.editor.rename import renamable_at, rename
 from sssgen.support.diagnostics import SssgenError
 from sssgen.version import VERSION
 
 QUIET = 0.01
 """Seconds without a change before a text is read: a burst of changes is read once."""
+LENSES_QUIET = 0.3
+"""Seconds without a change before costs and proofs are computed, which takes up to 0.1 s."""
 
 _SEVERITIES = {"error": lsp.DiagnosticSeverity.Error, "warning": lsp.DiagnosticSeverity.Warning}
 _KINDS = {
@@ -54,6 +60,8 @@ class Server(LanguageServer):
     def __init__(self) -> None:
         super().__init__("sssgen", VERSION)
         self.documents = OpenDocuments()
+        self.lenses: dict[str, tuple[Analysis, list[Lens]]] = {}
+        """The last lenses of each open document, and what they were computed of."""
 
     @property
     def codec(self) -> PositionCodec:
@@ -107,6 +115,12 @@ class Server(LanguageServer):
         )
 
 
+async def _initialized(server: Server, params: lsp.InitializedParams) -> None:
+    """Reads what the first explanation needs, in steps between which requests are answered."""
+    for _ in prepare():
+        await asyncio.sleep(0)
+
+
 def _safe(handler: Callable[[Server, Any], _Result]) -> Callable[[Server, Any], _Result | None]:
     """A handler that answers nothing where a file that it needs has errors of its own, or has vanished."""
 
@@ -137,9 +151,12 @@ async def _changed(server: Server, params: lsp.DidChangeTextDocumentParams) -> N
     if server.workspace.get_text_document(uri).version not in (version, None):
         return  # a newer change is read in place of this one
     server.publish(path, version)
-    for other in server.documents.depending_on(path):
+    dependent = server.documents.depending_on(path)
+    for other in dependent:
         await asyncio.sleep(0)
         server.publish(other)
+    if dependent:
+        _refresh_lenses(server)
 
 
 def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:
@@ -147,6 +164,7 @@ def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:
     if path:
         dependent = server.documents.depending_on(path)
         server.documents.close(path)
+        server.lenses.pop(path, None)
         server.publish(path)
         for other in dependent:
             server.publish(other)
@@ -221,6 +239,78 @@ def _fixes(server: Server, params: lsp.CodeActionParams) -> list[lsp.CodeAction]
     return actions
 
 
+async def _lenses(server: Server, params: lsp.CodeLensParams) -> list[lsp.CodeLens] | None:
+    path = server.path_of(params.text_document.uri)
+    found = server.documents.get(path) if path else None
+    if found is None:
+        return None
+    text = found[0].text
+    if path not in server.lenses or server.lenses[path][0] is not found[1]:
+        await asyncio.sleep(LENSES_QUIET)
+        found = server.documents.get(path)
+        if found is None or found[0].text != text:
+            raise JsonRpcContentModified("the text has changed")  # the client asks again
+        _renew_lenses(server, path, *found)
+    document = found[0]
+    return [
+        lsp.CodeLens(server.range_to_client(document.lines, lens.range), lsp.Command(lens.text, ""))
+        for lens in server.lenses.get(path, (None, []))[1]
+        if lens.range.line < len(document.lines)
+    ]
+
+
+def _renew_lenses(server: Server, path: str, document: Document, analysis: Analysis) -> None:
+    """Computes the lenses of a document; while it has errors, the last ones stay."""
+    try:
+        lenses = lenses_of(document, analysis)
+    except (SssgenError, OSError):
+        lenses = []
+    if lenses or not analysis.diagnostics:
+        server.lenses[path] = analysis, lenses
+
+
+def _refresh_lenses(server: Server) -> None:
+    """Has the client ask again for the lenses of documents that have not changed themselves."""
+    workspace = server.client_capabilities.workspace
+    if workspace and workspace.code_lens and workspace.code_lens.refresh_support:
+        server.workspace_code_lens_refresh(None)
+
+
+def _renamable(server: Server, params: lsp.PrepareRenameParams) -> lsp.Range | None:
+    place = server.place(params.text_document.uri, params.position)
+    if place is None:
+        return None
+    try:
+        word = renamable_at(*place)
+    except SssgenError as error:
+        raise _refusal(error) from None
+    return server.range_to_client(place[0].lines, Range(word.line, word.start, word.line, word.end))
+
+
+def _rename(server: Server, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
+    place = server.place(params.text_document.uri, params.position)
+    if place is None:
+        return None
+    try:
+        edits = rename(place, params.new_name, server.documents.opened, server.documents.paths)
+    except SssgenError as error:
+        raise _refusal(error) from None
+    changes = {}
+    for path, own in edits.items():
+        lines = server.documents.lines_of(path)
+        changes[from_fs_path(path) or ""] = [
+            lsp.TextEdit(server.range_to_client(lines, edit.range), edit.text) for edit in own
+        ]
+    return lsp.WorkspaceEdit(changes)
+
+
+def _refusal(error: SssgenError) -> JsonRpcException:
+    """The answer to a request that cannot be carried out; the client shows its text."""
+    first = error.diagnostics[0]
+    text = f"{first.message}: {first.hint}" if first.hint else first.message
+    return JsonRpcException(text, lsp.LSPErrorCodes.RequestFailed)
+
+
 def _formatting(server: Server, params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit] | None:
     place = server.place(params.text_document.uri, lsp.Position(0, 0))
     if place is None:
@@ -234,6 +324,7 @@ def _formatting(server: Server, params: lsp.DocumentFormattingParams) -> list[ls
 def make_server() -> Server:
     """A server that answers; `start_io` of it reads from standard input."""
     server = Server()
+    server.feature(lsp.INITIALIZED)(_initialized)
     server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)(_opened)
     server.feature(lsp.TEXT_DOCUMENT_DID_CHANGE)(_changed)
     server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)(_closed)
@@ -247,4 +338,7 @@ def make_server() -> Server:
         lsp.TEXT_DOCUMENT_CODE_ACTION, lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix])
     )(_safe(_fixes))
     server.feature(lsp.TEXT_DOCUMENT_FORMATTING)(_safe(_formatting))
+    server.feature(lsp.TEXT_DOCUMENT_CODE_LENS)(_lenses)
+    server.feature(lsp.TEXT_DOCUMENT_PREPARE_RENAME)(_renamable)
+    server.feature(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))(_rename)
     return server

@@ -30,6 +30,17 @@ class Cost(NamedTuple):
         """One number: operations, with a transcendental as 8 more and a texture fetch as 16."""
         return self.operations + 8 * self.transcendentals + 16 * self.fetches
 
+    @property
+    def text(self) -> str:
+        """Every kind that is there, as words."""
+        kinds = (
+            ("operation", "operations", self.operations),
+            ("transcendental", "transcendentals", self.transcendentals),
+            ("fetch", "fetches", self.fetches),
+            ("distance evaluation", "distance evaluations", self.distance_evaluations),
+        )
+        return ", ".join(f"{n} {one if n == 1 else many}" for one, many, n in kinds if n or many == "operations")
+
     def plus(self, other: Cost, times: int = 1) -> Cost:
         return Cost(
             self.operations + times * other.operations,

@@ -178,9 +178,9 @@ def guarded_sites(material: Material, target: str = "glsl-330", form: str = "sha
 
     Raises SssgenError.
     """
-    from sssgen.pipeline.programs import sites_of
+    from sssgen.pipeline.programs import analysed
 
-    return sites_of(material, registry.load(target), form)
+    return list(analysed(material, registry.load(target), form).sites)
 
 
 def _check_guards(guards: str) -> None:

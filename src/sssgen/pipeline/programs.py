@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from sssgen.ir.formats import FLOAT32
 from sssgen.ir.nodes import Module
 from sssgen.ir.types import Struct
 from sssgen.lang.source_lines import comment_behind, comments_before, source_line
 from sssgen.material.model import Material
+from sssgen.passes.cost import Cost
 from sssgen.passes.hoist import Note
 from sssgen.passes.ranges.range_pass import analyse
 from sssgen.passes.ranges.sites import Site, report
@@ -73,10 +75,22 @@ def _check_partner(kind: str, other: str) -> None:
         raise failure(f"these are not two stages of one program: {kinds[0]} and {kinds[1]}", hint)
 
 
-def sites_of(material: Material, target: Target, form: str) -> list[Site]:
-    """Every operation with a domain in the program of a material. Raises SssgenError."""
-    guarded = _material_program(material, "", target, form, "auto", None).guarded
-    return guarded.sites if guarded is not None else []
+class Analysed(NamedTuple):
+    """A program of a material, and what the passes found in it."""
+
+    module: Module
+    costs: Mapping[str, Cost]
+    """The cost of each function that the shell calls."""
+    sites: Sequence[Site]
+    """Every operation with a domain."""
+    slots: frozenset[str]
+    """The keys of the functions that are bound to slots."""
+
+
+def analysed(material: Material, target: Target, form: str) -> Analysed:
+    """The program of a material before the passes for a target. Raises SssgenError."""
+    state = _material_program(material, "", target, form, "auto", None)
+    return Analysed(state.module, state.costs, state.guarded.sites if state.guarded else (), state.slots)
 
 
 def library_sites(module: Module, called: Sequence[str] | None = None, chained: bool = False) -> list[Site]:

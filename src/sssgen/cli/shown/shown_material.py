@@ -112,7 +112,10 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     if facts["cost"]:
         text += ["", "cost, in operations, counted before the target's compiler optimises:"]
         longest = max(map(len, facts["cost"]))
-        text += [f"  {function:{longest}}  {_cost_text(cost)}" for function, cost in facts["cost"].items()]
+        text += [
+            f"  {function:{longest}}  {Cost(*[cost[kind] for kind in Cost._fields]).text}"
+            for function, cost in facts["cost"].items()
+        ]
     count = len(all_targets()) - len(facts["refused"])
     text += ["", f"targets: {count}" + (", all but:" if facts["refused"] else ", which are all")]
     for target, why in facts["refused"].items():
@@ -134,8 +137,3 @@ def _parameter(parameter: Mapping[str, Any]) -> str:
 def _texture(texture: Mapping[str, Any]) -> str:
     about = uniform_text({**texture, "aliases": ()})
     return f"{texture['name']}: {about}" + (f", {texture['picture']}" if texture["picture"] else "")
-
-
-def _cost_text(cost: Mapping[str, int]) -> str:
-    kinds = ("operations", "transcendentals", "fetches", "distance_evaluations")
-    return ", ".join(f"{cost[kind]} {kind.replace('_', ' ')}" for kind in kinds if cost[kind] or kind == "operations")

@@ -1,0 +1,99 @@
+"""The lines that an editor shows above functions and stages: static cost, and operations that are not proven safe."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from sssgen.editor.analysis import Analysis, own_names
+from sssgen.editor.documents import GLSL, MATERIAL, TECHNIQUE, Document
+from sssgen.editor.problems import Range, range_of
+from sssgen.editor.toml_places import tables_of
+from sssgen.harness.evaluate.probes import subject
+from sssgen.ir.nodes import Module, Span
+from sssgen.ir.walk import all_expressions
+from sssgen.material.model import Material
+from sssgen.passes.cost import cost_of
+from sssgen.passes.ranges.sites import Site
+from sssgen.passes.reachable import only
+from sssgen.pipeline.programs import analysed, library_sites, plain_module
+from sssgen.targets import registry
+
+PLAIN_TARGET = "glsl-330"
+"""Costs of materials are counted with the shell of this target, as `sssgen show` and `sssgen lint` count them."""
+
+
+class Lens(NamedTuple):
+    """A text above a place."""
+
+    range: Range
+    text: str
+
+
+def lenses_of(document: Document, analysis: Analysis) -> list[Lens]:
+    """The lenses of a document without errors. Raises SssgenError where one appears in the passes."""
+    if any(problem.severity == "error" for problem in analysis.diagnostics):
+        return []
+    if document.kind == MATERIAL and analysis.material is not None:
+        return _of_material(document, analysis.material)
+    if document.kind in (TECHNIQUE, GLSL) and analysis.module is not None:
+        return _of_functions(document, analysis, analysis.module)
+    return []
+
+
+def _of_functions(document: Document, analysis: Analysis, module: Module) -> list[Lens]:
+    """Each function with a body. One that the technique calls is analysed for the arguments that it gets there."""
+    own = own_names(document)
+    functions = {f.span: f for f in module.functions if f.body is not None and f.span.file in own}
+    lenses: dict[Span, Lens] = {}
+    if analysis.technique is not None:
+        chain = subject(document.path)
+        sites = library_sites(chain.module, chain.called, chain.chained)
+        lenses = _above(functions, chain.module, sites)
+    if functions.keys() - lenses.keys():
+        lenses = _above(functions, plain_module(module)[0], library_sites(module)) | lenses
+    return [lenses[span] for span in functions if span in lenses]
+
+
+def _above(functions: Iterable[Span], module: Module, sites: Sequence[Site]) -> dict[Span, Lens]:
+    keys = {function.span: function.key for function in module.functions}
+    return {span: Lens(range_of(span), _text(module, keys[span], sites)) for span in functions if span in keys}
+
+
+def _text(module: Module, key: str, sites: Sequence[Site], slots: frozenset[str] = frozenset()) -> str:
+    """The cost of a function with those that it calls, and the proofs of their operations."""
+    called = only(module, [key]).functions
+    places = {expr.span for function in called for expr in all_expressions(function.body or ())}
+    own = [site for site in sites if site.node.span in places]
+    return f"{cost_of(module, key, slots).text} · {_proof(own)}"
+
+
+def _proof(sites: Sequence[Site]) -> str:
+    """How many of the operations that can fail are not proven safe."""
+    if not sites:
+        return "nothing that can fail"
+    unproven = sum(not site.proven for site in sites)
+    return f"not proven safe: {unproven} of {len(sites)}" if unproven else f"proven safe: all {len(sites)}"
+
+
+def _of_material(document: Document, material: Material) -> list[Lens]:
+    """The chain above [material], and each stage above its table."""
+    program = analysed(material, registry.load(PLAIN_TARGET), "shader")
+    tables = tables_of(document)
+    lenses = []
+    for line, section, _ in tables:
+        if section == "material":
+            costs = [f"{kind}: {cost.text}" for kind, cost in program.costs.items()]
+            lenses.append(Lens(_line(document, line), " · ".join([*costs, _proof(program.sites)])))
+    for stage in material.stages:
+        line = max((first for first, _, _ in tables if first < stage.span.line), default=-1)
+        span = stage.technique.function.span
+        keys = [function.key for function in program.module.functions if function.span == span]
+        text = _text(program.module, keys[0], program.sites, program.slots) if keys else "no operation is left of it"
+        if line >= 0:
+            lenses.append(Lens(_line(document, line), text))
+    return lenses
+
+
+def _line(document: Document, number: int) -> Range:
+    return Range(number, 0, number, len(document.line(number)))
