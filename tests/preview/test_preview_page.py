@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-import asyncio
-import contextlib
-import threading
-import time
 from collections.abc import Iterator
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -15,89 +10,15 @@ import numpy as np
 import pytest
 
 from folders import ROOT
-from sssgen.harness.installed import chromium
-from sssgen.preview.library import library
-from sssgen.preview.preview_server import PreviewServer
-from sssgen.preview.shown_picture import ShownPicture
-from sssgen.support.diagnostics import SssgenError
+from preview_page import NEEDS, Shown, browser
 
 pytest.importorskip("aiohttp")
 pytest.importorskip("watchfiles")
-playwright = pytest.importorskip("playwright.sync_api")
+pytest.importorskip("playwright.sync_api")
 Image = pytest.importorskip("PIL.Image")
 
-
-def lacks_three() -> bool:
-    try:
-        return not library().files
-    except SssgenError:
-        return True
-
-
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(not chromium(), reason="Chromium is missing"),
-    pytest.mark.skipif(lacks_three(), reason="npm's three is missing"),
-]
-
-SWITCHES = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-SECONDS = 90.0
-"""After which a page that does not answer has failed."""
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=chromium(), args=SWITCHES)
-        yield browser
-        browser.close()
-
-
-class Shown:
-    """A server in a thread of its own, and a page that shows it."""
-
-    def __init__(self, browser: Any, name: str, renderer: str = "webgl2") -> None:
-        self.server = PreviewServer(ShownPicture(name))
-        started = threading.Event()
-        self.loop = asyncio.new_event_loop()
-        self.task = self.loop.create_task(self.server.run(0, False, lambda _: started.set()))
-        self.thread = threading.Thread(target=self._run)
-        self.thread.start()
-        assert started.wait(SECONDS)
-        self.page = browser.new_page(viewport={"width": 640, "height": 300})
-        self.faults: list[str] = []
-        self.page.on("pageerror", lambda error: self.faults.append(str(error)))
-        self.page.goto(self.server.url)
-        if renderer != "webgpu":
-            self.page.select_option("#renderer", renderer)
-        self.until(lambda: self.page.evaluate("preview.stage?.drawn ?? 0") or self.error())
-
-    def _run(self) -> None:
-        asyncio.set_event_loop(self.loop)
-        with contextlib.suppress(asyncio.CancelledError):
-            self.loop.run_until_complete(self.task)
-
-    def close(self) -> None:
-        self.page.close()
-        self.loop.call_soon_threadsafe(self.task.cancel)
-        self.thread.join()
-
-    def until(self, holds: Any) -> None:
-        end = time.monotonic() + SECONDS
-        while not holds():
-            assert time.monotonic() < end, f"{self.error()} {self.faults}"
-            self.page.wait_for_timeout(20)
-
-    def version(self) -> int:
-        return int(self.page.evaluate("document.body.dataset.version ?? 0"))
-
-    def error(self) -> str:
-        return str(self.page.inner_text("#error"))
-
-    def picture(self) -> Any:
-        """The canvas, (height, width, 3), 0 to 255."""
-        self.page.wait_for_timeout(300)
-        return np.asarray(Image.open(BytesIO(self.page.locator("canvas").screenshot())).convert("RGB"), float)
+__all__ = ["browser"]
+pytestmark = NEEDS
 
 
 @pytest.fixture
@@ -191,7 +112,7 @@ def test_lamps_and_the_eye_are_dragged(shown: Shown) -> None:
 
 
 def test_without_webgpu_the_fallback_is_used_and_named(browser: Any, stone: Path) -> None:
-    shown = Shown(browser, str(stone), "webgpu")
+    shown = Shown(browser, str(stone), renderer="webgpu")
     try:
         if shown.page.evaluate("preview.stage.kind") != "webgpu":
             assert "WebGL 2" in shown.page.inner_text("#status")
@@ -232,7 +153,7 @@ EXAMPLES = sorted(
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_every_example_is_as_in_the_gallery(browser: Any, name: str, renderer: str, tmp_path: Path) -> None:
     """The lights and their units are three's, so that the pictures are near, not equal."""
-    shown = Shown(browser, name, renderer)
+    shown = Shown(browser, name, renderer=renderer)
     try:
         picture = shown.picture()
         assert not shown.error() and not shown.faults

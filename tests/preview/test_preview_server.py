@@ -58,7 +58,7 @@ def test_the_page_and_its_files_are_served(server: PreviewServer) -> None:
     assert status(server, f"{server.token}/") == 200
     assert {status(server, f"{server.token}/page/{name}") for name in FILES} == {200}
     assert {path.name for path in PAGE.iterdir()} == set(FILES)
-    assert status(server, f"{server.token}/piece/{server.shown.picture.head['body']}") == 200
+    assert status(server, f"{server.token}/piece/{server.talk.panes[0].picture.head['body']}") == 200
 
 
 def test_the_policy_lets_nothing_out(server: PreviewServer) -> None:

@@ -10,19 +10,24 @@ from sssgen.cli.output import OK
 
 
 def add_options(parser: ArgumentParser) -> None:
-    parser.epilog = "examples:\n  sssgen preview ice\n  sssgen preview mine.toml --no-browser"
+    parser.epilog = "examples:\n  sssgen preview ice\n  sssgen preview mine.toml --mesh bust.glb"
     parser.add_argument("NAME", help="a material's or a scene's .toml file, or an example from `sssgen list materials`")
+    parser.add_argument("--mesh", metavar="FILE", help="a mesh (.glb, .obj, …) to show the material on")
     parser.add_argument("--port", type=int, default=0, metavar="N", help="the port on 127.0.0.1 (default: a free one)")
     parser.add_argument("--no-browser", action="store_true", help="print the address, and open no browser")
 
 
 def run(arguments: Namespace) -> int:
     """Serves the page until Ctrl-C."""
+    from sssgen.harness.scenes.geometry import Mesh
+    from sssgen.preview.bodies import checked_mesh
     from sssgen.preview.preview_server import PreviewServer
     from sssgen.preview.shown_picture import ShownPicture
 
+    mesh = checked_mesh(Mesh(path=arguments.mesh)) if arguments.mesh else None
+
     async def serve() -> None:
-        server = PreviewServer(ShownPicture(arguments.NAME))
+        server = PreviewServer(ShownPicture(arguments.NAME, mesh))
         await server.run(arguments.port, not arguments.no_browser, lambda line: print(line, flush=True))
 
     with contextlib.suppress(KeyboardInterrupt):

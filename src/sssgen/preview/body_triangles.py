@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.harness.scenes.distance_field import PROJECTIONS
-from sssgen.harness.scenes.geometry import Box, Distance, Geometry, Mesh, Slab, Torus, Union
+from sssgen.harness.scenes.geometry import Ball, Box, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.harness.scenes.placed import spherical, unit
 from sssgen.lab.reference.geometry_mesh import mesh_of
 
@@ -17,6 +17,10 @@ Array = npt.NDArray[np.float64]
 
 RESOLUTION = 256
 """Cells along a side of a distance function's grid: thin sheets need more than path tracing uses."""
+
+
+PARALLELS = 96
+"""Of a ball, from pole to pole."""
 
 
 class BodyTriangles(NamedTuple):
@@ -40,6 +44,8 @@ def body_triangles(geometry: Geometry) -> BodyTriangles:
     if isinstance(geometry, Mesh):
         return _of_file(geometry)
     at_origin = dataclasses.replace(geometry, position=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0), scale=1.0)
+    if isinstance(at_origin, Ball):
+        return _of_ball(at_origin.radius)
     vertices, faces = mesh_of(at_origin, RESOLUTION)
     position = vertices[faces]
     flat = unit(np.cross(position[:, 1] - position[:, 0], position[:, 2] - position[:, 0]))
@@ -48,6 +54,22 @@ def body_triangles(geometry: Geometry) -> BodyTriangles:
     else:
         normal = _smooth(at_origin, vertices)[faces]
     return BodyTriangles(position, normal, _coordinates(at_origin, position, flat))
+
+
+def _of_ball(radius: float) -> BodyTriangles:
+    """A ball of quads between meridians and parallels, with a whole turn of u and no triangle without area."""
+    u, v = np.arange(2 * PARALLELS + 1) / (2 * PARALLELS), np.arange(PARALLELS + 1) / PARALLELS
+    longitude, latitude = np.meshgrid((u - 0.5) * 2.0 * np.pi, (v - 0.5) * np.pi)
+    normal = np.stack(
+        [np.cos(latitude) * np.sin(longitude), np.sin(latitude), np.cos(latitude) * np.cos(longitude)], axis=2
+    )
+    uv = np.stack(np.meshgrid(u, v), axis=2)
+    corners = np.concatenate([normal, uv], axis=2)
+    low, right, up, both = corners[:-1, :-1], corners[:-1, 1:], corners[1:, :-1], corners[1:, 1:]
+    lower = np.stack([low[1:], right[1:], both[1:]], axis=2).reshape(-1, 3, 5)
+    upper = np.stack([low[:-1], both[:-1], up[:-1]], axis=2).reshape(-1, 3, 5)
+    triangles = np.concatenate([lower, upper])
+    return BodyTriangles(radius * triangles[..., :3], triangles[..., :3], triangles[..., 3:])
 
 
 def _of_file(mesh: Mesh) -> BodyTriangles:

@@ -32,6 +32,9 @@ def emitted_head(
             {
                 "property": texture["property"],
                 "source_name": texture["source_name"],
+                "technique": texture["technique"],
+                "type": texture["type"],
+                "color": texture["color"],
                 "doc": texture["doc"],
                 "drawn": texture["drawn"] or "",
             }

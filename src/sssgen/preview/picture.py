@@ -4,31 +4,25 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import os
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.render.shell_values import Shell
-from sssgen.harness.scenes.geometry import Ball, Box, Geometry, Slab
+from sssgen.harness.scenes.geometry import Mesh
+from sssgen.harness.scenes.scene import Picture as PictureFile
 from sssgen.harness.scenes.scene import Scene
 from sssgen.ir.drawn import BACK_FACES, DISTANT, LIGHT
-from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile
-from sssgen.preview.body_triangles import body_triangles
+from sssgen.preview.bodies import OWN_MESH, SHAPES, fitted, framed, packed
 from sssgen.preview.emitted_head import TARGET, emitted_head
 from sssgen.support.diagnostics import failure
-from sssgen.support.file_memo import CachedResult, remembered
 from sssgen.targets.runtime.numpy_textures import Texture
-
-SHAPES: Mapping[str, Geometry] = {
-    "ball": Ball(radius=1.0),
-    "cube": Box(size=(1.5, 1.5, 1.5)),
-    "sheet": Slab(width=2.2, height=2.2, thickness=0.06),
-}
-"""The bodies that a material is shown on besides its own."""
 
 DRAWN_BY_PAGE = (BACK_FACES, LIGHT, DISTANT)
 """The textures that the page draws for each frame; the others are made once, for the scene's own light."""
@@ -44,18 +38,32 @@ class Picture(NamedTuple):
     material: Material
 
 
-def picture_of(scene: Scene, shape: str = "") -> Picture:
-    """The picture of a scene, on its own body or on one of `SHAPES`. Raises SssgenError."""
-    material = load_material(scene.material)
-    compiled = compile(material, TARGET)
-    geometry = SHAPES[shape] if shape else scene.geometry
-    if geometry is None:
+class Chosen(NamedTuple):
+    """What a person chose on the page; it is in no file."""
+
+    shape: str = ""
+    """"" for the scene's own body, one of `SHAPES`, or `OWN_MESH`"""
+    mesh: Mesh | None = None
+    guards: str = "auto"
+    textures: Mapping[str, str] = MappingProxyType({})
+    """A texture's property → its file"""
+
+
+def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
+    """The picture of a material in a scene. Raises SssgenError."""
+    compiled = compile(material, TARGET, guards=chosen.guards)
+    if scene.geometry is None:
         raise failure(
             f"{material.name} makes its own rays: it is a flat picture, not a material of a body",
             "sssgen render draws it",
         )
-    scene = dataclasses.replace(scene, geometry=geometry)
-    shell = shell_of(scene, material, _without_views(compiled.reflection))
+    scene = _on_shape(scene, chosen)
+    named = {texture["property"]: texture["source_name"] for texture in compiled.reflection["textures"]}
+    given = {
+        named[name]: _with_file(scene, named[name], file) for name, file in chosen.textures.items() if name in named
+    }
+    own = {**scene.textures, **given}
+    shell = shell_of(dataclasses.replace(scene, textures=own), material, _without_views(compiled.reflection))
     pieces: dict[str, bytes] = {}
 
     def piece(data: bytes) -> str:
@@ -63,13 +71,15 @@ def picture_of(scene: Scene, shape: str = "") -> Picture:
         pieces[digest] = data
         return digest
 
+    assert scene.geometry is not None  # `_on_shape` keeps one
     head = emitted_head(material, compiled, shell.parameters, scene.parameters)
     head |= {
-        "shape": shape,
-        "shapes": ["", *SHAPES],
-        "body": piece(_body(geometry)),
-        "model": geometry.to_world().T.ravel().tolist(),
-        "textures": [_with_texels(row, shell, piece) for row in head["textures"]],
+        "shape": chosen.shape,
+        "shapes": ["", *SHAPES, *([OWN_MESH] if chosen.mesh is not None else [])],
+        "mesh": os.path.basename(chosen.mesh.path) if chosen.mesh is not None else "",
+        "body": piece(packed(scene.geometry)),
+        "model": scene.geometry.to_world().T.ravel().tolist(),
+        "textures": [_with_texels(row, shell, chosen, piece) for row in head["textures"]],
         "lights": [
             {"position": position.tolist(), "color": color.tolist()}
             for position, color in zip(shell.light_positions, shell.light_colors, strict=True)
@@ -79,13 +89,31 @@ def picture_of(scene: Scene, shape: str = "") -> Picture:
         "exposure": scene.exposure,
         "shadows": "shadow" in scene.shell,
         "tone_mapping": scene.shell.get("tone_mapping", ""),
-        "camera": {
-            "position": list(scene.camera.position),
-            "target": list(scene.camera.target),
-            "field_of_view": scene.camera.field_of_view,
-        },
+        "camera": _camera(scene, chosen.shape),
     }
     return Picture(head, pieces, material)
+
+
+def _on_shape(scene: Scene, chosen: Chosen) -> Scene:
+    """The scene with the chosen body, which is as large as its own."""
+    shape = chosen.mesh if chosen.shape == OWN_MESH else SHAPES.get(chosen.shape)
+    if shape is None or scene.geometry is None:
+        return scene
+    return dataclasses.replace(scene, geometry=fitted(shape, scene.geometry))
+
+
+def _camera(scene: Scene, shape: str) -> dict[str, Any]:
+    """The scene's camera; for another body than the scene's, the eye is where it sees the whole of it."""
+    position, target = list(scene.camera.position), list(scene.camera.target)
+    if shape and scene.geometry is not None:
+        towards = np.subtract(position, target)
+        position, target = framed(scene.geometry, towards, scene.camera.field_of_view)
+    return {"position": position, "target": target, "field_of_view": scene.camera.field_of_view}
+
+
+def _with_file(scene: Scene, name: str, file: str) -> PictureFile:
+    """A texture from a chosen file, which continues at its edges as the scene's own does."""
+    return PictureFile(file, getattr(scene.textures.get(name), "wrap", ""))
 
 
 def _without_views(reflection: Mapping[str, Any]) -> dict[str, Any]:
@@ -94,20 +122,12 @@ def _without_views(reflection: Mapping[str, Any]) -> dict[str, Any]:
     return {**reflection, "textures": textures}
 
 
-def _body(geometry: Geometry) -> bytes:
-    """The packed triangles; those of the last bodies are kept until a file of theirs changes."""
-    return remembered(_bodies, repr(geometry), lambda: body_triangles(geometry).packed())
-
-
-_bodies: dict[str, CachedResult] = {}
-
-
-def _with_texels(row: Mapping[str, Any], shell: Shell, piece: Any) -> dict[str, Any]:
+def _with_texels(row: Mapping[str, Any], shell: Shell, chosen: Chosen, piece: Any) -> dict[str, Any]:
     """The row of a texture with its texels; one that the page draws itself has none."""
+    page_draws = row["drawn"] in DRAWN_BY_PAGE
+    row = {**row, "page_draws": page_draws, "chosen": os.path.basename(chosen.textures.get(row["property"], ""))}
     bound = shell.textures.get(row["source_name"])
-    return (
-        {**row, "texels": _texels(bound, piece)} if bound is not None and row["drawn"] not in DRAWN_BY_PAGE else {**row}
-    )
+    return {**row, "texels": _texels(bound, piece)} if bound is not None and not page_draws else row
 
 
 def _texels(texture: Texture, piece: Any) -> dict[str, Any]:

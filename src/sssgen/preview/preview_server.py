@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import functools
 import hmac
 import secrets
 import threading
@@ -18,7 +19,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from sssgen.preview.library import Library, library
-from sssgen.preview.picture import SHAPES
+from sssgen.preview.page_messages import MOST_BYTES, MOST_TEXT, PageMessages, parsed, unpacked
 from sssgen.preview.shown_picture import ShownPicture
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.extras import need
@@ -26,9 +27,9 @@ from sssgen.support.file_changes import changes
 
 HOST = "127.0.0.1"
 PAGE = Path(__file__).with_name("page")
-FILES = {"index.html": "text/html", "style.css": "text/css", **dict.fromkeys(
-    ("preview.js", "stage.js", "drawn_views.js", "panel.js"), "text/javascript")}  # fmt: skip
-"""The files of the page and their types; no other file of the folder is sent."""
+TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}
+FILES = {path.name: TYPES[path.suffix] for path in sorted(PAGE.iterdir())}
+"""The files of the page and their types."""
 POLICY = (
     "default-src 'none'; script-src 'self' 'unsafe-inline' blob:; style-src 'self' 'unsafe-inline'; "
     "connect-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
@@ -36,16 +37,14 @@ POLICY = (
 """Nothing is fetched from elsewhere, and no other page shows this one in a frame. The import map is inline."""
 IMPORT_MAP = '{"imports": {}}'
 """The text in index.html that the server replaces by the import map."""
-MOST_BYTES = 1 << 20
-"""The largest message of a page."""
 
 
 class PreviewServer:
-    """The pages of one preview, and the picture that they show."""
+    """The pages of one preview, and the pictures that they show."""
 
-    def __init__(self, shown: ShownPicture) -> None:
+    def __init__(self, *shown: ShownPicture) -> None:
         self.web = need("aiohttp.web", "aiohttp", "preview")
-        self.shown, self.token, self.port = shown, secrets.token_urlsafe(16), 0
+        self.talk, self.token, self.port = PageMessages(*shown), secrets.token_urlsafe(16), 0
         self.pages: set[Any] = set()
         self.library = Library({}, {})
         self._making = asyncio.Lock()
@@ -138,21 +137,23 @@ class PreviewServer:
         return self.web.Response(body=path.read_bytes(), content_type=type_, charset="utf-8")
 
     async def _piece(self, request: Any) -> Any:
-        data = self.shown.pieces.get(request.match_info["digest"])
+        data = self.talk.piece(request.match_info["digest"])
         if data is None:  # of a picture that is no longer shown
             raise self.web.HTTPNotFound
         return self.web.Response(body=data, content_type="application/octet-stream")
 
     async def _events(self, request: Any) -> Any:
         """The messages of a page, until it closes."""
-        page = self.web.WebSocketResponse(max_msg_size=MOST_BYTES, heartbeat=20.0)
+        page = self.web.WebSocketResponse(max_msg_size=MOST_BYTES + MOST_TEXT, heartbeat=20.0)
         await page.prepare(request)
         self.pages.add(page)
         try:
-            await page.send_json(self.shown.message())
-            async for message in page:
+            for first in self.talk.messages():
+                await page.send_json(first)
+            async for frame in page:
                 try:
-                    await self._answer(message.json())
+                    message, data = unpacked(frame.data) if isinstance(frame.data, bytes) else (parsed(frame.data), b"")
+                    await self._change(functools.partial(self.talk.answer, message, data))
                 except (ValueError, TypeError, KeyError, AttributeError):
                     await page.send_json({"kind": "error", "text": "the page sent a message that is not understood"})
                 except SssgenError as error:
@@ -161,38 +162,25 @@ class PreviewServer:
             self.pages.discard(page)
         return page
 
-    async def _answer(self, message: dict[str, Any]) -> None:
-        """Does what a page asks: another shape, or parameters to save. Raises SssgenError."""
-        if message["kind"] == "shape":
-            if message["shape"] not in ("", *SHAPES):
-                raise ValueError(message["shape"])
-            self.shown.shape = message["shape"]
-            await self._renew()
-        elif message["kind"] == "save":
-            changes = {str(name): [float(number) for number in value] for name, value in message["values"].items()}
-            await asyncio.to_thread(self.shown.save, changes)
-            await self._renew()
-        else:
-            raise ValueError(message["kind"])
-
     # Changes
 
-    async def _renew(self) -> None:
-        """Makes the picture again, and sends it, or the errors, to all pages."""
+    async def _change(self, work: Callable[[], None]) -> None:
+        """Does some work on the pictures, and sends them, or their errors, to all pages."""
         async with self._making:
-            await asyncio.to_thread(self.shown.renew)
-            message = self.shown.message()
+            await asyncio.to_thread(work)
+            messages = self.talk.messages()
         for page in list(self.pages):
             with contextlib.suppress(ConnectionError, RuntimeError):  # a page that closes
-                await page.send_json(message)
+                for message in messages:
+                    await page.send_json(message)
 
     async def _watch(self) -> None:
         """Renews the picture after each change of the files that it was made of, until it is cancelled."""
         loop, stop = asyncio.get_running_loop(), threading.Event()
 
         def wait() -> None:
-            for _ in changes(lambda: self.shown.files, stop):
-                asyncio.run_coroutine_threadsafe(self._renew(), loop).result()
+            for _ in changes(lambda: self.talk.files, stop):
+                asyncio.run_coroutine_threadsafe(self._change(self.talk.renew), loop).result()
 
         try:
             await asyncio.to_thread(wait)

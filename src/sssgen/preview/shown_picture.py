@@ -1,12 +1,15 @@
-"""The picture that the pages show: the last good one, and the errors of the files as they are now."""
+"""The picture that a pane of the page shows: the last good one, and the errors of the files as they are now."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from sssgen.harness.scenes.geometry import Mesh
 from sssgen.harness.scenes.preview_scene import scene_of
-from sssgen.preview.picture import picture_of
+from sssgen.material.material_loading import load_material
+from sssgen.preview.bodies import OWN_MESH
+from sssgen.preview.picture import Chosen, picture_of
 from sssgen.preview.saved_values import save_to_material, save_to_scene
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.file_memo import FileState, noted_files
@@ -15,9 +18,10 @@ from sssgen.support.file_memo import FileState, noted_files
 class ShownPicture:
     """The picture of a material or scene; `renew` makes it again from the files."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, mesh: Mesh | None = None, chosen: Chosen | None = None) -> None:
         """Raises SssgenError for a name that stands for nothing."""
-        self.name, self.shape, self.version, self.error = name, "", 0, ""
+        self.name, self.version, self.error = name, 0, ""
+        self.chosen = chosen or (Chosen() if mesh is None else Chosen(OWN_MESH, mesh))
         self.files: dict[str, FileState] = {}
         self._make()
 
@@ -30,7 +34,8 @@ class ShownPicture:
         with noted_files() as read:
             try:
                 scene = scene_of(self.name)
-                self.scene, self.picture = scene, picture_of(scene, self.shape)
+                picture = picture_of(scene, load_material(scene.material), self.chosen)
+                self.scene, self.picture = scene, picture
             except Exception:
                 self.files = {**self.files, **read}
                 raise
@@ -46,6 +51,16 @@ class ShownPicture:
             self.error = str(error)
         except OSError as error:  # a file that vanishes while it is read
             self.error = f"error: {error.strerror}: {error.filename}"
+
+    def choose(self, chosen: Chosen) -> None:
+        """Shows what a person chose. Raises SssgenError where that cannot be shown; then the picture stays."""
+        before, self.chosen = self.chosen, chosen
+        try:
+            self._make()
+        except SssgenError:
+            if not self.error:  # the files are right: the choice is not
+                self.chosen = before
+                raise
 
     def message(self) -> dict[str, Any]:
         """What a page gets: the picture, and the errors or ''."""

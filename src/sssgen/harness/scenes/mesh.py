@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple, TypeAlias
 
@@ -61,6 +61,8 @@ class Mesh(Geometry):
     """
 
     path: str = ""
+    data: bytes = field(default=b"", repr=False)
+    """The content of a file that is not on this machine's disk; `path` is then its name."""
 
     def cast(self, origin: Array, directions: Array) -> Hits:
         mesh = self.triangles
@@ -106,7 +108,8 @@ class Mesh(Geometry):
     @cached_property
     def triangles(self) -> Triangles:
         """The mesh, read from its file. Raises SssgenError for a file that is missing or holds none."""
-        return _prepare(mesh_files.read(self.path), posix(self.path))
+        content = mesh_files.parse(self.data, self.path) if self.data else mesh_files.read(self.path)
+        return _prepare(content, posix(self.path))
 
     @cached_property
     def solid(self) -> MeshDistance:

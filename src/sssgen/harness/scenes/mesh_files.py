@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+from collections.abc import Callable
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -52,12 +53,32 @@ def read(path: str) -> FileContent:
     note(path)
     if not os.path.isfile(path):
         raise failure("cannot find the mesh", "", posix(path))
-    trimesh = need("trimesh")
     kind = os.path.splitext(path)[1].lower()
+
+    def content() -> bytes:
+        with open(path, "rb") as file:
+            return file.read()
+
+    return _parsed(content, kind, posix(path), path)
+
+
+def parse(data: bytes, name: str) -> FileContent:
+    """All triangles of a file's bytes; `name` gives its type, and files that it refers to are not read.
+
+    Raises SssgenError for a faulty file.
+    """
+    check_suffix(name)
+    return _parsed(lambda: data, os.path.splitext(name)[1].lower(), name)
+
+
+def _parsed(content: Callable[[], bytes], kind: str, shown: str, beside: str = "") -> FileContent:
+    """The triangles of a file; those that it refers to are read next to `beside`, and not at all without it."""
+    trimesh = need("trimesh")
     try:
+        data = content()
         if kind in (".glb", ".gltf"):  # texture coordinates are loaded with the materials
-            return _joined(trimesh.load_scene(*_gltf(path, kind), process=False))
-        loaded = trimesh.load_mesh(path, process=False, skip_materials=True)
+            return _joined(trimesh.load_scene(*_gltf(data, kind, beside), process=False))
+        loaded = trimesh.load_mesh(io.BytesIO(data), file_type=kind[1:], process=False, skip_materials=True)
         color = _colors(loaded)
         if color is not None:  # of a file format without a colour space: as its editors show them
             color[:, :3] = decode_srgb(color[:, :3])
@@ -65,7 +86,7 @@ def read(path: str) -> FileContent:
     except Exception as error:  # its readers raise exceptions of any type for a faulty file
         # for bytes that are not text it tries to import a package that guesses encodings
         hint = "" if isinstance(error, ImportError) else f"the reader reports: {type(error).__name__}: {error}"
-        raise failure(f"the mesh cannot be read: it is not a valid {kind} file", hint, posix(path)) from None
+        raise failure(f"the mesh cannot be read: it is not a valid {kind} file", hint, shown) from None
 
 
 def _read(vertices: Any, faces: Any, uv: Any, uv2: Any = None, color: Any = None) -> FileContent:
@@ -83,15 +104,14 @@ _CUSTOM = b'"_TEXCOORD1"'
 """Of the same length: trimesh reads attributes with names of an application's own, but no second set."""
 
 
-def _gltf(path: str, kind: str) -> tuple[Any, str, Any]:
+def _gltf(data: bytes, kind: str, beside: str) -> tuple[Any, str, Any]:
     """A glTF file for trimesh, its second sets under `_CUSTOM`: the file, its type, and what finds files beside it."""
     from trimesh.resolvers import FilePathResolver
 
-    with open(path, "rb") as file:
-        data = file.read()
     # the JSON of a .glb is its first chunk
     end = 20 + int.from_bytes(data[12:16], "little") if kind == ".glb" else len(data)
-    return io.BytesIO(data[:end].replace(_SECOND, _CUSTOM) + data[end:]), kind[1:], FilePathResolver(path)
+    resolver = FilePathResolver(beside) if beside else None
+    return io.BytesIO(data[:end].replace(_SECOND, _CUSTOM) + data[end:]), kind[1:], resolver
 
 
 def _second(mesh: Any) -> Array | None:

@@ -1,5 +1,7 @@
 // The page of `sssgen preview`: it shows what the server sends, and sends back what is to be saved.
 
+import { MESHES, onChoice, onDrop, refusal } from './chosen_files.js';
+import { connect } from './connection.js';
 import { Panel } from './panel.js';
 import { Stage } from './stage.js';
 
@@ -13,11 +15,7 @@ const say = (text) => { element('status').textContent = text; };
 
 /** A piece of the picture, fetched once while pictures name it. */
 async function pieceOf(digest) {
-  if (!pieces.has(digest)) {
-    const answer = await fetch(`piece/${digest}`);
-    if (!answer.ok) throw new Error('the picture has changed meanwhile');
-    pieces.set(digest, await answer.arrayBuffer());
-  }
+  if (!pieces.has(digest)) pieces.set(digest, await python.piece(digest));
   return pieces.get(digest);
 }
 
@@ -57,7 +55,7 @@ async function show(message) {
   complain(error);
   element('title').textContent = picture.title;
   document.title = `${picture.title} · sssgen preview`;
-  const shapes = picture.shapes.map((shape) => new Option(shape || "the scene's own", shape));
+  const shapes = picture.shapes.map((shape) => new Option(shape === 'mesh' ? picture.mesh : shape || "the scene's own", shape));
   element('shape').replaceChildren(...shapes);
   element('shape').value = picture.shape;
   panel.show(picture.controls);
@@ -76,31 +74,31 @@ async function show(message) {
 /** One picture after the other. */
 const next = (work) => { waiting = waiting.then(work, work); return waiting; };
 
-function connect() {
-  const socket = new WebSocket(new URL('events', location.href).href.replace(/^http/, 'ws'));
-  socket.addEventListener('message', ({ data }) => {
-    const message = JSON.parse(data);
-    if (message.kind === 'picture') next(() => show(message));
-    else say(message.text);
-  });
-  socket.addEventListener('close', () => {
-    say('sssgen preview has ended. Start it again, and open its new address.');
-    element('save').disabled = true;
-  });
-  return socket;
+const python = connect((message) => {
+  if (message.kind === 'picture') next(() => show(message));
+  else say(message.text);
+}, () => {
+  say('sssgen preview has ended. Start it again, and open its new address.');
+  element('save').disabled = true;
+});
+
+/** Another body, which Python reads from the file. */
+function useMesh(file) {
+  const reason = refusal(file, MESHES, last?.limit ?? 0);
+  say(reason);
+  if (!reason) python.sendFile({ kind: 'mesh', name: file.name }, file);
 }
 
-const socket = connect();
-const send = (message) => { if (socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message)); };
-
-element('shape').addEventListener('change', () => send({ kind: 'shape', shape: element('shape').value }));
+onDrop(document.body, useMesh);
+onChoice(element('choose-mesh'), MESHES, useMesh);
+element('shape').addEventListener('change', () => python.send({ kind: 'shape', shape: element('shape').value }));
 element('environment').addEventListener('change', () => stage?.environment(element('environment').checked));
 element('renderer').addEventListener('change', () => next(async () => {
   stage?.dispose();
   stage = null;
   if (last) await show(last);
 }));
-element('save').addEventListener('click', () => send({ kind: 'save', values: Object.fromEntries(panel.values) }));
+element('save').addEventListener('click', () => python.send({ kind: 'save', values: Object.fromEntries(panel.values) }));
 element('reset').addEventListener('click', () => panel.reset());
 addEventListener('error', (event) => say(event.message));
 addEventListener('unhandledrejection', (event) => say(String(event.reason?.message ?? event.reason)));

@@ -1,0 +1,105 @@
+"""The bodies that a material is shown on besides its scene's own: simple shapes, a head, a mesh of the user's."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import os
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.harness.scenes.geometry import Ball, Box, Distance, Geometry, Mesh, Slab
+from sssgen.preview.body_triangles import body_triangles
+from sssgen.support import cache
+from sssgen.support.diagnostics import failure
+from sssgen.support.file_memo import CachedResult, noted_files, remembered
+
+SHAPES: Mapping[str, Geometry] = {
+    "ball": Ball(radius=1.0),
+    "cube": Box(size=(1.5, 1.5, 1.5)),
+    "sheet": Slab(width=2.2, height=2.2, thickness=0.06),
+    "head": Distance(technique="head.sss", folder=os.path.dirname(__file__), reach=1.8),
+}
+OWN_MESH = "mesh"
+"""The name of the user's own mesh among the shapes."""
+MOST_TRIANGLES = 2_000_000
+"""The largest mesh: a triangle takes 96 bytes on the page."""
+_MARGIN = 1.12
+"""By how much the view of a shape is larger than the shape."""
+
+
+class Extent(NamedTuple):
+    """The box around a body in world space."""
+
+    center: npt.NDArray[np.float64]
+    size: float
+    """Its longest side"""
+    radius: float
+    """The largest distance of a corner from the centre"""
+
+
+def dropped_mesh(name: str, data: bytes) -> Mesh:
+    """The mesh of a file's bytes. Raises SssgenError for a file that is none, or that has too many triangles."""
+    return checked_mesh(Mesh(path=os.path.basename(name.replace("\\", "/")) or "mesh", data=data))
+
+
+def checked_mesh(mesh: Mesh) -> Mesh:
+    """The mesh, which is read. Raises SssgenError for a faulty file, or for too many triangles."""
+    if (count := len(mesh.triangles.corners)) > MOST_TRIANGLES:
+        hint = f"at most {MOST_TRIANGLES} are shown: simplify the mesh"
+        raise failure(f"the mesh has {count} triangles", hint, mesh.path)
+    return mesh
+
+
+def fitted(geometry: Geometry, own: Geometry) -> Geometry:
+    """A shape at the place of the scene's own body, and as large: lengths in the material keep their meaning."""
+    place, shape = extent(own), extent(geometry)
+    scale = place.size / shape.size
+    return dataclasses.replace(geometry, scale=scale, position=tuple((place.center - scale * shape.center).tolist()))
+
+
+def extent(geometry: Geometry) -> Extent:
+    """The box around a body."""
+    corners = np.frombuffer(packed(geometry), "<f4").reshape(-1, 8)[:, :3]
+    matrix = geometry.to_world()
+    places = corners @ matrix[:3, :3].T + matrix[:3, 3]
+    low, high = places.min(axis=0), places.max(axis=0)
+    center = 0.5 * (low + high)
+    return Extent(center, float((high - low).max()), float(np.linalg.norm(places - center, axis=1).max()))
+
+
+def framed(geometry: Geometry, towards: npt.ArrayLike, field_of_view: float) -> tuple[list[float], list[float]]:
+    """The eye that sees the whole body from the direction `towards`, and the point that it looks at."""
+    box = extent(geometry)
+    direction = np.asarray(towards, float) / np.linalg.norm(towards)
+    away = _MARGIN * box.radius / np.sin(np.radians(0.5 * field_of_view))
+    return (box.center + away * direction).tolist(), box.center.tolist()
+
+
+def packed(geometry: Geometry) -> bytes:
+    """The packed triangles; those of the last bodies are kept until a file of theirs changes.
+
+    The triangles of a distance function, which take a second, are in the cache folder, too.
+    """
+    at_origin = dataclasses.replace(geometry, position=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0), scale=1.0)
+    content = hashlib.sha256(geometry.data).hexdigest() if isinstance(geometry, Mesh) and geometry.data else ""
+    key = repr(at_origin) + content
+    if isinstance(at_origin, Distance):
+        return remembered(_bodies, key, lambda: _stored(at_origin, key))
+    return remembered(_bodies, key, lambda: body_triangles(at_origin).packed())
+
+
+_bodies: dict[str, CachedResult] = {}
+
+
+def _stored(geometry: Distance, key: str) -> bytes:
+    """The packed triangles of a distance function, from the cache folder if its files are as they were."""
+    with noted_files() as read:
+        _ = geometry.function
+    stamp = sorted((path, state.modified, state.size) for path, state in read.items())
+    name = f"body_{hashlib.sha256(key.encode()).hexdigest()[:24]}"
+    result: bytes = cache.load_or_make(name, stamp, lambda: body_triangles(geometry).packed())
+    return result

@@ -1,0 +1,105 @@
+"""What a page and this program say to each other.
+
+A message is a JSON object with a `kind`; one from the page may carry the bytes of a file. The same messages serve a
+page that is connected to a server and one that runs this module in the browser.
+
+From the page: `shape` (a body from the list), `mesh` (a file as the body), `save` (parameters for the files). To the
+page: `picture` (of the pane `pane`), `error` (a text).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from sssgen.preview.bodies import OWN_MESH, SHAPES, dropped_mesh
+from sssgen.preview.shown_picture import ShownPicture
+from sssgen.support.diagnostics import failure
+from sssgen.support.file_memo import FileState
+
+MOST_BYTES = 64 << 20
+"""The largest file that a page may send."""
+MOST_TEXT = 1 << 20
+"""The largest message besides its file."""
+
+
+def unpacked(frame: bytes) -> tuple[dict[str, Any], bytes]:
+    """The message and the file in a binary frame: JSON in one line, then the bytes. Raises ValueError."""
+    line, _, data = frame.partition(b"\n")
+    return parsed(line), data
+
+
+def parsed(text: str | bytes) -> dict[str, Any]:
+    """The message in a JSON text. Raises ValueError."""
+    if len(text) > MOST_TEXT:
+        raise ValueError("too long")
+    message = json.loads(text)
+    if not isinstance(message, dict):
+        raise ValueError("no object")
+    return message
+
+
+class PageMessages:
+    """The panes of the pages, and what the pages may ask."""
+
+    def __init__(self, *panes: ShownPicture) -> None:
+        self.panes = list(panes)
+        self._answers: Mapping[str, Callable[[dict[str, Any], bytes], None]] = {
+            "shape": self._shape,
+            "mesh": self._mesh,
+            "save": self._save,
+        }
+
+    @property
+    def files(self) -> dict[str, FileState]:
+        """The files that the pictures depend on."""
+        return {path: state for pane in self.panes for path, state in pane.files.items()}
+
+    def piece(self, digest: str) -> bytes | None:
+        """The triangles or texels with a digest; None where no picture that is shown has them."""
+        return next((pane.pieces[digest] for pane in self.panes if digest in pane.pieces), None)
+
+    def messages(self) -> list[dict[str, Any]]:
+        """What a page gets at its start and after each change: a picture for each pane."""
+        return [{**pane.message(), "pane": number, "limit": MOST_BYTES} for number, pane in enumerate(self.panes)]
+
+    def answer(self, message: Mapping[str, Any], data: bytes = b"") -> None:
+        """Does what a page asks; `messages` is then what all pages get.
+
+        Raises SssgenError for what cannot be done, and ValueError, TypeError or KeyError for a faulty message.
+        """
+        self._answers[str(message["kind"])](dict(message), data)
+
+    def renew(self) -> None:
+        """Makes the pictures again from the files."""
+        for pane in self.panes:
+            pane.renew()
+
+    def _pane(self, message: Mapping[str, Any]) -> ShownPicture:
+        number = int(message.get("pane", 0))
+        if number not in range(len(self.panes)):
+            raise ValueError(number)
+        return self.panes[number]
+
+    def _shape(self, message: dict[str, Any], _: bytes) -> None:
+        shape = message["shape"]
+        if shape not in ("", *SHAPES, OWN_MESH):
+            raise ValueError(shape)
+        for pane in self.panes:
+            if shape != OWN_MESH or pane.chosen.mesh is not None:
+                pane.choose(pane.chosen._replace(shape=shape))
+
+    def _mesh(self, message: dict[str, Any], data: bytes) -> None:
+        name = str(message["name"])
+        if not 0 < len(data) <= MOST_BYTES:
+            raise failure(f"the file has {len(data)} bytes", f"from 1 to {MOST_BYTES} are read", name)
+        mesh = dropped_mesh(name, data)
+        for pane in self.panes:
+            pane.choose(pane.chosen._replace(shape=OWN_MESH, mesh=mesh))
+
+    def _save(self, message: dict[str, Any], _: bytes) -> None:
+        values: Mapping[str, Sequence[Any]] = message["values"]
+        pane = self._pane(message)
+        pane.save({str(name): [float(number) for number in value] for name, value in values.items()})
+        self.renew()
