@@ -69,7 +69,7 @@ def test_a_dropped_mesh_is_the_body_and_keeps_its_uv(talk: PageMessages) -> None
     [
         ("a.obj", b"v 0 0 0\n", "holds no triangles"),
         ("a.glb", b"glTF and no more", "not a valid .glb"),
-        ("a.glb", b"", "0 bytes"),
+        ("a.glb", b"", "the file is empty"),
         ("a.exe", b"MZ", "not a mesh file's suffix"),
         ("../../x.png", PYRAMID.encode(), "not a mesh file's suffix"),
     ],

@@ -83,3 +83,21 @@ def test_the_head_is_a_body_in_the_middle(shown: Shown) -> None:
     assert rows.min() > 3 and rows.max() < head.shape[0] - 3  # wholly in the picture
     assert 0.25 < covered.mean() * head.shape[1] / head.shape[0] < 0.7
     assert abs(columns.mean() - head.shape[1] / 2) < 12.0
+
+
+def test_a_picture_in_a_slot_is_shown_at_once_and_saved(shown: Shown, tmp_path: Path) -> None:
+    from sssgen.harness.pictures.images import png_bytes
+
+    red = shown.picture()[130:170, 130:170].mean(axis=(0, 1))
+    drop(shown, "[data-property=baseColorTexture]", "black.png", png_bytes(np.zeros((4, 4, 3))))
+    shown.until(lambda: shown.page.locator(".slot.changed").count() == 1)
+    assert shown.page.inner_text(".slot .file") == "black.png"
+    shown.page.wait_for_timeout(100)
+    pixel = "[...document.querySelector('.slot canvas').getContext('2d').getImageData(9, 9, 1, 1).data]"
+    assert shown.page.evaluate(pixel) == [0, 0, 0, 255]
+    dark = shown.picture()[130:170, 130:170].mean(axis=(0, 1))
+    assert dark[0] < 0.5 * red[0]
+    shown.page.click("#save")
+    shown.until(lambda: "black.png is written" in shown.page.inner_text("#status"))
+    assert 'base_color_texture = "black.png"' in (tmp_path / "stone.toml").read_text(encoding="utf-8")
+    assert shown.page.locator(".slot.changed").count() == 0 and not shown.faults

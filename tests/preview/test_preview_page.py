@@ -89,7 +89,7 @@ def test_undo_gives_the_values_of_the_file(shown: Shown) -> None:
 
 def test_lamps_and_the_eye_are_dragged(shown: Shown) -> None:
     before = shown.picture()
-    box = shown.page.locator("canvas").bounding_box()
+    box = shown.page.locator("main canvas").bounding_box()
     place = shown.page.evaluate(
         "(() => { const { handles, camera } = preview.stage; const at = handles[1].position.clone().project(camera);"
         " return [at.x, at.y]; })()"

@@ -96,4 +96,4 @@ class Shown:
         from PIL import Image
 
         self.page.wait_for_timeout(300)
-        return np.asarray(Image.open(BytesIO(self.page.locator("canvas").screenshot())).convert("RGB"), float)
+        return np.asarray(Image.open(BytesIO(self.page.locator("main canvas").screenshot())).convert("RGB"), float)

@@ -43,6 +43,8 @@ class Extent(NamedTuple):
 
 def dropped_mesh(name: str, data: bytes) -> Mesh:
     """The mesh of a file's bytes. Raises SssgenError for a file that is none, or that has too many triangles."""
+    if not data:
+        raise failure("the file is empty", file=name)
     return checked_mesh(Mesh(path=os.path.basename(name.replace("\\", "/")) or "mesh", data=data))
 
 

@@ -33,6 +33,7 @@ def emitted_head(
                 "property": texture["property"],
                 "source_name": texture["source_name"],
                 "technique": texture["technique"],
+                "name": texture["technique_name"],
                 "type": texture["type"],
                 "color": texture["color"],
                 "doc": texture["doc"],

@@ -3,8 +3,9 @@
 A message is a JSON object with a `kind`; one from the page may carry the bytes of a file. The same messages serve a
 page that is connected to a server and one that runs this module in the browser.
 
-From the page: `shape` (a body from the list), `mesh` (a file as the body), `save` (parameters for the files). To the
-page: `picture` (of the pane `pane`), `error` (a text).
+From the page: `shape` (a body from the list), `mesh` (a file as the body), `texture` (a file, or none, in a slot),
+`save` (parameters and chosen textures, for the files). To the page: `picture` (of the pane `pane`), `said` and `error`
+(a text).
 """
 
 from __future__ import annotations
@@ -45,9 +46,10 @@ class PageMessages:
 
     def __init__(self, *panes: ShownPicture) -> None:
         self.panes = list(panes)
-        self._answers: Mapping[str, Callable[[dict[str, Any], bytes], None]] = {
+        self._answers: Mapping[str, Callable[[dict[str, Any], bytes], str]] = {
             "shape": self._shape,
             "mesh": self._mesh,
+            "texture": self._texture,
             "save": self._save,
         }
 
@@ -64,12 +66,14 @@ class PageMessages:
         """What a page gets at its start and after each change: a picture for each pane."""
         return [{**pane.message(), "pane": number, "limit": MOST_BYTES} for number, pane in enumerate(self.panes)]
 
-    def answer(self, message: Mapping[str, Any], data: bytes = b"") -> None:
-        """Does what a page asks; `messages` is then what all pages get.
+    def answer(self, message: Mapping[str, Any], data: bytes = b"") -> str:
+        """Does what a page asks, and says what it wrote; `messages` is then what all pages get.
 
         Raises SssgenError for what cannot be done, and ValueError, TypeError or KeyError for a faulty message.
         """
-        self._answers[str(message["kind"])](dict(message), data)
+        if len(data) > MOST_BYTES:
+            raise failure(f"the file has {len(data)} bytes", f"at most {MOST_BYTES} are read", str(message.get("name")))
+        return self._answers[str(message["kind"])](dict(message), data)
 
     def renew(self) -> None:
         """Makes the pictures again from the files."""
@@ -82,24 +86,30 @@ class PageMessages:
             raise ValueError(number)
         return self.panes[number]
 
-    def _shape(self, message: dict[str, Any], _: bytes) -> None:
+    def _shape(self, message: dict[str, Any], _: bytes) -> str:
         shape = message["shape"]
         if shape not in ("", *SHAPES, OWN_MESH):
             raise ValueError(shape)
         for pane in self.panes:
             if shape != OWN_MESH or pane.chosen.mesh is not None:
                 pane.choose(pane.chosen._replace(shape=shape))
+        return ""
 
-    def _mesh(self, message: dict[str, Any], data: bytes) -> None:
-        name = str(message["name"])
-        if not 0 < len(data) <= MOST_BYTES:
-            raise failure(f"the file has {len(data)} bytes", f"from 1 to {MOST_BYTES} are read", name)
-        mesh = dropped_mesh(name, data)
+    def _mesh(self, message: dict[str, Any], data: bytes) -> str:
+        mesh = dropped_mesh(str(message["name"]), data)
         for pane in self.panes:
             pane.choose(pane.chosen._replace(shape=OWN_MESH, mesh=mesh))
+        return ""
 
-    def _save(self, message: dict[str, Any], _: bytes) -> None:
+    def _texture(self, message: dict[str, Any], data: bytes) -> str:
+        self._pane(message).choose_texture(str(message["slot"]), str(message["name"]), data)
+        return ""
+
+    def _save(self, message: dict[str, Any], _: bytes) -> str:
         values: Mapping[str, Sequence[Any]] = message["values"]
         pane = self._pane(message)
-        pane.save({str(name): [float(number) for number in value] for name, value in values.items()})
-        self.renew()
+        try:
+            pane.save({str(name): [float(number) for number in value] for name, value in values.items()})
+            return pane.save_textures()
+        finally:
+            self.renew()

@@ -153,7 +153,8 @@ class PreviewServer:
             async for frame in page:
                 try:
                     message, data = unpacked(frame.data) if isinstance(frame.data, bytes) else (parsed(frame.data), b"")
-                    await self._change(functools.partial(self.talk.answer, message, data))
+                    if text := await self._change(functools.partial(self.talk.answer, message, data)):
+                        await page.send_json({"kind": "said", "text": text})
                 except (ValueError, TypeError, KeyError, AttributeError):
                     await page.send_json({"kind": "error", "text": "the page sent a message that is not understood"})
                 except SssgenError as error:
@@ -164,15 +165,16 @@ class PreviewServer:
 
     # Changes
 
-    async def _change(self, work: Callable[[], None]) -> None:
-        """Does some work on the pictures, and sends them, or their errors, to all pages."""
+    async def _change(self, work: Callable[[], str | None]) -> str | None:
+        """Does some work on the pictures, and sends them, or their errors, to all pages; the work's own result."""
         async with self._making:
-            await asyncio.to_thread(work)
+            result = await asyncio.to_thread(work)
             messages = self.talk.messages()
         for page in list(self.pages):
             with contextlib.suppress(ConnectionError, RuntimeError):  # a page that closes
                 for message in messages:
                     await page.send_json(message)
+        return result
 
     async def _watch(self) -> None:
         """Renews the picture after each change of the files that it was made of, until it is cancelled."""

@@ -16,15 +16,15 @@ from sssgen.support.paths import posix
 from sssgen.support.text_files import read_text
 
 
-def save_to_material(material: Material, changes: Mapping[tuple[str, str], Sequence[float]]) -> None:
-    """Writes (technique, parameter) → numbers into the material's file, at every stage of that technique that sets it.
+def save_to_material(material: Material, changes: Mapping[tuple[str, str], Sequence[float] | str]) -> None:
+    """Writes (technique, parameter or texture) → value into the material's file.
 
-    A parameter that no stage sets is written into the first stage of its technique; one that a stage fixes keeps
-    `fixed`. Raises SssgenError for a file that cannot be read or written, and for a stage that is gone.
+    It is written at every stage of that technique that sets it, or, where none does, at its first stage; one that a
+    stage fixes keeps `fixed`. Raises SssgenError for a file that cannot be read or written, or a stage that is gone.
     """
     document = _parsed(material.file)
     stages = [(stage.technique.role, stage.technique.name) for stage in material.stages]
-    for (technique, parameter), numbers in changes.items():
+    for (technique, parameter), value in changes.items():
         tables = [
             table
             for role in dict.fromkeys(role for role, name in stages if name == technique)
@@ -37,18 +37,22 @@ def save_to_material(material: Material, changes: Mapping[tuple[str, str], Seque
         for table in chosen:
             old = table.get(parameter)
             if isinstance(old, dict) and "value" in old:
-                old["value"] = _value(numbers)
+                old["value"] = _value(value)
             else:
-                table[parameter] = _value(numbers)
+                table[parameter] = _value(value)
     _write(material.file, document)
 
 
-def save_to_scene(path: str, changes: Mapping[str, Sequence[float]]) -> None:
-    """Writes parameter → numbers into [parameters] of a scene's file. Raises SssgenError."""
+def save_to_scene(path: str, changes: Mapping[str, Sequence[float] | str], section: str = "parameters") -> None:
+    """Writes parameter or texture → value into that section of a scene's file. Raises SssgenError."""
     document = _parsed(path)
-    table = document.setdefault("parameters", need("tomlkit", "tomlkit", "preview").table())
-    for parameter, numbers in changes.items():
-        table[parameter] = _value(numbers)
+    table = document.setdefault(section, need("tomlkit", "tomlkit", "preview").table())
+    for name, value in changes.items():
+        old = table.get(name)
+        if isinstance(value, str) and isinstance(old, dict) and "file" in old:
+            old["file"] = value
+        else:
+            table[name] = _value(value)
     _write(path, document)
 
 
@@ -62,8 +66,10 @@ def _stages(document: Any, role: str) -> list[Any]:
     return [content] if isinstance(content, dict) else list(content or ())
 
 
-def _value(numbers: Sequence[float]) -> Any:
-    """The shortest decimal of float32 for each number."""
+def _value(numbers: Sequence[float] | str) -> Any:
+    """A text, or the shortest decimal of float32 for each number."""
+    if isinstance(numbers, str):
+        return numbers
     short = [float(np.format_float_positional(np.float32(number), trim="0")) for number in numbers]
     return short if len(short) > 1 else short[0]
 

@@ -9,6 +9,7 @@ from sssgen.harness.scenes.geometry import Mesh
 from sssgen.harness.scenes.preview_scene import scene_of
 from sssgen.material.material_loading import load_material
 from sssgen.preview.bodies import OWN_MESH
+from sssgen.preview.chosen_textures import ChosenTextures, saved
 from sssgen.preview.picture import Chosen, picture_of
 from sssgen.preview.saved_values import save_to_material, save_to_scene
 from sssgen.support.diagnostics import SssgenError, failure
@@ -23,6 +24,7 @@ class ShownPicture:
         self.name, self.version, self.error = name, 0, ""
         self.chosen = chosen or (Chosen() if mesh is None else Chosen(OWN_MESH, mesh))
         self.files: dict[str, FileState] = {}
+        self._textures = ChosenTextures()
         self._make()
 
     @property
@@ -65,6 +67,30 @@ class ShownPicture:
     def message(self) -> dict[str, Any]:
         """What a page gets: the picture, and the errors or ''."""
         return {"kind": "picture", "version": self.version, "error": self.error, "picture": self.picture.head}
+
+    def choose_texture(self, slot: str, name: str, data: bytes) -> None:
+        """Shows a picture in the slot of that property, or for no bytes the file's own. Raises SssgenError."""
+        row = self._row(slot)
+        chosen = {one: file for one, file in self.chosen.textures.items() if one != slot}
+        if data:
+            chosen[slot] = self._textures.added(row, name, data)
+        self.choose(self.chosen._replace(textures=chosen))
+
+    def save_textures(self) -> str:
+        """Writes the chosen pictures beside the file that names the texture; says what it did. Raises SssgenError."""
+        said = []
+        for slot, file in self.chosen.textures.items():
+            said.append(saved(self._row(slot), file, self.scene, self.picture.material))
+        self.chosen = self.chosen._replace(textures={})
+        return " ".join(said)
+
+    def _row(self, slot: str) -> dict[str, Any]:
+        """The texture of that property. Raises SssgenError."""
+        for row in self.picture.head["textures"]:
+            if row["property"] == slot:
+                found: dict[str, Any] = row
+                return found
+        raise failure(f"{self.picture.material.name} has no texture '{slot}'")
 
     def save(self, values: Mapping[str, Sequence[float]]) -> None:
         """Writes parameters, by the names of their properties, to the scene where it sets them, else to the material.

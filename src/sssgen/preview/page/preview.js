@@ -4,6 +4,7 @@ import { MESHES, onChoice, onDrop, refusal } from './chosen_files.js';
 import { connect } from './connection.js';
 import { Panel } from './panel.js';
 import { Stage } from './stage.js';
+import { TextureSlots } from './texture_slots.js';
 
 const element = (id) => document.getElementById(id);
 const pieces = new Map();
@@ -24,8 +25,13 @@ const panel = new Panel(element('controls'), (property, numbers) => {
   buttons();
 });
 
+const slots = new TextureSlots(element('textures'), pieceOf, (row, file) => {
+  python.sendFile({ kind: 'texture', slot: row.property, name: file?.name ?? '' }, file ?? '');
+}, say);
+
 function buttons() {
-  element('save').disabled = element('reset').disabled = panel.values.size === 0;
+  const textures = last?.picture.textures.some((row) => row.chosen);
+  element('save').disabled = element('reset').disabled = panel.values.size === 0 && !textures;
 }
 
 function complain(text) {
@@ -59,6 +65,7 @@ async function show(message) {
   element('shape').replaceChildren(...shapes);
   element('shape').value = picture.shape;
   panel.show(picture.controls);
+  slots.show(picture.textures, message.limit);
   buttons();
   try {
     stage ??= await stageFor(element('renderer').value);
@@ -99,7 +106,10 @@ element('renderer').addEventListener('change', () => next(async () => {
   if (last) await show(last);
 }));
 element('save').addEventListener('click', () => python.send({ kind: 'save', values: Object.fromEntries(panel.values) }));
-element('reset').addEventListener('click', () => panel.reset());
+element('reset').addEventListener('click', () => {
+  panel.reset();
+  for (const row of last.picture.textures.filter((one) => one.chosen)) slots.chosen(row, null);
+});
 addEventListener('error', (event) => say(event.message));
 addEventListener('unhandledrejection', (event) => say(String(event.reason?.message ?? event.reason)));
 globalThis.preview = { get stage() { return stage; }, panel };
