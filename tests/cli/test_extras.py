@@ -71,6 +71,7 @@ NEEDS: dict[str, str | None] = {
     "bake pack --red 0.5 -o b.png": "bake",
     "lsp": "lsp",
     "fmt wax.toml": None,
+    "schema scene": None,
     "new wood": None,
     "doctor": None,
     "help emit": None,

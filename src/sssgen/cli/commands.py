@@ -56,6 +56,7 @@ COMMANDS = {
     "fit": Command("fit", "measure", "fit the parameters of techniques to a scene's medium", "chart,reference"),
     "transpile": Command("transpile", "import", "translate functions or whole shaders to a target's language"),
     "lsp": Command("lsp", "tool", "run the language server that an editor starts", "lsp"),
+    "schema": Command("schema", "tool", "print the JSON schema of materials or scenes, for editors"),
     "doctor": Command("doctor", "tool", "print versions, and the compilers and back ends found and missing"),
     "completion": Command("completion", "tool", "print the script that makes a shell complete commands and names"),
     "help": Command("help", "tool", "print the list of commands, or the help of one"),

@@ -53,7 +53,7 @@ def _render(arguments: Namespace) -> int:
     from sssgen.harness.pictures import images
     from sssgen.harness.render.scene_render import render, with_samples
     from sssgen.harness.scenes.preview_scene import scene_of
-    from sssgen.harness.scenes.scene_reader import MAX_SAMPLES
+    from sssgen.harness.scenes.scene_keys import MAX_SAMPLES
 
     size = _size(arguments.size) if arguments.size else None
     name, *more = backends.chosen(arguments.backend, scenes=True)

@@ -9,7 +9,7 @@ from sssgen.editor.completion_item import Item, plain
 from sssgen.editor.documents import Document
 from sssgen.editor.lookup import names_of, slots_of, technique_named, uniforms_at
 from sssgen.editor.toml_places import TomlPlace, place_at, tables_of
-from sssgen.harness.scenes.scene_reader import CAMERA, KEYS, LIGHT, PLACE, SHAPES
+from sssgen.harness.scenes.scene_keys import CAMERA, KEYS, LIGHT, PLACE, SHAPES
 from sssgen.ir.nodes import Span, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import library, roles, slots

@@ -66,16 +66,16 @@ UV_SETS = ("uv", "uv2")
 SHADINGS = ("lit", "unlit")
 ALPHA_MODES = ("opaque", "mask", "blend")
 
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 # Windows reserves these names for devices, with any suffix: no file can have them.
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(1, 10))}
 
 
 def wrong_name(name: str) -> tuple[str, str] | None:
     """The error message for a material's name and its hint; None for a valid name."""
-    if not _NAME.fullmatch(name):
+    if not NAME.fullmatch(name):
         near = re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_").lower()
-        offer = f": '{near}'" if _NAME.fullmatch(near) else ""
+        offer = f": '{near}'" if NAME.fullmatch(near) else ""
         rule = "a name is letters, digits and _, begins with a letter, and has at most 64 characters"
         return f"'{name[:80]}' cannot be a material's name", rule + offer
     if name.lower() in _DEVICES:

@@ -12,7 +12,8 @@ from sssgen.ir.types import Array, Matrix, Sampler, Type, components, kind_of, s
 
 _LARGEST = 3.4028234663852886e38
 _LIMITS = {"int": (-(2**31), 2**31 - 1), "uint": (0, 2**32 - 1), "float": (-_LARGEST, _LARGEST)}
-_HEX = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6}|[0-9a-fA-F]{8})")
+HEX_COLOUR = r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6}|[0-9a-fA-F]{8})"
+_HEX = re.compile(HEX_COLOUR)
 
 
 class WrongValue(Exception):
@@ -86,6 +87,17 @@ def is_colour(uniform: Uniform) -> bool:
     return components(uniform.type) in (3, 4) and any(name == "source_color" for name, _ in uniform.hints)
 
 
+def limits(uniform: Uniform) -> tuple[float, float]:
+    """The lowest and the highest number that `read_value` takes as a component."""
+    kind = _kind(uniform.type)
+    low, high = _LIMITS[kind]
+    for hint, args in uniform.hints:
+        if hint == "hint_range":
+            low, high = max(low, float(args[0])), min(high, float(args[1]))
+    contract = of_uniform(uniform)
+    return (max(low, contract.low), min(high, contract.high)) if kind == "float" else (low, high)
+
+
 def linear(srgb: float) -> float:
     """One sRGB component (0..1) as linear light (IEC 61966-2-1)."""
     return srgb / 12.92 if srgb <= 0.04045 else ((srgb + 0.055) / 1.055) ** 2.4
@@ -143,7 +155,7 @@ def _number(uniform: Uniform, raw: Any, index: int | None) -> float:
     contract = of_uniform(uniform)
     if kind == "float" and not contract.low <= raw <= contract.high:
         raise WrongValue(
-            f"{raw:g}is outside the safe range of '{name}'",
+            f"{raw:g} is outside the safe range of '{name}'",
             f"without a hint_range the range is {contract.low:g} to {contract.high:g}: give it one in the technique",
             index,
         )

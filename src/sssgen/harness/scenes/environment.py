@@ -13,7 +13,8 @@ import numpy.typing as npt
 
 from sssgen.harness.pictures import images
 from sssgen.harness.scenes.scene import Light, Scene
-from sssgen.harness.scenes.toml_table import NOT_NEGATIVE, Table
+from sssgen.harness.scenes.scene_keys import ENVIRONMENT
+from sssgen.harness.scenes.toml_table import Table
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError
 
@@ -91,9 +92,9 @@ class Environment:
 
 def read_environment(scene: Scene) -> Environment | None:
     """The scene's [environment]; its errors are reported with those of the scene."""
-    table = Table(scene.document, ("environment",), scene.measured["environment"], ("color", "file", "intensity"))
-    color: Any = table.vector("color", (1.0, 1.0, 1.0), NOT_NEGATIVE)
-    intensity = table.number("intensity", 1.0, NOT_NEGATIVE)
+    table = Table(scene.document, ("environment",), scene.measured["environment"], ENVIRONMENT)
+    color: Any = table.vector("color", (1.0, 1.0, 1.0))
+    intensity = table.number("intensity", 1.0)
     red, green, blue = (intensity * part for part in color)
     file, contents = "", ""
     if "file" in table.content:

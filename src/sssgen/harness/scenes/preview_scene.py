@@ -7,8 +7,8 @@ import json
 import os
 
 from sssgen.harness.scenes.scene import Scene
+from sssgen.harness.scenes.scene_keys import KEYS
 from sssgen.harness.scenes.scene_loading import load, parse_scene
-from sssgen.harness.scenes.scene_reader import KEYS
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.material.roles import SECTIONS

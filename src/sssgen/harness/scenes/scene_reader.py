@@ -9,10 +9,22 @@ from typing import Any
 from sssgen.harness.pictures import images
 from sssgen.harness.scenes import mesh_files
 from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.distance_field import PROJECTIONS
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.harness.scenes.scene import DistanceTexture, Light, Picture, Scene
-from sssgen.harness.scenes.toml_table import ANY, NOT_NEGATIVE, POSITIVE, Table
+from sssgen.harness.scenes.scene_keys import (
+    CAMERA,
+    DISTANCE_TEXTURE,
+    KEYS,
+    LIGHT,
+    MAX_LIGHTS,
+    MAX_PARTS,
+    MEASURED,
+    PICTURE,
+    PLACE,
+    SHAPES,
+    SHELL,
+)  # fmt: skip
+from sssgen.harness.scenes.toml_table import ANY, Table, text
 from sssgen.material.library import OF_SHELLS
 from sssgen.material.material_loading import examples
 from sssgen.material.shell_stages import choices
@@ -20,35 +32,8 @@ from sssgen.support.diagnostics import SssgenError, did_you_mean
 from sssgen.support.paths import posix
 from sssgen.support.toml_source import Document, Path
 
-MEASURED = ("title", "medium", "inlay", "environment")
-"""Keys that describe the physical scene, for measuring materials; shells with an environment draw with its key."""
-
-KEYS = (
-    "material", "size", "samples", "time", "background", "ambient", "exposure",
-    "geometry", "camera", "light", "shell", "parameters", "textures", *MEASURED,
-)  # fmt: skip
-"""The keys and sections of a scene."""
-PLACE = ("position", "rotation", "scale")
-SHAPES = {
-    "ball": ("radius",),
-    "box": ("size",),
-    "slab": ("width", "height", "thickness"),
-    "torus": ("major", "minor"),
-    "capsule": ("radius", "length"),
-    "union": ("part", "projection"),
-    "mesh": ("file",),
-    "distance": ("technique", "parameters", "reach", "projection"),
-}
-"""Kind of geometry → its own keys."""
-CAMERA = ("position", "target", "field_of_view")
-LIGHT = ("position", "direction", "color")
-MAX_LIGHTS = 4
-MAX_PARTS = 64
-MAX_SIDE = 8192
 MAX_COUNT = 2**24
 """The largest number of samples of a picture: each takes a few hundred bytes."""
-MAX_SAMPLES = 8
-MAX_TEXELS = 256
 
 
 def read_scene(document: Document, folder: str) -> Scene:
@@ -65,8 +50,8 @@ class _Reader:
 
     def scene(self) -> Scene:
         top = Table(self.document, (), self.document.data, KEYS)
-        size = top.wholes("size", (640, 480), (1, MAX_SIDE))
-        samples = top.whole("samples", 2, (1, MAX_SAMPLES))
+        size = top.wholes("size", (640, 480))
+        samples = top.whole("samples", 2)
         if size[0] * size[1] * samples**2 > MAX_COUNT:
             count = f"{size[0]} × {size[1]} pixels of {samples} × {samples} samples are too many"
             top.error("size", count, f"at most {MAX_COUNT / 1e6:.0f} million samples in total")
@@ -77,8 +62,8 @@ class _Reader:
             samples,
             top.number("time", 0.0),
             self.background(top),
-            top.vector("ambient", (0.0, 0.0, 0.0), NOT_NEGATIVE),
-            top.number("exposure", 1.0, POSITIVE),
+            top.vector("ambient", (0.0, 0.0, 0.0)),
+            top.number("exposure", 1.0),
             geometry,
             self.camera(top.content.get("camera", {})),
             self.lights(top),
@@ -87,7 +72,7 @@ class _Reader:
             self.document,
             top.text("title", ""),
             self.shell(top.content.get("shell", {})),
-            {key: top.content[key] for key in MEASURED[1:] if key in top.content},
+            {key: top.content[key] for key in list(MEASURED)[1:] if key in top.content},
             self.folder,
         )
 
@@ -108,7 +93,7 @@ class _Reader:
     def background(self, top: Table) -> Any:
         raw = top.content.get("background", [0.0, 0.0, 0.0])
         if not (isinstance(raw, list) and raw and all(isinstance(part, list) for part in raw)):
-            color = top.vector("background", (0.0, 0.0, 0.0), NOT_NEGATIVE)
+            color = top.vector("background", (0.0, 0.0, 0.0))
             return color, color
         if len(raw) != 2:
             top.error("background", "'background' takes one colour, or two", "write [bottom, top], each [r, g, b]")
@@ -116,7 +101,7 @@ class _Reader:
         ends = []
         for index, part in enumerate(raw):
             inner = _Element(self.document, ("background",), index, part)
-            ends.append(inner.vector("background", (0.0, 0.0, 0.0), NOT_NEGATIVE))
+            ends.append(inner.vector("background", (0.0, 0.0, 0.0)))
         return tuple(ends)
 
     def camera(self, content: Any) -> Camera:
@@ -125,7 +110,7 @@ class _Reader:
         camera = Camera(
             table.vector("position", default.position),
             table.vector("target", default.target),
-            table.number("field_of_view", default.field_of_view, (1.0, 170.0)),
+            table.number("field_of_view", default.field_of_view),
         )
         if math.dist(camera.position, camera.target) < 1e-6:
             table.error("target", "the camera stands at its target", "move one of the two")
@@ -145,7 +130,7 @@ class _Reader:
 
     def light(self, path: Path, content: Any) -> Light:
         table = Table(self.document, path, content, LIGHT)
-        color = table.vector("color", (1.0, 1.0, 1.0), NOT_NEGATIVE)
+        color = table.vector("color", (1.0, 1.0, 1.0))
         if ("position" in table.content) == ("direction" in table.content):
             hint = "position: a point light; direction: towards a distant light"
             span = self.document.place(*path).value
@@ -160,7 +145,7 @@ class _Reader:
         return Light(None, (x / length, y / length, z / length), color)
 
     def shell(self, content: Any) -> dict[str, str]:
-        table = Table(self.document, ("shell",), content, OF_SHELLS)
+        table = Table(self.document, ("shell",), content, SHELL)
         chosen: dict[str, str] = {}
         for role in (role for role in OF_SHELLS if role in table.content):
             chosen[role] = table.text(role, "", choices(role))
@@ -172,8 +157,12 @@ class _Reader:
         if content is None:
             return None
         kind = content.get("kind") if isinstance(content, dict) else None
-        own = SHAPES.get(kind, ()) if isinstance(kind, str) else ()
-        keys = ("kind", *PLACE, *(own or {key for keys in SHAPES.values() for key in keys}))
+        own = SHAPES.get(kind, {}) if isinstance(kind, str) else {}
+        keys = {
+            "kind": text(*SHAPES),
+            **PLACE,
+            **(own or {key: k for keys in SHAPES.values() for key, k in keys.items()}),
+        }
         table = Table(self.document, path, content, keys)
         if not isinstance(content, dict):
             return None
@@ -184,25 +173,25 @@ class _Reader:
         place: dict[str, Any] = {
             "position": table.vector("position", (0.0, 0.0, 0.0)),
             "rotation": table.vector("rotation", (0.0, 0.0, 0.0)),
-            "scale": table.number("scale", 1.0, POSITIVE),
+            "scale": table.number("scale", 1.0),
         }
-        return self.shape(table, table.text("kind", "", SHAPES), place)
+        return self.shape(table, table.text("kind", ""), place)
 
     def shape(self, table: Table, kind: str, place: dict[str, Any]) -> Geometry | None:
         if kind == "ball":
-            return Ball(table.number("radius", 1.0, POSITIVE), **place)
+            return Ball(table.number("radius", 1.0), **place)
         if kind == "box":
-            return Box(size=table.vector("size", (1.0, 1.0, 1.0), POSITIVE), **place)
+            return Box(size=table.vector("size", (1.0, 1.0, 1.0)), **place)
         if kind == "slab":
-            width, height = table.number("width", 2.0, POSITIVE), table.number("height", 2.0, POSITIVE)
-            return Slab(width, height, table.number("thickness", 0.1, POSITIVE), **place)
+            width, height = table.number("width", 2.0), table.number("height", 2.0)
+            return Slab(width, height, table.number("thickness", 0.1), **place)
         if kind == "torus":
-            torus = Torus(table.number("major", 1.0, POSITIVE), table.number("minor", 0.4, POSITIVE), **place)
+            torus = Torus(table.number("major", 1.0), table.number("minor", 0.4), **place)
             if torus.minor >= torus.major:
                 table.error("minor", "'minor' must be less than 'major'", f"major is {torus.major:g}")
             return torus
         if kind == "capsule":
-            return Capsule(table.number("radius", 0.25, POSITIVE), table.number("length", 1.0, NOT_NEGATIVE), **place)
+            return Capsule(table.number("radius", 0.25), table.number("length", 1.0), **place)
         if kind == "union":
             return self.union(table, place)
         if kind == "mesh":
@@ -215,7 +204,7 @@ class _Reader:
             table.error("part", f"a union has from 1 to {MAX_PARTS} parts", "write [[geometry.part]] for each")
             return None
         parts = [self.geometry(part, (*table.path, "part", index)) for index, part in enumerate(content)]
-        projection = table.text("projection", "parts", ("parts", "planar"))
+        projection = table.text("projection", "parts")
         return Union(tuple(part for part in parts if part is not None), projection, **place)
 
     def mesh(self, table: Table, place: dict[str, Any]) -> Mesh | None:
@@ -241,8 +230,8 @@ class _Reader:
             table.text("technique", Distance.technique),
             self.folder,
             parameters,
-            table.number("reach", 4.0, POSITIVE),
-            table.text("projection", "spherical", PROJECTIONS),
+            table.number("reach", 4.0),
+            table.text("projection", "spherical"),
             **place,
         )
         if "technique" not in table.content:
@@ -277,11 +266,9 @@ class _Reader:
             if isinstance(raw, dict) and "distance_of_geometry" in raw:
                 textures[key] = self.distance_texture(path, raw, has_geometry)
             elif isinstance(raw, dict):
-                table = Table(self.document, path, raw, ("file", "wrap"))
+                table = Table(self.document, path, raw, PICTURE)
                 place = (*path, "file") if "file" in raw else path
-                textures[key] = Picture(
-                    self.picture(place, table.text("file", "")), table.text("wrap", "", ("repeat", "clamp"))
-                )
+                textures[key] = Picture(self.picture(place, table.text("file", "")), table.text("wrap", ""))
             elif isinstance(raw, str):
                 textures[key] = Picture(self.picture(path, raw))
             else:
@@ -290,12 +277,12 @@ class _Reader:
         return textures
 
     def distance_texture(self, path: Path, raw: dict[str, Any], has_geometry: bool) -> DistanceTexture:
-        table = Table(self.document, path, raw, ("distance_of_geometry", "box_min", "box_max", "range"))
+        table = Table(self.document, path, raw, DISTANCE_TEXTURE)
         texture = DistanceTexture(
-            table.wholes("distance_of_geometry", (64, 64, 64), (1, MAX_TEXELS)),
+            table.wholes("distance_of_geometry", (64, 64, 64)),
             table.vector("box_min", (-1.0, -1.0, -1.0)),
             table.vector("box_max", (1.0, 1.0, 1.0)),
-            table.number("range", 1.0, (0.001, 100.0)),
+            table.number("range", 1.0),
         )
         if not has_geometry:
             table.error("distance_of_geometry", "the scene has no geometry to measure", "add [geometry]")
@@ -340,7 +327,7 @@ class _Element(Table):
     """One list in a list, read like a table's value."""
 
     def __init__(self, document: Document, path: Path, index: int, content: Any) -> None:
-        super().__init__(document, path, {str(path[-1]): content}, (str(path[-1]),))
+        super().__init__(document, path, {str(path[-1]): content}, KEYS)
         self.index = index
 
     def error(self, key: str, message: str, hint: str = "", index: int | None = None) -> None:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
-from typing import Any
+from collections.abc import Collection, Mapping
+from typing import Any, NamedTuple
 
 from sssgen.support.diagnostics import did_you_mean
 from sssgen.support.toml_source import Document, Path
@@ -15,11 +15,47 @@ POSITIVE: Range = (1e-6, 1e9)
 NOT_NEGATIVE: Range = (0.0, 1e9)
 
 
+class Key(NamedTuple):
+    """What a key takes."""
+
+    kind: str
+    """number, whole, vector, wholes, text; other: the reader checks it by itself."""
+    within: Range = ANY
+    size: int = 1
+    """How many numbers a vector has."""
+    choices: tuple[str, ...] = ()
+    """The texts that it takes; none: any."""
+
+
+def number(within: Range = ANY) -> Key:
+    return Key("number", within)
+
+
+def whole(low: int, high: int) -> Key:
+    return Key("whole", (low, high))
+
+
+def vector(size: int, within: Range = ANY) -> Key:
+    return Key("vector", within, size)
+
+
+def wholes(size: int, low: int, high: int) -> Key:
+    return Key("wholes", (low, high), size)
+
+
+def text(*choices: str) -> Key:
+    return Key("text", choices=choices)
+
+
+def other() -> Key:
+    return Key("other")
+
+
 class Table:
     """One table of a document. A wrong value is reported, and replaced by the default."""
 
-    def __init__(self, document: Document, path: Path, content: Any, keys: Collection[str]) -> None:
-        self.document, self.path = document, path
+    def __init__(self, document: Document, path: Path, content: Any, keys: Mapping[str, Key]) -> None:
+        self.document, self.path, self.keys = document, path, keys
         self.content: dict[str, Any] = content if isinstance(content, dict) else {}
         name = ".".join(str(part) for part in path if isinstance(part, str))
         if not isinstance(content, dict):
@@ -35,33 +71,35 @@ class Table:
         path = (*self.path, key) if index is None else (*self.path, key, index)
         self.document.error(self.document.place(*path).value, message, hint)
 
-    def number(self, key: str, default: float, within: Range = ANY) -> float:
+    def number(self, key: str, default: float) -> float:
         raw = self.content.get(key, default)
-        return float(raw) if self._is_number(key, raw, within) else default
+        return float(raw) if self._is_number(key, raw) else default
 
-    def whole(self, key: str, default: int, within: tuple[int, int]) -> int:
+    def whole(self, key: str, default: int) -> int:
         raw = self.content.get(key, default)
-        return int(raw) if self._is_whole(key, raw, within) else default
+        return int(raw) if self._is_whole(key, raw) else default
 
-    def vector(self, key: str, default: tuple[float, ...], within: Range = ANY) -> Any:
+    def vector(self, key: str, default: tuple[float, ...]) -> Any:
         """A vector of as many finite numbers as `default`."""
         raw = self.content.get(key, list(default))
         if not isinstance(raw, list) or len(raw) != len(default):
             example = ", ".join(f"{value:g}" for value in default)
             self.error(key, f"'{key}' takes {len(default)} numbers", f"write {key} = [{example}]")
             return default
-        valid = [self._is_number(key, element, within, index) for index, element in enumerate(raw)]
+        valid = [self._is_number(key, element, index) for index, element in enumerate(raw)]
         return tuple(map(float, raw)) if all(valid) else default
 
-    def wholes(self, key: str, default: tuple[int, ...], within: tuple[int, int]) -> Any:
+    def wholes(self, key: str, default: tuple[int, ...]) -> Any:
         raw = self.content.get(key, list(default))
         if not isinstance(raw, list) or len(raw) != len(default):
             self.error(key, f"'{key}' takes {len(default)} whole numbers", f"write {key} = {list(default)}")
             return default
-        valid = [self._is_whole(key, element, within, index) for index, element in enumerate(raw)]
+        valid = [self._is_whole(key, element, index) for index, element in enumerate(raw)]
         return tuple(raw) if all(valid) else default
 
     def text(self, key: str, default: str, choices: Collection[str] = ()) -> str:
+        """One line of text: one of `choices`, or of those of the key, where there are any."""
+        choices = choices or self.keys[key].choices
         raw = self.content.get(key, default)
         if not isinstance(raw, str) or any(ord(character) < 32 for character in raw):
             self.error(key, f"'{key}' takes one line of text", f'write {key} = "…"')
@@ -72,19 +110,20 @@ class Table:
             return default
         return raw
 
-    def _is_number(self, key: str, raw: object, within: Range, index: int | None = None) -> bool:
+    def _is_number(self, key: str, raw: object, index: int | None = None) -> bool:
         if isinstance(raw, bool) or not isinstance(raw, int | float):
             self.error(key, f"'{key}' takes {'numbers' if index is not None else 'a number'}", "", index)
             return False
-        return self._is_within(key, raw, within, index)
+        return self._is_within(key, raw, index)
 
-    def _is_whole(self, key: str, raw: object, within: tuple[int, int], index: int | None = None) -> bool:
+    def _is_whole(self, key: str, raw: object, index: int | None = None) -> bool:
         if isinstance(raw, bool) or not isinstance(raw, int):
             self.error(key, f"'{key}' takes {'whole numbers' if index is not None else 'a whole number'}", "", index)
             return False
-        return self._is_within(key, raw, within, index)
+        return self._is_within(key, raw, index)
 
-    def _is_within(self, key: str, raw: float, within: Range, index: int | None) -> bool:
+    def _is_within(self, key: str, raw: float, index: int | None) -> bool:
+        within = self.keys[key].within
         if within[0] <= raw <= within[1]:  # also false for nan
             return True
         shown = f"{raw:g}" if abs(raw) < 1e300 or not math.isfinite(raw) else "so large"

@@ -20,8 +20,9 @@ from sssgen.harness.scenes.environment import Environment, read_environment
 from sssgen.harness.scenes.example_scenes import drawn_scenes, measured_scenes
 from sssgen.harness.scenes.geometry import Geometry
 from sssgen.harness.scenes.scene import Light, Scene
+from sssgen.harness.scenes.scene_keys import INLAY, MEDIUM
 from sssgen.harness.scenes.scene_loading import load as load_scene
-from sssgen.harness.scenes.toml_table import NOT_NEGATIVE, POSITIVE, Table
+from sssgen.harness.scenes.toml_table import Table
 from sssgen.lab.jobs.result_store import encoded
 from sssgen.lab.scene import media
 from sssgen.lab.scene.media import Medium
@@ -155,10 +156,9 @@ def inside(geometry: Geometry, position: tuple[float, float, float]) -> bool:
 
 
 def _medium(scene: Scene) -> Medium | None:
-    keys = ("preset", "unit_mm", "absorption", "scattering", "anisotropy", "ior", "roughness")
-    table = Table(scene.document, ("medium",), scene.measured["medium"], keys)
+    table = Table(scene.document, ("medium",), scene.measured["medium"], MEDIUM)
     # the presets have measured indices, but a scene without this key has no boundary
-    ior, roughness = table.number("ior", 1.0, (1.0, 3.0)), table.number("roughness", 0.0, (0.0, 1.0))
+    ior, roughness = table.number("ior", 1.0), table.number("roughness", 0.0)
     if roughness > 0.0 and ior == 1.0:
         table.error("roughness", "a surface that does not refract has no roughness", "add ior, 1.4 say")
     if "preset" in table.content:
@@ -166,15 +166,15 @@ def _medium(scene: Scene) -> Medium | None:
             if key in table.content:
                 table.error(key, f"a preset has its own {key}", "give a preset, or the coefficients")
         name = table.text("preset", "", media.media())
-        unit = table.number("unit_mm", 10.0, POSITIVE)
+        unit = table.number("unit_mm", 10.0)
         return (
             dataclasses.replace(media.preset(name, unit), ior=ior, roughness=roughness)
             if name in media.media()
             else None
         )
-    absorption: Any = table.vector("absorption", (0.0, 0.0, 0.0), NOT_NEGATIVE)
-    scattering: Any = table.vector("scattering", (5.0, 5.0, 5.0), NOT_NEGATIVE)
-    anisotropy = table.number("anisotropy", 0.0, (-0.95, 0.95))
+    absorption: Any = table.vector("absorption", (0.0, 0.0, 0.0))
+    scattering: Any = table.vector("scattering", (5.0, 5.0, 5.0))
+    anisotropy = table.number("anisotropy", 0.0)
     if not any(scattering):
         table.error("scattering", "this medium does not scatter", "a measured medium needs scattering above 0")
     if "unit_mm" in table.content:
@@ -183,9 +183,9 @@ def _medium(scene: Scene) -> Medium | None:
 
 
 def _inlay(scene: Scene) -> Inlay:
-    table = Table(scene.document, ("inlay",), scene.measured["inlay"], ("depth", "ior", "outside_ior"))
+    table = Table(scene.document, ("inlay",), scene.measured["inlay"], INLAY)
     return Inlay(
-        table.number("depth", 0.05, (1e-6, 1.0)),
-        table.number("ior", 1.5, (1.0, 3.0)),
-        table.number("outside_ior", 1.0, (1.0, 3.0)),
+        table.number("depth", 0.05),
+        table.number("ior", 1.5),
+        table.number("outside_ior", 1.0),
     )

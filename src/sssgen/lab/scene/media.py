@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from sssgen.harness.scenes.toml_table import Table
+from sssgen.harness.scenes.toml_table import Table, number, other, text, vector
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
 from sssgen.support.text_files import read_text
@@ -14,9 +14,15 @@ from sssgen.support.toml_source import parse
 
 Spectrum = tuple[float, float, float]
 
-_KEYS = ("reduced_scattering", "absorption", "ior", "measured", "source")
 _FILE = os.path.join(os.path.dirname(__file__), "media.toml")
 _COEFFICIENT = (0.0, 1e6)
+_KEYS = {
+    "reduced_scattering": vector(3, _COEFFICIENT),
+    "absorption": vector(3, _COEFFICIENT),
+    "ior": number((1.0, 10.0)),
+    "measured": other(),
+    "source": text(),
+}
 CLEAR = 1e-6
 """A smaller mean extinction per world unit counts as this, so that the mean free path is finite."""
 
@@ -137,9 +143,9 @@ def media(file: str = "") -> Mapping[str, MediumData]:
         if not isinstance(measured, bool):
             table.error("measured", "'measured' is true or false")
         result[name] = MediumData(
-            table.vector("reduced_scattering", (1.0, 1.0, 1.0), _COEFFICIENT),
-            table.vector("absorption", (0.0, 0.0, 0.0), _COEFFICIENT),
-            table.number("ior", 1.0, (1.0, 10.0)),
+            table.vector("reduced_scattering", (1.0, 1.0, 1.0)),
+            table.vector("absorption", (0.0, 0.0, 0.0)),
+            table.number("ior", 1.0),
             measured is True,
             table.text("source", ""),
         )

@@ -1,0 +1,36 @@
+"""`sssgen schema`: the JSON schema of materials or scenes, for editors that check TOML by one."""
+
+from __future__ import annotations
+
+import json
+import os
+from argparse import ArgumentParser, Namespace
+
+from sssgen.cli.options import given
+from sssgen.cli.output import OK
+from sssgen.editor import schemas
+from sssgen.support.file_writer import write_files
+
+KINDS = ("material", "scene")
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = (
+        "examples:\n  sssgen schema material -o material.schema.json\n  sssgen schema scene -o scene.schema.json\n"
+        "In a TOML file, `#:schema material.schema.json` on the first line names it (docs/editors.md). `sssgen lsp` "
+        "checks more and needs no schema."
+    )
+    parser.add_argument("KIND", choices=KINDS, help="material or scene")
+    parser.add_argument("-o", "--output", type=given, metavar="FILE", help="write it to a file, and print nothing")
+
+
+def run(arguments: Namespace) -> int:
+    """Prints or writes the schema."""
+    schema = schemas.of_materials() if arguments.KIND == "material" else schemas.of_scenes()
+    text = json.dumps(schema, ensure_ascii=False, indent=1) + "\n"
+    if arguments.output:
+        folder, name = os.path.split(arguments.output)
+        write_files(folder or ".", {name: text})
+    else:
+        print(text, end="")
+    return OK
