@@ -80,7 +80,7 @@ ALTERNATIVE_TEXTS = {
     "loop": "Two cubes of red jelly on a plate; the light goes around them, and red light falls on the plate",
     "before and after": "An ear and a candle: an engine's default, sssgen, and path traced",
     "candle": "A burning candle in the dark: its upper half glows, its foot is dark",
-    "skin_ear": "An ear beside a dark cheek, glowing orange in the light behind it",
+    "skin_ear": "An ear beside a dark cheek, glowing red in the light behind it",
     "leaves": "A twig with five bright green leaves against the light, with dark veins",
     "jelly": "Two cubes of red jelly on a white plate, with red light in their shadows",
     "ice_body": "A block of clear dark blue ice with bright cracks inside and bright lower edges",
