@@ -202,14 +202,14 @@ def test_once_scattered_below_a_plane(cosine_in: float, cosine_out: float, aniso
     sun = np.array([np.sqrt(1.0 - cosine_in**2), 0.0, cosine_in])
     eye = on_top(np.array([cosine_out]))
     medium, lamp = grey(albedo, ior, 1.0, anisotropy), Lamp((sun[0], sun[1], sun[2]))
-    result = readings(slab(12.0, 400.0), medium, eye, [lamp], None, 16_000, shape=(3, 3, 240), scatterings=1)
+    result = readings(slab(12.0, 400.0), medium, eye, [lamp], None, 5_000, shape=(3, 3, 240), scatterings=1)
     (share_in, share_out), (inner_in, inner_out) = transmitted(np.array([cosine_in, cosine_out]), ior)
     before = np.array([-sun[0], -sun[1], 0.0]) / ior - [0.0, 0.0, inner_in]
     after = np.array([*(-eye.direction[0, :2] / ior), inner_out])
     phase = henyey_greenstein(anisotropy, float(before @ after))
     fluence = share_in * cosine_in / inner_in
     expected = np.pi * share_out / ior**2 * albedo * phase * fluence / (1.0 + inner_out / inner_in)
-    assert_agrees(result, [expected], 0.02)
+    assert_agrees(result, [expected], 0.035)
 
 
 def unscattered(depth: float, ior: float) -> tuple[float, float]:
@@ -304,8 +304,8 @@ def test_a_rough_furnace_is_white() -> None:
 def test_a_matched_boundary_is_that_of_mitsuba(geometry: Geometry, anisotropy: float) -> None:
     medium, sun = grey(0.95, 1.0, 5.0, anisotropy), (0.6, 0.0, -0.8)
     eye = seen(geometry)
-    result = readings(geometry, medium, eye, [Lamp(sun)], None, 2048)
-    other = radiance_along(geometry, medium, Light(sun), eye.position - 3.0 * eye.direction, eye.direction, 2048)
+    result = readings(geometry, medium, eye, [Lamp(sun)], None, 1024)
+    other = radiance_along(geometry, medium, Light(sun), eye.position - 3.0 * eye.direction, eye.direction, 1024)
     error = np.hypot(result.error[0], other.error)[:, 0]
     off = (result.mean[0] - other.mean)[:, 0]
     assert abs(off.sum()) < 4.0 * np.sqrt((error**2).sum())

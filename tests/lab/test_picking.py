@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -218,16 +219,30 @@ def test_a_chart_under_conditions_has_other_fronts_and_volumes() -> None:
 # --- the command ---
 
 
+@pytest.fixture(scope="module")
+def measured_plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The cache folder of a small chart of a plate, which no test changes."""
+    from sssgen.support import cache
+
+    folder = tmp_path_factory.mktemp("chart") / "cache"
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setenv("SSSGEN_CACHE", str(folder))
+        patched.setattr(cache, "_folder", None)
+        patched.setattr(measured_scene, "SIDE", 12)
+        chart.chart_record([measured_scene.load("inlay_plate")], Settings(8, processes=0))
+    return folder
+
+
 @pytest.fixture
-def stored_chart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """The cache folder of a small chart of a plate."""
+def stored_chart(measured_plate: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """A copy of this folder for a test, in use."""
     from sssgen.support import cache
 
     folder = tmp_path / "cache"
+    shutil.copytree(measured_plate, folder)
     monkeypatch.setenv("SSSGEN_CACHE", str(folder))
     monkeypatch.setattr(cache, "_folder", None)
     monkeypatch.setattr(measured_scene, "SIDE", 12)
-    chart.chart_record([measured_scene.load("inlay_plate")], Settings(8, processes=0))
     return str(folder)
 
 

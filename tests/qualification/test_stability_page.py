@@ -94,6 +94,7 @@ def test_the_pictures_are_small() -> None:
             assert (picture.mode, picture.size) == ("RGB", (count * WIDTH + (count - 1) * script()["GAP"], HEIGHT))
 
 
+@pytest.mark.slow
 def test_the_pictures_are_current(backend: Get) -> None:
     """Scenes are drawn at a quarter of their size, maps at full size."""
     backend("gl"), backend("browser")

@@ -434,7 +434,7 @@ def test_random_programs(random: Random, lanes: list[tuple[float, float, int, fl
     assert_agrees(Programs(random, discards).program(), lanes)
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", [*range(25), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(25, 60))])
 def test_large_random_programs(seed: int) -> None:
     random = Random(seed)
     lanes = [(random.randrange(-4, 9) / 2, random.randrange(-4, 9) / 2, random.randrange(4), 1.0) for _ in range(16)]

@@ -27,13 +27,18 @@ def maps_of(table: Array, rank: int) -> Array:
     return maps
 
 
-@pytest.mark.parametrize("name", ["fluence_factored_4", "fluence_factored_8"])
-def test_the_techniques_read_what_the_bake_writes(name: str) -> None:
-    pytest.importorskip("scipy", reason="SciPy is missing: pip install -e '.[chart]'")
-    rank = int(name[-1])
+@pytest.fixture(scope="module")
+def traced() -> field.Field:
+    """The light inside a small ball."""
     medium = Medium("test", (0.6,) * 3, (5.4,) * 3, 0.0, 1.0, "the test")
     scene = MeasuredScene("body", "body", Ball(0.5), Camera(), (), medium, None)
-    traced = field.field(scene, Settings(voxels=8, side=16, photons=300), processes=0)
+    return field.field(scene, Settings(voxels=8, side=16, photons=300), processes=0)
+
+
+@pytest.mark.parametrize("name", ["fluence_factored_4", "fluence_factored_8"])
+def test_the_techniques_read_what_the_bake_writes(name: str, traced: field.Field) -> None:
+    pytest.importorskip("scipy", reason="SciPy is missing: pip install -e '.[chart]'")
+    rank = int(name[-1])
     stored = volumes.factored(traced, rank)
     names = {f"fluence_table_{rank}": Texture(stored.table, wrap="clamp")}
     for number in range(rank // 4):
