@@ -67,7 +67,7 @@ class Shown:
         self.page.goto(self.server.url)
         if renderer != "webgpu":
             self.page.select_option("#renderer", renderer)
-        self.until(lambda: self.page.evaluate("preview.stage?.drawn ?? 0") or self.error())
+        self.until(lambda: self.page.evaluate("preview.stage?.drafts.sharp") or self.error())
 
     def _run(self) -> None:
         asyncio.set_event_loop(self.loop)
@@ -95,5 +95,7 @@ class Shown:
         """The canvas, (height, width, 3), 0 to 255."""
         from PIL import Image
 
-        self.page.wait_for_timeout(300)
+        self.page.wait_for_timeout(100)
+        self.until(lambda: self.page.evaluate("preview.stage?.drafts.sharp"))
+        self.page.wait_for_timeout(100)
         return np.asarray(Image.open(BytesIO(self.page.locator("main canvas").screenshot())).convert("RGB"), float)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import hashlib
 import os
@@ -90,10 +91,12 @@ def packed(geometry: Geometry) -> bytes:
     content = hashlib.sha256(geometry.data).hexdigest() if isinstance(geometry, Mesh) and geometry.data else ""
     key = repr(at_origin) + content
     if isinstance(at_origin, Distance):
-        return remembered(_bodies, key, lambda: _stored(at_origin, key))
-    return remembered(_bodies, key, lambda: body_triangles(at_origin).packed())
+        return remembered(_bodies, key, lambda: _stored(at_origin, key), MOST_BODIES)
+    return remembered(_bodies, key, lambda: body_triangles(copy.deepcopy(at_origin)).packed(), MOST_BODIES)
 
 
+MOST_BODIES = 6
+"""The number of bodies that are kept in memory, each of some 10 MB."""
 _bodies: dict[str, CachedResult] = {}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import hashlib
 import os
 from collections.abc import Mapping
@@ -67,7 +68,7 @@ def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
     pieces: dict[str, bytes] = {}
 
     def piece(data: bytes) -> str:
-        digest = hashlib.sha256(data).hexdigest()[:32]
+        digest = _digest(data)
         pieces[digest] = data
         return digest
 
@@ -131,8 +132,16 @@ def _with_texels(row: Mapping[str, Any], shell: Shell, chosen: Chosen, piece: An
 
 
 def _texels(texture: Texture, piece: Any) -> dict[str, Any]:
-    levels = [
-        {"size": texture.size(number), "data": piece(np.ascontiguousarray(level, "<f2").tobytes())}
-        for number, level in enumerate(texture.levels)
-    ]
+    levels = [{"size": texture.size(number), "data": piece(data)} for number, data in enumerate(_levels(texture))]
     return {"dim": texture.dim, "filter": texture.filter, "wrap": texture.wrap, "levels": levels}
+
+
+@functools.lru_cache(16)
+def _levels(texture: Texture) -> list[bytes]:
+    """The texels of each level, in float16."""
+    return [np.ascontiguousarray(level, "<f2").tobytes() for level in texture.levels]
+
+
+@functools.lru_cache(64)
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()[:32]

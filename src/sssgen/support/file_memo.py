@@ -18,7 +18,7 @@ from sssgen.support import unsaved
 _T = TypeVar("_T")
 
 MAX_RESULTS = 1024
-"""The number of results in one memory before it is emptied."""
+"""The number of results in one memory before the oldest is dropped."""
 
 CLOCK_STEP = 20_000_000
 """Nanoseconds: two writes of a file within one step of the system's clock may have the same time."""
@@ -69,8 +69,11 @@ def noted_files() -> Iterator[dict[str, FileState]]:
         _watching[:] = [other for other in _watching if other is not files]
 
 
-def remembered(memory: dict[str, CachedResult], key: str, make: Callable[[], _T]) -> _T:
-    """The result of `make`, or the earlier one for this key if none of its files has changed."""
+def remembered(memory: dict[str, CachedResult], key: str, make: Callable[[], _T], most: int = MAX_RESULTS) -> _T:
+    """The result of `make`, or the earlier one for this key if none of its files has changed.
+
+    `most` is the number of results in this memory before the oldest is dropped.
+    """
     cached = memory.get(key)
     if cached is not None and not changed_files(cached.files):
         for files in _watching:
@@ -79,8 +82,9 @@ def remembered(memory: dict[str, CachedResult], key: str, make: Callable[[], _T]
         return cached.value  # type: ignore[return-value]  # a memory has results of one type
     with noted_files() as read:
         value = make()
-    if len(memory) >= MAX_RESULTS:
-        memory.clear()
+    memory.pop(key, None)
+    while len(memory) >= most:
+        del memory[next(iter(memory))]
     memory[key] = CachedResult(read, value)
     return value
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import os
 from collections.abc import Mapping
 from typing import Any
@@ -26,8 +27,13 @@ from sssgen.material.baked import Baked
 from sssgen.material.model import Material
 from sssgen.material.values import WrongValue, read_value
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+from sssgen.support.file_memo import CachedResult, remembered
 from sssgen.support.paths import posix
 from sssgen.targets.runtime.numpy_textures import Texture
+
+MOST_TEXTURES = 16
+"""The number of textures that are kept in memory."""
+_made: dict[str, CachedResult] = {}
 
 
 def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> Shell:
@@ -235,7 +241,7 @@ def _textures(
         if isinstance(chosen, DistanceTexture):
             if scene.geometry is None:
                 raise failure(f"texture '{name}' is the distance to the scene's geometry, but the scene has none")
-            textures[name] = half(Texture(chosen.values(scene.geometry), wrap="clamp"))
+            textures[name] = _distances(chosen, scene.geometry)
         elif not (file := _file(scene, material, texture)):
             if texture["drawn"] in maps:
                 textures[name] = maps[texture["drawn"]]
@@ -260,7 +266,23 @@ def _suggested(material: Material, texture: Mapping[str, Any]) -> str:
     return ""
 
 
+def _distances(chosen: DistanceTexture, geometry: Geometry) -> Texture:
+    """The texture of the distance; the last ones are kept until a file of the geometry changes."""
+
+    def make() -> Texture:
+        return half(Texture(chosen.values(copy.deepcopy(geometry)), wrap="clamp"))
+
+    return remembered(_made, repr((chosen, geometry)), make, MOST_TEXTURES)
+
+
 def _picture(file: str, wrap: str, texture: Mapping[str, Any]) -> Texture:
+    """The texture of a file; the last ones are kept until their files change."""
+    declared = [texture[name] for name in ("source_name", "type", "color_space")]
+    key = repr((os.path.abspath(file), wrap, declared))
+    return remembered(_made, key, lambda: _read_picture(file, wrap, texture), MOST_TEXTURES)
+
+
+def _read_picture(file: str, wrap: str, texture: Mapping[str, Any]) -> Texture:
     picture = inputs.texture(file, wrap, srgb=texture["color_space"] == "sRGB")
     if picture.dim != texture["type"].removeprefix("sampler"):
         type_ = with_article(texture["type"])

@@ -24,10 +24,15 @@ from sssgen.passes.fold import fold
 from sssgen.passes.link import LinkInput, link
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+from sssgen.support.file_memo import CachedResult, remembered
 from sssgen.targets.runtime.numpy_values import precision
 
 PROJECTIONS = {"spherical": spherical, "planar": planar}
 """Points (n, 3) → their uv (n, 2) and the gradients of u and of v, (n, 3) each, up to a positive factor."""
+
+MOST_FUNCTIONS = 32
+"""The number of compiled functions that are kept in memory until their files change."""
+_functions: dict[str, CachedResult] = {}
 
 _STEPS = 1000
 _SHORTEST = 1e-4
@@ -69,6 +74,10 @@ class Distance(Geometry):
     @cached_property
     def function(self) -> Callable[[Array], Any]:
         """The function on points (3, n). Raises SssgenError."""
+        key = repr((self.technique, self.folder, self.parameters))
+        return remembered(_functions, key, self._compiled, MOST_FUNCTIONS)
+
+    def _compiled(self) -> Callable[[Array], Any]:
         module, function = find_function(self.technique, self.folder)
         values = _values(self.technique, uniforms_of(module, function), self.parameters)
         linked = link([LinkInput(function.name, "", module, function, {}, values, frozenset(values))])

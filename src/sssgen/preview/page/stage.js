@@ -3,7 +3,10 @@
 import * as THREE from 'three';
 import { WebGPURenderer } from 'three/webgpu';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { coarseOf, geometryOf } from './coarse_body.js';
+import { Drafts } from './drafts.js';
 import { DrawnViews } from './drawn_views.js';
+import { materialOf, programOf, update, valueOf } from './material.js';
 
 const WRAPS = { repeat: THREE.RepeatWrapping, clamp: THREE.ClampToEdgeWrapping, mirror: THREE.MirroredRepeatWrapping };
 const HANDLE = 0.055;
@@ -14,6 +17,7 @@ export class Stage {
     Object.assign(this, { root, kind, pieceOf, textures: new Map(), lamps: [], handles: [] });
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(35, 1, 0.05, 100);
+    this.drafts = new Drafts(this);
   }
 
   async start() {
@@ -38,11 +42,18 @@ export class Stage {
   fit() {
     const { clientWidth: width, clientHeight: height } = this.root;
     if (!width || !height) return;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.share = 0;
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.ask();
+  }
+
+  /** Draws from now on at a share of the full resolution. */
+  resolution(share) {
+    if (share !== this.share) this.renderer.setPixelRatio(share * Math.min(devicePixelRatio, 2));
+    this.share = share;
+    this.mesh.geometry = this.bodies[share < 1 / 2 ? 1 : 0];
   }
 
   /** Shows a picture; `values` are the numbers that differ from the file's. */
@@ -50,14 +61,17 @@ export class Stage {
     const body = await this.pieceOf(picture.body);
     const textures = {};
     for (const row of picture.textures.filter((one) => one.texels)) textures[row.property] = await this.textureOf(row.texels);
-    const url = URL.createObjectURL(new Blob([picture.module], { type: 'text/javascript' }));
-    const { createMaterial } = await import(url).finally(() => URL.revokeObjectURL(url));
-    const numbers = Object.fromEntries(picture.controls.filter((control) => !control.drawn)
-      .map((control) => [control.property, valueOf(control, values.get(control.property) ?? control.value)]));
-    const material = createMaterial({ ...numbers, ...textures });
-    if (picture.two_sided) material.side = THREE.DoubleSide;
-    this.views?.dispose();
-    this.views = new DrawnViews(this.kind, picture.textures, picture.controls);
+    const program = programOf(picture);
+    const kept = this.mesh && this.program === program;
+    const material = kept ? this.mesh.material : await materialOf(picture, values, textures);
+    if (kept) update(material, picture, values, textures);
+    else {
+      if (picture.two_sided) material.side = THREE.DoubleSide;
+      this.views?.dispose();
+      this.views = new DrawnViews(this.kind, picture.textures, picture.controls);
+    }
+    this.program = program;
+    this.forget(new Set(Object.values(textures)));
     this.place(picture, body, material);
     this.light(picture);
     if (this.shown !== `${picture.name} ${picture.shape}`) this.look(picture);
@@ -66,30 +80,31 @@ export class Stage {
     this.renderer.toneMapping = picture.tone_mapping ? THREE.NeutralToneMapping : THREE.LinearToneMapping;
     this.renderer.toneMappingExposure = picture.exposure;
     this.root.style.background = `linear-gradient(to top, ${picture.background.map(styleOf).join(', ')})`;
-    await this.frame();
+    await this.drafts.now();
   }
 
   place(picture, body, material) {
     if (this.mesh?.userData.body !== picture.body) {
-      const corners = new THREE.InterleavedBuffer(new Float32Array(body), 8);
-      const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute('position', new THREE.InterleavedBufferAttribute(corners, 3, 0));
-      geometry.setAttribute('normal', new THREE.InterleavedBufferAttribute(corners, 3, 3));
-      geometry.setAttribute('uv', new THREE.InterleavedBufferAttribute(corners, 2, 6));
-      geometry.computeBoundingSphere();
-      if (this.mesh) { this.scene.remove(this.mesh); this.mesh.geometry.dispose(); this.mesh.material.dispose(); }
+      const geometry = geometryOf(new Float32Array(body));
+      if (this.mesh) { this.scene.remove(this.mesh); this.bodies.forEach((one) => one.dispose()); this.exchange(material); }
+      this.bodies = [geometry, coarseOf(geometry)];
       this.mesh = new THREE.Mesh(geometry, material);
       this.mesh.userData.body = picture.body;
       this.mesh.castShadow = this.mesh.receiveShadow = true;
       this.mesh.matrixAutoUpdate = false;
       this.scene.add(this.mesh);
     } else {
-      this.mesh.material.dispose();
-      this.mesh.material = material;
+      this.exchange(material);
     }
     this.mesh.matrix.fromArray(picture.model);
     this.mesh.updateMatrixWorld(true);
     material.envMap = this.sky ?? null;
+  }
+
+  /** Gives the body another material. */
+  exchange(material) {
+    if (this.mesh.material !== material) this.mesh.material.dispose();
+    this.mesh.material = material;
   }
 
   light(picture) {
@@ -149,6 +164,11 @@ export class Stage {
     this.ask();
   }
 
+  /** Gives up the textures that no picture has any more. */
+  forget(used) {
+    for (const [key, texture] of this.textures) if (!used.has(texture)) { texture.dispose(); this.textures.delete(key); }
+  }
+
   async textureOf({ dim, filter, wrap, levels }) {
     const key = levels.map((level) => level.data).join();
     if (!this.textures.has(key)) {
@@ -166,12 +186,9 @@ export class Stage {
     return this.textures.get(key);
   }
 
-  ask() {
-    if (this.asked) return;
-    this.asked = requestAnimationFrame(() => { this.asked = 0; this.frame(); });
-  }
+  ask() { this.drafts.ask(); }
 
-  async frame() {
+  frame() {
     if (!this.mesh) return;
     this.hold();
     const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
@@ -236,20 +253,15 @@ export class Stage {
   }
 
   dispose() {
-    cancelAnimationFrame(this.asked);
+    this.drafts.dispose();
     this.sizes?.disconnect();
     this.orbit?.dispose();
     this.views?.dispose();
-    this.mesh?.geometry.dispose();
+    this.bodies?.forEach((one) => one.dispose());
     this.mesh?.material.dispose();
     this.textures.forEach((texture) => texture.dispose());
     this.renderer?.dispose();
   }
-}
-
-function valueOf(control, numbers) {
-  if (control.type === 'bool') return numbers[0] !== 0;
-  return numbers.length > 1 ? numbers : numbers[0];
 }
 
 function styleOf(linear) {

@@ -1,0 +1,36 @@
+// The material of a picture: made of the emitted module, and kept while only values change.
+
+const made = (text) => {
+  const url = URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
+  return import(url).finally(() => URL.revokeObjectURL(url));
+};
+
+export function valueOf(control, numbers) {
+  if (control.type === 'bool') return numbers[0] !== 0;
+  return numbers.length > 1 ? numbers : numbers[0];
+}
+
+/** What must stay the same for a material to be kept: the module without the lines that have the parameters' defaults. */
+export function programOf({ module, controls, textures, two_sided }) {
+  const names = new Set(controls.map((control) => control.property));
+  const lines = module.split('\n').filter((line) => !names.has(/^\s+(\w+): (?:TSL\.uniform\(|\{ type: ')/.exec(line)?.[1]));
+  const slots = textures.map((row) => [row.property, row.drawn, row.texels?.dim]);
+  return JSON.stringify([lines, controls.map((control) => [control.property, control.type]), slots, two_sided]);
+}
+
+/** A new material. */
+export async function materialOf(picture, values, textures) {
+  const { createMaterial } = await made(picture.module);
+  return createMaterial({ ...numbersOf(picture, values), ...textures });
+}
+
+/** Gives a material the values and textures of a picture of the same program. */
+export function update(material, picture, values, textures) {
+  for (const [property, value] of Object.entries(numbersOf(picture, values))) material[property] = value;
+  for (const [property, texture] of Object.entries(textures)) if (material[property] !== texture) material[property] = texture;
+}
+
+function numbersOf(picture, values) {
+  return Object.fromEntries(picture.controls.filter((control) => !control.drawn)
+    .map((control) => [control.property, valueOf(control, values.get(control.property) ?? control.value)]));
+}
