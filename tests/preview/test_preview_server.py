@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from sssgen.preview.library import Library
+from sssgen.preview.page_library import Library
 from sssgen.preview.preview_server import FILES, HOST, PAGE, PreviewServer
 from sssgen.preview.shown_picture import ShownPicture
 from sssgen.support.diagnostics import SssgenError

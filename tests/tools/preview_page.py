@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from sssgen.harness.installed import chromium
-from sssgen.preview.library import library
+from sssgen.preview.page_library import library
 from sssgen.preview.preview_server import PreviewServer
 from sssgen.preview.shown_picture import ShownPicture
 from sssgen.support.diagnostics import SssgenError

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from sssgen.preview import library as module
-from sssgen.preview.library import BUNDLE, NPM, bundle, library
+from sssgen.preview import page_library as module
+from sssgen.preview.page_library import BUNDLE, NPM, bundle, library
 from sssgen.support.diagnostics import SssgenError
 
 PAGE = Path(module.__file__).with_name("page")
