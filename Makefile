@@ -9,6 +9,7 @@
 # make fuzz   random programs and files for FUZZ_MINUTES (10)
 # make bench  the benchmarks   make bench-gpu  what shaders cost on this GPU, emitted and by hand
 # make setup  what the others need, done once: .venv, system packages, compilers
+# make vscode  the extension for VS Code, build/vscode/sssgen.vsix
 # make dist   the source distribution and the wheel, in dist/, and the tests of both in an empty environment
 # make engines  Godot 4.6 in build/engines, 1.2 GB, and Firefox, as root: make test-long then runs the shaders in them
 
@@ -30,7 +31,7 @@ MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notd
 
 export PYTHONUTF8 := 1
 .DELETE_ON_ERROR:
-.PHONY: setup accuracy bake demo preview first test test-long fuzz lint bench bench-gpu gallery stability engines site dist clean
+.PHONY: setup accuracy bake demo preview first test test-long fuzz lint bench bench-gpu gallery stability engines site vscode dist clean
 
 setup: .venv/done build/node/done build/preview/library.js
 
@@ -68,7 +69,7 @@ build/view/bin/sssgen: pyproject.toml
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
-test-long: setup .venv/docs
+test-long: setup .venv/docs build/vscode/done
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m slow
 
 FUZZ_MINUTES ?= 10
@@ -103,6 +104,18 @@ accuracy: setup
 
 site: setup .venv/docs
 	$(BIN)/python docs/site/build_site.py build/site
+
+vscode: build/vscode/done
+	rm -rf build/vscode/extension
+	cp -R editors/vscode build/vscode/extension
+	node build/vscode/extension/pack.mjs build/vscode/extension build/vscode/sssgen.vsix
+
+# What packs and tests the extension, in the versions of its package.json.
+build/vscode/done: editors/vscode/package.json | build/system
+	@mkdir -p build/vscode
+	cp editors/vscode/package.json build/vscode/package.json
+	npm install --prefix build/vscode --ignore-scripts --no-audit --no-fund --loglevel=error
+	@touch $@
 
 engines: build/engines/godot/usr/bin/godot
 

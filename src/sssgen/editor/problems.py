@@ -11,6 +11,7 @@ from sssgen.editor.documents import Document
 from sssgen.editor.source_files import path_of
 from sssgen.ir.spans import Span
 from sssgen.support.diagnostics import Diagnostic
+from sssgen.support.paths import posix
 
 _SUGGESTED = re.compile(r"'([^']+)'")
 _WRONG = re.compile(r"'([^']+)'")
@@ -62,7 +63,8 @@ def _problem(document: Document, analysis: Analysis, own: tuple[str, ...], diagn
     severity, message, span, hint, _ = diagnostic
     if not span.file or span.file in own:
         return Problem(_within(document, range_of(span)), severity, message, hint)
-    place = f"{span.file}:{span.line}:{span.column}: " if span.line else f"{span.file}: "
+    shown = span.file.removeprefix(f"{posix(document.folder)}/")
+    place = f"{shown}:{span.line}:{span.column}: " if span.line else f"{shown}: "
     path = path_of(span.file, document, analysis.files)
     return Problem(_naming(document, span.file), severity, place + message, hint, path, range_of(span))
 

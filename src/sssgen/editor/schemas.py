@@ -148,15 +148,15 @@ def _light() -> Schema:
 
 
 def _geometry() -> Schema:
-    inner = {
+    inner: dict[str, Schema] = {
         "part": {
             "type": "array", "minItems": 1, "maxItems": scene_keys.MAX_PARTS,
             "items": {"$ref": "#/definitions/geometry"},
         },
         "parameters": {"type": "object"},
     }  # fmt: skip
-    required = {"union": ["part"], "mesh": ["file"], "distance": ["technique"]}
-    shapes = []
+    required: dict[str, list[str]] = {"union": ["part"], "mesh": ["file"], "distance": ["technique"]}
+    shapes: list[Schema] = []
     for kind, keys in scene_keys.SHAPES.items():
         properties = _keys({**scene_keys.PLACE, **keys}) | {key: inner[key] for key in keys if key in inner}
         then = _table({"kind": {"const": kind}, **properties}, required=required.get(kind, ()))
