@@ -4,8 +4,9 @@ A message is a JSON object with a `kind`; one from the page may carry the bytes 
 page that is connected to a server and one that runs this module in the browser.
 
 From the page: `shape` (a body from the list), `mesh` (a file as the body), `texture` (a file, or none, in a slot),
-`save` (parameters and chosen textures, for the files). To the page: `picture` (of the pane `pane`), `said` and `error`
-(a text).
+`save` (parameters and chosen textures, for the files); and, while the page shows emitted text, the questions `text` (of
+a target and a form) and `source` (a file that lines come from). To the page: `picture` (of the pane `pane`), `said` and
+`error` (a text), and the answer to a question, which has its kind.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from sssgen.preview.bodies import OWN_MESH, SHAPES, dropped_mesh
+from sssgen.preview.emitted_text import source_of, text_of
 from sssgen.preview.shown_picture import ShownPicture
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import FileState
@@ -52,6 +54,10 @@ class PageMessages:
             "texture": self._texture,
             "save": self._save,
         }
+        self._questions: Mapping[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
+            "text": self._text,
+            "source": self._source,
+        }
 
     @property
     def files(self) -> dict[str, FileState]:
@@ -75,6 +81,14 @@ class PageMessages:
             raise failure(f"the file has {len(data)} bytes", f"at most {MOST_BYTES} are read", str(message.get("name")))
         return self._answers[str(message["kind"])](dict(message), data)
 
+    def reply(self, message: Mapping[str, Any]) -> dict[str, Any] | None:
+        """The answer to a page's question, for this page only; None for a message that is none.
+
+        Raises as `answer` does.
+        """
+        question = self._questions.get(str(message["kind"]))
+        return question(dict(message)) if question else None
+
     def renew(self) -> None:
         """Makes the pictures again from the files."""
         for pane in self.panes:
@@ -85,6 +99,13 @@ class PageMessages:
         if number not in range(len(self.panes)):
             raise ValueError(number)
         return self.panes[number]
+
+    def _text(self, message: dict[str, Any]) -> dict[str, Any]:
+        pane = self._pane(message)
+        return text_of(pane.picture.material, str(message["target"]), str(message["form"]), pane.chosen.guards)
+
+    def _source(self, message: dict[str, Any]) -> dict[str, Any]:
+        return source_of(str(message["name"]), self.files)
 
     def _shape(self, message: dict[str, Any], _: bytes) -> str:
         shape = message["shape"]

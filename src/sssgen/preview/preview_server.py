@@ -153,7 +153,9 @@ class PreviewServer:
             async for frame in page:
                 try:
                     message, data = unpacked(frame.data) if isinstance(frame.data, bytes) else (parsed(frame.data), b"")
-                    if text := await self._change(functools.partial(self.talk.answer, message, data)):
+                    if reply := await self._reply(message):
+                        await page.send_json(reply)
+                    elif text := await self._change(functools.partial(self.talk.answer, message, data)):
                         await page.send_json({"kind": "said", "text": text})
                 except (ValueError, TypeError, KeyError, AttributeError):
                     await page.send_json({"kind": "error", "text": "the page sent a message that is not understood"})
@@ -162,6 +164,11 @@ class PreviewServer:
         finally:
             self.pages.discard(page)
         return page
+
+    async def _reply(self, message: dict[str, Any]) -> dict[str, Any] | None:
+        """The answer to a question of a page."""
+        async with self._making:
+            return await asyncio.to_thread(self.talk.reply, message)
 
     # Changes
 

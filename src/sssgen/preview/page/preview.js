@@ -2,6 +2,7 @@
 
 import { MESHES, onChoice, onDrop, refusal } from './chosen_files.js';
 import { connect } from './connection.js';
+import { EmittedText } from './emitted_text.js';
 import { Panel } from './panel.js';
 import { Stage } from './stage.js';
 import { TextureSlots } from './texture_slots.js';
@@ -82,7 +83,8 @@ async function show(message) {
 const next = (work) => { waiting = waiting.then(work, work); return waiting; };
 
 const python = connect((message) => {
-  if (message.kind === 'picture') next(() => show(message));
+  if (message.kind === 'picture') { next(() => show(message)); emitted.renew(); }
+  else if (message.kind === 'text' || message.kind === 'source') emitted.heard(message);
   else say(message.text);
 }, () => {
   say('sssgen preview has ended. Start it again, and open its new address.');
@@ -96,6 +98,8 @@ function useMesh(file) {
   if (!reason) python.sendFile({ kind: 'mesh', name: file.name }, file);
 }
 
+const emitted = new EmittedText(element('emitted'), (question) => python.send(question));
+element('show-text').addEventListener('click', () => emitted.toggle(!emitted.open));
 onDrop(document.body, useMesh);
 onChoice(element('choose-mesh'), MESHES, useMesh);
 element('shape').addEventListener('change', () => python.send({ kind: 'shape', shape: element('shape').value }));

@@ -1,0 +1,74 @@
+"""The emitted text of a target with the source of each line, and the text of these sources."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection
+from typing import Any
+
+from sssgen.material import library
+from sssgen.material.model import Material
+from sssgen.pipeline.compiler import FORMS, compile
+from sssgen.support.diagnostics import SssgenError, failure
+from sssgen.support.paths import place, posix
+from sssgen.support.text_files import read_text
+from sssgen.targets import registry
+
+DEFAULT = "glsl-330"
+_GUARDS = "guards/safe_"
+"""What the places of a builtin's guard begin with, which is in no file."""
+
+
+def text_of(material: Material, target: str, form: str, guards: str) -> dict[str, Any]:
+    """The message with the files of a target; where it cannot carry the material, with the error.
+
+    The first file is the one with the most lines that have a source.
+    Raises ValueError for a target or a form that does not exist.
+    """
+    names = registry.names()
+    target = target or DEFAULT
+    if target not in names or form not in FORMS:
+        raise ValueError(target, form)
+    message: dict[str, Any] = {"kind": "text"}
+    message |= {"target": target, "form": form, "targets": list(names), "error": "", "files": []}
+    try:
+        compiled = compile(material, target, form, guards=guards)
+    except SssgenError as error:
+        return {**message, "error": str(error)}
+    reflection = compiled.reflection
+    sources = reflection["source_map"]
+    message["files"] = [
+        {"name": name, "text": text, "sources": sources.get(name, {})}
+        for name, text in compiled.files.items()
+        if not name.endswith(".json")
+    ]
+    message["files"].sort(key=lambda file: -len(file["sources"]))
+    return message
+
+
+def source_of(name: str, read: Collection[str]) -> dict[str, Any]:
+    """The message with the text of a file that lines come from. Raises SssgenError.
+
+    It is one of the library, or one of those that were `read` for the picture; no other file is read.
+    """
+    if name.startswith(_GUARDS):
+        builtin = name.removeprefix(_GUARDS)
+        note = f"The guard of the builtin {builtin}, where its operands are not proven safe: sssgen show {builtin}"
+        return {"kind": "source", "name": name, "text": "", "note": note}
+    path = _path(name, read)
+    if not path:
+        raise failure(f"'{name}' is no file that this picture depends on", "it may have been renamed: save it again")
+    return {"kind": "source", "name": name, "text": read_text(path, posix(path)), "note": ""}
+
+
+def _path(name: str, read: Collection[str]) -> str:
+    """The path of a file as places name it: whole, or below the library or the examples; '' for others."""
+    whole = os.path.abspath(name)
+    if whole in read:
+        return whole
+    example = os.path.join(os.path.dirname(place("examples")), name)
+    if os.path.abspath(example) in read:
+        return example
+    known = os.path.normpath(os.path.join(library.TECHNIQUES, name))
+    below = known.startswith(os.path.join(os.path.normpath(library.TECHNIQUES), ""))
+    return known if below and known.endswith(".sss") and os.path.isfile(known) else ""
