@@ -64,6 +64,19 @@ def test_text_changes_sources_and_copy(browser: Any, tmp_path: Path) -> None:
         shown.close()
 
 
+def test_the_cost_and_how_to_measure_the_error(browser: Any, tmp_path: Path) -> None:
+    stone = tmp_path / "stone.toml"
+    stone.write_text(MATERIAL, encoding="utf-8")
+    shown = Shown(browser, str(stone))
+    try:
+        rows = shown.page.locator("#cost tr").all_inner_texts()
+        assert rows[0].split()[0] == "operations" and rows[1].split()[0] == "surface"
+        assert int(rows[1].split()[1]) == shown.server.talk.panes[0].picture.head["cost"]["surface"]["operations"]
+        shown.until(lambda: "not measured" in shown.page.inner_text("#measured"))
+    finally:
+        shown.close()
+
+
 @pytest.mark.parametrize(
     ("before", "after", "changed"),
     [

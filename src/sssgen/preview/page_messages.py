@@ -4,9 +4,9 @@ A message is a JSON object with a `kind`; one from the page may carry the bytes 
 page that is connected to a server and one that runs this module in the browser.
 
 From the page: `shape` (a body from the list), `mesh` (a file as the body), `texture` (a file, or none, in a slot),
-`save` (parameters and chosen textures, for the files); and, while the page shows emitted text, the questions `text` (of
-a target and a form) and `source` (a file that lines come from). To the page: `picture` (of the pane `pane`), `said` and
-`error` (a text), and the answer to a question, which has its kind.
+`save` (parameters and chosen textures, for the files); the question `measured` (the error in a chart); and, while the
+page shows emitted text, `text` (of a target and a form) and `source` (a file that lines come from). To the page:
+`picture` (of the pane `pane`), `said` and `error` (a text), and the answer to a question, which has its kind.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from typing import Any
 
 from sssgen.preview.bodies import OWN_MESH, SHAPES, dropped_mesh
 from sssgen.preview.emitted_text import source_of, text_of
+from sssgen.preview.measured_error import measured_error
 from sssgen.preview.shown_picture import ShownPicture
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import FileState
@@ -57,6 +58,7 @@ class PageMessages:
         self._questions: Mapping[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
             "text": self._text,
             "source": self._source,
+            "measured": self._measured,
         }
 
     @property
@@ -106,6 +108,10 @@ class PageMessages:
 
     def _source(self, message: dict[str, Any]) -> dict[str, Any]:
         return source_of(str(message["name"]), self.files)
+
+    def _measured(self, message: dict[str, Any]) -> dict[str, Any]:
+        pane = self._pane(message)
+        return {"kind": "measured", "text": measured_error(pane.scene, pane.picture.material)}
 
     def _shape(self, message: dict[str, Any], _: bytes) -> str:
         shape = message["shape"]

@@ -2,6 +2,7 @@
 
 import { MESHES, onChoice, onDrop, refusal } from './chosen_files.js';
 import { connect } from './connection.js';
+import { CostBox } from './cost.js';
 import { EmittedText } from './emitted_text.js';
 import { Panel } from './panel.js';
 import { Stage } from './stage.js';
@@ -66,6 +67,7 @@ async function show(message) {
   element('shape').replaceChildren(...shapes);
   element('shape').value = picture.shape;
   panel.show(picture.controls);
+  cost.show(picture);
   slots.show(picture.textures, message.limit);
   buttons();
   try {
@@ -84,6 +86,7 @@ const next = (work) => { waiting = waiting.then(work, work); return waiting; };
 
 const python = connect((message) => {
   if (message.kind === 'picture') { next(() => show(message)); emitted.renew(); }
+  else if (message.kind === 'measured') cost.heard(message);
   else if (message.kind === 'text' || message.kind === 'source') emitted.heard(message);
   else say(message.text);
 }, () => {
@@ -98,6 +101,7 @@ function useMesh(file) {
   if (!reason) python.sendFile({ kind: 'mesh', name: file.name }, file);
 }
 
+const cost = new CostBox(element('cost'), (question) => python.send(question));
 const emitted = new EmittedText(element('emitted'), (question) => python.send(question));
 element('show-text').addEventListener('click', () => emitted.toggle(!emitted.open));
 onDrop(document.body, useMesh);

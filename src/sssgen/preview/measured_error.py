@@ -1,0 +1,65 @@
+"""The error of the chart's entry that is nearest to a material, where a chart of its scene is in the cache."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from sssgen.harness.scenes.scene import Scene
+from sssgen.lab.chart.charting import Settings, cached
+from sssgen.lab.chart.picking import cost_of, limit_of
+from sssgen.lab.chart.record import measures
+from sssgen.lab.measure.candidates import ROLES, is_path
+from sssgen.lab.scene import measured_scene
+from sssgen.material.model import Material
+from sssgen.support.paths import posix
+
+_MEASURED = (*ROLES, "conversion")
+"""The roles whose techniques a chart compares."""
+
+
+def measured_error(scene: Scene, material: Material) -> str:
+    """The error with its entry, or what is to be done to have one. Raises SssgenError for a faulty scene."""
+    if not {"medium", "inlay"} & set(scene.measured):
+        return "Error: not measured, as the scene has no [medium] and no [inlay]."
+    file = scene.document.reporter.file
+    record = cached(measured_scene.load(file), Settings())
+    if record is None:
+        return f"Error: no chart of this scene is in the cache. It takes minutes: sssgen chart {_quoted(file)}"
+    names = _names(material)
+    point = nearest(record["points"], names)
+    if point is None:
+        return "Error: the chart of this scene has no complete chain."
+    same = "this chain" if _named(point) == names else "the nearest chain"
+    error, highest = measures(point)[1], limit_of(point)
+    numbers = f"{error:.3g}, at most {highest:.3g}; its cost {cost_of(point):g}"
+    return f"Error of {same} in the chart, {point['label']}: {numbers}."
+
+
+def nearest(points: Sequence[Mapping[str, Any]], names: frozenset[str]) -> Mapping[str, Any] | None:
+    """The complete chain with the fewest other techniques than these; of several the one with the least error."""
+    whole = [point for point in points if point["role"] in ("material", "coordinates") and not point.get("failed")]
+    return min(whole, key=lambda point: (len(_named(point) ^ names), limit_of(point)), default=None)
+
+
+def _named(point: Mapping[str, Any]) -> frozenset[str]:
+    """The techniques of a chart's point."""
+    return frozenset(filter(None, (*point["chain"], point.get("path", ""))))
+
+
+def _names(material: Material) -> frozenset[str]:
+    """The techniques of a material that a chart compares, with the functions of lengths inside the body."""
+    stages = [stage for stage in material.stages if stage.technique.role in _MEASURED]
+    paths = [
+        stage.bindings[slot.name].function.name
+        for stage in stages
+        for slot in stage.technique.slots
+        if is_path(slot) and slot.name in stage.bindings
+    ]
+    return frozenset((*(stage.technique.name for stage in stages), *paths))
+
+
+def _quoted(file: str) -> str:
+    shown = posix(os.path.relpath(file)) if not os.path.relpath(file).startswith(os.pardir) else posix(file)
+    return f'"{shown}"' if " " in shown else shown
