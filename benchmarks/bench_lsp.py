@@ -1,10 +1,10 @@
-"""Measures the language server: `make bench`, or python benchmarks/bench_lsp.py [EDITS].
+"""Measures the language server: `make bench`, or python benchmarks/bench_lsp.py [EDITS [KIND]].
 
 For each kind of file: the time from a changed text to its problems, and that of an explanation, as a share of the goal
 (50 ms and 10 ms). Every edit gives a text that was not read before. A row has the median and the largest of all files
 of the kind, and the 99th percentile of the explanations of their names: the examples, techniques, and the shaders of
-the examples as plain GLSL. The last rows change one file of each kind EDITS times (default: 1,000), and show the memory
-of the process after the first and the second half.
+the examples as plain GLSL. The last rows change one file of each kind EDITS times (default: 1,000), or one of a KIND
+(technique, material, scene, glsl), and show the memory of the process after the first and the second half.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ def main() -> None:
             shares = f"{cells[0]:8.0%} {cells[1]:8.0%}      {cells[2]:8.0%} {cells[3]:8.0%}"
             print(f"{kind:10} {len(first):5}   {shares}  {slowest[kind][1]}")
         print(f"\nmemory in MB, at the start and after {edits // 2} and {edits} edits of one file")
-        for kind in rows:
+        for kind in sys.argv[2:] or rows:
             path, text = next((path, text) for own, path, text in files if own == kind)
             sizes = [resident()]
             for number in range(edits):
