@@ -119,8 +119,10 @@ def test_a_faulty_picture_is_refused_and_the_slot_stays(
     assert talk.messages() == before
 
 
-def test_a_texture_that_the_page_draws_takes_no_picture() -> None:
-    talk = PageMessages(ShownPicture("jade_ring"))
+def test_a_texture_that_the_page_draws_takes_no_picture(folder: Path) -> None:
+    with (folder / "stone.toml").open("a", encoding="utf-8") as file:
+        file.write('[[thickness]]\ntechnique = "depth_map_thickness"\n[translucency]\ntechnique = "absorption_tint"\n')
+    talk = PageMessages(ShownPicture(str(folder / "stone.toml")))
     row = next(row for row in talk.messages()[0]["picture"]["textures"] if row["page_draws"])
     with pytest.raises(SssgenError, match="drawn for each frame"):
         talk.answer({"kind": "texture", "slot": row["property"], "name": "a.png"}, RED)

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from sssgen.preview import emitted_text
+from sssgen.preview import shown_picture
 from sssgen.preview.page_messages import PageMessages
 from sssgen.preview.shown_picture import ShownPicture
 from sssgen.support.diagnostics import SssgenError, failure
@@ -70,7 +70,7 @@ def test_what_a_target_cannot_carry_is_the_answer(talk: PageMessages, monkeypatc
     def refused(*_: object, **__: object) -> None:
         raise failure("this target has no textures", "take another one")
 
-    monkeypatch.setattr(emitted_text, "compile", refused)
+    monkeypatch.setattr(shown_picture, "compile", refused)
     reply = asked(talk, kind="text", target="wgsl", form="shader")
     assert "this target has no textures" in reply["error"] and not reply["files"]
 

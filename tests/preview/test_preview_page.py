@@ -144,9 +144,7 @@ def test_many_saves_end_on_the_newest(shown: Shown, stone: Path) -> None:
     shown.until(lambda: abs(shown.page.evaluate(value) - 99 / 200) < 1e-6)
 
 
-EXAMPLES = sorted(
-    path.parent.name for path in (ROOT / "examples").glob("*/scene.toml") if path.parent.name != "jelly_cubes"
-)
+EXAMPLES = sorted(path.parent.name for path in (ROOT / "examples").glob("*/scene.toml"))
 
 
 @pytest.mark.parametrize("renderer", ["webgl", "webgl2"])

@@ -65,9 +65,12 @@ class Shown:
         self.faults: list[str] = []
         self.page.on("pageerror", lambda error: self.faults.append(str(error)))
         self.page.goto(self.server.url)
-        if renderer != "webgpu":
+        ready = "preview.stage?.drafts.sharp"
+        self.until(lambda: self.page.evaluate(ready) or self.error())
+        shown_by = self.page.evaluate("preview.stage?.kind ?? ''")
+        if renderer not in ("webgpu", shown_by) and self.page.is_visible("#renderer"):
             self.page.select_option("#renderer", renderer)
-        self.until(lambda: self.page.evaluate("preview.stage?.drafts.sharp") or self.error())
+            self.until(lambda: self.page.evaluate(f"preview.stage?.kind === '{renderer}' && {ready}"))
 
     def _run(self) -> None:
         asyncio.set_event_loop(self.loop)

@@ -10,8 +10,13 @@ from sssgen.cli.output import OK
 
 
 def add_options(parser: ArgumentParser) -> None:
-    parser.epilog = "examples:\n  sssgen preview ice\n  sssgen preview mine.toml --mesh bust.glb"
-    parser.add_argument("NAME", help="a material's or a scene's .toml file, or an example from `sssgen list materials`")
+    parser.epilog = (
+        "examples:\n  sssgen preview ice\n  sssgen preview mine.toml --mesh bust.glb\n"
+        "  sssgen preview ice ice_body\n"
+        "  sssgen preview clouds.glsl"
+    )
+    parser.add_argument("NAME", help="a material's or a scene's .toml file, plain GLSL, or an example's name")
+    parser.add_argument("OTHER", nargs="?", help="another one, which is shown beside it")
     parser.add_argument("--mesh", metavar="FILE", help="a mesh (.glb, .obj, …) to show the material on")
     parser.add_argument("--port", type=int, default=0, metavar="N", help="the port on 127.0.0.1 (default: a free one)")
     parser.add_argument("--no-browser", action="store_true", help="print the address, and open no browser")
@@ -27,7 +32,8 @@ def run(arguments: Namespace) -> int:
     mesh = checked_mesh(Mesh(path=arguments.mesh)) if arguments.mesh else None
 
     async def serve() -> None:
-        server = PreviewServer(ShownPicture(arguments.NAME, mesh))
+        other = ShownPicture(arguments.OTHER, mesh) if arguments.OTHER else None
+        server = PreviewServer(ShownPicture(arguments.NAME, mesh), other)
         await server.run(arguments.port, not arguments.no_browser, lambda line: print(line, flush=True))
 
     with contextlib.suppress(KeyboardInterrupt):

@@ -85,12 +85,12 @@ def framed(geometry: Geometry, towards: npt.ArrayLike, field_of_view: float) -> 
 def packed(geometry: Geometry) -> bytes:
     """The packed triangles; those of the last bodies are kept until a file of theirs changes.
 
-    The triangles of a distance function, which take a second, are in the cache folder, too.
+    The triangles of the shapes that are distance functions, which take seconds, are in the cache folder, too.
     """
     at_origin = dataclasses.replace(geometry, position=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0), scale=1.0)
     content = hashlib.sha256(geometry.data).hexdigest() if isinstance(geometry, Mesh) and geometry.data else ""
     key = repr(at_origin) + content
-    if isinstance(at_origin, Distance):
+    if isinstance(at_origin, Distance) and at_origin in SHAPES.values():
         return remembered(_bodies, key, lambda: _stored(at_origin, key), MOST_BODIES)
     return remembered(_bodies, key, lambda: body_triangles(copy.deepcopy(at_origin)).packed(), MOST_BODIES)
 

@@ -27,7 +27,7 @@ def emitted_head(
         "name": material.name,
         "title": material.title,
         "module": next(text for name, text in compiled.files.items() if name.endswith(".js")),
-        "controls": _controls(reflection, values, in_scene),
+        "controls": controls(reflection, values, in_scene),
         "textures": [
             {
                 "property": texture["property"],
@@ -46,7 +46,7 @@ def emitted_head(
     }
 
 
-def _controls(
+def controls(
     reflection: Mapping[str, Any], values: Mapping[str, Sequence[float]], in_scene: Collection[str]
 ) -> list[dict[str, Any]]:
     """The parameters that a person may change, with what a control needs to know."""

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from typing import Any
 
 from sssgen.material import library
-from sssgen.material.model import Material
-from sssgen.pipeline.compiler import FORMS, compile
+from sssgen.pipeline.compiler import FORMS, Compiled
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.paths import place, posix
 from sssgen.support.text_files import read_text
@@ -19,10 +18,10 @@ _GUARDS = "guards/safe_"
 """What the places of a builtin's guard begin with, which is in no file."""
 
 
-def text_of(material: Material, target: str, form: str, guards: str) -> dict[str, Any]:
+def text_of(emitted: Callable[[str, str], Compiled], target: str, form: str) -> dict[str, Any]:
     """The message with the files of a target; where it cannot carry the material, with the error.
 
-    The first file is the one with the most lines that have a source.
+    `emitted` gives the files of a target and a form. The first file is the one with the most lines that have a source.
     Raises ValueError for a target or a form that does not exist.
     """
     names = registry.names()
@@ -32,7 +31,7 @@ def text_of(material: Material, target: str, form: str, guards: str) -> dict[str
     message: dict[str, Any] = {"kind": "text"}
     message |= {"target": target, "form": form, "targets": list(names), "error": "", "files": []}
     try:
-        compiled = compile(material, target, form, guards=guards)
+        compiled = emitted(target, form)
     except SssgenError as error:
         return {**message, "error": str(error)}
     reflection = compiled.reflection

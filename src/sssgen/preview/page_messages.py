@@ -3,10 +3,11 @@
 A message is a JSON object with a `kind`; one from the page may carry the bytes of a file. The same messages serve a
 page that is connected to a server and one that runs this module in the browser.
 
-From the page: `shape` (a body from the list), `mesh` (a file as the body), `texture` (a file, or none, in a slot),
-`save` (parameters and chosen textures, for the files); the question `measured` (the error in a chart); and, while the
-page shows emitted text, `text` (of a target and a form) and `source` (a file that lines come from). To the page:
-`picture` (of the pane `pane`), `said` and `error` (a text), and the answer to a question, which has its kind.
+From the page: `shape` (a body from the list), `beside` (what stands beside the picture), `mesh` (a file as the body),
+`texture` (a file, or none, in a slot), `save` (parameters and chosen textures, for the files); the question `measured`
+(the error in a chart); and, while the page shows emitted text, `text` (of a target and a form) and `source` (a file
+that lines come from). To the page: `picture` (of the pane `pane`), `said` and `error` (a text), and the answer to a
+question, which has its kind.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from typing import Any
 from sssgen.preview.bodies import OWN_MESH, SHAPES, dropped_mesh
 from sssgen.preview.emitted_text import source_of, text_of
 from sssgen.preview.measured_error import measured_error
-from sssgen.preview.shown_picture import ShownPicture
+from sssgen.preview.shown_picture import EarlierPicture, ShownPicture
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import FileState
 
@@ -44,13 +45,21 @@ def parsed(text: str | bytes) -> dict[str, Any]:
     return message
 
 
+BESIDE = {"": "nothing", "guards": "without guards", "start": "as it was at the start"}
+"""What may stand beside a picture, and its name on the page."""
+OTHER = "other"
+"""The second of two names on the command line."""
+
+
 class PageMessages:
     """The panes of the pages, and what the pages may ask."""
 
-    def __init__(self, *panes: ShownPicture) -> None:
-        self.panes = list(panes)
+    def __init__(self, shown: ShownPicture, other: ShownPicture | None = None) -> None:
+        self.panes = [shown] if other is None else [shown, other]
+        self._other, self._beside = other, "" if other is None else OTHER
         self._answers: Mapping[str, Callable[[dict[str, Any], bytes], str]] = {
             "shape": self._shape,
+            "beside": self._place_beside,
             "mesh": self._mesh,
             "texture": self._texture,
             "save": self._save,
@@ -72,7 +81,14 @@ class PageMessages:
 
     def messages(self) -> list[dict[str, Any]]:
         """What a page gets at its start and after each change: a picture for each pane."""
-        return [{**pane.message(), "pane": number, "limit": MOST_BYTES} for number, pane in enumerate(self.panes)]
+        other = {} if self._other is None else {OTHER: self._other.label}
+        common = {
+            "panes": len(self.panes),
+            "beside": self._beside,
+            "besides": {**BESIDE, **other},
+            "limit": MOST_BYTES,
+        }
+        return [{**pane.message(), "pane": number, **common} for number, pane in enumerate(self.panes)]
 
     def answer(self, message: Mapping[str, Any], data: bytes = b"") -> str:
         """Does what a page asks, and says what it wrote; `messages` is then what all pages get.
@@ -104,14 +120,15 @@ class PageMessages:
 
     def _text(self, message: dict[str, Any]) -> dict[str, Any]:
         pane = self._pane(message)
-        return text_of(pane.picture.material, str(message["target"]), str(message["form"]), pane.chosen.guards)
+        return text_of(pane.emitted, str(message["target"]), str(message["form"]))
 
     def _source(self, message: dict[str, Any]) -> dict[str, Any]:
         return source_of(str(message["name"]), self.files)
 
     def _measured(self, message: dict[str, Any]) -> dict[str, Any]:
         pane = self._pane(message)
-        return {"kind": "measured", "text": measured_error(pane.scene, pane.picture.material)}
+        scene, material = pane.scene, pane.picture.material
+        return {"kind": "measured", "text": measured_error(scene, material) if scene and material else ""}
 
     def _shape(self, message: dict[str, Any], _: bytes) -> str:
         shape = message["shape"]
@@ -120,6 +137,17 @@ class PageMessages:
         for pane in self.panes:
             if shape != OWN_MESH or pane.chosen.mesh is not None:
                 pane.choose(pane.chosen._replace(shape=shape))
+        return ""
+
+    def _place_beside(self, message: dict[str, Any], _: bytes) -> str:
+        what, first = message["beside"], self.panes[0]
+        if what == OTHER and self._other is not None:
+            beside = [self._other]
+        elif what == "guards":
+            beside = [ShownPicture(first.name, chosen=first.chosen._replace(guards="none"))]
+        else:
+            beside = [] if BESIDE[what] == BESIDE[""] else [EarlierPicture(first)]
+        self.panes[1:], self._beside = beside, what
         return ""
 
     def _mesh(self, message: dict[str, Any], data: bytes) -> str:

@@ -6,7 +6,7 @@ import dataclasses
 import functools
 import hashlib
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -36,7 +36,21 @@ class Picture(NamedTuple):
     """JSON: the module, the controls, the textures, the lights, the camera; what is large is named by its digest."""
     pieces: dict[str, bytes]
     """Digest → triangles or texels."""
-    material: Material
+    material: Material | None
+    """None for plain GLSL"""
+
+
+class Pieces:
+    """What is large in a picture, by its digest."""
+
+    def __init__(self) -> None:
+        self.data: dict[str, bytes] = {}
+
+    def add(self, data: bytes) -> str:
+        """The digest of a piece."""
+        digest = _digest(data)
+        self.data[digest] = data
+        return digest
 
 
 class Chosen(NamedTuple):
@@ -54,10 +68,7 @@ def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
     """The picture of a material in a scene. Raises SssgenError."""
     compiled = compile(material, TARGET, guards=chosen.guards)
     if scene.geometry is None:
-        raise failure(
-            f"{material.name} makes its own rays: it is a flat picture, not a material of a body",
-            "sssgen render draws it",
-        )
+        raise failure("the scene has no body", "add [geometry]", scene.document.reporter.file)
     scene = _on_shape(scene, chosen)
     named = {texture["property"]: texture["source_name"] for texture in compiled.reflection["textures"]}
     given = {
@@ -65,22 +76,17 @@ def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
     }
     own = {**scene.textures, **given}
     shell = shell_of(dataclasses.replace(scene, textures=own), material, _without_views(compiled.reflection))
-    pieces: dict[str, bytes] = {}
-
-    def piece(data: bytes) -> str:
-        digest = _digest(data)
-        pieces[digest] = data
-        return digest
-
+    pieces = Pieces()
     assert scene.geometry is not None  # `_on_shape` keeps one
     head = emitted_head(material, compiled, shell.parameters, scene.parameters)
     head |= {
         "shape": chosen.shape,
         "shapes": ["", *SHAPES, *([OWN_MESH] if chosen.mesh is not None else [])],
+        "saves": "",
         "mesh": os.path.basename(chosen.mesh.path) if chosen.mesh is not None else "",
-        "body": piece(packed(scene.geometry)),
+        "body": pieces.add(packed(scene.geometry)),
         "model": scene.geometry.to_world().T.ravel().tolist(),
-        "textures": [_with_texels(row, shell, chosen, piece) for row in head["textures"]],
+        "textures": [_with_texels(row, shell, chosen, pieces) for row in head["textures"]],
         "lights": [
             {"position": position.tolist(), "color": color.tolist()}
             for position, color in zip(shell.light_positions, shell.light_colors, strict=True)
@@ -92,7 +98,7 @@ def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
         "tone_mapping": scene.shell.get("tone_mapping", ""),
         "camera": _camera(scene, chosen.shape),
     }
-    return Picture(head, pieces, material)
+    return Picture(head, pieces.data, material)
 
 
 def _on_shape(scene: Scene, chosen: Chosen) -> Scene:
@@ -123,15 +129,16 @@ def _without_views(reflection: Mapping[str, Any]) -> dict[str, Any]:
     return {**reflection, "textures": textures}
 
 
-def _with_texels(row: Mapping[str, Any], shell: Shell, chosen: Chosen, piece: Any) -> dict[str, Any]:
+def _with_texels(row: Mapping[str, Any], shell: Shell, chosen: Chosen, pieces: Pieces) -> dict[str, Any]:
     """The row of a texture with its texels; one that the page draws itself has none."""
     page_draws = row["drawn"] in DRAWN_BY_PAGE
     row = {**row, "page_draws": page_draws, "chosen": os.path.basename(chosen.textures.get(row["property"], ""))}
     bound = shell.textures.get(row["source_name"])
-    return {**row, "texels": _texels(bound, piece)} if bound is not None and not page_draws else row
+    return {**row, "texels": texels_of(bound, pieces.add)} if bound is not None and not page_draws else row
 
 
-def _texels(texture: Texture, piece: Any) -> dict[str, Any]:
+def texels_of(texture: Texture, piece: Callable[[bytes], str]) -> dict[str, Any]:
+    """A texture for the page: its levels as pieces."""
     levels = [{"size": texture.size(number), "data": piece(data)} for number, data in enumerate(_levels(texture))]
     return {"dim": texture.dim, "filter": texture.filter, "wrap": texture.wrap, "levels": levels}
 

@@ -42,9 +42,9 @@ IMPORT_MAP = '{"imports": {}}'
 class PreviewServer:
     """The pages of one preview, and the pictures that they show."""
 
-    def __init__(self, *shown: ShownPicture) -> None:
+    def __init__(self, shown: ShownPicture, other: ShownPicture | None = None) -> None:
         self.web = need("aiohttp.web", "aiohttp", "preview")
-        self.talk, self.token, self.port = PageMessages(*shown), secrets.token_urlsafe(16), 0
+        self.talk, self.token, self.port = PageMessages(shown, other), secrets.token_urlsafe(16), 0
         self.pages: set[Any] = set()
         self.library = Library({}, {})
         self._making = asyncio.Lock()

@@ -7,10 +7,14 @@ from typing import Any
 
 from sssgen.harness.scenes.geometry import Mesh
 from sssgen.harness.scenes.preview_scene import scene_of
+from sssgen.harness.scenes.scene import Scene
 from sssgen.material.material_loading import load_material
+from sssgen.material.model import Material
+from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.preview.bodies import OWN_MESH
 from sssgen.preview.chosen_textures import ChosenTextures, saved
-from sssgen.preview.picture import Chosen, picture_of
+from sssgen.preview.flat_picture import is_plain, plain_picture, plain_text, raymarched_picture
+from sssgen.preview.picture import Chosen, Picture, picture_of
 from sssgen.preview.saved_values import save_to_material, save_to_scene
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.file_memo import FileState, noted_files
@@ -26,6 +30,7 @@ class ShownPicture:
         self.files: dict[str, FileState] = {}
         self._textures = ChosenTextures()
         self._make()
+        self.first = self.scene, self.picture
 
     @property
     def pieces(self) -> Mapping[str, bytes]:
@@ -35,14 +40,15 @@ class ShownPicture:
         """The picture of the files; after an error, `files` has those that were read or searched for, too."""
         with noted_files() as read:
             try:
-                scene = scene_of(self.name)
-                picture = picture_of(scene, load_material(scene.material), self.chosen)
-                self.scene, self.picture = scene, picture
+                self.scene, self.picture = self._made()
             except Exception:
                 self.files = {**self.files, **read}
                 raise
         self.files = {**read}
         self.version += 1
+
+    def _made(self) -> tuple[Scene | None, Picture]:
+        return _picture(self.name, self.chosen)
 
     def renew(self) -> None:
         """Makes the picture again. Where the files have errors, the last good one stays, beside the errors."""
@@ -64,9 +70,27 @@ class ShownPicture:
                 self.chosen = before
                 raise
 
+    @property
+    def label(self) -> str:
+        """What tells this picture from one beside it."""
+        title: str = self.picture.head["title"]
+        return f"{title}, without guards" if self.chosen.guards == "none" else title
+
     def message(self) -> dict[str, Any]:
         """What a page gets: the picture, and the errors or ''."""
-        return {"kind": "picture", "version": self.version, "error": self.error, "picture": self.picture.head}
+        return {
+            "kind": "picture",
+            "version": self.version,
+            "error": self.error,
+            "label": self.label,
+            "picture": self.picture.head,
+        }
+
+    def emitted(self, target: str, form: str) -> Compiled:
+        """The text of a target. Raises SssgenError where the target cannot carry the material."""
+        if self.picture.material is None:
+            return plain_text(self.name, target, self.chosen.guards)
+        return compile(self.picture.material, target, form, guards=self.chosen.guards)
 
     def choose_texture(self, slot: str, name: str, data: bytes) -> None:
         """Shows a picture in the slot of that property, or for no bytes the file's own. Raises SssgenError."""
@@ -78,9 +102,10 @@ class ShownPicture:
 
     def save_textures(self) -> str:
         """Writes the chosen pictures beside the file that names the texture; says what it did. Raises SssgenError."""
-        said = []
-        for slot, file in self.chosen.textures.items():
-            said.append(saved(self._row(slot), file, self.scene, self.picture.material))
+        if not self.chosen.textures:
+            return ""
+        scene, material = self._written()
+        said = [saved(self._row(slot), file, scene, material) for slot, file in self.chosen.textures.items()]
         self.chosen = self.chosen._replace(textures={})
         return " ".join(said)
 
@@ -90,7 +115,13 @@ class ShownPicture:
             if row["property"] == slot:
                 found: dict[str, Any] = row
                 return found
-        raise failure(f"{self.picture.material.name} has no texture '{slot}'")
+        raise failure(f"{self.picture.head['name']} has no texture '{slot}'")
+
+    def _written(self) -> tuple[Scene, Material]:
+        """The scene and the material whose files hold the values. Raises SssgenError where there are none."""
+        if self.scene is None or self.picture.material is None or self.picture.head["saves"]:
+            raise failure("nothing can be saved here", self.picture.head["saves"])
+        return self.scene, self.picture.material
 
     def save(self, values: Mapping[str, Sequence[float]]) -> None:
         """Writes parameters, by the names of their properties, to the scene where it sets them, else to the material.
@@ -98,13 +129,47 @@ class ShownPicture:
         Raises SssgenError for a property that the material does not have.
         """
         controls = {control["property"]: control for control in self.picture.head["controls"]}
+        scene, material = self._written()
         for name, numbers in values.items():
             if name not in controls or len(numbers) != len(controls[name]["default"]):
-                raise failure(f"{self.picture.material.name} has no parameter '{name}' of {len(numbers)} numbers")
+                raise failure(f"{material.name} has no parameter '{name}' of {len(numbers)} numbers")
         in_scene = {name for name in values if controls[name]["in_scene"]}
         if in_scene:
             own = {str(controls[name]["label"]): values[name] for name in in_scene}
-            save_to_scene(self.scene.document.reporter.file, own)
+            save_to_scene(scene.document.reporter.file, own)
         if others := {name: values[name] for name in values if name not in in_scene}:
             changes = {(controls[name]["technique"], controls[name]["name"]): value for name, value in others.items()}
-            save_to_material(self.picture.material, changes)
+            save_to_material(material, changes)
+
+
+class EarlierPicture(ShownPicture):
+    """Material and scene as they were when the preview started; textures and meshes are read as they are now."""
+
+    def __init__(self, now: ShownPicture) -> None:
+        self._then = now.first
+        super().__init__(now.name, chosen=now.chosen._replace(guards="auto", textures={}))
+
+    @property
+    def label(self) -> str:
+        return f"{self.picture.head['title']}, at the start"
+
+    def _made(self) -> tuple[Scene | None, Picture]:
+        scene, picture = self._then
+        head = picture.head
+        if "flat" in head or (self.chosen.shape, self.chosen.textures) == (head["shape"], {}):
+            changed = picture
+        else:
+            assert scene is not None and picture.material is not None  # only plain GLSL has none
+            changed = picture_of(scene, picture.material, self.chosen)
+        return scene, changed._replace(head={**changed.head, "saves": "this is the material as it was"})
+
+
+def _picture(name: str, chosen: Chosen) -> tuple[Scene | None, Picture]:
+    """The scene and the picture of what a name stands for. Raises SssgenError."""
+    if is_plain(name):
+        return None, plain_picture(name, chosen)
+    scene = scene_of(name)
+    material = load_material(scene.material)
+    if any(stage.technique.role == "geometry" for stage in material.stages):
+        return scene, raymarched_picture(scene, material, chosen)
+    return scene, picture_of(scene, material, chosen)

@@ -38,7 +38,7 @@ export class Panel {
     this.root.replaceChildren();
     const groups = Map.groupBy(controls.filter((control) => !control.drawn && !control.type.startsWith('mat')), (control) => control.technique);
     for (const [technique, members] of groups) {
-      this.root.append(make('h2', { textContent: technique }), ...members.map((control) => this.row(control)));
+      this.root.append(make('h2', { textContent: technique || 'uniforms' }), ...members.map((control) => this.row(control)));
     }
   }
 
@@ -75,7 +75,7 @@ export class Panel {
 
   number(control, read) {
     const [low, high] = control.range ?? ['', ''];
-    return make('input', { type: 'number', className: 'number', step: /int/.test(control.type) ? 1 : 'any', min: low, max: high, oninput: read });
+    return make('input', { type: 'number', className: control.value.length === 3 ? 'number of-three' : 'number', step: /int/.test(control.type) ? 1 : 'any', min: low, max: high, oninput: read });
   }
 
   ofSlider(control, share) {

@@ -4,80 +4,113 @@ import { MESHES, onChoice, onDrop, refusal } from './chosen_files.js';
 import { connect } from './connection.js';
 import { CostBox } from './cost.js';
 import { EmittedText } from './emitted_text.js';
-import { Panel } from './panel.js';
-import { Stage } from './stage.js';
-import { TextureSlots } from './texture_slots.js';
+import { Pane } from './pane.js';
 
 const element = (id) => document.getElementById(id);
 const pieces = new Map();
-let stage = null;
-let last = null;
+const panes = [];
+let active = 0;  // the pane whose controls are shown
 let waiting = Promise.resolve();
 
 const say = (text) => { element('status').textContent = text; };
 
-/** A piece of the picture, fetched once while pictures name it. */
-async function pieceOf(digest) {
-  if (!pieces.has(digest)) pieces.set(digest, await python.piece(digest));
-  return pieces.get(digest);
-}
+const page = {
+  say,
 
-const panel = new Panel(element('controls'), (property, numbers) => {
-  stage?.set(property, numbers);
-  buttons();
-});
+  /** A piece of the pictures, fetched once while pictures name it. */
+  async pieceOf(digest) {
+    if (!pieces.has(digest)) pieces.set(digest, await python.piece(digest));
+    return pieces.get(digest);
+  },
 
-const slots = new TextureSlots(element('textures'), pieceOf, (row, file) => {
-  python.sendFile({ kind: 'texture', slot: row.property, name: file?.name ?? '' }, file ?? '');
-}, say);
+  settings: () => ({ renderer: element('renderer').value, environment: element('environment').checked }),
+  fallback(renderer) { element('renderer').value = renderer; },
+
+  changed(pane, property, numbers) {
+    pane.stage?.set(property, numbers);
+    if (pane === panes[0] && follows()) panes[1].stage?.set(property, numbers);
+    buttons();
+  },
+
+  looked(pane) { for (const other of panes) if (other !== pane && pane.stage?.orbit) other.follow(pane.stage); },
+
+  texture(pane, row, file) {
+    python.sendFile({ kind: 'texture', pane: pane.number, slot: row.property, name: file?.name ?? '' }, file ?? '');
+  },
+};
+
+/** Whether the second pane has the values of the first: the same material without guards. */
+const follows = () => panes.length > 1 && panes[0].last?.beside === 'guards';
+
+const shownPane = () => panes[active] ?? panes[0];
 
 function buttons() {
-  const textures = last?.picture.textures.some((row) => row.chosen);
-  element('save').disabled = element('reset').disabled = panel.values.size === 0 && !textures;
+  const pane = shownPane();
+  const reason = pane?.picture?.saves ?? '';
+  element('save').disabled = !pane?.changed || Boolean(reason);
+  element('save').title = reason;
+  element('reset').disabled = !pane?.changed;
 }
 
-function complain(text) {
-  element('error').hidden = !text;
-  element('error').textContent = text;
+function complain() {
+  const texts = panes.filter((pane) => pane.complaint).map((pane) => (panes.length > 1 ? `${pane.last.label}\n` : '') + pane.complaint);
+  element('error').hidden = texts.length === 0;
+  element('error').textContent = texts.join('\n\n');
 }
 
-/** A stage with the chosen renderer; without WebGPU that of WebGL 2, which is said. */
-async function stageFor(kind) {
-  const next = new Stage(element('stage'), kind, pieceOf);
-  try {
-    await next.start();
-    next.environment(element('environment').checked);
-    return next;
-  } catch (error) {
-    next.dispose();
-    if (kind !== 'webgpu') throw error;
-    say(`WebGPU is not available here (${error.message}): this is its WebGL 2 fallback.`);
-    element('renderer').value = 'webgl2';
-    return stageFor('webgl2');
+/** As many panes as the server shows. */
+function fit(count) {
+  while (panes.length > count) {
+    const pane = panes.pop();
+    pane.stop();
+    pane.root.remove();
   }
+  while (panes.length < count) {
+    panes.push(new Pane(page, panes.length));
+    element('stage').append(panes.at(-1).root);
+  }
+  active = Math.min(active, count - 1);
+  document.body.classList.toggle('beside', count > 1);
+}
+
+/** The lists and the controls of the pane that was chosen. */
+function list() {
+  const pane = shownPane();
+  if (!pane?.last) return;
+  const { picture, beside, besides } = pane.last;
+  element('title').textContent = picture.title;
+  document.title = `${picture.title} · sssgen preview`;
+  const name = (shape) => (shape === 'mesh' ? picture.mesh : shape || "the scene's own");
+  element('shape').replaceChildren(...picture.shapes.map((shape) => new Option(name(shape), shape)));
+  element('shape').value = picture.shape;
+  element('beside').replaceChildren(...Object.entries(besides).map(([value, text]) => new Option(text, value)));
+  element('beside').value = beside;
+  for (const id of ['shape-row', 'renderer-row', 'environment-row']) element(id).hidden = Boolean(picture.flat);
+  element('tabs').hidden = panes.length < 2;
+  element('tabs').replaceChildren(...panes.filter((one) => one.last).map((one) => {
+    const tab = Object.assign(document.createElement('button'), { textContent: one.last.label, title: one.last.label });
+    tab.setAttribute('role', 'tab');
+    tab.setAttribute('aria-selected', String(one === pane));
+    tab.addEventListener('click', () => { active = one.number; list(); emitted.renew(); });
+    return tab;
+  }));
+  element('controls').replaceChildren(pane.textures, pane.controls, element('cost'));
+  cost.show(picture);
+  pane.controls.inert = pane.textures.inert = follows() && pane.number > 0;
+  buttons();
 }
 
 async function show(message) {
-  last = message;
-  const { picture, error } = message;
-  complain(error);
-  element('title').textContent = picture.title;
-  document.title = `${picture.title} · sssgen preview`;
-  const shapes = picture.shapes.map((shape) => new Option(shape === 'mesh' ? picture.mesh : shape || "the scene's own", shape));
-  element('shape').replaceChildren(...shapes);
-  element('shape').value = picture.shape;
-  panel.show(picture.controls);
-  cost.show(picture);
-  slots.show(picture.textures, message.limit);
-  buttons();
-  try {
-    stage ??= await stageFor(element('renderer').value);
-    await stage.show(picture, panel.values);
-    document.body.dataset.version = message.version;
-  } catch (reason) {
-    complain(error || `the page cannot draw it: ${reason.message}`);
-  }
-  const named = new Set([picture.body, ...picture.textures.flatMap((texture) => texture.texels?.levels.map((level) => level.data) ?? [])]);
+  fit(message.panes);
+  const pane = panes[message.pane];
+  const failed = pane.show(message, pane.number > 0 && follows() ? panes[0].panel.values : undefined);
+  list();
+  const reason = await failed;
+  pane.complaint = message.error || (reason && `the page cannot draw it: ${reason}`);
+  complain();
+  if (pane.number > 0) pane.follow(panes[0].stage ?? {});
+  if (!reason && pane.number === 0) document.body.dataset.version = message.version;
+  const named = new Set(panes.flatMap((one) => one.named));
   for (const digest of pieces.keys()) if (!named.has(digest)) pieces.delete(digest);
 }
 
@@ -96,28 +129,36 @@ const python = connect((message) => {
 
 /** Another body, which Python reads from the file. */
 function useMesh(file) {
-  const reason = refusal(file, MESHES, last?.limit ?? 0);
+  const reason = refusal(file, MESHES, shownPane()?.last?.limit ?? 0);
   say(reason);
   if (!reason) python.sendFile({ kind: 'mesh', name: file.name }, file);
 }
 
-const cost = new CostBox(element('cost'), (question) => python.send(question));
-const emitted = new EmittedText(element('emitted'), (question) => python.send(question));
+const cost = new CostBox(element('cost'), (question) => python.send({ ...question, pane: active }));
+const emitted = new EmittedText(element('emitted'), (question) => python.send({ ...question, pane: active }));
 element('show-text').addEventListener('click', () => emitted.toggle(!emitted.open));
 onDrop(document.body, useMesh);
 onChoice(element('choose-mesh'), MESHES, useMesh);
 element('shape').addEventListener('change', () => python.send({ kind: 'shape', shape: element('shape').value }));
-element('environment').addEventListener('change', () => stage?.environment(element('environment').checked));
+element('beside').addEventListener('change', () => python.send({ kind: 'beside', beside: element('beside').value }));
+element('environment').addEventListener('change', () => {
+  for (const pane of panes) pane.stage?.environment(element('environment').checked);
+});
 element('renderer').addEventListener('change', () => next(async () => {
-  stage?.dispose();
-  stage = null;
-  if (last) await show(last);
+  for (const pane of panes) {
+    pane.stop();
+    if (pane.last) await show(pane.last);
+  }
 }));
-element('save').addEventListener('click', () => python.send({ kind: 'save', values: Object.fromEntries(panel.values) }));
+element('save').addEventListener('click', () => {
+  const pane = shownPane();
+  python.send({ kind: 'save', pane: pane.number, values: Object.fromEntries(pane.panel.values) });
+});
 element('reset').addEventListener('click', () => {
-  panel.reset();
-  for (const row of last.picture.textures.filter((one) => one.chosen)) slots.chosen(row, null);
+  const pane = shownPane();
+  pane.panel.reset();
+  for (const row of pane.picture.textures.filter((one) => one.chosen)) page.texture(pane, row, null);
 });
 addEventListener('error', (event) => say(event.message));
 addEventListener('unhandledrejection', (event) => say(String(event.reason?.message ?? event.reason)));
-globalThis.preview = { get stage() { return stage; }, panel };
+globalThis.preview = { panes, get stage() { return panes[0]?.stage; }, get panel() { return panes[0].panel; } };

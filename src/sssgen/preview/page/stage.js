@@ -9,7 +9,7 @@ import { DrawnViews } from './drawn_views.js';
 import { materialOf, programOf, update, valueOf } from './material.js';
 
 const WRAPS = { repeat: THREE.RepeatWrapping, clamp: THREE.ClampToEdgeWrapping, mirror: THREE.MirroredRepeatWrapping };
-const HANDLE = 0.055;
+const HANDLE = 0.035;  // of half the picture's height
 
 /** One renderer on one canvas. Another renderer is another stage. */
 export class Stage {
@@ -45,7 +45,7 @@ export class Stage {
     this.share = 0;
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    this.widen();
     this.ask();
   }
 
@@ -54,6 +54,13 @@ export class Stage {
     if (share !== this.share) this.renderer.setPixelRatio(share * Math.min(devicePixelRatio, 2));
     this.share = share;
     this.mesh.geometry = this.bodies[share < 1 / 2 ? 1 : 0];
+  }
+
+  /** The scene's field of view; in a narrow picture that of its width, so that the body is not cut off. */
+  widen() {
+    const half = Math.tan((this.view ?? 35) * Math.PI / 360);
+    this.camera.fov = Math.atan(half * Math.max(1, 1 / this.camera.aspect)) * 360 / Math.PI;
+    this.camera.updateProjectionMatrix();
   }
 
   /** Shows a picture; `values` are the numbers that differ from the file's. */
@@ -143,10 +150,10 @@ export class Stage {
   }
 
   look(picture) {
-    this.camera.fov = picture.camera.field_of_view;
+    this.view = picture.camera.field_of_view;
+    this.widen();
     this.camera.position.set(...picture.camera.position);
     this.orbit.target.set(...picture.camera.target);
-    this.camera.updateProjectionMatrix();
     this.orbit.update();
   }
 
@@ -205,7 +212,7 @@ export class Stage {
       const { lamp } = handle.userData;
       handle.position.copy(lamp.position);
       if (lamp.isDirectionalLight) handle.position.normalize().multiplyScalar(1.35 * ball.radius).add(ball.center);
-      handle.scale.setScalar(HANDLE * ball.radius);
+      handle.scale.setScalar(HANDLE * handle.position.distanceTo(this.camera.position) * Math.tan(this.view * Math.PI / 360));
       lamp.updateMatrixWorld();
     }
     this.ball = ball;
