@@ -3,8 +3,10 @@
 For each kind of file: the time from a changed text to its problems, and that of an explanation, as a share of the goal
 (50 ms and 10 ms). Every edit gives a text that was not read before. A row has the median and the largest of all files
 of the kind, and the 99th percentile of the explanations of their names: the examples, techniques, and the shaders of
-the examples as plain GLSL. The last rows change one file of each kind EDITS times (default: 1,000), or one of a KIND
-(technique, material, scene, glsl), and show the memory of the process after the first and the second half.
+the examples as plain GLSL. The second table has the milliseconds of the costs and proofs above functions and stages,
+which are computed once the text is left alone. The last rows change one file of each kind EDITS times (default: 1,000),
+or one of a KIND (technique, material, scene, glsl), and show the memory of the process after the first and the second
+half.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from pathlib import Path
 
 from sssgen.editor.documents import GLSL, MATERIAL, SCENE, TECHNIQUE
 from sssgen.editor.hover import hover_at
+from sssgen.editor.lenses import lenses_of
 from sssgen.editor.open_documents import OpenDocuments
 from sssgen.editor.preparation import prepare
 from sssgen.material import library
@@ -78,6 +81,15 @@ def hovers(documents: OpenDocuments, path: str) -> list[float]:
     return times[:: max(1, len(times) // 40)]
 
 
+def lens_time(documents: OpenDocuments, path: str) -> float:
+    """Seconds of the costs and proofs of a file."""
+    found = documents.get(path)
+    assert found is not None
+    start = time.perf_counter()
+    lenses_of(*found)
+    return time.perf_counter() - start
+
+
 def resident() -> float:
     """Megabytes that the process has in memory."""
     status = Path("/proc/self/status")
@@ -96,10 +108,12 @@ def main() -> None:
         files = list(texts(Path(folder)))
         rows: dict[str, tuple[list[float], list[float]]] = {}
         slowest: dict[str, tuple[float, str]] = {}
+        lenses: dict[str, list[float]] = {}
         for kind, path, text in files:
             first, second = rows.setdefault(kind, ([], []))
             first.append(diagnosis(documents, path, text))
             second += hovers(documents, path)
+            lenses.setdefault(kind, []).append(lens_time(documents, path))
             slowest[kind] = max(slowest.get(kind, (0.0, "")), (first[-1], Path(path).name))
             documents.close(path)
         print(f"{'':10} {'files':>5}   problems, of 50 ms      explanation, of 10 ms")
@@ -109,6 +123,9 @@ def main() -> None:
             cells += [statistics.median(second) / HOVER, sorted(second)[len(second) * 99 // 100] / HOVER]
             shares = f"{cells[0]:8.0%} {cells[1]:8.0%}      {cells[2]:8.0%} {cells[3]:8.0%}"
             print(f"{kind:10} {len(first):5}   {shares}  {slowest[kind][1]}")
+        print(f"\ncosts and proofs, in ms\n{'':10} {'median':>8} {'largest':>8}")
+        for kind, times in lenses.items():
+            print(f"{kind:10} {statistics.median(times) * 1e3:8.0f} {max(times) * 1e3:8.0f}")
         print(f"\nmemory in MB, at the start and after {edits // 2} and {edits} edits of one file")
         for kind in sys.argv[2:] or rows:
             path, text = next((path, text) for own, path, text in files if own == kind)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import sys
 from collections.abc import AsyncIterator
 from pathlib import Path
@@ -162,4 +163,12 @@ async def test_bad_documents_do_not_end_the_server(client: LanguageClient, tmp_p
             await client.text_document_completion_async(lsp.CompletionParams(document, place))
             await client.text_document_definition_async(lsp.DefinitionParams(document, place))
     right = FILES["plain.glsl"][0]
-    assert await session.open((tmp_path / "fine.glsl").as_uri(), right) == []
+    document = lsp.TextDocumentIdentifier((tmp_path / "fine.glsl").as_uri())
+    assert await session.open(document.uri, right) == []
+    asked = asyncio.ensure_future(client.text_document_code_lens_async(lsp.CodeLensParams(document)))
+    await asyncio.sleep(0.05)
+    assert await session.change(document.uri, right.replace("0.5", "0.25")) == []
+    with pytest.raises(JsonRpcException, match="the text has changed"):
+        await asked
+    (lens,) = await client.text_document_code_lens_async(lsp.CodeLensParams(document)) or []
+    assert lens.command is not None and lens.command.title == "1 operation · nothing that can fail"

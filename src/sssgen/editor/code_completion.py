@@ -58,6 +58,8 @@ def in_code(document: Document, analysis: Analysis, line: int, column: int) -> l
         for row in BUILTINS.values()
     ]
     items += plain(OUT_BUILTINS, "function", rank=1)
+    if technique:
+        items.append(Item("assume", "keyword", "states a fact: assume(x > 0.0);", text="assume()", rank=2))
     return items + plain(KEYWORDS, "keyword", rank=2)
 
 

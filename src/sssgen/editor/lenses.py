@@ -23,6 +23,10 @@ PLAIN_TARGET = "glsl-330"
 """Costs of materials are counted with the shell of this target, as `sssgen show` and `sssgen lint` count them."""
 
 
+MAX_LINES = 3000
+"""The longest file that is analysed: these take seconds."""
+
+
 class Lens(NamedTuple):
     """A text above a place."""
 
@@ -32,7 +36,7 @@ class Lens(NamedTuple):
 
 def lenses_of(document: Document, analysis: Analysis) -> list[Lens]:
     """The lenses of a document without errors. Raises SssgenError where one appears in the passes."""
-    if any(problem.severity == "error" for problem in analysis.diagnostics):
+    if any(problem.severity == "error" for problem in analysis.diagnostics) or len(document.lines) > MAX_LINES:
         return []
     if document.kind == MATERIAL and analysis.material is not None:
         return _of_material(document, analysis.material)

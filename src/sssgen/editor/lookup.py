@@ -107,12 +107,20 @@ def _own_functions(document: Document, module: Module) -> list[Function]:
     return [function for function in module.functions if function.span.file in own]
 
 
+def _enclosing(document: Document, module: Module, word: Word) -> Function | None:
+    """The function around a word: the last one that begins before it."""
+    functions = [function for function in _own_functions(document, module) if function.span.line <= word.line + 1]
+    return max(functions, key=lambda function: function.span.line, default=None)
+
+
 def _expressions_at(document: Document, module: Module, word: Word) -> list[Any]:
     """The expressions that begin with a word, the smallest first."""
+    function = _enclosing(document, module, word)
+    if function is None:
+        return []
     at = (word.line + 1, word.start + 1)
     found = [
         expr
-        for function in _own_functions(document, module)
         for expr in all_expressions(function.body or ())
         if (expr.span.line, expr.span.column) == at and expr.span.file == function.span.file
     ]
@@ -121,8 +129,7 @@ def _expressions_at(document: Document, module: Module, word: Word) -> list[Any]
 
 def _local(document: Document, module: Module, word: Word) -> Meaning | None:
     """A parameter of a function, or a local variable, with its type."""
-    functions = [function for function in _own_functions(document, module) if function.span.line <= word.line + 1]
-    enclosing = max(functions, key=lambda function: function.span.line, default=None)
+    enclosing = _enclosing(document, module, word)
     for param in enclosing.params if enclosing else ():
         if param.name == word.text:
             return Meaning("param", param, word, document.path)

@@ -36,6 +36,7 @@ class Problem(NamedTuple):
     related_path: str = ""
     """The file that the problem is in, where it is another one."""
     related_range: Range = Range(0, 0, 0, 0)
+    related_message: str = ""
 
 
 class Fix(NamedTuple):
@@ -66,7 +67,7 @@ def _problem(document: Document, analysis: Analysis, own: tuple[str, ...], diagn
     shown = span.file.removeprefix(f"{posix(document.folder)}/")
     place = f"{shown}:{span.line}:{span.column}: " if span.line else f"{shown}: "
     path = path_of(span.file, document, analysis.files)
-    return Problem(_naming(document, span.file), severity, place + message, hint, path, range_of(span))
+    return Problem(_naming(document, span.file), severity, place + message, hint, path, range_of(span), message)
 
 
 def _within(document: Document, range: Range) -> Range:

@@ -20,7 +20,7 @@ from sssgen.editor.analysis import Analysis
 from sssgen.editor.completion import TRIGGERS, completions_at
 from sssgen.editor.completion_item import Item
 from sssgen.editor.definition import definition_at
-from sssgen.editor.documents import Document
+from sssgen.editor.documents import GLSL, Document
 from sssgen.editor.hover import hover_at
 from sssgen.editor.layout import laid_out
 from sssgen.editor.lenses import Lens, lenses_of
@@ -34,7 +34,7 @@ from sssgen.version import VERSION
 QUIET = 0.01
 """Seconds without a change before a text is read: a burst of changes is read once."""
 LENSES_QUIET = 0.3
-"""Seconds without a change before costs and proofs are computed, which takes up to 0.1 s."""
+"""Seconds without a change before costs and proofs are computed."""
 
 _SEVERITIES = {"error": lsp.DiagnosticSeverity.Error, "warning": lsp.DiagnosticSeverity.Warning}
 _KINDS = {
@@ -62,6 +62,7 @@ class Server(LanguageServer):
         self.documents = OpenDocuments()
         self.lenses: dict[str, tuple[Analysis, list[Lens]]] = {}
         """The last lenses of each open document, and what they were computed of."""
+        self.computing = asyncio.Lock()
 
     @property
     def codec(self) -> PositionCodec:
@@ -105,7 +106,7 @@ class Server(LanguageServer):
             place = problem.related_range
             start, end = lsp.Position(place.line, place.column), lsp.Position(place.end_line, place.end_column)
             location = lsp.Location(from_fs_path(problem.related_path) or "", lsp.Range(start, end))
-            related = [lsp.DiagnosticRelatedInformation(location, problem.message)]
+            related = [lsp.DiagnosticRelatedInformation(location, problem.related_message)]
         return lsp.Diagnostic(
             self.range_to_client(lines, problem.range),
             f"{problem.message}\n{problem.hint}" if problem.hint else problem.message,
@@ -247,22 +248,31 @@ async def _lenses(server: Server, params: lsp.CodeLensParams) -> list[lsp.CodeLe
     text = found[0].text
     if path not in server.lenses or server.lenses[path][0] is not found[1]:
         await asyncio.sleep(LENSES_QUIET)
-        found = server.documents.get(path)
-        if found is None or found[0].text != text:
+        async with server.computing:
+            found = server.documents.get(path)
+            if found is not None and found[0].text == text:
+                await _renew_lenses(server, path, *found)
+        now = server.documents.get(path)
+        if now is None or now[0].text != text:
             raise JsonRpcContentModified("the text has changed")  # the client asks again
-        _renew_lenses(server, path, *found)
-    document = found[0]
+    lines = text.split("\n")
     return [
-        lsp.CodeLens(server.range_to_client(document.lines, lens.range), lsp.Command(lens.text, ""))
+        lsp.CodeLens(server.range_to_client(lines, lens.range), lsp.Command(lens.text, ""))
         for lens in server.lenses.get(path, (None, []))[1]
-        if lens.range.line < len(document.lines)
+        if lens.range.line < len(lines)
     ]
 
 
-def _renew_lenses(server: Server, path: str, document: Document, analysis: Analysis) -> None:
-    """Computes the lenses of a document; while it has errors, the last ones stay."""
+async def _renew_lenses(server: Server, path: str, document: Document, analysis: Analysis) -> None:
+    """Computes the lenses of a document; while it has errors, the last ones stay.
+
+    Whole shaders take up to half a second, so they are analysed beside the requests; that needs no file.
+    """
     try:
-        lenses = lenses_of(document, analysis)
+        if document.kind == GLSL:
+            lenses = await asyncio.to_thread(lenses_of, document, analysis)
+        else:
+            lenses = lenses_of(document, analysis)
     except (SssgenError, OSError):
         lenses = []
     if lenses or not analysis.diagnostics:
