@@ -45,7 +45,8 @@ class PreviewServer:
     def __init__(self, shown: ShownPicture, other: ShownPicture | None = None) -> None:
         self.web = need("aiohttp.web", "aiohttp", "preview")
         self.talk, self.token, self.port = PageMessages(shown, other), secrets.token_urlsafe(16), 0
-        self.pages: set[Any] = set()
+        self.pages: dict[Any, asyncio.Event] = {}
+        """Each page, with the event that it has not got the newest pictures."""
         self.library = Library({}, {})
         self._making = asyncio.Lock()
 
@@ -144,12 +145,12 @@ class PreviewServer:
 
     async def _events(self, request: Any) -> Any:
         """The messages of a page, until it closes."""
-        page = self.web.WebSocketResponse(max_msg_size=MOST_BYTES + MOST_TEXT, heartbeat=20.0)
+        page = self.web.WebSocketResponse(max_msg_size=MOST_BYTES + MOST_TEXT, heartbeat=20.0, compress=False)
         await page.prepare(request)
-        self.pages.add(page)
+        self.pages[page] = asyncio.Event()
+        self.pages[page].set()
+        sending = asyncio.create_task(self._send(page, self.pages[page]))
         try:
-            for first in self.talk.messages():
-                await page.send_json(first)
             async for frame in page:
                 try:
                     message, data = unpacked(frame.data) if isinstance(frame.data, bytes) else (parsed(frame.data), b"")
@@ -162,8 +163,19 @@ class PreviewServer:
                 except SssgenError as error:
                     await page.send_json({"kind": "error", "text": str(error)})
         finally:
-            self.pages.discard(page)
+            sending.cancel()
+            del self.pages[page]
         return page
+
+    async def _send(self, page: Any, fresh: asyncio.Event) -> None:
+        """Sends the newest pictures whenever there are new ones; a slow page misses those in between."""
+        with contextlib.suppress(ConnectionError, RuntimeError):  # a page that closes
+            while await fresh.wait():
+                fresh.clear()
+                async with self._making:
+                    messages = self.talk.messages()
+                for message in messages:
+                    await page.send_json(message)
 
     async def _reply(self, message: dict[str, Any]) -> dict[str, Any] | None:
         """The answer to a question of a page."""
@@ -176,11 +188,8 @@ class PreviewServer:
         """Does some work on the pictures, and sends them, or their errors, to all pages; the work's own result."""
         async with self._making:
             result = await asyncio.to_thread(work)
-            messages = self.talk.messages()
-        for page in list(self.pages):
-            with contextlib.suppress(ConnectionError, RuntimeError):  # a page that closes
-                for message in messages:
-                    await page.send_json(message)
+        for fresh in self.pages.values():
+            fresh.set()
         return result
 
     async def _watch(self) -> None:

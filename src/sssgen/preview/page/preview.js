@@ -10,6 +10,7 @@ const element = (id) => document.getElementById(id);
 const pieces = new Map();
 const panes = [];
 let active = 0;  // the pane whose controls are shown
+const newest = [];  // the last picture of each pane
 let waiting = Promise.resolve();
 
 const say = (text) => { element('status').textContent = text; };
@@ -118,7 +119,11 @@ async function show(message) {
 const next = (work) => { waiting = waiting.then(work, work); return waiting; };
 
 const python = connect((message) => {
-  if (message.kind === 'picture') { next(() => show(message)); emitted.renew(); }
+  if (message.kind === 'picture') {
+    newest[message.pane] = message;
+    next(() => (message === newest[message.pane] ? show(message) : null));  // what came in between is not drawn
+    if (message.pane === active) emitted.renew();
+  }
   else if (message.kind === 'measured') cost.heard(message);
   else if (message.kind === 'text' || message.kind === 'source') emitted.heard(message);
   else say(message.text);
