@@ -5,7 +5,7 @@
 # make stability  what fails in the published techniques and holds in ours: docs/stability.md
 # make bake   bakes two meshes, and docs/bake.md with pictures beside the exact reference
 # make accuracy   error against cost of everything, on two cores 80 minutes: docs/accuracy.md
-# make site   the documents as static pages: build/site/index.html
+# make site   the documents and the playground as static pages: build/site/index.html
 # make fuzz   random programs and files for FUZZ_MINUTES (10)
 # make bench  the benchmarks   make bench-gpu  what shaders cost on this GPU, emitted and by hand
 # make setup  what the others need, done once: .venv, system packages, compilers
@@ -16,7 +16,7 @@
 PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 BIN := .venv/bin
-BUNDLED_PACKAGES := three@0.187.0 esbuild@0.28.2
+BUNDLED_PACKAGES := three@0.187.0 esbuild@0.28.2 pyodide@314.0.7
 NODE_PACKAGES := webgpu@0.6.2 playcanvas@2.23.3 wesl@0.7.31 @babylonjs/core@9.34.0 $(BUNDLED_PACKAGES)
 # Babylon.js is thousands of files: a page loads one.
 BABYLON_BUNDLE := src/sssgen/harness/backends/babylon_bundle.js

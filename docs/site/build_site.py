@@ -11,7 +11,9 @@ from pathlib import Path
 
 from sphinx.cmd.build import build_main
 
+import build_playground
 import generated
+import playground_links
 from chart_pictures import beside_path_tracing
 from menu import ROOT, documents, problems
 from picture import Picture
@@ -41,12 +43,14 @@ def main(folder: Path, pictures: bool) -> int:
         without = why_none(technique) if pictures and "picture" not in drawn else ""
         page, text = generated.technique_page(technique.name, captions, without)
         texts[page] = text
+    playground_links.add_links(texts)
     for page, text in texts.items():
         staging.write(page, text)
     settings = ["-c", str(Path(__file__).parent), "-b", "html", "-q", "-W", "--keep-going", "-d", f"{sources}-cache"]
     status = build_main([*settings, str(sources), str(folder)])
     if not status:
         print(f"wrote {folder}/index.html: {len(texts)} pages")
+        print(f"wrote {folder}/playground/index.html: {build_playground.build(folder / 'playground')} beginnings")
     return status
 
 

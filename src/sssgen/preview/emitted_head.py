@@ -8,10 +8,15 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
+from sssgen.ir.drawn import BACK_FACES, DISTANT, LIGHT
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled
 
 TARGET = "threejs"
+DRAWN_BY_PAGE = (BACK_FACES, LIGHT, DISTANT)
+"""The textures that the page draws for each frame; the others are made once, for the scene's own light."""
+PARTS = ("name", "title", "module", "controls", "textures", "two_sided", "cost")
+"""The parts of a head that `emitted_head` makes."""
 
 
 def emitted_head(
@@ -38,6 +43,7 @@ def emitted_head(
                 "color": texture["color"],
                 "doc": texture["doc"],
                 "drawn": texture["drawn"] or "",
+                "page_draws": texture["drawn"] in DRAWN_BY_PAGE,
             }
             for texture in reflection["textures"]
         ],

@@ -6,7 +6,7 @@ import dataclasses
 import functools
 import hashlib
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -17,16 +17,12 @@ from sssgen.harness.render.shell_values import Shell
 from sssgen.harness.scenes.geometry import Mesh
 from sssgen.harness.scenes.scene import Picture as PictureFile
 from sssgen.harness.scenes.scene import Scene
-from sssgen.ir.drawn import BACK_FACES, DISTANT, LIGHT
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile
 from sssgen.preview.bodies import OWN_MESH, SHAPES, fitted, framed, packed
-from sssgen.preview.emitted_head import TARGET, emitted_head
+from sssgen.preview.emitted_head import DRAWN_BY_PAGE, TARGET, emitted_head
 from sssgen.support.diagnostics import failure
 from sssgen.targets.runtime.numpy_textures import Texture
-
-DRAWN_BY_PAGE = (BACK_FACES, LIGHT, DISTANT)
-"""The textures that the page draws for each frame; the others are made once, for the scene's own light."""
 
 
 class Picture(NamedTuple):
@@ -38,6 +34,8 @@ class Picture(NamedTuple):
     """Digest → triangles or texels."""
     material: Material | None
     """None for plain GLSL"""
+    values: Mapping[str, Sequence[float]] = MappingProxyType({})
+    """The parameters that the scene gives, those of baked files among them."""
 
 
 class Pieces:
@@ -98,7 +96,7 @@ def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
         "tone_mapping": scene.shell.get("tone_mapping", ""),
         "camera": _camera(scene, chosen.shape),
     }
-    return Picture(head, pieces.data, material)
+    return Picture(head, pieces.data, material, shell.parameters)
 
 
 def _on_shape(scene: Scene, chosen: Chosen) -> Scene:
@@ -131,10 +129,9 @@ def _without_views(reflection: Mapping[str, Any]) -> dict[str, Any]:
 
 def _with_texels(row: Mapping[str, Any], shell: Shell, chosen: Chosen, pieces: Pieces) -> dict[str, Any]:
     """The row of a texture with its texels; one that the page draws itself has none."""
-    page_draws = row["drawn"] in DRAWN_BY_PAGE
-    row = {**row, "page_draws": page_draws, "chosen": os.path.basename(chosen.textures.get(row["property"], ""))}
+    row = {**row, "chosen": os.path.basename(chosen.textures.get(row["property"], ""))}
     bound = shell.textures.get(row["source_name"])
-    return {**row, "texels": texels_of(bound, pieces.add)} if bound is not None and not page_draws else row
+    return {**row, "texels": texels_of(bound, pieces.add)} if bound is not None and not row["page_draws"] else row
 
 
 def texels_of(texture: Texture, piece: Callable[[bytes], str]) -> dict[str, Any]:

@@ -1,0 +1,62 @@
+// The emitted text of a target, its lines that an edit has changed marked.
+
+import { colored } from './highlight.js';
+
+/** The lines of a text that an older one does not have: those between what both begin and end with, and not in the older. */
+export function newLines(before, after) {
+  const counts = new Map();
+  for (const line of before) counts.set(line, (counts.get(line) ?? 0) + 1);
+  return new Set(after.flatMap((line, index) => {
+    const count = counts.get(line) ?? 0;
+    counts.set(line, count - 1);
+    return count > 0 ? [] : [index];
+  }));
+}
+
+export class EmittedText {
+  constructor(parts, root) {
+    Object.assign(this, { parts, root, files: {}, before: {}, open: '' });
+  }
+
+  /** Shows files (name → text), or why there are none. With `compared`, lines that were not there are marked. */
+  show(files, refused, compared) {
+    if (Object.keys(files).length) {
+      const same = JSON.stringify(files) === JSON.stringify(this.files);  // an edit of a comment keeps the marks
+      if (!compared) this.before = {}; else if (!same) this.before = this.files;
+      this.files = files;
+    }
+    const names = Object.keys(this.files);
+    const reflection = (name) => name.endsWith('.reflection.json');
+    if (!names.includes(this.open)) {
+      const texts = names.filter((name) => !reflection(name));
+      this.open = texts.sort((one, other) => this.files[other].length - this.files[one].length)[0] ?? '';  // the fragment shader
+    }
+    this.refused = refused;
+    this.draw();
+  }
+
+  draw() {
+    this.root.classList.toggle('refused', Boolean(this.refused));
+    this.parts.replaceChildren(...(this.refused ? [] : Object.keys(this.files)).map((name) => {
+      const tab = Object.assign(document.createElement('button'), { textContent: name.endsWith('.reflection.json') ? 'reflection' : name });
+      tab.setAttribute('aria-selected', name === this.open);
+      tab.addEventListener('click', () => { this.open = name; this.draw(); });
+      return tab;
+    }));
+    if (this.refused) { this.root.textContent = this.refused; return; }
+    const text = this.files[this.open] ?? '';
+    const lines = text.replace(/\n$/, '').split('\n');
+    const old = this.before[this.open];
+    const marked = old === undefined ? new Set() : newLines(old.split('\n'), lines);
+    const html = colored(text.replace(/\n$/, ''), this.open).split('\n');
+    let left = '';  // a comment over several lines is closed at the end of each, and opened again
+    this.root.innerHTML = html.map((line, index) => {
+      const whole = left + line;
+      const opened = whole.lastIndexOf('<span');
+      left = opened > whole.lastIndexOf('</span>') ? whole.slice(opened, whole.indexOf('>', opened) + 1) : '';
+      return `<span class="line${marked.has(index) ? ' new' : ''}">${whole}${left ? '</span>' : ''}</span>`;
+    }).join('');
+  }
+
+  get text() { return this.files[this.open] ?? ''; }
+}

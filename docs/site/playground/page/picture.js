@@ -1,0 +1,115 @@
+// The picture: the stage and the panel of the live preview, with static bodies, textures and scenes.
+
+import { PlainStage } from './plain_stage.js';
+import { Panel } from './preview/panel.js';
+import { Stage } from './preview/stage.js';
+
+const element = (id) => document.getElementById(id);
+const OWN = 'its own';
+
+export class Picture {
+  constructor(pieces, say) {
+    Object.assign(this, { pieces, say, start: null, stage: null, plain: null, head: null, waiting: Promise.resolve() });
+    this.panel = new Panel(element('controls'), (property, numbers) => this.stage?.set(property, numbers));
+    element('shape').addEventListener('change', () => this.next(() => this.draw()));
+    element('environment').addEventListener('change', () => this.stage?.environment(element('environment').checked));
+    element('renderer').addEventListener('change', () => this.next(async () => { this.drop(); await this.draw(); }));
+    this.ready = this.next(() => this.stageOf(element('renderer').value));
+  }
+
+  /** One picture after the other. */
+  next(work) {
+    this.waiting = this.waiting.then(work, work);
+    return this.waiting;
+  }
+
+  /** A stage of that renderer; where the browser has no WebGPU, its fallback. */
+  async stageOf(kind) {
+    if (this.stage || this.start && !this.start.scenes['']) return;
+    const gpu = kind === 'webgpu' && await navigator.gpu?.requestAdapter().catch(() => null);
+    const chosen = kind === 'webgpu' && !gpu ? 'webgl2' : kind;
+    element('renderer').value = chosen;
+    const stage = new Stage(element('stage'), chosen, this.pieces.get);
+    await stage.start();
+    this.stage = stage;
+  }
+
+  drop() {
+    this.stage?.dispose();
+    this.stage = null;
+  }
+
+  /** Another start; `state` is that of a link. */
+  begin(start, state) {
+    this.start = start;
+    this.head = null;
+    this.panel.show([]);
+    this.linked = state?.values ? new Map(Object.entries(state.values)) : null;
+    const shapes = Object.keys(start.scenes);
+    element('shape').replaceChildren(...shapes.map((shape) => new Option(shape || OWN, shape)));
+    element('shape').value = shapes.includes(state?.shape) ? state.shape : '';
+    document.querySelector('aside').hidden = !shapes.length;
+    if (this.scene()) this.pieces.body(this.scene().head.body);
+    if (!shapes.length) this.drop();
+  }
+
+  scene() { return this.start?.scenes[element('shape').value]; }
+
+  state() { return { shape: element('shape').value, values: Object.fromEntries(this.panel.values) }; }
+
+  /** The picture of Python's answer; the last one stays where there is none. */
+  async show(answer) {
+    if (!answer.head && !answer.plain) {
+      this.note(this.start.no_picture ?? '');
+      return;
+    }
+    this.head = answer.head;
+    await this.next(() => answer.plain ? this.drawPlain(answer.plain) : this.draw());
+  }
+
+  async drawPlain(files) {
+    this.drop();
+    this.plain ??= new PlainStage(element('stage'));
+    this.note(this.plain.show(Object.values(files)[0]));
+  }
+
+  async draw() {
+    const scene = this.scene();
+    if (!scene || !this.head) { this.note(this.start?.no_picture ?? ''); return; }
+    this.plain?.dispose();
+    this.plain = null;
+    await this.stageOf(element('renderer').value);
+    this.pieces.body(scene.head.body);
+    const missing = [];
+    const textures = this.head.textures.map((row) => {
+      const own = this.head.texture_files[row.source_name] === this.start.texture_files[row.source_name];
+      const texels = own ? scene.texels[row.source_name] : undefined;
+      if (!own && !row.drawn) missing.push(row.source_name);
+      return texels ? { ...row, texels } : row;
+    });
+    this.panel.show(this.head.controls);
+    if (this.linked) this.valuesOfLink();
+    await this.stage.show({ ...scene.head, ...this.head, textures }, this.panel.values);
+    const bodies = this.start.body_files.filter((name) => globalThis.playground.editor.files[name] !== this.start.files[name]);
+    this.note([
+      ...missing.map((name) => `The picture of ${name} is not on this page: it is drawn with its default.`),
+      ...bodies.map((name) => `The mesh is still that of the first ${name}; the shader's own lengths follow the edit.`),
+    ].join('\n'));
+  }
+
+  /** The values that a link gives to the controls. */
+  valuesOfLink() {
+    for (const control of this.panel.controls) {
+      const numbers = this.linked.get(control.property);
+      if (!Array.isArray(numbers) || numbers.length !== control.value.length || !numbers.every(Number.isFinite)) continue;
+      this.panel.values.set(control.property, numbers);
+    }
+    this.linked = null;
+    this.panel.show(this.panel.controls);
+  }
+
+  note(text) {
+    element('note').textContent = text;
+    element('note').hidden = !text;
+  }
+}
