@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import random
 from collections.abc import Callable
 from pathlib import Path
@@ -10,10 +11,16 @@ from typing import Any
 import pytest
 
 from folders import ROOT
+from sssgen.editor.completion import completions_at
+from sssgen.editor.definition import definition_at
 from sssgen.editor.documents import GLSL, MATERIAL, OTHER, SCENE, TECHNIQUE, kind_of
+from sssgen.editor.hover import hover_at
+from sssgen.editor.lenses import lenses_of
 from sssgen.editor.open_documents import OpenDocuments
 from sssgen.editor.problems import Problem, fixes_of
+from sssgen.editor.rename import rename
 from sssgen.material.material_loading import examples
+from sssgen.support.diagnostics import SssgenError
 
 LOBE = """/**
  * A lobe.
@@ -145,8 +152,18 @@ def test_half_written_and_hostile_texts_raise_nothing(opened: Callable[..., Any]
             for _ in range(12)
         ]
         for part in (*cut, *mixed, "", "\x00", "((((" * 2000):
-            for problem in problems(opened(name, part)):
+            shown = opened(name, part, right=text)
+            for problem in problems(shown):
                 assert problem.message and problem.range.line <= part.count("\n") + 1
+            for line in generator.sample(range(part.count("\n") + 1), min(4, part.count("\n") + 1)):
+                place = (*shown.place[:2], line, generator.randrange(12))
+                hover_at(*place)
+                definition_at(*place)
+                completions_at(*place)
+                with contextlib.suppress(SssgenError):
+                    rename(place, "other", shown.documents.opened, shown.documents.paths)
+            with contextlib.suppress(SssgenError):
+                lenses_of(*shown.place[:2])
 
 
 def test_a_file_that_is_no_text_or_vanishes_is_an_error(tmp_path: Path) -> None:

@@ -68,6 +68,11 @@ def test_hover_in_a_technique(opened: Callable[..., Any], before: str, count: in
         assert part in hover.markdown
 
 
+def test_a_hover_names_files_as_the_document_does(opened: Callable[..., Any]) -> None:
+    hover = hover_at(*opened("own.sss", at(LOBE, "gain *")).place)
+    assert hover is not None and hover.markdown.endswith("*declared in* own.sss")
+
+
 def test_hover_survives_an_error_elsewhere(opened: Callable[..., Any]) -> None:
     broken = opened("own.sss", at(LOBE.replace("return x *", "return *"), "gain *"), right=LOBE)
     hover = hover_at(*broken.place)

@@ -119,6 +119,13 @@ def test_functions_constants_parameters_and_variables(folder: Folder) -> None:
     assert folder.renamed("own.sss", "x * gain", "y") == {"own.sss": only_in_part}
 
 
+def test_the_formula_of_a_doc_comment_is_renamed(folder: Folder) -> None:
+    text = SHARED + OWN.replace('#include "shared.sss"', "").replace(" */", " * formula: gain · x\n */")
+    (folder.folder / "own.sss").write_text(text, encoding="utf-8")
+    new = folder.renamed("own.sss", "gain :", "strength")["own.sss"]
+    assert "formula: strength · x" in new and "with a gain." in new and "// gain of" in new
+
+
 def test_unsaved_texts_are_renamed_too(folder: Folder) -> None:
     folder.open("own.sss")
     folder.documents.change(str(folder.folder / "own.sss"), OWN.replace("* gain;", "* gain + gain;"))

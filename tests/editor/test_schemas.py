@@ -145,12 +145,13 @@ def takes(uniform: Uniform, raw: object) -> bool:
 
 def test_each_parameter_takes_what_its_schema_takes() -> None:
     """Numbers at the ends of its range, beyond them, of another kind, too many and too few, colours and tables."""
-    count = 0
+    count, seen = 0, set()
     for technique in library.load_all():
         keys = schemas._parameters(technique)["properties"]
         for uniform in technique.uniforms:
-            if uniform.name not in keys or isinstance(uniform.type, Sampler):
+            if uniform.name not in keys or isinstance(uniform.type, Sampler) or uniform.span in seen:
                 continue
+            seen.add(uniform.span)
             low, high = schemas.limits(uniform)
             size = components(uniform.type)
             raws: list[Any] = [True, "#ff8000", "red", 0.5, 1, list(uniform.default)]
@@ -163,7 +164,7 @@ def test_each_parameter_takes_what_its_schema_takes() -> None:
                 inner = raw["value"] if isinstance(raw, dict) else raw
                 assert validator.is_valid(raw) == takes(uniform, inner), (technique.name, uniform.name, raw)
                 count += 1
-    assert count > 5_000
+    assert count > 3_000
 
 
 def test_the_tables_are_those_of_the_reader() -> None:

@@ -11,6 +11,7 @@ from sssgen.editor.lookup import Meaning, meaning_at
 from sssgen.ir.types import spell
 from sssgen.lang.source_lines import source_line
 from sssgen.material.technique_facts import value_text
+from sssgen.support.paths import posix
 
 
 class Hover(NamedTuple):
@@ -24,6 +25,7 @@ def hover_at(document: Document, analysis: Analysis, line: int, column: int) -> 
     """The explanation of what is at a place."""
     meaning = meaning_at(document, analysis, line, column)
     text = _text(document, analysis, meaning, line, column) if meaning else ""
+    text = text.replace(f"{posix(document.folder)}/", "")
     return Hover(text, meaning.word) if meaning and text else None
 
 

@@ -34,8 +34,8 @@ MAX_FILES = 500
 """Files of a folder that are searched."""
 
 _NAME = re.compile(r"[A-Za-z]\w*", re.ASCII)
-_SETS = re.compile(r"^[\s/*]*sets[ \t]*:")
-"""The line of a doc comment that names parameters."""
+_NAMING = re.compile(r"^[\s/*]*(?:sets|formula)[ \t]*:")
+"""The lines of a doc comment that name parameters."""
 
 Open = Callable[[str], tuple[Document, Analysis] | None]
 """The document that an editor has open for a path, and what was read of it."""
@@ -256,9 +256,9 @@ def _edit(token: Token, name: str) -> Edit:
 
 
 def _in_comments(document: Document, old: str, name: str) -> Iterator[Edit]:
-    """The attribute `sets`, which names parameters."""
+    """The attributes that name parameters; all other words of comments are left as they are."""
     for number, line in enumerate(document.lines):
-        if _SETS.match(line):
+        if _NAMING.match(line):
             for match in re.finditer(rf"\b{old}\b", line[line.index(":") :]):
                 start = line.index(":") + match.start()
                 yield Edit(Range(number, start, number, start + len(old)), name)
