@@ -19,15 +19,20 @@ import numpy as np
 from picture import Picture
 from records import Point, points
 from sssgen.harness.backends import Array, Backend
-from sssgen.harness.pictures.images import encode_srgb, write_png
+from sssgen.harness.pictures.images import encode_srgb
 from sssgen.harness.render.scene_render import Rendered, render
 from sssgen.harness.scenes import scene_loading
 from sssgen.harness.scenes.example_scenes import measured_scenes
-from sssgen.ir.nodes import Uniform
-from sssgen.ir.types import Sampler
 from sssgen.lab.chart.picked_material import stages_of
-from sssgen.lab.measure.candidates import PROBES
 from sssgen.lab.measure.measured_chain import MaterialSection, material_text
+from sssgen.lab.measure.shown_technique import (
+    BODY,
+    is_drawn,
+    pictured_stage,
+    quantity_stages,
+    textures_of,
+    write_pictures,
+)
 from sssgen.lab.scene import measured_scene, scene_body
 from sssgen.material import library
 from sssgen.material.library import Technique
@@ -46,8 +51,6 @@ VISIBLE = 0.02
 """The least difference in sRGB between a picture with a technique and one without."""
 SATURATED = 0.25
 """The largest share of a body that may be white."""
-CHECKER, BUMPS, BUMPS_Y_DOWN = "checker.png", "bumps.png", "bumps_y_down.png"
-TEXELS, SQUARES = 256, 8
 ON_A_BALL = ("coordinates", "surface", "shadow", "environment", "tone_mapping")
 
 SCENE = """
@@ -69,8 +72,6 @@ radius = 1.0
 """
 FRONT, CORNER = [0.0, 0.5, 3.4], [2.0, 1.4, 2.6]
 """Positions of the camera."""
-BODY = "box"
-"""The shape in the slots."""
 FUNCTION = """[geometry]
 kind = "distance"
 technique = "{}"
@@ -102,7 +103,7 @@ def why_none(technique: Technique) -> str:
     for param in technique.function.params:
         if param.direction == "inout" and param.quantity:
             return f"It has no picture here: it changes the {param.quantity} that other techniques give."
-    if baked := [texture.name for texture in _textures(technique) if not _is_drawn(texture)]:
+    if baked := [texture.name for texture in textures_of(technique) if not is_drawn(texture)]:
         return f"It has no picture here: it reads `{baked[0]}`, which is made for one body or one surface."
     if technique.role == "geometry":
         return "It has no picture here: it makes the rays of a whole picture."
@@ -126,16 +127,7 @@ def best_point(name: str) -> Point | None:
 
 
 def _is_baked(name: str) -> bool:
-    return any(not _is_drawn(uniform) for uniform in _textures(library.load(name.partition(":")[0])))
-
-
-def _textures(technique: Technique) -> list[Uniform]:
-    return [uniform for uniform in technique.uniforms if isinstance(uniform.type, Sampler)]
-
-
-def _is_drawn(uniform: Uniform) -> bool:
-    """Whether the renderer draws the texture for each picture."""
-    return "drawn" in dict(uniform.hints)
+    return any(not is_drawn(uniform) for uniform in textures_of(library.load(name.partition(":")[0])))
 
 
 def _measured(point: Point, backend: Backend) -> Picture:
@@ -159,7 +151,7 @@ def _measured(point: Point, backend: Backend) -> Picture:
 
 
 def _body(technique: Technique, backend: Backend) -> Picture | None:
-    if _textures(technique):
+    if textures_of(technique):
         return None
     name, color = library.setter("albedo")
     stages = [MaterialSection("surface", name, ((color, [0.6, 0.6, 0.6, 1.0]),))]
@@ -175,9 +167,9 @@ def _on_a_ball(technique: Technique, backend: Backend) -> Picture | None:
     None if every picture is that of the ball without it.
     """
     name, _ = library.setter("albedo")
-    checker = _stage(library.load(name))
+    checker = pictured_stage(library.load(name))
     for settings, with_what in (((), "its defaults"), *_tried(technique)):
-        stages = [] if technique.name == name else [_stage(technique, settings)]
+        stages = [] if technique.name == name else [pictured_stage(technique, settings)]
         stages.insert(0 if technique.role != "coordinates" else len(stages), checker)
         rendered = _ball(tuple(stages), backend)
         alone = len(stages) == 1
@@ -201,9 +193,9 @@ def ball_at_the_ends(technique: Technique, backend: Backend) -> Picture | None:
         low, high = (float(end) for end in parameter["range"][:2])
         pair = []
         for value in (low, high):
-            stages = [_stage(technique, ((parameter["name"], value),))]
+            stages = [pictured_stage(technique, ((parameter["name"], value),))]
             if technique.name != name:
-                stages.insert(0 if technique.role != "coordinates" else 1, _stage(library.load(name)))
+                stages.insert(0 if technique.role != "coordinates" else 1, pictured_stage(library.load(name)))
             try:
                 pair.append(_ball(tuple(stages), backend).encoded)
             except SssgenError:  # it needs more than a ball has
@@ -231,14 +223,10 @@ def _tried(technique: Technique) -> Iterator[tuple[tuple[tuple[str, object], ...
 def _quantity(technique: Technique, backend: Backend) -> Picture | None:
     """The quantity as a grey, scaled: on a ball with a checker as each texture, or on the body in the slot."""
     quantity = technique.function.quantity
-    given = [texture for texture in _textures(technique) if not _is_drawn(texture)]
+    given = [texture for texture in textures_of(technique) if not is_drawn(texture)]
     if not quantity or len(given) > 1:  # several textures hold the parts of one number: a checker says nothing
         return None
-    shown = MaterialSection("translucency", str(Path(PROBES, f"shown_{quantity}.sss")))
-    name, color = library.setter("albedo")
-    black = MaterialSection("surface", name, ((color, (0.0, 0.0, 0.0, 1.0)),))
-    rough, roughness = library.setter("roughness")
-    stages = [_stage(technique), shown, black, MaterialSection("surface", rough, ((roughness, 1.0),))]
+    stages = quantity_stages(technique)
     what = quantity.replace("_", " ")
     if not technique.slots:
         return Picture(_scaled(_ball(tuple(stages), backend)), f"The {what} on a ball with a checker, brighter is more")
@@ -258,25 +246,9 @@ def _scaled(rendered: Rendered) -> Array:
 
 @functools.cache
 def _ball(stages: tuple[MaterialSection, ...], backend: Backend) -> Rendered:
-    pictures = {CHECKER: _checker(), BUMPS: _bumps(), BUMPS_Y_DOWN: _bumps() * [1, -1, 1] + [0, 1, 0]}
     with tempfile.TemporaryDirectory() as folder:
-        for file, texels in pictures.items():
-            write_png(str(Path(folder, file)), texels)
+        write_pictures(folder)
         return _rendered(Path(folder), stages, SCENE.format(FRONT) + BALL, backend)
-
-
-def _stage(technique: Technique, values: tuple[tuple[str, object], ...] = ()) -> MaterialSection:
-    """The technique with a picture as each of its textures, and defaults for all but the given values."""
-    textures = [uniform for uniform in _textures(technique) if not _is_drawn(uniform)]
-    return MaterialSection(
-        technique.role, technique.name, (*values, *((one.name, _picture_for(one)) for one in textures))
-    )
-
-
-def _picture_for(texture: Uniform) -> str:
-    if "normal_map" not in dict(texture.hints):
-        return CHECKER
-    return BUMPS_Y_DOWN if texture.name.endswith("y_down") else BUMPS
 
 
 def _rendered(folder: Path, stages: Sequence[MaterialSection], scene: str, backend: Backend) -> Rendered:
@@ -284,20 +256,3 @@ def _rendered(folder: Path, stages: Sequence[MaterialSection], scene: str, backe
     (folder / "scene.toml").write_text(scene, encoding="utf-8")
     loaded = scene_loading.load(str(folder / "scene.toml"))
     return render(dataclasses.replace(loaded, size=SIZE, samples=SAMPLES), backend)
-
-
-def _checker() -> Array:
-    """Squares of two colours: (texels, texels, 3)."""
-    rows, columns = np.indices((TEXELS, TEXELS)) * SQUARES // TEXELS
-    even = ((rows + columns) % 2 == 0)[..., None]
-    return np.where(even, [0.8, 0.5, 0.3], [0.25, 0.4, 0.55])
-
-
-def _bumps() -> Array:
-    """A normal map with y up: a dome in each square."""
-    place = (np.arange(TEXELS) + 0.5) * SQUARES / TEXELS % 1.0 * 2.0 - 1.0
-    x, y = np.meshgrid(place, -place)
-    inside = x * x + y * y < 1.0
-    normals = np.stack([x * inside, y * inside, np.full_like(x, 1.0)], axis=-1)
-    unit: Array = normals / np.linalg.norm(normals, axis=-1, keepdims=True)
-    return 0.5 + 0.5 * unit

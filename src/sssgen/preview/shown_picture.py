@@ -16,6 +16,7 @@ from sssgen.preview.chosen_textures import ChosenTextures, saved
 from sssgen.preview.flat_picture import is_plain, plain_picture, plain_text, raymarched_picture
 from sssgen.preview.picture import Chosen, Picture, picture_of
 from sssgen.preview.saved_values import save_to_material, save_to_scene
+from sssgen.preview.technique_scene import SAVES, is_technique, scene_of_technique
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.file_memo import FileState, noted_files
 
@@ -168,6 +169,10 @@ def _picture(name: str, chosen: Chosen) -> tuple[Scene | None, Picture]:
     """The scene and the picture of what a name stands for. Raises SssgenError."""
     if is_plain(name):
         return None, plain_picture(name, chosen)
+    if is_technique(name):
+        scene, material = scene_of_technique(name)
+        picture = picture_of(scene, material, chosen)
+        return scene, picture._replace(head={**picture.head, "saves": SAVES})
     scene = scene_of(name)
     material = load_material(scene.material)
     if any(stage.technique.role == "geometry" for stage in material.stages):

@@ -33,7 +33,7 @@ color = [0.6, 0.65, 0.7]
 """
 """The larger light stands behind the body, as light that comes through is what the materials are about."""
 
-_BALL = '[geometry]\nkind = "ball"\n'
+BALL = '[geometry]\nkind = "ball"\n'
 
 
 def scene_of(name: str) -> Scene:
@@ -65,6 +65,11 @@ def _scene_beside(material: Material, path: str) -> Scene | None:
 
 def _plain_scene(material: Material) -> Scene:
     """A ball in front of a plain background; a material that makes its own rays has no body."""
-    text = _PLAIN_SCENE.format(material=json.dumps(os.path.abspath(material.file), ensure_ascii=False))
     raymarched = any(stage.technique.role == "geometry" for stage in material.stages)
-    return parse_scene(text if raymarched else text + _BALL, material.file)
+    return plain_scene(material, "" if raymarched else BALL)
+
+
+def plain_scene(material: Material, geometry: str) -> Scene:
+    """The plain scene with a body, the section [geometry] or nothing. Raises SssgenError for a faulty one."""
+    text = _PLAIN_SCENE.format(material=json.dumps(os.path.abspath(material.file), ensure_ascii=False))
+    return parse_scene(text + geometry, material.file)

@@ -48,6 +48,7 @@ export class TextureSlots {
     queueMicrotask(() => onChoice(button, PICTURES, use));
     onDrop(element, use);
     if (row.texels) this.draw(canvas, row);
+    else { button.textContent = '+'; button.classList.add('empty'); }
     return button;
   }
 

@@ -1,0 +1,62 @@
+"""The scene of a technique that is named alone: the smallest material that shows it, on a body that fits its slots."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import json
+import os
+import tempfile
+
+from sssgen.harness.scenes.preview_scene import BALL, plain_scene
+from sssgen.harness.scenes.scene import Light, Scene
+from sssgen.lab.measure.measured_chain import material_text
+from sssgen.lab.measure.shown_technique import BODY, chain_of, named, write_pictures
+from sssgen.material import library
+from sssgen.material.material_loading import load_material
+from sssgen.material.model import Material
+from sssgen.support.file_writer import write_files
+
+_EVEN = Light(None, (0.0, 0.6, 0.8), (1.0, 1.0, 1.0))
+"""The light under which a quantity is the grey, so that white is a quantity of 2."""
+SUFFIX = ".sss"
+SAVES = "this is a material of the preview's own: change the defaults in the technique's file, or write a material"
+
+
+def is_technique(name: str) -> bool:
+    """Whether a name is that of a technique's file."""
+    return name.lower().endswith(SUFFIX)
+
+
+def scene_of_technique(path: str) -> tuple[Scene, Material]:
+    """The scene and the material that show the technique in a file. Raises SssgenError."""
+    technique = library.load(path)
+    stages = chain_of(technique)
+    file = f"{technique.name}.toml"
+    write_files(_folder(), {file: material_text(technique.name, stages)})
+    material = load_material(os.path.join(_folder(), file))
+    if technique.role == "distance":
+        return plain_scene(material, _function(named(technique))), material
+    in_slots = {to for stage in stages for _, to in stage.bind}
+    scene = plain_scene(material, _function(BODY) if BODY in in_slots else BALL)
+    if technique.role in ("thickness", "conversion"):
+        scene = dataclasses.replace(scene, lights=(_EVEN,), ambient=(0.0, 0.0, 0.0), exposure=0.5)
+    elif technique.role == "translucency":
+        scene = dataclasses.replace(scene, exposure=0.25)
+    return scene, material
+
+
+def _function(name: str) -> str:
+    return f'[geometry]\nkind = "distance"\ntechnique = {json.dumps(name, ensure_ascii=False)}\n'
+
+
+@functools.cache
+def _kept() -> tempfile.TemporaryDirectory[str]:
+    folder = tempfile.TemporaryDirectory(prefix="sssgen_preview_")
+    write_pictures(folder.name)
+    return folder
+
+
+def _folder() -> str:
+    """The folder of these materials, with the pictures that they read; it is removed at the end of the process."""
+    return os.path.abspath(_kept().name)
