@@ -25,7 +25,7 @@ from sssgen.harness.scenes import scene_loading
 from sssgen.harness.scenes.example_scenes import measured_scenes
 from sssgen.lab.chart.picked_material import stages_of
 from sssgen.lab.measure.measured_chain import MaterialSection, material_text
-from sssgen.lab.measure.shown_technique import (
+from sssgen.lab.measure.technique_chain import (
     BODY,
     is_drawn,
     pictured_stage,

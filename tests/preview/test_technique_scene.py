@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sssgen.ir.types import spell
-from sssgen.lab.measure.shown_technique import chain_of, is_drawn, textures_of
+from sssgen.lab.measure.technique_chain import chain_of, is_drawn, textures_of
 from sssgen.material import library
 from sssgen.preview.page_messages import PageMessages
 from sssgen.preview.picture import Chosen, picture_of

@@ -11,7 +11,7 @@ import tempfile
 from sssgen.harness.scenes.preview_scene import BALL, plain_scene
 from sssgen.harness.scenes.scene import Light, Scene
 from sssgen.lab.measure.measured_chain import material_text
-from sssgen.lab.measure.shown_technique import BODY, chain_of, named, write_pictures
+from sssgen.lab.measure.technique_chain import BODY, chain_of, named, write_pictures
 from sssgen.material import library
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
