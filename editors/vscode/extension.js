@@ -48,7 +48,7 @@ async function restart() {
 async function preview() {
   const document = vscode.window.activeTextEditor?.document;
   if (document?.uri.scheme !== "file") {
-    vscode.window.showErrorMessage("open a material or a scene first");
+    vscode.window.showErrorMessage("open a material, a scene, a technique or a shader first");
     return;
   }
   await document.save();
