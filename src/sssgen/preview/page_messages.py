@@ -45,7 +45,7 @@ def parsed(text: str | bytes) -> dict[str, Any]:
     return message
 
 
-BESIDE = {"": "nothing", "guards": "without guards", "start": "as it was at the start"}
+BESIDE = {"": "nothing", "guards": "without guards", "start": "as at the start"}
 """What may stand beside a picture, and its name on the page."""
 OTHER = "other"
 """The second of two names on the command line."""
