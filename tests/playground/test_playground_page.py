@@ -188,7 +188,8 @@ def test_a_material_without_a_body_has_text_and_says_why_there_is_no_picture(bro
     shown = Shown(browser, address, "jelly_cubes")
     try:
         shown.until(lambda: "fn " in shown.page.inner_text("#text"))
-        assert "makes its own rays" in shown.page.inner_text("#note")
+        assert "It makes its own rays" in shown.page.inner_text("#note")
+        assert not shown.page.locator("#stage canvas").count()
         shown.page.select_option("#start", "new_material")
         shown.until(
             lambda: (

@@ -16,6 +16,7 @@ from body_piece import packed_body
 from packed_file import write_packed
 from playground_session import texture_files
 from sssgen.harness.scenes.preview_scene import scene_of
+from sssgen.harness.scenes.scene import Scene
 from sssgen.material.material_loading import examples, load_material
 from sssgen.pipeline.compiler import compile
 from sssgen.preview.bodies import SHAPES, packed
@@ -80,22 +81,24 @@ def write_start(folder: Path, name: str, start: Start) -> None:
     record: dict[str, Any] = {"name": name, "title": start.title, "main": start.main, "files": start.files}
     record |= {"scenes": {}, "body_files": [], "texture_files": {}}
     if start.source:
-        try:
-            record |= _scenes(folder, start)
-        except SssgenError as error:
-            record["no_picture"] = str(error)
+        scene = scene_of(start.source)
+        if scene.geometry is None:
+            record["no_picture"] = (
+                f"It makes its own rays: this page has its text only; sssgen preview {name} draws it."
+            )
+        else:
+            record |= _scenes(folder, scene, start)
     write_packed(folder / "starts" / f"{name}.json", json.dumps(record).encode())
 
 
-def _scenes(folder: Path, start: Start) -> dict[str, Any]:
-    """The scene on its own body and on each shape, and which files of the start these depend on. Raises SssgenError."""
-    scene = scene_of(start.source)
+def _scenes(folder: Path, scene: Scene, start: Start) -> dict[str, Any]:
+    """The scene on its own body and on each shape, and which files of the start these depend on."""
     material = load_material(scene.material)
     scenes = {"": _scene(folder, picture_of(scene, material, Chosen()), scene.parameters)}
     for shape in SHAPES:
         with contextlib.suppress(SssgenError):  # what is baked for a body is for no other one
             scenes[shape] = _scene(folder, picture_of(scene, material, Chosen(shape)), scene.parameters)
-    assert scene.geometry is not None  # or there was no picture
+    assert scene.geometry is not None
     with noted_files() as read:
         packed(scene.geometry)
     body_files = {Path(file).name for file in read} & {file for file in start.files if file.endswith(".sss")}

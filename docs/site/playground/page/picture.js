@@ -36,7 +36,10 @@ export class Picture {
 
   drop() {
     this.stage?.dispose();
-    this.stage = null;
+    this.plain?.dispose();
+    this.stage = this.plain = null;
+    element('stage').replaceChildren();
+    element('stage').style.background = '';
   }
 
   /** Another start; `state` is that of a link. */
@@ -50,7 +53,8 @@ export class Picture {
     element('shape').value = shapes.includes(state?.shape) ? state.shape : '';
     document.querySelector('aside').hidden = !shapes.length;
     if (this.scene()) this.pieces.body(this.scene().head.body);
-    if (!shapes.length) this.drop();
+    if (!shapes.length) this.next(() => this.drop());
+    this.note(start.no_picture ?? '');
   }
 
   scene() { return this.start?.scenes[element('shape').value]; }
@@ -68,7 +72,7 @@ export class Picture {
   }
 
   async drawPlain(files) {
-    this.drop();
+    if (this.stage) this.drop();
     this.plain ??= new PlainStage(element('stage'));
     this.note(this.plain.show(Object.values(files)[0]));
   }
@@ -76,8 +80,7 @@ export class Picture {
   async draw() {
     const scene = this.scene();
     if (!scene || !this.head) { this.note(this.start?.no_picture ?? ''); return; }
-    this.plain?.dispose();
-    this.plain = null;
+    if (this.plain) this.drop();
     await this.stageOf(element('renderer').value);
     this.pieces.body(scene.head.body);
     const missing = [];
