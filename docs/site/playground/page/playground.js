@@ -75,7 +75,8 @@ async function write(compared, errors = '') {
   const asked = start;
   const written = await compiler.ask(request('text'));
   if (!written || asked !== start) return;
-  emitted.show(written.texts ?? {}, written.errors, compared);
+  emitted.show(written.texts ?? {}, written.errors === errors ? '' : written.errors, compared);  // one error is shown once
+  element('copy').disabled = Boolean(emitted.refused);
   if (!errors) complain('', written.warnings);
 }
 
