@@ -43,6 +43,9 @@ SECONDS = 90.0
 SIZE = {"width": 640, "height": 300}
 SWITCHES = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
+VALUES = re.compile(r"(?<=return )[^;]+(?=;)|(?<= = )[^;=,()]+(?=;)")
+"""What a technique's function returns or assigns."""
+
 MEASURE = """
 () => {
   const { stage } = preview;
@@ -102,16 +105,18 @@ class Example:
         for name in dict.fromkeys(re.findall(r'^technique = "(\w+)"', before, re.MULTILINE)):
             text = Path(library.index()[name]).read_text("utf-8")
             copy = self.file.with_name(f"{name}.sss")
-            parts = re.split(r"(?<=return )([^;]+)(?=;)", text)
-            if copy.exists() or len(parts) < 3:
+            if copy.exists():
                 continue
-            halves = ["".join(parts[:-2]), parts[-2], parts[-1]]
             self.file.write_text(before.replace(f'technique = "{name}"', f'technique = "{name}.sss"', 1), "utf-8")
-            module = self.shown.picture.head["module"]
-            copy.write_text(self.line(halves, 1), "utf-8")
-            self.shown.renew()
-            if not self.shown.error and self.shown.picture.head["module"] != module:
-                return copy, halves
+            for found in [*VALUES.finditer(text)][::-1][:8]:
+                parts = [text[: found.start()], found[0], text[found.end() :]]
+                copy.write_text(text, "utf-8")
+                self.shown.renew()
+                module = self.shown.picture.head["module"]
+                copy.write_text(self.line(parts, 1), "utf-8")
+                self.shown.renew()
+                if not self.shown.error and self.shown.picture.head["module"] != module:
+                    return copy, parts
             copy.unlink()
             self.file.write_text(before, "utf-8")
         raise SystemExit(f"{self.file}: no technique whose line can be changed")
