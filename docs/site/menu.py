@@ -25,7 +25,7 @@ def sections() -> list[Section]:
 
 def documents() -> list[str]:
     """The Markdown files of the repository that are written for readers."""
-    paths = [*ROOT.glob("*.md"), *(ROOT / "qualification").glob("*.md")]
+    paths = [*ROOT.glob("*.md"), *(ROOT / "qualification").glob("*.md"), *(ROOT / "editors").glob("*/*.md")]
     paths += [path for folder in ("docs", "examples") for path in (ROOT / folder).rglob("*.md")]
     return sorted(path.relative_to(ROOT).as_posix() for path in paths)
 
