@@ -144,6 +144,27 @@ def test_many_saves_end_on_the_newest(shown: Shown, stone: Path) -> None:
     shown.until(lambda: abs(shown.page.evaluate(value) - 99 / 200) < 1e-6)
 
 
+@pytest.mark.parametrize("size", [(1280, 720), (900, 600)])
+def test_nothing_is_cut_off(browser: Any, size: tuple[int, int]) -> None:
+    shown = Shown(browser, "ice")
+    try:
+        shown.page.set_viewport_size({"width": size[0], "height": size[1]})
+        wider = "(one) => one.scrollWidth > one.clientWidth"
+        assert not shown.page.evaluate(
+            f"[document.documentElement, ...document.querySelectorAll('aside, #controls')].some({wider})"
+        )
+        controls = "[...document.querySelectorAll('.row input, .row select, .row button')]"
+        ends = shown.page.evaluate(f"{controls}.map((one) => one.getBoundingClientRect().right)")
+        assert max(ends) <= size[0]
+        box = shown.page.locator("#save").bounding_box()
+        assert box["y"] + box["height"] < size[1]
+        numbers = "[...document.querySelectorAll('.number')]"
+        narrow = f"{numbers}.filter({wider}).map((one) => one.value)"
+        assert shown.page.evaluate(narrow) == []
+    finally:
+        shown.close()
+
+
 EXAMPLES = sorted(path.parent.name for path in (ROOT / "examples").glob("*/scene.toml"))
 
 

@@ -66,7 +66,7 @@ def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
     """The picture of a material in a scene. Raises SssgenError."""
     compiled = compile(material, TARGET, guards=chosen.guards)
     if scene.geometry is None:
-        raise failure("the scene has no body", "add [geometry]", scene.document.reporter.file)
+        raise failure(f"{material.name} makes its own rays: it is a flat picture, not a material of a body")
     scene = _on_shape(scene, chosen)
     named = {texture["property"]: texture["source_name"] for texture in compiled.reflection["textures"]}
     given = {

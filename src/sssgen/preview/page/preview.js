@@ -126,7 +126,7 @@ const python = connect((message) => {
   }
   else if (message.kind === 'measured') cost.heard(message);
   else if (message.kind === 'text' || message.kind === 'source') emitted.heard(message);
-  else say(message.text);
+  else { say(message.text); list(); }  // what was asked for is not shown
 }, () => {
   say('sssgen preview has ended. Start it again, and open its new address.');
   element('save').disabled = true;
