@@ -57,6 +57,7 @@ POINTS = [
 @pytest.fixture
 def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("SSSGEN_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(cache, "_folder", None)
     (tmp_path / "stone.toml").write_text(MATERIAL, encoding="utf-8")
     path = tmp_path / "scene.toml"
     path.write_text(SCENE + MEDIUM, encoding="utf-8")

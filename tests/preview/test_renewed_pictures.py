@@ -9,6 +9,7 @@ import pytest
 from sssgen.harness.render import scene_values
 from sssgen.preview import body_triangles
 from sssgen.preview.shown_picture import ShownPicture
+from sssgen.support import cache
 
 pytest.importorskip("igl")
 Image = pytest.importorskip("PIL.Image")
@@ -31,6 +32,7 @@ BODY = "/// A pebble.\nfloat pebble(object_position at) {{ return length(at) - {
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(body_triangles, "RESOLUTION", 16)
     monkeypatch.setenv("SSSGEN_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr(cache, "_folder", None)
     (tmp_path / "stone.toml").write_text(MATERIAL, encoding="utf-8")
     (tmp_path / "scene.toml").write_text(SCENE, encoding="utf-8")
     (tmp_path / "pebble.sss").write_text(BODY.format(radius="0.5"), encoding="utf-8")
