@@ -21,6 +21,8 @@ HERE = Path(__file__).parent
 RUN = ("ir", "lang", "material", "passes", "pipeline", "support", "targets", "techniques")
 """The folders of the package that the way to a shader's text needs."""
 MODULES = ("__init__.py", "version.py", "preview/__init__.py", "preview/emitted_head.py")
+NEVER = ("__pycache__", "numpy_runtime.py", "runtime", "worker_process.py")
+"""What runs emitted Python, and what starts processes."""
 LIBRARIES = ("jinja2", "markupsafe")
 PYODIDE_FILES = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm")
 SECONDS = 280.0
@@ -59,7 +61,7 @@ def write_bundle(folder: Path, starts: Mapping[str, Start], first: str) -> None:
 def _stage(stage: Path, starts: Mapping[str, Start], first: str) -> None:
     package = stage / "app" / "sssgen"
     for name in RUN:
-        shutil.copytree(Path(paths.PACKAGE, name), package / name, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(Path(paths.PACKAGE, name), package / name, ignore=shutil.ignore_patterns(*NEVER))
     for name in MODULES:
         (package / name).parent.mkdir(exist_ok=True)
         shutil.copyfile(Path(paths.PACKAGE, name), package / name)
