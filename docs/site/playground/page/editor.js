@@ -44,8 +44,9 @@ export class Editor {
 
   /** The places of errors: diagnostics as the language server has them, with the path of the file. */
   mark(diagnostics) {
+    const before = this.faults.length;
     this.faults = diagnostics.filter((one) => one.line).map((one) => ({ ...one, name: one.file.split('/').pop() }));
-    this.draw();
+    if (before || this.faults.length) this.draw();
   }
 
   draw() {
