@@ -244,7 +244,9 @@ def empty(tmp_path: Path) -> tuple[Path, dict[str, str]]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("document", ["README.md", "docs/install.md", "docs/editors.md", "examples/ci/README.md"])
+@pytest.mark.parametrize(
+    "document", ["README.md", "docs/install.md", "docs/preview.md", "docs/editors.md", "examples/ci/README.md"]
+)
 def test_the_pip_steps_work_in_an_empty_environment(
     document: str, wheel: Path, empty: tuple[Path, dict[str, str]]
 ) -> None:
