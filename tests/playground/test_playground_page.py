@@ -184,12 +184,14 @@ def test_textures_are_there_and_nothing_is_fetched_from_elsewhere(browser: Any, 
         shown.page.close()
 
 
-def test_a_material_without_a_body_has_text_and_says_why_there_is_no_picture(browser: Any, address: str) -> None:
+def test_a_material_that_makes_its_own_rays_is_drawn_without_a_body(browser: Any, address: str) -> None:
     shown = Shown(browser, address, "jelly_cubes")
     try:
         shown.until(lambda: "fn " in shown.page.inner_text("#text"))
-        assert "It makes its own rays" in shown.page.inner_text("#note")
-        assert not shown.page.locator("#stage canvas").count()
+        assert not shown.page.is_visible("#note")
+        assert shown.page.evaluate("playground.picture.stage.kind") == "flat"
+        assert shown.page.locator("#controls .row").count() > 3 and not shown.page.is_visible("#shape")
+        assert max(shown.color()) > 20.0
         shown.page.select_option("#start", "new_material")
         shown.until(
             lambda: (

@@ -13,14 +13,13 @@ from typing import Any
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled, compile, transpile
+from sssgen.preview import flat_head
 from sssgen.preview.emitted_head import TARGET, emitted_head
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.paths import place, stem
 
 PLAIN = (".glsl", ".frag", ".vert")
 """The suffixes of plain GLSL."""
-PLAIN_PICTURE = "glsl-es-300"
-"""The target whose text of plain GLSL the page draws."""
 TIME = 0
 """The time of all files in the bundle, in ns, so that the caches which it has are valid in every browser."""
 _NAME = re.compile(r"[A-Za-z0-9_]{1,64}\.(toml|sss|json|glsl|frag|vert)")
@@ -45,7 +44,7 @@ def answer(request: str) -> str:
     the scene) and `in_scene`. The picture is apart, as it is what a person waits for.
 
     The answer has `errors`, as the command line prints them, `diagnostics` with their places, and `warnings`; the text
-    has `texts`, the picture `head`, or `plain` for plain GLSL.
+    has `texts`, the picture `head`, or None and a `note` for plain GLSL that cannot be drawn.
     """
     asked = json.loads(request)
     result: dict[str, Any] = {"errors": "", "diagnostics": [], "warnings": ""}
@@ -67,13 +66,14 @@ def _of_material(asked: dict[str, Any]) -> dict[str, Any]:
     material = load_material(example if main == f"{example}.toml" else _path(asked))
     if asked["part"] == "text":
         return _texts(compile(material, asked["target"], asked["form"]), [])
-    compiled = compile(material, TARGET)
-    head = emitted_head(material, compiled, asked["values"], asked["in_scene"])
+    flat = material.makes_rays
+    compiled = compile(material, flat_head.TARGET if flat else TARGET)
+    head = (flat_head.raymarched_head if flat else emitted_head)(material, compiled, asked["values"], asked["in_scene"])
     return {"head": {**head, "texture_files": texture_files(material, compiled)}}
 
 
 def _of_plain(asked: dict[str, Any]) -> dict[str, Any]:
-    """Plain GLSL is translated as `sssgen transpile` does; a whole shader has a picture."""
+    """Plain GLSL is translated as `sssgen transpile` does; its picture is that of the live preview."""
     from sssgen.lang.plain_glsl import load_glsl
 
     path = _path(asked)
@@ -84,9 +84,10 @@ def _of_plain(asked: dict[str, Any]) -> dict[str, Any]:
     name = title if title[:1].isalpha() else f"file_{title}"
     if asked["part"] == "text":
         return _texts(transpile(loaded.module, asked["target"], name, keep=True, head=loaded.head), loaded.warnings)
-    if not any(function.name == "main" for function in loaded.module.functions):
-        return {"plain": None}
-    return {"plain": transpile(loaded.module, PLAIN_PICTURE, name, keep=True, head=loaded.head).files}
+    try:
+        return {"head": flat_head.plain_head(path, "auto")}
+    except SssgenError as error:  # the text is right: it is only no picture
+        return {"head": None, "note": error.diagnostics[0].message}
 
 
 def _texts(compiled: Compiled, warnings: list[Diagnostic]) -> dict[str, Any]:

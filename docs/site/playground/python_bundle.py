@@ -20,7 +20,7 @@ from starts import Start
 HERE = Path(__file__).parent
 RUN = ("ir", "lang", "material", "passes", "pipeline", "support", "targets", "techniques")
 """The folders of the package that the way to a shader's text needs."""
-MODULES = ("__init__.py", "version.py", "preview/__init__.py", "preview/emitted_head.py")
+MODULES = ("__init__.py", "version.py", "preview/__init__.py", "preview/emitted_head.py", "preview/flat_head.py")
 NEVER = ("__pycache__", "numpy_runtime.py", "runtime", "worker_process.py")
 """What runs emitted Python, and what starts processes."""
 LIBRARIES = ("jinja2", "markupsafe")

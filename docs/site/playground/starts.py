@@ -21,6 +21,7 @@ from sssgen.material.material_loading import examples, load_material
 from sssgen.pipeline.compiler import compile
 from sssgen.preview.bodies import SHAPES, packed
 from sssgen.preview.emitted_head import PARTS, TARGET
+from sssgen.preview.flat_picture import raymarched_picture
 from sssgen.preview.picture import Chosen, Picture, picture_of
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.file_memo import noted_files
@@ -81,19 +82,15 @@ def write_start(folder: Path, name: str, start: Start) -> None:
     record: dict[str, Any] = {"name": name, "title": start.title, "main": start.main, "files": start.files}
     record |= {"scenes": {}, "body_files": [], "texture_files": {}}
     if start.source:
-        scene = scene_of(start.source)
-        if scene.geometry is None:
-            record["no_picture"] = (
-                f"It makes its own rays: this page has its text only; sssgen preview {name} draws it."
-            )
-        else:
-            record |= _scenes(folder, scene, start)
+        record |= _scenes(folder, scene_of(start.source), start)
     write_packed(folder / "starts" / f"{name}.json", json.dumps(record).encode())
 
 
 def _scenes(folder: Path, scene: Scene, start: Start) -> dict[str, Any]:
     """The scene on its own body and on each shape, and which files of the start these depend on."""
     material = load_material(scene.material)
+    if material.makes_rays:
+        return {"scenes": {"": _scene(folder, raymarched_picture(scene, material, Chosen()), scene.parameters)}}
     scenes = {"": _scene(folder, picture_of(scene, material, Chosen()), scene.parameters)}
     for shape in SHAPES:
         with contextlib.suppress(SssgenError):  # what is baked for a body is for no other one
@@ -109,16 +106,19 @@ def _scenes(folder: Path, scene: Scene, start: Start) -> dict[str, Any]:
 def _scene(folder: Path, picture: Picture, in_scene: Any) -> dict[str, Any]:
     """What the browser cannot compute of a picture."""
     head, pieces = picture.head, dict(picture.pieces)
-    body = packed_body(pieces.pop(head["body"]))
-    names = {head["body"]: _piece(folder, body)} | {digest: _piece(folder, data) for digest, data in pieces.items()}
+    kept = {key: value for key, value in head.items() if key not in PARTS}
+    if "flat" in head:
+        kept["flat"] = {key: head["flat"][key] for key in ("start", "plays")}
+    else:
+        kept["body"] = _piece(folder, packed_body(pieces.pop(head["body"])))
+    names = {digest: _piece(folder, data) for digest, data in pieces.items()}
     texels = {}
     for texture in head["textures"]:
         if "texels" in texture:
             levels = [{**level, "data": names[level["data"]]} for level in texture["texels"]["levels"]]
             texels[texture["source_name"]] = {**texture["texels"], "levels": levels}
-    kept = {key: value for key, value in head.items() if key not in PARTS}
     return {
-        "head": {**kept, "body": names[head["body"]]},
+        "head": kept,
         "texels": texels,
         "values": {name: [*map(float, value)] for name, value in picture.values.items()},
         "in_scene": list(in_scene),

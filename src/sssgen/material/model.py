@@ -61,6 +61,11 @@ class Material(NamedTuple):
 
         return Path(self.file)
 
+    @property
+    def makes_rays(self) -> bool:
+        """Whether a technique finds the surface along rays: then the material has no body, and fills a picture."""
+        return any(stage.technique.role == "geometry" for stage in self.stages)
+
 
 UV_SETS = ("uv", "uv2")
 SHADINGS = ("lit", "unlit")

@@ -255,7 +255,6 @@ def _with_value(uniform: Uniform, program: Program, material: Material) -> Unifo
 
 
 def _about(material: Material) -> About:
-    raymarched = any(stage.technique.role == "geometry" for stage in material.stages)
     return About(
         material.name,
         material.title,
@@ -263,7 +262,7 @@ def _about(material: Material) -> About:
         material.shading,
         material.alpha_mode,
         material.two_sided,
-        raymarched,
+        material.makes_rays,
         bodies=tuple(bodies(material.stages)),
     )
 

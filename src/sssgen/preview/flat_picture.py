@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -13,89 +12,19 @@ from sssgen.harness.evaluate import input_files
 from sssgen.harness.evaluate.evaluation import half
 from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.scenes.scene import Scene
-from sssgen.ir.nodes import Function
-from sssgen.ir.types import spell
-from sssgen.lang.plain_glsl import Loaded, load_glsl_text
 from sssgen.material.model import Material
-from sssgen.pipeline.compiler import Compiled, compile, transpile
-from sssgen.preview.emitted_head import controls
+from sssgen.pipeline.compiler import compile
+from sssgen.preview.flat_head import TARGET, plain_head, raymarched_head
 from sssgen.preview.picture import Chosen, Picture, Pieces, texels_of
-from sssgen.support.diagnostics import failure
-from sssgen.support.paths import posix, stem
-from sssgen.support.text_files import read_text
 from sssgen.targets.runtime.numpy_textures import Texture
-
-TARGET = "glsl-es-300"
-PLAIN = (".glsl", ".frag", ".fs")
-"""The suffixes of plain GLSL."""
-GIVEN: Mapping[str, tuple[str, ...]] = {
-    "time": ("time", "iTime", "u_time", "uTime", "iGlobalTime"),
-    "resolution": ("resolution", "iResolution", "u_resolution", "uResolution"),
-    "mouse": ("mouse", "iMouse", "u_mouse", "uMouse"),
-    "frame": ("frame", "iFrame", "u_frame"),
-}
-"""What the page gives → the names by which shaders ask for it."""
-TYPES = {"time": ("float",), "resolution": ("vec2", "vec3"), "mouse": ("vec2", "vec4"), "frame": ("int", "float")}
-BACKGROUND = [[0.1, 0.1, 0.1], [0.1, 0.1, 0.1]]
-_ENTRY = re.compile(r"\bvoid\s+mainImage\s*\(")
-_COLORS = {"float": "vec3({})", "vec2": "vec3({}, 0.0)", "vec3": "{}", "vec4": "{}.rgb"}
-"""A function's result as a colour."""
-_POINTS = {"vec2": "at", "vec3": "vec3(at, 0.0)"}
-"""What a function is called with, by the type of its parameter."""
-_WRAPPED = """
-void mainImage(out vec4 shown, in vec2 pixel) {{
-    vec2 at = 4.0 * (pixel - 0.5 * iResolution.xy) / iResolution.y;
-    shown = vec4({color}, 1.0);
-}}
-"""
-_VERTEX = """#version 300 es
-{outputs}
-void main() {{
-    vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-{values}
-    gl_Position = vec4(corner, 0.0, 1.0);
-}}
-"""
-
-
-def is_plain(name: str) -> bool:
-    """Whether a name is that of a file of plain GLSL."""
-    return name.lower().endswith(PLAIN)
 
 
 def plain_picture(path: str, chosen: Chosen) -> Picture:
-    """The picture of plain GLSL: a fragment shader, `mainImage` as on Shadertoy, or a function of a place.
-
-    Raises SssgenError for a faulty file, and for a kind of shader that needs more than one triangle.
-    """
-    shown = posix(path)
-    compiled, note = _transpiled(path, TARGET, chosen.guards)
-    reflection = compiled.reflection
-    if reflection["form"] != "fragment":
-        raise failure(f"this is a {reflection['form']} shader", "the page draws fragment shaders", shown)
+    """The picture of plain GLSL. Raises SssgenError as `plain_head` does."""
     pieces = Pieces()
-    textures = [_slot(row, chosen, pieces) for row in reflection["textures"]]
-    head = _head(chosen, compiled, {}, ()) | {
-        "name": stem(shown),
-        "title": note or os.path.basename(path),
-        "textures": textures,
-        "saves": "the values are not part of a GLSL file: write them there as `uniform float x = 0.5;`",
-    }
-    head["flat"] |= {"vertex": _vertex(reflection, shown), "start": 0.0, "plays": True}
+    head = plain_head(path, chosen.guards)
+    head["textures"] = [_filled(row, chosen, pieces) for row in head["textures"]]
     return Picture(head, pieces.data, None)
-
-
-def plain_text(path: str, target: str, guards: str) -> Compiled:
-    """The text of plain GLSL for a target, as its picture is drawn. Raises SssgenError."""
-    return _transpiled(path, target, guards)[0]
-
-
-def _transpiled(path: str, target: str, guards: str) -> tuple[Compiled, str]:
-    """The file as a whole shader for a target, and what a wrapped function is."""
-    shown = posix(path)
-    loaded, note = _loaded(read_text(path, shown), path, shown)
-    name = re.sub(r"\W", "_", stem(shown), flags=re.ASCII)
-    return transpile(loaded.module, target, f"file_{name}", guards, keep=True, head=loaded.head), note
 
 
 def raymarched_picture(scene: Scene, material: Material, chosen: Chosen) -> Picture:
@@ -103,122 +32,19 @@ def raymarched_picture(scene: Scene, material: Material, chosen: Chosen) -> Pict
     compiled = compile(material, TARGET, guards=chosen.guards)
     shell = shell_of(scene, material, compiled.reflection)
     pieces = Pieces()
-    textures = [
+    head = raymarched_head(material, compiled, shell.parameters, scene.parameters)
+    head["textures"] = [
         {**row, "chosen": "", "texels": texels_of(shell.textures[row["source_name"]], pieces.add)}
-        for row in map(_row, compiled.reflection["textures"])
+        for row in head["textures"]
         if row["source_name"] in shell.textures
     ]
-    head = _head(chosen, compiled, shell.parameters, scene.parameters) | {
-        "name": material.name,
-        "title": material.title,
-        "textures": textures,
-        "background": [list(color) for color in scene.background],
-        "exposure": scene.exposure,
-    }
-    vertex = next(text for name, text in compiled.files.items() if name.endswith(".vert"))
-    head["flat"] |= {"vertex": vertex, "start": scene.time, "plays": False}
-    return Picture(head, pieces.data, material)
+    head["flat"] |= {"start": scene.time, "plays": False}
+    head |= {"background": [list(color) for color in scene.background], "exposure": scene.exposure}
+    return Picture(head, pieces.data, material, shell.parameters)
 
 
-def _head(chosen: Chosen, compiled: Compiled, values: Mapping[str, Sequence[float]], in_scene: Any) -> dict[str, Any]:
-    """The part of the head that both kinds have."""
-    reflection = compiled.reflection
-    given = {uniform["name"]: what for uniform in reflection["uniforms"] if (what := _given(uniform))}
-    fragment = next(text for name, text in compiled.files.items() if name.endswith(".frag"))
-    if "uniform float time;" in fragment:  # of the shell
-        given["time"] = "time"
-    own = [uniform for uniform in reflection["uniforms"] if uniform["name"] not in given and _settable(uniform["type"])]
-    if any(uniform["source_name"] == "aspect" and uniform["technique"] for uniform in own):  # of a camera in the chain
-        given.update({row["name"]: "aspect" for row in own if row["source_name"] == "aspect"})
-        own = [row for row in own if row["source_name"] != "aspect"]
-    rows = [{**uniform, "property": uniform["name"]} for uniform in own]
-    return {
-        "shape": "",
-        "shapes": [""],
-        "mesh": "",
-        "flat": {"fragment": fragment, "given": given},
-        "controls": controls({"uniforms": rows}, values, in_scene),
-        "background": BACKGROUND,
-        "exposure": 1.0,
-        "lights": [],
-        "saves": "",
-        "cost": {kind: entry["cost"] for kind, entry in reflection["entries"].items() if "cost" in entry},
-    }
-
-
-def _given(uniform: Mapping[str, Any]) -> str:
-    """What the page gives for a uniform of plain GLSL; '' for nothing."""
-    if uniform["technique"]:
-        return ""
-    return next(
-        (what for what, names in GIVEN.items() if uniform["name"] in names and uniform["type"] in TYPES[what]), ""
-    )
-
-
-def _settable(type_: str) -> bool:
-    return type_.partition("[")[0] == type_ and not type_.startswith("mat")
-
-
-def _loaded(text: str, path: str, shown: str) -> tuple[Loaded, str]:
-    """The module as a whole shader, and what a wrapped function is."""
-    roots = (os.path.dirname(path) or ".",)
-    if _ENTRY.search(text):
-        return load_glsl_text(text, shown, roots, entry="shadertoy"), ""
-    loaded = load_glsl_text(text, shown, roots)
-    if any(function.name == "main" for function in loaded.module.functions):
-        return loaded, ""
-    called = [(one, call) for one in loaded.module.functions if one.span.file == shown and (call := _call(one))]
-    if not called:
-        hint = "write void main() or void mainImage(out vec4, in vec2), or a function such as float noise(vec2 p)"
-        raise failure("nothing in the file can be shown as a picture", hint, shown)
-    function, call = called[-1]
-    wrapped = text.rstrip("\n") + "\n" + _WRAPPED.format(color=_COLORS[spell(function.result)].format(call))
-    note = f"{function.name}({', '.join(spell(param.type) for param in function.params)}) around 0, ±2 high"
-    return load_glsl_text(wrapped, shown, roots, entry="shadertoy"), note
-
-
-def _call(function: Function) -> str:
-    """The call of a function of a place, and maybe of the time; '' where it has other parameters."""
-    types = [spell(param.type) for param in function.params]
-    if function.body is None or spell(function.result) not in _COLORS or not types or types[0] not in _POINTS:
-        return ""
-    if types[1:] not in ([], ["float"]) or any(param.direction != "in" for param in function.params):
-        return ""
-    arguments = [_POINTS[types[0]], *(["iTime"] if types[1:] else [])]
-    return f"{function.name}({', '.join(arguments)})"
-
-
-def _vertex(reflection: Mapping[str, Any], shown: str) -> str:
-    """A vertex shader for one triangle that gives each two-component input the place in the picture."""
-    inputs = [row for row in reflection["stage_inputs"] if not row["builtin"]]
-    for row in inputs:
-        if row["type"] != "vec2":
-            hint = "the page gives a fragment shader a vec2 with the place in the picture, 0 to 1; no mesh is drawn"
-            raise failure(f"the shader reads '{row['name']}', a {row['type']}", hint, shown)
-    outputs = "\n".join(f"out vec2 {row['name']};" for row in inputs)
-    values = "\n".join(f"    {row['name']} = 0.5 * corner + 0.5;" for row in inputs)
-    return _VERTEX.format(outputs=outputs, values=values)
-
-
-def _row(texture: Mapping[str, Any]) -> dict[str, Any]:
-    return {
-        "property": texture["name"],
-        "source_name": texture["source_name"],
-        "technique": texture["technique"],
-        "name": texture["technique_name"],
-        "doc": texture["doc"],
-        "type": texture["type"],
-        "color": texture["color"],
-        "drawn": "",
-        "page_draws": False,
-    }
-
-
-def _slot(texture: Mapping[str, Any], chosen: Chosen, pieces: Pieces) -> dict[str, Any]:
-    """A texture of plain GLSL: the chosen picture, or a checker."""
-    row = _row(texture)
-    if row["type"] != "sampler2D":
-        raise failure(f"the shader reads '{row['name']}', a {row['type']}", "the page gives sampler2D only")
+def _filled(row: Mapping[str, Any], chosen: Chosen, pieces: Pieces) -> dict[str, Any]:
+    """A texture of plain GLSL with its texels: the chosen picture, or a checker."""
     file = chosen.textures.get(row["property"], "")
     values = input_files.texture(file) if file else Texture(_checker())
     return {**row, "chosen": os.path.basename(file), "texels": texels_of(half(values), pieces.add)}

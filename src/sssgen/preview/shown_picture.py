@@ -13,7 +13,8 @@ from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.preview.bodies import OWN_MESH
 from sssgen.preview.chosen_textures import ChosenTextures, saved
-from sssgen.preview.flat_picture import is_plain, plain_picture, plain_text, raymarched_picture
+from sssgen.preview.flat_head import is_plain, plain_text
+from sssgen.preview.flat_picture import plain_picture, raymarched_picture
 from sssgen.preview.picture import Chosen, Picture, picture_of
 from sssgen.preview.saved_values import save_to_material, save_to_scene
 from sssgen.preview.technique_scene import SAVES, is_technique, scene_of_technique
@@ -175,6 +176,6 @@ def _picture(name: str, chosen: Chosen) -> tuple[Scene | None, Picture]:
         return scene, picture._replace(head={**picture.head, "saves": SAVES})
     scene = scene_of(name)
     material = load_material(scene.material)
-    if any(stage.technique.role == "geometry" for stage in material.stages):
+    if material.makes_rays:
         return scene, raymarched_picture(scene, material, chosen)
     return scene, picture_of(scene, material, chosen)

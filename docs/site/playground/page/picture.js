@@ -1,6 +1,6 @@
 // The picture: the stage and the panel of the live preview, with static bodies, textures and scenes.
 
-import { PlainStage } from './plain_stage.js';
+import { FlatStage } from './preview/flat_stage.js';
 import { Panel } from './preview/panel.js';
 import { Stage } from './preview/stage.js';
 
@@ -9,7 +9,7 @@ const OWN = 'its own';
 
 export class Picture {
   constructor(pieces, say) {
-    Object.assign(this, { pieces, say, start: null, stage: null, plain: null, head: null, waiting: Promise.resolve() });
+    Object.assign(this, { pieces, say, start: null, stage: null, head: null, waiting: Promise.resolve() });
     this.panel = new Panel(element('controls'), (property, numbers) => this.stage?.set(property, numbers));
     element('shape').addEventListener('change', () => this.next(() => this.draw()));
     element('environment').addEventListener('change', () => this.stage?.environment(element('environment').checked));
@@ -25,7 +25,7 @@ export class Picture {
 
   /** A stage of that renderer; where the browser has no WebGPU, its fallback. */
   async stageOf(kind) {
-    if (this.stage || this.start && !this.start.scenes['']) return;
+    if (this.stage || this.start && !this.scene()?.head.body) return;
     const gpu = kind === 'webgpu' && await navigator.gpu?.requestAdapter().catch(() => null);
     const chosen = kind === 'webgpu' && !gpu ? 'webgl2' : kind;
     element('renderer').value = chosen;
@@ -36,8 +36,7 @@ export class Picture {
 
   drop() {
     this.stage?.dispose();
-    this.plain?.dispose();
-    this.stage = this.plain = null;
+    this.stage = null;
     element('stage').replaceChildren();
     element('stage').style.background = '';
   }
@@ -51,10 +50,10 @@ export class Picture {
     const shapes = Object.keys(start.scenes);
     element('shape').replaceChildren(...shapes.map((shape) => new Option(shape || OWN, shape)));
     element('shape').value = shapes.includes(state?.shape) ? state.shape : '';
-    document.querySelector('aside').hidden = !shapes.length;
-    if (this.scene()) this.pieces.body(this.scene().head.body);
-    if (!shapes.length) this.next(() => this.drop());
-    this.note(start.no_picture ?? '');
+    const body = this.scene()?.head.body;
+    for (const id of ['shape-row', 'renderer-row', 'environment-row']) element(id).hidden = !body;
+    if (body) this.pieces.body(body); else this.next(() => this.drop());
+    this.note('');
   }
 
   scene() { return this.start?.scenes[element('shape').value]; }
@@ -63,24 +62,41 @@ export class Picture {
 
   /** The picture of Python's answer; the last one stays where there is none. */
   async show(answer) {
-    if (!answer.head && !answer.plain) {
-      this.note(this.start.no_picture ?? '');
-      return;
-    }
-    this.head = answer.head;
-    await this.next(() => answer.plain ? this.drawPlain(answer.plain) : this.draw());
-  }
-
-  async drawPlain(files) {
-    if (this.stage) this.drop();
-    this.plain ??= new PlainStage(element('stage'));
-    this.note(this.plain.show(Object.values(files)[0]));
+    if (answer.head) this.head = answer.head;
+    await this.next(() => this.draw());
+    if (answer.note) this.note(answer.note);
   }
 
   async draw() {
+    const { head } = this;
+    if (!head) return;
+    if (this.stage && (this.stage.kind === 'flat') !== Boolean(head.flat)) this.drop();
+    if (head.flat) await this.drawFlat(); else await this.drawBody();
+  }
+
+  /** A picture of one triangle: plain GLSL, or a material that makes its own rays. */
+  async drawFlat() {
     const scene = this.scene();
-    if (!scene || !this.head) { this.note(this.start?.no_picture ?? ''); return; }
-    if (this.plain) this.drop();
+    if (!this.stage) {
+      const stage = new FlatStage(element('stage'), this.pieces.get);
+      await stage.start();
+      this.stage = stage;
+    }
+    const textures = this.head.textures.map((row) => ({ ...row, texels: scene?.texels[row.source_name] })).filter((row) => row.texels);
+    this.showControls();
+    await this.stage.show({ ...this.head, ...scene?.head, textures, flat: { ...this.head.flat, ...scene?.head.flat } }, this.panel.values);
+    const missing = this.head.textures.filter((row) => !scene?.texels[row.source_name]);
+    this.note(missing.map((row) => `The picture of ${row.source_name} is not on this page: it is black.`).join('\n'));
+  }
+
+  showControls() {
+    document.querySelector('aside').hidden = Boolean(this.head.flat) && !this.head.controls.length;
+    this.panel.show(this.head.controls);
+    if (this.linked) this.valuesOfLink();
+  }
+
+  async drawBody() {
+    const scene = this.scene();
     await this.stageOf(element('renderer').value);
     this.pieces.body(scene.head.body);
     const missing = [];
@@ -90,8 +106,7 @@ export class Picture {
       if (!own && !row.drawn) missing.push(row.source_name);
       return texels ? { ...row, texels } : row;
     });
-    this.panel.show(this.head.controls);
-    if (this.linked) this.valuesOfLink();
+    this.showControls();
     await this.stage.show({ ...scene.head, ...this.head, textures }, this.panel.values);
     const bodies = this.start.body_files.filter((name) => globalThis.playground.editor.files[name] !== this.start.files[name]);
     this.note([

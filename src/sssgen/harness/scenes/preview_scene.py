@@ -65,8 +65,7 @@ def _scene_beside(material: Material, path: str) -> Scene | None:
 
 def _plain_scene(material: Material) -> Scene:
     """A ball in front of a plain background; a material that makes its own rays has no body."""
-    raymarched = any(stage.technique.role == "geometry" for stage in material.stages)
-    return plain_scene(material, "" if raymarched else BALL)
+    return plain_scene(material, "" if material.makes_rays else BALL)
 
 
 def plain_scene(material: Material, geometry: str) -> Scene:
