@@ -12,9 +12,10 @@ import weakref
 from collections.abc import Mapping
 from typing import Any
 
+from sssgen.harness.pictures import images
 from sssgen.harness.scenes.scene import Picture, Scene
 from sssgen.preview.saved_values import save_to_material, save_to_scene
-from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.extras import need
 from sssgen.support.file_writer import write_files
 from sssgen.support.paths import posix
@@ -35,7 +36,7 @@ class ChosenTextures:
         """The file with the bytes of a picture for a texture's row of the picture's head.
 
         A JPEG becomes a PNG, which scenes and engines read. Raises SssgenError for a texture that takes no picture, and
-        for another kind of file; the content of the others is checked when they are read.
+        for a file that is none.
         """
         if row["type"] != "sampler2D" or row["page_draws"]:
             what = "it is drawn for each frame" if row["page_draws"] else f"it is a {row['type']}"
@@ -53,7 +54,12 @@ class ChosenTextures:
         folder = tempfile.mkdtemp(dir=self._folder)  # two pictures may have the same name
         file = re.sub(r"[^\w.-]", "_", base).lstrip(".") or "texture"
         write_files(folder, {f"{file}{suffix}": data})
-        return os.path.join(folder, f"{file}{suffix}")
+        path = os.path.join(folder, f"{file}{suffix}")
+        try:
+            images.read(path)
+        except SssgenError as error:  # which names the copy
+            raise failure(error.diagnostics[0].message, error.diagnostics[0].hint, name) from None
+        return path
 
 
 def saved(row: Mapping[str, Any], file: str, scene: Scene, material: Any) -> str:

@@ -26,6 +26,7 @@ from sssgen.support.extras import need
 from sssgen.support.file_changes import changes
 
 HOST = "127.0.0.1"
+MOST_PORT = 65535
 PAGE = Path(__file__).with_name("page")
 TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript"}
 FILES = {path.name: TYPES[path.suffix] for path in sorted(PAGE.iterdir())}
@@ -71,6 +72,10 @@ class PreviewServer:
     async def run(self, port: int, opened: bool, ready: Callable[[str], None]) -> None:
         """Serves until it is cancelled. Raises SssgenError where the port is in use or three.js is missing."""
         self.library = library()
+        if not 0 <= port <= MOST_PORT:
+            raise failure(
+                f"{port} is not a port", f"leave out --port, and a free one is taken; ports end at {MOST_PORT}"
+            )
         runner = self.web.AppRunner(self.application())
         await runner.setup()
         try:

@@ -1,8 +1,8 @@
-// A body of fewer triangles, for drafts: corners in one cell of a grid become one.
+// A body of fewer triangles, for drafts: corners in one cell of a grid become one, their mean.
 
 import * as THREE from 'three';
 
-const CELLS = 64;
+const CELLS = 128;
 const FLOATS = 8;
 
 /** Attributes of corners, each with position, normal and uv. */
@@ -22,14 +22,15 @@ export function coarseOf(geometry) {
   const { array, count } = geometry.attributes.position.data;
   const { min, max } = geometry.boundingBox;
   const cell = Math.max(max.x - min.x, max.y - min.y, max.z - min.z) / CELLS || 1;
-  const first = new Map();  // cell → the first corner in it
+  const places = new Map();  // cell → its number
   const standing = new Uint32Array(count);
   for (let corner = 0; corner < count; corner++) {
     const [x, y, z] = [0, 1, 2].map((axis) => Math.floor((array[FLOATS * corner + axis] - min.getComponent(axis)) / cell));
     const key = (z * 2 * CELLS + y) * 2 * CELLS + x;
-    if (!first.has(key)) first.set(key, corner);
-    standing[corner] = first.get(key);
+    if (!places.has(key)) places.set(key, places.size);
+    standing[corner] = places.get(key);
   }
+  const means = meansOf(array, standing, places.size);
   const kept = [];
   for (let corner = 0; corner < count; corner += 3) {
     const [a, b, c] = [standing[corner], standing[corner + 1], standing[corner + 2]];
@@ -40,9 +41,28 @@ export function coarseOf(geometry) {
   kept.forEach((corner, index) => {
     numbers.set(array.subarray(FLOATS * corner, FLOATS * (corner + 3)), 3 * FLOATS * index);
     for (let side = 0; side < 3; side++) {
-      const from = FLOATS * standing[corner + side];
-      numbers.set(array.subarray(from, from + 3), FLOATS * (3 * index + side));
+      const from = 6 * standing[corner + side];
+      numbers.set(means.subarray(from, from + 6), FLOATS * (3 * index + side));
     }
   });
   return geometryOf(numbers);
+}
+
+/** The mean position and the unit mean normal of the corners in each cell. */
+function meansOf(array, standing, cells) {
+  const means = new Float32Array(6 * cells);
+  const counts = new Uint32Array(cells);
+  standing.forEach((cell, corner) => {
+    for (let axis = 0; axis < 6; axis++) means[6 * cell + axis] += array[FLOATS * corner + axis];
+    counts[cell] += 1;
+  });
+  for (let cell = 0; cell < cells; cell++) {
+    const at = 6 * cell;
+    const length = Math.hypot(means[at + 3], means[at + 4], means[at + 5]) || 1;
+    for (let axis = 0; axis < 3; axis++) {
+      means[at + axis] /= counts[cell];
+      means[at + 3 + axis] /= length;
+    }
+  }
+  return means;
 }

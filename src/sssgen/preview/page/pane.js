@@ -39,7 +39,9 @@ export class Pane {
   /** Shows a message; returns why it cannot be drawn, or ''. */
   async show(message, values) {
     const { picture } = message;
+    const same = this.stage && this.root.dataset.version === String(message.version) && this.last?.beside === message.beside;
     this.last = message;
+    if (same && message.error) return '';  // the last good picture stays as it is
     this.caption.textContent = message.label;
     this.panel.show(picture.controls);
     this.slots.show(picture.textures, message.limit);

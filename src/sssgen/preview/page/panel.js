@@ -75,7 +75,9 @@ export class Panel {
 
   number(control, read) {
     const [low, high] = control.range ?? ['', ''];
-    return make('input', { type: 'number', className: control.value.length === 3 ? 'number of-three' : 'number', step: /int/.test(control.type) ? 1 : 'any', min: low, max: high, oninput: read });
+    const field = make('input', { type: 'number', className: control.value.length === 3 ? 'number of-three' : 'number', step: /int/.test(control.type) ? 1 : 'any', min: low, max: high, oninput: read });
+    field.addEventListener('change', () => this.fill(control, field.closest('.row')));  // it then shows what is drawn
+    return field;
   }
 
   ofSlider(control, share) {
