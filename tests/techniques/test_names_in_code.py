@@ -17,6 +17,7 @@ PERMITTED = {
     "harness/evaluate/evaluation.py": (EXAMPLE, {"lobe_gdc2011"}),
     "harness/lint_findings.py": (EXAMPLE, {"lobe_gdc2011"}),
     "harness/scenes/distance_field.py": ("the default of a scene's distance function", {"sphere"}),
+    "harness/scenes/scene_keys.py": ("kinds of geometry", {"box", "capsule", "torus"}),
     "harness/scenes/scene_reader.py": (
         "kinds of geometry; an example",
         {"box", "capsule", "sphere", "torus"},
@@ -25,6 +26,7 @@ PERMITTED = {
     "harness/testing/project_run.py": (EXAMPLE, {"lobe_gdc2011"}),
     "lab/chart/charting.py": ("names of scenes", {"capsule", "torus"}),
     "lab/gpu/timed_programs.py": (EXAMPLE, {"lobe_exp2"}),
+    "lab/measure/technique_chain.py": ("a hint of uniforms; the body in a slot", {"box", "normal_map"}),
     "lab/reference/transport_mitsuba.py": ("Mitsuba's names", {"box", "sphere"}),
     "lang/check/uniform_hints.py": (HINT, {"normal_map"}),
     "material/attributes.py": (SHAPE, {"box", "sphere", "torus"}),
