@@ -15,7 +15,7 @@ def add_options(parser: ArgumentParser) -> None:
         "  sssgen preview ice ice_body\n"
         "  sssgen preview clouds.glsl"
     )
-    parser.add_argument("NAME", help="a material's or scene's .toml, a technique's .sss, plain GLSL, or an example")
+    parser.add_argument("NAME", help="a material's or scene's .toml, a technique, plain GLSL, or an example")
     parser.add_argument("OTHER", nargs="?", help="another one, which is shown beside it")
     parser.add_argument("--mesh", metavar="FILE", help="a mesh (.glb, .obj, …) to show the material on")
     parser.add_argument("--port", type=int, default=0, metavar="N", help="the port on 127.0.0.1 (default: a free one)")

@@ -18,6 +18,7 @@ from sssgen.harness.scenes.geometry import Mesh
 from sssgen.harness.scenes.scene import Picture as PictureFile
 from sssgen.harness.scenes.scene import Scene
 from sssgen.material.model import Material
+from sssgen.material.requirements import bodies
 from sssgen.pipeline.compiler import compile
 from sssgen.preview.bodies import OWN_MESH, SHAPES, fitted, framed, packed
 from sssgen.preview.emitted_head import DRAWN_BY_PAGE, TARGET, emitted_head
@@ -81,6 +82,7 @@ def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
         "shape": chosen.shape,
         "shapes": ["", *SHAPES, *([OWN_MESH] if chosen.mesh is not None else [])],
         "saves": "",
+        "note": _note(material, chosen.shape),
         "mesh": os.path.basename(chosen.mesh.path) if chosen.mesh is not None else "",
         "body": pieces.add(packed(scene.geometry)),
         "model": scene.geometry.to_world().T.ravel().tolist(),
@@ -97,6 +99,12 @@ def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
         "camera": _camera(scene, chosen.shape),
     }
     return Picture(head, pieces.data, material, shell.parameters)
+
+
+def _note(material: Material, shape: str) -> str:
+    """What a person must know of a material on another shape than its own; '' for nothing."""
+    own = bodies(material.stages) if shape else []
+    return f"It is made for the body of {', '.join(own)}: on this shape the light inside is wrong." if own else ""
 
 
 def _on_shape(scene: Scene, chosen: Chosen) -> Scene:

@@ -13,7 +13,7 @@ from sssgen.harness.scenes.scene import Light, Scene
 from sssgen.lab.measure.measured_chain import material_text
 from sssgen.lab.measure.technique_chain import BODY, chain_of, named, write_pictures
 from sssgen.material import library
-from sssgen.material.material_loading import load_material
+from sssgen.material.material_loading import examples, load_material
 from sssgen.material.model import Material
 from sssgen.support.file_writer import write_files
 
@@ -24,13 +24,13 @@ SAVES = "this is a material of the preview's own: change the defaults in the tec
 
 
 def is_technique(name: str) -> bool:
-    """Whether a name is that of a technique's file."""
-    return name.lower().endswith(SUFFIX)
+    """Whether a name is that of a technique: a file, or one of the library unless an example has the name."""
+    return name.lower().endswith(SUFFIX) or (name in library.index() and name not in examples())
 
 
-def scene_of_technique(path: str) -> tuple[Scene, Material]:
-    """The scene and the material that show the technique in a file. Raises SssgenError."""
-    technique = library.load(path)
+def scene_of_technique(name: str) -> tuple[Scene, Material]:
+    """The scene and the material that show a technique. Raises SssgenError."""
+    technique = library.load(name)
     stages = chain_of(technique)
     file = f"{technique.name}.toml"
     write_files(_folder(), {file: material_text(technique.name, stages)})

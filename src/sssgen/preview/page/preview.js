@@ -84,6 +84,8 @@ function list() {
   const name = (shape) => (shape === 'mesh' ? picture.mesh : shape || "the scene's own");
   element('shape').replaceChildren(...picture.shapes.map((shape) => new Option(name(shape), shape)));
   element('shape').value = picture.shape;
+  element('shape-note').textContent = picture.note ?? '';
+  element('shape-note').hidden = !picture.note;
   element('beside').replaceChildren(...Object.entries(besides).map(([value, text]) => new Option(text, value)));
   element('beside').value = beside;
   for (const id of ['shape-row', 'renderer-row', 'environment-row']) element(id).hidden = Boolean(picture.flat);
