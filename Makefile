@@ -67,7 +67,7 @@ build/view/bin/sssgen: pyproject.toml
 	@touch $@
 
 test: setup
-	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 test-long: setup .venv/docs build/vscode/done
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m slow
