@@ -11,6 +11,8 @@ from pathlib import Path
 
 from sphinx.cmd.build import build_main
 
+sys.path.append(str(Path(__file__).with_name("playground")))
+
 import build_playground
 import generated
 import playground_links
