@@ -10,15 +10,15 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 FILES = ("library.js", "three.LICENSE")
 
 
-class PreviewBundle(BuildHookInterface):  # type: ignore[type-arg, misc]
+class PreviewBundle(BuildHookInterface):  # type: ignore[type-arg, misc]  # hatchling has no types
     """Without the bundle the build goes on: `sssgen preview` then says what to install."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         folder = "build/preview" if self.target_name == "sdist" else "sssgen/_data/preview"
         if version == "editable":  # it finds the bundle in build/
             return
-        found = [name for name in FILES if Path(self.root, "build", "preview", name).is_file()]
-        if len(found) < len(FILES):
+        files = [name for name in FILES if Path(self.root, "build", "preview", name).is_file()]
+        if len(files) < len(FILES):
             self.app.display_warning("without the bundle of `sssgen preview`, which needs npm: make setup")
             return
         for name in FILES:

@@ -24,12 +24,13 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-ROOT = Path(__file__).parent.parent
-sys.path[:0] = [str(ROOT / folder) for folder in ("docs/site", "docs/site/playground", "tests/tools")]
+sys.path.append(str(Path(__file__).parents[1] / "docs" / "site"))
+sys.path.append(str(Path(__file__).parents[1] / "docs" / "site" / "playground"))
+sys.path.append(str(Path(__file__).parents[1] / "tests" / "tools"))
 
-import build_playground  # noqa: E402
-from sssgen.harness.installed import chromium, node_modules  # noqa: E402
-from static_host import serving  # noqa: E402
+import build_playground
+from sssgen.harness.installed import chromium, node_modules
+from static_host import serving
 
 ROUNDS, EDITS = 3, 12
 MOST_BYTES, MOST_SECONDS, MOST_MILLISECONDS = 8_000_000, 6.0, 150.0

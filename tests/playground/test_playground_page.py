@@ -61,8 +61,8 @@ class Shown:
     def until(self, holds: Any) -> None:
         end = time.monotonic() + SECONDS
         while not holds():
-            told = self.page.inner_text("#python")
-            assert time.monotonic() < end, f"{told} {self.page.inner_text('#errors')} {self.faults}"
+            state = self.page.inner_text("#python")
+            assert time.monotonic() < end, f"{state} {self.page.inner_text('#errors')} {self.faults}"
             self.page.wait_for_timeout(20)
 
     def version(self) -> int:
@@ -164,7 +164,7 @@ def test_a_link_has_the_whole_state(browser: Any, shown: Shown, address: str) ->
 def test_a_faulty_link_shows_the_first_example(browser: Any, address: str, fragment: str) -> None:
     shown = Shown(browser, address, fragment)
     try:
-        assert fragment == "nothing" or "cannot be read" in shown.page.inner_text("#told")
+        assert fragment == "nothing" or "cannot be read" in shown.page.inner_text("#message")
         assert not shown.faults
     finally:
         shown.page.close()

@@ -149,4 +149,4 @@ def warm() -> None:
     import sssgen.lang.check.module_checker
     import sssgen.lang.plain_glsl
     import sssgen.pipeline.programs
-    import sssgen.pipeline.steps  # noqa: F401
+    import sssgen.pipeline.steps  # noqa: F401  # loaded for later

@@ -16,7 +16,7 @@ from sssgen.support.diagnostics import failure
 INDENT = "    "
 
 _SPACED = frozenset(
-    "= += -= *= /= %= &= |= ^= <<= >>= + - * / % << >> < > <= >= == != && || ^^ & | ^ ? :".split()  # noqa: SIM905
+    "= += -= *= /= %= &= |= ^= <<= >>= + - * / % << >> < > <= >= == != && || ^^ & | ^ ? :".split()  # noqa: SIM905  # a list would hide the tokens
 )
 _BEFORE_BRACKET = frozenset(("if", "for", "while", "switch", "return", "else", "do", "case"))
 """The keywords before which and behind which a bracket has a space."""

@@ -60,7 +60,7 @@ class _Renamed(NamedTuple):
 
 def renamable_at(document: Document, analysis: Analysis, line: int, column: int) -> Word:
     """The name at a place that can be renamed. Raises SssgenError for what cannot."""
-    return _found(document, analysis, line, column)[1]
+    return _renamed_at(document, analysis, line, column)[1]
 
 
 def rename(
@@ -68,7 +68,7 @@ def rename(
 ) -> dict[str, list[Edit]]:
     """The edits of each file; `paths` are those of the open files. Raises SssgenError where the name cannot be used."""
     document, analysis, line, column = place
-    meaning, word = _found(document, analysis, line, column)
+    meaning, word = _renamed_at(document, analysis, line, column)
     if not _NAME.fullmatch(name) or "__" in name:
         raise failure(f"'{name}' is not a name", "a letter, then letters, digits and single underscores")
     if name == word.text:
@@ -82,7 +82,7 @@ def rename(
     return edits
 
 
-def _found(document: Document, analysis: Analysis, line: int, column: int) -> tuple[Meaning, Word]:
+def _renamed_at(document: Document, analysis: Analysis, line: int, column: int) -> tuple[Meaning, Word]:
     """What is at a place, and its name there."""
     meaning = meaning_at(document, analysis, line, column)
     if meaning is None or meaning.kind not in LOCAL + GLOBAL or document.kind == GLSL:
@@ -176,13 +176,13 @@ def _global_edits(
     edits: dict[str, list[Edit]] = {}
     documents: dict[str, Document] = {}
     for path in _files(renamed, paths):
-        found = opened(path) or _read(path)
-        if found is None or not re.search(rf"\b{renamed.name}\b", found[0].text):
+        entry = opened(path) or _read(path)
+        if entry is None or not re.search(rf"\b{renamed.name}\b", entry[0].text):
             continue
-        of_kind = {TECHNIQUE: _in_technique, MATERIAL: _in_toml, SCENE: _in_toml}.get(found[0].kind)
-        own = of_kind(*found, renamed, name) if of_kind else []
+        of_kind = {TECHNIQUE: _in_technique, MATERIAL: _in_toml, SCENE: _in_toml}.get(entry[0].kind)
+        own = of_kind(*entry, renamed, name) if of_kind else []
         if own:
-            edits[path], documents[path] = own, found[0]
+            edits[path], documents[path] = own, entry[0]
     return edits, documents
 
 

@@ -83,18 +83,18 @@ class Server(LanguageServer):
 
     def place(self, uri: str, position: lsp.Position) -> Place | None:
         """A document, what it says, and a line and column in it."""
-        found = self.documents.get(path) if (path := self.path_of(uri)) else None
-        if found is None:
+        entry = self.documents.get(path) if (path := self.path_of(uri)) else None
+        if entry is None:
             return None
-        document, analysis = found
+        document, analysis = entry
         own = self.codec.position_from_client_units(document.lines or [""], position)
         return document, analysis, own.line, own.character
 
     def publish(self, path: str, version: int | None = None) -> None:
         """Reads a document again and sends its problems."""
         problems = self.documents.problems(path)
-        found = self.documents.get(path)
-        lines = found[0].lines if found else []
+        entry = self.documents.get(path)
+        lines = entry[0].lines if entry else []
         uri = from_fs_path(path) or ""
         diagnostics = [self.diagnostic(lines, problem) for problem in problems]
         self.text_document_publish_diagnostics(lsp.PublishDiagnosticsParams(uri, diagnostics, version))
@@ -242,16 +242,16 @@ def _fixes(server: Server, params: lsp.CodeActionParams) -> list[lsp.CodeAction]
 
 async def _lenses(server: Server, params: lsp.CodeLensParams) -> list[lsp.CodeLens] | None:
     path = server.path_of(params.text_document.uri)
-    found = server.documents.get(path) if path else None
-    if found is None:
+    entry = server.documents.get(path) if path else None
+    if entry is None:
         return None
-    text = found[0].text
-    if path not in server.lenses or server.lenses[path][0] is not found[1]:
+    text = entry[0].text
+    if path not in server.lenses or server.lenses[path][0] is not entry[1]:
         await asyncio.sleep(LENSES_QUIET)
         async with server.computing:
-            found = server.documents.get(path)
-            if found is not None and found[0].text == text:
-                await _renew_lenses(server, path, *found)
+            entry = server.documents.get(path)
+            if entry is not None and entry[0].text == text:
+                await _renew_lenses(server, path, *entry)
         now = server.documents.get(path)
         if now is None or now[0].text != text:
             raise JsonRpcContentModified("the text has changed")  # the client asks again

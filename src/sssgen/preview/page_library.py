@@ -44,9 +44,9 @@ def bundle() -> Path:
 
 def library() -> Library:
     """The bundle, or npm's files where it is not made or $SSSGEN_NODE_MODULES is set. Raises SssgenError."""
-    made = bundle()
-    if made.is_file() and not os.environ.get("SSSGEN_NODE_MODULES"):
-        return Library(dict.fromkeys(NPM, BUNDLE), {BUNDLE: made})
+    file = bundle()
+    if file.is_file() and not os.environ.get("SSSGEN_NODE_MODULES"):
+        return Library(dict.fromkeys(NPM, BUNDLE), {BUNDLE: file})
     packages = node_modules()
     files = {file: packages / file for file in (*NPM.values(), *_IMPORTED_BY_THESE)}
     if not all(path.is_file() for path in files.values()):

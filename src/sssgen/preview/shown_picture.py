@@ -42,14 +42,14 @@ class ShownPicture:
         """The picture of the files; after an error, `files` has those that were read or searched for, too."""
         with noted_files() as read:
             try:
-                self.scene, self.picture = self._made()
+                self.scene, self.picture = self._new_picture()
             except Exception:
                 self.files = {**self.files, **read}
                 raise
         self.files = {**read}
         self.version += 1
 
-    def _made(self) -> tuple[Scene | None, Picture]:
+    def _new_picture(self) -> tuple[Scene | None, Picture]:
         return _picture(self.name, self.chosen)
 
     def renew(self) -> None:
@@ -115,8 +115,8 @@ class ShownPicture:
         """The texture of that property. Raises SssgenError."""
         for row in self.picture.head["textures"]:
             if row["property"] == slot:
-                found: dict[str, Any] = row
-                return found
+                texture: dict[str, Any] = row
+                return texture
         raise failure(f"{self.picture.head['name']} has no texture '{slot}'")
 
     def _written(self) -> tuple[Scene, Material]:
@@ -155,7 +155,7 @@ class EarlierPicture(ShownPicture):
     def label(self) -> str:
         return f"{self.picture.head['title']}, at the start"
 
-    def _made(self) -> tuple[Scene | None, Picture]:
+    def _new_picture(self) -> tuple[Scene | None, Picture]:
         scene, picture = self._then
         head = picture.head
         if "flat" in head or (self.chosen.shape, self.chosen.textures) == (head["shape"], {}):

@@ -62,7 +62,7 @@ def changes(
     try:
         while True:
             newest = files()
-            if newest is not read:  # else the receiver made no new result, and is not told the same again
+            if newest is not read:  # otherwise the receiver made no new result: it gets no change a second time
                 read, known = newest, {**newest}
             changed = _next_change(known, messages, clock)
             if not changed:

@@ -1,16 +1,16 @@
 // The way to Python: at most one request is under way, and only the newest of those that wait is sent.
 
 export class Compiler {
-  /** `told(kind, text)` hears of `started`, `ready` and `failed`. */
-  constructor(worker, told) {
+  /** `listener(kind, text)` is called with `started`, `ready` or `failed`. */
+  constructor(worker, listener) {
     this.worker = worker;
     this.number = 0;
     this.waiting = null;
     this.asked = null;
     worker.addEventListener('message', ({ data }) => {
-      if (data.kind === 'answer') this.answered(data); else told(data.kind, data.text);
+      if (data.kind === 'answer') this.answered(data); else listener(data.kind, data.text);
     });
-    worker.addEventListener('error', (event) => told('failed', event.message));
+    worker.addEventListener('error', (event) => listener('failed', event.message));
   }
 
   /** The answer; null for a request that a newer one has replaced. */

@@ -9,7 +9,7 @@ import { Picture } from './picture.js';
 import { packedState, unpackedState } from './state_link.js';
 
 const element = (id) => document.getElementById(id);
-const say = (text) => { element('told').textContent = text; };
+const say = (text) => { element('message').textContent = text; };
 const python = (text, failed = false) => {
   element('python').textContent = text;
   element('python').classList.toggle('failed', failed);
