@@ -168,17 +168,18 @@ def test_an_interrupted_run_continues(tmp_path: Path, how: int) -> None:
     def stored_files() -> list[Path]:
         return [path for path in folder.rglob("*") if path.is_file() and path.suffix != ".tmp"]
 
-    wait_until(lambda: len(stored_files()) == GATE or process.poll() is not None, "the items before the gate")
+    def at_the_gate() -> bool:
+        return len(stored_files()) == GATE and len(runs(notes)) == GATE + 2
+
+    wait_until(lambda: at_the_gate() or process.poll() is not None, "the items before the gate")
     assert process.poll() is None
     process.send_signal(how)
-    open_gate(notes)
     assert process.wait(timeout=HANG) != 0
-    started, finished = len(runs(notes)), len(stored_files())
-    # the two workers were computing items, or had just finished them
-    assert GATE <= finished < 12 and started <= finished + 4
+    open_gate(notes)
+    assert len(stored_files()) == GATE  # both workers were at the gate
     jobs = items(notes, 12, "measure_behind_gate")
     results = run(jobs, processes=2, store=Store(str(folder)))
-    assert len(runs(notes)) == started + 12 - finished  # no worker continued after the interrupt
+    assert len(runs(notes)) == 12 + 2  # the two at the gate ran twice; no worker continued after the interrupt
     assert as_bytes(results) == as_bytes(run(jobs, processes=0, store=Store(str(folder))))
 
 
