@@ -1,17 +1,7 @@
 // The emitted text of a target, its lines that an edit has changed marked.
 
 import { colored } from './highlight.js';
-
-/** The lines of a text that an older one does not have: those between what both begin and end with, and not in the older. */
-export function newLines(before, after) {
-  const counts = new Map();
-  for (const line of before) counts.set(line, (counts.get(line) ?? 0) + 1);
-  return new Set(after.flatMap((line, index) => {
-    const count = counts.get(line) ?? 0;
-    counts.set(line, count - 1);
-    return count > 0 ? [] : [index];
-  }));
-}
+import { changedLines } from './preview/emitted_text.js';
 
 export class EmittedText {
   constructor(parts, root) {
@@ -47,7 +37,7 @@ export class EmittedText {
     const text = this.files[this.open] ?? '';
     const lines = text.replace(/\n$/, '').split('\n');
     const old = this.before[this.open];
-    const marked = old === undefined ? new Set() : newLines(old.split('\n'), lines);
+    const marked = old === undefined ? new Set() : changedLines(old.split('\n'), lines);
     const html = colored(text.replace(/\n$/, ''), this.open).split('\n');
     let left = '';  // a comment over several lines is closed at the end of each, and opened again
     this.root.innerHTML = html.map((line, index) => {
