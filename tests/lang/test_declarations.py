@@ -242,3 +242,12 @@ def test_builtin_block_with_an_instance() -> None:
     """The block of GLSL's own outputs may have a name; its members are declared anyway."""
     source = "out gl_PerVertex { vec4 gl_Position; } gl_out;\nvoid main() { gl_Position = vec4(0.0); }\n"
     assert [variable.name for variable in load_glsl_text(source, "a.vert").module.variables] == ["gl_Position"]
+
+
+@pytest.mark.parametrize("name", ["gl_ViewID_OVR", "gl_DrawID", "gl_BaseVertex", "gl_BaseInstance"])
+def test_variables_of_the_draw_call_become_uniforms(name: str) -> None:
+    main = f"void main() {{ gl_Position = vec4(float({name}), {name}, 0.0, 1.0); }}"
+    source = f"#version 300 es\nlayout(num_views = 2) in;\n{main}"
+    loaded = load_glsl_text(source, "views.vert")
+    assert [uniform.name for uniform in loaded.module.uniforms] == [name]
+    assert [warning.message for warning in loaded.warnings] == [f"{name} becomes a uniform: set it for each draw call"]

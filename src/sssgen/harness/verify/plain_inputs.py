@@ -217,7 +217,8 @@ def picture(name: str, type_: Sampler, seed: int) -> Texture:
     if type_.kind != "float":
         rng = np.random.default_rng([seed, crc32(name.encode())])
         shape = (*((count,) if type_.array else ()), *layers[0].levels[0].shape)
-        texels = as_integers(rng.integers(0, 2**32, shape), type_.kind)
+        bits = rng.integers(0, 2**32, shape)
+        texels = as_integers(np.where(rng.random(shape) < WITHIN, bits & 7, bits), type_.kind)  # half of them: indices
         return Texture(texels, dim=type_.dim, layers=type_.array, kind=type_.kind, filter="nearest")
     if type_.array:
         return Texture(np.stack([layer.levels[0] for layer in layers]), dim=type_.dim, layers=True)

@@ -31,6 +31,10 @@ STAGE = {
     "gl_PointSize": ("float", "sssgen_point_size"),
     "gl_VertexID": ("int", "sssgen_vertex"),
     "gl_InstanceID": ("int", "sssgen_instance"),
+    "gl_ViewID_OVR": ("uint", "sssgen_view"),
+    "gl_DrawID": ("int", "sssgen_draw"),
+    "gl_BaseVertex": ("int", "sssgen_base_vertex"),
+    "gl_BaseInstance": ("int", "sssgen_base_instance"),
 }
 """The variables of the stages: their types and new names."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import BOOL, FLOAT, INT, VEC2, VEC4, Array, Type
+from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VEC2, VEC4, Array, Type
 from sssgen.lang.check.context import CheckContext
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.syntax import tree as s
@@ -25,6 +25,12 @@ BUILTIN_VARIABLES: dict[str, tuple[Type, str]] = {
 }
 """The variables that have a counterpart in other languages: type, and whether a stage reads or writes them."""
 
+DRAW_UNIFORMS: dict[str, Type] = {
+    "gl_ViewID_OVR": UINT, "gl_DrawID": INT, "gl_BaseVertex": INT, "gl_BaseInstance": INT,
+}  # fmt: skip
+"""The variables that are the same in a whole draw call (OVR_multiview2, ANGLE_multi_draw) and that WebGPU and D3D lack.
+They become uniforms, which a loop over views or draws sets."""
+
 _SAME = {"gl_FragDepthEXT": "gl_FragDepth", "gl_VertexIndex": "gl_VertexID", "gl_InstanceIndex": "gl_InstanceID"}
 
 _LIMITS = {
@@ -43,6 +49,13 @@ def builtin_variable(context: CheckContext, name: s.Name) -> GlobalValue | None:
     if text in _LIMITS:
         limit = context.globals[text] = GlobalValue(INT, "", (_LIMITS[text],), True)
         return limit
+    if text in DRAW_UNIFORMS:
+        uniform = ir.Uniform(text, DRAW_UNIFORMS[text], (0.0,), (), "", "", name.span)
+        context.draw_uniforms.append(uniform)
+        constant = context.globals[text] = GlobalValue(uniform.type, "")
+        message = f"{text} becomes a uniform: set it for each draw call"
+        context.reporter.warn(name.span, message)
+        return constant
     if text not in BUILTIN_VARIABLES:
         return None
     type_, storage = BUILTIN_VARIABLES[text]

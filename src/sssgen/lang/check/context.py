@@ -83,6 +83,8 @@ class CheckContext:
         self.globals: dict[str, GlobalValue] = {}
         self.variables: dict[str, ir.Variable] = {}
         """The inputs, outputs and private variables of a whole shader."""
+        self.draw_uniforms: list[ir.Uniform] = []
+        """The uniforms in place of variables that other languages lack."""
         self.file_names: set[str] = set()
         """The names that the file declares at file scope, also later."""
         self.faulty: set[str] = set()

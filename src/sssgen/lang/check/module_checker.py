@@ -123,7 +123,7 @@ class ModuleChecker:
         return ir.Module(
             tuple(context.struct_declarations),
             tuple(self.globals.constants),
-            tuple(self.globals.uniforms),
+            (*self.globals.uniforms, *context.draw_uniforms),
             tuple(functions.values()),
             tuple(context.variables.values()),
         )
