@@ -75,6 +75,7 @@ def test_a_control_changes_the_picture_and_save_writes_the_file(shown: Shown, st
     shown.page.click("#save")
     shown.until(lambda: "tint = [0.8" not in stone.read_text(encoding="utf-8"))
     shown.until(lambda: shown.page.is_disabled("#save"))
+    shown.until(lambda: "Saved: tint in stone.toml." in shown.page.inner_text("body"))
     assert stone.read_text(encoding="utf-8").startswith("# a stone\n[material]\n")
     assert color(shown.picture()) == pytest.approx(after, abs=2.0)
 

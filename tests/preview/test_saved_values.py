@@ -64,7 +64,7 @@ def test_a_value_of_the_scene_is_saved_in_the_scene(stone: Path) -> None:
         'material = "stone.toml"\n[geometry]\nkind = "ball"\n[parameters]\n# dull\nsurface_roughness = 0.7\n',
         encoding="utf-8",
     )
-    ShownPicture(str(scene)).save({"surfaceRoughness": [0.9]})
+    assert ShownPicture(str(scene)).save({"surfaceRoughness": [0.9]}) == "Saved: surface_roughness in scene.toml."
     assert scene.read_text(encoding="utf-8").endswith("# dull\nsurface_roughness = 0.9\n")
     assert stone.read_text(encoding="utf-8") == TEXT
 

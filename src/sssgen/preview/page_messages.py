@@ -164,7 +164,7 @@ class PageMessages:
         values: Mapping[str, Sequence[Any]] = message["values"]
         pane = self._pane(message)
         try:
-            pane.save({str(name): [float(number) for number in value] for name, value in values.items()})
-            return pane.save_textures()
+            written = pane.save({str(name): [float(number) for number in value] for name, value in values.items()})
+            return " ".join(filter(None, (written, pane.save_textures())))
         finally:
             self.renew()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -107,9 +108,9 @@ class ShownPicture:
         if not self.chosen.textures:
             return ""
         scene, material = self._written()
-        said = [saved(self._row(slot), file, scene, material) for slot, file in self.chosen.textures.items()]
+        reports = [saved(self._row(slot), file, scene, material) for slot, file in self.chosen.textures.items()]
         self.chosen = self.chosen._replace(textures={})
-        return " ".join(said)
+        return " ".join(reports)
 
     def _row(self, slot: str) -> dict[str, Any]:
         """The texture of that property. Raises SssgenError."""
@@ -125,23 +126,28 @@ class ShownPicture:
             raise failure("nothing can be saved here", self.picture.head["saves"])
         return self.scene, self.picture.material
 
-    def save(self, values: Mapping[str, Sequence[float]]) -> None:
+    def save(self, values: Mapping[str, Sequence[float]]) -> str:
         """Writes parameters, by the names of their properties, to the scene where it sets them, else to the material.
 
-        Raises SssgenError for a property that the material does not have.
+        Returns what was written, for a person. Raises SssgenError for a property that the material does not have.
         """
         controls = {control["property"]: control for control in self.picture.head["controls"]}
         scene, material = self._written()
         for name, numbers in values.items():
             if name not in controls or len(numbers) != len(controls[name]["default"]):
                 raise failure(f"{material.name} has no parameter '{name}' of {len(numbers)} numbers")
-        in_scene = {name for name in values if controls[name]["in_scene"]}
+        in_scene = [name for name in values if controls[name]["in_scene"]]
+        written = []
         if in_scene:
             own = {str(controls[name]["label"]): values[name] for name in in_scene}
             save_to_scene(scene.document.reporter.file, own)
+            written.append(f"{', '.join(own)} in {os.path.basename(scene.document.reporter.file)}")
         if others := {name: values[name] for name in values if name not in in_scene}:
             changes = {(controls[name]["technique"], controls[name]["name"]): value for name, value in others.items()}
             save_to_material(material, changes)
+            labels = [str(controls[name]["label"]) for name in others]
+            written.append(f"{', '.join(labels)} in {os.path.basename(material.file)}")
+        return f"Saved: {'; '.join(written)}." if written else ""
 
 
 class EarlierPicture(ShownPicture):
