@@ -35,22 +35,27 @@ class MaterialSection(NamedTuple):
     """Slot → function"""
 
 
-def material_text(name: str, stages: Sequence[MaterialSection], title: str = "", doc: str = "") -> str:
-    """The material file of a chain."""
-    lines = ["[material]", f"name = {_value(name)}"]
-    lines += [f"title = {_value(title)}"] if title else []
-    lines += [f"doc = {_value(doc)}"] if doc else []
+def material_text(
+    name: str,
+    stages: Sequence[MaterialSection],
+    title: str = "",
+    doc: str = "",
+    settings: Mapping[str, object] | None = None,
+) -> str:
+    """The material file of a chain; `settings` are further keys of its section [material]."""
+    keys = {"name": name, "title": title, "doc": doc, **(settings or {})}
+    lines = ["[material]", *(f"{key} = {toml_value(value)}" for key, value in keys.items() if value != "")]
     for stage in stages:
-        lines += ["", f"[[{stage.section}]]", f"technique = {_value(stage.technique)}"]
+        lines += ["", f"[[{stage.section}]]", f"technique = {toml_value(stage.technique)}"]
         if stage.bind:
-            lines.append(f"bind = {{ {', '.join(f'{slot} = {_value(to)}' for slot, to in stage.bind)} }}")
+            lines.append(f"bind = {{ {', '.join(f'{slot} = {toml_value(to)}' for slot, to in stage.bind)} }}")
         for key, value in stage.values:
-            text = _value(value)
+            text = toml_value(value)
             lines.append(f"{key} = {{ value = {text}, fixed = true }}" if key in stage.fixed else f"{key} = {text}")
     return "\n".join(lines) + "\n"
 
 
-def _value(value: Any) -> str:
+def toml_value(value: Any) -> str:
     """A value in TOML."""
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -62,7 +67,7 @@ def _value(value: Any) -> str:
     if isinstance(value, float | np.floating):
         text = f"{float(value):.6g}"
         return text if any(mark in text for mark in ".en") else f"{text}.0"
-    return f"[{', '.join(_value(part) for part in value)}]"
+    return f"[{', '.join(toml_value(part) for part in value)}]"
 
 
 class Chain:

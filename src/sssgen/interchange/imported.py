@@ -1,0 +1,51 @@
+"""A material that a reader has read, and the notes about what became of its parts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from sssgen.harness.scenes.mesh_files import FileContent
+from sssgen.interchange.mapping_report import Report
+from sssgen.interchange.surface_model import SurfaceModel
+
+
+class Element(NamedTuple):
+    """An element of the source file that gives a field of the model its value."""
+
+    path: str
+    """In the file, such as /materials/0/extensions/KHR_materials_ior/ior"""
+    value: object
+
+
+class Imported(NamedTuple):
+    """One material of a file."""
+
+    model: SurfaceModel
+    elements: Mapping[str, Sequence[Element]]
+    """Field of `SurfaceModel` → the elements that it comes from. `material_writer` reports them as mapped, or as
+    approximated where the techniques cannot express the field. What a reader itself leaves out or approximates, it
+    reports itself."""
+    mesh: FileContent | None = None
+    """The triangles with this material, in metres and world space; None for a format without meshes"""
+
+
+class Notes:
+    """What a material cannot express, by the field of its model."""
+
+    def __init__(self) -> None:
+        self.by_field: dict[str, str] = {}
+
+    def approximated(self, field: str, became: str) -> None:
+        """Notes that a field is approximated; the first note of a field is kept."""
+        self.by_field.setdefault(field, became)
+
+
+def report_fields(imported: Imported, notes: Notes, report: Report) -> None:
+    """Adds a row for each element of the material."""
+    for field, elements in imported.elements.items():
+        for element in elements:
+            if field in notes.by_field:
+                report.approximated(element.path, element.value, notes.by_field[field])
+            else:
+                report.mapped(element.path, element.value, field.replace("_", " "))

@@ -1,0 +1,88 @@
+"""What became of each element of a foreign material: mapped, approximated or left out."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import Any, Literal, NamedTuple, TypeAlias
+
+Outcome: TypeAlias = Literal["mapped", "approximated", "left out"]
+OUTCOMES: tuple[Outcome, ...] = ("mapped", "approximated", "left out")
+
+
+class Row(NamedTuple):
+    """One element of the source file."""
+
+    element: str
+    """Its path in the file, such as /materials/0/pbrMetallicRoughness/baseColorFactor"""
+    value: str
+    """Its value as text, shortened"""
+    outcome: Outcome
+    became: str
+    """What it became in the material; for what is left out, the reason"""
+    error: str = ""
+    """The error of the approximation where it is known, with its measure"""
+
+
+class Report:
+    """The rows of a file's materials; the rows of one material can be asked for."""
+
+    def __init__(self, source: str) -> None:
+        self.source = source
+        self.rows: list[Row] = []
+
+    def mapped(self, element: str, value: object, became: str) -> None:
+        """Records an element whose meaning is kept."""
+        self.rows.append(Row(element, shown(value), "mapped", became))
+
+    def approximated(self, element: str, value: object, became: str, error: str = "") -> None:
+        """Records an element whose meaning changes a little."""
+        self.rows.append(Row(element, shown(value), "approximated", became, error))
+
+    def left_out(self, element: str, value: object, reason: str) -> None:
+        """Records an element that has no effect on the material."""
+        self.rows.append(Row(element, shown(value), "left out", reason))
+
+    def counts(self) -> dict[str, int]:
+        """Outcome → number of rows, for all outcomes."""
+        counted = Counter(row.outcome for row in self.rows)
+        return {outcome: counted[outcome] for outcome in OUTCOMES}
+
+    def as_json(self) -> dict[str, Any]:
+        """The report for programs."""
+        return {"source": self.source, "counts": self.counts(), "rows": [row._asdict() for row in self.rows]}
+
+    def json_text(self) -> str:
+        """The text of report.json."""
+        return json.dumps(self.as_json(), indent=2, ensure_ascii=False) + "\n"
+
+    def markdown(self) -> str:
+        """The text of report.md: a table for each outcome."""
+        counts = self.counts()
+        lines = [f"# {self.source}", "", ", ".join(f"{counts[outcome]} {outcome}" for outcome in OUTCOMES) + "."]
+        for outcome in OUTCOMES:
+            if rows := [row for row in self.rows if row.outcome == outcome]:
+                lines += ["", f"## {outcome.capitalize()}", "", *_table(rows, outcome)]
+        return "\n".join(lines) + "\n"
+
+
+def _table(rows: Sequence[Row], outcome: Outcome) -> Iterable[str]:
+    last = "Reason" if outcome == "left out" else "Became"
+    heads = ["Element", "Value", last, *(["Error"] if outcome == "approximated" else [])]
+    yield f"| {' | '.join(heads)} |"
+    yield "|" + "---|" * len(heads)
+    for row in rows:
+        cells = [f"`{row.element}`", row.value, row.became, row.error][: len(heads)]
+        yield f"| {' | '.join(cell.replace('|', chr(92) + '|').replace(chr(10), ' ') for cell in cells)} |"
+
+
+def shown(value: object, length: int = 60) -> str:
+    """A value as short text: numbers with 6 digits."""
+    if isinstance(value, float):
+        text = f"{value:.6g}"
+    elif isinstance(value, list | tuple):
+        text = ", ".join(shown(part) for part in value)
+    else:
+        text = str(value)
+    return text if len(text) <= length else f"{text[: length - 1]}…"

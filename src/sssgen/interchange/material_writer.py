@@ -1,0 +1,102 @@
+"""Writes imported materials: for each a folder with its material, textures, mesh and scene; and the report."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from sssgen.harness.scenes.mesh_files import FileContent
+from sssgen.interchange.imported import Imported, Notes, report_fields
+from sssgen.interchange.mapping_report import Report
+from sssgen.interchange.mesh_glb import mesh_file
+from sssgen.interchange.scene_text import BALL_RADIUS, scene_text
+from sssgen.interchange.technique_choice import Choice, choose
+from sssgen.interchange.texture_composer import Coordinates
+from sssgen.lab.measure.measured_chain import material_text
+from sssgen.support.file_writer import write_files
+from sssgen.support.paths import place
+
+_LONGEST_NAME = 48
+"""Letters of a material's name; sssgen takes 64."""
+SURROUNDINGS = "surroundings.png"
+"""The picture of the surroundings that all scenes of an import share."""
+
+
+class WrittenMaterial:
+    """Where a material was written."""
+
+    def __init__(self, name: str, folder: str) -> None:
+        self.name = name
+        self.material = f"{name}/{name}.toml"
+        self.scene = f"{name}/scene.toml"
+        self.folder = folder
+
+
+def write_import(folder: str, materials: Sequence[Imported], report: Report) -> list[WrittenMaterial]:
+    """Writes the materials of a file to sub-folders of `folder`, all files atomically and together.
+
+    Adds the rows of the materials' fields to the report, which is written as report.md and report.json. Raises
+    SssgenError for a picture that cannot be read, and where the system refuses.
+    """
+    files: dict[str, str | bytes] = {}
+    written: list[WrittenMaterial] = []
+    for imported, name in zip(materials, identifiers([part.model.name for part in materials]), strict=True):
+        notes = Notes()
+        chord = 4.0 / 3.0 * BALL_RADIUS if imported.mesh is None else mean_chord(imported.mesh)
+        choice = choose(imported.model, notes, chord)
+        report_fields(imported, notes, report)
+        files |= {f"{name}/{path}": content for path, content in _material_files(imported, choice, name).items()}
+        written.append(WrittenMaterial(name, folder))
+    with open(os.path.join(place("examples"), "surroundings", "textures", "studio.png"), "rb") as file:
+        files[SURROUNDINGS] = file.read()
+    files["report.md"], files["report.json"] = report.markdown(), report.json_text()
+    write_files(folder, files)
+    return written
+
+
+def _material_files(imported: Imported, choice: Choice, name: str) -> dict[str, str | bytes]:
+    model = imported.model
+    title = " ".join(re.findall(r"\w+", model.name)) or name
+    doc = model.doc or f"Imported: {title}."
+    files: dict[str, str | bytes] = {f"{name}.toml": material_text(name, choice.stages, title, doc, choice.settings)}
+    files |= choice.files
+    mesh = imported.mesh
+    if mesh is not None:
+        files["mesh.glb"] = mesh_file(_placed(mesh, choice.coordinates))
+    files["scene.toml"] = scene_text(model, choice, name, mesh, SURROUNDINGS)
+    return files
+
+
+def _placed(mesh: FileContent, coordinates: Sequence[Coordinates]) -> FileContent:
+    """The mesh with the sets of texture coordinates that the material reads as `uv` and `uv2`."""
+    sets = [mesh.uv, mesh.uv2]
+    chosen = [sets[place.uv_set] if place.uv_set < 2 else None for place in coordinates]
+    return mesh._replace(uv=chosen[0], uv2=chosen[1] if len(chosen) > 1 else None)
+
+
+def identifiers(names: Sequence[str]) -> list[str]:
+    """Names of materials, all different: identifiers in lower case."""
+    result: list[str] = []
+    for name in names:
+        words = re.sub(r"[^a-z0-9]+", "_", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()).strip("_")
+        base = words[:_LONGEST_NAME].strip("_") or "material"
+        base = f"material_{base}" if base[0].isdigit() else base
+        unused, number = base, 2
+        while unused in result:
+            unused, number = f"{base}_{number}", number + 1
+        result.append(unused)
+    return result
+
+
+def mean_chord(mesh: FileContent) -> float:
+    """The mean chord 4 V / S of a body (Cauchy), or a tenth of the size of an open sheet."""
+    corners = mesh.vertices[mesh.faces]
+    first, second, third = np.moveaxis(corners - mesh.vertices.mean(axis=0), 1, 0)
+    across = np.cross(second - first, third - first)
+    area = 0.5 * float(np.linalg.norm(across, axis=1).sum())
+    volume = abs(float(np.einsum("nc,nc->", first, np.cross(second, third)))) / 6.0
+    size = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
+    return 4.0 * volume / area if area > 0.0 and volume > 1e-4 * size**3 else 0.1 * size

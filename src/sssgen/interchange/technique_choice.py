@@ -1,0 +1,283 @@
+"""Chooses the techniques of a foreign material: from its record to the stages of a material."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from sssgen.interchange.imported import Notes
+from sssgen.interchange.surface_model import ONE, WHITE, Quantity, SurfaceModel
+from sssgen.interchange.texels import mean_of
+from sssgen.interchange.texture_composer import Composer, Coordinates, Written
+from sssgen.lab.measure.measured_chain import MaterialSection
+
+_LUMINANCE = (0.2126, 0.7152, 0.0722)
+"""Of linear sRGB (ITU-R BT.709)."""
+_MOST_REFLECTED = 0.08
+"""The largest reflectance that `specular_level` has."""
+_USUAL_REFLECTED = 0.04
+_OCTAVES = (1.0, 1.0, 0.25, 0.125)
+"""The defaults of `interior_octaves`."""
+_LONGEST, _DENSEST = 10.0, 1000.0
+"""The largest thickness and extinction that techniques take, in world units."""
+
+
+class Choice(NamedTuple):
+    """The stages of a material, and what they need."""
+
+    stages: list[MaterialSection]
+    settings: dict[str, object]
+    """Keys of the section [material]"""
+    files: dict[str, bytes]
+    """Textures, relative to the material"""
+    clamped: dict[str, str]
+    """Texture parameter → file, of the textures that are not repeated"""
+    coordinates: list[Coordinates]
+    """What `uv` and `uv2` are in the file"""
+    metres: float
+    """The length of a world unit"""
+
+
+class _Chooser:
+    def __init__(self, model: SurfaceModel, notes: Notes, mean_chord: float) -> None:
+        self.model, self.notes, self.mean_chord = model, notes, mean_chord
+        self.composer = Composer(model)
+        self.stages: list[MaterialSection] = []
+        self.clamped: dict[str, str] = {}
+        self.metres = _unit(model)
+
+    def add(self, section: str, technique: str, bind: dict[str, str] | None = None, **values: object) -> None:
+        """Adds a stage; a `Written` texture also sets the stage's set of coordinates."""
+        plain: dict[str, object] = {}
+        for key, value in values.items():
+            if isinstance(value, Written):
+                plain[key] = value.file
+                if value.uv == "uv2":
+                    plain["uv"] = "uv2"
+                if value.wrap == "clamp":
+                    self.clamped[key] = value.file
+            elif value is not None:
+                plain[key] = value
+        self.stages.append(MaterialSection(section, technique, tuple(plain.items()), (), tuple((bind or {}).items())))
+
+    def all(self) -> Choice:
+        model = self.model
+        self.coordinates()
+        self.thickness()
+        self.colors()
+        if not model.unlit:
+            self.relief()
+            self.reflection()
+            self.emission()
+            self.translucency()
+        settings: dict[str, object] = {"shading": "unlit" if model.unlit else "lit"}
+        if model.alpha_mode != "opaque":
+            settings["alpha_mode"] = model.alpha_mode
+        if model.two_sided:
+            settings["two_sided"] = True
+        for field, reason in self.composer.replaced.items():
+            self.notes.approximated(field, reason)
+        return Choice(self.stages, settings, self.composer.files, self.clamped, self.composer.sets, self.metres)
+
+    def coordinates(self) -> None:
+        for name, placed in zip(("uv", "uv2"), self.composer.sets, strict=False):
+            tiling, offset, rotation = placed.transform
+            if placed.transform != Coordinates().transform:
+                self.add(
+                    "coordinates", "uv_transform", uv=name if name == "uv2" else None,
+                    uv_tiling=tiling, uv_offset=offset, uv_rotation=float(np.fmod(rotation, 360.0)),
+                )  # fmt: skip
+
+    def thickness(self) -> None:
+        model = self.model
+        if model.unlit or not model.transmits:
+            return
+        if model.interior is not None and any(model.interior.scattering) and not model.thin_walled:
+            self.add("thickness", "back_face_thickness")
+        if not (model.transmission.is_zero and model.diffuse_transmission.is_zero):
+            self.thickness_of_absorption()
+
+    def thickness_of_absorption(self) -> None:
+        model = self.model
+        quantity = self.composer.usable(model.thickness)
+        factor = quantity.factor[0] / self.metres
+        texture = self.composer.packed("thickness", [quantity])
+        if model.thin_walled or model.interior is None:
+            self.add("thickness", "constant_thickness", thickness_factor=0.0)
+        elif texture is not None and factor > 0.0:
+            self.add("thickness", "thickness_map", thickness_texture=texture, thickness_factor=factor)
+        else:
+            if factor == 0.0:
+                factor = self.mean_chord / self.metres
+                self.notes.approximated("interior", f"the mean chord of the body, {self.mean_chord:.4g} m, everywhere")
+            self.add("thickness", "constant_thickness", thickness_factor=factor)
+
+    def colors(self) -> None:
+        model = self.model
+        base, opacity = self.composer.together(model.base_color, model.opacity)
+        cutoff = 0.5 / max(model.alpha_cutoff, 1e-3) if model.alpha_mode == "mask" else 1.0
+        shares = self.composer.together(
+            base, model.metalness, model.transmission, model.diffuse_transmission, model.subsurface
+        )
+        removed = any(not share.is_zero for share in shares[2:])
+        computed = removed and any(share.image is not None for share in shares[1:])
+        if not removed and cutoff == 1.0:
+            texture = self.composer.packed("base_color", [base, opacity], srgb=True)
+            tint = (*base.factor, *opacity.factor)
+        elif not computed and cutoff == 1.0:
+            texture = self.composer.packed("base_color", [base, opacity], srgb=True)
+            kept = _kept(*(np.array(share.factor) for share in shares[1:]))
+            tint = (*(np.array(base.factor) * kept).tolist(), *opacity.factor)
+        else:
+            grid = self.composer.grid(*shares, opacity)
+            values = [np.array(share.factor) for share in (*shares, opacity)] if grid is None else grid[0]
+            rgb = values[0] * _kept(*values[1:5])
+            alpha = np.clip(values[5] * cutoff, 0.0, 1.0)
+            rgba = np.concatenate([np.clip(rgb, 0.0, 1.0), alpha], axis=-1)
+            texture = None if grid is None else self.composer.computed("base_color", rgba, grid[1], srgb=True)
+            tint = (1.0, 1.0, 1.0, 1.0) if grid else tuple(rgba.tolist())
+        self.add("surface", "base_color", base_color_texture=texture, tint=tint)
+        if model.vertex_colors:
+            self.add("surface", "vertex_tint")
+        if model.unlit:
+            self.add("lighting", "base_color_alone")
+
+    def relief(self) -> None:
+        model = self.model
+        normal = self.composer.usable(model.normal)
+        if (texture := self.composer.packed("normal", [normal])) is not None:
+            name = "normal_map_directx" if model.normal_down else "normal_map"
+            self.add("surface", name, normal_texture=texture, normal_scale=min(normal.factor[0], 4.0))
+
+    def reflection(self) -> None:
+        model = self.model
+        roughness, metalness = self.composer.together(model.roughness, model.metalness)
+        texture = self.composer.packed("metallic_roughness", [ONE, roughness, metalness])
+        values: dict[str, Any] = {"metalness": metalness.factor[0], "surface_roughness": roughness.factor[0]}
+        if texture is None:
+            self.add("surface", "pbr_constants", **values)
+        else:
+            self.add("surface", "metallic_roughness_map", metallic_roughness_texture=texture, **values)
+        occlusion = self.composer.usable(model.occlusion)
+        if (texture := self.composer.packed("occlusion", [occlusion])) is not None:
+            self.add(
+                "surface", "occlusion_map", occlusion_texture=texture, occlusion_strength=min(occlusion.factor[0], 1.0)
+            )
+        self.specular()
+        coat, coat_roughness = self.composer.together(model.coat, model.coat_roughness)
+        if not coat.is_zero:
+            texture = self.composer.packed("coat", [coat, coat_roughness])
+            name = "clearcoat_constants" if texture is None else "clearcoat_map"
+            self.add(
+                "surface", name, clearcoat_texture=texture,
+                coat_weight=coat.factor[0], coat_roughness=coat_roughness.factor[0],
+            )  # fmt: skip
+
+    def specular(self) -> None:
+        model = self.model
+        tint = mean_of(model.specular_color)
+        luminance = sum(weight * part for weight, part in zip(_LUMINANCE, tint, strict=True))
+        if max(tint) - min(tint) > 1e-3:
+            self.notes.approximated("specular_color", f"its luminance {luminance:.3g}: reflection has no tint")
+        specular = self.composer.usable(model.specular)
+        reflected = model.reflectance * specular.factor[0] * luminance
+        if reflected > _MOST_REFLECTED:
+            reason = f"{_MOST_REFLECTED:.0%} are reflected in place of {reflected:.1%}: the largest value"
+            self.notes.approximated("ior" if model.reflectance > _MOST_REFLECTED else "specular", reason)
+        level = min(reflected / _MOST_REFLECTED, 1.0)
+        texture = self.composer.packed("specular", [WHITE, specular])
+        if texture is not None:
+            self.add("surface", "specular_map", specular_texture=texture, specular_strength=level)
+        elif abs(reflected - _USUAL_REFLECTED) > 1e-6:
+            self.add("surface", "specular_level", dielectric_specular=level)
+
+    def emission(self) -> None:
+        emission = self.composer.usable(self.model.emission)
+        if not emission.is_zero:
+            texture = self.composer.packed("emission", [emission], srgb=True)
+            strength = max(max(emission.factor), 1.0)
+            color = [part / strength for part in emission.factor]
+            self.add(
+                "surface", "emission_map", emission_texture=texture, emission_color=color, emission_strength=strength
+            )
+
+    def translucency(self) -> None:
+        model = self.model
+        interior = model.interior
+        extinction = [0.0, 0.0, 0.0]
+        if interior is not None and not model.thin_walled:
+            extinction = [min(part * self.metres, _DENSEST) for part in interior.extinction]
+        if not model.transmission.is_zero:
+            tint = model.base_color if model.transmission_tint is None else model.transmission_tint
+            texture, color = self.product("entering", tint, model.transmission)
+            self.add(
+                "translucency", "seen_through", entering_texture=texture, entering_color=color,
+                extinction=extinction, ior=1.0 if model.thin_walled else min(max(model.ior, 1.0), 3.0),
+            )  # fmt: skip
+        scatters = interior is not None and any(interior.scattering) and not model.thin_walled
+        if scatters:
+            self.interior()
+        if not model.diffuse_transmission.is_zero and not scatters:
+            texture, color = self.product(
+                "diffuse_transmission", model.diffuse_transmission_color, model.diffuse_transmission
+            )
+            self.add(
+                "translucency", "diffuse_transmission_map", diffuse_transmission_texture=texture,
+                diffuse_transmission_tint=color, extinction=extinction,
+            )  # fmt: skip
+
+    def product(self, name: str, color: Quantity, share: Quantity) -> tuple[Written | None, list[float]]:
+        """The texture and the constant of a colour times the share of dielectric light that it has."""
+        color, share, metalness = self.composer.together(color, share, self.model.metalness)
+        grid = self.composer.grid(color, share, metalness)
+        if grid is None:
+            dielectric = 1.0 - metalness.factor[0]
+            return None, [part * share.factor[0] * dielectric for part in color.factor]
+        values = np.clip(grid[0][0] * grid[0][1] * (1.0 - grid[0][2]), 0.0, 1.0)
+        return self.composer.computed(name, values, grid[1], srgb=True), [1.0, 1.0, 1.0]
+
+    def interior(self) -> None:
+        """Light that is scattered inside; anisotropic scattering by the similarity relation."""
+        model, interior = self.model, self.model.interior
+        assert interior is not None
+        forward = 1.0 - interior.anisotropy
+        reduced = [s * forward for s in interior.scattering]
+        extinction = [a + s for a, s in zip(interior.absorption, reduced, strict=True)]
+        weight = min(
+            sum(mean_of(part)[0] for part in (model.transmission, model.diffuse_transmission, model.subsurface)), 1.0
+        )
+        self.notes.approximated("interior", "four exponentials in place of light transport; `sssgen fit` adapts them")
+        self.add(
+            "translucency", "interior_octaves", {"light_path": "depth_map_path"},
+            extinction=[min(part * self.metres, _DENSEST) for part in extinction],
+            scattering_albedo=[s / t if t > 0.0 else 0.0 for s, t in zip(reduced, extinction, strict=True)],
+            octaves=[weight * part for part in _OCTAVES],
+            mean_free_path=3.0 / max(sum(extinction) * self.metres, 3e-6),
+        )  # fmt: skip
+
+
+def choose(model: SurfaceModel, notes: Notes, mean_chord: float) -> Choice:
+    """The stages of a material; `mean_chord`, in metres, is used where the thickness is not known.
+
+    `notes` gets what the stages cannot express.
+    """
+    return _Chooser(model, notes, mean_chord).all()
+
+
+def _kept(metalness: Any, transmission: Any, diffuse: Any, subsurface: Any) -> Any:
+    """The share of the base colour that is left for the reflection: metals keep all, as it is their mirror's colour."""
+    m, t, d, s = (np.asarray(share) for share in (metalness, transmission, diffuse, subsurface))
+    return 1.0 - (1.0 - m) * (1.0 - (1.0 - t) * (1.0 - d) * (1.0 - s))
+
+
+def _unit(model: SurfaceModel) -> float:
+    """The length of a world unit in metres for which thickness and extinction are in the ranges of techniques."""
+    metres = 1.0
+    longest = model.thickness.factor[0]
+    while longest / metres > _LONGEST:
+        metres *= 10.0
+    if model.interior is not None and metres == 1.0:
+        while max(model.interior.extinction) * metres > _DENSEST and longest / metres <= 0.1 * _LONGEST:
+            metres /= 10.0
+    return metres
