@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from sssgen.cli.main import main
-from sssgen.harness.lint_findings import MAY_FAIL, PROVEN, UNKNOWN, lint
+from sssgen.harness.lint.lint_findings import MAY_FAIL, PROVEN, UNKNOWN, lint
 from sssgen.support.diagnostics import SssgenError
 
 HAZARDS = """\
@@ -45,12 +45,12 @@ def hazards(tmp_path: Path) -> str:
 def test_plain_functions_have_no_guard(hazards: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["lint", hazards]) == 1
     output = capsys.readouterr().out
-    assert "warning: /: a division by 0\n" in output
+    assert "warning: /: a division by 0 [division]\n" in output
     assert f"{hazards}:6:12" in output
     assert " 6 |     return a / b;\n   |            ^^^^^" in output
     assert "found: a in -1e+06..1e+06, b in -1e+06..1e+06" in output
     assert "write: max(abs(b), 1e-20)" in output
-    assert output.endswith("4 operations with a domain: 2 proven safe, 2 may fail, 0 unknown\n")
+    assert output.endswith("4 operations with a domain: 2 proven safe, 2 may fail, 0 unknown (division: 1, nan: 1)\n")
 
 
 def test_proven_functions_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -88,16 +88,16 @@ def test_json_for_editors(hazards: str, capsys: pytest.CaptureFixture[str]) -> N
 def test_examples_are_optional(hazards: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["lint", "--no-examples", hazards]) == 1
     output = capsys.readouterr().out
-    assert "a division by 0 (not proven)" in output
+    assert "a division by 0 [division] (not proven)" in output
     assert "example:" not in output
     assert "2 proven safe, 0 may fail, 2 not proven" in output
 
 
 def test_a_material_is_analysed_as_a_whole() -> None:
     """In a chain each quantity is in its range; a single function accepts any number."""
-    alone = {(entry.site.operation, entry.verdict) for entry in lint("thickness_from_thinness")}
+    alone = {(entry.site.operation, entry.verdict) for entry in lint("thickness_from_thinness").findings}
     assert ("thickness", MAY_FAIL) in alone
-    chained = lint("paper_lantern", with_examples=False)
+    chained = lint("paper_lantern", with_examples=False).findings
     assert all(entry.guarded for entry in chained)
     assert sum(entry.verdict == PROVEN for entry in chained) > sum(entry.verdict == UNKNOWN for entry in chained)
 
@@ -117,15 +117,75 @@ technique = "lobe_normalized"
 """
     path.write_text(text.format(fixed=""))
     assert any(
-        entry.site.place.startswith("translucency") for entry in lint(str(path), False) if entry.verdict != PROVEN
+        entry.site.place.startswith("translucency")
+        for entry in lint(str(path), False).findings
+        if entry.verdict != PROVEN
     )
     path.write_text(text.format(fixed="distortion = { value = 0.0, fixed = true }"))
     # the direction of the light may still be 0
     assert [
         entry.site.operation
-        for entry in lint(str(path), False)
+        for entry in lint(str(path), False).findings
         if "lobe" in entry.site.place and entry.verdict != PROVEN
     ] == ["normalize"]
+
+
+KINDS_AT_ONCE = """\
+float f(float a, float b, vec3 v, float e)
+{
+    return pow(a, b) / b + smoothstep(e, 0.5, a) + normalize(v).x + exp(b);
+}
+"""
+
+
+def test_kinds_are_kept_apart(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Overflow is not reported unless it is asked for; an operation that may fail in two ways has two findings."""
+    path = tmp_path / "kinds.glsl"
+    path.write_text(KINDS_AT_ONCE)
+    report = lint(str(path), with_examples=False)
+    kinds = [(finding.site.operation, finding.kind) for finding in report.unproven()]
+    assert sorted(kinds) == [("/", "division"), ("normalize", "nan"), ("pow", "nan"), ("smoothstep", "undefined")]
+    assert report.hidden == {"overflow": 4}  # exp, pow, the quotient, the sum
+    every = lint(str(path), with_examples=False, kinds=("nan", "overflow"))
+    assert {finding.kind for finding in every.unproven() if finding.site.operation == "pow"} == {"nan", "overflow"}
+    assert main(["lint", "--no-examples", "--kind", "overflow", str(path)]) == 1
+    output = capsys.readouterr().out
+    assert "exp: exp overflows [overflow]" in output and "[nan]" not in output
+    assert main(["lint", "--json", "--no-examples", "--kind", "all", str(path)]) == 1
+    findings = json.loads(capsys.readouterr().out)["results"][0]["findings"]
+    assert {entry["kind"] for entry in findings if entry["kind"]} == {"nan", "division", "undefined", "overflow"}
+    assert all(entry["function"] == "f" for entry in findings)
+    assert main(["lint", "--kind", "nann", str(path)]) == 2
+    assert "did you mean 'nan'?" in capsys.readouterr().err
+
+
+SHADER = """\
+#version 300 es
+precision highp float;
+struct Lamp { vec3 at; float decay; };
+uniform Lamp lamp;
+in float width;
+out vec4 color;
+float state = 2.0;
+float unused(float x) { return sqrt(x); }
+float share(float x) { return 1.0 / x; }
+void raise() { state += 1.0; }
+void main() {
+    raise();
+    float fine = share(state);
+    for (int i = 0; i < 3; i++) raise();
+    color = vec4(fine, share(state), sqrt(state), 1.0 / lamp.decay);
+}
+"""
+
+
+def test_a_whole_shader_runs_from_its_main(tmp_path: Path) -> None:
+    """A function that main() does not reach never runs; module variables have the values that main() gives them."""
+    path = tmp_path / "whole.frag"
+    path.write_text(SHADER)
+    report = lint(str(path), with_examples=False)
+    assert [(finding.site.operation, finding.site.node.span.line) for finding in report.unproven()] == [("/", 15)]
+    assert [finding.site.operation for finding in report.findings if finding.verdict == PROVEN] == ["/", "sqrt"]
 
 
 @pytest.mark.parametrize(
@@ -152,7 +212,7 @@ def test_wrong_files(tmp_path: Path) -> None:
                 lint(str(path))
             assert raised.value.diagnostics[0].span.file == str(path)
         else:
-            assert lint(str(path)) == []
+            assert lint(str(path)).findings == []
     with pytest.raises(SssgenError):
         lint(str(tmp_path))
 
@@ -161,7 +221,7 @@ def test_names_mean_nothing_in_plain_functions(tmp_path: Path) -> None:
     """In a plain function `roughness` is any number; in a technique it is a quantity with a range."""
     path = tmp_path / "names.glsl"
     path.write_text("float f(float roughness, float L) { return sqrt(1.0 - roughness) + sqrt(2.0 - L); }\n")
-    assert [entry.verdict for entry in lint(str(path))] == [MAY_FAIL, MAY_FAIL]
+    assert [entry.verdict for entry in lint(str(path)).findings] == [MAY_FAIL, MAY_FAIL]
 
 
 def test_parameters_that_cannot_be_sampled_have_no_example(tmp_path: Path) -> None:
@@ -170,4 +230,4 @@ def test_parameters_that_cannot_be_sampled_have_no_example(tmp_path: Path) -> No
         "struct S { float a; };\nfloat f(S s) { return sqrt(s.a); }\nfloat g(float a[3]) { return 1.0 / a[1]; }\n"
         "float h(sampler2D t) { return sqrt(texture(t, vec2(0.5)).x - 2.0); }\nmat2 i(mat2 m) { return inverse(m); }\n"
     )
-    assert {entry.verdict for entry in lint(str(path))} <= {MAY_FAIL, UNKNOWN}
+    assert {entry.verdict for entry in lint(str(path)).findings} <= {MAY_FAIL, UNKNOWN}

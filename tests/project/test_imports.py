@@ -41,7 +41,7 @@ LAZY_IMPORTS = {
     "sssgen.harness.compilers.dxc": EXTRA,
     "sssgen.harness.compilers.gl_driver": EXTRA,
     "sssgen.harness.compilers.naga": EXTRA,
-    "sssgen.harness.lint_findings": EXTRA,
+    "sssgen.harness.lint.lint_findings": EXTRA,
     "sssgen.harness.machine_facts": EXTRA,
     "sssgen.harness.scenes.mesh_files": EXTRA,
     "sssgen.harness.testing.project_run": EXTRA,

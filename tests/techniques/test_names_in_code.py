@@ -15,7 +15,7 @@ PERMITTED = {
         {"base_color", "beer_lambert", "lobe_normalized", "parallax_refracted", "pbr_constants", "thickness_map"},
     ),
     "harness/evaluate/evaluation.py": (EXAMPLE, {"lobe_gdc2011"}),
-    "harness/lint_findings.py": (EXAMPLE, {"lobe_gdc2011"}),
+    "harness/lint/lint_findings.py": (EXAMPLE, {"lobe_gdc2011"}),
     "harness/scenes/distance_field.py": ("the default of a scene's distance function", {"sphere"}),
     "harness/scenes/scene_keys.py": ("kinds of geometry", {"box", "capsule", "torus"}),
     "harness/scenes/scene_reader.py": (

@@ -4,20 +4,30 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 from collections import Counter
+from typing import TYPE_CHECKING
 
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
-from sssgen.support.diagnostics import Diagnostic, SssgenError
+from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
 from sssgen.support.progress import ProgressBar
+
+if TYPE_CHECKING:
+    from sssgen.harness.lint.lint_findings import Report
+    from sssgen.ir.intrinsics import Kind
 
 
 def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
         "examples:\n  sssgen lint ice\n  sssgen lint mine.glsl --json\n"
+        "  sssgen lint mine.frag --kind nan,division\n"
+        "Kinds: nan, division (by 0), undefined (by the language), range (out of range), overflow (to infinity).\n"
         "Exit status 1: an operation of a plain function may fail. The shaders that emit writes for materials have "
         "guards."
     )
     parser.add_argument("NAME", nargs="+", help="a technique, a material's .toml file, an example, or a GLSL file")
     parser.add_argument("--all", action="store_true", help="also list the operations that are proven safe")
+    parser.add_argument(
+        "--kind", metavar="KIND,KIND", help="the kinds of failures to report, or 'all' (default: all but overflow)"
+    )
     parser.add_argument(
         "--no-examples", action="store_true", help="do not search for inputs that fail, which is faster"
     )
@@ -25,33 +35,65 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Prints the operations that are not proven safe; returns 1 if one of them has no guard."""
-    from sssgen.harness.lint_findings import MAY_FAIL, PROVEN, UNKNOWN, Finding, lint
+    from sssgen.harness.lint.lint_findings import PROVEN, lint
 
+    kinds = _kinds(arguments.kind)
     wrong: list[Diagnostic] = []
-    rows: list[tuple[str, list[Finding]]] = []
+    reports: list[Report] = []
     names = list(dict.fromkeys(arguments.NAME))
     with ProgressBar() as progress:
         for index, name in enumerate(names):
             progress(index, len(names), name)
             try:
-                rows.append((name, lint(name, not arguments.no_examples)))
+                reports.append(lint(name, not arguments.no_examples, kinds))
             except SssgenError as error:
                 wrong += error.diagnostics
     if wrong:
         raise SssgenError(wrong)
-    unguarded = any(not finding.guarded and finding.verdict != PROVEN for _, findings in rows for finding in findings)
+    unguarded = any(not finding.guarded for report in reports for finding in report.unproven())
     if arguments.json:
-        listed = [{"name": name, "findings": [finding.as_json() for finding in findings]} for name, findings in rows]
+        listed = [
+            {
+                "name": report.name,
+                "findings": [finding.as_json() for finding in report.findings],
+                "hidden": dict(report.hidden),
+            }
+            for report in reports
+        ]
         print_json({"ok": not unguarded, "results": listed})
         return CHECK_FAILED if unguarded else OK
-    for name, findings in rows:
-        for finding in findings:
+    for report in reports:
+        for finding in report.findings:
             if finding.verdict != PROVEN or arguments.all:
                 print(f"{finding.render()}\n")
-        counts = Counter(finding.verdict for finding in findings)
-        unseen = "not proven" if arguments.no_examples else UNKNOWN
-        print(
-            f"{name}: {len(findings)} operation{'s' * (len(findings) != 1)} with a domain: "
-            f"{counts[PROVEN]} proven safe, {counts[MAY_FAIL]} may fail, {counts[UNKNOWN]} {unseen}"
-        )
+        print(_summary(report, arguments.no_examples))
     return CHECK_FAILED if unguarded else OK
+
+
+def _kinds(option: str | None) -> tuple[Kind, ...]:
+    """The kinds that `--kind` selects. Raises SssgenError for an unknown one."""
+    from sssgen.harness.lint.lint_findings import REPORTED
+    from sssgen.ir.intrinsics import KINDS
+
+    if option is None:
+        return REPORTED
+    words = {word.strip() for word in option.split(",")}
+    for word in sorted(words - {"all", *KINDS}):
+        raise failure(f"unknown kind '{word}'", did_you_mean(word, KINDS) or f"kinds: {', '.join(KINDS)}, all")
+    return tuple([kind for kind in KINDS if kind in words or "all" in words])
+
+
+def _summary(report: Report, no_examples: bool) -> str:
+    """The line below the findings of a file: how many operations were proven, and how many findings are not shown."""
+    from sssgen.harness.lint.lint_findings import MAY_FAIL, PROVEN, UNKNOWN
+
+    counts = Counter(finding.verdict for finding in report.findings)
+    total = len({id(finding.site) for finding in report.findings})
+    unseen = "not proven" if no_examples else UNKNOWN
+    kinds = Counter(finding.kind for finding in report.unproven())
+    by_kind = f" ({', '.join(f'{kind}: {count}' for kind, count in kinds.items())})" if len(kinds) > 1 else ""
+    hidden = "".join(f"; --kind {kind} shows {count} more" for kind, count in report.hidden.items())
+    return (
+        f"{report.name}: {total} operation{'s' * (total != 1)} with a domain: "
+        f"{counts[PROVEN]} proven safe, {counts[MAY_FAIL]} may fail, {counts[UNKNOWN]} {unseen}{by_kind}{hidden}"
+    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
@@ -10,6 +11,7 @@ from sssgen.editor.documents import GLSL, MATERIAL, TECHNIQUE, Document
 from sssgen.editor.problems import Range, range_of
 from sssgen.editor.toml_places import tables_of
 from sssgen.harness.evaluate.probes import subject
+from sssgen.ir.intrinsics import KINDS
 from sssgen.ir.nodes import Module, Span
 from sssgen.ir.walk import all_expressions
 from sssgen.material.model import Material
@@ -73,11 +75,15 @@ def _text(module: Module, key: str, sites: Sequence[Site], slots: frozenset[str]
 
 
 def _proof(sites: Sequence[Site]) -> str:
-    """How many of the operations that can fail are not proven safe."""
+    """How many of the operations that can fail are not proven safe, and in which ways they may fail."""
     if not sites:
         return "nothing that can fail"
-    unproven = sum(not site.proven for site in sites)
-    return f"not proven safe: {unproven} of {len(sites)}" if unproven else f"proven safe: all {len(sites)}"
+    unproven = [site for site in sites if not site.proven]
+    if not unproven:
+        return f"proven safe: all {len(sites)}"
+    counts = Counter(kind for site in unproven for kind in {guard.kind for guard in site.failures})
+    kinds = ", ".join(f"{name}: {counts[kind]}" for kind, name in KINDS.items() if counts[kind])
+    return f"not proven safe: {len(unproven)} of {len(sites)} ({kinds})"
 
 
 def _of_material(document: Document, material: Material) -> list[Lens]:

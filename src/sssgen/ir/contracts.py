@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from sssgen.ir.formats import FLOAT32, Format
-from sssgen.ir.nodes import Param, Uniform
+from sssgen.ir.nodes import Param, Uniform, Variable
 from sssgen.ir.types import FLOAT, VEC3, VEC4, Array, Matrix, Sampler, kind_of
 from sssgen.ir.vector_ranges import LENGTH, Contract
 
@@ -122,6 +122,18 @@ def of_uniform(uniform: Uniform, format: Format = FLOAT32) -> Contract:
         return Contract(0.0, COLOR[format.name])  # it may be brighter than white
     contract = _around((MATRIX if isinstance(type_, Matrix) else POSITION)[format.name])
     return Contract(min([contract.low, *uniform.default]), max([contract.high, *uniform.default]))
+
+
+def of_stage_input(variable: Variable, format: Format = FLOAT32) -> Contract:
+    """The contract of an input of a stage: an attribute, a varying, a variable of GLSL such as gl_FragCoord."""
+    kind = kind_of(variable.type)
+    if kind != "float":
+        return Contract(*INTEGERS.get(kind, (0.0, 0.0)))
+    if variable.builtin == "gl_FragCoord":
+        return Contract(0.0, POSITION[format.name])
+    if variable.builtin == "gl_PointCoord":
+        return Contract(0.0, 1.0)
+    return _around((MATRIX if isinstance(variable.type, Matrix) else POSITION)[format.name])
 
 
 def alpha_at(uniform: Uniform) -> int | None:

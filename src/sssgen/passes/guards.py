@@ -158,7 +158,7 @@ class _Guarder(Transformer):
         def change(part: ir.Expr) -> ir.Expr:
             if not isinstance(part, ir.Binary) or part.op != "/":
                 return part
-            site = Site(part, "/", False, DIVISION, ())
+            site = Site(part, "/", (DIVISION,), DIVISION, ())
             return self.apply(part, site)
 
         safe = self.safe.get(function.key)
@@ -199,9 +199,9 @@ def _of_whole_call(guard: Guard, node: ir.Intrinsic) -> Guard:
     return guard._replace(text=f"{node.name}({args})", replaces="", scalar="")
 
 
-def remedy(site: Site, format: Format) -> str:
-    """What replaces the argument, the result or the call, for people."""
-    guard = guard_of(site)
+def remedy(site: Site, format: Format, guard: Guard | None = None) -> str:
+    """What replaces the argument, the result or the call, for people; `guard` is that of one of the failures."""
+    guard = guard_of(site if guard is None else site._replace(guard=guard))
     text = guard.text or guard.doc
     text = with_constants(text, format, site.limits, "{:g}".format)
     replaced = operands(site.node)["xyz".index(guard.replaces)] if guard.replaces in ("x", "y", "z") else site.node

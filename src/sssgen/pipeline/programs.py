@@ -16,7 +16,7 @@ from sssgen.passes.hoist import Note
 from sssgen.passes.ranges.range_pass import analyse
 from sssgen.passes.ranges.sites import Site, report
 from sssgen.passes.reachable import only
-from sssgen.passes.stage.stage_interface import stage_kind
+from sssgen.passes.stage.stage_interface import entry_of, stage_kind
 from sssgen.pipeline import pass_list
 from sssgen.pipeline.material_stages import check_shell, check_values
 from sssgen.pipeline.state import State
@@ -94,9 +94,13 @@ def analysed(material: Material, target: Target, form: str) -> Analysed:
 
 
 def library_sites(module: Module, called: Sequence[str] | None = None, chained: bool = False) -> list[Site]:
-    """Every operation with a domain in a module of plain functions. Raises SssgenError."""
+    """Every operation with a domain in a module of plain functions, or in the run of a whole shader.
+
+    Raises SssgenError.
+    """
     module, _, roots = plain_module(module)
-    return analyse(module, called or roots, FLOAT32, chained).sites
+    entry = entry_of(module)
+    return analyse(module, called or ([entry.key] if entry is not None else roots), FLOAT32, chained).sites
 
 
 def plain_module(module: Module) -> tuple[Module, list[Note], list[str]]:

@@ -153,18 +153,22 @@ def hoist_derivatives(state: State) -> Module:
 
 def hoist_derivatives_of_entry(state: State) -> Module:
     """The same, where the functions that main() calls are called from there alone."""
-    entry = entry_of(state.module)
-    if entry is not None:
-        reached = {function.key for function in only(state.module, [entry.key]).functions}
-        module, notes = hoist(state.module, [entry.key, *(key for key in state.roots if key not in reached)])
-    else:
-        module, notes = hoist(state.module, state.roots)
+    module, notes = hoist(state.module, _called_from_outside(state.module, state.roots))
     state.notes += notes
     return module
 
 
+def _called_from_outside(module: Module, roots: list[str]) -> list[str]:
+    """The `roots` of a whole shader that are not called by main() alone, and main(); of other modules, all of them."""
+    entry = entry_of(module)
+    if entry is None:
+        return roots
+    reached = {function.key for function in only(module, [entry.key]).functions}
+    return [entry.key, *(key for key in roots if key not in reached)]
+
+
 def insert_guards(state: State) -> Module:
-    called = list(state.called or state.roots)
+    called = list(state.called or _called_from_outside(state.module, state.roots))
     if state.form == "functions":
         remaining = {function.key for function in state.module.functions}
         called += [function.key for function in state.linked if function.key in remaining]

@@ -51,9 +51,22 @@ from sssgen.ir.intrinsics import (
 from sssgen.ir.intrinsics import (
     geometric as geometry,
 )
-from sssgen.ir.intrinsics.table import FINITE, NONZERO, Builtin, Guard, Level, Samples, by_column, with_constants
+from sssgen.ir.intrinsics.table import (
+    FINITE,
+    KINDS,
+    NONZERO,
+    Builtin,
+    Guard,
+    Kind,
+    Level,
+    Samples,
+    by_column,
+    with_constants,
+)
 
-__all__ = ["BUILTINS", "FINITE", "NONZERO", "Builtin", "Guard", "Level", "Samples", "by_column", "with_constants"]
+__all__ = [
+    "BUILTINS", "FINITE", "KINDS", "NONZERO", "Builtin", "Guard", "Kind", "Level", "Samples", "by_column", "with_constants",
+]  # fmt: skip
 
 CHAPTERS = (
     trigonometry, exponential, common, packing, geometry, matrices, relations, integers, textures, texture_parts,

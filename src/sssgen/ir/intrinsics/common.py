@@ -32,6 +32,11 @@ def _smoothstep(x: float, y: float, z: float) -> float:
     return float(checked(x < y, t * t * (3.0 - 2.0 * t)))
 
 
+_POWER = "clamp(ldexp(x, clamp(y, -126, 127)), -LARGEST, LARGEST)"
+_STEP = "{ genF t = clamp((z - x) / clamp(y - x, DIVISOR, LARGEST), 0.0, 1.0); return t * t * (3.0 - 2.0 * t); }"
+_STEP_DOC = "smoothstep; a step if the edges are equal or in the wrong order."
+
+
 def _bits(x: float) -> int:
     return int.from_bytes(struct.pack("<f", x), "little")
 
@@ -48,7 +53,7 @@ def _off_integer_quotients(rt: Any, x: Any, y: Any, rounding: float = 2.0**-20) 
 
 
 _REMAINDER = Guard(
-    lambda F, x, y: not y.has_zero(), "a remainder of division by 0", NONZERO, "y", function="nonzero",
+    lambda F, x, y: not y.has_zero(), "division", "a remainder of division by 0", NONZERO, "y", function="nonzero",
     argument=lambda F, y: Range(y.low, y.high, max(y.gap, F.divisor)),
     result=lambda F, range: range,  # not finite, where the quotient overflows
 )  # fmt: skip
@@ -158,7 +163,7 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
         "min(max(x, y), z).",
         fold=lambda x, y, z: checked(y <= z, min(max(x, y), z)), same_quantity=3, quantity="argument",
         range=lambda F, x, y, z: clip(x, y, z),
-        guards=(Guard(lambda F, x, y, z: y.high <= z.low, "the lower bound above the upper one", "min(max(x, y), z)", ordered=(1, 2)),),
+        guards=(Guard(lambda F, x, y, z: y.high <= z.low, "undefined", "the lower bound above the upper one", "min(max(x, y), z)", ordered=(1, 2)),),
         defined=lambda rt, x, y, z: y <= z,
         domain="y <= z; x is not NaN", cost=2,
         ulp=0.0, vectors=(
@@ -200,8 +205,10 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
     Builtin("smoothstep", ("genF(genF, genF, genF)", "genF(float, float, genF)"),
         "Cubic step t·t·(3 - 2·t) with t = clamp((z - x)/(y - x), 0, 1).",
         not_constant=("wgsl",), fold=_smoothstep, same_quantity=3, range=within(0.0, 1.0),
-        guards=(Guard(lambda F, x, y, z: (y - x).low >= F.tiny and (y - x).high <= F.largest, "edges in the wrong order, or equal", "{ genF t = clamp((z - x) / clamp(y - x, DIVISOR, LARGEST), 0.0, 1.0); return t * t * (3.0 - 2.0 * t); }",
-            doc="smoothstep; a step if the edges are equal or in the wrong order."),),
+        guards=(
+            Guard(lambda F, x, y, z: (y - x).low >= F.tiny, "undefined", "edges in the wrong order, or equal", _STEP, doc=_STEP_DOC),
+            Guard(lambda F, x, y, z: (y - x).high <= F.largest, "overflow", "a difference of the edges that overflows", _STEP, doc=_STEP_DOC),
+        ),
         defined=lambda rt, x, y, z: x < y, inside=lambda rt, x, y, z: (x < y) & (y - x < 1e30),
         domain="x < y", explicit_type=("wgsl",), cost=8, ulp=16.0,
         clause="WGSL, Vulkan: that of the formula, with 2.5 ulp for the division",
@@ -265,8 +272,8 @@ vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0
     Builtin("ldexp", ("genF(genF, genI)",), "x·2^y.",
         not_constant=("wgsl",), fold=math.ldexp, samples=Samples(integers={1: (-126, 127)}), range=power_of_two_product,
         guards=(
-            Guard(lambda F, x, y: y.low >= -126.0 and y.high <= 127.0 and (absolute(x) * rising(math.exp2, y)).high < F.largest, "the power is beyond the exponents of a float, or the product overflows",
-                "clamp(ldexp(x, clamp(y, -126, 127)), -LARGEST, LARGEST)"),
+            Guard(lambda F, x, y: y.low >= -126.0 and y.high <= 127.0, "undefined", "the power is beyond the exponents of a float", _POWER),
+            Guard(lambda F, x, y: (absolute(x) * rising(math.exp2, y)).high < F.largest, "overflow", "a product that overflows", _POWER),
         ),
         defined=lambda rt, x, y: (y >= -126) & (y <= 127),
         inside=lambda rt, x, y: (y >= -126) & (y <= 127) & (abs(rt.ldexp(x, y)) < 1e38) & ((x == 0.0) | (abs(rt.ldexp(x, y)) > 1e-37)),

@@ -13,6 +13,10 @@ _REDUCE = ("float(vecF, vecF)", "float(float, float)")
 _SUM = "WGSL, Vulkan: that of the formula, whose sum rounds in any order"
 
 
+_DIRECTION = "x * inversesqrt(max(dot(x, x), SQUARE))"
+_DIRECTION_DOC = "The direction of `x`; of a zero vector, 0."
+
+
 def _dot(x: Sequence[float], y: Sequence[float]) -> float:
     return math.fsum(a * b for a, b in zip(x, y))
 
@@ -81,8 +85,10 @@ ROWS = (
     Builtin("normalize", ("vecF(vecF)", "float(float)"), "x / length(x).",
         fold=lambda x: [a / _length(x) for a in x], quantity="direction",
         componentwise=False, range=vector_ranges.normalize,
-        guards=(Guard(lambda F, x: F.square**0.5 < x.low and x.high < F.largest**0.5, "the direction of a zero vector", "x * inversesqrt(max(dot(x, x), SQUARE))",
-            doc="The direction of `x`; of a zero vector, 0."),),
+        guards=(
+            Guard(lambda F, x: F.square**0.5 < x.low, "nan", "the direction of a zero vector", _DIRECTION, doc=_DIRECTION_DOC),
+            Guard(lambda F, x: x.high < F.largest**0.5, "overflow", "a vector whose squares overflow", _DIRECTION, doc=_DIRECTION_DOC),
+        ),
         inside=lambda rt, x: (rt.dot(x, x) < 1e38) & (rt.dot(x, x) > 1e-30),
         domain="dot(x, x) > 0 and does not overflow", texts={"hlsl/float": "", "wgsl/float": ""},
         polyfill="float normalize(float x) { return sign(x); }", kind="transcendental", cost=3, once=4, ulp=8.0,

@@ -75,7 +75,7 @@ mat4 outerProduct(vec4 x, vec4 y) { return mat4(x * y.x, x * y.y, x * y.z, x * y
     ),
     Builtin("inverse", ("mat(mat)",), "Inverse matrix.",
         samples=Samples(invertible=True), componentwise=False, range=vector_ranges.inverse, overflow_is_nan=True,
-        guards=(Guard(None, "a matrix without an inverse", "", doc="The inverse; of a matrix without one, large numbers.",
+        guards=(Guard(None, "division", "a matrix without an inverse", "", doc="The inverse; of a matrix without one, large numbers.",
             result=lambda F, range: range),),  # not finite, where a cofactor overflows
         domain="determinant(x) != 0, and well away from it for accuracy", texts={"hlsl": "", "wgsl": ""},
         polyfill="""

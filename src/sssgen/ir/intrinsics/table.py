@@ -16,12 +16,27 @@ from sssgen.ir.types import Matrix, Type, kind_of, spell
 Interval = tuple[float, float]
 
 
+Kind = Literal["nan", "division", "undefined", "range", "overflow"]
+"""What an operation gives where it fails: see `KINDS`."""
+KINDS: Mapping[Kind, str] = MappingProxyType({
+    "nan": "NaN",
+    "division": "division by 0",
+    "undefined": "undefined by the language",
+    "range": "out of range",
+    "overflow": "overflow",
+})  # fmt: skip
+"""The kinds of failures, the worst first, with their names for people."""
+
+
 class Guard(NamedTuple):
     """What makes a call safe, and what replaces it where the range pass cannot prove that it is safe."""
 
     safe: Callable[..., bool] | None
     """Whether nothing can go wrong, for the format F and the ranges x, y, z of the arguments (of their lengths, if the
     builtin is not componentwise). None: never proven here."""
+    kind: Kind
+    """What the result is otherwise on common devices: NaN, infinity after a division by 0, any number where the language
+    defines none, a number outside of what others rely on, or infinity after an overflow."""
     problem: str
     """What goes wrong otherwise, for people."""
     text: str
@@ -229,7 +244,7 @@ NONZERO = "max(abs(y), DIVISOR) * (2.0 * step(0.0, y) - 1.0)"
 """A divisor of the same sign (0 counts as positive) that is not 0."""
 FINITE = "mix(clamp(x, -LARGEST, LARGEST), genF(0.0), isnan(x))"
 """The largest number in place of infinity, 0 in place of NaN."""
-NOT_FINITE_BITS = Guard(None, "bits of a number that is not finite", FINITE, "result")
+NOT_FINITE_BITS = Guard(None, "range", "bits of a number that is not finite", FINITE, "result")
 
 F1 = ("genF(genF)",)
 F2 = ("genF(genF, genF)",)

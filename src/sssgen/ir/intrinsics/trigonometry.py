@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from sssgen.ir.component_ranges import inverse_hyperbolic_tangent, scaled, within
+from sssgen.ir.formats import Format
 from sssgen.ir.intervals import Range, absolute, clip, maximum, rising
 from sssgen.ir.intrinsics.table import F1, HALF_PI, PI, Builtin, Guard, Samples, checked
 
@@ -19,6 +20,10 @@ _ASIN = (
 _ATAN = "WGSL, Vulkan: 4096 ulp"
 _BY_LOG = "WGSL, Vulkan: that of the formula with log, whose own error is absolute"
 _ACOSH = "WGSL, Vulkan: that of log(x + sqrt(x·x - 1)), which cancels near 1"
+
+
+def _above_one(F: Format, x: Range) -> Range:
+    return clip(x, 1.0, 0.5 * F.largest**0.5)
 
 
 def _reduced(rt: Any, x: Any) -> Any:
@@ -53,7 +58,7 @@ ROWS = (
     ),
     Builtin("tan", F1, "Tangent of an angle in radians.",
         fold=math.tan, samples=Samples(floats=((-1.0, 1.0),)), range=within(-1e7, 1e7),
-        guards=(Guard(lambda F, x: absolute(x).high <= 1.5, "a tangent near 90 degrees", "clamp(tan(x), -1.0e7, 1.0e7)"),),
+        guards=(Guard(lambda F, x: absolute(x).high <= 1.5, "overflow", "a tangent near 90 degrees", "clamp(tan(x), -1.0e7, 1.0e7)"),),
         defined=_reduced, inside=lambda rt, x: abs(x) <= 1.0,
         domain="cos(x) != 0; accurate for |x| <= 1", kind="transcendental", cost=12, ulp=8192.0,
         absolute=2.0**-10, clause="WGSL, Vulkan: that of sin(x)/cos(x)",
@@ -61,14 +66,14 @@ ROWS = (
     ),
     Builtin("asin", F1, "Arc sine, in [-pi/2, pi/2].",
         fold=math.asin, samples=Samples(floats=((-1.0, 1.0),)), range=within(-1.5708, 1.5708),
-        guards=(Guard(lambda F, x: x.low >= -1.0 and x.high <= 1.0, "an arc sine of a number outside of -1..1", "clamp(x, -1.0, 1.0)", "x"),),
+        guards=(Guard(lambda F, x: x.low >= -1.0 and x.high <= 1.0, "nan", "an arc sine of a number outside of -1..1", "clamp(x, -1.0, 1.0)", "x"),),
         inside=lambda rt, x: abs(x) <= 1.0,
         domain="-1 <= x <= 1", kind="transcendental", cost=16, ulp=4096.0, absolute=2.0**-11, clause=_ASIN,
         vectors=(((1.0,), HALF_PI), ((0.0,), 0.0), ((-0.5,), -0.5235987755982989)),
     ),
     Builtin("acos", F1, "Arc cosine, in [0, pi].",
         fold=math.acos, samples=Samples(floats=((-1.0, 1.0),)), range=within(0.0, 3.1416),
-        guards=(Guard(lambda F, x: x.low >= -1.0 and x.high <= 1.0, "an arc cosine of a number outside of -1..1", "clamp(x, -1.0, 1.0)", "x"),),
+        guards=(Guard(lambda F, x: x.low >= -1.0 and x.high <= 1.0, "nan", "an arc cosine of a number outside of -1..1", "clamp(x, -1.0, 1.0)", "x"),),
         inside=lambda rt, x: abs(x) <= 1.0,
         domain="-1 <= x <= 1", kind="transcendental", cost=16, ulp=4096.0, absolute=2.0**-11, clause=_ASIN,
         vectors=(((1.0,), 0.0), ((0.5,), 1.0471975511965979), ((-1.0,), PI)),
@@ -77,7 +82,7 @@ ROWS = (
         "Arc tangent: of x, in [-pi/2, pi/2]; of x/y in the quadrant of (y, x), in [-pi, pi].",
         fold=lambda x, y=None: math.atan(x) if y is None else checked(x != 0.0 or y != 0.0, math.atan2(x, y)),
         range=lambda F, x, y=None: Range(-3.1416, 3.1416) if y else Range(-1.5708, 1.5708),
-        guards=(Guard(lambda F, x, y: not x.has_zero() or not y.has_zero(), "the angle of (0, 0)", "y + step(abs(x) + abs(y), genF(0.0))", "y"),),
+        guards=(Guard(lambda F, x, y: not x.has_zero() or not y.has_zero(), "undefined", "the angle of (0, 0)", "y + step(abs(x) + abs(y), genF(0.0))", "y"),),
         domain="with two arguments: x != 0 or y != 0, and x != -0, whose sign may be lost; accurate for y != 0 and |y| < 2^126",
         defined=lambda rt, x, y=1.0: ((x != 0.0) & (y == 0.0)) | (abs(y) >= 2.0**-126) & (abs(y) <= 2.0**126),
         inside=lambda rt, x, y=1.0: (rt.floatBitsToInt(x) != -2**31) & (abs(y) >= 2.0**-126) & (abs(y) <= 2.0**126),
@@ -90,7 +95,7 @@ ROWS = (
     ),
     Builtin("sinh", F1, "Hyperbolic sine.",
         fold=math.sinh, samples=Samples(floats=((-88.0, 88.0),)), range=lambda F, x: rising(math.sinh, x),
-        guards=(Guard(lambda F, x: x.size < 0.6 * F.exponent, "exp in it overflows", "clamp(x, -0.6 * EXPONENT, 0.6 * EXPONENT)", "x",
+        guards=(Guard(lambda F, x: x.size < 0.6 * F.exponent, "overflow", "exp in it overflows", "clamp(x, -0.6 * EXPONENT, 0.6 * EXPONENT)", "x",
             argument=lambda F, x: clip(x, -0.6 * F.exponent, 0.6 * F.exponent)),),
         inside=lambda rt, x: abs(x) < 88.0,
         domain="|x| < 88", kind="transcendental", cost=11, ulp=184.0, absolute=2.0**-20, clause=_HYPERBOLIC,
@@ -98,7 +103,7 @@ ROWS = (
     ),
     Builtin("cosh", F1, "Hyperbolic cosine.",
         fold=math.cosh, samples=Samples(floats=((-88.0, 88.0),)), range=lambda F, x: rising(math.cosh, absolute(x)),
-        guards=(Guard(lambda F, x: x.size < 0.6 * F.exponent, "exp in it overflows", "clamp(x, -0.6 * EXPONENT, 0.6 * EXPONENT)", "x",
+        guards=(Guard(lambda F, x: x.size < 0.6 * F.exponent, "overflow", "exp in it overflows", "clamp(x, -0.6 * EXPONENT, 0.6 * EXPONENT)", "x",
             argument=lambda F, x: clip(x, -0.6 * F.exponent, 0.6 * F.exponent)),),
         inside=lambda rt, x: abs(x) < 88.0,
         domain="|x| < 88", kind="transcendental", cost=11, ulp=184.0, clause=_HYPERBOLIC,
@@ -106,7 +111,7 @@ ROWS = (
     ),
     Builtin("tanh", F1, "Hyperbolic tangent.",
         fold=math.tanh, samples=Samples(floats=((-44.0, 44.0),)), range=within(-1.0, 1.0),
-        guards=(Guard(lambda F, x: x.size <= 0.3 * F.exponent, "exp in it overflows", "clamp(x, -0.3 * EXPONENT, 0.3 * EXPONENT)", "x"),),
+        guards=(Guard(lambda F, x: x.size <= 0.3 * F.exponent, "overflow", "exp in it overflows", "clamp(x, -0.3 * EXPONENT, 0.3 * EXPONENT)", "x"),),
         inside=lambda rt, x: abs(x) < 44.0,
         domain="|x| < 44, as sinh(x)/cosh(x) may overflow beyond", kind="transcendental", cost=14, ulp=184.0,
         absolute=1e-5, clause="WGSL: absolute error of 1e-5, or that of sinh(x)/cosh(x); Vulkan: the latter",
@@ -114,7 +119,7 @@ ROWS = (
     ),
     Builtin("asinh", F1, "Inverse hyperbolic sine.",
         fold=math.asinh, range=lambda F, x: rising(math.asinh, x),
-        guards=(Guard(lambda F, x: x.size < 0.5 * F.largest**0.5, "the argument's square overflows", "clamp(x, -0.5 * ROOT, 0.5 * ROOT)", "x"),),
+        guards=(Guard(lambda F, x: x.size < 0.5 * F.largest**0.5, "overflow", "the argument's square overflows", "clamp(x, -0.5 * ROOT, 0.5 * ROOT)", "x"),),
         inside=lambda rt, x: abs(x) < 1e19,
         domain="|x| < 1e19", texts={"glsl": "", "hlsl": "", "wgsl": ""},  # NVIDIA and SwiftShader lose large negative x
         polyfill="genF asinh(genF x) { return sign(x) * log(abs(x) + sqrt(x * x + 1.0)); }",
@@ -124,8 +129,10 @@ ROWS = (
     Builtin("acosh", F1, "Inverse hyperbolic cosine, not negative.",
         fold=math.acosh, samples=Samples(floats=((1.0, 1e18),)),
         range=lambda F, x: rising(math.acosh, maximum(x, 1.0)),
-        guards=(Guard(lambda F, x: x.low >= 1.0 and x.high < 0.5 * F.largest**0.5, "an argument below 1, or whose square overflows", "clamp(x, 1.0, 0.5 * ROOT)", "x",
-            argument=lambda F, x: clip(x, 1.0, 0.5 * F.largest**0.5)),),
+        guards=(
+            Guard(lambda F, x: x.low >= 1.0, "nan", "an argument below 1", "clamp(x, 1.0, 0.5 * ROOT)", "x", argument=_above_one),
+            Guard(lambda F, x: x.high < 0.5 * F.largest**0.5, "overflow", "the argument's square overflows", "clamp(x, 1.0, 0.5 * ROOT)", "x", argument=_above_one),
+        ),
         inside=lambda rt, x: (x >= 1.0) & (x < 1e19),
         domain="1 <= x < 1e19", texts={"hlsl": ""},
         polyfill="genF acosh(genF x) { return log(x + sqrt((x - 1.0) * (x + 1.0))); }", kind="transcendental",
@@ -134,7 +141,7 @@ ROWS = (
     ),
     Builtin("atanh", F1, "Inverse hyperbolic tangent.",
         fold=math.atanh, samples=Samples(floats=((-1.0, 1.0),)), range=inverse_hyperbolic_tangent,
-        guards=(Guard(lambda F, x: x.low > -1.0 and x.high < 1.0, "an argument that is not between -1 and 1", "clamp(x, EPSILON - 1.0, 1.0 - EPSILON)", "x"),),
+        guards=(Guard(lambda F, x: x.low > -1.0 and x.high < 1.0, "nan", "an argument that is not between -1 and 1", "clamp(x, EPSILON - 1.0, 1.0 - EPSILON)", "x"),),
         inside=lambda rt, x: abs(x) < 1.0,
         domain="-1 < x < 1", texts={"hlsl": ""},
         polyfill="genF atanh(genF x) { return 0.5 * log((1.0 + x) / (1.0 - x)); }", kind="transcendental",

@@ -26,7 +26,7 @@ class CallRanges(AnalysisState):
             return self.unknown(node.type)
         if row.reads_texels and args[0].texel is not None and not args[0].texel.finite and as_texel:
             limits = (args[0].texel.low, args[0].texel.high)
-            self.note(node, "texel", False, TEXEL, (ANY,), limits)
+            self.note(node, "texel", True, TEXEL, (ANY,), limits)
         size = scalars(node.type)
         parts, length = self.result(row, args, size)
         if kind == "float" and row.componentwise and row.ulp > 0.0:
@@ -89,8 +89,9 @@ class CallRanges(AnalysisState):
                 for expr, arg in zip(node.args, args, strict=True)
             ]
         rows = [[self.flushed(part) for part in ranges] for ranges in rows]
-        needed = next((guard for guard in guards if not self.is_safe(guard, rows, args)), None)
-        self.note(node, node.name, needed is None, needed or guards[-1], tuple(seen))
+        failures = tuple([guard for guard in guards if not self.is_safe(guard, rows, args)])
+        needed = failures[0] if failures else None
+        self.note(node, node.name, failures, needed or guards[-1], tuple(seen))
         if needed is None or needed.argument is None:
             return args, needed
         index = "xyz".index(needed.replaces)

@@ -15,7 +15,7 @@ from sssgen.ir.rules import element_type
 from sssgen.ir.types import BOOL, Array, Matrix, Struct, kind_of
 from sssgen.ir.vector_ranges import Value, length_of
 from sssgen.passes.ranges.call_ranges import CallRanges
-from sssgen.passes.ranges.range_state import State
+from sssgen.passes.ranges.range_state import State, global_key
 from sssgen.passes.ranges.scalar_parts import field_at, hull_of, matrix_product, scalars
 from sssgen.passes.ranges.sites import COUNT, DIVISION, ELEMENT, SIGNED_COUNT, TEXEL, WHOLE_NUMBER
 
@@ -35,8 +35,9 @@ class ExpressionRanges(CallRanges):
         return self.unknown(node.type) if value is None else self.refined(value)
 
     def global_(self, node: ir.Global) -> Value:
-        if node.name in self.variables:  # any function may have changed it
-            return self.unknown(node.type)
+        if node.name in self.variables:
+            value = self.state.env.get(global_key(node.name))
+            return self.unknown(node.type) if value is None else self.refined(value)
         return self.refined(self.globals[node.name])
 
     def unary(self, node: ir.Unary) -> Value:
@@ -166,7 +167,7 @@ class ExpressionRanges(CallRanges):
             numbers.append(self.numbers.of("/", m, n))
         dividend, divisor = hull_of(left.parts), hull_of(right.parts)
         guard = DIVISION if not counts else COUNT if divisor.low >= 0.0 else SIGNED_COUNT
-        self.note(node, "/", proven, guard, (dividend, divisor))
+        self.note(node, "/", not proven, guard, (dividend, divisor))
         return self.computed(node, parts, numbers)
 
     def ratio(self, a: Range, m: int, b: Range, n: int) -> float | None:
@@ -294,7 +295,9 @@ class ExpressionRanges(CallRanges):
             low, high = INTEGERS[kind][0], 2147483520.0 if kind == "int" else 4294967040.0
             parts = [Range(float(int(part.low)), float(int(part.high))) for part in value.parts]
             proven = all(low <= part.low and part.high <= high for part in parts)
-            self.note(node, kind, proven, WHOLE_NUMBER, (hull_of(value.parts),), (low, min(high, self.format.largest)))
+            self.note(
+                node, kind, not proven, WHOLE_NUMBER, (hull_of(value.parts),), (low, min(high, self.format.largest))
+            )
             parts = [clip(part, low, high) for part in parts]
             return self.computed(node, parts, [self.numbers.of(kind, n) for n in value.numbers])
         limits = self.limits(kind)
@@ -309,7 +312,7 @@ class ExpressionRanges(CallRanges):
             value = self.builtin(inner, args, False)
             texel = args[0].texel
             if texel is not None and not texel.finite:
-                self.note(node, "texel", False, TEXEL, (ANY,), (texel.low, texel.high))
+                self.note(node, "texel", True, TEXEL, (ANY,), (texel.low, texel.high))
         else:
             value = self.expr(inner)
         at = ["xyzw".index(letter) for letter in node.components]
@@ -324,9 +327,8 @@ class ExpressionRanges(CallRanges):
         assert elements is not None
         count = elements[1]
         if not isinstance(node.index, ir.Literal):
-            self.note(
-                node, "index", index.low >= 0.0 and index.high <= count - 1.0, ELEMENT, (index,), (0.0, count - 1.0)
-            )
+            outside = index.low < 0.0 or index.high > count - 1.0
+            self.note(node, "index", outside, ELEMENT, (index,), (0.0, count - 1.0))
         if isinstance(node.value.type, Array):
             return self.value(value.parts, tuple([self.numbers.fresh() for _ in value.parts]))
         size = scalars(node.type)

@@ -10,9 +10,9 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.intervals import INF, Range, clip
 from sssgen.ir.types import kind_of
 from sssgen.ir.vector_ranges import Value, length_of
-from sssgen.ir.walk import calls_of, root, statements
+from sssgen.ir.walk import calls_of, statements, written_root
 from sssgen.passes.ranges.expression_ranges import ExpressionRanges
-from sssgen.passes.ranges.range_state import Loop, State
+from sssgen.passes.ranges.range_state import Loop, State, variable_key
 from sssgen.passes.ranges.scalar_parts import scalars
 
 _JOINS = 3
@@ -168,28 +168,28 @@ class LoopRanges(ExpressionRanges):
     def written(self, block: ir.Block) -> set[str]:
         names: set[str] = set()
         for stmt in statements(block):
-            if isinstance(stmt, ir.Assign) and (variable := root(stmt.target)) is not None:
-                names.add(variable.name)
+            if isinstance(stmt, ir.Assign) and (key := variable_key(stmt.target)) is not None:
+                names.add(key)
         return names | self.written_by_calls(block)
 
     def written_by_calls(self, block: ir.Block) -> set[str]:
-        """The variables that the calls in a block write through out parameters."""
-        return {
-            variable.name
-            for call in calls_of(block)
-            for param, arg in zip(self.functions[call.function].params, call.args, strict=True)
-            if param.direction != "in" and (variable := root(arg)) is not None
-        }
+        """The variables that the calls in a block write, through out parameters or as module variables."""
+        names: set[str] = set()
+        for call in calls_of(block):
+            names |= self.changed.get(call.function, frozenset())
+            for param, arg in zip(self.functions[call.function].params, call.args, strict=True):
+                if param.direction != "in" and (key := variable_key(arg)) is not None:
+                    names.add(key)
+        return names
 
     def sum_kind(self, name: str, block: ir.Block) -> str:
         """The kind of a variable that a block only adds to; '' for any other."""
         kind = ""
         for stmt in statements(block):
             if isinstance(stmt, ir.Assign):
-                variable = root(stmt.target)
-                plain = stmt.op in ("+", "-") and variable is stmt.target
-                if variable is not None and variable.name == name:
-                    if not plain:
+                variable = written_root(stmt.target)
+                if variable_key(stmt.target) == name and variable is not None:
+                    if stmt.op not in ("+", "-") or variable is not stmt.target:
                         return ""
                     kind = kind_of(variable.type)
         return "" if kind and name in self.written_by_calls(block) else kind

@@ -21,10 +21,11 @@ from sssgen.ir.types import VOID, Array, Struct, kind_of
 from sssgen.ir.vector_ranges import Contract, Value
 from sssgen.ir.walk import root
 from sssgen.passes.ranges.facts import Facts
-from sssgen.passes.ranges.range_state import Frame, State
+from sssgen.passes.ranges.range_state import Frame, State, global_key, variable_key
 from sssgen.passes.ranges.scalar_parts import field_at, hull_of, innermost, scalars
 from sssgen.passes.ranges.sites import BOUNDS, Site
 from sssgen.passes.ranges.summaries import CallSummaries, Result
+from sssgen.passes.stage.stage_interface import ENTRY
 
 
 class Findings(NamedTuple):
@@ -47,6 +48,10 @@ def analyse(module: ir.Module, roots: Iterable[str], format: Format = FLOAT32, c
 class RangeAnalysis(CallSummaries):
     """The complete analysis: adds functions and statements."""
 
+    def __init__(self, module: ir.Module, format: Format = FLOAT32, chained: bool = True) -> None:
+        super().__init__(module, format, chained)
+        self.variable_keys = frozenset(map(global_key, self.variables))
+
     # Functions
 
     def root(self, key: str) -> None:
@@ -55,6 +60,10 @@ class RangeAnalysis(CallSummaries):
         if function.body is None:
             return
         self.state = State({}, Facts({}, {}))
+        if key == ENTRY:  # what else is called from outside may find them changed
+            for variable in self.variables.values():
+                value = self.expr(variable.value) if variable.value is not None else self.unknown(variable.type)
+                self.state.env[global_key(variable.name)] = value
         args = [
             self.unknown(param.type) if param.direction == "out" else self.outside(param) for param in function.params
         ]
@@ -74,7 +83,8 @@ class RangeAnalysis(CallSummaries):
     def interpret(self, function: ir.Function, args: Sequence[Value]) -> Result:
         self.interpretations[function.key] += 1
         outer, loops, self.loops = self.state, self.loops, []
-        env = {param.name: arg for param, arg in zip(function.params, args, strict=True)}
+        env = {key: value for key, value in outer.env.items() if key in self.variable_keys}
+        env |= {param.name: arg for param, arg in zip(function.params, args, strict=True)}
         frame = Frame(function, [])
         self.frames.append(frame)
         end = self.block(function.body or (), State(env, outer.facts.copy()))
@@ -90,7 +100,8 @@ class RangeAnalysis(CallSummaries):
             if result is not None and value is not None:
                 result = self.joined(result, value, state.facts, other.facts)
             state = self.join(state, other)
-        self.state = State(outer.env, state.facts)
+        changed = {key: value for key, value in state.env.items() if key in self.variable_keys}
+        self.state = State(outer.env | changed if changed else outer.env, state.facts)
         if result is None and function.result != VOID:
             result = self.unknown(function.result)
         return result, [state.env.get(param.name, arg) for param, arg in zip(function.params, args, strict=True)]
@@ -99,9 +110,9 @@ class RangeAnalysis(CallSummaries):
         function = self.functions[node.function]
         args, before = [], []
         for param, arg in zip(function.params, node.args, strict=True):
-            variable = root(arg) if param.direction == "inout" else None
+            variable = variable_key(arg) if param.direction == "inout" else None
             args.append(self.unknown(param.type) if param.direction == "out" else self.expr(arg))
-            before.append((variable.name, self.state.env.get(variable.name)) if variable is not None else None)
+            before.append((variable, self.state.env.get(variable)) if variable is not None else None)
         for index, evaluated in enumerate(before):
             # a call in a later argument may have written the variable, and the callee gets what is in it then
             if evaluated is not None and self.state.env.get(evaluated[0]) is not evaluated[1]:
@@ -109,7 +120,7 @@ class RangeAnalysis(CallSummaries):
                 args[index] = self.joined(args[index], self.expr(node.args[index]), facts, facts)
         # the call may write an index that a target uses
         written = [
-            self.places(arg) if param.direction != "in" and root(arg) is not None else None
+            self.places(arg) if param.direction != "in" and variable_key(arg) is not None else None
             for param, arg in zip(function.params, node.args, strict=True)
         ]
         result, ends = self.enter(function, args) if function.body is not None else (None, args)
@@ -169,8 +180,8 @@ class RangeAnalysis(CallSummaries):
         node: ir.Expr = stmt.value
         variable = root(stmt.target)
         if stmt.op:
-            if stmt.op in ("+", "-") and variable is stmt.target and self.loops:
-                self.add(stmt.target.name, stmt, value)
+            if stmt.op in ("+", "-") and isinstance(stmt.target, ir.Local | ir.Global) and self.loops:
+                self.add(cast(str, variable_key(stmt.target)), stmt, value)
             node = self.compound_of(stmt)
             value = self.operation(node, self.expr(stmt.target), value)
         param = self.out_param(variable) if kind_of(node.type) == "float" else None
@@ -202,7 +213,7 @@ class RangeAnalysis(CallSummaries):
         """A value that others rely on, kept within its contract."""
         limits = (contract.low, min(contract.high, 1.0) if contract.high == contracts.ONE else contract.high)
         inside = all(part.low >= contract.low and part.high <= contract.high for part in value.parts)
-        self.note(node, operation, inside, BOUNDS, (hull_of(value.parts),), limits)
+        self.note(node, operation, not inside, BOUNDS, (hull_of(value.parts),), limits)
         if inside:
             return value
         parts = tuple([rounded(clip(part, contract.low, contract.high), self.format) for part in value.parts])
@@ -225,24 +236,24 @@ class RangeAnalysis(CallSummaries):
 
     def store(self, target: ir.Expr, value: Value, places: tuple[list[int], bool] | None = None) -> None:
         """Writes to a variable or a part of one; `places` is the result of `places`, if it is known already."""
-        variable = root(target)
-        if variable is None or variable.name not in self.state.env:
+        key = variable_key(target)
+        if key is None or key not in self.state.env:
             return
-        if variable is target:
-            self.state.env[variable.name] = value
+        if isinstance(target, ir.Local | ir.Global):
+            self.state.env[key] = value
             return
-        old = self.state.env[variable.name]
+        old = self.state.env[key]
         indices, sure = places or self.places(target)
         parts, numbers = list(old.parts), list(old.numbers)
         for index, place in enumerate(indices):
             part, number = value.parts[index % len(value.parts)], value.numbers[index % len(value.numbers)]
             parts[place] = part if sure else part.joined(parts[place])
             numbers[place] = number if sure else self.numbers.fresh()
-        self.state.env[variable.name] = self.value(tuple(parts), tuple(numbers))
+        self.state.env[key] = self.value(tuple(parts), tuple(numbers))
 
     def places(self, target: ir.Expr) -> tuple[list[int], bool]:
         """Which scalars of its variable a target is, and whether it certainly is all of these and no others."""
-        if isinstance(target, ir.Local):
+        if isinstance(target, ir.Local | ir.Global):
             return list(range(scalars(target.type))), True
         assert isinstance(target, ir.Swizzle | ir.Member | ir.Index)
         inner, sure = self.places(target.value)

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any, NamedTuple, cast
+from typing import NamedTuple, cast
 
 from sssgen.ir import contracts
 from sssgen.ir import nodes as ir
 from sssgen.ir.contracts import INTEGERS
 from sssgen.ir.formats import Format
 from sssgen.ir.intervals import ANY, INF, Range, clip, rounded
-from sssgen.ir.intrinsics import BUILTINS, FINITE
-from sssgen.ir.types import Matrix, Sampler, Scalar, Type, kind_of
+from sssgen.ir.intrinsics import BUILTINS, FINITE, Guard
+from sssgen.ir.types import Matrix, Sampler, Scalar, Struct, Type, kind_of
 from sssgen.ir.vector_ranges import Contract, Value, length_of
+from sssgen.ir.walk import written_root
 from sssgen.passes.ranges.facts import Facts, Numbers
 from sssgen.passes.ranges.scalar_parts import innermost, scalar_kinds, scalars
 from sssgen.passes.ranges.sites import OVERFLOW, Site
+from sssgen.passes.variable_effects import effects
 
 SUMS = OVERFLOW._replace(text=FINITE, doc="A finite number in place of infinity; 0 in place of NaN.")
 """For operations with sums of products, which may give infinity minus infinity."""
@@ -30,10 +32,24 @@ def _is_sum(node: ir.Expr) -> bool:
     return Matrix in types and Scalar not in types
 
 
+def variable_key(target: ir.Expr) -> str | None:
+    """The key of the variable that an assignment to `target` changes; None if it is none."""
+    variable = written_root(target)
+    if variable is None:
+        return None
+    return variable.name if isinstance(variable, ir.Local) else global_key(variable.name)
+
+
+def global_key(name: str) -> str:
+    """The key of a module variable: no local one has an @ in its name."""
+    return f"@{name}"
+
+
 class State(NamedTuple):
     """What is known at one point of the program."""
 
     env: dict[str, Value]
+    """The variables by their keys; a module variable that is not in it can be any number."""
     facts: Facts
 
     def copy(self) -> State:
@@ -74,19 +90,33 @@ class AnalysisState:
         self.frames: list[Frame] = []
         self.loops: list[Loop] = []
         self.globals: dict[str, Value] = {}
-        self.variables = frozenset(variable.name for variable in module.variables)
+        self.variables = {variable.name: variable for variable in module.variables if variable.storage != "in"}
+        """The module variables that functions change."""
+        self.changed = {key: frozenset(map(global_key, effect.writes)) for key, effect in effects(module).items()}
+        """A function's key → the keys of the module variables that it may change."""
         self.state = State({}, Facts({}, {}))
         for uniform in module.uniforms:
-            inner = innermost(uniform.type)
-            contract = contracts.of_uniform(uniform, format)
-            value = self.input(inner, contract)
+            value = self.uniform(uniform)
             if (at := contracts.alpha_at(uniform)) is not None:
                 value = self.value((*value.parts[:at], Range(0.0, 1.0)), value.numbers, value.length)
             self.globals[uniform.name] = value
+        for variable in module.variables:
+            if variable.storage == "in":
+                contract = contracts.of_stage_input(variable, format)
+                self.globals[variable.name] = self.input(innermost(variable.type), contract)
         for constant in module.constants:
             self.globals[constant.name] = self.expr(constant.value)
 
     # Values
+
+    def uniform(self, uniform: ir.Uniform) -> Value:
+        """A uniform within its contract; of a struct, each field within that of a uniform of its type."""
+        inner = innermost(uniform.type)
+        if not isinstance(inner, Struct):
+            return self.input(inner, contracts.of_uniform(uniform, self.format))
+        fields = [self.uniform(uniform._replace(type=field.type)) for field in inner.fields]
+        parts = tuple([part for field in fields for part in field.parts])
+        return self.value(parts, tuple([number for field in fields for number in field.numbers]))
 
     def input(self, type_: Type, contract: Contract) -> Value:
         """An input within its contract."""
@@ -147,16 +177,23 @@ class AnalysisState:
         largest = self.format.largest
         over = [part for part in bounded if part.low < -largest or part.high > largest]
         if over:
-            self.note(node, "overflow", False, SUMS if _is_sum(node) else OVERFLOW, tuple(over[:1]))
+            guard = SUMS if _is_sum(node) else OVERFLOW
+            self.note(node, "overflow", (guard,), guard, tuple(over[:1]))
             bounded = [clip(part, -largest, largest) for part in bounded]
         return self.value(tuple(bounded), tuple(numbers), length)
 
     def note(
-        self, node: ir.Expr, operation: str, proven: bool, guard: Any, args: tuple[Range, ...],
+        self, node: ir.Expr, operation: str, failures: bool | tuple[Guard, ...], guard: Guard, args: tuple[Range, ...],
         limits: tuple[float, float] = (0.0, 0.0),
     ) -> None:  # fmt: skip
-        """Records what was found about an operation; a second visit widens it."""
-        site = Site(node, operation, proven, guard, args, limits)
+        """Records what was found about an operation; a second visit widens it.
+
+        `failures` are the guards of what may fail; True means that of `guard`, False that nothing may fail.
+        """
+        if isinstance(failures, bool):
+            failures = (guard,) if failures else ()
+        function = self.frames[-1].function.name if self.frames else ""
+        site = Site(node, operation, failures, guard, args, limits, function)
         earlier = self.sites.get((id(node), operation))
         self.sites[id(node), operation] = site if earlier is None else earlier.joined(site)
 

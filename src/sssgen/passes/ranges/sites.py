@@ -9,10 +9,13 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.intervals import Range
 from sssgen.ir.intrinsics import NONZERO, Guard
 
-OVERFLOW = Guard(None, "a number too large for its format", "clamp(x, -LARGEST, LARGEST)", "result", function="bounded")
+OVERFLOW = Guard(
+    None, "overflow", "a number too large for its format", "clamp(x, -LARGEST, LARGEST)", "result", function="bounded"
+)
 """For any sum or product; the guards of builtins are in the intrinsic table."""
 TEXEL = Guard(
     None,
+    "range",
     "a texel of a float texture that is no number",
     "mix(clamp(x, LOW, HIGH), genF(0.0), isnan(x))",
     "result",
@@ -20,15 +23,16 @@ TEXEL = Guard(
     doc="A texel within its range; 0 in place of NaN.",
     function="valid_texel",
 )
-BOUNDS = Guard(None, "a quantity beyond its range", "clamp(x, LOW, HIGH)", "result")
+BOUNDS = Guard(None, "range", "a quantity beyond its range", "clamp(x, LOW, HIGH)", "result")
 DIVISION = Guard(
-    None, "a division by 0", NONZERO, "y", doc="A divisor that is not 0, with the sign of `y`.", function="nonzero"
+    None, "division", "a division by 0", NONZERO, "y", doc="A divisor that is not 0, with the sign of `y`.",
+    function="nonzero",
 )  # fmt: skip
-COUNT = Guard(None, "a division by a count of 0", "max(y, 1.0)", "y", function="nonzero")
+COUNT = Guard(None, "division", "a division by a count of 0", "max(y, 1.0)", "y", function="nonzero")
 SIGNED_COUNT = COUNT._replace(text=NONZERO.replace("DIVISOR", "1.0"), doc=DIVISION.doc)
 """For a count that may be below 0."""
-WHOLE_NUMBER = Guard(None, "a float too large for an integer", "clamp(x, LOW, HIGH)", "x")
-ELEMENT = Guard(None, "an index beyond the elements", "clamp(y, 0, LAST)", "y")
+WHOLE_NUMBER = Guard(None, "undefined", "a float too large for an integer", "clamp(x, LOW, HIGH)", "x")
+ELEMENT = Guard(None, "range", "an index beyond the elements", "clamp(y, 0, LAST)", "y")
 
 
 class Site(NamedTuple):
@@ -37,23 +41,35 @@ class Site(NamedTuple):
     node: ir.Expr
     operation: str
     """The operator or builtin, or `overflow`, `texel`, a quantity's name, `int`, `index`."""
-    proven: bool
+    failures: tuple[Guard, ...]
+    """The guards of what may fail there; none if the operation is proven safe."""
     guard: Guard
+    """The guard that is inserted: that of the first failure."""
     args: tuple[Range, ...]
     """The ranges of the arguments (of each: the hull of all its components), or of the result."""
     limits: tuple[float, float] = (0.0, 0.0)
     """LOW and HIGH of the guard's text."""
+    function: str = ""
+    """The name of the function that it is in; '' for a constant of the module."""
 
     def joined(self, other: Site) -> Site:
         """The site in both contexts: the guard that either needs, the joined ranges."""
         args = tuple([a.joined(b) for a, b in zip(self.args, other.args, strict=True)])
+        failures = self.failures
+        if failures != other.failures:
+            failures = tuple(dict.fromkeys((*failures, *other.failures)))
         if self.proven != other.proven:
             worse = other if self.proven else self
         else:
             worse = min(self, other, key=lambda site: site.guard.replaces != "")
         if worse.guard is COUNT and args[1].low < 0.0:
             worse = worse._replace(guard=SIGNED_COUNT)
-        return worse._replace(args=args)
+        return worse._replace(args=args, failures=failures)
+
+    @property
+    def proven(self) -> bool:
+        """Whether nothing can fail there."""
+        return not self.failures
 
     @property
     def place(self) -> str:

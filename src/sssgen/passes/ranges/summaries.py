@@ -19,7 +19,7 @@ from sssgen.ir.vector_ranges import Value
 from sssgen.passes.ranges.facts import Facts
 from sssgen.passes.ranges.loop_ranges import LoopRanges
 from sssgen.passes.ranges.range_state import State
-from sssgen.passes.ranges.scalar_parts import scalar_kinds
+from sssgen.passes.ranges.scalar_parts import innermost, scalar_kinds
 
 OWN_INTERPRETATIONS = 8
 """How often each function is interpreted in any case."""
@@ -64,6 +64,8 @@ class CallSummaries(LoopRanges):
             self.shared -= 1
             return self.interpret(function, args)
         result, ends = self.summary(function, args).result
+        for name in self.changed.get(function.key, frozenset()) & self.state.env.keys():
+            self.state.env[name] = self.unknown(innermost(self.variables[name[1:]].type))
         return None if result is None else self.unrelated(result), [self.unrelated(end) for end in ends]
 
     def summary(self, function: ir.Function, args: Sequence[Value]) -> Summary:

@@ -1,6 +1,6 @@
 """The operations of a program that have a domain: whether each is safe, and an input that shows where it is not.
 
-for finding in lint("lobe_gdc2011"):
+for finding in lint("lobe_gdc2011").findings:
     print(finding.render())
 """
 
@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import os
 import re
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from sssgen.ir.formats import FLOAT32
+from sssgen.ir.intrinsics import Guard, Kind
 from sssgen.ir.nodes import Function, Module
 from sssgen.ir.types import Matrix, Scalar, Vector, Void
 from sssgen.ir.walk import operands
@@ -30,14 +33,18 @@ from sssgen.targets import registry
 LONGEST = 40
 """Characters of an operand that are shown in place of its letter."""
 PROVEN, MAY_FAIL, UNKNOWN = "proven", "may fail", "unknown"
+REPORTED: tuple[Kind, ...] = ("nan", "division", "undefined", "range")
+"""The kinds that are reported if no others are selected: nearly every sum of numbers without a range may overflow."""
 
 
 class Finding(NamedTuple):
-    """An operation with a domain."""
+    """An operation with a domain, and one way in which it may fail."""
 
     site: Site
     verdict: str
     """`proven`, `may fail` (there is an example) or `unknown`."""
+    guard: Guard
+    """That of the failure; of an operation that is proven safe, any."""
     example: str = ""
     """The command that shows it."""
     guarded: bool = True
@@ -46,17 +53,28 @@ class Finding(NamedTuple):
     """Whether an input was searched for."""
 
     @property
+    def kind(self) -> Kind:
+        """The kind of the failure."""
+        return self.guard.kind
+
+    @property
     def message(self) -> str:
         """The message of the diagnostic."""
         if self.verdict == PROVEN:
             return f"{self.site.operation}: proven safe"
         unseen = "not proven, and no input was found that fails" if self.searched else "not proven"
-        return f"{self.site.operation}: {self.site.guard.problem}{f' ({unseen})' if self.verdict == UNKNOWN else ''}"
+        noted = f" ({unseen})" if self.verdict == UNKNOWN else ""
+        return f"{self.site.operation}: {self.guard.problem} [{self.kind}]{noted}"
 
     @property
     def severity(self) -> str:
         """A warning if no guard covers it, otherwise a note."""
         return "note" if self.verdict == PROVEN or self.guarded else "warning"
+
+    @property
+    def remedy(self) -> str:
+        """What makes the operation safe; '' if it is."""
+        return "" if self.verdict == PROVEN else self.with_operands(remedy(self.site, FLOAT32, self.guard))
 
     def diagnostic(self, hint: str = "") -> Diagnostic:
         """The finding as a diagnostic, with its place."""
@@ -71,9 +89,7 @@ class Finding(NamedTuple):
         if self.example:
             lines.append(f"  example: {self.example}")
         if self.verdict != PROVEN:
-            lines.append(
-                f"  {'emitted' if self.guarded else 'write'}: {self.with_operands(remedy(self.site, FLOAT32))}"
-            )
+            lines.append(f"  {'emitted' if self.guarded else 'write'}: {self.remedy}")
         return "\n".join(lines)
 
     def with_operands(self, text: str) -> str:
@@ -93,31 +109,46 @@ class Finding(NamedTuple):
     def as_json(self) -> dict[str, Any]:
         """For editors."""
         site = self.site
-        return self.diagnostic(
-            self.with_operands(remedy(self.site, FLOAT32)) if self.verdict != PROVEN else ""
-        ).as_json() | {
+        return self.diagnostic(self.remedy).as_json() | {
             "verdict": self.verdict,
+            "kind": None if self.verdict == PROVEN else self.kind,
             "operation": site.operation,
+            "function": site.function,
             "found": self.with_operands(site.range_text),
             "example": self.example or None,
             "guarded": self.guarded and self.verdict != PROVEN,
         }
 
 
-def lint(name: str, with_examples: bool = True) -> list[Finding]:
-    """The findings of a technique, a material, an example or a file of functions, in the order of the source.
+class Report(NamedTuple):
+    """What is found in one technique, material or file."""
+
+    name: str
+    findings: list[Finding]
+    """Those of the selected kinds, and the operations that are proven safe, in the order of the source."""
+    hidden: Mapping[Kind, int]
+    """How many operations may fail in a way of another kind."""
+
+    def unproven(self) -> list[Finding]:
+        """The findings that are not proven safe."""
+        return [finding for finding in self.findings if finding.verdict != PROVEN]
+
+
+def lint(name: str, with_examples: bool = True, kinds: Collection[Kind] = REPORTED) -> Report:
+    """The findings of a technique, a material, an example or a file of functions.
 
     A material is checked as a whole, as in its emitted shader; a technique for all its inputs; a file of plain
-    functions for all arguments and without guards. Raises SssgenError.
+    functions for all arguments and without guards, a whole shader from its main(). Raises SssgenError.
     """
     if name.endswith(".toml") or name in examples():
-        return _findings(guarded_sites(load_material(name)), _stages(name) if with_examples else [])
+        specimens = _stages(name) if with_examples else []
+        return _report(name, guarded_sites(load_material(name)), kinds, specimens)
     if name.endswith(".sss") or name in library.index():
         specimen = _technique(name)
         sites = library_sites(specimen.subject.module, specimen.subject.called, specimen.subject.chained)
-        return _findings(sites, [specimen] if with_examples else [])
+        return _report(name, sites, kinds, [specimen] if with_examples else [])
     if name.endswith((".glsl", ".frag", ".vert", ".inc")) or os.path.isfile(name):
-        return _plain(name, with_examples)
+        return _plain(name, with_examples, kinds)
     refuse_folder(name, (".glsl", ".sss", ".toml", ".frag", ".vert"))
     names = [*library.index(), *examples()]
     raise failure(
@@ -126,7 +157,7 @@ def lint(name: str, with_examples: bool = True) -> list[Finding]:
     )
 
 
-def _plain(path: str, with_examples: bool) -> list[Finding]:
+def _plain(path: str, with_examples: bool, kinds: Collection[Kind]) -> Report:
     """The findings of plain functions, which have no guards."""
     module = load_glsl(path, path).module
     specimens = []
@@ -134,7 +165,7 @@ def _plain(path: str, with_examples: bool) -> list[Finding]:
         specimens = [
             _technique(f"{path}:{function.name}") for function in module.functions if _evaluable(module, function)
         ]
-    return _findings(library_sites(module), specimens, guarded=False)
+    return _report(path, library_sites(module), kinds, specimens, guarded=False)
 
 
 def _evaluable(module: Module, function: Function) -> bool:
@@ -156,15 +187,22 @@ def _stages(name: str) -> list[Any]:
     return [*named(name), _technique(registry.load("glsl-330").lighting)]
 
 
-def _findings(sites: list[Site], specimens: list[Any], guarded: bool = True) -> list[Finding]:
+def _report(
+    name: str, sites: Sequence[Site], kinds: Collection[Kind], specimens: list[Any], guarded: bool = True
+) -> Report:
     findings = []
+    hidden: Counter[Kind] = Counter()
     for site in sorted(sites, key=lambda site: (site.node.span, site.operation)):
         if site.proven:
-            findings.append(Finding(site, PROVEN))
+            findings.append(Finding(site, PROVEN, site.guard))
             continue
-        example = _example(site, specimens)
-        findings.append(Finding(site, MAY_FAIL if example else UNKNOWN, example, guarded, bool(specimens)))
-    return findings
+        selected = [guard for guard in site.failures if guard.kind in kinds]
+        hidden.update({guard.kind for guard in site.failures if guard.kind not in kinds})
+        example = _example(site, specimens) if selected else ""
+        for guard in selected:
+            verdict = MAY_FAIL if example else UNKNOWN
+            findings.append(Finding(site, verdict, guard, example, guarded, bool(specimens)))
+    return Report(name, findings, hidden)
 
 
 def _example(site: Site, specimens: list[Any]) -> str:
