@@ -56,15 +56,15 @@ def _guards() -> list[str]:
         "A guard replaces a call or one of its arguments if the range pass cannot prove that the call is safe",
         f"([guards.md](guards.md)). In float32: {', '.join(named)}.",
         "",
-        "| Builtin | Problem | Replaces | Guard |",
-        "|---|---|---|---|",
+        "| Builtin | Problem | Kind | Replaces | Guard |",
+        "|---|---|---|---|---|",
     ]
     for row in BUILTINS.values():
         for guard in row.guards:
             problem = guard.problem if guard.safe is not None else f"{guard.problem} (always guarded)"
             place = {"": "the call", "result": "the result, x"}.get(guard.replaces, guard.replaces)
             text = f"`{_escaped(guard.text)}`" if guard.text else "its polyfill, with guarded divisions"
-            lines.append(f"| `{row.name}` | {problem} | {place} | {text} |")
+            lines.append(f"| `{row.name}` | {problem} | {guard.kind} | {place} | {text} |")
     return lines
 
 

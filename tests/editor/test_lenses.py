@@ -32,9 +32,7 @@ def test_each_function_has_its_cost_and_its_proofs(opened: Callable[..., Any]) -
     assert list(lenses) == [0, SAFE.count("\n")]
     first, second = lenses.values()
     assert first.endswith("proven safe: all 1")
-    assert second.endswith(
-        "not proven safe: 1 of 2 (division by 0: 1)"
-    )  # y may be 0; the other one is that of half_of
+    assert second.endswith("not proven safe: 1 of 2 (division by 0: 1)")  # y may be 0; the other one is that of half_of
     count = [int(text.split()[0]) for text in (first, second)]
     assert count[0] < count[1]
 

@@ -49,7 +49,13 @@ def _of_row(row: Builtin) -> dict[str, Any]:
         "languages": _languages(row),
         "polyfill": row.polyfill.strip(),
         "guards": [
-            {"problem": guard.problem, "replaces": guard.replaces or "call", "text": guard.text} for guard in row.guards
+            {
+                "problem": guard.problem,
+                "kind": guard.kind,
+                "replaces": guard.replaces or "call",
+                "text": guard.text,
+            }
+            for guard in row.guards
         ],
     }
 
