@@ -126,7 +126,7 @@ class Report(NamedTuple):
     name: str
     findings: list[Finding]
     """Those of the selected kinds, and the operations that are proven safe, in the order of the source."""
-    hidden: Mapping[Kind, int]
+    hidden: Mapping[str, int]
     """How many operations may fail in a way of another kind."""
 
     def unproven(self) -> list[Finding]:
@@ -191,7 +191,7 @@ def _report(
     name: str, sites: Sequence[Site], kinds: Collection[Kind], specimens: list[Any], guarded: bool = True
 ) -> Report:
     findings = []
-    hidden: Counter[Kind] = Counter()
+    hidden: Counter[str] = Counter()
     for site in sorted(sites, key=lambda site: (site.node.span, site.operation)):
         if site.proven:
             findings.append(Finding(site, PROVEN, site.guard))
