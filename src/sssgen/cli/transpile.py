@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import keyword
 import os
-import re
-import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
-from sssgen.cli.emit import chosen_targets
 from sssgen.cli.options import add_guards, add_seed, given
-from sssgen.cli.output import CHECK_FAILED, OK, print_json, print_warnings
+from sssgen.cli.output import CHECK_FAILED, OK, print_json
+from sssgen.cli.translation import REFLECTION, explained_renames, macros, one_target, print_changes, title
 from sssgen.ir.nodes import Module
 from sssgen.lang.loader import load_file
 from sssgen.lang.plain_glsl import Loaded, load_glsl
@@ -25,9 +22,7 @@ from sssgen.support.file_writer import write_files
 from sssgen.support.paths import posix
 from sssgen.support.progress import ProgressBar
 from sssgen.support.text_files import read_text
-from sssgen.targets.registry import load, names
-
-REFLECTION = ".reflection.json"
+from sssgen.targets.program_reflection import ROWS
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -37,12 +32,13 @@ def add_options(parser: ArgumentParser) -> None:
         "  sssgen transpile scene.glsl --entry shadertoy --target hlsl\n"
         "  sssgen transpile library/fbm.glsl -I library -D OCTAVES=5 --prune -t unity-urp\n"
         "  sssgen transpile water.frag --with water.vert --target wgsl\n"
+        "  sssgen transpile --stages water.vert water.frag --target wgsl -o web/water\n"
         "  sssgen transpile noise.glsl --verify\n"
         "  sssgen transpile noise.glsl --as technique --function snoise\n"
         "The accepted language: docs/transpile.md. Exit status 1: --verify found a difference."
     )
     add = parser.add_argument
-    add("FILE", help="a file of GLSL 1.00 ES to 4.60: functions, or a fragment or vertex shader")
+    add("FILE", nargs="?", help="a file of GLSL 1.00 ES to 4.60: functions, or a fragment or vertex shader")
     add("--target", "-t", metavar="T", help="a target from `sssgen list targets`")
     add(
         "--include",
@@ -60,9 +56,27 @@ def add_options(parser: ArgumentParser) -> None:
         metavar="FILE",
         help="the file of the other stage, so that both stages agree on the values between them",
     )
+    add(
+        "--stages",
+        nargs=2,
+        metavar=("VERTEX", "FRAGMENT"),
+        help="both stages of a program instead of FILE: their bindings agree, and one JSON file describes them",
+    )
+    add(
+        "--rows",
+        choices=ROWS,
+        default=ROWS[0],
+        help="for --stages: the first row of a picture is at the bottom, as in WebGL (the default), or at the top",
+    )
     add("--prune", action="store_true", help="omit functions that the file itself never calls")
     add_guards(parser, default="none")
-    add("-o", "--output", type=given, metavar="FILE", help="the file to write; its reflection is written next to it")
+    add(
+        "-o",
+        "--output",
+        type=given,
+        metavar="FILE",
+        help="the file to write; its reflection is written next to it. For --stages: a folder, or folder/name",
+    )
     add(
         "--trace",
         action="store_true",
@@ -85,8 +99,14 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Prints the translation, or writes it with its reflection; or prints the result of `--verify`."""
+    if arguments.stages is not None:
+        from sssgen.cli import transpile_stages
+
+        return transpile_stages.run(arguments)
+    if arguments.FILE is None:
+        raise failure("the file is missing", "give a file, or both stages of a program: --stages A.vert B.frag")
     wrong: list[Diagnostic] = []
-    names = _targets(arguments, wrong)
+    names = _wanted_target(arguments, wrong)
     path = Path(arguments.FILE)
     if arguments.output == "-":
         arguments.output = None  # the text is printed
@@ -95,7 +115,7 @@ def run(arguments: Namespace) -> int:
         if path.suffix == ".sss":
             module = load_file(path, path.as_posix(), (TECHNIQUES,))
         else:
-            loaded = load_glsl(path, path.as_posix(), arguments.include, _macros(arguments.define), arguments.entry)
+            loaded = load_glsl(path, path.as_posix(), arguments.include, macros(arguments.define), arguments.entry)
             module = loaded.module
             if arguments.partner is not None:
                 partner = _other_stage(arguments)
@@ -120,10 +140,10 @@ def run(arguments: Namespace) -> int:
 def _other_stage(arguments: Namespace) -> Module:
     """The module of `--with FILE`. Raises SssgenError."""
     path = Path(arguments.partner)
-    return load_glsl(path, path.as_posix(), arguments.include, _macros(arguments.define), arguments.entry).module
+    return load_glsl(path, path.as_posix(), arguments.include, macros(arguments.define), arguments.entry).module
 
 
-def _targets(arguments: Namespace, wrong: list[Diagnostic]) -> list[str]:
+def _wanted_target(arguments: Namespace, wrong: list[Diagnostic]) -> list[str]:
     """The requested target; none if nothing is translated."""
     if arguments.verify or arguments.as_:
         if arguments.target is not None:
@@ -134,33 +154,14 @@ def _targets(arguments: Namespace, wrong: list[Diagnostic]) -> list[str]:
                 message, hint = "--as takes no --target", f"sssgen transpile {arguments.FILE} --as {arguments.as_}"
             wrong.append(Diagnostic("error", message, hint=hint))
         return []
-    if arguments.target is None:
-        wrong.append(
-            Diagnostic("error", "the target is missing", hint="write --target wgsl, or another of: sssgen list targets")
-        )
-        return []
-    names = chosen_targets(arguments.target, wrong)
+    names = one_target(arguments.target, wrong)
     if arguments.trace and arguments.output in (None, "-"):
         wrong.append(
             Diagnostic(
                 "error", "--trace needs an output file", hint="write -o FILE: the trace is written to FILE.trace"
             )
         )
-    if len(names) > 1:
-        message = "transpile takes one target"
-        wrong.append(Diagnostic("error", message, hint=f"write --target {names[0]}"))
     return names
-
-
-def _macros(definitions: list[str]) -> dict[str, str]:
-    """The macros of `-D NAME=VALUE`; without a value it is 1, as in C compilers."""
-    macros = {}
-    for text in definitions:
-        name, sign, value = text.partition("=")
-        if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
-            raise failure(f"-D {text}: '{name}' is not a macro's name", "write -D NAME or -D NAME=VALUE")
-        macros[name] = value if sign else "1"
-    return macros
 
 
 def _translate(
@@ -177,56 +178,14 @@ def _translate(
         options["partner"] = partner
     trace = Trace(f"{os.path.basename(arguments.output)}.trace") if arguments.trace else None
     try:
-        compiled = transpile(module, target, _title(path), arguments.guards, trace=trace, **options)
+        compiled = transpile(module, target, title(path.stem), arguments.guards, trace=trace, **options)
     finally:
         if trace is not None:
             trace.write(os.path.dirname(arguments.output) or ".")
-    renamed = [
-        {"from": old, "to": new, "why": _rename_reason(old, target)}
-        for old, new in compiled.reflection.get("renames", {}).items()
-        if _concerns(old, new, loaded, compiled.files)
-    ]
+    renamed = explained_renames(compiled.reflection.get("renames", {}), target, loaded, compiled.files)
     warnings = [*(loaded.warnings if loaded else []), *compiled.warnings]
     _print(arguments, compiled.files, warnings, renamed, loaded.constants if loaded else [])
     return OK
-
-
-def _title(path: Path) -> str:
-    """The name of the translation: the file's name as an identifier."""
-    name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
-    return name if name[:1].isalpha() else f"file_{name}"
-
-
-def _concerns(old: str, new: str, loaded: Loaded | None, files: dict[str, str]) -> bool:
-    """Whether the author wrote the name, and the output contains the new one."""
-    bare = _bare(old)
-    if bare in ("main", "mainImage") or bare.startswith("gl_"):
-        return False
-    output = [text for name, text in files.items() if not name.endswith(REFLECTION)]
-    written = loaded is None or any(re.search(rf"\b{bare}\b", text) for text in loaded.texts.values())
-    return written and any(re.search(rf"\b{re.escape(new)}\b", text) for text in output)
-
-
-def _bare(old: str) -> str:
-    """A name without the function or struct that it is in, and without a function's parameters."""
-    return old.partition("(")[0].rpartition(".")[2]
-
-
-def _rename_reason(old: str, target: str) -> str:
-    """Why a name was changed, in a few words."""
-    bare = _bare(old)
-    if "(" in old:
-        return "each overload needs its own name there"
-    language = load(target).language
-    ordered = sorted(names(), key=lambda name: (name != target, load(name).language != language))
-    reserving = [name for name in ordered if bare in load(name).names.exact]
-    if target == "numpy" and keyword.iskeyword(bare):
-        return "Python reserves it"
-    if reserving:
-        return f"{reserving[0]} reserves it"
-    if "__" in bare or bare.startswith("gl_"):
-        return "other languages do not allow such a name"
-    return "the name is taken there"
 
 
 def _print(
@@ -256,9 +215,7 @@ def _print(
     else:
         print("\n".join(texts), end="")
     if not arguments.json:
-        print_warnings(warnings)
-        for row in renamed:
-            print(f"renamed: {row['from']} → {row['to']} ({row['why']})", file=sys.stderr)
+        print_changes(warnings, renamed)
 
 
 def _verify(arguments: Namespace, path: Path) -> int:

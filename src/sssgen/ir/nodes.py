@@ -253,7 +253,9 @@ class Function(NamedTuple):
 class Uniform(NamedTuple):
     """A value or texture set from outside. `default` holds its components, empty for a texture.
 
-    `hints` are the declaration's hints with their arguments, as in `("hint_range", (0.0, 1.0))`.
+    `hints` are the declaration's hints with their arguments, as in `("hint_range", (0.0, 1.0))`. `path` is what a
+    program calls it where it is a part of a uniform of the source, or '': `lights[2].color` for a member of all
+    elements, `maps[1]` for one texture.
     """
 
     name: str
@@ -263,6 +265,7 @@ class Uniform(NamedTuple):
     quantity: str
     doc: str
     span: Span
+    path: str = ""
 
 
 class Constant(NamedTuple):

@@ -104,7 +104,7 @@ def compile(
         inner = {name: _inner(chosen, embedded) for name, embedded in chosen.embedded.items()}
         others = {name: (one, _program_of(material, one, form, guards, None)) for name, one in inner.items()}
         program = program._replace(embedded=others)
-    compiled = _finish(program, chosen, form, os.fspath(templates) if templates else None)
+    compiled = finish(program, chosen, form, os.fspath(templates) if templates else None)
     if templates is None:
         if len(_compiled) >= _CACHE_SIZE:
             _compiled.clear()
@@ -170,7 +170,7 @@ def transpile(
             name: (one, make_library(module, one, guards, called, at, chained, keep)) for name, one in inner.items()
         }
         program = program._replace(embedded=others)
-        return _finish(program, chosen, program.stage.kind if program.stage else "functions", None)
+        return finish(program, chosen, program.stage.kind if program.stage else "functions", None)
 
 
 def guarded_sites(material: Material, target: str = "glsl-330", form: str = "shader") -> list[Site]:
@@ -267,7 +267,7 @@ def _about(material: Material) -> About:
     )
 
 
-def _finish(program: Program, target: Target, form: str, templates: str | None) -> Compiled:
+def finish(program: Program, target: Target, form: str, templates: str | None = None) -> Compiled:
     """The files of a program."""
     emitted = emit(target, program, form, templates)
     files = dict(emitted.files)

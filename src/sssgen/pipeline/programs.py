@@ -42,7 +42,7 @@ def make(
     check_shell(material, target)
     check_values(material, target)
     state = _material_program(material, structure if trace is None else "", target, form, guards, trace)
-    return _finish(replace(state, chosen=target), trace)
+    return finish_program(replace(state, chosen=target), trace)
 
 
 def make_library(
@@ -58,16 +58,16 @@ def make_library(
     """
     kind = stage_kind(module)
     if partner is not None:
-        _check_partner(kind, stage_kind(partner))
+        check_partner(kind, stage_kind(partner))
     form = kind if kind in target.files else "functions"
     state = State(module, form, guards, target, keep, called, at, chained, partner)
     if trace is not None:
         trace.start(module)
     pass_list.run(pass_list.KEPT if keep else pass_list.PLAIN, state, trace)
-    return _finish(state, trace)
+    return finish_program(state, trace)
 
 
-def _check_partner(kind: str, other: str) -> None:
+def check_partner(kind: str, other: str) -> None:
     """Raises SssgenError where these are not two stages of one program."""
     if {kind, other} != {"vertex", "fragment"}:
         kinds = [f"a {stage} shader" if stage else "no whole shader" for stage in (kind, other)]
@@ -125,7 +125,7 @@ def _material_program(
     return state
 
 
-def _finish(state: State, trace: Trace | None) -> Program:
+def finish_program(state: State, trace: Trace | None = None) -> Program:
     """Runs the passes for the target, and prints the result."""
     pass_list.run(pass_list.TARGET, state, trace)
     module, target, material = state.module, state.target, state.material

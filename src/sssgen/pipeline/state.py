@@ -39,6 +39,8 @@ class State:
     """Whether the functions are techniques, whose parameters have the ranges of their names."""
     partner: Module | None = None
     """The other stage of a whole shader, where it is given."""
+    bottom_first: bool = False
+    """Whether the first row of a picture is its bottom row, as in OpenGL, also where y counts from the top."""
     material: Material | None = None
 
     roots: list[str] = field(default_factory=list)
@@ -82,6 +84,11 @@ class State:
 
     @property
     def y_down(self) -> bool:
+        """Whether y counts from the top of the picture."""
+        return self.turned_framebuffer and not self.bottom_first
+
+    @property
+    def turned_framebuffer(self) -> bool:
         """Whether y counts from the top of the target's framebuffer."""
         return self.target.conventions.framebuffer_y == "down"
 

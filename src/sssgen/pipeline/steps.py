@@ -267,5 +267,7 @@ def _uniform_style(style: str) -> Callable[[str], str]:
 def find_interface(state: State) -> Module:
     main = state.renames.get(ENTRY) or state.renames.get("main", "main")
     matching = Matching(state.variable_names, state.partner, state.target.capabilities.subset_varyings)
-    state.stage = interface(state.module, state.form, f"{main}()", state.stage_builtins, state.y_down, matching)
+    stage = interface(state.module, state.form, f"{main}()", state.stage_builtins, state.y_down, matching)
+    upends = state.form == "vertex" and state.turned_framebuffer and state.bottom_first
+    state.stage = stage._replace(upends=upends)
     return state.module

@@ -340,7 +340,7 @@ class Run:
             self.require(_readable(args[0], args[1]))
         if row.kind == "derivative" and not self.active.all():
             self.require(np.zeros(1, bool))
-        level = 1 if row.size_query else 2 if name.startswith("texelFetch") else 0
+        level = 1 if row.size_query else 2 if row.by_texel else 0
         if 0 < level < len(args):
             last = len(args[0].levels) - 1
             self.require((args[level] >= 0) & (args[level] <= last))

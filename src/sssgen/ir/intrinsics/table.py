@@ -190,6 +190,8 @@ class Builtin(NamedTuple):
     """The builtin that reads the same with given derivatives, which come directly behind the coordinates."""
     size_query: bool = False
     """It asks for a texture's size, which is the same in all pixels."""
+    by_texel: bool = False
+    """It reads one texel of a texture, without a sampler."""
     # Quantities
     same_quantity: int = 0
     """How many arguments, from the first, must be of the same quantity."""

@@ -65,7 +65,7 @@ ROWS = (
             "glsl": "texelFetch({texture}, ivec3({1}, {2}), {3})", "hlsl": "{texture}.Load(int4({1}, {2}, {3}))",
             "wgsl": "textureLoad({texture}, {1}, {2}, {3})",
         },
-        splat=(), kind="fetch", ulp=0.0,
+        splat=(), kind="fetch", by_texel=True, ulp=0.0,
     ),
     Builtin("textureCompare",
         ("float(sampler2DShadow, vec2, float)", "float(samplerCubeShadow, vec3, float)", "float(sampler2DArrayShadow, vec2, int, float)"),

@@ -331,7 +331,7 @@ float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec
             f"{kind}vec4 texelFetch({kind}sampler2DArray map, ivec3 P, int level) {{ return texelFetchLayer(map, P.xy, P.z, level); }}"
             for kind in _KINDS
         ),
-        splat=(), kind="fetch", ulp=0.0,
+        splat=(), kind="fetch", by_texel=True, ulp=0.0,
     ),
     Builtin("texelFetchOffset",
         tuple(
@@ -349,7 +349,7 @@ float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec
                 ("2DArray map, ivec3", 2, "texelFetchLayer(map, P.xy + offset, P.z"),
             )
         ),
-        splat=(), kind="fetch", ulp=0.0,
+        splat=(), kind="fetch", by_texel=True, ulp=0.0,
     ),
     Builtin("textureGather",
         (

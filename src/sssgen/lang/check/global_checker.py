@@ -47,8 +47,10 @@ class GlobalChecker:
             declare_struct(context, declaration.type.struct)
         if "uniform" in keywords:
             for declarator in declaration.declarators:
-                for element in self.interface.textures(declaration, declarator):
-                    self.uniform(declaration, element, external.doc)
+                elements = self.interface.textures(declaration, declarator)
+                for index, element in enumerate(elements):
+                    path = "" if element is declarator else f"{declarator.name.text}[{index}]"
+                    self.uniform(declaration, element, external.doc, path)
         elif "const" in keywords:
             for declarator in declaration.declarators:
                 self.constant(declaration, declarator)
@@ -58,7 +60,7 @@ class GlobalChecker:
             message = "a technique cannot declare global variables"
             raise context.fail(declaration.type.span, message, "make it const, a uniform, or a parameter")
 
-    def uniform(self, declaration: s.Declaration, declarator: s.Declarator, doc: str) -> None:
+    def uniform(self, declaration: s.Declaration, declarator: s.Declarator, doc: str, path: str) -> None:
         context, name = self.context, declarator.name
         check_global_name(context, name)
         type_, quantity = named_type(context, declaration.type)
@@ -70,7 +72,7 @@ class GlobalChecker:
         hints, texel_quantity = check_hints(context, declarator, type_, default)
         quantity = quantity or texel_quantity
         context.globals[name.text] = GlobalValue(type_, quantity)
-        self.uniforms.append(ir.Uniform(name.text, type_, default, hints, quantity, doc, name.span))
+        self.uniforms.append(ir.Uniform(name.text, type_, default, hints, quantity, doc, name.span, path))
 
     def default(self, declarator: s.Declarator, type_: Type) -> tuple[float, ...]:
         """The components of a uniform's default value; () for a texture."""

@@ -60,6 +60,8 @@ class Stage(NamedTuple):
     """Those with a location first, in its order."""
     resolution: str
     """The uniform from whose y gl_FragCoord.y is subtracted; '' where y is not flipped."""
+    upends: bool = False
+    """Whether the vertex shader turns the picture upside down: its bottom row is then the first one, as in OpenGL."""
 
     @property
     def passes_locations(self) -> bool:

@@ -96,7 +96,8 @@ class _Splitter:
             name = fresh("_".join(path), self.taken)
             self.taken.add(name)
             leaf = self.leaves[path] = _Leaf(name, lengths, element)
-            yield uniform._replace(name=name, type=leaf.type, default=default)
+            spelt = _spelt(path, uniform.type)
+            yield uniform._replace(name=name, type=leaf.type, default=default, path=spelt)
 
     # Rewriting, from the leaves up: a chain of members and indices is rewritten as a whole, at its end
 
@@ -187,6 +188,20 @@ def _members(
         yield from _members(path, type_.element, (*lengths, type_.length), parts)
     else:
         yield path, lengths, type_, tuple([number for element in numbers for number in element])
+
+
+def _spelt(path: Path, type_: Type) -> str:
+    """A member as a program names it, with the lengths of the arrays: `lights[2].color`."""
+    text = path[0]
+    for field in (*path[1:], ""):
+        while isinstance(type_, Array):
+            text += f"[{type_.length}]"
+            type_ = type_.element
+        if field:
+            assert isinstance(type_, Struct)
+            text += f".{field}"
+            type_ = next(member.type for member in type_.fields if member.name == field)
+    return text
 
 
 def _whole_number(index: Expr) -> Expr:

@@ -9,7 +9,6 @@ space in D3D. gl_Position.z goes from -w to w in GLSL, from 0 to w in the others
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import NamedTuple
 
 from sssgen.ir import nodes as ir
@@ -75,7 +74,13 @@ def adjusted(stage: Stage, resolution: str, clip_w: bool) -> list[str]:
     return lines
 
 
-def depth_halved(slots: Iterable[Slot]) -> list[str]:
-    """Statements that map the depth of gl_Position from [-w, w] to [0, w]."""
-    names = [slot.variable.name for slot in slots if slot.variable.builtin == "gl_Position"]
-    return [f"{name}.z = ({name}.z + {name}.w) * 0.5;" for name in names]
+def clip_space(stage: Stage) -> list[str]:
+    """Statements that map the depth of gl_Position from [-w, w] to [0, w], and turn the picture where it is upended."""
+    lines = []
+    for slot in stage.outputs:
+        if slot.variable.builtin == "gl_Position":
+            name = slot.variable.name
+            if stage.upends:
+                lines.append(f"{name}.y = -{name}.y;")
+            lines.append(f"{name}.z = ({name}.z + {name}.w) * 0.5;")
+    return lines

@@ -13,7 +13,7 @@ from sssgen.ir.types import INT, kind_of
 from sssgen.passes.stage.stage_interface import Slot, Stage
 from sssgen.targets.printers.entry_points import (
     adjusted,
-    depth_halved,
+    clip_space,
     is_count,
     member,
     names_of,
@@ -67,7 +67,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
     body += [
         *adjusted(stage, resolution, True),
         f"{printer.by_key[stage.function].name}();",
-        *depth_halved(stage.outputs),
+        *clip_space(stage),
     ]
     lines: list[Line] = []
     if len(stage.outputs) == 1:

@@ -7,7 +7,7 @@ from sssgen.ir.types import INT, kind_of
 from sssgen.passes.stage.stage_interface import Slot, Stage
 from sssgen.targets.printers.entry_points import (
     adjusted,
-    depth_halved,
+    clip_space,
     is_count,
     member,
     names_of,
@@ -41,7 +41,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
     body += [
         *adjusted(stage, resolution, False),
         f"{printer.by_key[stage.function].name}();",
-        *depth_halved(stage.outputs),
+        *clip_space(stage),
     ]
     lines: list[Line] = []
     result = ""

@@ -1,0 +1,158 @@
+"""The reflection of a program of two stages: one JSON for its attributes, uniforms, textures, samplers and outputs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence, Set
+from typing import Any, NamedTuple
+
+from sssgen.ir.nodes import Uniform
+from sssgen.ir.types import Array, Matrix, Sampler, Type, components, kind_of, spell
+from sssgen.passes.stage.stage_interface import Slot
+from sssgen.targets.assemble import Program
+from sssgen.targets.descriptor import Target
+from sssgen.targets.uniform_layout import place
+
+VERSION = 1
+"""The format's version; it is increased when a reader of older files would misread newer ones."""
+
+ROWS = ("bottom-first", "top-first")
+"""Where the first row of a picture is: at the bottom, as in OpenGL and WebGL, or at the top, as in WebGPU and D3D."""
+
+_ARRAY = re.compile(r"\[(\d+)\]")
+
+
+class StageFacts(NamedTuple):
+    """One stage of a program, translated."""
+
+    program: Program
+    reflection: Mapping[str, Any]
+    names: Mapping[str, str]
+    """A variable's name → its name in the source."""
+    uniforms: Sequence[Uniform]
+    """Those of the program, under this stage's names, in the order of the program's."""
+    own: Set[str]
+    """Those of them that the stage itself reads."""
+    sampled: Set[str]
+    """The textures that it reads with a sampler."""
+
+
+def reflect_program(name: str, target: Target, rows: str, vertex: StageFacts, fragment: StageFacts) -> dict[str, Any]:
+    """What a renderer needs to draw with the program; docs/reflection.md describes it."""
+    stages = {"vertex": vertex, "fragment": fragment}
+    return {
+        "format": VERSION,
+        "program": name,
+        "target": target.name,
+        "rows": rows if target.conventions.framebuffer_y == "down" else ROWS[0],
+        "stages": {kind: _file(facts) for kind, facts in stages.items()},
+        "attributes": _attributes(vertex),
+        "varyings": _places(fragment, "stage_inputs"),
+        "outputs": _places(fragment, "stage_outputs"),
+        **_bindings(target, stages),
+        "renames": {kind: facts.reflection["renames"] for kind, facts in stages.items()},
+        "warnings": list(dict.fromkeys(text for facts in stages.values() for text in facts.reflection["warnings"])),
+    }
+
+
+def _file(facts: StageFacts) -> dict[str, str]:
+    (file,) = facts.reflection["files"]
+    (entry,) = file["stages"].values()
+    return {"file": file["name"], "entry": entry}
+
+
+def _attributes(vertex: StageFacts) -> list[dict[str, Any]]:
+    """The inputs of the vertex shader; a matrix has one location a column, an array one an element."""
+    assert vertex.program.stage is not None
+    slots: dict[str, list[Slot]] = {}
+    for slot in vertex.program.stage.inputs:
+        if slot.location >= 0:
+            slots.setdefault(slot.variable.name, []).append(slot)
+    return [
+        {
+            "name": vertex.names.get(name, name),
+            "type": spell(parts[0].variable.type),
+            "location": parts[0].location,
+            "locations": len(parts),
+            "format": _vertex_format(parts[0].type),
+        }
+        for name, parts in slots.items()
+    ]
+
+
+def _vertex_format(type_: Type) -> str:
+    """WebGPU's format of one location, for values that are as precise as the shader's."""
+    kind = {"float": "float32", "int": "sint32", "uint": "uint32"}[kind_of(type_)]
+    count = components(type_)
+    return f"{kind}x{count}" if count > 1 else kind
+
+
+def _places(facts: StageFacts, side: str) -> list[dict[str, Any]]:
+    return [
+        {"name": facts.names.get(slot["name"], slot["name"]), "path": slot["path"], "type": slot["type"]}
+        | ({"builtin": slot["builtin"]} if slot["location"] is None else {"location": slot["location"]})
+        for slot in facts.reflection[side]
+    ]
+
+
+def _bindings(target: Target, stages: Mapping[str, StageFacts]) -> dict[str, Any]:
+    """The uniforms with their block, and the textures with their samplers."""
+    first = next(iter(stages.values()))
+    members, size = place(first.uniforms, target.layout)
+    offsets = {member.uniform.name: (member.offset, member.size) for member in members}
+    uniforms: list[dict[str, Any]] = []
+    textures: list[dict[str, Any]] = []
+    bindings = [texture.get("binding") for texture in first.reflection["textures"]] if target.layout else []
+    for index, uniform in enumerate(first.uniforms):
+        readers = {kind: facts for kind, facts in stages.items() if facts.uniforms[index].name in facts.own}
+        source = next(facts.uniforms[index].name for facts in readers.values())
+        entry: dict[str, Any] = {"name": uniform.path or source, "stages": list(readers)}
+        if isinstance(uniform.type, Sampler):
+            sampled = any(facts.uniforms[index].name in facts.sampled for facts in readers.values())
+            textures.append(entry | _texture(uniform.type, sampled, bindings[len(textures)] if bindings else None))
+        else:
+            entry |= _described(uniform)
+            if target.layout:
+                entry |= _in_block(uniform.type, *offsets[uniform.name])
+            uniforms.append(entry)
+    block = {"size": size} | _block_place(target) if target.layout and uniforms else None
+    return {"uniform_block": block, "uniforms": uniforms, "textures": textures}
+
+
+def _block_place(target: Target) -> dict[str, int]:
+    return {"group": target.material_group, "binding": target.bindings.first}
+
+
+def _described(uniform: Uniform) -> dict[str, Any]:
+    """A uniform's name, the type of an element, and the lengths of the arrays around it, the outermost first.
+
+    Each `[]` in the name takes one of the lengths; one that is left is the length of the uniform itself.
+    """
+    element = uniform.type.element if isinstance(uniform.type, Array) else uniform.type
+    lengths = [int(length) for length in _ARRAY.findall(uniform.path)]
+    if isinstance(uniform.type, Array) and not uniform.path:
+        lengths = [uniform.type.length]
+    described: dict[str, Any] = {"type": spell(element), "lengths": lengths}
+    if uniform.path:
+        described["name"] = _ARRAY.sub("[]", uniform.path).removesuffix("[]")
+    return described
+
+
+def _in_block(type_: Type, offset: int, size: int) -> dict[str, int]:
+    element = type_.element if isinstance(type_, Array) else type_
+    matrix_stride = 16 if isinstance(element, Matrix) else 0
+    array_stride = (16 * element.size if isinstance(element, Matrix) else 16) if isinstance(type_, Array) else 0
+    return {"offset": offset, "size": size, "array_stride": array_stride, "matrix_stride": matrix_stride}
+
+
+def _texture(type_: Sampler, sampled: bool, binding: Mapping[str, Any] | None) -> dict[str, Any]:
+    dimension = type_.dim.lower() + ("-array" if type_.array else "")
+    sample = "depth" if type_.shadow else {"int": "sint", "uint": "uint"}.get(type_.kind, "float")
+    sampler = "comparison" if type_.shadow else "filtering" if sample == "float" else "non-filtering"
+    return {
+        "dimension": dimension,
+        "sample_type": sample,
+        "filterable": sampled and sample == "float",
+        "sampler": sampler if sampled else "",
+        "binding": binding,
+    }

@@ -1,0 +1,329 @@
+// Draws in WebGPU with a program of WebGL that `sssgen transpile --stages A.vert B.frag --target wgsl -o FOLDER` wrote.
+// It reads NAME.program.json, and makes of it the layouts, the pipelines, and what sets uniforms and textures by name.
+//
+//   const program = await loadProgram(device, 'web/water.program.json');
+//   const vertices = program.vertices({ position: { buffer, format: 'float32x3', stride: 12 } });
+//   const pipeline = program.pipeline({ vertices, targets: ['rgba8unorm'], depth: { format: 'depth24plus' } });
+//   const values = program.values();   // one for each object that is drawn
+//   values.set('time', 0.5); values.setTexture('map', texture, sampler);
+//   pass.setPipeline(pipeline); vertices.bind(pass); values.bind(pass); pass.draw(count);
+//
+// With `rows` "bottom-first" a picture has the rows of WebGL: the first row is its bottom. So gl_FragCoord, dFdy and the
+// coordinates of textures that were drawn before mean what they mean in WebGL. Draw into a texture, and show it with
+// `show(device, texture, view, format)`, which turns it.
+
+/** @typedef {{ name: string, stages: string[], type: string, lengths: number[], offset: number, size: number,
+ *   array_stride: number, matrix_stride: number }} Uniform */
+/** @typedef {{ name: string, stages: string[], dimension: GPUTextureViewDimension, sample_type: GPUTextureSampleType,
+ *   filterable: boolean, sampler: string, binding: { group: number, texture: number, sampler: number } }} Texture */
+/** @typedef {{ name: string, type: string, location: number, locations: number, format: GPUVertexFormat }} Attribute */
+/** @typedef {{ program: string, rows: string, stages: Record<string, { file: string, entry: string }>,
+ *   attributes: Attribute[], uniform_block: { size: number, group: number, binding: number } | null,
+ *   uniforms: Uniform[], textures: Texture[] }} Description */
+/** @typedef {{ buffer?: GPUBuffer, format?: GPUVertexFormat, stride?: number, offset?: number, perInstance?: boolean,
+ *   constant?: number[] }} Source  Where an attribute comes from: a buffer, or one constant for all vertices. */
+/** @typedef {{ format: GPUTextureFormat, test?: boolean, write?: boolean, compare?: GPUCompareFunction,
+ *   bias?: number, slopeBias?: number, stencil?: object }} Depth  `bias` and `slopeBias` are the units and the factor
+ *   of WebGL's polygonOffset. */
+/** @typedef {{ vertices: Vertices, targets: (GPUTextureFormat | GPUColorTargetState)[], depth?: Depth,
+ *   topology?: GPUPrimitiveTopology, indexFormat?: GPUIndexFormat, cull?: GPUCullMode, frontFace?: GPUFrontFace,
+ *   samples?: number }} Options  As in WebGL, nothing is culled and front faces turn counterclockwise by default. */
+
+/** The program that NAME.program.json describes; its shaders are read from the same folder.
+ * @param {GPUDevice} device @param {string} url @param {Record<string, GPUTextureSampleType>} [sampleTypes]
+ * @returns {Promise<Program>} */
+export async function loadProgram(device, url, sampleTypes = {}) {
+  const get = async (place) => {
+    const answer = await fetch(place);
+    if (!answer.ok) throw new Error(`${place}: ${answer.status}`);
+    return answer;
+  };
+  const base = new URL(url, globalThis.location?.href);
+  const description = await (await get(base)).json();
+  const texts = await Promise.all(
+    ['vertex', 'fragment'].map(async (stage) => (await get(new URL(description.stages[stage].file, base))).text()),
+  );
+  return new Program(device, description, { vertex: texts[0], fragment: texts[1] }, sampleTypes);
+}
+
+export class Program {
+  /** @param {GPUDevice} device @param {Description} description @param {{ vertex: string, fragment: string }} texts
+   * @param {Record<string, GPUTextureSampleType>} sampleTypes  'unfilterable-float' for a texture whose format cannot
+   *   be filtered on this device, such as rgba32float, by its name in the shader */
+  constructor(device, description, texts, sampleTypes = {}) {
+    if (description.format !== 1) throw new Error(`this loader does not read format ${description.format}`);
+    Object.assign(this, { device, description });
+    const { vertex, fragment } = description.stages;
+    this.stages = {
+      vertex: { module: device.createShaderModule({ code: texts.vertex, label: vertex.file }), entryPoint: vertex.entry },
+      fragment: { module: device.createShaderModule({ code: texts.fragment, label: fragment.file }), entryPoint: fragment.entry },
+    };
+    const visible = (stages) => (stages.includes('vertex') ? 1 : 0) | (stages.includes('fragment') ? 2 : 0);
+    const block = description.uniform_block;
+    const entries = block ? [{ binding: block.binding, visibility: 3, buffer: {} }] : [];
+    for (const texture of description.textures) {
+      const { binding, dimension, sampler } = texture, visibility = visible(texture.stages);
+      const sampleType = sampleTypes[texture.name] ?? (texture.filterable || texture.sample_type !== 'float' ? texture.sample_type : 'unfilterable-float');
+      entries.push({ binding: binding.texture, visibility, texture: { sampleType, viewDimension: dimension } });
+      const type = sampler === 'filtering' && sampleType !== 'float' ? 'non-filtering' : sampler;
+      if (sampler) entries.push({ binding: binding.sampler, visibility, sampler: { type } });
+    }
+    this.group = device.createBindGroupLayout({ entries, label: description.program });
+    this.layout = device.createPipelineLayout({ bindGroupLayouts: [this.group] });
+    this.places = new Map();
+    for (const uniform of description.uniforms) for (const [name, place] of placesOf(uniform)) this.places.set(name, place);
+    this.pipelines = new Map();
+  }
+
+  /** Where the attributes come from; one that is left out has the constant of WebGL, (0, 0, 0, 1).
+   * @param {Record<string, Source>} sources */
+  vertices(sources) {
+    return new Vertices(this, sources);
+  }
+
+  /** Uniforms and textures, all 0 and black at first. */
+  values() {
+    return new Values(this);
+  }
+
+  /** @param {Options} options @returns {GPURenderPipeline} */
+  pipeline({ vertices, targets, depth, topology = 'triangle-list', indexFormat, cull = 'none', frontFace = 'ccw', samples = 1 }) {
+    const isTurned = this.description.rows === 'bottom-first'; // then triangles turn the other way, too
+    const strip = topology.endsWith('strip') && indexFormat ? { stripIndexFormat: indexFormat } : {};
+    const descriptor = {
+      layout: this.layout,
+      vertex: { ...this.stages.vertex, buffers: vertices.layouts },
+      fragment: { ...this.stages.fragment, targets: targets.map((target) => (typeof target === 'string' ? { format: target } : target)) },
+      primitive: { topology, cullMode: cull, frontFace: (frontFace === 'ccw') === isTurned ? 'cw' : 'ccw', ...strip },
+      multisample: { count: samples },
+    };
+    if (depth) {
+      const { format, test = true, write = true, compare = 'less', bias = 0, slopeBias = 0, stencil = {} } = depth;
+      const triangles = topology.startsWith('triangle');
+      descriptor.depthStencil = {
+        format, depthWriteEnabled: test && write, depthCompare: test ? compare : 'always', ...stencil,
+        ...(triangles ? { depthBias: bias, depthBiasSlopeScale: slopeBias } : {}),
+      };
+    }
+    const { layout, vertex, fragment, ...rest } = descriptor;
+    const key = JSON.stringify([vertex.buffers, fragment.targets, rest]);
+    if (!this.pipelines.has(key)) this.pipelines.set(key, this.device.createRenderPipeline(descriptor));
+    return this.pipelines.get(key);
+  }
+}
+
+export class Vertices {
+  /** @param {Program} program @param {Record<string, Source>} sources */
+  constructor(program, sources) {
+    const { device, description } = program;
+    /** @type {GPUVertexBufferLayout[]} */
+    this.layouts = [];
+    /** @type {{ buffer: GPUBuffer, offset: number }[]} */
+    this.buffers = [];
+    const slots = new Map(); // interleaved attributes share one
+    const slotOf = (buffer, base, arrayStride, stepMode) => {
+      const key = slots.get(buffer) ?? slots.set(buffer, {}).get(buffer), name = `${base} ${arrayStride} ${stepMode}`;
+      if (!(name in key)) {
+        key[name] = this.layouts.push({ arrayStride, stepMode, attributes: [] }) - 1;
+        this.buffers.push({ buffer, offset: base });
+      }
+      return this.layouts[key[name]];
+    };
+    for (const { name, location, locations, format } of description.attributes) {
+      const source = sources[name] ?? {};
+      let { buffer, offset = 0, stride, perInstance = false } = source;
+      const own = source.format ?? format, column = bytesOf(own);
+      if (!buffer) {
+        buffer = constantBuffer(device, own, locations, source.constant ?? [0, 0, 0, 1]);
+        stride = 0;
+      }
+      stride ??= column * locations;
+      const base = stride ? Math.floor(offset / stride) * stride : 0;
+      const slot = slotOf(buffer, base, stride, perInstance ? 'instance' : 'vertex');
+      for (let index = 0; index < locations; index++)
+        slot.attributes.push({ format: own, offset: offset - base + index * column, shaderLocation: location + index });
+    }
+    const most = device.limits.maxVertexBuffers;
+    if (this.layouts.length > most) throw new Error(`${this.layouts.length} vertex buffers, but the device has ${most}: interleave attributes`);
+  }
+
+  /** @param {GPURenderPassEncoder} pass */
+  bind(pass) {
+    this.buffers.forEach(({ buffer, offset }, slot) => pass.setVertexBuffer(slot, buffer, offset));
+  }
+}
+
+export class Values {
+  /** @param {Program} program */
+  constructor(program) {
+    const { device, description } = program;
+    this.program = program;
+    this.data = new ArrayBuffer(description.uniform_block?.size ?? 0);
+    this.floats = new Float32Array(this.data);
+    this.integers = new Int32Array(this.data);
+    this.buffer = description.uniform_block && device.createBuffer({ size: this.data.byteLength, usage: GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST });
+    this.resources = new Map();
+    this.isChanged = true;
+    this.bindGroup = null;
+  }
+
+  /** Sets a uniform: a number, a bool, or their components in an array, those of a matrix column by column. The name is
+   * that of WebGL: `lights[1].color`, `weights`, `weights[2]`.
+   * @param {string} name @param {number | boolean | ArrayLike<any>} value
+   * @returns {boolean} whether the program has this uniform; it has none that its shaders do not read */
+  set(name, value) {
+    const place = find(this.program.places, name);
+    if (!place) return false;
+    const { type, count, offset, array_stride, matrix_stride } = place, { kind, columns, rows } = shapeOf(type);
+    const numbers = typeof value === 'object' ? Array.from(value).flat(Infinity) : [value], one = columns * rows;
+    if (numbers.length > count * one || numbers.length % one)
+      throw new Error(`${name}: ${numbers.length} numbers for ${count > 1 ? `${count} of ` : ''}${type}`);
+    const words = kind === 'float' ? this.floats : this.integers;
+    for (let index = 0; index < numbers.length; index++) {
+      const column = Math.floor((index % one) / rows), element = Math.floor(index / one);
+      words[(offset + element * array_stride + column * matrix_stride) / 4 + (index % rows)] = Number(numbers[index]);
+    }
+    this.isChanged = true;
+    return true;
+  }
+
+  /** Sets a texture and how it is read.
+   * @param {string} name @param {GPUTexture | GPUTextureView} texture @param {GPUSampler} [sampler]
+   * @returns {boolean} whether the program reads it */
+  setTexture(name, texture, sampler) {
+    const described = this.program.description.textures.find((each) => each.name === name);
+    if (!described) return false;
+    const isTexture = 'createView' in texture, isDepth = isTexture && texture.format.includes('depth');
+    const view = isTexture ? texture.createView({ dimension: described.dimension, ...(isDepth ? { aspect: 'depth-only' } : {}) }) : texture;
+    this.resources.set(name, { view, sampler });
+    this.bindGroup = null;
+    return true;
+  }
+
+  /** Sends what changed to the GPU, and binds it. The GPU sees the last values before `queue.submit`.
+   * @param {GPURenderPassEncoder} pass */
+  bind(pass) {
+    const { device, description, group } = this.program, block = description.uniform_block;
+    if (this.isChanged && block) device.queue.writeBuffer(this.buffer, 0, this.data);
+    this.isChanged = false;
+    if (!this.bindGroup) {
+      const entries = block ? [{ binding: block.binding, resource: { buffer: this.buffer } }] : [];
+      for (const { name, dimension, sample_type, sampler, binding } of description.textures) {
+        const given = this.resources.get(name);
+        entries.push({ binding: binding.texture, resource: given?.view ?? blackTexture(device, sample_type, dimension === '3d' ? '3d' : '2d').createView({ dimension }) });
+        if (sampler) entries.push({ binding: binding.sampler, resource: given?.sampler ?? device.createSampler(sampler === 'comparison' ? { compare: 'less-equal' } : {}) });
+      }
+      this.bindGroup = device.createBindGroup({ layout: group, entries });
+    }
+    pass.setBindGroup(0, this.bindGroup);
+  }
+}
+
+/** Each name of a uniform, with its place: `lights[].color` with 2 lights has two. */
+function placesOf({ name, type, lengths, offset, array_stride, matrix_stride }) {
+  const parts = name.split('[]'), own = lengths.slice(parts.length - 1).reduce((a, b) => a * b, 1);
+  let names = [parts[0]];
+  for (const [index, part] of parts.slice(1).entries())
+    names = names.flatMap((head) => Array.from({ length: lengths[index] }, (_, element) => `${head}[${element}]${part}`));
+  return names.map((each, index) => [each, { type, count: own, offset: offset + index * own * array_stride, array_stride, matrix_stride }]);
+}
+
+function find(places, name) {
+  const place = places.get(name), [, array, index] = /^(.*)\[(\d+)\]$/.exec(name) ?? [];
+  if (place || array === undefined) return place;
+  const whole = places.get(array), element = Number(index);
+  if (!whole || element >= whole.count) return undefined;
+  return { ...whole, count: whole.count - element, offset: whole.offset + element * whole.array_stride };
+}
+
+/** The kind of a type's numbers, its columns, and the rows of each. */
+function shapeOf(type) {
+  const matrix = /^mat(\d)(?:x(\d))?$/.exec(type), vector = /^([biu]?)vec(\d)$/.exec(type);
+  if (matrix) return { kind: 'float', columns: Number(matrix[1]), rows: Number(matrix[2] ?? matrix[1]) };
+  const kind = vector ? { '': 'float', b: 'bool', i: 'int', u: 'uint' }[vector[1]] : type;
+  return { kind, columns: 1, rows: vector ? Number(vector[2]) : 1 };
+}
+
+/** The bytes of a vertex format. */
+function bytesOf(format) {
+  if (/10-10-10-2|unorm8x4-bgra/.test(format)) return 4;
+  const [, bits, count = '1'] = /^[a-z]+(\d+)(?:x(\d))?$/.exec(format);
+  return (Number(bits) / 8) * Number(count);
+}
+
+function constantBuffer(device, format, locations, numbers) {
+  const count = bytesOf(format) / 4, list = Array.from({ length: count * locations }, (_, index) => numbers[index] ?? (index % count === 3 ? 1 : 0));
+  const data = format.startsWith('float') ? new Float32Array(list) : new Int32Array(list);
+  const buffer = device.createBuffer({ size: data.byteLength, usage: GPUBufferUsage.VERTEX | GPUBufferUsage.COPY_DST });
+  device.queue.writeBuffer(buffer, 0, data);
+  return buffer;
+}
+
+const black = new WeakMap();
+
+/** What WebGL reads of a texture that is not set: black and opaque. It has 6 layers, so that any view fits. */
+function blackTexture(device, sampleType, dimension = '2d') {
+  const textures = black.get(device) ?? black.set(device, {}).get(device), key = `${sampleType} ${dimension}`;
+  if (textures[key]) return textures[key];
+  const format = { float: 'rgba8unorm', depth: 'depth16unorm', sint: 'rgba32sint', uint: 'rgba32uint' }[sampleType];
+  const usage = GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST;
+  const texture = device.createTexture({ size: [1, 1, dimension === '3d' ? 1 : 6], format, usage, dimension });
+  if (sampleType === 'float')
+    for (let layer = 0; layer < texture.depthOrArrayLayers; layer++)
+      device.queue.writeTexture({ texture, origin: [0, 0, layer] }, new Uint8Array([0, 0, 0, 255]), { bytesPerRow: 4 }, [1, 1, 1]);
+  return (textures[key] = texture);
+}
+
+const COPY = /* wgsl */ `
+@group(0) @binding(0) var source: texture_2d<f32>;
+@group(0) @binding(1) var source_sampler: sampler;
+struct Corner { @builtin(position) position: vec4f, @location(0) uv: vec2f }
+@vertex fn corner(@builtin(vertex_index) index: u32) -> Corner {
+    let uv = vec2f(vec2u((index << 1u) & 2u, index & 2u));
+    return Corner(vec4f(uv * 2.0 - 1.0, 0.0, 1.0), vec2f(uv.x, select(1.0 - uv.y, uv.y, TURNED)));
+}
+@fragment fn copied(corner: Corner) -> @location(0) vec4f { return textureSample(source, source_sampler, corner.uv); }
+override TURNED: bool;
+`;
+const copies = new WeakMap();
+
+/** Draws one texture into another. */
+function copy(device, encoder, from, to, format, isTurned, filter) {
+  const made = copies.get(device) ?? copies.set(device, {}).get(device), key = `${format} ${isTurned}`;
+  if (!made[key]) {
+    const module = device.createShaderModule({ code: COPY });
+    made[key] = device.createRenderPipeline({
+      layout: 'auto',
+      vertex: { module, constants: { TURNED: Number(isTurned) } },
+      fragment: { module, targets: [{ format }] },
+    });
+  }
+  const sampler = device.createSampler({ minFilter: filter, magFilter: filter });
+  const entries = [{ binding: 0, resource: from }, { binding: 1, resource: sampler }];
+  const pass = encoder.beginRenderPass({ colorAttachments: [{ view: to, loadOp: 'clear', storeOp: 'store' }] });
+  pass.setPipeline(made[key]);
+  pass.setBindGroup(0, device.createBindGroup({ layout: made[key].getBindGroupLayout(0), entries }));
+  pass.draw(3);
+  pass.end();
+}
+
+/** Shows a picture whose first row is its bottom, such as in `context.getCurrentTexture().createView()`.
+ * @param {GPUDevice} device @param {GPUTexture} texture @param {GPUTextureView} view @param {GPUTextureFormat} format */
+export function show(device, texture, view, format) {
+  const encoder = device.createCommandEncoder();
+  copy(device, encoder, texture.createView(), view, format, true, 'nearest');
+  device.queue.submit([encoder.finish()]);
+}
+
+/** WebGL's generateMipmap, for all layers: each level is the mean of four texels of the one before.
+ * @param {GPUDevice} device @param {GPUTexture} texture */
+export function generateMipmaps(device, texture) {
+  const encoder = device.createCommandEncoder();
+  for (let layer = 0; layer < texture.depthOrArrayLayers; layer++)
+    for (let level = 1; level < texture.mipLevelCount; level++) {
+      const [from, to] = [level - 1, level].map((baseMipLevel) =>
+        texture.createView({ dimension: '2d', baseMipLevel, mipLevelCount: 1, baseArrayLayer: layer, arrayLayerCount: 1 }));
+      copy(device, encoder, from, to, texture.format, false, 'linear');
+    }
+  device.queue.submit([encoder.finish()]);
+}
