@@ -63,6 +63,7 @@ NEEDS: dict[str, str | None] = {
     "chart cube": "chart,reference",
     "pick cube --max-error 0.5": "chart,reference",
     "fit cube lobe_exp2": "chart,reference",
+    "import lamp.gltf -o out": "import",
     "bake sdf a.obj -o a.npy": "bake",
     "bake thickness a.obj -o a.npy": "bake",
     "bake depth a.obj --direction 0,0,1 -o a.npy": "bake",

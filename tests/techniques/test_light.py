@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 from oracle import UP, Array, close, rng, technique, unit, units
+from sssgen.targets.runtime.numpy_textures import Texture
 
 COUNT = 200
 V, N, L = units(COUNT, 1), units(COUNT, 2), units(COUNT, 3)
 THROUGH = rng().uniform(0.0, 1.0, COUNT)
 COLOR = np.array([0.9, 0.5, 0.2])
+HALF = Texture(np.full((1, 1, 4), 0.5))
 
 
 def dot(a: Array, b: Array) -> Array:
@@ -89,6 +91,32 @@ LOBES: dict[str, tuple[dict[str, Any], Callable[[], Array]]] = {
             "diffuse_transmission_factor": 0.6, "diffuse_transmission_color": COLOR,
         },
         lambda: COLOR * (0.6 * np.maximum(-np.sign(dot(N, V)) * dot(N, L), 0.0) * THROUGH)[:, None],
+    ),
+    "diffuse_transmission_map": (
+        {
+            "uv": np.zeros((COUNT, 2)), "d": THROUGH, "V": V, "N": N, "L": L,
+            "diffuse_transmission_tint": COLOR, "diffuse_transmission_texture": HALF, "extinction": (1.0, 2.0, 3.0),
+        },
+        lambda: 0.5
+        * COLOR
+        * np.exp(-np.outer(THROUGH, (1.0, 2.0, 3.0)))
+        * np.maximum(-np.sign(dot(N, V)) * dot(N, L), 0.0)[:, None],
+    ),
+    "seen_through": (
+        {
+            "uv": np.zeros((COUNT, 2)), "d": THROUGH, "V": V, "N": N, "ior": 1.0,
+            "entering_color": COLOR, "entering_texture": HALF, "extinction": (1.0, 2.0, 3.0),
+            "sky_below": (0.0, 0.0, 0.0), "sky_above": (1.0, 1.0, 1.0),
+        },
+        lambda: 0.5
+        * COLOR
+        * np.exp(-np.outer(THROUGH, (1.0, 2.0, 3.0)))
+        * (0.5 - 0.5 * V[:, 1:2])
+        * (1.0 - (1.0 - np.abs(dot(N, V))) ** 5)[:, None],
+    ),
+    "base_color_alone": (
+        {"albedo": np.outer(THROUGH, COLOR), "emission": COLOR},
+        lambda: np.outer(THROUGH, COLOR) + COLOR,
     ),
     "sky_glow": (
         {"V": V, "th": THROUGH, "glow_strength": 0.5, "sky_color": COLOR},

@@ -8,6 +8,13 @@ from folders import ROOT
 from sssgen.material import library
 
 EXAMPLE, SHAPE, HINT = "an example in a text for users", "a shape of a body", "a hint of uniforms"
+CHOSEN_FOR_IMPORTS = {
+    "back_face_thickness", "base_color", "base_color_alone", "clearcoat_constants", "clearcoat_map",
+    "constant_thickness", "depth_map_path", "diffuse_transmission_map", "emission_map", "interior_octaves",
+    "metallic_roughness_map",
+    "normal_map", "normal_map_directx", "occlusion_map", "pbr_constants", "seen_through", "specular_level",
+    "specular_map", "thickness_map", "uv_transform", "vertex_tint",
+}  # fmt: skip
 PERMITTED = {
     "cli/ci.py": (EXAMPLE, {"lobe_gdc2011"}),
     "cli/new.py": (
@@ -24,6 +31,13 @@ PERMITTED = {
     ),
     "harness/stress/rows_field.py": (SHAPE, {"box", "sphere", "torus"}),
     "harness/testing/project_run.py": (EXAMPLE, {"lobe_gdc2011"}),
+    "interchange/gltf_materials.py": ("a field of the neutral record", {"base_color"}),
+    "interchange/gltf_textures.py": ("what the report names", {"uv_transform"}),
+    "interchange/scene_text.py": ("the shell of a scene", {"khronos_neutral", "prefiltered_environment"}),
+    "interchange/technique_choice.py": (
+        "the choice of techniques for a foreign material",
+        CHOSEN_FOR_IMPORTS,
+    ),
     "lab/chart/charting.py": ("names of scenes", {"capsule", "torus"}),
     "lab/gpu/timed_programs.py": (EXAMPLE, {"lobe_exp2"}),
     "lab/measure/technique_chain.py": ("a hint of uniforms; the body in a slot", {"box", "normal_map"}),

@@ -1,0 +1,50 @@
+"""`sssgen import`: materials of other formats as materials of sssgen, with textures, mesh, scene and a report."""
+
+from __future__ import annotations
+
+import os
+from argparse import ArgumentParser, Namespace
+
+from sssgen.cli.options import given
+from sssgen.cli.output import OK, print_json
+from sssgen.interchange import format_readers
+from sssgen.interchange.mapping_report import Report
+from sssgen.interchange.material_writer import write_import
+from sssgen.support.paths import posix
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = (
+        "examples:\n"
+        "  sssgen import lantern.glb -o lantern\n"
+        "  sssgen render lantern/paper/scene.toml -o paper.png\n"
+        "  sssgen import lantern.glb -o lantern --material paper\n"
+        "For each material: NAME/NAME.toml, its textures, mesh and scene. For the file: report.md and report.json.\n"
+        "What is mapped to what: docs/import.md."
+    )
+    add = parser.add_argument
+    add("FILE", help="a .gltf or .glb file")
+    add("-o", "--output", type=given, metavar="DIR", required=True, help="the folder to write to")
+    add("--material", metavar="NAME", default="", help="import this material alone, by its name or number in the file")
+
+
+def run(arguments: Namespace) -> int:
+    """Reads the file, writes its materials, and prints what became of its elements."""
+    path = arguments.FILE
+    report = Report(os.path.basename(path))
+    materials = format_readers.read(path, report, arguments.material)
+    written = write_import(arguments.output, materials, report)
+    counts = report.counts()
+    if arguments.json:
+        folder = posix(arguments.output)
+        listed = [
+            {"name": part.name, "material": f"{folder}/{part.material}", "scene": f"{folder}/{part.scene}"}
+            for part in written
+        ]
+        print_json({"ok": True, "materials": listed, "report": report.as_json()})
+        return OK
+    for part in written:
+        print(f"wrote {posix(os.path.join(arguments.output, part.material))} and its scene")
+    summary = ", ".join(f"{number} {outcome}" for outcome, number in counts.items())
+    print(f"{summary}: {posix(os.path.join(arguments.output, 'report.md'))}")
+    return OK

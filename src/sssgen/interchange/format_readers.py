@@ -1,0 +1,29 @@
+"""The formats that `sssgen import` reads, by the suffixes of their files."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+
+from sssgen.interchange import gltf_reader
+from sssgen.interchange.imported import Imported
+from sssgen.interchange.mapping_report import Report
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.paths import posix
+from sssgen.support.text_files import refuse_folder
+
+READERS: Mapping[str, Callable[[str, Report, str], list[Imported]]] = {
+    ".glb": gltf_reader.read,
+    ".gltf": gltf_reader.read,
+}
+"""Suffix → the reader: of a file's path, the report, and the name of a material or ''."""
+
+
+def read(path: str, report: Report, name: str = "") -> list[Imported]:
+    """The materials of a file; with `name`, that one alone. Adds to the report what is left out. Raises SssgenError."""
+    refuse_folder(path, tuple(READERS))
+    suffix = os.path.splitext(path)[1].lower()
+    if suffix not in READERS:
+        hint = did_you_mean(suffix, READERS) or f"readable files end in {', '.join(READERS)}"
+        raise failure(f"'{suffix}' is not the suffix of a file with materials", hint, posix(path))
+    return READERS[suffix](path, report, name)

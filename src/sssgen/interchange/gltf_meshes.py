@@ -1,0 +1,202 @@
+"""The triangles of a glTF file, by material, in world space."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import NamedTuple
+
+import numpy as np
+
+from sssgen.harness.scenes.mesh_files import FileContent, Indices
+from sssgen.harness.scenes.placed import Array
+from sssgen.interchange.gltf_buffers import Buffers, optional
+from sssgen.interchange.gltf_json import JsonElement
+from sssgen.interchange.mapping_report import Report
+
+MOST_TRIANGLES = 20_000_000
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+_PACKED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
+
+
+class Part(NamedTuple):
+    """The triangles of a primitive at a node."""
+
+    content: FileContent
+    scale: float
+    """The cube root of the node's volume scale: lengths of mesh space times this are lengths in world space"""
+
+
+def meshes(buffers: Buffers, report: Report) -> dict[int, list[Part]]:
+    """Index of the material (-1 without one) → the triangles of the file's scene with it.
+
+    Raises SssgenError for nodes in a circle, indices out of range, and accessors that leave their buffers.
+    """
+    root = buffers.root
+    parts: dict[int, list[Part]] = defaultdict(list)
+    all_meshes = root.objects("meshes")
+    contents: dict[str, FileContent | None] = {}
+    materials = root.objects("materials")
+    count = 0
+    for node, matrix in _placed_nodes(root):
+        if not node.has("mesh"):
+            continue
+        mesh = node.reference("mesh", all_meshes, "mesh")
+        for primitive in mesh.objects("primitives"):
+            if primitive.path not in contents:
+                contents[primitive.path] = _primitive(primitive, buffers, report)
+            content = contents[primitive.path]
+            if content is None:
+                continue
+            count += len(content.faces)
+            if count > MOST_TRIANGLES:
+                raise node.fault(f"the scene has more than {MOST_TRIANGLES} triangles", "export its parts")
+            index = -1
+            if primitive.has("material"):
+                primitive.reference("material", materials, "material")
+                index = primitive.whole("material")
+            parts[index].append(_moved(content, matrix))
+    return parts
+
+
+def joined(parts: list[Part]) -> tuple[FileContent, float, float]:
+    """The parts as one mesh, the mean of their scales by area, and the relative spread of the scales."""
+    contents = [part.content for part in parts]
+    starts = np.cumsum([0] + [len(content.vertices) for content in contents])
+    white = [np.ones((len(content.vertices), 4)) if content.color is None else content.color for content in contents]
+    content = FileContent(
+        np.concatenate([content.vertices for content in contents]),
+        np.concatenate([content.faces + start for content, start in zip(contents, starts, strict=False)]),
+        _of_any([content.uv for content in contents], contents),
+        _of_any([content.uv2 for content in contents], contents),
+        np.concatenate(white) if any(content.color is not None for content in contents) else None,
+    )
+    scales = np.array([part.scale for part in parts])
+    areas = np.array([_area(content) for content in contents])
+    mean = float((scales * areas).sum() / areas.sum()) if areas.sum() > 0.0 else float(scales.mean())
+    return content, mean, float(np.ptp(scales) / mean) if mean > 0.0 else 0.0
+
+
+def _of_any(sets: list[Array | None], contents: list[FileContent]) -> Array | None:
+    """The texture coordinates of all parts, 0 where a part has none; None where no part has any."""
+    if all(uv is None for uv in sets):
+        return None
+    return np.concatenate(
+        [np.zeros((len(content.vertices), 2)) if uv is None else uv for uv, content in zip(sets, contents, strict=True)]
+    )
+
+
+def _area(content: FileContent) -> float:
+    first, second, third = np.moveaxis(content.vertices[content.faces], 1, 0)
+    return 0.5 * float(np.linalg.norm(np.cross(second - first, third - first), axis=1).sum())
+
+
+def _placed_nodes(root: JsonElement) -> list[tuple[JsonElement, Array]]:
+    """The nodes of the file's scene with their transforms to world space."""
+    nodes = root.objects("nodes")
+    scenes = root.objects("scenes")
+    if scenes:
+        scene = root.reference("scene", scenes, "scene") if root.has("scene") else scenes[0]
+        tops = [_node(index, nodes) for index in scene.items("nodes")]
+    else:
+        children = {_node(index, nodes).path for node in nodes for index in node.items("children")}
+        tops = [node for node in nodes if node.path not in children]
+        if nodes and not tops:
+            raise nodes[0].fault("the nodes form a circle", "export the file again")
+    placed: list[tuple[JsonElement, Array]] = []
+    seen: set[str] = set()
+    waiting = [(node, np.eye(4)) for node in reversed(tops)]
+    while waiting:
+        node, above = waiting.pop()
+        if node.path in seen:
+            raise node.fault("the node has two parents, or is its own ancestor", "export the file again")
+        seen.add(node.path)
+        matrix = above @ _local(node)
+        placed.append((node, matrix))
+        waiting += [(_node(index, nodes), matrix) for index in reversed(node.items("children"))]
+    return placed
+
+
+def _node(index: JsonElement, nodes: list[JsonElement]) -> JsonElement:
+    number = index.value
+    if isinstance(number, bool) or not isinstance(number, int) or not 0 <= number < len(nodes):
+        raise index.fault(f"there is no node {number!r:.20}", f"the file has {len(nodes)}")
+    return nodes[number]
+
+
+def _local(node: JsonElement) -> Array:
+    if node.has("matrix"):
+        return np.array(node.vector("matrix", [0.0] * 16)).reshape(4, 4).T
+    matrix = np.eye(4)
+    x, y, z, w = node.vector("rotation", (0.0, 0.0, 0.0, 1.0), -1.001, 1.001)
+    length = np.sqrt(x * x + y * y + z * z + w * w) or 1.0
+    x, y, z, w = x / length, y / length, z / length, w / length
+    rotation = np.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ])  # fmt: skip
+    matrix[:3, :3] = rotation * np.array(node.vector("scale", (1.0, 1.0, 1.0)))
+    matrix[:3, 3] = node.vector("translation", (0.0, 0.0, 0.0))
+    return matrix
+
+
+def _moved(content: FileContent, matrix: Array) -> Part:
+    volume = float(np.linalg.det(matrix[:3, :3]))
+    faces = content.faces[:, ::-1] if volume < 0.0 else content.faces
+    vertices = content.vertices @ matrix[:3, :3].T + matrix[:3, 3]
+    return Part(content._replace(vertices=vertices, faces=faces), abs(volume) ** (1.0 / 3.0))
+
+
+def _primitive(primitive: JsonElement, buffers: Buffers, report: Report) -> FileContent | None:
+    """The triangles of a primitive in mesh space; None for points and lines."""
+    mode = primitive.whole("mode", _TRIANGLES, 0, 6)
+    if mode < _TRIANGLES:
+        report.left_out(f"{primitive.path}/mode", mode, "points and lines have no surface")
+        return None
+    for name in _PACKED[:1]:
+        if primitive.extension(name) is not None and not _has_data(primitive, buffers):
+            raise primitive.fault(f"its data are compressed with {name}", "export the file without compression")
+    if primitive.has("targets"):
+        report.left_out(f"{primitive.path}/targets", "morph targets", "the mesh is taken as it is without them")
+    attributes = primitive.child("attributes")
+    if attributes is None or not attributes.has("POSITION"):
+        report.left_out(primitive.path, "no POSITION", "a primitive without positions is not drawn")
+        return None
+    vertices = buffers.numbers(attributes.reference("POSITION", buffers.accessors, "accessor"), 3)
+    if primitive.has("indices"):
+        accessor = primitive.reference("indices", buffers.accessors, "accessor")
+        indices = buffers.numbers(accessor, 1)[:, 0].astype(np.int64)
+        if len(indices) and indices.max() >= len(vertices):
+            raise accessor.fault(f"the index {indices.max()} is beyond the {len(vertices)} vertices")
+    else:
+        indices = np.arange(len(vertices))
+    uv, uv2 = (_upwards(optional(attributes, f"TEXCOORD_{index}", buffers, 2), vertices) for index in (0, 1))
+    color = optional(attributes, "COLOR_0", buffers, 4)
+    color = None if color is None or len(color) != len(vertices) else color
+    return FileContent(vertices, _faces(indices, mode), uv, uv2, color)
+
+
+def _has_data(primitive: JsonElement, buffers: Buffers) -> bool:
+    """Whether the attributes have data that are not compressed, too."""
+    attributes = primitive.child("attributes")
+    if attributes is None or not attributes.has("POSITION"):
+        return False
+    return attributes.reference("POSITION", buffers.accessors, "accessor").has("bufferView")
+
+
+def _upwards(uv: Array | None, vertices: Array) -> Array | None:
+    """Texture coordinates with v up."""
+    if uv is None or len(uv) != len(vertices):
+        return None
+    return np.stack([uv[:, 0], 1.0 - uv[:, 1]], axis=1)
+
+
+def _faces(indices: Indices, mode: int) -> Indices:
+    """The triangles of a list, a strip or a fan, (f, 3)."""
+    if mode == _TRIANGLES:
+        return indices[: len(indices) // 3 * 3].reshape(-1, 3)
+    if mode == _FAN:
+        return np.stack([np.broadcast_to(indices[:1], max(len(indices) - 2, 0)), indices[1:-1], indices[2:]], axis=1)
+    strip = np.stack([indices[:-2], indices[1:-1], indices[2:]], axis=1)
+    strip[1::2] = strip[1::2][:, [1, 0, 2]]
+    return strip

@@ -1,0 +1,86 @@
+"""Reads glTF and GLB files: all materials of a file as neutral records, with their triangles."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from sssgen.harness.scenes.mesh_files import FileContent
+from sssgen.interchange.gltf_buffers import Buffers
+from sssgen.interchange.gltf_container import open_file
+from sssgen.interchange.gltf_json import JsonElement
+from sssgen.interchange.gltf_materials import READ, MaterialReader, default_material
+from sssgen.interchange.gltf_meshes import joined, meshes
+from sssgen.interchange.gltf_textures import Textures
+from sssgen.interchange.imported import Imported
+from sssgen.interchange.mapping_report import Report
+from sssgen.support.diagnostics import did_you_mean, failure
+
+_ALSO_READ = ("KHR_texture_transform", "EXT_texture_webp", "KHR_mesh_quantization")
+_WITHOUT_EFFECT = (
+    "KHR_materials_sheen",
+    "KHR_materials_iridescence",
+    "KHR_materials_anisotropy",
+    "KHR_materials_dispersion",
+    "KHR_materials_variants",
+    "KHR_lights_punctual",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "KHR_animation_pointer",
+    "KHR_node_visibility",
+    "MSFT_lod",
+)
+"""Extensions that a file may require: without them it is still read rightly, except for what the report names."""
+_ANIMATED = {"animations": "a material does not move", "skins": "the mesh is taken in its rest pose"}
+
+
+def read(path: str, report: Report, name: str = "") -> list[Imported]:
+    """The materials of a glTF file that its scene shows, and those that no mesh uses.
+
+    With `name`, that material alone. Adds to the report what is left out. Raises SssgenError, whose message has the
+    JSON path of the element, for a file that is faulty or needs an extension that is not read.
+    """
+    container = open_file(path)
+    root = container.root
+    _check_required(root)
+    buffers = Buffers(container)
+    textures = Textures(buffers, report)
+    elements = root.objects("materials")
+    _check_name(name, elements, root)
+    for key, reason in _ANIMATED.items():
+        if root.items(key):
+            report.left_out(f"/{key}", len(root.items(key)), reason)
+    parts = meshes(buffers, report)
+    result = []
+    for index, element in enumerate(elements):
+        if name in ("", element.text("name"), str(index)):
+            mesh, scale, spread = joined(parts[index]) if index in parts else (None, 1.0, 0.0)
+            material = MaterialReader(element, textures, report, scale).read()
+            if spread > 1e-3 and "thickness" in material.elements:
+                became = f"the mean scale {scale:.4g} of its nodes"
+                report.approximated(f"{element.path} at nodes of different scales", spread, became, f"{spread:.1%}")
+            result.append(_with_mesh(material, mesh))
+    if -1 in parts and not name:
+        result.append(_with_mesh(default_material(root.file), joined(parts[-1])[0]))
+    if not result:
+        raise root.fault("the file has neither materials nor triangles")
+    return result
+
+
+def _with_mesh(material: Imported, mesh: FileContent | None) -> Imported:
+    colored = mesh is not None and mesh.color is not None
+    return material._replace(model=replace(material.model, vertex_colors=colored), mesh=mesh)
+
+
+def _check_name(name: str, elements: list[JsonElement], root: JsonElement) -> None:
+    names = [element.text("name") for element in elements]
+    if name and name not in names and name not in map(str, range(len(names))):
+        hint = did_you_mean(name, names) or f"materials: {', '.join(names)[:300]}, or a number from 0"
+        raise failure(f"the file has no material '{name}'", hint, root.file)
+
+
+def _check_required(root: JsonElement) -> None:
+    known = {*READ, *_ALSO_READ, *_WITHOUT_EFFECT}
+    for element in root.items("extensionsRequired"):
+        if element.value not in known:
+            hint = "export the file without this extension: it says that the file is wrong without it"
+            raise element.fault(f"the file requires '{str(element.value)[:60]}', which is not read", hint)
