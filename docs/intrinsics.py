@@ -20,6 +20,7 @@ def page() -> str:
         "`python docs/intrinsics.py` writes this page from the intrinsic table (`src/sssgen/ir/intrinsics/`).",
         "",
         "`genF` stands for float, vec2, vec3 and vec4, `vecF` for the vectors; likewise I, U, B for int, uint, bool.",
+        "`matCR` stands for all matrices, of C columns and R rows; `mat` for the square ones.",
         "The columns show the text in each language; *polyfill* means that a function in sssgen's own language",
         "replaces the builtin, inlined if it is one expression; `op <` means the operator. A dialect is listed if it",
         "differs: `glsl-330` lacks some builtins of GLSL ES 3.00, `hlsl-dx9` is Unity's built-in pipeline, `hlsl-",

@@ -31,8 +31,9 @@ from sssgen.ir.nodes import (
     Swizzle,
     Unary,
 )
+from sssgen.ir.rules import element_type
 from sssgen.ir.transform import rewrite_function
-from sssgen.ir.types import INT, UINT, Array, Matrix, Vector, components, kind_of, vector_of
+from sssgen.ir.types import INT, UINT, Matrix, components, kind_of, vector_of
 from sssgen.ir.walk import all_expressions, statements
 
 _ARITHMETIC = {"+": ("-", "*"), "-": ("+",), "*": ("+", "/"), "/": ("*",), "%": ("/",)}
@@ -99,9 +100,8 @@ def _changed(expr: Expr) -> Iterator[tuple[str, Expr]]:
     elif isinstance(expr, Swizzle):
         yield from _components(expr)
     elif isinstance(expr, Index) and isinstance(expr.index, Literal):
-        type_ = expr.value.type
-        length = type_.length if isinstance(type_, Array) else type_.size if isinstance(type_, Vector | Matrix) else 0
-        other = (int(expr.index.value) + 1) % max(length, 1)
+        elements = element_type(expr.value.type)
+        other = (int(expr.index.value) + 1) % (elements[1] if elements is not None else 1)
         yield "wrong index", expr._replace(index=expr.index._replace(value=other))
     elif isinstance(expr, Intrinsic):
         for name in _BUILTINS.get(expr.name, ()):

@@ -194,7 +194,7 @@ def _column(row: Builtin, index: int, type_: Type, count: int, rng: np.random.Ge
     if kind == "bool":
         return rng.random(size) < 0.5
     if isinstance(type_, Matrix) and samples.invertible:
-        regular = 2.0 * np.eye(type_.size)[..., None] + rng.uniform(-0.5, 0.5, size)
+        regular = 2.0 * np.eye(type_.columns)[..., None] + rng.uniform(-0.5, 0.5, size)
         return (regular * 2.0 ** rng.integers(-4, 5, count)).astype(np.float32)
     third = (*size[:-1], count // 3)
     rest = (*size[:-1], count - 2 * (count // 3))
@@ -262,8 +262,9 @@ def _vectors(row: Builtin, params: tuple[Type, ...]) -> tuple[Array, ...]:
 def _fits(value: object, type_: Type) -> bool:
     """Whether a test vector's value has a type; an integer is an int or a uint."""
     if isinstance(type_, Vector | Matrix):
-        inner = Vector("float", type_.size) if isinstance(type_, Matrix) else Scalar(type_.kind)
-        return isinstance(value, tuple) and len(value) == type_.size and all(_fits(part, inner) for part in value)
+        inner = Vector("float", type_.rows) if isinstance(type_, Matrix) else Scalar(type_.kind)
+        count = type_.columns if isinstance(type_, Matrix) else type_.size
+        return isinstance(value, tuple) and len(value) == count and all(_fits(part, inner) for part in value)
     kind = kind_of(type_)
     if kind == "bool":
         return isinstance(value, bool)

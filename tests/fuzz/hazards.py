@@ -23,8 +23,9 @@ sys.path[:0] = [str(Path(__file__).parents[1] / "tools")]
 
 from hazard_programs import PARAMETERS, source  # noqa: E402  # tests/tools is not on the path of a script
 from sssgen.harness.backends import Array, Backend, Call, Text, get  # noqa: E402
+from sssgen.harness.evaluate.evaluation import shape_of  # noqa: E402
 from sssgen.ir import contracts  # noqa: E402
-from sssgen.ir.types import BY_NAME, Matrix, Type, Vector, kind_of  # noqa: E402
+from sssgen.ir.types import BY_NAME, Matrix, Type, kind_of  # noqa: E402
 from sssgen.lang.loader import load_text  # noqa: E402
 from sssgen.pipeline.compiler import transpile  # noqa: E402
 
@@ -34,7 +35,7 @@ LANES = 64
 _SIZES = [0.0, 1e-45, 1e-40, 1.2e-38, 1e-37, 1e-30, 1e-20, 1e-12, 1e-6, 1e-3, 0.25, 0.5, 1.0, 1.0, 1.5, 2.0, 3.0, 8.0,
           87.0, 130.0, 1e3, 1e4, 1e6]  # fmt: skip
 _BITS = [0, 1, 2, 3, 5, 31, 32, 255, 0x7F800000, 0x7FC00000, 0x7F800001, 0x3F800000, 0x7F7FFFFF, 0x7C007C00, 0x7FFFFFFF]
-MAT4 = Matrix(4)
+MAT4 = Matrix(4, 4)
 
 
 class Count(NamedTuple):
@@ -59,10 +60,7 @@ def arguments(seed: int) -> tuple[Array, ...]:
 
 
 def _hostile(rng: np.random.Generator, type_: Type) -> Array:
-    size = getattr(type_, "size", 1)
-    shape = (
-        (size, size, LANES) if isinstance(type_, Matrix) else (size, LANES) if isinstance(type_, Vector) else (LANES,)
-    )
+    shape = (*shape_of(type_), LANES)
     kind = kind_of(type_)
     if kind != "float":
         bits = np.array([*_BITS, *(bits ^ 0xFFFFFFFF for bits in _BITS)], np.uint32)

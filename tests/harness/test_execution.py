@@ -25,7 +25,7 @@ from pitfall_cases import program as pitfalls
 from sssgen.harness.backends import Backend, Block, Call, DrawingBackend, Place, Text
 from sssgen.harness.backends.call_program import drawing, results
 from sssgen.harness.evaluate.evaluation import shape_of
-from sssgen.ir.types import BY_NAME, VEC2, VEC4, Matrix, Sampler, Type, Vector, components, kind_of
+from sssgen.ir.types import BY_NAME, VEC2, VEC4, Sampler, Type, column_size, components, kind_of
 from sssgen.lang.loader import load_file
 
 LANES = 12
@@ -102,7 +102,7 @@ def uniforms_of(reflection: dict[str, Any]) -> tuple[bytes, dict[str, tuple[floa
         values[uniform["name"]] = tuple(inputs.tolist())
         if "offset" in uniform:  # std140 uses 16 bytes for each column and each element
             rows = inputs.astype(DTYPES[kind]).astype(np.float32 if kind == "float" else np.int32)
-            size = type_.size if isinstance(type_, Matrix | Vector) else 1
+            size = column_size(type_)
             for place, row in enumerate(rows.reshape(-1, size)):
                 start = uniform["offset"] // 4 + 4 * place
                 block[start : start + size] = row.view(np.uint32)

@@ -14,6 +14,7 @@ import pytest
 from pass_cases import module_of
 from qualification.parity_inputs import DTYPES, EDGES, evaluated, inside, widened
 from sssgen.harness.backends import Array, Backend, Call, Text
+from sssgen.harness.evaluate.evaluation import shape_of
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures, vector_ranges
 from sssgen.ir.component_ranges import within
@@ -77,7 +78,7 @@ def drawn(rng: np.random.Generator, box: list[Range], type_: Type) -> Array:
         if kind_of(type_) != "float":
             column = np.round(column)
         columns.append(np.clip(column, part.low, part.high))
-    shape = {Scalar: (LANES,), Vector: (-1, LANES)}.get(type(type_), (getattr(type_, "size", 1), -1, LANES))
+    shape = (*shape_of(type_), LANES)
     values: Array = np.array(columns).reshape(shape).astype(DTYPES[kind_of(type_)])
     return values
 
@@ -253,9 +254,7 @@ def guarded_cases() -> tuple[Guarded, ...]:
 
 def _hostile(rng: np.random.Generator, type_: Type) -> Array:
     """Every pair of the first two arguments comes by chance; 600 lanes."""
-    shape = {Scalar: (600,), Vector: (getattr(type_, "size", 1), 600)}.get(
-        type(type_), (getattr(type_, "size", 1),) * 2 + (600,)
-    )
+    shape = (*shape_of(type_), 600)
     kind = kind_of(type_)
     if kind != "float":
         choices = np.array([*BITS, *(bits | 0x80000000 for bits in BITS)], np.uint32)

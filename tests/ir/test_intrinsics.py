@@ -60,7 +60,7 @@ def types_of(value: object) -> Iterator[Type]:
     """The types that a test vector's argument may have: an integer is an int or a uint."""
     if isinstance(value, tuple):
         for inner in types_of(value[0]):
-            yield Vector(inner.kind, len(value)) if isinstance(inner, Scalar) else Matrix(len(value))
+            yield Vector(inner.kind, len(value)) if isinstance(inner, Scalar) else Matrix(len(value), len(value[0]))
     elif isinstance(value, bool):
         yield BOOL
     elif isinstance(value, int):
@@ -233,8 +233,11 @@ def test_resolve() -> None:
     assert resolve("lessThan", [FLOAT, FLOAT]) is None
     assert resolve("lessThan", [VEC2, VEC2]) == Vector("bool", 2)
     assert resolve("clamp", [Vector("int", 3), INT, INT]) == Vector("int", 3)
-    assert resolve("inverse", [Matrix(4)]) == Matrix(4)
-    assert resolve("outerProduct", [VEC2, VEC3]) is None
+    assert resolve("inverse", [Matrix(4, 4)]) == Matrix(4, 4)
+    assert resolve("outerProduct", [VEC2, VEC3]) == Matrix(3, 2)
+    assert resolve("transpose", [Matrix(2, 4)]) == Matrix(4, 2)
+    assert resolve("determinant", [Matrix(2, 4)]) is None
+    assert resolve("matrixCompMult", [Matrix(2, 4), Matrix(4, 2)]) is None
     assert resolve("texture", [Sampler("Cube"), VEC3]) == VEC4
     assert resolve("texture", [Sampler("2D"), VEC3]) is None
     assert resolve("textureSize", [Sampler("3D"), INT]) == Vector("int", 3)

@@ -54,7 +54,7 @@ def test_verifier_accepts_well_typed_modules_and_sees_a_wrong_type(module: ir.Mo
     if not nodes:
         return
     chosen = data.draw(st.sampled_from(nodes))
-    remaining = [type_ for type_ in (FLOAT, INT, UINT, BOOL, VEC3, Matrix(2)) if type_ != chosen.type]
+    remaining = [type_ for type_ in (FLOAT, INT, UINT, BOOL, VEC3, Matrix(2, 2)) if type_ != chosen.type]
     other = data.draw(st.sampled_from(remaining))
     changed = rewrite_module(module, lambda node: node._replace(type=other) if node is chosen else node)
     assert verify(changed), f"{chosen} as {spell(other)}"
@@ -273,7 +273,7 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     "vector of five": (lambda: body(params=(param(Vector("float", 5)),)), "not a type: Vector"),
     "vector of doubles": (lambda: body(params=(param(Vector("double", 2)),)), "not a type: Vector"),
     "double": (lambda: body(ir.Declare("q", Scalar("double"), None, NOWHERE)), "this cannot be Scalar"),
-    "integer matrix": (lambda: body(result=Matrix(2, "int")), "not a type: Matrix"),
+    "integer matrix": (lambda: body(result=Matrix(2, 2, "int")), "not a type: Matrix"),
     "array of arrays": (lambda: evaluated(local(Array(Array(FLOAT, 2), 2))), "this cannot be Array"),
     "array of nothing": (lambda: evaluated(local(Array(FLOAT, 0))), "this cannot be Array"),
     "operator on no types": (
@@ -354,7 +354,7 @@ def test_long_chains_of_calls() -> None:
 
 
 IVEC2, UVEC2, BVEC2, MAT2, MAT3, ARRAY = (
-    Vector("int", 2), Vector("uint", 2), Vector("bool", 2), Matrix(2), Matrix(3), Array(FLOAT, 2),
+    Vector("int", 2), Vector("uint", 2), Vector("bool", 2), Matrix(2, 2), Matrix(3, 3), Array(FLOAT, 2),
 )  # fmt: skip
 BODY = STRUCT.type
 

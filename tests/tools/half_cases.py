@@ -110,7 +110,7 @@ def _column(case: Case, index: int, type_: Type, count: int, rng: np.random.Gene
     if kind != "float":
         return rng.integers(-9 if kind == "int" else 0, 10, size).astype(np.int32 if kind == "int" else np.uint32)
     if isinstance(type_, Matrix) and case.row.samples.invertible:
-        return _halves(2.0 * np.eye(type_.size)[..., None] + rng.uniform(-0.5, 0.5, size))
+        return _halves(2.0 * np.eye(type_.columns)[..., None] + rng.uniform(-0.5, 0.5, size))
     low, high = _ends(case.name, index)
     sizes = 2.0 ** rng.uniform(np.log2(LEAST), np.log2(LARGEST), size) * rng.choice([-1.0, 1.0], size)
     value = np.where(rng.random(size) < 0.5, rng.uniform(low, high, size), np.clip(sizes, low, high))

@@ -200,7 +200,7 @@ def zero(type_: Type) -> Value:
     if isinstance(type_, Vector):
         return (zero(Scalar(type_.kind)),) * type_.size
     if isinstance(type_, Matrix):
-        return ((0.0,) * type_.size,) * type_.size
+        return ((0.0,) * type_.rows,) * type_.columns
     if isinstance(type_, Array):
         return (zero(type_.element),) * type_.length
     assert isinstance(type_, Struct)
@@ -246,16 +246,15 @@ def construct(type_: Type, types: list[Type], values: list[Value]) -> Value:
     if isinstance(type_, Vector):
         return tuple(scalars * count if len(scalars) == 1 else scalars[:count])
     assert isinstance(type_, Matrix)
-    size = type_.size
+    columns, rows = range(type_.columns), range(type_.rows)
     if len(values) == 1 and isinstance(types[0], Scalar):
-        return tuple(tuple(scalars[0] if i == j else 0.0 for j in range(size)) for i in range(size))
+        return tuple(tuple(scalars[0] if i == j else 0.0 for j in rows) for i in columns)
     if len(values) == 1:
         old = values[0]
-        inside = range(len(old))
         return tuple(
-            tuple(old[i][j] if i in inside and j in inside else float(i == j) for j in range(size)) for i in range(size)
+            tuple(old[i][j] if i < len(old) and j < len(old[0]) else float(i == j) for j in rows) for i in columns
         )
-    return tuple(tuple(scalars[i * size : (i + 1) * size]) for i in range(size))
+    return tuple(tuple(scalars[i * len(rows) : (i + 1) * len(rows)]) for i in columns)
 
 
 # Operators
@@ -292,7 +291,8 @@ def binary(op: str, type_: Type, left_type: Type, right_type: Type, left: Value,
 def product(matrix: Value, vector: Value) -> Value:
     size = len(vector)
     return tuple(
-        sum((matrix[i][row] * vector[i] for i in range(1, size)), matrix[0][row] * vector[0]) for row in range(size)
+        sum((matrix[i][row] * vector[i] for i in range(1, size)), matrix[0][row] * vector[0])
+        for row in range(len(matrix[0]))
     )
 
 

@@ -135,5 +135,5 @@ def _shape(type_: Type) -> tuple[int, ...]:
     if isinstance(type_, Array):
         return (type_.length, *_shape(type_.element))
     if isinstance(type_, Matrix):
-        return (type_.size, type_.size)
+        return (type_.columns, type_.rows)
     return (type_.size,) if isinstance(type_, Vector) else ()

@@ -148,7 +148,7 @@ def _rank(type_: Type) -> int:
 def _default(type_: Type, value: tuple[float, ...]) -> Any:
     """A uniform's default, which lists the components (a matrix column by column), in the layout of the tests."""
     if isinstance(type_, Matrix):
-        return np.reshape(value, (type_.size, type_.size)).T
+        return np.reshape(value, (type_.columns, type_.rows)).T
     return value if components(type_) > 1 else value[0]
 
 

@@ -39,7 +39,7 @@ T = TypeVar("T")
 NOWHERE = ir.NOWHERE
 KINDS = ("float", "int", "uint", "bool")
 PLAIN: list[Type] = [vector_of(kind, size) for kind in KINDS for size in (1, 2, 3, 4)]
-PLAIN += [Matrix(size) for size in (2, 3, 4)]
+PLAIN += [Matrix(size, size) for size in (2, 3, 4)]
 _USUAL: list[Type] = [FLOAT, INT, Vector("float", 2)]
 BINARY = ("+", "-", "*", "/", "%", "<<", ">>", "<", ">", "<=", ">=", "==", "!=", "&", "^", "|", "&&", "^^", "||")
 ASSIGNED = ("+", "-", "*", "/", "%", "<<", ">>", "&", "|", "^")
@@ -365,9 +365,9 @@ class _Generator:
             return [type_.element] * type_.length
         kind = Scalar(kind_of(type_))
         if isinstance(type_, Matrix):
-            other = self.pick([size for size in (2, 3, 4) if size != type_.size])
-            column = Vector("float", type_.size)
-            return self.pick([[kind], [column] * type_.size, [kind] * type_.size**2, [Matrix(other)]])
+            columns, other = type_.columns, self.pick([size for size in (2, 3, 4) if size != type_.columns])
+            column = Vector("float", type_.rows)
+            return self.pick([[kind], [column] * columns, [kind] * components(type_), [Matrix(other, other)]])
         assert isinstance(type_, Vector)
         converted = Vector(self.pick([other for other in KINDS if other != type_.kind]), type_.size)
         split: list[Type] = [kind, vector_of(type_.kind, type_.size - 1)]

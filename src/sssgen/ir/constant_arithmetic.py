@@ -15,7 +15,7 @@ from struct import Struct
 from sssgen.ir.formats import FLOAT32
 from sssgen.ir.intervals import Range
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.types import Type, components, kind_of
+from sssgen.ir.types import Matrix, Type, components, kind_of
 
 Number = float | int | bool
 Numbers = tuple[Number, ...]
@@ -86,17 +86,17 @@ def unary(op: str, value: Numbers, kind: str) -> Numbers | None:
 def builtin(name: str, args: Sequence[Numbers], types: Sequence[Type], result: Type) -> Numbers | None:
     """A builtin of constant arguments; None where it is not folded, or the arguments are outside of its domain."""
     try:
-        values = _values(name, args, kind_of(result))
+        values = _values(name, args, types, kind_of(result))
     except (ArithmeticError, ValueError):
         return None
     result_values = _rounded(values, kind_of(result)) if values is not None else None
     return result_values if result_values is not None and len(result_values) == components(result) else None
 
 
-def outside(name: str, args: Sequence[Numbers], result: Type) -> bool:
+def outside(name: str, args: Sequence[Numbers], types: Sequence[Type], result: Type) -> bool:
     """Whether constant arguments lie outside a builtin's domain, or its result outside the floats."""
     try:
-        return any(not abs(value) <= _LARGEST for value in _values(name, args, kind_of(result)) or ())
+        return any(not abs(value) <= _LARGEST for value in _values(name, args, types, kind_of(result)) or ())
     except (ArithmeticError, ValueError):
         return True
 
@@ -129,16 +129,23 @@ def _whole(value: Numbers) -> str:
     return text if len(value) == 1 else f"({text})"
 
 
-def _values(name: str, args: Sequence[Numbers], kind: str) -> Sequence[Number] | None:
+def _values(name: str, args: Sequence[Numbers], types: Sequence[Type], kind: str) -> Sequence[Number] | None:
     """The unrounded components of a builtin's result of a kind; None where the table has no `fold` for it."""
     row = BUILTINS[name]
     fold = row.fold_uint if kind == "uint" and row.fold_uint is not None else row.fold
     if fold is None:
         return None
     if not row.componentwise:
-        values: Sequence[Number] = fold(*args)
+        values: Sequence[Number] = fold(*map(_by_columns, args, types))
         return values
     return [fold(*parts) for parts in _by_component(args)]
+
+
+def _by_columns(arg: Numbers, type_: Type) -> Numbers | list[Numbers]:
+    """The columns of a matrix; the numbers of any other argument."""
+    if not isinstance(type_, Matrix):
+        return arg
+    return [arg[start : start + type_.rows] for start in range(0, len(arg), type_.rows)]
 
 
 def _by_component(args: Sequence[Numbers]) -> Iterator[tuple[Number, ...]]:

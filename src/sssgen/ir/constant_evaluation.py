@@ -43,8 +43,8 @@ def combined(expr: ir.Expr, values: Sequence[Value]) -> Value | None:
 
 def _product(left: Type, right: Type, values: Sequence[Value]) -> Value | None:
     """A product with a matrix, by its columns."""
-    rows = left.size if isinstance(left, Matrix) else 1
-    inner = left.size if isinstance(left, Matrix) else components(left)
+    rows = left.rows if isinstance(left, Matrix) else 1
+    inner = components(left) // rows
     numbers: list[Number] = []
     for column in range(components(right) // inner):
         for row in range(rows):
@@ -86,23 +86,23 @@ def _constructed(construct: ir.Construct, values: Sequence[Value]) -> Value | No
     type_, numbers = construct.type, [number for value in values for number in value]
     converted = [arithmetic.converted(number, kind_of(type_)) for number in numbers]
     if isinstance(type_, Matrix) and len(values) == 1:
-        return _matrix(type_.size, construct.args[0].type, converted)
+        return _matrix(type_, construct.args[0].type, converted)
     if len(converted) == 1:
         converted *= components(type_)
     result: list[Number] = [number for number in converted[: components(type_)] if number is not None]
     return tuple(result) if len(result) == components(type_) else None
 
 
-def _matrix(size: int, source: Type, numbers: list[Number | None]) -> Value | None:
+def _matrix(type_: Matrix, source: Type, numbers: list[Number | None]) -> Value | None:
     """A matrix of a number (its diagonal) or of another matrix, with the rest as in the identity matrix."""
-    source_size = source.size if isinstance(source, Matrix) else 0
     result: list[Number] = []
-    for column in range(size):
-        for row in range(size):
+    for column in range(type_.columns):
+        for row in range(type_.rows):
             number: Number | None = float(row == column)
-            if max(row, column) < source_size:
-                number = numbers[column * source_size + row]
-            elif not source_size and row == column:
+            if isinstance(source, Matrix):
+                if column < source.columns and row < source.rows:
+                    number = numbers[column * source.rows + row]
+            elif row == column:
                 number = numbers[0]
             if number is None:
                 return None

@@ -55,14 +55,23 @@ def operator_type(op: str, left: Type, right: Type) -> Type | None:
         return left if whole and components(right) in (1, components(left)) else None
     if not is_numeric(left) or kind != kind_of(right) or (op in ("%", "&", "|", "^") and kind == "float"):
         return None
-    if left == right or isinstance(right, Scalar):
+    if isinstance(right, Scalar):
         return left
     if isinstance(left, Scalar):
         return right
-    if op == "*" and isinstance(left, Matrix) and isinstance(right, Vector) and left.size == right.size:
-        return right
-    if op == "*" and isinstance(left, Vector) and isinstance(right, Matrix) and left.size == right.size:
-        return left
+    if op == "*" and (isinstance(left, Matrix) or isinstance(right, Matrix)):
+        return _product_type(left, right)
+    return left if left == right else None
+
+
+def _product_type(left: Type, right: Type) -> Type | None:
+    """The type of a product with a matrix: the left factor has as many columns as the right one has rows."""
+    if isinstance(left, Matrix) and isinstance(right, Matrix):
+        return Matrix(right.columns, left.rows) if left.columns == right.rows else None
+    if isinstance(left, Matrix) and isinstance(right, Vector):
+        return Vector("float", left.rows) if left.columns == right.size else None
+    if isinstance(left, Vector) and isinstance(right, Matrix):
+        return Vector("float", right.columns) if left.size == right.rows else None
     return None
 
 
@@ -73,7 +82,7 @@ def element_type(type: Type) -> tuple[Type, int] | None:
     if isinstance(type, Vector):
         return Scalar(type.kind), type.size
     if isinstance(type, Matrix):
-        return Vector("float", type.size), type.size
+        return Vector("float", type.rows), type.columns
     return None
 
 
@@ -147,7 +156,7 @@ def is_type(type: Type) -> bool:
         sized = isinstance(type, Scalar) or type.size in (2, 3, 4)
         return sized and type.kind in ("float", "int", "uint", "bool")
     if isinstance(type, Matrix):
-        return type.size in (2, 3, 4) and type.kind == "float"
+        return type.columns in (2, 3, 4) and type.rows in (2, 3, 4) and type.kind == "float"
     if isinstance(type, Array):
         flat = not isinstance(type.element, Array | Sampler | Void)
         return flat and 1 <= type.length <= 65536 and is_type(type.element)

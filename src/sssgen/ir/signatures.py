@@ -5,12 +5,16 @@ There are no implicit conversions: an overload matches when every type is the sa
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import NamedTuple
 
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import BY_NAME, Matrix, Type, vector_of
 
+_SHAPED = re.compile(r"(mat|vec)([CR2-4]?[CR])")
+"""Names with C for a number of columns and R for one of rows: matCR, mat2R, vecR."""
 _KINDS = {"F": "float", "I": "int", "U": "uint", "B": "bool"}
 
 
@@ -82,14 +86,23 @@ def parse(signature: str) -> list[str]:
     return [result, *(param.strip() for param in params.split(",") if param.strip())]
 
 
-def instantiate(name: str, size: int) -> Type | None:
-    """The type that a name of a signature means at one size; None if it has no such size, as vecF at 1."""
+def instantiate(name: str, size: int, rows: int = 0) -> Type | None:
+    """The type that a name of a signature means at one size; None if it has no such size, as vecF at 1.
+
+    Of the names with C and R, `size` is the number of columns and `rows` that of rows, `size` if it is 0.
+    """
     family, kind = name[:-1], _KINDS.get(name[-1])
     if kind and family in ("gen", "vec"):
         return vector_of(kind, size) if size > 1 or family == "gen" else None
     if name == "mat":
-        return Matrix(size) if size > 1 else None
-    return BY_NAME[name]
+        return Matrix(size, size) if size > 1 else None
+    shape = _SHAPED.fullmatch(name)
+    if shape is None:
+        return BY_NAME[name]
+    counts = [{"C": size, "R": rows or size}.get(letter) or int(letter) for letter in shape[2]]
+    if min(counts) == 1:
+        return None
+    return Matrix(counts[0], counts[1]) if shape[1] == "mat" else vector_of("float", counts[0])
 
 
 def _expand(name: str) -> dict[tuple[Type, ...], Overload]:
@@ -97,8 +110,10 @@ def _expand(name: str) -> dict[tuple[Type, ...], Overload]:
     row = BUILTINS.get(name)
     for signature in row.signatures if row else ():
         names = parse(signature)
-        for size in (1, 2, 3, 4):
-            result, *params = (instantiate(type_name, size) for type_name in names)
+        is_shaped = any(map(_SHAPED.fullmatch, names))
+        shapes = product((2, 3, 4), repeat=2) if is_shaped else ((size, size) for size in (1, 2, 3, 4))
+        for size, rows in shapes:
+            result, *params = (instantiate(type_name, size, rows) for type_name in names)
             if result is not None and None not in params:
                 key = tuple(param for param in params if param is not None)
                 overloads.setdefault(key, Overload(result, ",".join(names[1:])))

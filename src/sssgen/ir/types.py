@@ -1,6 +1,6 @@
 """The types of the IR: GLSL's, and nothing a target adds.
 
-Types are immutable values and compare by content. Matrices are square and column-major (`M * v`), as in GLSL.
+Types are immutable values and compare by content. Matrices are column-major (`M * v`), as in GLSL.
 """
 
 from __future__ import annotations
@@ -22,9 +22,10 @@ class Vector(NamedTuple):
 
 
 class Matrix(NamedTuple):
-    """`size` columns of `size` floats."""
+    """`columns` columns of `rows` floats: GLSL's mat2x3 has 2 columns of 3."""
 
-    size: int
+    columns: int
+    rows: int
     kind: str = "float"
 
 
@@ -77,8 +78,10 @@ BY_NAME: dict[str, Type] = {"void": VOID, "float": FLOAT, "int": INT, "uint": UI
 for _kind, _prefix in _VECTOR_NAMES.items():
     for _size in (2, 3, 4):
         BY_NAME[f"{_prefix}{_size}"] = Vector(_kind, _size)
-for _size in (2, 3, 4):
-    BY_NAME[f"mat{_size}"] = BY_NAME[f"mat{_size}x{_size}"] = Matrix(_size)
+for _columns in (2, 3, 4):
+    BY_NAME[f"mat{_columns}"] = Matrix(_columns, _columns)
+    for _size in (2, 3, 4):
+        BY_NAME[f"mat{_columns}x{_size}"] = Matrix(_columns, _size)
 for _dim in ("2D", "3D", "Cube"):
     BY_NAME[f"sampler{_dim}"] = Sampler(_dim)
 for _dim in ("2D", "Cube"):
@@ -126,12 +129,17 @@ def components(type: Type) -> int:
     if isinstance(type, Vector):
         return type.size
     if isinstance(type, Matrix):
-        return type.size * type.size
+        return type.columns * type.rows
     if isinstance(type, Array):
         return type.length * components(type.element)
     if isinstance(type, Struct):
         return sum(components(field.type) for field in type.fields)
     return 0
+
+
+def column_size(type: Type) -> int:
+    """How many components a column of a matrix has; of a scalar or vector: how many itself has."""
+    return type.rows if isinstance(type, Matrix) else components(type)
 
 
 def kind_of(type: Type) -> str:

@@ -201,6 +201,9 @@ def outer_product(format: Format, x: Value, y: Value) -> Result:
 
 def transpose(format: Format, x: Value) -> Result:
     size = math.isqrt(len(x.parts))
+    if size * size != len(x.parts):  # the number of its columns is not known here
+        low, high = min(part.low for part in x.parts), max(part.high for part in x.parts)
+        return [hull(low, high)] * len(x.parts), ANY
     return [x.parts[column * size + row] for row in range(size) for column in range(size)], ANY
 
 

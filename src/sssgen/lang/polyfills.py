@@ -10,10 +10,10 @@ from sssgen.ir.formats import Format
 from sssgen.ir.intrinsics import BUILTINS, Guard, by_column, with_constants
 from sssgen.ir.nodes import Module
 from sssgen.ir.signatures import instantiate, overload
-from sssgen.ir.types import Matrix, Scalar, Type, components, spell
+from sssgen.ir.types import Matrix, Scalar, Type, column_size, spell
 from sssgen.lang.loader import load_text
 
-_GENERIC = re.compile(r"\b(?:(?:gen|vec)[FIUB]|mat)\b")
+_GENERIC = re.compile(r"\b(?:(?:gen|vec)[FIUB]|vecR|mat[234]R|mat)\b")
 
 
 def polyfill(name: str, types: Sequence[Type]) -> Module:
@@ -28,9 +28,9 @@ def polyfill(name: str, types: Sequence[Type]) -> Module:
 def _polyfill(name: str, types: tuple[Type, ...]) -> Module:
     if overload(name, types) is None:
         raise KeyError(name)
-    size = max(type_.size if isinstance(type_, Matrix) else components(type_) for type_ in types)
+    size, rows = max(map(column_size, types)), column_size(types[0])
     for source in _definitions(BUILTINS[name].polyfill):
-        text = _GENERIC.sub(lambda match: _spelled(match.group(), size), source)
+        text = _GENERIC.sub(lambda match: _spelled(match.group(), size, rows), source)
         params = re.search(rf"\b{name}\(([^)]*)\)", text)
         if params is None:
             continue
@@ -68,9 +68,9 @@ def _guard(text: str, name: str) -> Module:
     return load_text(text, f"guards/{name}")
 
 
-def _spelled(generic: str, size: int) -> str:
+def _spelled(generic: str, size: int, rows: int) -> str:
     """A generic type's name at one size; '' where there is no such type."""
-    type_ = instantiate(generic, size)
+    type_ = instantiate(generic, size, rows)
     return spell(type_) if type_ is not None else ""
 
 

@@ -135,10 +135,8 @@ class _Counter:
             return Cost(row.cost * size + row.once, roots if row.kind == "transcendental" else 0)
         if isinstance(expr, ir.Binary):
             left, right = expr.left.type, expr.right.type
-            if expr.op == "*" and isinstance(left, Matrix) and left != right:
-                return Cost(2 * components(left))
             if expr.op == "*" and isinstance(left, Matrix):
-                return Cost(2 * components(left) * left.size)
+                return Cost(2 * components(left) * (right.columns if isinstance(right, Matrix) else 1))
             return Cost(max(components(left), components(right)))
         if isinstance(expr, ir.Unary | ir.Select):
             return Cost(components(expr.type))

@@ -243,7 +243,7 @@ class _Namer:
         if self.matrix_overloads:
             return False
         signatures = [
-            [VEC4 if param.type == Matrix(2) else param.type for param in function.params] for function in overloads
+            [VEC4 if param.type == Matrix(2, 2) else param.type for param in function.params] for function in overloads
         ]
         return any(types in signatures[:index] for index, types in enumerate(signatures))
 

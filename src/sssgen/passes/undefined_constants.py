@@ -105,9 +105,10 @@ class _Checker:
         return None
 
     def builtin(self, expr: Intrinsic, args: list[Value]) -> Value | None:
-        if args and arithmetic.outside(expr.name, args, expr.type):
+        types = [arg.type for arg in expr.args]
+        if args and arithmetic.outside(expr.name, args, types, expr.type):
             return self.wrong(arithmetic.reason(expr.name, args, kind_of(expr.type)), expr)
-        return arithmetic.builtin(expr.name, args, [arg.type for arg in expr.args], expr.type)
+        return arithmetic.builtin(expr.name, args, types, expr.type)
 
     def wrong(self, message: str, expr: Expr) -> Value | None:
         self.undefined.setdefault(expr.span, Undefined(message, expr.span))

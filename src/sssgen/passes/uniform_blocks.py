@@ -20,7 +20,7 @@ def block_type(type_: Type, capabilities: Capabilities) -> Type:
     if isinstance(type_, Scalar | Vector) and type_.kind == "bool" and not capabilities.bool_uniforms:
         return vector_of("int", components(type_))
     if _by_columns(type_, capabilities):
-        return Array(Vector("float", 4), type_.size)
+        return Array(Vector("float", 4), type_.columns)
     if isinstance(type_, Array):
         element = block_type(type_.element, capabilities)
         if isinstance(element, Array):
@@ -32,12 +32,12 @@ def block_type(type_: Type, capabilities: Capabilities) -> Type:
 
 
 def _by_columns(type_: Type, capabilities: Capabilities) -> TypeGuard[Matrix]:
-    return isinstance(type_, Matrix) and not _matrix_uniforms(type_.size, capabilities)
+    return isinstance(type_, Matrix) and not _matrix_uniforms(type_.rows, capabilities)
 
 
-def _matrix_uniforms(size: int, capabilities: Capabilities) -> bool:
-    """Whether a uniform block may hold a matrix of that size."""
-    return {2: capabilities.mat2_uniforms, 3: capabilities.mat3_uniforms}.get(size, True)
+def _matrix_uniforms(rows: int, capabilities: Capabilities) -> bool:
+    """Whether a uniform block may hold a matrix with so many rows."""
+    return {2: capabilities.mat2_uniforms, 3: capabilities.mat3_uniforms}.get(rows, True)
 
 
 def read(value: ir.Global, capabilities: Capabilities) -> ir.Expr:
@@ -74,8 +74,8 @@ def _element(value: ir.Global, type_: Array, place: ir.Expr, capabilities: Capab
 def _restored(type_: Type, stored: ir.Global, place: ir.Expr | None, span: ir.Span) -> ir.Expr:
     """A value of `type_` from its stored form."""
     if isinstance(type_, Matrix):
-        size = type_.size
-        columns = [_row(stored, _column(place, column, size, span), size, span) for column in range(size)]
+        count, rows = type_.columns, type_.rows
+        columns = [_row(stored, _column(place, column, count, span), rows, span) for column in range(count)]
         return ir.Construct(type_, tuple(columns), span)
     value: ir.Expr = stored if place is None else _row(stored, place, components(type_), span)
     if kind_of(type_) == "bool" and isinstance(type_, Scalar):
@@ -92,12 +92,12 @@ def _row(stored: ir.Global, place: ir.Expr, size: int, span: ir.Span) -> ir.Expr
     return ir.Swizzle(vector_of(kind_of(row.type), size), row, "xyzw"[:size], span)
 
 
-def _column(place: ir.Expr | None, column: int, size: int, span: ir.Span) -> ir.Expr:
-    """The row in which a column is stored, of the matrix at `place` in an array or of the only one."""
+def _column(place: ir.Expr | None, column: int, count: int, span: ir.Span) -> ir.Expr:
+    """The row in which one of `count` columns is stored: of the matrix at `place` in an array, or of the only one."""
     if place is None or isinstance(place, ir.Literal):
-        first = size * int(place.value) if isinstance(place, ir.Literal) else 0
+        first = count * int(place.value) if isinstance(place, ir.Literal) else 0
         return ir.Literal(INT, first + column, span)
-    first_row = ir.Binary(place.type, "*", place, ir.Literal(place.type, size, span), span)
+    first_row = ir.Binary(place.type, "*", place, ir.Literal(place.type, count, span), span)
     if column == 0:
         return first_row
     return ir.Binary(place.type, "+", first_row, ir.Literal(place.type, column, span), span)

@@ -141,7 +141,7 @@ def _described(uniform: Uniform) -> dict[str, Any]:
 def _in_block(type_: Type, offset: int, size: int) -> dict[str, int]:
     element = type_.element if isinstance(type_, Array) else type_
     matrix_stride = 16 if isinstance(element, Matrix) else 0
-    array_stride = (16 * element.size if isinstance(element, Matrix) else 16) if isinstance(type_, Array) else 0
+    array_stride = (16 * element.columns if isinstance(element, Matrix) else 16) if isinstance(type_, Array) else 0
     return {"offset": offset, "size": size, "array_stride": array_stride, "matrix_stride": matrix_stride}
 
 

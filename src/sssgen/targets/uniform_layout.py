@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from sssgen.ir.nodes import Uniform
-from sssgen.ir.types import Array, Matrix, Sampler, Type, components, kind_of
+from sssgen.ir.types import Array, Matrix, Sampler, Type, column_size, components, kind_of
 
 
 class Member(NamedTuple):
@@ -58,9 +58,9 @@ def _simd_size(type_: Type) -> tuple[int, int]:
     if isinstance(type_, Array):
         size, alignment = _simd_size(type_.element)
         return size * type_.length, alignment
-    count = type_.size if isinstance(type_, Matrix) else components(type_)
+    count = column_size(type_)
     width = (1 if kind_of(type_) == "bool" else 4) * (4 if count == 3 else count)
-    return (width * count if isinstance(type_, Matrix) else width), width
+    return (width * type_.columns if isinstance(type_, Matrix) else width), width
 
 
 def _align(offset: int, alignment: int) -> int:
@@ -76,9 +76,9 @@ def _alignment(type_: Type) -> int:
 def _size(type_: Type) -> int:
     """How many bytes hold values."""
     if isinstance(type_, Matrix):
-        return 16 * (type_.size - 1) + 4 * type_.size
+        return 16 * (type_.columns - 1) + 4 * type_.rows
     if isinstance(type_, Array):
-        stride = 16 * type_.element.size if isinstance(type_.element, Matrix) else 16
+        stride = 16 * type_.element.columns if isinstance(type_.element, Matrix) else 16
         return stride * (type_.length - 1) + _size(type_.element)
     return 4 * components(type_)
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sssgen.harness.backends.backend_interface import Array, Bound, Call, Drawing, Place, Stage, Text
-from sssgen.ir.types import Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell, vector_of
+from sssgen.ir.types import Matrix, Sampler, Scalar, Type, Vector, column_size, components, kind_of, spell, vector_of
 from sssgen.targets.descriptor import Target
 from sssgen.targets.registry import load
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -197,7 +197,7 @@ class _Writer:
             self.data += _rows(type_, self._rounded(np.asarray(arg)), self.grid)
         result = f"sssgen_r{number}"
         statements.append(self._declare(call.result, result, f"{call.function}({', '.join(args)})"))
-        columns = call.result.size if isinstance(call.result, Matrix) else 1
+        columns = call.result.columns if isinstance(call.result, Matrix) else 1
         for column in range(columns):
             part = f"{result}[{column}]" if isinstance(call.result, Matrix) else result
             statements.append(
@@ -220,7 +220,7 @@ class _Writer:
 
     def _read(self, type_: Type, row: int) -> str:
         if isinstance(type_, Matrix):
-            columns = [self._read(Vector("float", type_.size), row + self.grid.rows * i) for i in range(type_.size)]
+            columns = [self._read(Vector("float", type_.rows), row + self.grid.rows * i) for i in range(type_.columns)]
             return f"{self.target.types[spell(type_)]}({', '.join(columns)})"
         size = components(type_)
         fetched = f"{self.language.fetch.format(row=row)}.{'xyzw'[:size]}"
@@ -234,7 +234,7 @@ class _Writer:
 
     def _words(self, type_: Type, value: str) -> str:
         """Four 32-bit components that start with those of the value."""
-        size = type_.size if isinstance(type_, Matrix | Vector) else 1
+        size = column_size(type_)
         unsigned = self.target.types["uint" if size == 1 else f"uvec{size}"]
         single = self.single[spell(vector_of(kind_of(type_), size))]
         bits = self.language.words[kind_of(type_)].format(value, unsigned=unsigned, single=single)
@@ -259,7 +259,7 @@ def _declared(target: Target, name: str, bound: Bound) -> str:
 def _rows(type_: Type, value: Array, grid: Grid) -> list[Array]:
     """An argument as rows of four 32-bit components for each lane."""
     if isinstance(type_, Matrix):
-        return [row for column in value for row in _rows(Vector("float", type_.size), column, grid)]
+        return [row for column in value for row in _rows(Vector("float", type_.rows), column, grid)]
     words = np.zeros((grid.rows * grid.width, 4), np.uint32)
     with np.errstate(over="ignore", invalid="ignore"):
         converted = value.reshape(components(type_), -1).astype(DTYPES[kind_of(type_)])
@@ -269,7 +269,7 @@ def _rows(type_: Type, value: Array, grid: Grid) -> list[Array]:
 
 def _result(type_: Type, words: Array, lanes: int) -> Array:
     """The value in the layout of `numpy_values`."""
-    size = type_.size if isinstance(type_, Matrix | Vector) else 1
+    size = column_size(type_)
     values: Array = np.ascontiguousarray(words[:, :lanes, :size]).view(DTYPES[kind_of(type_)])
     if kind_of(type_) == "bool":
         values = values != 0

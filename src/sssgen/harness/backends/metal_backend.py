@@ -128,7 +128,7 @@ def _filled(type_: Type, value: Array, padded: int) -> Array:
 def _inner(type_: Type) -> tuple[int, ...]:
     """The axes of a value before that of the lanes."""
     if isinstance(type_, Matrix):
-        return type_.size, type_.size
+        return type_.columns, type_.rows
     return (type_.size,) if isinstance(type_, Vector) else ()
 
 

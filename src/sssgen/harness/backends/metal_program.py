@@ -156,20 +156,16 @@ def _call(target: Target, number: int, call: Call, textures: Sequence[str], toge
 def _read(target: Target, type_: Type, index: int) -> str:
     """An argument of the lane; each component has one more number, for the lane beside the picture."""
     stored = f"static_cast<const {_STORED[kind_of(type_)]}*>(sssgen_args[{index}])"
-    count = _count(type_)
+    count = components(type_)
     texts = [f"{stored}[{i} * (sssgen_lanes + 1) + lane]" for i in range(count)]
     if kind_of(type_) == "bool":
         texts = [f"{text} != 0" for text in texts]
     return f"{target.types[spell(type_)]}({', '.join(texts)})"
 
 
-def _count(type_: Type) -> int:
-    return type_.size**2 if isinstance(type_, Matrix) else components(type_)
-
-
 def _parts(type_: Type) -> list[str]:
     """The numbers of a result."""
     if isinstance(type_, Matrix):
-        return [f"value[{column}][{row}]" for column in range(type_.size) for row in range(type_.size)]
+        return [f"value[{column}][{row}]" for column in range(type_.columns) for row in range(type_.rows)]
     count = components(type_)
     return [f"value[{i}]" for i in range(count)] if count > 1 else ["value"]

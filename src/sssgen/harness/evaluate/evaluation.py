@@ -134,7 +134,7 @@ def fitted(subject: Subject, raw: Mapping[str, Any]) -> Inputs:
 def shape_of(type_: Type) -> tuple[int, ...]:
     """A value's axes without its lanes."""
     if isinstance(type_, Matrix):
-        return type_.size, type_.size
+        return type_.columns, type_.rows
     return (type_.size,) if isinstance(type_, Vector) else ()
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from sssgen.harness.backends import VERTEX_SIZE, Array, Text, emitted
 from sssgen.harness.backends.metal_backend import MetalOnCpu
 from sssgen.harness.render.shell_values import LIGHTS, Shell, bound_texture, inverse
-from sssgen.ir.types import BY_NAME, Matrix, Vector, kind_of
+from sssgen.ir.types import BY_NAME, column_size, kind_of
 from sssgen.pipeline.compiler import Compiled
 
 _DTYPES: dict[str, Any] = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.uint8}
@@ -46,7 +46,7 @@ def material_block(reflection: Mapping[str, Any], parameters: Mapping[str, Any])
     block = bytearray(reflection["uniform_block_size"] or 0)
     for uniform in reflection["uniforms"]:
         type_ = BY_NAME[uniform["type"].partition("[")[0]]
-        size = type_.size if isinstance(type_, Matrix | Vector) else 1
+        size = column_size(type_)
         values = np.asarray(parameters.get(uniform["source_name"], uniform["default"]))
         rows = values.astype(_DTYPES[kind_of(type_)]).reshape(-1, size)
         stride = rows.itemsize * (4 if size == 3 else size)

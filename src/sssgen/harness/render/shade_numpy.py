@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from sssgen.harness.backends import VERTEX_SIZE, Array
+from sssgen.harness.evaluate.evaluation import shape_of
 from sssgen.harness.render.shell_values import Shell, bound_texture, inverse
-from sssgen.ir.types import BY_NAME, Matrix, Vector, kind_of
+from sssgen.ir.types import BY_NAME, kind_of
 from sssgen.pipeline.compiler import Compiled
 from sssgen.targets.runtime.numpy_values import grid, precision
 
@@ -48,7 +49,7 @@ def _namespace(compiled: Compiled, shell: Shell, dtype: str) -> dict[str, Any]:
         if parameter is not None:
             base, _, length = uniform["type"].partition("[")
             type_ = BY_NAME[base]
-            size = (type_.size,) * (2 if isinstance(type_, Matrix) else 1) if isinstance(type_, Matrix | Vector) else ()
+            size = shape_of(type_)
             kind = dtype if kind_of(type_) == "float" else _DTYPES[kind_of(type_)]
             value = np.asarray(parameter).reshape(*([-1] if length else []), *size, 1).astype(kind)
             names[uniform["name"]] = value if size or length else value[0]

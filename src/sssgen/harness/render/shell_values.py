@@ -13,7 +13,7 @@ import numpy as np
 
 from sssgen.harness.backends import Array, Block, Bound, Drawing, Place, Stage, emitted
 from sssgen.harness.evaluate.evaluation import default_texture
-from sssgen.ir.types import BY_NAME, Matrix, Vector, kind_of
+from sssgen.ir.types import BY_NAME, column_size, kind_of
 from sssgen.pipeline.compiler import Compiled
 from sssgen.targets.runtime.numpy_textures import Texture
 
@@ -160,7 +160,7 @@ def material_block(reflection: Mapping[str, Any], values: Mapping[str, Array]) -
     block = np.zeros(reflection["uniform_block_size"] // 4, np.uint32)
     for uniform in reflection["uniforms"]:
         type_ = BY_NAME[uniform["type"].partition("[")[0]]
-        size = type_.size if isinstance(type_, Matrix | Vector) else 1
+        size = column_size(type_)
         rows = np.asarray(values[uniform["name"]]).astype(_DTYPES[kind_of(type_)]).reshape(-1, size)
         for number, row in enumerate(rows):
             start = uniform["offset"] // 4 + 4 * number

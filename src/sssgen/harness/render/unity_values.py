@@ -16,7 +16,7 @@ from sssgen.harness.backends import VERTEX_SIZE, Array, Bound, Drawing, Place, e
 from sssgen.harness.backends.unity_backend import UnityHLSL
 from sssgen.harness.render import pixel_mesh
 from sssgen.harness.render.shell_values import Shell, inverse, textures
-from sssgen.ir.types import BY_NAME, Matrix, Vector
+from sssgen.ir.types import BY_NAME, column_size
 from sssgen.pipeline.compiler import Compiled
 from sssgen.targets.runtime.numpy_textures import Texture
 
@@ -116,7 +116,7 @@ def _properties(reflection: Mapping[str, Any], shell: Shell) -> dict[str, Array]
     properties = {}
     for uniform in reflection["uniforms"]:
         type_ = BY_NAME[uniform["type"].partition("[")[0]]
-        size = type_.size if isinstance(type_, Matrix | Vector) else 1
+        size = column_size(type_)
         value = shell.parameters.get(uniform["source_name"], uniform["default"])
         properties[uniform["name"]] = np.asarray(value).reshape(-1, size)
     return properties

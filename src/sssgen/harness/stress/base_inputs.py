@@ -48,7 +48,7 @@ def plain(specimen: Specimen, lanes: int, overrides: dict[str, Any] | None = Non
             if value.shape != shape_of(param.type) or name not in _PLAIN:
                 value = np.asarray(_OF_QUANTITY.get(param.quantity, 0.5))
             if isinstance(param.type, Matrix):
-                value = np.eye(param.type.size)
+                value = np.eye(param.type.columns, param.type.rows)
             dtype = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}[kind_of(param.type)]
             values[name] = np.broadcast_to(value[..., None], (*shape_of(param.type), 1)).astype(dtype)
     return Inputs(values, textures, lanes)

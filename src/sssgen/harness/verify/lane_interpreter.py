@@ -23,6 +23,7 @@ from sssgen.harness.verify.branch_outcomes import CASES, Outcomes
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.intrinsics.table import LARGEST
+from sssgen.ir.rules import element_type
 from sssgen.ir.types import VOID, Matrix, Scalar, Struct, Type, Vector, components, kind_of
 from sssgen.ir.types import Array as ArrayType
 from sssgen.ir.walk import builtins_of
@@ -371,9 +372,9 @@ class Run:
         args = [self.converted(kind, kind_of(arg.type), value) for arg, value in zip(expr.args, args, strict=True)]
         if isinstance(type_, Matrix):
             if len(args) > 1:
-                return rt.mat(type_.size, *args)
+                return rt.mat(type_.columns, *args)
             shape = rt.resize if isinstance(expr.args[0].type, Matrix) else rt.diagonal
-            return shape(type_.size, args[0])
+            return shape(type_.columns, args[0], type_.rows)
         size = components(type_)
         if len(args) > 1:
             return rt.vec(*args)[:size]
@@ -404,10 +405,10 @@ class Run:
 
     def index(self, expr: ir.Index) -> Value:
         place = self.value(expr.index)
-        type_ = expr.value.type
-        length = type_.length if isinstance(type_, ArrayType) else type_.size  # type: ignore[union-attr]  # it has elements
+        elements = element_type(expr.value.type)
+        assert elements is not None
         if not isinstance(expr.index, ir.Literal | _Known):
-            self.require((place >= 0) & (place < length))
+            self.require((place >= 0) & (place < elements[1]))
         return place.astype(np.int64)
 
     def member(self, expr: ir.Member) -> Value:

@@ -8,7 +8,8 @@ and reads of textures with the layer or the reference as a separate argument. Ea
 parameters and projective reads are functions, in `ir.out_builtins`; old names are in `ir.old_names`.
 
 Signatures are written as in that specification: `genF` stands for float, vec2, vec3 and vec4 alike (one size throughout
-a signature), `vecF` for the vectors alone; likewise genI, genU, genB, vecI, vecU, vecB; `mat` for mat2, mat3 and mat4.
+a signature), `vecF` for the vectors alone; likewise genI, genU, genB, vecI, vecU, vecB; `mat` for mat2, mat3 and mat4;
+`matCR` for all matrices, of C columns and R rows, with `vecR` for its columns and `vecC` for its rows.
 `ir.signatures` reads them.
 
 `texts` maps a language to the text of the builtin in it. A language without a text uses the builtin's own name. A key

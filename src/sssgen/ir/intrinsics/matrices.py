@@ -8,31 +8,32 @@ from collections.abc import Sequence
 from sssgen.ir import vector_ranges
 from sssgen.ir.intrinsics.table import Builtin, Guard, Samples
 
-
-def _transposed(matrix: Sequence[float]) -> list[float]:
-    size = math.isqrt(len(matrix))
-    return [matrix[size * row + column] for column in range(size) for row in range(size)]
+Columns = Sequence[Sequence[float]]
 
 
-def _determinant(matrix: Sequence[float]) -> float:
-    size = math.isqrt(len(matrix))
-    if size == 1:
-        return matrix[0]
-    minors = [[n for i, n in enumerate(matrix[size:]) if i % size != row] for row in range(size)]
-    return math.fsum((-1.0) ** row * matrix[row] * _determinant(minors[row]) for row in range(size))
+def _transposed(matrix: Columns) -> list[float]:
+    return [number for row in zip(*matrix, strict=True) for number in row]
+
+
+def _determinant(matrix: Columns) -> float:
+    if len(matrix) == 1:
+        return matrix[0][0]
+    first, *others = matrix
+    minors = [[[*column[:row], *column[row + 1 :]] for column in others] for row in range(len(first))]
+    return math.fsum((-1.0) ** row * first[row] * _determinant(minors[row]) for row in range(len(first)))
 
 
 # A table: several fields to a line.
 # fmt: off
 ROWS = (
-    Builtin("matrixCompMult", ("mat(mat, mat)",), "Componentwise product.",
+    Builtin("matrixCompMult", ("matCR(matCR, matCR)",), "Componentwise product.",
         range=lambda F, x, y: x * y,
         inside=lambda rt, x, y: abs(x * y) < 1e38,
         texts={"hlsl": "", "wgsl": ""},
         polyfill="""
-mat2 matrixCompMult(mat2 x, mat2 y) { return mat2(x[0] * y[0], x[1] * y[1]); }
-mat3 matrixCompMult(mat3 x, mat3 y) { return mat3(x[0] * y[0], x[1] * y[1], x[2] * y[2]); }
-mat4 matrixCompMult(mat4 x, mat4 y) { return mat4(x[0] * y[0], x[1] * y[1], x[2] * y[2], x[3] * y[3]); }
+mat2R matrixCompMult(mat2R x, mat2R y) { return mat2R(x[0] * y[0], x[1] * y[1]); }
+mat3R matrixCompMult(mat3R x, mat3R y) { return mat3R(x[0] * y[0], x[1] * y[1], x[2] * y[2]); }
+mat4R matrixCompMult(mat4R x, mat4R y) { return mat4R(x[0] * y[0], x[1] * y[1], x[2] * y[2], x[3] * y[3]); }
 """,
         vectors=(
             ((((1.0, 2.0), (3.0, 4.0)), ((5.0, 6.0), (7.0, 8.0))), ((5.0, 12.0), (21.0, 32.0))),
@@ -40,28 +41,28 @@ mat4 matrixCompMult(mat4 x, mat4 y) { return mat4(x[0] * y[0], x[1] * y[1], x[2]
             ((((0.0, 0.0), (0.0, 0.0)), ((5.0, 6.0), (7.0, 8.0))), ((0.0, 0.0), (0.0, 0.0))),
         ),
     ),
-    Builtin("outerProduct", ("mat2(vec2, vec2)", "mat3(vec3, vec3)", "mat4(vec4, vec4)"),
-        "The matrix whose column i is x·y[i].",
+    Builtin("outerProduct", ("matCR(vecR, vecC)",), "The matrix whose column i is x·y[i].",
         componentwise=False, range=vector_ranges.outer_product,
         inside=lambda rt, x, y: rt.length(x) * rt.length(y) < 1e38,
         texts={"hlsl": "", "wgsl": ""},
         polyfill="""
-mat2 outerProduct(vec2 x, vec2 y) { return mat2(x * y.x, x * y.y); }
-mat3 outerProduct(vec3 x, vec3 y) { return mat3(x * y.x, x * y.y, x * y.z); }
-mat4 outerProduct(vec4 x, vec4 y) { return mat4(x * y.x, x * y.y, x * y.z, x * y.w); }
+mat2R outerProduct(vecR x, vec2 y) { return mat2R(x * y.x, x * y.y); }
+mat3R outerProduct(vecR x, vec3 y) { return mat3R(x * y.x, x * y.y, x * y.z); }
+mat4R outerProduct(vecR x, vec4 y) { return mat4R(x * y.x, x * y.y, x * y.z, x * y.w); }
 """,
         vectors=(
             (((1.0, 2.0), (3.0, 4.0)), ((3.0, 6.0), (4.0, 8.0))),
             (((0.0, 0.0), (3.0, 4.0)), ((0.0, 0.0), (0.0, 0.0))),
             (((1.0, 0.0, 2.0), (0.0, 1.0, -1.0)), ((0.0, 0.0, 0.0), (1.0, 0.0, 2.0), (-1.0, 0.0, -2.0))),
+            (((1.0, 0.0, 2.0), (0.0, -1.0)), ((0.0, 0.0, 0.0), (-1.0, 0.0, -2.0))),
         ),
     ),
-    Builtin("transpose", ("mat(mat)",), "Rows for columns.",
+    Builtin("transpose", ("matRC(matCR)",), "Rows for columns.",
         not_constant=("wgsl",), fold=_transposed, componentwise=False, range=vector_ranges.transpose,
         cost=0,
         ulp=0.0, vectors=(
             ((((1.0, 2.0), (3.0, 4.0)),), ((1.0, 3.0), (2.0, 4.0))),
-            ((((1.0, 0.0), (0.0, 1.0)),), ((1.0, 0.0), (0.0, 1.0))),
+            ((((1.0, 2.0, 3.0), (4.0, 5.0, 6.0)),), ((1.0, 4.0), (2.0, 5.0), (3.0, 6.0))),
             ((((1.0, 2.0, 3.0), (4.0, 5.0, 6.0), (7.0, 8.0, 9.0)),), ((1.0, 4.0, 7.0), (2.0, 5.0, 8.0), (3.0, 6.0, 9.0))),
         ),
     ),

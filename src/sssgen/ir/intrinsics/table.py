@@ -80,8 +80,8 @@ def with_constants(text: str, format: Format, limits: Interval, shown: Callable[
 def by_column(text: str, matrix: Matrix, letters: str) -> str:
     """A guard's text, which is one of vectors, for matrices: of each column of the `letters`, as no builtin of guards
     takes a matrix."""
-    columns = [re.sub(rf"\b([{letters}])\b", rf"\1[{column}]", text) for column in range(matrix.size)]
-    return f"{spell(matrix)}({', '.join(columns)})".replace("genF", f"vec{matrix.size}")
+    columns = [re.sub(rf"\b([{letters}])\b", rf"\1[{column}]", text) for column in range(matrix.columns)]
+    return f"{spell(matrix)}({', '.join(columns)})".replace("genF", f"vec{matrix.rows}")
 
 
 class Samples(NamedTuple):

@@ -150,7 +150,7 @@ def _shaped(type_name: str, data: Any, dtype: Any) -> Any:
     kind = dtype if kind_of(type_) == "float" else np.int32
     value = np.asarray(data, kind)
     if isinstance(type_, Matrix):
-        return value.reshape(type_.size, type_.size, -1)
+        return value.reshape(type_.columns, type_.rows, -1)
     if isinstance(type_, Vector):
         return value.reshape(type_.size, -1)
     return value

@@ -70,7 +70,7 @@ class ConstructorChecker:
         if self.context.plain and values and isinstance(values[-1].type, Matrix) and isinstance(type_, Vector):
             values = self.with_columns(values, components(type_))
             args = [Typed(value) for value in values]
-        if len(values) == 1 and type_ == Matrix(2) and components(values[0].type) == 4 and kind_of(values[0].type):
+        if len(values) == 1 and type_ == Matrix(2, 2) and components(values[0].type) == 4 and kind_of(values[0].type):
             values = self.halves(values[0])
             args = [Typed(value) for value in values]
         error = self.constructor_error(type_, args, call)
@@ -105,7 +105,7 @@ class ConstructorChecker:
         """The columns of a matrix as arguments of a vector of `count` components."""
         assert isinstance(matrix.type, Matrix)
         variable = self.variable("matrix", matrix)
-        size, span = matrix.type.size, matrix.span
+        size, span = matrix.type.rows, matrix.span
         columns = [
             Typed(ir.Index(Vector("float", size), variable, ir.Literal(INT, column, span), span))
             for column in range(-(-count // size))

@@ -141,7 +141,7 @@ def _components(value: ir.Expr) -> tuple[float, ...] | None:
 def _identity(type_: Type) -> tuple[float, ...]:
     """The default of a uniform without one: zeros, or the identity matrix."""
     if isinstance(type_, Matrix):
-        return tuple(1.0 if row == column else 0.0 for column in range(type_.size) for row in range(type_.size))
+        return tuple(1.0 if row == column else 0.0 for column in range(type_.columns) for row in range(type_.rows))
     if isinstance(type_, Array):
         return _identity(type_.element) * type_.length
     return (0.0,) * components(type_)

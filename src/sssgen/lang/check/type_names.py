@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sssgen.ir.types import BY_NAME, Array, Sampler, Type, Void, spell
+from sssgen.ir.types import BY_NAME, Array, Matrix, Sampler, Type, Void, spell
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.context import CheckContext
-from sssgen.lang.check.wording import why_not
+from sssgen.lang.check.wording import a_type, why_not
 from sssgen.lang.syntax import tree as s
 
 
@@ -26,6 +26,14 @@ def named_type(context: CheckContext, name: s.TypeName) -> tuple[Type, str]:
         raise context.fail(name.span, f"'{name.name}' cannot be translated: {why}")
     else:
         raise context.unknown(name.span, "type", name.name, [*BY_NAME, *context.structs, *q.QUANTITIES])
+    if (
+        isinstance(type_, Matrix)
+        and type_.columns != type_.rows
+        and not context.plain
+        and not name.span.file.startswith("intrinsics/")
+    ):
+        hint = "some engines have no other matrices"
+        raise context.fail(name.span, f"{a_type(type_)} is not square, as a technique's matrices must be", hint)
     if name.lengths:
         return array_type(context, type_, name.lengths), ""
     return type_, quantity

@@ -78,7 +78,7 @@ def _check_drawn(context: CheckContext, span: Span, view: str, type_: Type) -> N
             span, f"a program cannot draw '{view}'", did_you_mean(view, DRAWN) or f"one of: {', '.join(DRAWN)}"
         )
     dim = "Cube" if view in CUBES else "2D"
-    if type_ not in (Matrix(4), FLOAT) and not (isinstance(type_, Sampler) and type_.dim == dim):
+    if type_ not in (Matrix(4, 4), FLOAT) and not (isinstance(type_, Sampler) and type_.dim == dim):
         raise context.fail(
             span, f"drawn({view}) is for a sampler{dim}, the mat4 of the view in which it is drawn, and its size"
         )

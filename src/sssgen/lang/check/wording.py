@@ -81,7 +81,6 @@ _UNSUPPORTED = (
     (r"double|d(vec|mat)[234](x[234])?", "WGSL has no floats of 64 bits"),
     (r"[iu]?image\w+", "images belong to compute shaders"),
     (r"[iu]?sampler(1D|2DRect|Buffer|2DMS)\w*", "WebGPU has no such textures"),
-    (r"mat[234]x[234]", "matrices must be square"),
     (r"atomic_uint", "atomics belong to compute shaders"),
 )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.rules import element_type
 from sssgen.ir.types import (
     BOOL,
     FLOAT,
@@ -67,8 +68,9 @@ def _equality(binary: ir.Binary, capabilities: Capabilities, keep: Keep) -> ir.E
             for field in type_.fields
         ]
     elif isinstance(type_, Matrix | Array):
-        inner = Vector("float", type_.size) if isinstance(type_, Matrix) else type_.element
-        count = type_.size if isinstance(type_, Matrix) else type_.length
+        elements = element_type(type_)
+        assert elements is not None
+        inner, count = elements
         places = [ir.Literal(INT, index, span) for index in range(count)]
         pairs = [(ir.Index(inner, left, place, span), ir.Index(inner, right, place, span)) for place in places]
     else:

@@ -15,17 +15,18 @@ def matrix_from(type_: Matrix, value: ir.Expr, keep: Keep, span: Span) -> ir.Exp
     zero, one = ir.Literal(FLOAT, 0.0, span), ir.Literal(FLOAT, 1.0, span)
     if isinstance(value.type, Scalar):
         value = keep(value, "diagonal")
-        cells = [value if row == column else zero for column in range(type_.size) for row in range(type_.size)]
+        cells = [value if row == column else zero for column in range(type_.columns) for row in range(type_.rows)]
         return ir.Construct(type_, tuple(cells), span)
     value = keep(value, "matrix")
     assert isinstance(value.type, Matrix)
-    old, new = value.type.size, type_.size
+    old, new = value.type.rows, type_.rows
     columns: list[ir.Expr] = []
-    for column in range(new):
+    for column in range(type_.columns):
         index = ir.Index(Vector("float", old), value, ir.Literal(INT, column, span), span)
-        unit = tuple(one if row == column else zero for row in range(old, new))
-        if column >= old:
-            columns.append(ir.Construct(Vector("float", new), tuple([zero] * old) + unit, span))
+        cells = [one if row == column else zero for row in range(new)]
+        unit = tuple(cells[old:])
+        if column >= value.type.columns:
+            columns.append(ir.Construct(Vector("float", new), tuple(cells), span))
         elif new < old:
             columns.append(ir.Swizzle(Vector("float", new), index, "xyzw"[:new], span))
         else:
@@ -36,7 +37,7 @@ def matrix_from(type_: Matrix, value: ir.Expr, keep: Keep, span: Span) -> ir.Exp
 def by_columns(binary: ir.Binary, keep: Keep) -> ir.Expr:
     """Componentwise matrix arithmetic, column by column."""
     assert isinstance(binary.type, Matrix)
-    column = Vector("float", binary.type.size)
+    column = Vector("float", binary.type.rows)
     sides = [keep(side, "matrix") for side in (binary.left, binary.right)]
 
     def part(side: ir.Expr, index: int) -> ir.Expr:
@@ -45,7 +46,7 @@ def by_columns(binary: ir.Binary, keep: Keep) -> ir.Expr:
 
     columns = tuple(
         ir.Binary(column, binary.op, part(sides[0], index), part(sides[1], index), binary.span)
-        for index in range(binary.type.size)
+        for index in range(binary.type.columns)
     )
     return ir.Construct(binary.type, columns, binary.span)
 
@@ -53,7 +54,7 @@ def by_columns(binary: ir.Binary, keep: Keep) -> ir.Expr:
 def needs_columns(type_: Matrix, args: Sequence[ir.Expr]) -> bool:
     """Whether several arguments are neither numbers alone nor whole columns."""
     sizes = {components(arg.type) for arg in args}
-    return len(args) > 1 and sizes not in ({1}, {type_.size})
+    return len(args) > 1 and sizes not in ({1}, {type_.rows})
 
 
 def by_whole_columns(type_: Matrix, args: Sequence[ir.Expr], span: Span) -> ir.Construct:
@@ -62,8 +63,8 @@ def by_whole_columns(type_: Matrix, args: Sequence[ir.Expr], span: Span) -> ir.C
     A vector in `args` that is part of two columns is read twice.
     """
     cells = [(arg, component) for arg in args for component in range(components(arg.type))]
-    size = type_.size
-    columns = [_column(cells[start : start + size], size, span) for start in range(0, size * size, size)]
+    size = type_.rows
+    columns = [_column(cells[start : start + size], size, span) for start in range(0, len(cells), size)]
     return ir.Construct(type_, tuple(columns), span)
 
 

@@ -72,14 +72,15 @@ def _wider(place: ir.Expr, value: ir.Expr, keep: Keep) -> tuple[ir.Expr, ir.Expr
     vector, span = place.value, place.span
     type_ = vector.type
     assert isinstance(type_, Vector | Matrix)
-    part_type = Vector("float", type_.size) if isinstance(type_, Matrix) else Scalar(type_.kind)
+    part_type = Vector("float", type_.rows) if isinstance(type_, Matrix) else Scalar(type_.kind)
+    count = type_.columns if isinstance(type_, Matrix) else type_.size
 
     def old(component: int) -> ir.Expr:
         if isinstance(type_, Matrix):
             return ir.Index(part_type, vector, ir.Literal(Scalar("int"), component, span), span)
         return ir.Swizzle(part_type, vector, "xyzw"[component], span)
 
-    parts = [old(number) for number in range(type_.size)]
+    parts = [old(number) for number in range(count)]
     if isinstance(place, ir.Swizzle):
         if len(place.components) > 1:
             value = keep(value, f"{base_name(vector)}_{place.components}")
@@ -89,7 +90,7 @@ def _wider(place: ir.Expr, value: ir.Expr, keep: Keep) -> tuple[ir.Expr, ir.Expr
         parts[int(place.index.value)] = value
     else:
         value = keep(value, f"{base_name(vector)}_new")
-        for number in range(type_.size):
+        for number in range(count):
             selected = ir.Binary(BOOL, "==", place.index, ir.Literal(place.index.type, number, span), span)
             parts[number] = ir.Select(part_type, selected, value, parts[number], span)
     return vector, ir.Construct(type_, tuple(_joined(parts)), span)

@@ -260,18 +260,17 @@ class ExpressionRanges(CallRanges):
         return self.value(tuple(parts), tuple(numbers), length)
 
     def matrix(self, node: ir.Construct, value: Value) -> Value:
-        size = cast(Matrix, node.type).size
+        type_, old = cast(Matrix, node.type), node.args[0].type
         zero, one = self.numbers.of("constant", 0.0), self.numbers.of("constant", 1.0)
         parts, numbers = [], []
-        old = value.parts and int(len(value.parts) ** 0.5)
-        for column in range(size):
-            for row in range(size):
+        for column in range(type_.columns):
+            for row in range(type_.rows):
                 if len(value.parts) == 1:
                     parts.append(value.parts[0] if row == column else as_range(0.0))
                     numbers.append(value.numbers[0] if row == column else zero)
-                elif row < cast(int, old) and column < cast(int, old):
-                    parts.append(value.parts[column * cast(int, old) + row])
-                    numbers.append(value.numbers[column * cast(int, old) + row])
+                elif isinstance(old, Matrix) and row < old.rows and column < old.columns:
+                    parts.append(value.parts[column * old.rows + row])
+                    numbers.append(value.numbers[column * old.rows + row])
                 else:
                     parts.append(as_range(float(row == column)))
                     numbers.append(one if row == column else zero)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import cast
-
 from sssgen.ir.intervals import ANY, Range, widened
 from sssgen.ir.types import Array, Matrix, Scalar, Struct, Type, components, kind_of
 
@@ -53,9 +51,9 @@ def matrix_product(
     """
     if isinstance(left, Scalar) or isinstance(right, Scalar):
         return None
-    size = left.size if isinstance(left, Matrix) else cast(Matrix, right).size
-    rows = [[a[k * size + row] for k in range(size)] for row in range(size)] if isinstance(left, Matrix) else [list(a)]
-    columns = [list(b[c * size : (c + 1) * size]) for c in range(size)] if isinstance(right, Matrix) else [list(b)]
+    rows = [list(a[row :: left.rows]) for row in range(left.rows)] if isinstance(left, Matrix) else [list(a)]
+    inner = len(rows[0])
+    columns = [list(b[start : start + inner]) for start in range(0, len(b), inner)]
     parts = []
     for column in columns:
         for row in rows:

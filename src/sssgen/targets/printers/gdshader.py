@@ -49,11 +49,11 @@ class GodotPrinter(GlslPrinter):
     def construct(self, construct: ir.Construct) -> tuple[str, int]:
         """A matrix of numbers is written by columns, which is the only constructor for it here."""
         type_, args = construct.type, construct.args
-        if not isinstance(type_, Matrix) or len(args) != type_.size**2:
+        if not isinstance(type_, Matrix) or len(args) != components(type_):
             return super().construct(construct)
-        column = self.type(Vector("float", type_.size))
-        starts = range(0, len(args), type_.size)
-        columns = [f"{column}({self.arguments(args[start : start + type_.size])})" for start in starts]
+        column = self.type(Vector("float", type_.rows))
+        starts = range(0, len(args), type_.rows)
+        columns = [f"{column}({self.arguments(args[start : start + type_.rows])})" for start in starts]
         return f"{self.type(type_)}({self.listed(columns)})", PRIMARY
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
@@ -98,8 +98,8 @@ class GodotPrinter(GlslPrinter):
 
     def value_of(self, type_: Type, numbers: Sequence[float]) -> str:
         if isinstance(type_, Matrix):
-            size, column = type_.size, Vector("float", type_.size)
-            columns = [self.value_of(column, numbers[start : start + size]) for start in range(0, size * size, size)]
+            size, column = type_.rows, Vector("float", type_.rows)
+            columns = [self.value_of(column, numbers[start : start + size]) for start in range(0, len(numbers), size)]
             return f"{self.type(type_)}({', '.join(columns)})"
         return super().value_of(type_, numbers)
 

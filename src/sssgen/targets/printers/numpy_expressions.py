@@ -141,13 +141,14 @@ class NumpyExpressions(Printer):
                 f"array(*[{texts[0]}] * {len(texts)})" if repeated else f"array({', '.join(texts)})",
                 PRIMARY,
             )
-        kind, size = kind_of(type_), 1 if isinstance(type_, Scalar) else type_.size  # type: ignore[union-attr]  # a vector or matrix
+        kind, size = kind_of(type_), type_.columns if isinstance(type_, Matrix) else components(type_)
         if len(args) > 1:
             parts = self.converted(kind, *args)
             return (f"mat({size}, {parts})" if isinstance(type_, Matrix) else f"vec({parts})"), PRIMARY
         part = self.converted(kind, *args)
         if isinstance(type_, Matrix):
-            return f"{'resize' if isinstance(args[0].type, Matrix) else 'diagonal'}({size}, {part})", PRIMARY
+            rows = f", {type_.rows}" if type_.rows != size else ""
+            return f"{'resize' if isinstance(args[0].type, Matrix) else 'diagonal'}({size}, {part}{rows})", PRIMARY
         if isinstance(args[0].type, Scalar):
             return (f"splat({size}, {part})" if isinstance(type_, Vector) else part), PRIMARY
         if components(args[0].type) == size:

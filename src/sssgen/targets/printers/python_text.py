@@ -53,7 +53,7 @@ def value_text(type_: Type, numbers: tuple[float, ...]) -> str:
         texts[0] = f"to_uint({texts[0]})"
     if isinstance(type_, Scalar):
         return texts[0]
-    return f"{f'mat({type_.size}, ' if isinstance(type_, Matrix) else 'vec('}{', '.join(texts)})"
+    return f"{f'mat({type_.columns}, ' if isinstance(type_, Matrix) else 'vec('}{', '.join(texts)})"
 
 
 def texture_text(texture: Uniform) -> str:

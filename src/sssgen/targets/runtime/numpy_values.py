@@ -3,8 +3,8 @@
 The components are on the first axes and the lanes of the batch (one per pixel or point) on the last, so that scalars
 broadcast against vectors and `m[i]` is a column:
 
-- a scalar has the shape () or (n,), a vector of K components (K, n), a K×K matrix (K, K, n) with axis 0 the column and
-  axis 1 the row; n may be 1 for a value that is the same in all lanes. An array has its length as an axis before these.
+- a scalar has the shape () or (n,), a vector of K components (K, n), a matrix (columns,
+  rows, n); n may be 1 for a value that is the same in all lanes. An array has its length as an axis before these.
 - a struct is a `Record`.
 
 The element type follows the inputs: float64 for the oracle, float32 or float16 to see the rounding of a target. Plain
@@ -149,23 +149,23 @@ def splat(size: int, value: Value) -> Value:
     return _stack((value,) * size)
 
 
-def mat(size: int, *parts: Value) -> Value:
+def mat(columns: int, *parts: Value) -> Value:
     """A matrix from its columns, or from its scalars column by column."""
     numbers = _stack(parts)
-    return numbers.reshape(size, size, numbers.shape[-1])
+    return numbers.reshape(columns, -1, numbers.shape[-1])
 
 
-def diagonal(size: int, value: Value) -> Value:
-    """A matrix with the scalar on the diagonal and 0 elsewhere."""
+def diagonal(columns: int, value: Value, rows: int = 0) -> Value:
+    """A matrix with the scalar on the diagonal and 0 elsewhere; without `rows` it is square."""
     (value,) = arrays((value,))
-    return np.eye(size, dtype=value.dtype)[..., None] * value
+    return np.eye(columns, rows or columns, dtype=value.dtype)[..., None] * value
 
 
-def resize(size: int, matrix: Value) -> Value:
-    """A matrix of another size from the upper left part of this one, as the identity beyond it."""
-    shared = min(size, len(matrix))
-    result = np.repeat(np.eye(size, dtype=matrix.dtype)[..., None], matrix.shape[-1], axis=-1)
-    result[:shared, :shared] = matrix[:shared, :shared]
+def resize(columns: int, matrix: Value, rows: int = 0) -> Value:
+    """A matrix of another size from the upper left part of this one, as the identity beyond it; without `rows` it is
+    square."""
+    result = np.repeat(np.eye(columns, rows or columns, dtype=matrix.dtype)[..., None], matrix.shape[-1], axis=-1)
+    result[: len(matrix), : matrix.shape[1]] = matrix[: len(result), : result.shape[1]]
     return result
 
 
