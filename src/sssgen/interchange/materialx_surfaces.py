@@ -107,7 +107,8 @@ def _with_interior(shader: Shader, model: SurfaceModel, base: Value, layers: _La
         model = replace(model, transmission_tint=Quantity((1.0, 1.0, 1.0)))
         if depth <= 0.0:
             tint = shader.quantity("transmission_color", "transmission_tint", color=True)
-            return _with_subsurface(shader, replace(model, transmission_tint=tint), layers) if scatters else model
+            model = replace(model, transmission_tint=tint)
+            return _with_subsurface(shader, model, layers) if scatters else model
         if not scatters or mean(shader.value(layers.transmission, "transmission"))[0] >= 0.5:
             interior = transmission_medium(
                 shader.numbers("transmission_color", "interior"),
