@@ -16,7 +16,7 @@ from sssgen.interchange.texels import mean_of, texel_values
 
 pytest.importorskip("MaterialX")
 
-from sssgen.interchange.materialx_reader import read_materialx
+from sssgen.interchange import materialx_reader
 
 TEXELS = np.array([[[0.0, 0.25, 0.5, 1.0], [1.0, 0.75, 0.25, 0.0]], [[0.5, 0.5, 0.5, 0.5], [0.2, 0.4, 0.6, 0.8]]])
 """Height, width, rgba: what the picture colors.png stores."""
@@ -28,7 +28,7 @@ def read(folder: Path, content: str, attributes: str = "", version: str = "1.39"
     path = folder / "document.mtlx"
     path.write_text(f'<materialx version="{version}" {attributes}>{content}</materialx>', encoding="utf-8")
     report = Report("document.mtlx")
-    return read_materialx(str(path), report), report
+    return materialx_reader.read(str(path), report), report
 
 
 def shader(inputs: str, graph: str = "", category: str = "standard_surface") -> str:

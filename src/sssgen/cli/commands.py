@@ -54,7 +54,7 @@ COMMANDS = {
         "pick", "measure", "pick the cheapest techniques that are good enough for a scene", "chart,reference"
     ),
     "fit": Command("fit", "measure", "fit the parameters of techniques to a scene's medium", "chart,reference"),
-    "import": Command("importing", "import", "import the materials of a glTF file, with its mesh", "import"),
+    "import": Command("importing", "import", "import materials of glTF, MaterialX and Unity files", "import"),
     "transpile": Command("transpile", "import", "translate functions or whole shaders to a target's language"),
     "lsp": Command("lsp", "tool", "run the language server that an editor starts", "lsp"),
     "schema": Command("schema", "tool", "print the JSON schema of materials or scenes, for editors"),

@@ -19,20 +19,26 @@ def add_options(parser: ArgumentParser) -> None:
         "  sssgen import lantern.glb -o lantern\n"
         "  sssgen render lantern/paper/scene.toml -o paper.png\n"
         "  sssgen import lantern.glb -o lantern --material paper\n"
+        "  sssgen import library/soap/soap.mtlx -o soap --root library\n"
+        "  sssgen import Assets/Materials/Skin.mat -o skin\n"
         "For each material: NAME/NAME.toml, its textures, mesh and scene. For the file: report.md and report.json.\n"
         "What is mapped to what: docs/import.md."
     )
     add = parser.add_argument
-    add("FILE", help="a .gltf or .glb file")
+    add("FILE", help="a .gltf, .glb, .mtlx (MaterialX), .mat or .asset (Unity) file")
     add("-o", "--output", type=given, metavar="DIR", required=True, help="the folder to write to")
     add("--material", metavar="NAME", default="", help="import this material alone, by its name or number in the file")
+    add(
+        "--root", type=given, metavar="DIR",
+        help="the folder with all files of the material (default: that of FILE or, for Unity, the project)",
+    )  # fmt: skip
 
 
 def run(arguments: Namespace) -> int:
     """Reads the file, writes its materials, and prints what became of its elements."""
     path = arguments.FILE
     report = Report(os.path.basename(path))
-    materials = format_readers.read(path, report, arguments.material)
+    materials = format_readers.read(path, report, arguments.material, arguments.root or "")
     written = write_import(arguments.output, materials, report)
     counts = report.counts()
     if arguments.json:

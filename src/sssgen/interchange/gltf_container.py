@@ -1,4 +1,4 @@
-"""Opens glTF files: the JSON, the binary chunk, and files beside it. Nothing outside its folder is read."""
+"""Opens glTF files: the JSON, the binary chunk, and files beside it. Nothing outside one folder is read."""
 
 from __future__ import annotations
 
@@ -36,6 +36,8 @@ class Container:
     folder: str
     binary: bytes | None
     """The binary chunk of a GLB file"""
+    top: str
+    """The folder that no name of a file may leave"""
     _files: dict[str, bytes] = field(default_factory=dict)
 
     def resource(self, element: JsonElement) -> bytes:
@@ -60,14 +62,18 @@ class Container:
         if name.startswith("/") or _SCHEME.match(name):
             raise place.fault(f"'{name[:80]}' is an absolute path", "name the file relative to this one")
         path = os.path.join(self.folder, name)
-        top = os.path.realpath(self.folder)
-        if ".." in name.split("/") or os.path.commonpath([top, os.path.realpath(path)]) != top:
-            raise place.fault(f"'{name[:80]}' leaves the folder of the file", "move the file into that folder")
+        top = os.path.realpath(self.top)
+        if os.path.commonpath([top, os.path.realpath(path)]) != top:
+            hint = "name a folder that has all files of the material with --root"
+            raise place.fault(f"'{name[:80]}' leaves the folder of the file", hint)
         return path
 
 
-def open_file(path: str) -> Container:
-    """Opens a .glb or .gltf file. Raises SssgenError for a file that is missing, too large, truncated or no glTF."""
+def open_file(path: str, top: str = "") -> Container:
+    """Opens a .glb or .gltf file; what it names lies in the folder `top`, by default its own.
+
+    Raises SssgenError for a file that is missing, too large, truncated or no glTF.
+    """
     shown = posix(path)
     refuse_folder(path, SUFFIXES)
     suffix = os.path.splitext(path)[1].lower()
@@ -88,7 +94,8 @@ def open_file(path: str) -> Container:
         raise failure(f"cannot read the file: {error.strerror}", file=shown) from None
     text, binary = _chunks(data, shown) if binary_format else (data, None)
     root = _document(text, shown)
-    return Container(root, os.path.dirname(path) or ".", binary)
+    folder = os.path.dirname(path) or "."
+    return Container(root, folder, binary, top or folder)
 
 
 def _check_size(size: int, head: bytes, shown: str) -> None:

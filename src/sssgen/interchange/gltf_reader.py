@@ -11,9 +11,8 @@ from sssgen.interchange.gltf_json import JsonElement
 from sssgen.interchange.gltf_materials import READ, MaterialReader, default_material
 from sssgen.interchange.gltf_meshes import joined, meshes
 from sssgen.interchange.gltf_textures import Textures
-from sssgen.interchange.imported import Imported
+from sssgen.interchange.imported import Imported, check_name
 from sssgen.interchange.mapping_report import Report
-from sssgen.support.diagnostics import did_you_mean, failure
 
 _ALSO_READ = ("KHR_texture_transform", "EXT_texture_webp", "KHR_mesh_quantization")
 _WITHOUT_EFFECT = (
@@ -33,19 +32,20 @@ _WITHOUT_EFFECT = (
 _ANIMATED = {"animations": "a material does not move", "skins": "the mesh is taken in its rest pose"}
 
 
-def read(path: str, report: Report, name: str = "") -> list[Imported]:
+def read(path: str, report: Report, name: str = "", top: str = "") -> list[Imported]:
     """The materials of a glTF file that its scene shows, and those that no mesh uses.
 
-    With `name`, that material alone. Adds to the report what is left out. Raises SssgenError, whose message has the
-    JSON path of the element, for a file that is faulty or needs an extension that is not read.
+    With `name`, that material alone. Buffers and pictures lie in the folder `top`, by default that of the file. Adds to
+    the report what is left out. Raises SssgenError, whose message has the JSON path of the element, for a file that is
+    faulty or needs an extension that is not read.
     """
-    container = open_file(path)
+    container = open_file(path, top)
     root = container.root
     _check_required(root)
     buffers = Buffers(container)
     textures = Textures(buffers, report)
     elements = root.objects("materials")
-    _check_name(name, elements, root)
+    check_name(name, [element.text("name") for element in elements], root.file)
     for key, reason in _ANIMATED.items():
         if root.items(key):
             report.left_out(f"/{key}", len(root.items(key)), reason)
@@ -69,13 +69,6 @@ def read(path: str, report: Report, name: str = "") -> list[Imported]:
 def _with_mesh(material: Imported, mesh: FileContent | None) -> Imported:
     colored = mesh is not None and mesh.color is not None
     return material._replace(model=replace(material.model, vertex_colors=colored), mesh=mesh)
-
-
-def _check_name(name: str, elements: list[JsonElement], root: JsonElement) -> None:
-    names = [element.text("name") for element in elements]
-    if name and name not in names and name not in map(str, range(len(names))):
-        hint = did_you_mean(name, names) or f"materials: {', '.join(names)[:300]}, or a number from 0"
-        raise failure(f"the file has no material '{name}'", hint, root.file)
 
 
 def _check_required(root: JsonElement) -> None:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from sssgen.harness.scenes.mesh_files import FileContent
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.surface_model import SurfaceModel
+from sssgen.support.diagnostics import did_you_mean, failure
 
 
 class Element(NamedTuple):
@@ -28,6 +29,13 @@ class Imported(NamedTuple):
     reports itself."""
     mesh: FileContent | None = None
     """The triangles with this material, in metres and world space; None for a format without meshes"""
+
+
+def check_name(name: str, names: Sequence[str], file: str) -> None:
+    """Raises SssgenError where a file has no material with this name or number; '' stands for all."""
+    if name and name not in names and name not in map(str, range(len(names))):
+        hint = did_you_mean(name, names) or f"materials: {', '.join(names)[:300]}, or a number from 0"
+        raise failure(f"the file has no material '{name}'", hint, file)
 
 
 class Notes:

@@ -100,7 +100,7 @@ class MaterialXDocument:
     def _inside(self, folder: str, name: str, place: Span) -> str:
         target = os.path.normpath(os.path.join(folder, name.replace("\\", "/")))
         if os.path.isabs(name) or not _is_in(os.path.realpath(target), self.root):
-            hint = "name the folder that holds all files of the material with --root FOLDER"
+            hint = "name the folder that holds all files of the material with --root DIR"
             raise self._error_at(place, f"'{name}' leaves the folder {posix(self.root)}", hint)
         return target
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields
 from typing import Any
 
-from sssgen.interchange.imported import Imported
+from sssgen.interchange.imported import Imported, check_name
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.materialx_document import MaterialXDocument
 from sssgen.interchange.materialx_graph import Graph, Scope
@@ -16,23 +15,26 @@ from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
 
 
-def read_materialx(path: str, report: Report, root: str = "") -> list[Imported]:
-    """The materials of a document; `root` is the folder that its files may lie in, by default the document's own.
+def read(path: str, report: Report, name: str = "", top: str = "") -> list[Imported]:
+    """The materials of a document; with `name`, that one alone.
 
+    Includes and pictures lie in the folder `top`, by default that of the document. Adds to the report what is left out.
     Raises SssgenError where a graph is wrong, a file is missing, or no material has a shader that is read.
     """
-    source = MaterialXDocument(path, root)
+    source = MaterialXDocument(path, top)
     graph = Graph(source)
+    shaders = list(_shaders(source, graph))
+    check_name(name, [title for title, _, _ in shaders], posix(path))
     result: list[Imported] = []
-    for name, node, scope in _shaders(source, graph):
+    for index, (title, node, scope) in enumerate(shaders):
+        if name not in ("", title, str(index)):
+            continue
         if node.getCategory() not in SURFACES:
             reason = f"the shader '{node.getCategory()}' is not read: {', '.join(SURFACES)} are"
             report.left_out(f"/{node.getNamePath()}", node.getCategory(), reason)
             continue
         shader = Shader(graph, node, scope, report)
-        model = SURFACES[node.getCategory()](shader, name)
-        names = {field.name for field in fields(model)}
-        assert set(shader.elements) <= names, shader.elements
+        model = SURFACES[node.getCategory()](shader, title)
         result.append(Imported(model, {field: parts for field, parts in shader.elements.items() if parts}))
     if not result:
         found = sorted({row.value for row in report.rows})

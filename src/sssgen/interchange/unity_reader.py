@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 
 from sssgen.interchange.diffusion_profile import read_profile
-from sssgen.interchange.imported import Element, Imported
+from sssgen.interchange.imported import Element, Imported, check_name
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.surface_model import SurfaceModel
 from sssgen.interchange.unity_material import UnityMaterial, constant, material_of
 from sssgen.interchange.unity_project import UnityProject
 from sssgen.interchange.unity_surfaces import high_definition_lit, universal_lit, unlit
-from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
 
 _Reader = Callable[[UnityMaterial], SurfaceModel]
@@ -35,15 +33,20 @@ _PROFILE_COLOR = (0.8, 0.8, 0.8)
 """The base colour of a profile that is imported without a material."""
 
 
-def read_material(path: str, report: Report, root: str = "") -> list[Imported]:
-    """The material of a .mat file; `root` is the folder where textures are searched, by default the project's.
+def read(path: str, report: Report, name: str = "", top: str = "") -> list[Imported]:
+    """The material or the diffusion profile of a file; `name` is '' or that of the material.
 
-    Raises SssgenError where the file is not Unity's, a type is wrong, or the shader has no properties that are read.
+    Textures, parents and profiles are searched in the project or, where it is given, in the folder `top`. Adds to the
+    report what is left out. Raises SssgenError where the file is not Unity's, a type is wrong, or the shader unknown.
     """
-    material = material_of(path, UnityProject(path, root), report)
-    reader = _reader_of(material)
-    model = reader(material)
-    return [Imported(model, {field: parts for field, parts in material.elements.items() if parts})]
+    if path.lower().endswith(".asset"):
+        imported = _profile(path, report)
+    else:
+        material = material_of(path, UnityProject(path, top), report)
+        model = _reader_of(material)(material)
+        imported = Imported(model, {field: parts for field, parts in material.elements.items() if parts})
+    check_name(name, [imported.model.name], posix(path))
+    return [imported]
 
 
 def _reader_of(material: UnityMaterial) -> _Reader:
@@ -64,8 +67,8 @@ def _reader_of(material: UnityMaterial) -> _Reader:
     raise shader.error(f"the shader {guid or file_id} is not read", f"read are {_NAMES}")
 
 
-def read_diffusion_profile(path: str, report: Report, root: str = "") -> list[Imported]:
-    """The diffusion profile of an .asset file as a body of its medium."""
+def _profile(path: str, report: Report) -> Imported:
+    """A diffusion profile as a body of its medium."""
     profile = read_profile(path)
     name = profile.name
     model = SurfaceModel(
@@ -88,14 +91,4 @@ def read_diffusion_profile(path: str, report: Report, root: str = "") -> list[Im
         "ior": [Element(f"{name}/profile/ior", profile.ior)],
         "thickness": [Element(f"{name}/profile/thicknessRemap", tuple(1e3 * part for part in profile.thickness))],
     }
-    return [Imported(model, elements)]
-
-
-def read(path: str, report: Report, root: str = "") -> list[Imported]:
-    """The material or the profile of a file. Raises SssgenError."""
-    suffix = os.path.splitext(path)[1].lower()
-    if suffix == ".mat":
-        return read_material(path, report, root)
-    if suffix == ".asset":
-        return read_diffusion_profile(path, report, root)
-    raise failure(f"'{suffix}' is not a suffix of Unity's materials", "name a .mat or .asset file", posix(path))
+    return Imported(model, elements)
