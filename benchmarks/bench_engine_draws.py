@@ -27,6 +27,8 @@ from sssgen.support.paths import folder
 
 HERE = Path(__file__).parent / "engine_draws"
 SECONDS = 120.0
+RASTERISED = {"lines": 0.01}
+"""Scene → the share of pixels that may differ: the browser's WebGL draws lines by another rule than its WebGPU."""
 
 
 def open_page() -> tuple[Page, dict[str, Any]]:
@@ -93,7 +95,7 @@ def main() -> int:
             continue
         first, second = (np.frombuffer(data, np.uint8).reshape(height, width, 4)[::-1] for data in pictures)
         difference = np.abs(first.astype(int) - second.astype(int)).max(axis=-1)
-        failed += int(difference.max() > 1)
+        failed += int(np.mean(difference > 1) > RASTERISED.get(scene, 0.0))
         print(
             f"{scene:24} {len(facts['programs']):8} {facts['draws']:5} {difference.max():8}"
             f" {np.mean(difference > 1):9.3%} {difference.mean():8.4f}"

@@ -4,8 +4,8 @@
 
 const FORMATS = {
   RGBA8: ['rgba8unorm', 'UNSIGNED_BYTE', 4], SRGB8_ALPHA8: ['rgba8unorm-srgb', 'UNSIGNED_BYTE', 4], RGB8: ['rgba8unorm', 'UNSIGNED_BYTE', 4],
-  R8: ['rgba8unorm', 'UNSIGNED_BYTE', 4], RG8: ['rgba8unorm', 'UNSIGNED_BYTE', 4], RGBA16F: ['rgba16float', 'HALF_FLOAT', 8],
-  RGBA32F: ['rgba32float', 'FLOAT', 16], R32F: ['rgba32float', 'FLOAT', 16], RG16F: ['rgba16float', 'HALF_FLOAT', 8], R16F: ['rgba16float', 'HALF_FLOAT', 8],
+  R8: ['rgba8unorm', 'UNSIGNED_BYTE', 4], RG8: ['rgba8unorm', 'UNSIGNED_BYTE', 4], RGBA16F: ['rgba16float', 'FLOAT', 16],
+  RGBA32F: ['rgba32float', 'FLOAT', 16], R32F: ['rgba32float', 'FLOAT', 16], RG16F: ['rgba16float', 'FLOAT', 16], R16F: ['rgba16float', 'FLOAT', 16], R32UI: ['rgba32uint', 'UNSIGNED_INT', 16],
   DEPTH_COMPONENT24: ['depth24plus'], DEPTH_COMPONENT16: ['depth16unorm'], DEPTH_COMPONENT32F: ['depth32float'], DEPTH24_STENCIL8: ['depth24plus-stencil8'],
   DEPTH32F_STENCIL8: ['depth32float-stencil8'],
 };
@@ -105,7 +105,9 @@ export function record(gl) {
     return { colors, depth: described(parts[gl.DEPTH_ATTACHMENT] ?? parts[gl.DEPTH_STENCIL_ATTACHMENT]) };
   };
 
-  // Draws
+  // Draws. Those of an extension are not followed: three.js then makes single ones.
+  const extension = gl.getExtension.bind(gl);
+  gl.getExtension = (label) => (label === 'WEBGL_multi_draw' ? null : extension(label));
   const bytesOf = (buffer) => {
     const old = gl.getParameter(gl.COPY_READ_BUFFER_BINDING);
     gl.bindBuffer(gl.COPY_READ_BUFFER, buffer);
@@ -162,15 +164,16 @@ export function record(gl) {
         if (texture.target === gl.TEXTURE_2D_ARRAY || texture.target === gl.TEXTURE_3D) layerOf(gl.READ_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, texture.object, level, layer);
         else faceOf(gl.READ_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, texture.target === gl.TEXTURE_CUBE_MAP ? gl.TEXTURE_CUBE_MAP_POSITIVE_X + layer : gl.TEXTURE_2D, texture.object, level);
         if (gl.checkFramebufferStatus(gl.READ_FRAMEBUFFER) !== gl.FRAMEBUFFER_COMPLETE) fail(`the content of ${texture.format}`);
-        const Numbers = { UNSIGNED_BYTE: Uint8Array, HALF_FLOAT: Uint16Array, FLOAT: Float32Array }[type], data = new Numbers(size[0] * size[1] * 4);
-        gl.readPixels(0, 0, ...size, gl.RGBA, gl[type], data);
+        const Numbers = { UNSIGNED_BYTE: Uint8Array, FLOAT: Float32Array, UNSIGNED_INT: Uint32Array }[type], data = new Numbers(size[0] * size[1] * 4);
+        gl.readPixels(0, 0, ...size, type === 'UNSIGNED_INT' ? gl.RGBA_INTEGER : gl.RGBA, gl[type], data);
+        if (gl.getError()) fail(`reading ${texture.format}`);
         levels.push({ level, layer, size, data: new Uint8Array(data.buffer) });
       }
     originalBind(gl.READ_FRAMEBUFFER, old);
     gl.bindBuffer(gl.PIXEL_PACK_BUFFER, pack);
     gl.deleteFramebuffer(framebuffer);
     texture.isChanged = false;
-    commands.push({ kind: 'texels', texture: texture.id, format, size: texture.size, levels: texture.levels, target: texture.target === gl.TEXTURE_3D ? '3d' : '2d', bytes, texels: levels });
+    commands.push({ kind: 'texels', texture: texture.id, format: type === 'FLOAT' ? 'rgba32float' : format, size: texture.size, levels: texture.levels, target: texture.target === gl.TEXTURE_3D ? '3d' : '2d', bytes, texels: levels });
   };
   const originalBind = gl.bindFramebuffer.bind(gl);
   const faceOf = WebGL2RenderingContext.prototype.framebufferTexture2D.bind(gl), layerOf = WebGL2RenderingContext.prototype.framebufferTextureLayer.bind(gl);

@@ -1,6 +1,6 @@
 // Draws in WebGPU what `record` recorded, with the programs that sssgen translated and the loader beside them.
 
-import { Program, generateMipmaps } from 'loader';
+import { Program, generateMipmaps, lastVertexFirst } from 'loader';
 
 const TOPOLOGIES = ['point-list', 'line-list', 'line-strip', 'line-strip', 'triangle-list', 'triangle-strip'];
 const COMPARES = { 0x200: 'never', 0x201: 'less', 0x202: 'equal', 0x203: 'less-equal', 0x204: 'greater', 0x205: 'not-equal', 0x206: 'greater-equal', 0x207: 'always' };
@@ -70,11 +70,14 @@ export async function replay(device, { commands }, translated) {
       else sources[name] = attribute(columns);
     }
     const vertices = program.vertices(sources);
-    const order = command.topology === LINE_LOOP ? [...(command.index ?? Array.from({ length: command.count }, (_, i) => command.first + i)), command.index?.[0] ?? command.first] : command.index;
+    let order = command.index;
+    const inOrder = () => Array.from({ length: command.count }, (_, vertex) => command.first + vertex);
+    if (command.topology === LINE_LOOP) order = [...(order ?? inOrder()), order?.[0] ?? command.first];
+    if (program.isFlat) order = lastVertexFirst(order ?? inOrder(), topology);
     const { into, depth, blend, mask } = command, component = ([source, target, operation]) => ({ srcFactor: FACTORS[source], dstFactor: FACTORS[target], operation: OPERATIONS[operation] });
     const writeMask = mask.reduce((sum, is, bit) => sum | (is ? 1 << bit : 0), 0);
     const pipeline = program.pipeline({
-      vertices, topology, indexFormat: order ? 'uint32' : undefined, samples: (into.colors[0] ?? into.depth).samples,
+      vertices, topology: program.isFlat ? topology.replace('strip', 'list') : topology, indexFormat: order ? 'uint32' : undefined, samples: (into.colors[0] ?? into.depth).samples,
       targets: into.colors.map((part) => part && { format: part.format, writeMask, ...(blend ? { blend: { color: component(blend.color), alpha: component(blend.alpha) } } : {}) }),
       depth: into.depth ? { format: into.depth.format, test: depth.test, write: depth.write, compare: COMPARES[depth.compare], bias: depth.bias[0], slopeBias: depth.bias[1] } : undefined,
       cull: { 0: 'none', 0x404: 'front', 0x405: 'back' }[command.cull], frontFace: command.front === 0x901 ? 'ccw' : 'cw',

@@ -18,7 +18,7 @@
  *   filterable: boolean, sampler: string, binding: { group: number, texture: number, sampler: number } }} Texture */
 /** @typedef {{ name: string, type: string, location: number, locations: number, format: GPUVertexFormat }} Attribute */
 /** @typedef {{ program: string, rows: string, stages: Record<string, { file: string, entry: string }>,
- *   attributes: Attribute[], uniform_block: { size: number, group: number, binding: number } | null,
+ *   attributes: Attribute[], varyings: { name: string, interpolation: string }[], uniform_block: { size: number, group: number, binding: number } | null,
  *   uniforms: Uniform[], textures: Texture[] }} Description */
 /** @typedef {{ buffer?: GPUBuffer, format?: GPUVertexFormat, stride?: number, offset?: number, perInstance?: boolean,
  *   constant?: number[] }} Source  Where an attribute comes from: a buffer, or one constant for all vertices. */
@@ -73,6 +73,9 @@ export class Program {
     this.places = new Map();
     for (const uniform of description.uniforms) for (const [name, place] of placesOf(uniform)) this.places.set(name, place);
     this.pipelines = new Map();
+    /** Whether a value is not interpolated: WebGL takes that of a triangle's last vertex, WebGPU that of its first. Then
+     * give the indices to `lastVertexFirst`. */
+    this.isFlat = description.varyings.some(({ interpolation }) => interpolation === 'flat');
   }
 
   /** Where the attributes come from; one that is left out has the constant of WebGL, (0, 0, 0, 1).
@@ -272,6 +275,19 @@ function blackTexture(device, sampleType, dimension = '2d') {
     for (let layer = 0; layer < texture.depthOrArrayLayers; layer++)
       device.queue.writeTexture({ texture, origin: [0, 0, layer] }, new Uint8Array([0, 0, 0, 255]), { bytesPerRow: 4 }, [1, 1, 1]);
   return (textures[key] = texture);
+}
+
+/** The indices of the same triangles or lines, each with its last vertex first; triangles turn as before. Strips become
+ * lists, whose topology is then `triangle-list` or `line-list`.
+ * @param {ArrayLike<number>} indices @param {GPUPrimitiveTopology} topology @returns {number[]} */
+export function lastVertexFirst(indices, topology) {
+  const size = topology.startsWith('triangle') ? 3 : topology.startsWith('line') ? 2 : 1, isStrip = topology.endsWith('strip'), order = [];
+  for (let first = 0; first + size <= indices.length; first += isStrip ? 1 : size) {
+    const corners = Array.from({ length: size }, (_, corner) => indices[first + corner]);
+    if (isStrip && size === 3 && first % 2) [corners[0], corners[1]] = [corners[1], corners[0]];
+    order.push(corners[size - 1], ...corners.slice(0, -1));
+  }
+  return order;
 }
 
 const COPY = /* wgsl */ `

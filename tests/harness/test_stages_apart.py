@@ -143,8 +143,8 @@ def test_locations_under_other_names(backend: Callable[[str], Backend]) -> None:
 @pytest.mark.parametrize(
     ("inputs", "message"),
     [
-        ("in vec3 a, d;", "the vertex shader does not write 'd', which the fragment shader reads"),
-        ("in vec2 a; in vec3 d;", "writes 'a' as a vec3, but the fragment shader reads a vec2"),
+        ("in vec3 a, d;", "the vertex shader a.vert does not write 'd', which the fragment shader reads"),
+        ("in vec2 a; in vec3 d;", r"writes 'a' as a vec3 \(a.vert:2:10\), but the fragment shader reads a vec2"),
         ("layout(location = 0) in vec3 a; in vec3 d;", "does not write 'a'"),
     ],
 )

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Array, Matrix, Sampler, Type, components, kind_of, spell
-from sssgen.passes.stage.stage_interface import Slot
+from sssgen.passes.stage.stage_interface import Slot, interpolation
 from sssgen.targets.assemble import Program
 from sssgen.targets.descriptor import Target
 from sssgen.targets.uniform_layout import place
@@ -47,7 +47,7 @@ def reflect_program(name: str, target: Target, rows: str, vertex: StageFacts, fr
         "rows": rows if target.conventions.framebuffer_y == "down" else ROWS[0],
         "stages": {kind: _file(facts) for kind, facts in stages.items()},
         "attributes": _attributes(vertex),
-        "varyings": _places(fragment, "stage_inputs"),
+        "varyings": _varyings(vertex),
         "outputs": _places(fragment, "stage_outputs"),
         **_bindings(target, stages),
         "renames": {kind: facts.reflection["renames"] for kind, facts in stages.items()},
@@ -85,6 +85,17 @@ def _vertex_format(type_: Type) -> str:
     kind = {"float": "float32", "int": "sint32", "uint": "uint32"}[kind_of(type_)]
     count = components(type_)
     return f"{kind}x{count}" if count > 1 else kind
+
+
+def _varyings(vertex: StageFacts) -> list[dict[str, Any]]:
+    """What the vertex shader passes to the fragment shader."""
+    assert vertex.program.stage is not None
+    return [
+        {"name": slot.link or vertex.names.get(slot.variable.name, slot.variable.name), "path": list(slot.path)}
+        | {"type": spell(slot.type), "location": slot.location, "interpolation": interpolation(slot) or "smooth"}
+        for slot in vertex.program.stage.outputs
+        if slot.location >= 0
+    ]
 
 
 def _places(facts: StageFacts, side: str) -> list[dict[str, Any]]:

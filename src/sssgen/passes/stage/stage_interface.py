@@ -15,7 +15,7 @@ from typing import NamedTuple
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Expr, Function, Global, Index, Intrinsic, Literal, Module, Span, Unary, Variable
 from sssgen.ir.transform import rewrite_module
-from sssgen.ir.types import VOID, Array, Type, Vector
+from sssgen.ir.types import VOID, Array, Type, Vector, kind_of
 from sssgen.ir.walk import all_expressions, builtins_of, operands
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.stage.varyings import locations, output_of, parts, varyings
@@ -46,6 +46,11 @@ class Slot(NamedTuple):
     """How many parts of the variable precede this one."""
     is_declared: bool = True
     """False: the module does not have the variable; it is only an output of the vertex shader."""
+
+
+def interpolation(slot: Slot) -> str:
+    """How a value is interpolated between vertices: flat, noperspective, centroid or '': integers always are flat."""
+    return "flat" if kind_of(slot.type) in ("int", "uint") else slot.variable.interpolation
 
 
 class Stage(NamedTuple):

@@ -94,10 +94,13 @@ def mismatches(vertex: Module, fragment: Module) -> list[tuple[str, Span]]:
     for input_ in varyings(fragment, "fragment"):
         output = output_of(input_, outputs)
         if output is None and input_.name in read:
-            message = f"the vertex shader does not write '{input_.name}', which the fragment shader reads"
+            file = next((function.span.file for function in reversed(vertex.functions)), "")
+            message = f"the vertex shader {file} does not write '{input_.name}', which the fragment shader reads"
             wrong.append((message, input_.span))
         elif output is not None and output.type != input_.type:
             written, expected = (with_article(spell(variable.type)) for variable in (output, input_))
-            message = f"the vertex shader writes '{input_.name}' as {written}, but the fragment shader reads {expected}"
+            there = f"({output.span.file}:{output.span.line}:{output.span.column})"
+            message = f"the vertex shader writes '{input_.name}' as {written} {there}"
+            message += f", but the fragment shader reads {expected}"
             wrong.append((message, input_.span))
     return wrong

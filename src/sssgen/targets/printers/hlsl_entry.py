@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 
 from sssgen.ir.nodes import NOWHERE
-from sssgen.ir.types import INT, kind_of
-from sssgen.passes.stage.stage_interface import Slot, Stage
+from sssgen.ir.types import INT
+from sssgen.passes.stage.stage_interface import Slot, Stage, interpolation
 from sssgen.targets.printers.entry_points import (
     adjusted,
     clip_space,
@@ -53,7 +53,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
             place = semantic(slot)
         else:
             place = f"{semantics}{slot.location}" if slot.location >= 0 else builtins[slot.variable.builtin]
-        word = "flat" if kind_of(slot.type) in ("int", "uint") else slot.variable.interpolation
+        word = interpolation(slot)
         sampled = _INTERPOLATION[word] if semantics == "TEXCOORD" and slot.location >= 0 and word else ""
         return f"{sampled}{printer.variable(parameter_type(slot), name)} : {place}"
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from sssgen.ir.nodes import NOWHERE
-from sssgen.ir.types import INT, kind_of
-from sssgen.passes.stage.stage_interface import Slot, Stage
+from sssgen.ir.types import INT
+from sssgen.passes.stage.stage_interface import Slot, Stage, interpolation
 from sssgen.targets.printers.entry_points import (
     adjusted,
     clip_space,
@@ -29,7 +29,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
     def declared(slot: Slot, name: str, varying: bool) -> str:
         if slot.location < 0:
             return f"@builtin({builtins[slot.variable.builtin]}) {printer.variable(parameter_type(slot), name)}"
-        word = "flat" if kind_of(slot.type) in ("int", "uint") else slot.variable.interpolation
+        word = interpolation(slot)
         sampled = f" @interpolate({_INTERPOLATION[word]})" if varying and word else ""
         return f"@location({slot.location}){sampled} {printer.variable(slot.type, name)}"
 

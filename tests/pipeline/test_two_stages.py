@@ -1,0 +1,154 @@
+"""Both stages of a program translated together: `sssgen transpile --stages` and its reflection."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from sssgen.lang.plain_glsl import load_glsl_text
+from sssgen.pipeline.two_stages import Source, TranslatedProgram, transpile_stages
+from sssgen.support.diagnostics import SssgenError
+from sssgen.targets.program_reflection import ROWS
+
+VERTEX = """#version 300 es
+struct Light { vec3 color; float weights[2]; };
+uniform mat4 view;
+uniform mat3 turn;
+uniform Light lights[2];
+uniform bool isWide;
+uniform float unused;
+uniform sampler2D bones;
+in vec3 position;
+in mat4 place;
+in vec2 spare;
+out vec2 at;
+flat out int side;
+out vec3 notRead;
+void main() {
+    at = position.xy;
+    side = 1;
+    notRead = turn * position;
+    gl_Position = view * place * texelFetch(bones, ivec2(0), 0);
+    if (isWide) { gl_Position.x += lights[1].weights[1]; }
+}
+"""
+FRAGMENT = """#version 300 es
+precision highp float;
+struct Light { vec3 color; float weights[2]; };
+uniform Light lights[2];
+uniform sampler2D map, maps[3];
+uniform mat4 view;
+uniform float position;
+in vec2 at;
+flat in int side;
+in vec4 never;
+out vec4 color;
+vec4 read(sampler2D which) { return texture(which, at); }
+void main() {
+    color = read(map) * position + texture(maps[1], at) * lights[0].color.xyzx + view[side];
+    color.x += 0.5 + dFdy(at.y) + gl_FragCoord.y;
+}
+"""
+
+
+def translate(vertex: str, fragment: str, target: str = "wgsl", rows: str = ROWS[0]) -> TranslatedProgram:
+    stages = [load_glsl_text(text, name) for text, name in ((vertex, "a.vert"), (fragment, "b.frag"))]
+    first, second = [Source(stage.module, stage.head) for stage in stages]
+    return transpile_stages(first, second, target, "pair", rows=rows)
+
+
+def described(program: TranslatedProgram) -> dict[str, Any]:
+    result: dict[str, Any] = json.loads(program.files["pair.program.json"])
+    return result
+
+
+def test_both_stages_declare_the_same_block_and_textures() -> None:
+    program = translate(VERTEX, FRAGMENT)
+    blocks = []
+    for stage in ("vertex", "fragment"):
+        text = program.files[f"pair.{stage}.wgsl"]
+        members = text[text.index("struct Material {") : text.index("var<private>")].splitlines()
+        blocks.append([line.split(":")[-1] if "@" not in line else line.split(" var")[0] for line in members])
+    assert blocks[0] == blocks[1]
+
+
+def test_what_the_program_does_not_use_is_left_out() -> None:
+    program = described(translate(VERTEX, FRAGMENT))
+    assert [attribute["name"] for attribute in program["attributes"]] == ["position", "place"]
+    assert [varying["name"] for varying in program["varyings"]] == ["at", "side"]
+    names = {uniform["name"] for uniform in program["uniforms"]}
+    assert names == {"view", "turn", "lights[].weights", "isWide", "lights[].color", "position"}
+    assert [texture["name"] for texture in program["textures"]] == ["bones", "map", "maps[1]"]
+
+
+def test_the_reflection_of_a_program() -> None:
+    program = described(translate(VERTEX, FRAGMENT))
+    uniforms = {uniform.pop("name"): uniform for uniform in program["uniforms"]}
+    assert uniforms["lights[].weights"] == {
+        "stages": ["vertex"], "type": "float", "lengths": [2, 2], "offset": 112, "size": 52, "array_stride": 16,
+        "matrix_stride": 0,
+    }  # fmt: skip
+    assert uniforms["view"]["stages"] == ["vertex", "fragment"]
+    assert (uniforms["turn"]["type"], uniforms["turn"]["matrix_stride"]) == ("mat3", 16)
+    attribute = program["attributes"][1]
+    assert attribute == {"name": "place", "type": "mat4", "location": 1, "locations": 4, "format": "float32x4"}
+    textures = {texture["name"]: texture for texture in program["textures"]}
+    assert (textures["bones"]["filterable"], textures["bones"]["sampler"]) == (False, "")
+    assert (textures["map"]["filterable"], textures["map"]["sampler"]) == (True, "filtering")  # by a function
+    assert textures["bones"]["stages"] == ["vertex"]
+    places = [number for texture in program["textures"] for number in list(texture["binding"].values())[1:]]
+    assert places == list(range(1, 7))
+    interpolations = {varying["name"]: varying["interpolation"] for varying in program["varyings"]}
+    assert interpolations == {"at": "smooth", "side": "flat"}
+    assert program["outputs"] == [{"name": "color", "path": [], "type": "vec4", "location": 0}]
+
+
+def test_the_order_of_the_stages_is_free() -> None:
+    stages = [load_glsl_text(text, name) for text, name in ((VERTEX, "a.vert"), (FRAGMENT, "b.frag"))]
+    sources = [Source(stage.module, stage.head) for stage in stages]
+    in_order, swapped = (transpile_stages(*each, "wgsl", "pair") for each in (sources, sources[::-1]))
+    assert in_order.files == swapped.files
+    assert in_order.renames == swapped.renames[::-1]
+
+
+def test_the_rows_of_a_picture() -> None:
+    turned, upright = (translate(VERTEX, FRAGMENT, rows=rows) for rows in ("bottom-first", "top-first"))
+    assert "Position.y = -Position.y;" in turned.files["pair.vertex.wgsl"]
+    assert "+ dpdy(at.y)" in turned.files["pair.fragment.wgsl"]
+    assert not turned.warnings
+    assert "Position.y = " not in upright.files["pair.vertex.wgsl"]
+    assert "(-dpdy(at.y))" in upright.files["pair.fragment.wgsl"]
+    assert "gl_FragCoord.y counts from the top" in upright.warnings[0].message
+    assert [described(program)["rows"] for program in (turned, upright)] == ["bottom-first", "top-first"]
+
+
+@pytest.mark.parametrize("target", ["glsl-330", "glsl-es-300", "hlsl"])
+def test_other_languages(target: str) -> None:
+    program = described(translate(VERTEX, FRAGMENT, target))
+    assert ("offset" in program["uniforms"][0]) == (target == "hlsl")
+    assert len({uniform["name"] for uniform in program["uniforms"]}) == 6
+
+
+def test_mismatches_name_both_places() -> None:
+    body = "void main() { at = tint.xy; gl_Position = vec4(p, 1.0); }\n"
+    vertex = f"uniform vec3 tint;\nattribute vec3 p;\nvarying vec2 at;\n{body}"
+    body = "void main() { gl_FragColor = tint + at.xyzz + gone.xyxy; }\n"
+    fragment = f"uniform vec4 tint;\nvarying vec3 at;\nvarying vec2 gone;\n{body}"
+    with pytest.raises(SssgenError) as error:
+        translate(vertex, fragment)
+    messages = [(each.message, each.span.file, each.span.line) for each in error.value.diagnostics]
+    assert messages == [
+        ("the vertex shader writes 'at' as a vec2 (a.vert:3:14), but the fragment shader reads a vec3", "b.frag", 2),
+        ("the vertex shader a.vert does not write 'gone', which the fragment shader reads", "b.frag", 3),
+        ("the uniform 'tint' is a vec3 in a.vert:1:14, but a vec4 here", "b.frag", 1),
+    ]
+
+
+def test_errors_of_both_stages_are_reported_together() -> None:
+    vertex = "attribute vec3 p;\nvoid main() { gl_Position = vec4(p, 1.0 / 0.0); }\n"
+    fragment = "void main() { gl_FragColor = vec4(1.0 / 0.0); }\n"
+    with pytest.raises(SssgenError) as error:
+        translate(vertex, fragment)
+    assert [each.span.file for each in error.value.diagnostics] == ["a.vert", "b.frag"]
