@@ -188,7 +188,7 @@ export const SCENES = {
     ball.geometry.setAttribute('color', new THREE.BufferAttribute(colors, 3, true));
   }),
   displacement: shown((THREE) => new THREE.MeshStandardMaterial({ color: 0x77aa88, displacementMap: pattern(THREE, 64, grain), displacementScale: 0.3, aoMap: pattern(THREE, 64, grain) })),
-  'a lamp of area and a sprite': shown((THREE) => new THREE.MeshLambertMaterial({ color: 0xcccccc }), (THREE, scene) => {
+  'a sprite': shown((THREE) => new THREE.MeshLambertMaterial({ color: 0xcccccc }), (THREE, scene) => {
     const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: pattern(THREE, 32, checks, true), rotation: 0.3 }));
     sprite.position.set(0, 1, 1);
     scene.add(sprite);

@@ -1,4 +1,4 @@
-"""The loader of programs that `sssgen transpile --stages` writes: layouts and values in Node.js, pictures in Chromium."""
+"""The loader of what `sssgen transpile --stages` writes: layouts and values in Node.js, pictures in Chromium."""
 
 from __future__ import annotations
 
@@ -48,7 +48,8 @@ uniform highp usampler2DArray ids;
 flat in vec4 tint;
 out vec4 color;
 void main() {
-    color = tint + texture(map, tint.xy) + texture(sky, tint.xyz) + texture(shadow, tint.xyz) + texture(volume, tint.xyz);
+    color = tint + texture(map, tint.xy) + texture(sky, tint.xyz);
+    color += texture(shadow, tint.xyz) + texture(volume, tint.xyz);
     color.a += float(texelFetch(ids, ivec3(0), 0).x);
 }
 """
@@ -160,7 +161,8 @@ def test_states_of_a_pipeline(folder: Path) -> None:
 
 def test_pictures_are_shown_and_get_their_levels(folder: Path) -> None:
     commands = """
-        const screen = device.createTexture({ size: [8, 8], format: 'bgra8unorm', usage: GPUTextureUsage.RENDER_ATTACHMENT });
+        const usage = GPUTextureUsage.RENDER_ATTACHMENT;
+        const screen = device.createTexture({ size: [8, 8], format: 'bgra8unorm', usage });
         generateMipmaps(device, picture);
         show(device, picture, screen.createView(), 'bgra8unorm');
         return screen.width"""
