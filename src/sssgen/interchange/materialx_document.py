@@ -64,7 +64,7 @@ class MaterialXDocument:
     def file_beside(self, element: Any, name: str) -> str:
         """The path of a file that an element names. Raises SssgenError where the name leaves the root folder."""
         folder = os.path.dirname(element.getActiveSourceUri()) or self.folder
-        return self._inside(folder, name, self.place(element.getNamePath()))
+        return self._inside(folder, name, self.place(element.getNamePath()), element.getNamePath())
 
     def _read(self, path: str, shown: str, parents: tuple[str, ...]) -> Any:
         text = read_text(path, shown)
@@ -97,11 +97,12 @@ class MaterialXDocument:
             raise self._error_at(include.place, f"no such file: '{include.href}'", "the path is relative to this file")
         return self._read(target, posix(os.path.relpath(target)), chain)
 
-    def _inside(self, folder: str, name: str, place: Span) -> str:
+    def _inside(self, folder: str, name: str, place: Span, path: str = "") -> str:
         target = os.path.normpath(os.path.join(folder, name.replace("\\", "/")))
         if os.path.isabs(name) or not _is_in(os.path.realpath(target), self.root):
-            hint = "name the folder that holds all files of the material with --root DIR"
-            raise self._error_at(place, f"'{name}' leaves the folder {posix(self.root)}", hint)
+            hint = "name a folder that has all files of the material with --root"
+            element = f" ({path})" if path else ""
+            raise self._error_at(place, f"'{name}' leaves the folder {posix(self.root)}{element}", hint)
         return target
 
     def _check_version(self, document: Any, shown: str) -> None:

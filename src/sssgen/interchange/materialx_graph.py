@@ -26,7 +26,7 @@ from sssgen.interchange.graph_values import (
 from sssgen.interchange.materialx_document import MaterialXDocument
 from sssgen.interchange.surface_model import Image, Picture, Quantity, Wrap
 from sssgen.interchange.texture_files import read_picture
-from sssgen.support.diagnostics import did_you_mean
+from sssgen.support.diagnostics import SssgenError, did_you_mean
 
 COMPONENTS = {
     "float": 1, "integer": 1, "boolean": 1, "color3": 3, "color4": 4, "vector2": 2, "vector3": 3, "vector4": 4,
@@ -159,7 +159,7 @@ class Graph:
     def _node(self, node: Any, output: str, scope: Scope | None, element: Any) -> Value:
         definition = node.getNodeDef()
         if definition is None:
-            raise self._unknown(node)
+            raise self.unknown(node)
         outputs = {port.getName(): port for port in definition.getActiveOutputs()}
         port = outputs.get(output) if output else next(iter(outputs.values()), None)
         if port is None:
@@ -182,9 +182,17 @@ class Graph:
                 self._active.pop()
         return self._ready[key]
 
-    def _unknown(self, node: Any) -> Exception:
+    def unknown(self, node: Any) -> SssgenError:
+        """The error for a node without a definition: its category is unknown, or its inputs have other types."""
         category = node.getCategory()
         definitions = self.source.document.getMatchingNodeDefs(category)
+        same = [found for found in definitions if found.getType() == node.getType()]
+        for port in node.getInputs():
+            declared = [found.getActiveInput(port.getName()) for found in same]
+            types = sorted({variant.getType() for variant in declared if variant is not None})
+            if types and port.getType() not in types:
+                message = f"the types do not match: '{port.getName()}' is {' or '.join(types)}, not {port.getType()}"
+                return self.source.error(port, message)
         if definitions:
             types = ", ".join(f"{port.getName()} {port.getType()}" for port in node.getInputs())
             message = f"no '{category}' of type {node.getType()} has these inputs: {types or 'none'}"

@@ -33,6 +33,8 @@ def read(path: str, report: Report, name: str = "", top: str = "") -> list[Impor
             reason = f"the shader '{node.getCategory()}' is not read: {', '.join(SURFACES)} are"
             report.left_out(f"/{node.getNamePath()}", node.getCategory(), reason)
             continue
+        if node.getNodeDef() is None:
+            raise graph.unknown(node)
         shader = Shader(graph, node, scope, report)
         model = SURFACES[node.getCategory()](shader, title)
         result.append(Imported(model, {field: parts for field, parts in shader.elements.items() if parts}))
