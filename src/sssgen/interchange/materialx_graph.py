@@ -189,9 +189,9 @@ class Graph:
         same = [found for found in definitions if found.getType() == node.getType()]
         for port in node.getInputs():
             declared = [found.getActiveInput(port.getName()) for found in same]
-            types = sorted({variant.getType() for variant in declared if variant is not None})
-            if types and port.getType() not in types:
-                message = f"the types do not match: '{port.getName()}' is {' or '.join(types)}, not {port.getType()}"
+            accepted = sorted({variant.getType() for variant in declared if variant is not None})
+            if accepted and port.getType() not in accepted:
+                message = f"the types do not match: '{port.getName()}' is {' or '.join(accepted)}, not {port.getType()}"
                 return self.source.error(port, message)
         if definitions:
             types = ", ".join(f"{port.getName()} {port.getType()}" for port in node.getInputs())

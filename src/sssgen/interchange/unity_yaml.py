@@ -186,7 +186,9 @@ class _Composer:
         return Value(content, self.file, path or "/", line, column)
 
     def place(self, mark: Any) -> tuple[int, int]:
-        return (self.first_line + mark.line + 1, mark.column + 1) if mark is not None else (self.first_line + 1, 1)
+        if mark is None:
+            return self.first_line + 1, 1
+        return min(self.first_line + mark.line, self.file.text.count("\n")) + 1, mark.column + 1
 
     def failure(self, message: str, mark: Any, hint: str = "") -> SssgenError:
         line, column = self.place(mark)
