@@ -11,6 +11,7 @@ from sssgen.interchange import format_readers
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.material_writer import write_import
 from sssgen.support.paths import posix
+from sssgen.support.progress import ProgressBar
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -18,7 +19,7 @@ def add_options(parser: ArgumentParser) -> None:
         "examples:\n"
         "  sssgen import lantern.glb -o lantern\n"
         "  sssgen render lantern/paper/scene.toml -o paper.png\n"
-        "  sssgen import lantern.glb -o lantern --material paper\n"
+        "  sssgen import lantern.glb -o lantern --material paper --bake\n"
         "  sssgen import library/soap/soap.mtlx -o soap --root library\n"
         "  sssgen import Assets/Materials/Skin.mat -o skin\n"
         "For each material: NAME/NAME.toml, its textures, mesh and scene. For the file: report.md and report.json.\n"
@@ -32,6 +33,11 @@ def add_options(parser: ArgumentParser) -> None:
         "--root", type=given, metavar="DIR",
         help="the folder with all files of the material (default: that of FILE or, for Unity, the project)",
     )  # fmt: skip
+    add(
+        "--bake",
+        action="store_true",
+        help="compute the mesh's own thickness where the file has a constant or none: a texture of 256 texels a side",
+    )
 
 
 def run(arguments: Namespace) -> int:
@@ -39,6 +45,11 @@ def run(arguments: Namespace) -> int:
     path = arguments.FILE
     report = Report(os.path.basename(path))
     materials = format_readers.read(path, report, arguments.material, arguments.root or "")
+    if arguments.bake:
+        from sssgen.interchange.thickness_bake import with_baked_thickness
+
+        with ProgressBar() as bar:
+            materials = [with_baked_thickness(material, report, bar) for material in materials]
     written = write_import(arguments.output, materials, report)
     counts = report.counts()
     if arguments.json:

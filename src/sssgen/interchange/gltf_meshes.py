@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.harness.scenes.mesh_files import FileContent, Indices
-from sssgen.harness.scenes.placed import Array
+from sssgen.harness.scenes.mesh_files import FileContent, Indices, moved_normals
+from sssgen.harness.scenes.placed import Array, unit
 from sssgen.interchange.gltf_buffers import Buffers, optional
 from sssgen.interchange.gltf_json import JsonElement
 from sssgen.interchange.mapping_report import Report
@@ -69,6 +69,7 @@ def joined(parts: list[Part]) -> tuple[FileContent, float, float]:
         _of_any([content.uv for content in contents], contents),
         _of_any([content.uv2 for content in contents], contents),
         np.concatenate(white) if any(content.color is not None for content in contents) else None,
+        np.concatenate([content.normals for content in contents if content.normals is not None]),
     )
     scales = np.array([part.scale for part in parts])
     areas = np.array([_area(content) for content in contents])
@@ -144,7 +145,8 @@ def _moved(content: FileContent, matrix: Array) -> Part:
     volume = float(np.linalg.det(matrix[:3, :3]))
     faces = content.faces[:, ::-1] if volume < 0.0 else content.faces
     vertices = content.vertices @ matrix[:3, :3].T + matrix[:3, 3]
-    return Part(content._replace(vertices=vertices, faces=faces), abs(volume) ** (1.0 / 3.0))
+    normals = moved_normals(content.normals, matrix)
+    return Part(content._replace(vertices=vertices, faces=faces, normals=normals), abs(volume) ** (1.0 / 3.0))
 
 
 def _primitive(primitive: JsonElement, buffers: Buffers, report: Report) -> FileContent | None:
@@ -173,7 +175,19 @@ def _primitive(primitive: JsonElement, buffers: Buffers, report: Report) -> File
     uv, uv2 = (_upwards(optional(attributes, f"TEXCOORD_{index}", buffers, 2), vertices) for index in (0, 1))
     color = optional(attributes, "COLOR_0", buffers, 4)
     color = None if color is None or len(color) != len(vertices) else color
-    return FileContent(vertices, _faces(indices, mode), uv, uv2, color)
+    normals = optional(attributes, "NORMAL", buffers, 3)
+    content = FileContent(vertices, _faces(indices, mode), uv, uv2, color, normals)
+    return content if normals is not None and len(normals) == len(vertices) else _with_flat_normals(content)
+
+
+def _with_flat_normals(content: FileContent) -> FileContent:
+    """The triangles with the normals of their faces, as for primitives without normals (glTF 2.0, 3.7.2.1)."""
+    order = content.faces.reshape(-1)
+    corners = content.vertices[content.faces]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    uv, uv2, color = (None if values is None else values[order] for values in (content.uv, content.uv2, content.color))
+    faces = np.arange(len(order)).reshape(-1, 3)
+    return FileContent(content.vertices[order], faces, uv, uv2, color, np.repeat(unit(across), 3, axis=0))
 
 
 def _has_data(primitive: JsonElement, buffers: Buffers) -> bool:

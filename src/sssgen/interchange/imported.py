@@ -6,9 +6,13 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from sssgen.harness.scenes.mesh_files import FileContent
+from sssgen.harness.scenes.placed import Array
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.surface_model import SurfaceModel
 from sssgen.support.diagnostics import did_you_mean, failure
+
+BAKED_SET = 2
+"""The number of a set of texture coordinates, beside the two of the file."""
 
 
 class Element(NamedTuple):
@@ -29,6 +33,8 @@ class Imported(NamedTuple):
     reports itself."""
     mesh: FileContent | None = None
     """The triangles with this material, in metres and world space; None for a format without meshes"""
+    baked_uv: Array | None = None
+    """(v, 2): the texture coordinates of the set BAKED_SET, of a texture that was baked for the mesh"""
 
 
 def check_name(name: str, names: Sequence[str], file: str) -> None:

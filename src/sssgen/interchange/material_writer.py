@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from sssgen.harness.scenes.mesh_files import FileContent
-from sssgen.interchange.imported import Imported, Notes, report_fields
+from sssgen.interchange.imported import BAKED_SET, Imported, Notes, report_fields
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.mesh_glb import mesh_file
 from sssgen.interchange.scene_text import BALL_RADIUS, scene_text
@@ -65,15 +65,15 @@ def _material_files(imported: Imported, choice: Choice, name: str) -> dict[str, 
     files |= choice.files
     mesh = imported.mesh
     if mesh is not None:
-        files["mesh.glb"] = mesh_file(_placed(mesh, choice.coordinates))
+        files["mesh.glb"] = mesh_file(_placed(imported, mesh, choice.coordinates))
     files["scene.toml"] = scene_text(model, choice, name, mesh, SURROUNDINGS)
     return files
 
 
-def _placed(mesh: FileContent, coordinates: Sequence[Coordinates]) -> FileContent:
+def _placed(imported: Imported, mesh: FileContent, coordinates: Sequence[Coordinates]) -> FileContent:
     """The mesh with the sets of texture coordinates that the material reads as `uv` and `uv2`."""
-    sets = [mesh.uv, mesh.uv2]
-    chosen = [sets[place.uv_set] if place.uv_set < 2 else None for place in coordinates]
+    sets = {0: mesh.uv, 1: mesh.uv2, BAKED_SET: imported.baked_uv}
+    chosen = [sets.get(place.uv_set) for place in coordinates]
     return mesh._replace(uv=chosen[0], uv2=chosen[1] if len(chosen) > 1 else None)
 
 

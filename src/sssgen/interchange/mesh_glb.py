@@ -57,17 +57,24 @@ class Buffer:
         return len(self.accessors) - 1
 
 
-def primitive(mesh: FileContent, buffer: Buffer, normals: Array | None = None) -> dict[str, Any]:
+def primitive(mesh: FileContent, buffer: Buffer) -> dict[str, Any]:
     """A glTF primitive of the triangles; texture coordinates of the mesh have v up."""
     attributes = {"POSITION": buffer.vectors(mesh.vertices, bounds=True)}
-    if normals is not None:
-        attributes["NORMAL"] = buffer.vectors(normals)
+    if mesh.normals is not None:
+        attributes["NORMAL"] = buffer.vectors(_unit_normals(mesh.normals))
     for name, uv in (("TEXCOORD_0", mesh.uv), ("TEXCOORD_1", mesh.uv2)):
         if uv is not None:
             attributes[name] = buffer.vectors(np.stack([uv[:, 0], 1.0 - uv[:, 1]], axis=1))
     if mesh.color is not None:
         attributes["COLOR_0"] = buffer.vectors(np.clip(mesh.color, 0.0, 1.0))
     return {"attributes": attributes, "indices": buffer.indices(mesh.faces)}
+
+
+def _unit_normals(normals: Array) -> Array:
+    """Unit vectors, upwards in place of a zero vector, which glTF does not allow."""
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    usual: Array = np.where(lengths > 0.0, normals / np.maximum(lengths, 1e-300), (0.0, 1.0, 0.0))
+    return usual
 
 
 def document(buffer: Buffer, primitives: Sequence[Mapping[str, Any]], **more: Any) -> dict[str, Any]:

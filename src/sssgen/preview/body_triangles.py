@@ -74,7 +74,7 @@ def _of_ball(radius: float) -> BodyTriangles:
 
 def _of_file(mesh: Mesh) -> BodyTriangles:
     triangles = mesh.triangles
-    position, normal = triangles.places[triangles.corners], triangles.normals[triangles.corners]
+    position, normal = triangles.places[triangles.corners], triangles.corner_normals(np.arange(len(triangles.corners)))
     normal = np.where((np.abs(normal) > 0.0).any(axis=2, keepdims=True), normal, triangles.flat[:, None])
     if triangles.uv is not None:
         return BodyTriangles(position, normal, triangles.uv)

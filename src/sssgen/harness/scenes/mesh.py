@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -47,6 +47,17 @@ class Triangles(NamedTuple):
     """(f, 3, 2): the second set, or None"""
     color: Array | None = None
     """(f, 3, 4): linear colours with their opacity, or None"""
+    own_normals: Array | None = None
+    """(f, 3, 3): those of the file, unit; 0 where it has none; or None"""
+
+    def corner_normals(self, face: npt.NDArray[Any]) -> Array:
+        """The normals at the corners of triangles, (n, 3, 3): those of the file, or else smooth ones."""
+        smooth: Array = self.normals[self.corners[face]]
+        if self.own_normals is None:
+            return smooth
+        own = self.own_normals[face]
+        normals: Array = np.where((own != 0.0).any(axis=2, keepdims=True), own, smooth)
+        return normals
 
 
 @dataclass(frozen=True)
@@ -55,9 +66,10 @@ class Mesh(Geometry):
 
     The second set of uv and the colours of the vertices are the file's, or else 0 and white.
 
-    Normals are smooth: the faces' normals, averaged at each vertex by area and interpolated; normals in the file are
-    ignored. uv, v up, are the file's, or else longitude and latitude about the bounding box's centre (see `spherical`).
-    Tangents follow Lengyel (Foundations of Game Engine Development 2, 7.5), with w = -1 where uv is mirrored.
+    Normals are those of a glTF file, interpolated. Other files, and parts without normals, have smooth ones: the
+    faces' normals, averaged at each vertex by area. uv, v up, are the file's, or else longitude and latitude about the
+    bounding box's centre (see `spherical`). Tangents follow Lengyel (Foundations of Game Engine Development 2, 7.5),
+    with w = -1 where uv is mirrored.
     """
 
     path: str = ""
@@ -82,7 +94,7 @@ class Mesh(Geometry):
         weights = barycentric(position, mesh.places[mesh.corners[face]])
         hit = np.zeros(len(directions), np.bool_)
         hit[rays] = True
-        normal = _interpolated(weights, mesh.normals[mesh.corners[face]])
+        normal = _interpolated(weights, mesh.corner_normals(face))
         normal = np.where((np.abs(normal) > 0.0).any(axis=1, keepdims=True), unit(normal), mesh.flat[face])
         others = [None if values is None else _interpolated(weights, values[face]) for values in (mesh.uv2, mesh.color)]
         if mesh.uv is None or mesh.tangents is None:
@@ -128,7 +140,7 @@ class Mesh(Geometry):
 
 
 def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
-    vertices, faces, uv, uv2, color = content
+    vertices, faces, uv, uv2, color, own_normals = content
     if not len(faces):
         raise failure("the file holds no triangles", "", shown)
     if faces.min() < 0 or faces.max() >= len(vertices):
@@ -137,6 +149,7 @@ def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
         raise failure(f"a vertex is not a number, or beyond {FARTHEST:g}", "scale the mesh, or export it again", shown)
     uv, uv2 = _usable(uv, (len(vertices), 2)), _usable(uv2, (len(vertices), 2))
     color = _usable(color, (len(vertices), 4))
+    own_normals = _usable(own_normals, (len(vertices), 3))
     used, index_of = np.unique(faces, return_inverse=True)  # a file may have vertices that belong to no triangle
     places, place_of = np.unique(vertices[used], axis=0, return_inverse=True)
     if (size := float(np.ptp(places, axis=0).max())) < SMALLEST:
@@ -151,7 +164,8 @@ def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
     faces, corners, across = faces[valid], corners[valid], across[valid]
     normals = np.zeros_like(places)
     np.add.at(normals, corners, across[:, None, :])
-    further = [None if values is None else values[faces] for values in (uv2, color)]
+    own = None if own_normals is None else unit(own_normals)
+    further = [None if values is None else values[faces] for values in (uv2, color, own)]
     mesh = Triangles(places, corners, unit(across), unit(normals), None, None, np.ones(len(faces)), *further)
     return mesh if uv is None else _with_tangents(mesh, uv[faces])
 

@@ -36,6 +36,8 @@ class FileContent(NamedTuple):
     """(v, 2): glTF's second set, v up, or None where a part of the file has none"""
     color: Array | None = None
     """(v, 4): linear colours with their opacity, or None where no part of the file has any"""
+    normals: Array | None = None
+    """(v, 3): a glTF file's own normals, 0 where a part has none; None where no part has any"""
 
 
 def check_suffix(path: str) -> None:
@@ -99,19 +101,21 @@ def _read(vertices: Any, faces: Any, uv: Any, uv2: Any = None, color: Any = None
     )
 
 
-_SECOND = b'"TEXCOORD_1"'
-_CUSTOM = b'"_TEXCOORD1"'
-"""Of the same length: trimesh reads attributes with names of an application's own, but no second set."""
+_SECOND, _NORMAL = b'"TEXCOORD_1"', b'"NORMAL"'
+_CUSTOM, _OWN_NORMAL = b'"_TEXCOORD1"', b'"_NORML"'
+"""Of the same lengths: trimesh reads attributes with names of an application's own. It has no second set of texture
+coordinates, and its normals do not say whether they are the file's."""
 
 
 def _gltf(data: bytes, kind: str, beside: str) -> tuple[Any, str, Any]:
-    """A glTF file for trimesh, its second sets under `_CUSTOM`: the file, its type, and what finds files beside it."""
+    """A glTF file for trimesh, its attributes renamed: the file, its type, and what finds files beside it."""
     from trimesh.resolvers import FilePathResolver
 
     # the JSON of a .glb is its first chunk
     end = 20 + int.from_bytes(data[12:16], "little") if kind == ".glb" else len(data)
     resolver = FilePathResolver(beside) if beside else None
-    return io.BytesIO(data[:end].replace(_SECOND, _CUSTOM) + data[end:]), kind[1:], resolver
+    head = data[:end].replace(_SECOND, _CUSTOM).replace(_NORMAL, _OWN_NORMAL)
+    return io.BytesIO(head + data[end:]), kind[1:], resolver
 
 
 def _second(mesh: Any) -> Array | None:
@@ -121,6 +125,12 @@ def _second(mesh: Any) -> Array | None:
         return None
     uv = _fractions(raw)
     return np.stack([uv[:, 0], 1.0 - uv[:, 1]], axis=1)
+
+
+def _own_normals(mesh: Any) -> Array | None:
+    """The normals of a mesh of a glTF file."""
+    raw = mesh.vertex_attributes.get(_OWN_NORMAL.decode().strip('"'))
+    return None if raw is None else np.asarray(raw, np.float64)
 
 
 def _colors(mesh: Any) -> Array | None:
@@ -153,18 +163,33 @@ def _joined(scene: Any) -> FileContent:
             continue
         part = _read(mesh.vertices, mesh.faces, getattr(mesh.visual, "uv", None), _second(mesh), _colors(mesh))
         faces = part.faces[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0.0 else part.faces
-        parts.append(part._replace(vertices=part.vertices @ matrix[:3, :3].T + matrix[:3, 3], faces=faces))
+        normals = moved_normals(_own_normals(mesh), matrix)
+        vertices = part.vertices @ matrix[:3, :3].T + matrix[:3, 3]
+        parts.append(part._replace(vertices=vertices, faces=faces, normals=normals))
     if not parts:
         return _read((), (), None)
     starts = np.cumsum([0] + [len(part.vertices) for part in parts])
     white = [np.ones((len(part.vertices), 4)) if part.color is None else part.color for part in parts]
+    unknown = [np.zeros((len(part.vertices), 3)) if part.normals is None else part.normals for part in parts]
     return FileContent(
         np.concatenate([part.vertices for part in parts]),
         np.concatenate([part.faces + start for part, start in zip(parts, starts, strict=False)]),
         _of_all([part.uv for part in parts]),
         _of_all([part.uv2 for part in parts]),
         np.concatenate(white) if any(part.color is not None for part in parts) else None,
+        np.concatenate(unknown) if any(part.normals is not None for part in parts) else None,
     )
+
+
+def moved_normals(normals: Array | None, matrix: Array) -> Array | None:
+    """Normals (v, 3) after the transform of their body; they keep their side where it mirrors. None stays None."""
+    if normals is None:
+        return None
+    volume = np.linalg.det(matrix[:3, :3])
+    if volume == 0.0:
+        return np.zeros_like(normals)
+    moved: Array = normals @ np.linalg.inv(matrix[:3, :3])
+    return moved
 
 
 def _of_all(parts: list[Array | None]) -> Array | None:

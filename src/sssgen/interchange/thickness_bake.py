@@ -1,0 +1,85 @@
+"""The mesh's own thickness, baked for a material whose file leaves it at a constant."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from sssgen.bake.texture_unwrap import unwrapped
+from sssgen.bake.thickness_map import Request, thickness_map
+from sssgen.harness.pictures.images import png_bytes
+from sssgen.harness.scenes.mesh import Mesh
+from sssgen.harness.scenes.mesh_files import FileContent
+from sssgen.harness.scenes.placed import Array
+from sssgen.interchange.imported import BAKED_SET, Imported
+from sssgen.interchange.mapping_report import Report
+from sssgen.interchange.mesh_glb import mesh_file
+from sssgen.interchange.surface_model import Image, Picture, Quantity
+from sssgen.support.diagnostics import SssgenError
+from sssgen.support.progress import Progress, silent
+
+SIDE, RAYS = 256, 128
+"""Texels along a side of the map, and rays per texel."""
+
+
+def with_baked_thickness(imported: Imported, report: Report, progress: Progress = silent) -> Imported:
+    """The material with the thickness of its mesh, in texture coordinates of their own.
+
+    It stays as it is without a mesh or a medium, where nothing is transmitted, and where the file has a texture of the
+    thickness. An open sheet has no thickness: the report says so.
+    """
+    model, mesh = imported.model, imported.mesh
+    if mesh is None or model.interior is None or not model.transmits or model.thickness.image is not None:
+        return imported
+    elements = imported.elements.get("thickness", ())
+    path = elements[0].path if elements else f"{model.name}: thickness"
+    value = elements[0].value if elements else "none"
+    try:
+        baked, picture, facts = _bake(mesh, progress)
+    except SssgenError as error:
+        report.left_out(path, "--bake", f"{error.diagnostics[0].message}: the thickness stays as it is in the file")
+        return imported
+    error_of_mean = facts["error"]["mean_standard_error"]
+    became = f"the mesh's own, baked: 0 to {facts['range'][1]:.4g} m, mean {facts['mean']:.4g} m"
+    report.approximated(path, value, became, f"{error_of_mean:.2g} m, the mean standard error of the rays")
+    image = Image(Picture("baked thickness", picture), "r", uv_set=BAKED_SET, wrap="clamp")
+    return imported._replace(
+        model=replace(model, thickness=Quantity((facts["range"][1],), image), thin_walled=False),
+        elements={field: rows for field, rows in imported.elements.items() if field != "thickness"},
+        mesh=baked[0],
+        baked_uv=baked[1],
+    )
+
+
+def _bake(mesh: FileContent, progress: Progress) -> tuple[tuple[FileContent, Array], bytes, dict[str, Any]]:
+    """The mesh with a vertex for each corner, its new texture coordinates, the map as a PNG file, and its facts."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "mesh.glb")
+        triangles = Mesh(path=path, data=mesh_file(mesh)).triangles
+        uv = unwrapped(triangles, progress)
+        corners = _by_corner(triangles)
+        with open(path, "wb") as file:
+            file.write(mesh_file(corners._replace(uv=uv.reshape(-1, 2), uv2=None)))
+        baked = thickness_map(path, (SIDE, SIDE), Request(rays=RAYS), processes=0, progress=progress)
+    return (corners, uv.reshape(-1, 2)), png_bytes(baked.values, bits=16), baked.facts
+
+
+def _by_corner(triangles: Any) -> FileContent:
+    """The triangles with a vertex for each corner."""
+    count = len(triangles.corners)
+
+    def flat(values: Array | None) -> Array | None:
+        return None if values is None else values.reshape(3 * count, -1)
+
+    return FileContent(
+        triangles.places[triangles.corners].reshape(-1, 3),
+        np.arange(3 * count).reshape(-1, 3),
+        flat(triangles.uv),
+        flat(triangles.uv2),
+        flat(triangles.color),
+        flat(triangles.corner_normals(np.arange(count))),
+    )
