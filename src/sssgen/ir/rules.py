@@ -158,8 +158,8 @@ def is_type(type: Type) -> bool:
     if isinstance(type, Matrix):
         return type.columns in (2, 3, 4) and type.rows in (2, 3, 4) and type.kind == "float"
     if isinstance(type, Array):
-        flat = not isinstance(type.element, Array | Sampler | Void)
-        return flat and 1 <= type.length <= 65536 and is_type(type.element)
+        holds = not isinstance(type.element, Sampler | Void)
+        return holds and 1 <= type.length <= 65536 and is_type(type.element)
     if isinstance(type, Struct):
         names = sorted(field.name for field in type.fields)
         unique = bool(names) and all(name != next_name for name, next_name in pairwise(names))

@@ -176,7 +176,7 @@ class _Reader:
             return element
         length = int(self.number())
         self.expect("]")
-        return Array(element, length)
+        return Array(self.array_of(element), length)
 
     def quantity(self) -> str:
         return self.name() if self.take(":") else ""

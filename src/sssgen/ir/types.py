@@ -106,10 +106,20 @@ def spell(type: Type) -> str:
     if name is not None:
         return name
     if isinstance(type, Array):
-        return f"{spell(type.element)}[{type.length}]"
+        innermost, lengths = unnested(type)
+        return spell(innermost) + "".join([f"[{length}]" for length in lengths])
     if isinstance(type, Struct):
         return type.name
     raise TypeError(f"not an IR type: {type!r}")
+
+
+def unnested(type: Type) -> tuple[Type, tuple[int, ...]]:
+    """The innermost element of an array of arrays, and the lengths, the outermost first; no lengths for other types."""
+    lengths: list[int] = []
+    while isinstance(type, Array):
+        lengths.append(type.length)
+        type = type.element
+    return type, tuple(lengths)
 
 
 def with_article(noun: str) -> str:

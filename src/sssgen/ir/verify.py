@@ -49,13 +49,13 @@ from sssgen.ir.types import (
     INT,
     UINT,
     VOID,
-    Array,
     Sampler,
     Struct,
     Type,
     components,
     kind_of,
     spell,
+    unnested,
     with_article,
 )
 from sssgen.ir.walk import callees, operands, subexpressions
@@ -165,7 +165,7 @@ class _Verifier:
         if isinstance(type_, excluded) or not is_type(type_):
             self.report(span, f"this cannot be {type_!r}")
             return
-        innermost = type_.element if isinstance(type_, Array) else type_
+        innermost, _ = unnested(type_)
         if isinstance(innermost, Struct) and self.structs.get(innermost.name) != innermost:
             self.report(span, f"struct '{innermost.name}' is not declared with these fields")
 
@@ -173,7 +173,7 @@ class _Verifier:
         type_, span, name = uniform.type, uniform.span, uniform.name
         self.globals[name] = type_
         self.type(type_, span, (type(VOID),))
-        innermost = type_.element if isinstance(type_, Array) else type_
+        innermost, _ = unnested(type_)
         if isinstance(innermost, Struct):
             if self.linked:
                 self.report(span, f"uniform '{name}' is made of structs")

@@ -53,6 +53,8 @@ class Capabilities(NamedTuple):
     """A function may assign to its `in` parameters; if not, it copies them."""
     named_varyings: bool = False
     """What the vertex shader passes to the fragment shader is matched by names; if not, by locations."""
+    nested_arrays: bool = False
+    """Elements of arrays may be arrays; if not, they are structs with an array."""
     noperspective: bool = False
     """Stage inputs can be interpolated without perspective."""
     operand_order: bool = False

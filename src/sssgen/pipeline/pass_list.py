@@ -72,6 +72,10 @@ _MASKS = Condition(
     "the target has no control flow per lane", lambda state: not state.target.capabilities.lane_control_flow
 )
 
+_FLAT_ARRAYS = Condition(
+    "the target has no arrays of arrays", lambda state: not state.target.capabilities.nested_arrays
+)
+
 _FOLD = Pass("fold", steps.fold_constants, "compute constants; before prune, which removes the dead branches' uses")
 _UNDEFINED = Pass(
     "undefined", steps.refuse_undefined_constants, "refuse constants without a value; fold has left exactly these"
@@ -139,6 +143,7 @@ TARGET: tuple[Pass, ...] = (
     ),
     Pass("initial_values", steps.set_variables_at_start, "set module variables in main()", _CONSTANT_VALUES),
     Pass("uniform_parameters", steps.pass_uniforms, "pass uniforms as parameters", _PARAMETERS),
+    Pass("nested_arrays", steps.wrap_nested_arrays, "put the arrays in arrays into structs", _FLAT_ARRAYS),
     Pass("legalise", steps.legalise_nodes, "rewrite what the target cannot express; printing is then a table"),
     Pass("masks", steps.convert_to_masks, "replace control flow by masks; no other pass expects these", _MASKS),
     Pass("names", steps.make_names_legal, "make names legal; every pass before may bring new ones"),

@@ -16,6 +16,7 @@ from sssgen.passes.fold import fold
 from sssgen.passes.guards import guard
 from sssgen.passes.hoist import Note, hoist
 from sssgen.passes.legal.legalise import legalise
+from sssgen.passes.legal.nested_arrays import nested_arrays
 from sssgen.passes.link import link
 from sssgen.passes.names import rename
 from sssgen.passes.numpy.predicate import predicate
@@ -208,6 +209,10 @@ def _start(state: State) -> str:
 
 def pass_uniforms(state: State) -> Module:
     return uniforms_to_parameters(state.module)
+
+
+def wrap_nested_arrays(state: State) -> Module:
+    return nested_arrays(state.module)
 
 
 def legalise_nodes(state: State) -> Module:

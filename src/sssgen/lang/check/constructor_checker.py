@@ -42,7 +42,11 @@ class ConstructorChecker:
     def type_constructor(self, callee: s.TypeName, call: s.CallOf) -> Typed:
         if callee.lengths:
             element, _ = named_type(self.context, replace(callee, lengths=()))
-            type_ = array_type(self.context, element, callee.lengths, len(call.args))
+            lengths = callee.lengths
+            if call.args and any(isinstance(length, s.Unsized) for length in lengths[1:]):  # float[][](…): as its parts
+                first, _ = self.expressions.with_prelude(call.args[0], self.expressions.check)
+                element, lengths = first.expr.type, lengths[:1]
+            type_ = array_type(self.context, element, lengths, len(call.args))
             assert isinstance(type_, Array)
             return self.construct_parts(type_, call)
         type_, quantity = named_type(self.context, callee)

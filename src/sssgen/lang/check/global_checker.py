@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.types import VOID, Array, Matrix, Sampler, Struct, Type, components, kind_of
+from sssgen.ir.types import VOID, Array, Matrix, Sampler, Struct, Type, components, kind_of, unnested
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.constant_values import constant_value
 from sssgen.lang.check.declared_names import check_global_name, declare_struct
@@ -65,7 +65,7 @@ class GlobalChecker:
         check_global_name(context, name)
         type_, quantity = named_type(context, declaration.type)
         type_ = array_type(context, type_, declarator.lengths)
-        has_struct = isinstance(type_.element if isinstance(type_, Array) else type_, Struct)
+        has_struct = isinstance(unnested(type_)[0], Struct)
         if type_ == VOID or (has_struct and not context.plain):
             raise context.fail(declaration.type.span, f"a uniform cannot be {a_type(type_)}")
         default = self.default(declarator, type_)

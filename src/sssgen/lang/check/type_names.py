@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
-from sssgen.ir.types import BY_NAME, Array, Matrix, Sampler, Type, Void, spell
+from sssgen.ir.types import BY_NAME, Array, Matrix, Sampler, Type, Void, spell, unnested
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.context import CheckContext
@@ -40,14 +41,22 @@ def named_type(context: CheckContext, name: s.TypeName) -> tuple[Type, str]:
 
 
 def array_type(context: CheckContext, element: Type, lengths: Sequence[s.Expression], items: int | None = None) -> Type:
-    """`element` itself without a length, else an array of that constant length; `items` is the length of `[]`."""
+    """`element` itself without a length, else an array of these constant lengths, the outermost first.
+
+    `items` is the length of `[]`.
+    """
     if not lengths:
         return element
-    if len(lengths) > 1 or isinstance(element, Array | Sampler | Void):
-        message = f"there are no arrays of {'arrays' if len(lengths) > 1 else spell(element)}"
+    is_nested = len(lengths) > 1 or isinstance(element, Array)
+    if isinstance(element, Sampler | Void) or (is_nested and not context.plain):
+        message = f"there are no arrays of {'arrays' if is_nested else spell(element)}"
         raise context.fail(lengths[0].span, message)
-    length = lengths[0]
-    count = items if isinstance(length, s.Unsized) else constant_int(context, length)
-    if count is None or not 1 <= count <= 65536:
-        raise context.fail(length.span, "the length of an array must be a constant from 1 to 65536")
-    return Array(element, count)
+    total = math.prod(unnested(element)[1])
+    for index, length in reversed([*enumerate(lengths)]):
+        first = items if index == 0 else None
+        count = first if isinstance(length, s.Unsized) else constant_int(context, length)
+        total *= count or 0
+        if count is None or count < 1 or total > 65536:
+            raise context.fail(length.span, "the length of an array must be a constant from 1 to 65536")
+        element = Array(element, count)
+    return element

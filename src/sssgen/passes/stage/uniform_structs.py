@@ -1,8 +1,10 @@
 """Splits uniforms that are structs, or arrays of them: each member becomes a uniform of its own.
 
+An array of arrays becomes one array, element after element, which has the same layout.
+
 Why: the layout of a struct in a uniform block differs between languages, and an engine's material has no such
 parameters. `uniform Light lights[4]` gives `uniform vec3 lights_color[4]`: arrays of members. A nested member's name is
-formed the same way, and an array of arrays becomes one array, element after element. A struct that is read as a whole
+formed the same way. A struct that is read as a whole
 is constructed. Place: first of all, as no other pass handles these.
 """
 
@@ -56,14 +58,14 @@ class _Leaf(NamedTuple):
 
 def uniform_structs(module: Module) -> Module:
     """The module without uniforms that hold structs. Raises Unsupported."""
-    if not any(_holds_struct(uniform.type) for uniform in module.uniforms):
+    if not any(_is_split(uniform.type) for uniform in module.uniforms):
         return module
     return _Splitter(module).run()
 
 
-def _holds_struct(type_: Type) -> bool:
-    """Whether it is a struct or an array of them."""
-    return isinstance(type_, Struct) or (isinstance(type_, Array) and _holds_struct(type_.element))
+def _is_split(type_: Type) -> bool:
+    """Whether it is a struct, or an array of structs or arrays."""
+    return isinstance(type_, Struct) or (isinstance(type_, Array) and isinstance(type_.element, Array | Struct))
 
 
 class _Splitter:
@@ -71,7 +73,7 @@ class _Splitter:
         self.module = module
         declared = (module.constants, module.uniforms, module.variables, module.functions)
         self.taken = {declaration.name for group in declared for declaration in group}
-        self.split = {uniform.name for uniform in module.uniforms if _holds_struct(uniform.type)}
+        self.split = {uniform.name: uniform.type for uniform in module.uniforms if _is_split(uniform.type)}
         self.leaves: dict[Path, _Leaf] = {}
 
     def run(self) -> Module:
@@ -93,7 +95,7 @@ class _Splitter:
             return
         numbers = uniform.default or (0.0,) * components(uniform.type)
         for path, lengths, element, default in _members((uniform.name,), uniform.type, (), [numbers]):
-            name = fresh("_".join(path), self.taken)
+            name = fresh("_".join(path), self.taken) if len(path) > 1 else uniform.name
             self.taken.add(name)
             leaf = self.leaves[path] = _Leaf(name, lengths, element)
             spelt = _spelt(path, uniform.type)
@@ -123,7 +125,7 @@ class _Splitter:
         """Whether it is a split uniform, or a member or element of one."""
         while isinstance(node, Member | Index):
             node = node.value
-        return isinstance(node, Global) and node.name in self.split
+        return isinstance(node, Global) and self.split.get(node.name) == node.type  # the new uniform may have its name
 
     def whole(self, node: Expr) -> Expr:
         """The value of a chain; any other expression unchanged."""
@@ -132,7 +134,8 @@ class _Splitter:
     def read(self, node: Expr) -> Expr:
         path, indices = _taken_apart(node)
         leaf = self.leaves.get(path)
-        if leaf is not None and (len(indices) == len(leaf.lengths) or not indices):
+        whole = not indices and leaf is not None and len(leaf.lengths) == 1
+        if leaf is not None and (len(indices) == len(leaf.lengths) or whole):
             return self.element(leaf, indices, node.span)
         for index in indices:
             if any(isinstance(part, Call) for part in subexpressions(index)):

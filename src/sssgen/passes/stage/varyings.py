@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 
 from sssgen.ir.nodes import Module, Span, Variable
 from sssgen.ir.rules import element_type
-from sssgen.ir.types import Array, Matrix, Struct, Type, spell, with_article
+from sssgen.ir.types import Array, Matrix, Struct, Type, spell, unnested, with_article
 from sssgen.passes.scopes import mentions
 from sssgen.passes.unsupported import Unsupported
 
@@ -51,7 +51,7 @@ def parts(variable: Variable) -> list[Part]:
 
 
 def _parts(variable: Variable, type_: Type, path: tuple[int, ...]) -> list[Part]:
-    inner = type_.element if isinstance(type_, Array) else type_
+    inner, _ = unnested(type_)
     if isinstance(inner, Struct):
         raise Unsupported(f"'{variable.name}' contains structs, which cannot be passed between stages", variable.span)
     if not isinstance(type_, Array | Matrix):

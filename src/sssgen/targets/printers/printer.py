@@ -17,7 +17,7 @@ from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.operators import PRECEDENCE
 from sssgen.ir.rules import FLOAT_MAX
-from sssgen.ir.types import FLOAT, INT, UINT, Array, Sampler, Scalar, Struct, Type, components, spell
+from sssgen.ir.types import FLOAT, INT, UINT, Array, Sampler, Scalar, Struct, Type, components, spell, unnested
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import failure
 from sssgen.targets.descriptor import Target
@@ -85,7 +85,7 @@ class Printer:
         if isinstance(type_, Struct):
             return type_.name
         if isinstance(type_, Array):
-            return f"{self.type(type_.element)}[{type_.length}]"
+            return self.variable(type_, "")
         if spell(type_) not in self.target.types:
             raise failure(f"{self.target.title} has no {spell(type_)}")
         return self.target.types[spell(type_)]
@@ -97,9 +97,9 @@ class Printer:
 
     def variable(self, type_: Type, name: str) -> str:
         """A variable's declaration; in C the length of an array follows the name."""
-        if isinstance(type_, Array):
-            return f"{self.type(type_.element)} {name}[{type_.length}]"
-        return f"{self.type(type_)} {name}"
+        innermost, lengths = unnested(type_)
+        listed = "".join([f"[{length}]" for length in lengths])
+        return f"{self.type(innermost)} {name}{listed}" if name else f"{self.type(innermost)}{listed}"
 
     def literal(self, literal: ir.Literal) -> str:
         if literal.type == FLOAT:
