@@ -48,11 +48,11 @@ class Notes:
     """What a material cannot express, by the field of its model."""
 
     def __init__(self) -> None:
-        self.by_field: dict[str, str] = {}
+        self.by_field: dict[str, tuple[str, str]] = {}
 
-    def approximated(self, field: str, became: str) -> None:
+    def approximated(self, field: str, became: str, error: str = "") -> None:
         """Notes that a field is approximated; the first note of a field is kept."""
-        self.by_field.setdefault(field, became)
+        self.by_field.setdefault(field, (became, error))
 
 
 def report_fields(imported: Imported, notes: Notes, report: Report) -> None:
@@ -60,6 +60,6 @@ def report_fields(imported: Imported, notes: Notes, report: Report) -> None:
     for field, elements in imported.elements.items():
         for element in elements:
             if field in notes.by_field:
-                report.approximated(element.path, element.value, notes.by_field[field])
+                report.approximated(element.path, element.value, *notes.by_field[field])
             else:
                 report.mapped(element.path, element.value, field.replace("_", " "))

@@ -12,7 +12,7 @@ from sssgen.harness.scenes.mesh_files import FileContent
 from sssgen.interchange.imported import BAKED_SET, Imported, Notes, report_fields
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.mesh_glb import mesh_file
-from sssgen.interchange.scene_text import BALL_RADIUS, scene_text
+from sssgen.interchange.scene_text import ball_radius, scene_text
 from sssgen.interchange.technique_choice import Choice, choose
 from sssgen.interchange.texture_composer import Coordinates
 from sssgen.lab.measure.measured_chain import material_text
@@ -45,7 +45,7 @@ def write_import(folder: str, materials: Sequence[Imported], report: Report) -> 
     written: list[WrittenMaterial] = []
     for imported, name in zip(materials, identifiers([part.model.name for part in materials]), strict=True):
         notes = Notes()
-        chord = 4.0 / 3.0 * BALL_RADIUS if imported.mesh is None else mean_chord(imported.mesh)
+        chord = 4.0 / 3.0 * ball_radius(imported.model) if imported.mesh is None else mean_chord(imported.mesh)
         choice = choose(imported.model, notes, chord)
         report_fields(imported, notes, report)
         files |= {f"{name}/{path}": content for path, content in _material_files(imported, choice, name).items()}

@@ -12,8 +12,9 @@ from sssgen.interchange.surface_model import SurfaceModel
 from sssgen.interchange.technique_choice import Choice
 from sssgen.lab.measure.measured_chain import toml_value
 
-BALL_RADIUS = 1.0
-"""Metres, of the body of a material without a mesh."""
+_BALL_RADIUS, _SCATTERED_RADIUS, _CLEAR_RADIUS = 1.0, 6.0, 0.75
+"""The largest radius of the ball of a material without a mesh: metres, and mean free paths of media with and without
+scattering, so that light comes through."""
 _BELOW, _ABOVE = (0.25, 0.25, 0.27), (0.75, 0.8, 0.9)
 """The background: the defaults of the technique `seen_through`."""
 _VIEW = (0.45, 0.35, 1.0)
@@ -23,9 +24,18 @@ _LARGEST_ANISOTROPY = 0.95
 """Of the section [medium]."""
 
 
+def ball_radius(model: SurfaceModel) -> float:
+    """The radius in metres of the ball of a material without a mesh."""
+    interior = model.interior
+    if interior is None or not any(interior.extinction):
+        return _BALL_RADIUS
+    paths = _SCATTERED_RADIUS if any(interior.scattering) else _CLEAR_RADIUS
+    return min(_BALL_RADIUS, paths * interior.mean_free_path)
+
+
 def scene_text(model: SurfaceModel, choice: Choice, name: str, mesh: FileContent | None, surroundings: str) -> str:
     """The scene file beside the material; its unit is that of the material."""
-    centre, radius = (np.zeros(3), BALL_RADIUS) if mesh is None else _bounds(mesh)
+    centre, radius = (np.zeros(3), ball_radius(model)) if mesh is None else _bounds(mesh)
     centre, radius = centre / choice.metres, radius / choice.metres
     distance = 1.15 * radius / np.sin(np.radians(0.5 * _FIELD_OF_VIEW))
     eye = centre + distance * np.array(_VIEW) / np.linalg.norm(_VIEW)
@@ -37,7 +47,7 @@ def scene_text(model: SurfaceModel, choice: Choice, name: str, mesh: FileContent
         *_section("environment", file=f"../{surroundings}", intensity=1.5),
     ]
     if mesh is None:
-        lines += _section("geometry", kind="ball", radius=BALL_RADIUS / choice.metres)
+        lines += _section("geometry", kind="ball", radius=radius)
     else:
         lines += _section("geometry", kind="mesh", file="mesh.glb", scale=1.0 / choice.metres)
     lines += _section("camera", position=eye.tolist(), target=centre.tolist(), field_of_view=_FIELD_OF_VIEW)

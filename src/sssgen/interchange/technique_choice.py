@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sssgen.interchange.dense_bodies import as_matte
 from sssgen.interchange.imported import Notes
 from sssgen.interchange.surface_model import ONE, WHITE, Quantity, SurfaceModel
 from sssgen.interchange.texels import mean_of
@@ -262,7 +263,7 @@ def choose(model: SurfaceModel, notes: Notes, mean_chord: float) -> Choice:
 
     `notes` gets what the stages cannot express.
     """
-    return _Chooser(model, notes, mean_chord).all()
+    return _Chooser(as_matte(model, notes, mean_chord), notes, mean_chord).all()
 
 
 def _kept(metalness: Any, transmission: Any, diffuse: Any, subsurface: Any) -> Any:

@@ -118,7 +118,7 @@ def universal_lit(material: UnityMaterial) -> SurfaceModel:
 
 def _universal_alpha(material: UnityMaterial) -> tuple[AlphaMode, float]:
     cutoff = material.number("_Cutoff", 0.5)
-    if material.number("_AlphaClip", 0.0) or "_ALPHATEST_ON" in material.keywords:
+    if cutoff > 0.0 and (material.number("_AlphaClip", 0.0) or "_ALPHATEST_ON" in material.keywords):
         return "mask", material.number("_Cutoff", 0.5, "alpha_cutoff")
     transparent = material.number("_Surface", 0.0) or material.number("_Mode", 0.0) >= 2.0
     return "blend" if transparent else "opaque", cutoff
@@ -184,7 +184,7 @@ def high_definition_lit(material: UnityMaterial) -> SurfaceModel:
     kind = round(material.number("_MaterialID", 1.0))
     transparent = material.number("_SurfaceType", 0.0) == 1.0
     refraction = round(material.number("_RefractionModel", 0.0)) if transparent else _NO_REFRACTION
-    cutoff = material.number("_AlphaCutoffEnable", 0.0) > 0.0
+    cutoff = material.number("_AlphaCutoffEnable", 0.0) > 0.0 and material.number("_AlphaCutoff", 0.5) > 0.0
     alpha_mode: AlphaMode = "mask" if cutoff else "blend" if transparent and not refraction else "opaque"
     model = SurfaceModel(
         material.name,
