@@ -51,6 +51,7 @@ NEEDS: dict[str, str | None] = {
     "check mine.frag": None,
     "transpile half.glsl -t wgsl": None,
     "transpile half.glsl --as technique": None,
+    "transpile --stages mine.vert mine.frag -t wgsl -o mine": None,
     "transpile half.glsl --verify": "numpy",
     "lint half.glsl --no-examples --all": None,
     "lint half.glsl": "numpy",
@@ -90,6 +91,7 @@ def test_a_command_without_the_optional_packages(command: str, tmp_path: Path) -
     (tmp_path / "wax.toml").write_text(MATERIAL, encoding="utf-8")
     (tmp_path / "half.glsl").write_text("float halved(float x) { return 1.0 / x; }\n", encoding="utf-8")
     (tmp_path / "mine.frag").write_text("#version 330\nout vec4 c;\nvoid main() { c = vec4(1.0); }\n", encoding="utf-8")
+    (tmp_path / "mine.vert").write_text("#version 330\nvoid main() { gl_Position = vec4(1.0); }\n", encoding="utf-8")
     words = [sys.executable, "-c", ALONE, *command.split(), "--json"]
     done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=False, encoding="utf-8")
     result = json.loads(done.stdout)
