@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
         "examples:\n  sssgen lint ice\n  sssgen lint mine.glsl --json\n"
-        "  sssgen lint mine.frag --kind nan,division\n"
+        "  sssgen lint mine.frag --kind nan,division\n  sssgen lint mine.frag --assume threejs\n"
         "Kinds: nan, division (by 0), undefined (by the language), range (out of range), overflow (to infinity).\n"
         "Exit status 1: an operation of a plain function may fail. The shaders that emit writes for materials have "
         "guards."
@@ -28,6 +28,11 @@ def add_options(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--kind", metavar="KIND,KIND", help="the kinds of failures to report, or 'all' (default: all but overflow)"
     )
+    parser.add_argument(
+        "--assume", metavar="PRESET|FILE", action="append", default=[],
+        help="assume what an engine guarantees of the inputs of plain GLSL: threejs, babylonjs, playcanvas, generic, "
+        "unit-normals, colors, or a TOML file; may be repeated",
+    )  # fmt: skip
     parser.add_argument(
         "--no-examples", action="store_true", help="do not search for inputs that fail, which is faster"
     )
@@ -45,7 +50,7 @@ def run(arguments: Namespace) -> int:
         for index, name in enumerate(names):
             progress(index, len(names), name)
             try:
-                reports.append(lint(name, not arguments.no_examples, kinds))
+                reports.append(lint(name, not arguments.no_examples, kinds, arguments.assume))
             except SssgenError as error:
                 wrong += error.diagnostics
     if wrong:
@@ -57,6 +62,7 @@ def run(arguments: Namespace) -> int:
                 "name": report.name,
                 "findings": [finding.as_json() for finding in report.findings],
                 "hidden": dict(report.hidden),
+                "assumptions": [fact.as_json() for fact in report.assumptions],
             }
             for report in reports
         ]
@@ -67,6 +73,8 @@ def run(arguments: Namespace) -> int:
             if finding.verdict != PROVEN or arguments.all:
                 print(f"{finding.render()}\n")
         print(_summary(report, arguments.no_examples))
+        for source, names in _assumptions(report):
+            print(f"  assumed ({source}): {names}")
     return CHECK_FAILED if unguarded else OK
 
 
@@ -81,6 +89,14 @@ def _kinds(option: str | None) -> tuple[Kind, ...]:
     for word in sorted(words - {"all", *KINDS}):
         raise failure(f"unknown kind '{word}'", did_you_mean(word, KINDS) or f"kinds: {', '.join(KINDS)}, all")
     return tuple([kind for kind in KINDS if kind in words or "all" in words])
+
+
+def _assumptions(report: Report) -> list[tuple[str, str]]:
+    """What was assumed, a line for each source and each thing assumed."""
+    names: dict[tuple[str, str], list[str]] = {}
+    for fact in report.assumptions:
+        names.setdefault((fact.source, fact.text), []).append(fact.name)
+    return [(source, f"{', '.join(group)}: {text}") for (source, text), group in names.items()]
 
 
 def _summary(report: Report, no_examples: bool) -> str:

@@ -8,11 +8,13 @@ outside are not clamped: a thickness may be any number.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
 
 from sssgen.ir.formats import FLOAT32, Format
+from sssgen.ir.intervals import INF
 from sssgen.ir.nodes import Param, Uniform, Variable
-from sssgen.ir.types import FLOAT, VEC3, VEC4, Array, Matrix, Sampler, kind_of
+from sssgen.ir.types import FLOAT, VEC3, VEC4, Array, Matrix, Sampler, Type, kind_of
 from sssgen.ir.vector_ranges import LENGTH, Contract
 
 LONG = 300.0
@@ -37,6 +39,30 @@ _LENGTHS = {"thickness", "view_thickness"}
 _FRACTIONS = {"alpha", "metallic", "roughness", "occlusion", "specular", "clearcoat", "clearcoat_roughness"}
 _COLORS = {"albedo", "light_color", "emission", "color", "translucency"}
 _FRAME = {"N", "V", "L", "T", "B", "normal"}
+
+
+class Assumption(NamedTuple):
+    """What is assumed of an input in place of its contract."""
+
+    low: float = -INF
+    high: float = INF
+    """The range of each component."""
+    shortest: float = 0.0
+    longest: float = INF
+    """The range of a vector's length, a number's size, or a matrix's stretch: how much longer it makes vectors."""
+    finite: bool = False
+    """No texel of a texture is infinite or NaN."""
+
+    def applied(self, contract: Contract) -> Contract:
+        """The contract with what is assumed."""
+        return Contract(
+            self.low if self.low > -INF else contract.low, self.high if self.high < INF else contract.high,
+            min(self.longest, contract.length), self.finite or contract.finite, self.shortest,
+        )  # fmt: skip
+
+
+Assumed = Callable[[str, str, Type], Assumption | None]
+"""What is assumed of an input, by its storage (uniform, varying, attribute or parameter), its name and its type."""
 
 
 def of_param(param: Param, format: Format = FLOAT32, chained: bool = True) -> Contract:

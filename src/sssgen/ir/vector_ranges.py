@@ -23,6 +23,8 @@ class Contract(NamedTuple):
     length: float = INF
     finite: bool = True
     """False for texels of a texture that holds data: a float format may hold NaN and infinity."""
+    shortest: float = 0.0
+    """The least length of a vector, or size of a number. `shortest` and `length` of a matrix are its stretch."""
 
 
 LENGTH = 1.001
@@ -38,6 +40,10 @@ class Value(NamedTuple):
     """The length of a vector of floats; it holds in addition to what the components imply."""
     texel: Contract | None = None
     """The possible texels of a texture."""
+    stretch: Range = ANY
+    """How much longer a matrix makes a vector (of a 4×4 matrix: its first three rows and columns)."""
+    head: Range = ANY
+    """The length of the first three components of a vector of four."""
 
 
 Result = tuple[list[Range], Range]

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from sssgen.ir.nodes import Module
 from sssgen.ir.spans import Span
 from sssgen.lang import shadertoy
+from sssgen.lang.assumption_comments import AssumedInput, with_assumptions
 from sssgen.lang.check.module_checker import check_plain
 from sssgen.lang.preprocess.preprocessor import Preprocessed, preprocess
 from sssgen.lang.source_lines import keep_lines
@@ -44,6 +45,8 @@ class Loaded(NamedTuple):
     """The paths of the included files."""
     head: list[str]
     """The lines of the comment at the top of the file that documents no declaration, such as a licence."""
+    assumed: list[AssumedInput]
+    """What comments assume of inputs."""
 
 
 def load_glsl(
@@ -52,15 +55,19 @@ def load_glsl(
     roots: Sequence[str | os.PathLike[str]] = (),
     defines: Mapping[str, str] | None = None,
     entry: str = "",
+    assumptions: bool = False,
 ) -> Loaded:
     """The checked module of a GLSL file and all it includes.
 
     `shown` is the file's name in messages; `roots` are the folders in which included files are looked for after the
-    one that they are included from; `defines` are macros; `entry` is '' or `shadertoy`.
+    one that they are included from; `defines` are macros; `entry` is '' or `shadertoy`; `assumptions`: comments with
+    `sssgen: assume` count.
     Raises SssgenError for a missing, unreadable, too large or faulty file.
     """
     name = shown or os.fspath(path)
-    return load_glsl_text(read_text(path, name), name, (os.path.dirname(path) or ".", *roots), defines, entry)
+    return load_glsl_text(
+        read_text(path, name), name, (os.path.dirname(path) or ".", *roots), defines, entry, assumptions
+    )
 
 
 def load_glsl_text(
@@ -69,19 +76,23 @@ def load_glsl_text(
     roots: Sequence[str | os.PathLike[str]] = (),
     defines: Mapping[str, str] | None = None,
     entry: str = "",
+    assumptions: bool = False,
 ) -> Loaded:
     """The checked module of a GLSL text; see `load_glsl`."""
     if entry and entry not in ENTRIES:
         raise failure(f"unknown entry '{entry}'", did_you_mean(entry, ENTRIES) or f"entries: {', '.join(ENTRIES)}")
     finder = _Finder(roots)
     with paused():
-        loaded = _loaded(text, shown, preprocess(text, shown, finder.find, defines), entry)
+        loaded = _loaded(text, shown, preprocess(text, shown, finder.find, defines), entry, assumptions)
     return loaded._replace(paths=finder.paths)
 
 
-def _loaded(text: str, shown: str, source: Preprocessed, entry: str) -> Loaded:
+def _loaded(text: str, shown: str, source: Preprocessed, entry: str, assumptions: bool) -> Loaded:
     """Parses and checks a preprocessed text."""
     tokens = source.tokens
+    assumed: list[AssumedInput] = []
+    if assumptions:
+        tokens, assumed = with_assumptions(tokens, source.comments, {shown: text, **source.texts})
     texts = dict(source.texts)
     texts.setdefault(shown, text)
     if entry == "shadertoy":
@@ -97,7 +108,7 @@ def _loaded(text: str, shown: str, source: Preprocessed, entry: str) -> Loaded:
         head = []  # it documents a declaration
     module = check_plain(file, reporter, _is_vertex(tokens, shown))
     ignored = [f"#extension {name}" for name in source.extensions] + [f"#pragma {name}" for name in source.pragmas]
-    return Loaded(module, source.version, texts, source.macros, ignored, reporter.warnings, [], head)
+    return Loaded(module, source.version, texts, source.macros, ignored, reporter.warnings, [], head, assumed)
 
 
 def _head(source: Preprocessed, shown: str) -> tuple[list[str], list[Comment], bool]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+from sssgen.ir.contracts import Assumed
 from sssgen.ir.formats import FLOAT32
 from sssgen.ir.nodes import Module
 from sssgen.ir.types import Struct
@@ -93,14 +94,16 @@ def analysed(material: Material, target: Target, form: str) -> Analysed:
     return Analysed(state.module, state.costs, state.guarded.sites if state.guarded else (), state.slots)
 
 
-def library_sites(module: Module, called: Sequence[str] | None = None, chained: bool = False) -> list[Site]:
+def library_sites(
+    module: Module, called: Sequence[str] | None = None, chained: bool = False, assumed: Assumed | None = None
+) -> list[Site]:
     """Every operation with a domain in a module of plain functions, or in the run of a whole shader.
 
     Raises SssgenError.
     """
     module, _, roots = plain_module(module)
     entry = entry_of(module)
-    return analyse(module, called or ([entry.key] if entry is not None else roots), FLOAT32, chained).sites
+    return analyse(module, called or ([entry.key] if entry is not None else roots), FLOAT32, chained, assumed).sites
 
 
 def plain_module(module: Module) -> tuple[Module, list[Note], list[str]]:

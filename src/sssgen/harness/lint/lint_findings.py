@@ -9,21 +9,24 @@ from __future__ import annotations
 import os
 import re
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from sssgen.harness.lint.input_assumptions import AssumedFact, Assumptions, load_rules, rules_of_comments
 from sssgen.ir.formats import FLOAT32
 from sssgen.ir.intrinsics import Guard, Kind
-from sssgen.ir.nodes import Function, Module
-from sssgen.ir.types import Matrix, Scalar, Vector, Void
-from sssgen.ir.walk import operands
+from sssgen.ir.nodes import Assume, Function, Module
+from sssgen.ir.types import Matrix, Scalar, Struct, Vector, Void
+from sssgen.ir.walk import operands, statements
 from sssgen.lang.check.termination import endless
 from sssgen.lang.plain_glsl import load_glsl
 from sssgen.lang.source_lines import source_line
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
 from sssgen.passes.guards import remedy
+from sssgen.passes.ranges.scalar_parts import innermost
 from sssgen.passes.ranges.sites import Site
+from sssgen.passes.stage.stage_interface import stage_kind
 from sssgen.pipeline.compiler import guarded_sites
 from sssgen.pipeline.programs import library_sites
 from sssgen.support.diagnostics import Diagnostic, did_you_mean, failure
@@ -128,18 +131,26 @@ class Report(NamedTuple):
     """Those of the selected kinds, and the operations that are proven safe, in the order of the source."""
     hidden: Mapping[str, int]
     """How many operations may fail in a way of another kind."""
+    assumptions: Sequence[AssumedFact] = ()
+    """What was assumed of inputs, beyond their contracts."""
 
     def unproven(self) -> list[Finding]:
         """The findings that are not proven safe."""
         return [finding for finding in self.findings if finding.verdict != PROVEN]
 
 
-def lint(name: str, with_examples: bool = True, kinds: Collection[Kind] = REPORTED) -> Report:
+def lint(
+    name: str, with_examples: bool = True, kinds: Collection[Kind] = REPORTED, assumed: Sequence[str] = ()
+) -> Report:
     """The findings of a technique, a material, an example or a file of functions.
 
     A material is checked as a whole, as in its emitted shader; a technique for all its inputs; a file of plain
-    functions for all arguments and without guards, a whole shader from its main(). Raises SssgenError.
+    functions for all arguments and without guards, a whole shader from its main(). `assumed` are presets and TOML files
+    with assumptions about inputs of plain GLSL. Raises SssgenError.
     """
+    is_known = name.endswith((".toml", ".sss")) or name in examples() or name in library.index()
+    if assumed and is_known:
+        raise failure(f"'{name}' takes no assumptions", "its uniforms have hints, and its parameters quantities")
     if name.endswith(".toml") or name in examples():
         specimens = _stages(name) if with_examples else []
         return _report(name, guarded_sites(load_material(name)), kinds, specimens)
@@ -148,7 +159,7 @@ def lint(name: str, with_examples: bool = True, kinds: Collection[Kind] = REPORT
         sites = library_sites(specimen.subject.module, specimen.subject.called, specimen.subject.chained)
         return _report(name, sites, kinds, [specimen] if with_examples else [])
     if name.endswith((".glsl", ".frag", ".vert", ".inc")) or os.path.isfile(name):
-        return _plain(name, with_examples, kinds)
+        return _plain(name, with_examples, kinds, assumed)
     refuse_folder(name, (".glsl", ".sss", ".toml", ".frag", ".vert"))
     names = [*library.index(), *examples()]
     raise failure(
@@ -157,15 +168,48 @@ def lint(name: str, with_examples: bool = True, kinds: Collection[Kind] = REPORT
     )
 
 
-def _plain(path: str, with_examples: bool, kinds: Collection[Kind]) -> Report:
+def _plain(path: str, with_examples: bool, kinds: Collection[Kind], assumed: Sequence[str]) -> Report:
     """The findings of plain functions, which have no guards."""
-    module = load_glsl(path, path).module
+    rules = load_rules(assumed)
+    loaded = load_glsl(path, path, assumptions=True)
+    module = loaded.module
+    rules += rules_of_comments(loaded.assumed, frozenset(_inputs(module)).__contains__)
+    assumptions = Assumptions(rules, stage_kind(module) == "vertex")
+    sites = library_sites(module, assumed=assumptions.of if rules else None)
+    facts = [*assumptions.applied.values(), *_stated(module)]
     specimens = []
-    if with_examples and not any(map(endless, module.functions)):
+    if with_examples and not facts and not any(map(endless, module.functions)):
         specimens = [
             _technique(f"{path}:{function.name}") for function in module.functions if _evaluable(module, function)
         ]
-    return _report(path, library_sites(module), kinds, specimens, guarded=False)
+    return _report(path, sites, kinds, specimens, guarded=False)._replace(assumptions=facts)
+
+
+def _inputs(module: Module) -> Iterator[str]:
+    """The names of the inputs of a module; of structs, those of their fields, too."""
+    params = [(param.name, param.type) for function in module.functions for param in function.params]
+    inputs = [(variable.name, variable.type) for variable in module.variables if variable.storage == "in"]
+    pending = [*params, *inputs, *((uniform.name, uniform.type) for uniform in module.uniforms)]
+    while pending:
+        name, type_ = pending.pop()
+        yield name
+        inner = innermost(type_)
+        if isinstance(inner, Struct):
+            pending += [(f"{name}.{field.name}", field.type) for field in inner.fields]
+
+
+def _stated(module: Module) -> Iterator[AssumedFact]:
+    """The assumptions in functions: each comment or `assume()` once, though it may state several conditions."""
+    spans = {
+        stmt.span: function.name
+        for function in module.functions
+        for stmt in statements(function.body or ())
+        if isinstance(stmt, Assume)
+    }
+    for span, function in spans.items():
+        text = source_line(span)[span.column - 1 : span.end_column - 1]
+        words = text.partition("assume")[2].removesuffix("*/").strip() if "sssgen" in text else text
+        yield AssumedFact(f"{function}(), line {span.line}", words, "source", "")
 
 
 def _evaluable(module: Module, function: Function) -> bool:

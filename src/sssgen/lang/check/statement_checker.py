@@ -11,7 +11,20 @@ from typing import Any
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.rules import element_type
-from sssgen.ir.types import BOOL, FLOAT, VOID, Array, Sampler, Scalar, Struct, Type, kind_of
+from sssgen.ir.types import (
+    BOOL,
+    FLOAT,
+    VOID,
+    Array,
+    Sampler,
+    Scalar,
+    Struct,
+    Type,
+    Vector,
+    components,
+    kind_of,
+    vector_of,
+)
 from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.assignment_checker import AssignmentChecker
 from sssgen.lang.check.constant_values import constant_value
@@ -20,6 +33,8 @@ from sssgen.lang.check.declared_names import check_not_reserved, declare_struct
 from sssgen.lang.check.type_names import array_type, named_type
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
+
+_ORDERS = ("<", "<=", ">", ">=")
 
 
 class StatementChecker:
@@ -155,11 +170,29 @@ class StatementChecker:
         assert isinstance(call, s.CallOf)
         if len(call.args) != 1:
             raise self.context.fail(call.span, "assume takes one condition", "write assume(x > 0.0);")
-        condition = self.condition(call.args[0])
-        if condition is not None and any(isinstance(part, ir.Call) for part in subexpressions(condition)):
+        conditions = self.conditions(call.args[0])
+        if any(isinstance(part, ir.Call) for condition in conditions for part in subexpressions(condition)):
             hint = "store its result in a variable, and assume a condition on that"
             raise self.context.fail(call.span, "an assumption cannot call a function", hint)
-        return [ir.Assume(condition, call.span)] if condition is not None else []
+        return [ir.Assume(condition, call.span) for condition in conditions]
+
+    def conditions(self, condition: s.Expression) -> list[ir.Expr]:
+        """What an assumption states: `a <= b <= c` is two comparisons, and one of a vector is one of each component."""
+        if isinstance(condition, s.Infix) and condition.op == "&&":
+            return [*self.conditions(condition.left), *self.conditions(condition.right)]
+        if isinstance(condition, s.Infix) and condition.op in _ORDERS:
+            left, first = condition.left, []
+            if isinstance(left, s.Infix) and left.op in _ORDERS:
+                first, left = self.conditions(left), left.right
+            sides = [self.expressions.check(side).expr for side in (left, condition.right)]
+            floats = any(kind_of(side.type) == "float" for side in sides)
+            sides = [_as_float(side) if floats else side for side in sides]
+            size = max(components(side.type) for side in sides)
+            if all(isinstance(side.type, Scalar | Vector) and components(side.type) in (1, size) for side in sides):
+                parts = [[_part(side, index) for side in sides] for index in range(size)]
+                return first + [ir.Binary(BOOL, condition.op, a, b, condition.span) for a, b in parts]
+        checked = self.condition(condition)
+        return [checked] if checked is not None else []
 
     def if_(self, statement: s.IfStatement) -> list[ir.Stmt]:
         condition = self.condition(statement.condition)
@@ -201,6 +234,20 @@ class StatementChecker:
             raise context.fail(jump.span, "this function is void and cannot return a value")
         value = self.expressions.check_as(jump.value, type_, context.function.quantity, "the returned value")
         return [ir.Return(value, jump.span)]
+
+
+def _as_float(expr: ir.Expr) -> ir.Expr:
+    """A number as a float, as no version of GLSL converts it in an assumption."""
+    if kind_of(expr.type) not in ("int", "uint"):
+        return expr
+    return ir.Construct(vector_of("float", components(expr.type)), (expr,), expr.span)
+
+
+def _part(expr: ir.Expr, index: int) -> ir.Expr:
+    """A component of a vector, or a number itself."""
+    if isinstance(expr.type, Scalar):
+        return expr
+    return ir.Swizzle(Scalar(kind_of(expr.type)), expr, "xyzw"[index], expr.span)
 
 
 def zero(type_: Type, span: ir.Span) -> ir.Expr:

@@ -87,7 +87,8 @@ class ExpressionRanges(CallRanges):
                 node.left.type, left.parts, node.right.type, right.parts, slack, self.format.largest
             )
             if product is not None:
-                return self.computed(node, product, [self.numbers.fresh() for _ in product])
+                value = self.computed(node, product, [self.numbers.fresh() for _ in product])
+                return self.turned(node, left, right, value)
         if op in ("%", "<<", ">>", "&", "|", "^") or (op == "/" and kind != "float"):
             return self.integer(node, left, right)
         if op == "/":
@@ -104,6 +105,20 @@ class ExpressionRanges(CallRanges):
                 parts.append(self.sum(a, m, b, n, op))
                 numbers.append(self.numbers.sum(op, m, n, kind, self.slack(a, b, parts[-1], kind)))
         return self.computed(node, parts, numbers, self.length_after(op, left, right))
+
+    def turned(self, node: ir.Binary, left: Value, right: Value, product: Value) -> Value:
+        """A product with a matrix of which the stretch is known: a vector's length, or a matrix's stretch."""
+        slack = 16.0 * self.format.epsilon
+        if isinstance(node.type, Matrix):
+            return product._replace(stretch=widened(left.stretch * right.stretch, slack))
+        matrix, vector = (left, right) if isinstance(node.left.type, Matrix) else (right, left)
+        if matrix.stretch.high == INF:
+            return product
+        if len(vector.parts) == 4:  # a direction, if its last component is 0
+            if vector.parts[3].size > 0.0:
+                return product
+            return product._replace(head=widened(matrix.stretch * vector.head, slack))
+        return self.value(product.parts, product.numbers, widened(matrix.stretch * vector.length, slack))
 
     def product(self, a: Range, m: int, b: Range, n: int) -> Range:
         """A product of floats, which may be of a number with itself or with its negative."""
@@ -257,7 +272,9 @@ class ExpressionRanges(CallRanges):
         if len(parts) == 1:
             parts, numbers = parts * scalars(type_), numbers * scalars(type_)
         length = args[0].length if len(args) == 1 and len(args[0].parts) == len(parts) else ANY
-        return self.value(tuple(parts), tuple(numbers), length)
+        value = self.value(tuple(parts), tuple(numbers), length)
+        head = args[0].length if len(args) == 2 and len(args[0].parts) == 3 else ANY
+        return value if head is ANY else value._replace(head=head)
 
     def matrix(self, node: ir.Construct, value: Value) -> Value:
         type_, old = cast(Matrix, node.type), node.args[0].type
@@ -274,7 +291,7 @@ class ExpressionRanges(CallRanges):
                 else:
                     parts.append(as_range(float(row == column)))
                     numbers.append(one if row == column else zero)
-        return self.value(tuple(parts), tuple(numbers))
+        return self.value(tuple(parts), tuple(numbers))._replace(stretch=value.stretch if size > 2 else ANY)
 
     def conversion(self, node: ir.Construct, value: Value) -> Value:
         """Between float, int, uint and bool."""
@@ -317,7 +334,12 @@ class ExpressionRanges(CallRanges):
         at = ["xyzw".index(letter) for letter in node.components]
         length = ANY  # with a repeated component, only the components bound it
         if len(set(at)) == len(at):
-            length = value.length if len(at) == len(value.parts) else Range(0.0, value.length.high)
+            if len(at) == len(value.parts):
+                length = value.length
+            elif sorted(at) == [0, 1, 2] and value.head is not ANY:
+                length = value.head.met(Range(0.0, value.length.high))
+            else:
+                length = Range(0.0, value.length.high)
         return self.value(tuple([value.parts[i] for i in at]), tuple([value.numbers[i] for i in at]), length)
 
     def index(self, node: ir.Index) -> Value:

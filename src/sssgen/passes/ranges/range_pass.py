@@ -15,6 +15,7 @@ from typing import NamedTuple, cast
 
 from sssgen.ir import contracts
 from sssgen.ir import nodes as ir
+from sssgen.ir.contracts import Assumed
 from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.intervals import clip, rounded
 from sssgen.ir.types import VOID, Array, Struct, kind_of
@@ -37,9 +38,12 @@ class Findings(NamedTuple):
     """The operations of compound assignments, by the identity of the statement."""
 
 
-def analyse(module: ir.Module, roots: Iterable[str], format: Format = FLOAT32, chained: bool = True) -> Findings:
-    """Interprets the functions with the keys `roots`, their parameters within their contracts."""
-    analysis = RangeAnalysis(module, format, chained)
+def analyse(
+    module: ir.Module, roots: Iterable[str], format: Format = FLOAT32, chained: bool = True,
+    assumed: Assumed | None = None,
+) -> Findings:  # fmt: skip
+    """Interprets the functions with the keys `roots`, their parameters within their contracts or what is assumed."""
+    analysis = RangeAnalysis(module, format, chained, assumed)
     for key in roots:
         analysis.root(key)
     return Findings(list(analysis.sites.values()), analysis.compounds)
@@ -48,8 +52,10 @@ def analyse(module: ir.Module, roots: Iterable[str], format: Format = FLOAT32, c
 class RangeAnalysis(CallSummaries):
     """The complete analysis: adds functions and statements."""
 
-    def __init__(self, module: ir.Module, format: Format = FLOAT32, chained: bool = True) -> None:
-        super().__init__(module, format, chained)
+    def __init__(
+        self, module: ir.Module, format: Format = FLOAT32, chained: bool = True, assumed: Assumed | None = None
+    ) -> None:
+        super().__init__(module, format, chained, assumed)
         self.variable_keys = frozenset(map(global_key, self.variables))
 
     # Functions
@@ -73,12 +79,11 @@ class RangeAnalysis(CallSummaries):
         """What a caller outside of the module may pass; of a struct, in each of its fields."""
         inner = innermost(param.type)
         if not isinstance(inner, Struct):
-            return self.input(inner, contracts.from_outside(param._replace(type=inner), self.format, self.chained))
-        fields = [
+            contract = contracts.from_outside(param._replace(type=inner), self.format, self.chained)
+            return self.input(inner, contract, "parameter", param.name)
+        return self.assembled([
             self.outside(ir.Param(field.name, field.type, "in", field.quantity, param.span)) for field in inner.fields
-        ]
-        parts = tuple([part for field in fields for part in field.parts])
-        return self.value(parts, tuple([number for field in fields for number in field.numbers]))
+        ])  # fmt: skip
 
     def interpret(self, function: ir.Function, args: Sequence[Value]) -> Result:
         self.interpretations[function.key] += 1

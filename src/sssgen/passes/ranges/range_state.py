@@ -7,7 +7,7 @@ from typing import NamedTuple, cast
 
 from sssgen.ir import contracts
 from sssgen.ir import nodes as ir
-from sssgen.ir.contracts import INTEGERS
+from sssgen.ir.contracts import INTEGERS, Assumed
 from sssgen.ir.formats import Format
 from sssgen.ir.intervals import ANY, INF, Range, clip, rounded
 from sssgen.ir.intrinsics import BUILTINS, FINITE, Guard
@@ -77,7 +77,8 @@ class Loop:
 class AnalysisState:
     """The state of an analysis, and what every part of the analysis needs."""
 
-    def __init__(self, module: ir.Module, format: Format, chained: bool = True) -> None:
+    def __init__(self, module: ir.Module, format: Format, chained: bool = True, assumed: Assumed | None = None) -> None:
+        self.assumed = assumed
         self.functions = {function.key: function for function in module.functions}
         self.format = format
         self.chained = chained
@@ -102,8 +103,7 @@ class AnalysisState:
             self.globals[uniform.name] = value
         for variable in module.variables:
             if variable.storage == "in":
-                contract = contracts.of_stage_input(variable, format)
-                self.globals[variable.name] = self.input(innermost(variable.type), contract)
+                self.globals[variable.name] = self.stage_input(variable)
         for constant in module.constants:
             self.globals[constant.name] = self.expr(constant.value)
 
@@ -113,19 +113,45 @@ class AnalysisState:
         """A uniform within its contract; of a struct, each field within that of a uniform of its type."""
         inner = innermost(uniform.type)
         if not isinstance(inner, Struct):
-            return self.input(inner, contracts.of_uniform(uniform, self.format))
-        fields = [self.uniform(uniform._replace(type=field.type)) for field in inner.fields]
+            return self.input(inner, contracts.of_uniform(uniform, self.format), "uniform", uniform.name)
+        names = [f"{uniform.name}.{field.name}" for field in inner.fields]
+        return self.assembled([
+            self.uniform(uniform._replace(name=name, type=field.type))
+            for name, field in zip(names, inner.fields, strict=True)
+        ])  # fmt: skip
+
+    def stage_input(self, variable: ir.Variable) -> Value:
+        """An input of the stage; of a struct, each field within the contract of an input of its type."""
+        inner = innermost(variable.type)
+        if not isinstance(inner, Struct):
+            contract = contracts.of_stage_input(variable._replace(type=inner), self.format)
+            return self.input(inner, contract, "input", variable.name)
+        names = [f"{variable.name}.{field.name}" for field in inner.fields]
+        return self.assembled([
+            self.stage_input(variable._replace(name=name, type=field.type))
+            for name, field in zip(names, inner.fields, strict=True)
+        ])  # fmt: skip
+
+    def assembled(self, fields: Sequence[Value]) -> Value:
+        """A struct of these fields."""
         parts = tuple([part for field in fields for part in field.parts])
         return self.value(parts, tuple([number for field in fields for number in field.numbers]))
 
-    def input(self, type_: Type, contract: Contract) -> Value:
-        """An input within its contract."""
+    def input(self, type_: Type, contract: Contract, storage: str, name: str) -> Value:
+        """An input within its contract, or within what is assumed of it."""
+        assumption = self.assumed(storage, name, type_) if self.assumed is not None else None
+        if assumption is not None:
+            contract = assumption.applied(contract)
         if isinstance(type_, Sampler):
             return Value((), (), ANY, contract)
         count = scalars(type_)
-        parts = tuple([Range(contract.low, contract.high)] * count)
-        length = Range(0.0, contract.length) if contract.length < INF else ANY
-        return self.value(parts, tuple([self.numbers.fresh() for _ in parts]), length)
+        parts = tuple([Range(contract.low, contract.high, contract.shortest if count == 1 else 0.0)] * count)
+        size = ANY
+        if contract.length < INF or contract.shortest > 0.0:
+            size = Range(contract.shortest, contract.length)
+        is_matrix = isinstance(type_, Matrix)
+        value = self.value(parts, tuple([self.numbers.fresh() for _ in parts]), ANY if is_matrix else size)
+        return value._replace(stretch=size) if is_matrix else value
 
     def unknown(self, type_: Type) -> Value:
         """A value of which only the type is known."""
@@ -146,6 +172,8 @@ class AnalysisState:
             if fact is not None:
                 length = length.met(fact)
                 parts = tuple([clip(part, -length.high, length.high) for part in parts])
+                if len(parts) == 1 and length.low > 0.0:
+                    parts = (Range(parts[0].low, parts[0].high, max(parts[0].gap, length.low)),)
         return Value(parts, numbers, length)
 
     def refined(self, value: Value) -> Value:
@@ -153,7 +181,8 @@ class AnalysisState:
         facts = self.state.facts.ranges
         if not facts or (facts.keys().isdisjoint(value.numbers) and self.length_fact(value.numbers) is None):
             return value
-        return self.value(value.parts, value.numbers, value.length)
+        new = self.value(value.parts, value.numbers, value.length)
+        return new._replace(stretch=value.stretch, head=value.head)
 
     def length_fact(self, numbers: tuple[int, ...]) -> Range | None:
         """The fact about the length of a vector, if any, from one about its rounded length."""
@@ -214,7 +243,10 @@ class AnalysisState:
             b = b.met(second_facts.ranges[n]) if n in second_facts.ranges else b
             parts.append(a.joined(b))
         length = first.length.joined(second.length)
-        return Value(tuple(parts), tuple(numbers), length.met(length_of(parts)) if parts else length, first.texel)
+        return Value(
+            tuple(parts), tuple(numbers), length.met(length_of(parts)) if parts else length, first.texel,
+            first.stretch.joined(second.stretch), first.head.joined(second.head),
+        )  # fmt: skip
 
     def join(self, first: State, second: State) -> State:
         if first is second:

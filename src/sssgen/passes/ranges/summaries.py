@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.contracts import Assumed
 from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.intervals import ANY, Range, clip
 from sssgen.ir.vector_ranges import Value
@@ -49,12 +50,14 @@ class Summary(NamedTuple):
 class CallSummaries(LoopRanges):
     """The part of the analysis for calls of functions."""
 
-    def __init__(self, module: ir.Module, format: Format = FLOAT32, chained: bool = True) -> None:
+    def __init__(
+        self, module: ir.Module, format: Format = FLOAT32, chained: bool = True, assumed: Assumed | None = None
+    ) -> None:
         self.interpretations: Counter[str] = Counter()
         """A function's key → how often it was interpreted."""
         self.shared = SHARED_INTERPRETATIONS
         self.summaries: dict[object, Summary] = {}
-        super().__init__(module, format, chained)
+        super().__init__(module, format, chained, assumed)
 
     def enter(self, function: ir.Function, args: Sequence[Value]) -> Result:
         """The result of a call."""

@@ -1,0 +1,197 @@
+"""What `sssgen lint` assumes of the inputs of plain GLSL: presets, files of the user, comments in the source.
+
+A preset is a TOML file in `presets/`, or one with the same keys elsewhere. Each `[[assume]]` has `names`, patterns in
+which `*` stands for any letters (a field of a struct is `lights.color`), where they may be declared (`storage`:
+uniform, varying, attribute, parameter, texture), their `types`, and what holds: `range`, `length`, `unit`, `nonzero`,
+`orthonormal` or `finite`. `because` says what guarantees it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from sssgen.ir.contracts import Assumption
+from sssgen.ir.intervals import INF
+from sssgen.ir.types import Matrix, Sampler, Type, Vector, spell
+from sssgen.lang.assumption_comments import UNIT, AssumedInput, assumption_of
+from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
+from sssgen.support.text_files import read_text
+from sssgen.support.toml_source import Document, parse
+
+FOLDER = Path(__file__).parent / "presets"
+STORAGES = ("uniform", "varying", "attribute", "parameter", "texture")
+_FLAGS = ("unit", "nonzero", "orthonormal", "finite")
+_KEYS = ("names", "storage", "types", "range", "length", *_FLAGS, "because")
+
+
+class Rule(NamedTuple):
+    """What is assumed of the inputs that it matches."""
+
+    source: str
+    """The preset's name, the file's path, or `comment`."""
+    names: tuple[str, ...]
+    storages: tuple[str, ...]
+    types: tuple[str, ...]
+    """The types as GLSL spells them; none means all."""
+    assumption: Assumption
+    because: str
+
+    def matches(self, storage: str, name: str, type_: Type) -> bool:
+        """Whether it is about an input."""
+        return (
+            storage in self.storages
+            and (not self.types or spell(type_) in self.types)
+            and any(fnmatchcase(name, pattern) for pattern in self.names)
+        )
+
+
+class AssumedFact(NamedTuple):
+    """An assumption that was used: what of which input, and from where."""
+
+    name: str
+    text: str
+    source: str
+    because: str
+
+    def as_json(self) -> dict[str, str]:
+        """For tools."""
+        return self._asdict()
+
+
+class Assumptions:
+    """The rules for one program; it remembers those that it applied."""
+
+    def __init__(self, rules: Iterable[Rule], is_vertex: bool) -> None:
+        self.rules = list(rules)
+        self.is_vertex = is_vertex
+        self.applied: dict[tuple[str, str], AssumedFact] = {}
+
+    def of(self, storage: str, name: str, type_: Type) -> Assumption | None:
+        """What is assumed of an input; None for nothing. Of several rules, all hold."""
+        if isinstance(type_, Sampler):
+            storage = "texture"
+        elif storage == "input":
+            storage = "attribute" if self.is_vertex else "varying"
+        matching = [rule for rule in self.rules if rule.matches(storage, name, type_)]
+        if not matching:
+            return None
+        for rule in matching:
+            fact = AssumedFact(name, _shown(rule.assumption, type_), rule.source, rule.because)
+            self.applied[name, rule.source] = fact
+        return Assumption(
+            max(rule.assumption.low for rule in matching),
+            min(rule.assumption.high for rule in matching),
+            max(rule.assumption.shortest for rule in matching),
+            min(rule.assumption.longest for rule in matching),
+            any(rule.assumption.finite for rule in matching),
+        )
+
+
+def presets() -> list[str]:
+    """The names of the presets."""
+    return sorted(path.stem for path in FOLDER.glob("*.toml"))
+
+
+def load_rules(names: Sequence[str]) -> list[Rule]:
+    """The rules of presets, by their names, and of TOML files. Raises SssgenError."""
+    rules: list[Rule] = []
+    for name in dict.fromkeys(names):
+        if name in presets():
+            rules += _rules(read_text(FOLDER / f"{name}.toml", f"{name}.toml"), f"{name}.toml", name)
+        elif name.endswith(".toml") or os.path.isfile(name):
+            rules += _rules(read_text(name, name), name, name)
+        else:
+            hint = did_you_mean(name, presets()) or f"presets: {', '.join(presets())}; or a .toml file"
+            raise failure(f"there is no preset '{name}'", hint)
+    return rules
+
+
+def rules_of_comments(assumed: Sequence[AssumedInput], is_input: Callable[[str], bool]) -> list[Rule]:
+    """The rules of the comments beside inputs. Raises SssgenError for a name that is no input."""
+    wrong = [
+        Diagnostic("error", f"there is no input '{row.name}'", row.span, "name a uniform, an input or a field of one")
+        for row in assumed
+        if not is_input(row.name)
+    ]
+    if wrong:
+        raise SssgenError(wrong)
+    return [Rule("comment", (row.name,), STORAGES, (), row.assumption, "") for row in assumed]
+
+
+def _rules(text: str, file: str, source: str) -> list[Rule]:
+    document = parse(text, file)
+    for key in document.data:
+        if key not in ("doc", "assume"):
+            document.error(document.place(key).key, f"unknown key '{key}'", "keys: doc, and [[assume]] for each rule")
+    tables = document.data.get("assume", [])
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+        document.error(document.place("assume").key, "'assume' must be written [[assume]]")
+        tables = []
+    rules = [_rule(document, table, index, source) for index, table in enumerate(tables)]
+    document.reporter.check()
+    return rules
+
+
+def _rule(document: Document, table: dict[str, Any], index: int, source: str) -> Rule:
+    def wrong(key: str, message: str, hint: str = "") -> None:
+        document.error(document.place("assume", index, key).value, message, hint)
+
+    def words(key: str) -> tuple[str, ...]:
+        value = table.get(key, [])
+        value = [value] if isinstance(value, str) else value
+        if not isinstance(value, list) or not all(isinstance(word, str) for word in value):
+            wrong(key, f"'{key}' must be a list of texts")
+            return ()
+        return tuple(value)
+
+    def interval(key: str, lowest: float) -> tuple[float, float]:
+        value = table.get(key, [lowest, INF])
+        numbers = isinstance(value, list) and len(value) == 2 and all(type(end) in (int, float) for end in value)
+        if not numbers or not lowest <= value[0] <= value[1]:
+            wrong(key, f"'{key}' must be two numbers, the lower one first", f"write {key} = [0.0, 1.0]")
+            return lowest, INF
+        return float(value[0]), float(value[1])
+
+    for key in table.keys() - set(_KEYS):
+        wrong(key, f"unknown key '{key}'", did_you_mean(key, _KEYS) or f"keys: {', '.join(_KEYS)}")
+    for word in words("storage"):
+        if word not in STORAGES:
+            wrong("storage", f"unknown storage '{word}'", f"storages: {', '.join(STORAGES)}")
+    if not words("names"):
+        wrong("names", "this rule has no names", 'write names = ["roughness"]')
+    (low, high), (shortest, longest) = interval("range", -INF), interval("length", 0.0)
+    finite = False
+    for flag in _FLAGS:
+        value = table.get(flag, False)
+        if not isinstance(value, bool):
+            wrong(flag, f"'{flag}' must be true or false")
+        elif value:
+            own = assumption_of(flag)
+            shortest, longest, finite = max(shortest, own.shortest), min(longest, own.longest), finite or own.finite
+    if not table.keys() & {"range", "length", *_FLAGS}:
+        wrong("names", "this rule assumes nothing", f"add one of: range, length, {', '.join(_FLAGS)}")
+    because = table.get("because", "")
+    return Rule(
+        source, words("names"), words("storage") or STORAGES, words("types"),
+        Assumption(low, high, shortest, longest, finite), because if isinstance(because, str) else "",
+    )  # fmt: skip
+
+
+def _shown(assumption: Assumption, type_: Type) -> str:
+    """An assumption in words."""
+    low, high, shortest, longest, finite = assumption
+    texts = []
+    if low > -INF or high < INF:
+        texts.append(f"in {low:g}..{high:g}" if high < INF and low > -INF else f">= {low:g}" if low > -INF else f"<= {high:g}")  # fmt: skip  # noqa: E501
+    if isinstance(type_, Matrix) and (shortest, longest) != (0.0, INF):
+        texts.append("orthonormal" if (shortest, longest) == UNIT else f"lengthens by {shortest:g}..{longest:g}")
+    elif (shortest, longest) == UNIT:
+        texts.append("of length 1")
+    elif (shortest, longest) != (0.0, INF):
+        what = "long" if isinstance(type_, Vector) else "in size"
+        texts.append(f"at least {shortest:g} {what}" if longest == INF else f"{shortest:g}..{longest:g} {what}")
+    return ", ".join([*texts, *(["finite"] if finite else [])])
