@@ -95,15 +95,18 @@ def analysed(material: Material, target: Target, form: str) -> Analysed:
 
 
 def library_sites(
-    module: Module, called: Sequence[str] | None = None, chained: bool = False, assumed: Assumed | None = None
-) -> list[Site]:
+    module: Module, called: Sequence[str] | None = None, chained: bool = False, assumed: Assumed | None = None,
+    unguarded: bool = False,
+) -> list[Site]:  # fmt: skip
     """Every operation with a domain in a module of plain functions, or in the run of a whole shader.
 
     Raises SssgenError.
     """
     module, _, roots = plain_module(module)
     entry = entry_of(module)
-    return analyse(module, called or ([entry.key] if entry is not None else roots), FLOAT32, chained, assumed).sites
+    return analyse(
+        module, called or ([entry.key] if entry is not None else roots), FLOAT32, chained, assumed, unguarded
+    ).sites
 
 
 def plain_module(module: Module) -> tuple[Module, list[Note], list[str]]:

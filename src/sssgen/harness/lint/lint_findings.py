@@ -175,7 +175,7 @@ def _plain(path: str, with_examples: bool, kinds: Collection[Kind], assumed: Seq
     module = loaded.module
     rules += rules_of_comments(loaded.assumed, frozenset(_inputs(module)).__contains__)
     assumptions = Assumptions(rules, stage_kind(module) == "vertex")
-    sites = library_sites(module, assumed=assumptions.of if rules else None)
+    sites = library_sites(module, assumed=assumptions.of if rules else None, unguarded=True)
     facts = [*assumptions.applied.values(), *_stated(module)]
     specimens = []
     if with_examples and not facts and not any(map(endless, module.functions)):

@@ -33,7 +33,7 @@ ROWS = (
         samples=Samples(floats=((0.0, LARGEST), (-64.0, 64.0))), exact_bounds=(0.0, INF), range=positive_power,
         guards=(
             Guard(_power_is_finite, "overflow", "a power that overflows", "exp2(min(y * log2(max(x, TINY)), EXPONENT))", result=_below_overflow),
-            Guard(lambda F, x, y: x.low > 0.0 or (x.low >= 0.0 and y.low >= 0.25), "nan", "a power of less than 0, or one of 0 near the power 0", "max(x, TINY)", "x", result=_below_overflow),
+            Guard(lambda F, x, y: x.low > 0.0 or (x.low >= 0.0 and y.low >= F.epsilon), "nan", "a power of less than 0, or one of 0 near the power 0", "max(x, TINY)", "x", result=_below_overflow),
         ),
         defined=lambda rt, x, y: (x > 0.0) | (x == 0.0) & (y > 0.0),
         inside=lambda rt, x, y: (x > 0.0) & (abs(y) <= 64.0) & (abs(y * rt.log2(rt.max(x, 1e-38))) < 126.0),

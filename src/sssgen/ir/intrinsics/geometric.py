@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from sssgen.ir import vector_ranges
+from sssgen.ir.intervals import Range
 from sssgen.ir.intrinsics.table import Builtin, Guard, Samples
 
 _REDUCE = ("float(vecF, vecF)", "float(float, float)")
@@ -86,8 +87,10 @@ ROWS = (
         fold=lambda x: [a / _length(x) for a in x], quantity="direction",
         componentwise=False, range=vector_ranges.normalize,
         guards=(
-            Guard(lambda F, x: F.square**0.5 < x.low, "nan", "the direction of a zero vector", _DIRECTION, doc=_DIRECTION_DOC),
-            Guard(lambda F, x: x.high < F.largest**0.5, "overflow", "a vector whose squares overflow", _DIRECTION, doc=_DIRECTION_DOC),
+            Guard(lambda F, x: F.square**0.5 < x.low, "nan", "the direction of a zero vector", _DIRECTION, doc=_DIRECTION_DOC,
+                succeeds=lambda F, x: x.met(Range(1.001 * F.square**0.5, 0.99 * F.largest**0.5))),
+            Guard(lambda F, x: x.high < F.largest**0.5, "overflow", "a vector whose squares overflow", _DIRECTION, doc=_DIRECTION_DOC,
+                succeeds=lambda F, x: x.met(Range(0.0, 0.99 * F.largest**0.5))),
         ),
         inside=lambda rt, x: (rt.dot(x, x) < 1e38) & (rt.dot(x, x) > 1e-30),
         domain="dot(x, x) > 0 and does not overflow", texts={"hlsl/float": "", "wgsl/float": ""},

@@ -12,7 +12,7 @@ from sssgen.ir.types import Matrix, kind_of
 from sssgen.ir.vector_ranges import Value
 from sssgen.passes.ranges.range_state import AnalysisState
 from sssgen.passes.ranges.scalar_parts import hull_of, scalars
-from sssgen.passes.ranges.sites import TEXEL
+from sssgen.passes.ranges.sites import TEXEL, subnormal
 
 
 class CallRanges(AnalysisState):
@@ -88,15 +88,26 @@ class CallRanges(AnalysisState):
                 hull_of(arg.parts) if isinstance(expr.type, Matrix) else arg.length
                 for expr, arg in zip(node.args, args, strict=True)
             ]
-        rows = [[self.flushed(part) for part in ranges] for ranges in rows]
-        failures = tuple([guard for guard in guards if not self.is_safe(guard, rows, args)])
+        normal = [[self.flushed(part) for part in ranges] for ranges in rows]
+        failures = tuple([
+            guard if not self.is_safe(guard, rows, args) else subnormal(guard)
+            for guard in guards
+            if not self.is_safe(guard, normal, args)
+        ])  # fmt: skip
         needed = failures[0] if failures else None
         self.note(node, node.name, failures, needed or guards[-1], tuple(seen))
+        if self.unguarded and needed is not None and needed.succeeds is not None:
+            return (self.succeeded(args[0], needed.succeeds(self.format, args[0].length)), *args[1:]), None
         if needed is None or needed.argument is None:
             return args, needed
         index = "xyz".index(needed.replaces)
         parts = tuple([needed.argument(self.format, part) for part in args[index].parts])
         return (*args[:index], args[index]._replace(parts=parts), *args[index + 1 :]), needed
+
+    def succeeded(self, value: Value, length: Range) -> Value:
+        """An argument for which a call did not fail; what follows knows that, so that each cause is reported once."""
+        self.state.facts.learn(self.numbers, self.numbers.of("length", *value.numbers), length)
+        return value._replace(length=length)
 
     def is_safe(self, guard: Guard, rows: Sequence[Sequence[Range]], args: tuple[Value, ...]) -> bool:
         """Whether a guard is superfluous for all rows of arguments."""

@@ -17,7 +17,7 @@ from sssgen.ir.vector_ranges import Value, length_of
 from sssgen.passes.ranges.call_ranges import CallRanges
 from sssgen.passes.ranges.range_state import State, global_key
 from sssgen.passes.ranges.scalar_parts import field_at, hull_of, matrix_product, scalars
-from sssgen.passes.ranges.sites import COUNT, DIVISION, ELEMENT, SIGNED_COUNT, TEXEL, WHOLE_NUMBER
+from sssgen.passes.ranges.sites import COUNT, DIVISION, ELEMENT, SIGNED_COUNT, TEXEL, WHOLE_NUMBER, subnormal
 
 
 class ExpressionRanges(CallRanges):
@@ -166,13 +166,16 @@ class ExpressionRanges(CallRanges):
         least = self.format.tiny
         counts = _is_count(node.right)
         smallest = 1.0 if counts else self.format.divisor
-        parts, numbers, proven = [], [], True
+        parts, numbers, proven, has_zero = [], [], True, False
         for a, m, b, n in _components(left, right):
             safe = b.gap >= least
             proven &= safe
             if not safe:  # the range behind the guard
+                has_zero |= b.has_zero()
                 gap = max(b.gap, smallest)
                 b = Range(gap if b.low >= 0.0 else min(b.low, -gap), max(b.high, gap), gap)
+                if self.unguarded:  # each cause is reported once
+                    self.state.facts.learn(self.numbers, n, b)
             part = widened(a / b, 3.0 * self.format.epsilon)
             if b.size * self.format.tiny > 1.0:  # the divisor's inverse may be flushed to 0
                 part = part.joined(as_range(0.0))
@@ -182,7 +185,8 @@ class ExpressionRanges(CallRanges):
             numbers.append(self.numbers.of("/", m, n))
         dividend, divisor = hull_of(left.parts), hull_of(right.parts)
         guard = DIVISION if not counts else COUNT if divisor.low >= 0.0 else SIGNED_COUNT
-        self.note(node, "/", not proven, guard, (dividend, divisor))
+        failures = () if proven else (guard if has_zero else subnormal(guard),)
+        self.note(node, "/", failures, guard, (dividend, divisor))
         return self.computed(node, parts, numbers)
 
     def ratio(self, a: Range, m: int, b: Range, n: int) -> float | None:

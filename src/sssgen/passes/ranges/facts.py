@@ -13,6 +13,8 @@ from sssgen.ir.intervals import INF, Range, maximum, minimum
 Key = tuple[object, ...]
 Terms = tuple[tuple[int, float], ...]
 """A sum of numbers, each multiplied by a factor, ordered by number."""
+LEAST = 2.0**-149
+"""The least number above 0. It is subnormal: devices may flush it to 0."""
 _TERMS = 8
 """The largest number of terms of a sum; a longer sum is a term itself."""
 
@@ -131,8 +133,8 @@ class Facts(NamedTuple):
             (a, x), (b, y), op = (b, y), (a, x), "<" if op == ">" else "<="
         if op in ("<", "<="):
             step = 1.0 if whole and op == "<" else 0.0
-            self.learn(numbers, a, Range(-INF, y.high - step))
-            self.learn(numbers, b, Range(x.low + step, INF))
+            self.learn(numbers, a, _below(y.high - step, op == "<"))
+            self.learn(numbers, b, -_below(-(x.low + step), op == "<"))
             terms, constant, slack = numbers.difference(a, b)
             self.upper[terms] = min(self.upper.get(terms, INF), slack - constant - step)
             self.upper[_pair(a, b)] = -step
@@ -140,8 +142,8 @@ class Facts(NamedTuple):
             both = maximum(minimum(x, y.high), y.low)
             self.learn(numbers, a, both)
             self.learn(numbers, b, both)
-        elif op == "!=" and y.low == y.high == 0.0 and whole:
-            self.learn(numbers, a, Range(-INF, INF, 1.0))
+        elif op == "!=" and y.low == y.high == 0.0:
+            self.learn(numbers, a, Range(-INF, INF, 1.0 if whole else LEAST))
 
     def bound(self, numbers: Numbers, left: int, right: int) -> float:
         """The upper bound of `left - right`."""
@@ -150,6 +152,11 @@ class Facts(NamedTuple):
             return direct
         terms, constant, slack = numbers.difference(left, right)
         return (self.upper.get(terms, INF) if terms else 0.0) + constant + slack
+
+
+def _below(high: float, strictly: bool) -> Range:
+    """The numbers up to an end; if `strictly`, below 0 without 0 itself."""
+    return Range(-INF, -LEAST) if strictly and high == 0.0 else Range(-INF, high)
 
 
 def _pair(left: int, right: int) -> Terms:

@@ -40,10 +40,10 @@ class Findings(NamedTuple):
 
 def analyse(
     module: ir.Module, roots: Iterable[str], format: Format = FLOAT32, chained: bool = True,
-    assumed: Assumed | None = None,
+    assumed: Assumed | None = None, unguarded: bool = False,
 ) -> Findings:  # fmt: skip
     """Interprets the functions with the keys `roots`, their parameters within their contracts or what is assumed."""
-    analysis = RangeAnalysis(module, format, chained, assumed)
+    analysis = RangeAnalysis(module, format, chained, assumed, unguarded)
     for key in roots:
         analysis.root(key)
     return Findings(list(analysis.sites.values()), analysis.compounds)
@@ -53,9 +53,10 @@ class RangeAnalysis(CallSummaries):
     """The complete analysis: adds functions and statements."""
 
     def __init__(
-        self, module: ir.Module, format: Format = FLOAT32, chained: bool = True, assumed: Assumed | None = None
-    ) -> None:
-        super().__init__(module, format, chained, assumed)
+        self, module: ir.Module, format: Format = FLOAT32, chained: bool = True, assumed: Assumed | None = None,
+        unguarded: bool = False,
+    ) -> None:  # fmt: skip
+        super().__init__(module, format, chained, assumed, unguarded)
         self.variable_keys = frozenset(map(global_key, self.variables))
 
     # Functions

@@ -77,8 +77,13 @@ class Loop:
 class AnalysisState:
     """The state of an analysis, and what every part of the analysis needs."""
 
-    def __init__(self, module: ir.Module, format: Format, chained: bool = True, assumed: Assumed | None = None) -> None:
+    def __init__(
+        self, module: ir.Module, format: Format, chained: bool = True, assumed: Assumed | None = None,
+        unguarded: bool = False,
+    ) -> None:  # fmt: skip
         self.assumed = assumed
+        self.unguarded = unguarded
+        """Whether an operation that may fail has no guard: the analysis then continues as if it did not fail."""
         self.functions = {function.key: function for function in module.functions}
         self.format = format
         self.chained = chained

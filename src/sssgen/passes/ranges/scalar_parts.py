@@ -61,7 +61,11 @@ def matrix_product(
             total, terms = Range(0.0, 0.0), 0.0
             for product in products:
                 total, terms = total + product, terms + product.size
-            parts.append(widened(total, 0.0, slack * terms) if terms * (1.0 + slack) <= largest else ANY)
+            exact = total
+            total = widened(total, 0.0, slack * terms) if terms * (1.0 + slack) <= largest else ANY
+            if all(product.low >= 0.0 for product in products):  # rounding gives no sum a sign that no term has
+                total = Range(0.0, total.high, exact.gap * (1.0 - slack))
+            parts.append(total)
     return parts
 
 

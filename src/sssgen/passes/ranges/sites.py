@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 from sssgen.ir import nodes as ir
@@ -33,6 +34,12 @@ SIGNED_COUNT = COUNT._replace(text=NONZERO.replace("DIVISOR", "1.0"), doc=DIVISI
 """For a count that may be below 0."""
 WHOLE_NUMBER = Guard(None, "undefined", "a float too large for an integer", "clamp(x, LOW, HIGH)", "x")
 ELEMENT = Guard(None, "range", "an index beyond the elements", "clamp(y, 0, LAST)", "y")
+
+
+@cache
+def subnormal(guard: Guard) -> Guard:
+    """The guard of an operation that fails for subnormal numbers alone: its result may be infinite."""
+    return guard._replace(kind="overflow")
 
 
 class Site(NamedTuple):

@@ -51,13 +51,14 @@ class CallSummaries(LoopRanges):
     """The part of the analysis for calls of functions."""
 
     def __init__(
-        self, module: ir.Module, format: Format = FLOAT32, chained: bool = True, assumed: Assumed | None = None
-    ) -> None:
+        self, module: ir.Module, format: Format = FLOAT32, chained: bool = True, assumed: Assumed | None = None,
+        unguarded: bool = False,
+    ) -> None:  # fmt: skip
         self.interpretations: Counter[str] = Counter()
         """A function's key → how often it was interpreted."""
         self.shared = SHARED_INTERPRETATIONS
         self.summaries: dict[object, Summary] = {}
-        super().__init__(module, format, chained, assumed)
+        super().__init__(module, format, chained, assumed, unguarded)
 
     def enter(self, function: ir.Function, args: Sequence[Value]) -> Result:
         """The result of a call."""
