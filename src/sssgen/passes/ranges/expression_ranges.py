@@ -14,7 +14,9 @@ from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.rules import element_type
 from sssgen.ir.types import BOOL, Array, Matrix, Struct, kind_of
 from sssgen.ir.vector_ranges import Value, length_of
+from sssgen.passes.ranges import polynomials
 from sssgen.passes.ranges.call_ranges import CallRanges
+from sssgen.passes.ranges.polynomials import Polynomial
 from sssgen.passes.ranges.range_state import State, global_key
 from sssgen.passes.ranges.scalar_parts import field_at, hull_of, matrix_product, scalars
 from sssgen.passes.ranges.sites import COUNT, DIVISION, ELEMENT, SIGNED_COUNT, TEXEL, WHOLE_NUMBER, subnormal
@@ -96,15 +98,46 @@ class ExpressionRanges(CallRanges):
         parts, numbers = [], []
         for a, m, b, n in _components(left, right):
             if op == "*":
-                parts.append(self.product(a, m, b, n) if kind == "float" else square(a) if m == n else a * b)
+                part = self.product(a, m, b, n) if kind == "float" else square(a) if m == n else a * b
                 if m == n and kind == "float":
-                    numbers.append(self.numbers.of("squares", m))
+                    number = self.numbers.of("squares", m)
                 else:  # a product of integers may wrap, unlike one of floats with the same numbers
-                    numbers.append(self.numbers.of("*", *sorted((m, n)), kind))
+                    number = self.numbers.of("*", *sorted((m, n)), kind)
             else:
-                parts.append(self.sum(a, m, b, n, op))
-                numbers.append(self.numbers.sum(op, m, n, kind, self.slack(a, b, parts[-1], kind)))
+                part = self.sum(a, m, b, n, op)
+                number = self.numbers.sum(op, m, n, kind, self.slack(a, b, part, kind))
+            if self.unguarded and kind == "float":
+                part = self.expanded(op, number, part, (m, a), (n, b))
+            parts.append(part)
+            numbers.append(number)
         return self.computed(node, parts, numbers, self.length_after(op, left, right))
+
+    def expanded(self, op: str, number: int, part: Range, left: tuple[int, Range], right: tuple[int, Range]) -> Range:
+        """The range of a sum or product, met with that of the polynomial that it is."""
+        for of, range_ in (left, right):
+            span = self.spans.get(of)
+            self.spans[of] = range_ if span is None else span.joined(range_)
+        first, second = self.polynomial(left[0]), self.polynomial(right[0])
+        if op == "*":
+            polynomial = polynomials.product(first, second)
+        else:
+            polynomial = polynomials.total(first, second, 1.0 if op == "+" else -1.0)
+        if polynomial is None:
+            return part
+        self.polynomials[number] = polynomial
+        tighter = polynomials.bounds(polynomial, self.spans, self.format.epsilon)
+        if tighter is None or tighter.high < part.low or tighter.low > part.high:
+            return part
+        return Range(max(part.low, tighter.low), min(part.high, tighter.high), max(part.gap, tighter.gap))
+
+    def polynomial(self, number: int) -> Polynomial:
+        """A number as a polynomial: of itself, if it is neither a sum nor a product."""
+        key = self.numbers.definitions[number]
+        if key[0] == "constant":
+            return {(): cast(float, key[1])}
+        if key[0] == "neg":
+            return {monomial: -factor for monomial, factor in self.polynomial(cast(int, key[1])).items()}
+        return self.polynomials.get(number) or {(number,): 1.0}
 
     def turned(self, node: ir.Binary, left: Value, right: Value, product: Value) -> Value:
         """A product with a matrix of which the stretch is known: a vector's length, or a matrix's stretch."""
@@ -355,7 +388,12 @@ class ExpressionRanges(CallRanges):
             outside = index.low < 0.0 or index.high > count - 1.0
             self.note(node, "index", outside, ELEMENT, (index,), (0.0, count - 1.0))
         if isinstance(node.value.type, Array):
-            return self.value(value.parts, tuple([self.numbers.fresh() for _ in value.parts]))
+            numbers = tuple([self.numbers.fresh() for _ in value.parts])
+            for old, length in list(self.lengths.items()):  # those of an input's vectors
+                if old[0] in value.numbers:
+                    at = value.numbers.index(old[0])
+                    self.lengths[numbers[at : at + len(old)]] = length
+            return self.value(value.parts, numbers, value.length)
         size = scalars(node.type)
         if index.low == index.high and 0 <= index.low < count:
             start = int(index.low) * size
@@ -371,7 +409,8 @@ class ExpressionRanges(CallRanges):
     def member(self, node: ir.Member) -> Value:
         value = self.expr(node.value)
         start, count = field_at(cast(Struct, node.value.type), node.field)
-        return self.value(value.parts[start : start + count], value.numbers[start : start + count])
+        numbers = value.numbers[start : start + count]
+        return self.value(value.parts[start : start + count], numbers, self.lengths.get(numbers, ANY))
 
 
 def _components(left: Value, right: Value) -> Iterator[tuple[Range, int, Range, int]]:

@@ -250,6 +250,8 @@ class RangeAnalysis(CallSummaries):
             return
         old = self.state.env[key]
         indices, sure = places or self.places(target)
+        if 1 < len(value.parts) < 5 and value.length.low > 0.0 and sure:
+            self.state.facts.learn(self.numbers, self.numbers.of("length", *value.numbers), value.length)
         parts, numbers = list(old.parts), list(old.numbers)
         for index, place in enumerate(indices):
             part, number = value.parts[index % len(value.parts)], value.numbers[index % len(value.numbers)]

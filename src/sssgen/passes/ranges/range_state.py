@@ -15,6 +15,7 @@ from sssgen.ir.types import Matrix, Sampler, Scalar, Struct, Type, kind_of
 from sssgen.ir.vector_ranges import Contract, Value, length_of
 from sssgen.ir.walk import written_root
 from sssgen.passes.ranges.facts import Facts, Numbers
+from sssgen.passes.ranges.polynomials import Polynomial
 from sssgen.passes.ranges.scalar_parts import innermost, scalar_kinds, scalars
 from sssgen.passes.ranges.sites import OVERFLOW, Site
 from sssgen.passes.variable_effects import effects
@@ -91,6 +92,12 @@ class AnalysisState:
         self.floats = Range(-format.largest, format.largest)
         self.integers = {kind: Range(low, high) for kind, (low, high) in INTEGERS.items()}
         self.numbers = Numbers(format.tiny)
+        self.polynomials: dict[int, Polynomial] = {}
+        """Numbers that are sums and products, as polynomials of others; used where no guards are inserted."""
+        self.spans: dict[int, Range] = {}
+        """The hull of the ranges in which the operands of these were."""
+        self.lengths: dict[tuple[int, ...], Range] = {}
+        """The lengths of vectors in inputs that are structs or arrays."""
         self.sites: dict[tuple[int, str], Site] = {}
         self.compounds: dict[int, ir.Binary] = {}
         self.frames: list[Frame] = []
@@ -156,6 +163,8 @@ class AnalysisState:
             size = Range(contract.shortest, contract.length)
         is_matrix = isinstance(type_, Matrix)
         value = self.value(parts, tuple([self.numbers.fresh() for _ in parts]), ANY if is_matrix else size)
+        if count > 1 and size is not ANY and not is_matrix:
+            self.lengths[value.numbers] = size
         return value._replace(stretch=size) if is_matrix else value
 
     def unknown(self, type_: Type) -> Value:
