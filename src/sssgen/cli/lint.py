@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import os
 from argparse import ArgumentParser, Namespace
 from collections import Counter
 from typing import TYPE_CHECKING
@@ -19,6 +21,7 @@ def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
         "examples:\n  sssgen lint ice\n  sssgen lint mine.glsl --json\n"
         "  sssgen lint mine.frag --kind nan,division\n  sssgen lint mine.frag --assume threejs\n"
+        "  sssgen lint shaders/*.frag --sarif lint.sarif --baseline lint.json\n"
         "Kinds: nan, division (by 0), undefined (by the language), range (out of range), overflow (to infinity).\n"
         "Exit status 1: an operation of a plain function may fail. The shaders that emit writes for materials have "
         "guards."
@@ -33,6 +36,11 @@ def add_options(parser: ArgumentParser) -> None:
         help="assume what an engine guarantees of the inputs of plain GLSL: threejs, babylonjs, playcanvas, generic, "
         "unit-normals, colors, or a TOML file; may be repeated",
     )  # fmt: skip
+    parser.add_argument("--sarif", metavar="FILE", help="also write the findings as SARIF 2.1.0, for code review")
+    parser.add_argument("--baseline", metavar="FILE", help="report only findings that this file does not accept")
+    parser.add_argument(
+        "--write-baseline", action="store_true", help="write all findings to the file of --baseline, which accepts them"
+    )
     parser.add_argument(
         "--no-examples", action="store_true", help="do not search for inputs that fail, which is faster"
     )
@@ -40,9 +48,13 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Prints the operations that are not proven safe; returns 1 if one of them has no guard."""
+    from sssgen.harness.lint.finding_baseline import baseline_text, load_baseline, new_findings
     from sssgen.harness.lint.lint_findings import PROVEN, lint
 
     kinds = _kinds(arguments.kind)
+    if arguments.write_baseline and not arguments.baseline:
+        raise failure("--write-baseline needs --baseline FILE", "name the file to write")
+    accepted = load_baseline(arguments.baseline) if arguments.baseline and not arguments.write_baseline else None
     wrong: list[Diagnostic] = []
     reports: list[Report] = []
     names = list(dict.fromkeys(arguments.NAME))
@@ -55,12 +67,25 @@ def run(arguments: Namespace) -> int:
                 wrong += error.diagnostics
     if wrong:
         raise SssgenError(wrong)
-    unguarded = any(not finding.guarded for report in reports for finding in report.unproven())
+    unproven = [finding for report in reports for finding in report.unproven()]
+    new = unproven
+    if accepted is not None:
+        new = new_findings(unproven, accepted)
+    if arguments.write_baseline:
+        _write(arguments.baseline, baseline_text(unproven))
+        new = []
+    is_new = {id(finding) for finding in new}
+    if arguments.sarif:
+        from sssgen.harness.lint.sarif_report import sarif
+
+        log = sarif(reports, is_new if arguments.baseline else None)
+        _write(arguments.sarif, f"{json.dumps(log, indent=1)}\n")
+    unguarded = any(not finding.guarded for finding in new)
     if arguments.json:
         listed = [
             {
                 "name": report.name,
-                "findings": [finding.as_json() for finding in report.findings],
+                "findings": [finding.as_json() | {"new": id(finding) in is_new} for finding in report.findings],
                 "hidden": dict(report.hidden),
                 "assumptions": [fact.as_json() for fact in report.assumptions],
             }
@@ -70,12 +95,26 @@ def run(arguments: Namespace) -> int:
         return CHECK_FAILED if unguarded else OK
     for report in reports:
         for finding in report.findings:
-            if finding.verdict != PROVEN or arguments.all:
+            if id(finding) in is_new or (finding.verdict == PROVEN and arguments.all):
                 print(f"{finding.render()}\n")
         print(_summary(report, arguments.no_examples))
-        for source, names in _assumptions(report):
-            print(f"  assumed ({source}): {names}")
+        for source, assumed in _assumptions(report):
+            print(f"  assumed ({source}): {assumed}")
+    if arguments.baseline:
+        known = len(unproven) - len(new)
+        written = " now" if arguments.write_baseline else ""
+        print(f"{arguments.baseline}{written} accepts {known} finding{'s' * (known != 1)}; {len(new)} new")
     return CHECK_FAILED if unguarded else OK
+
+
+def _write(path: str, text: str) -> None:
+    """Writes a report, whole or not at all; `-` is the standard output."""
+    from sssgen.support.file_writer import write_files
+
+    if path == "-":
+        print(text, end="")
+        return
+    write_files(os.path.dirname(path) or ".", {os.path.basename(path): text})
 
 
 def _kinds(option: str | None) -> tuple[Kind, ...]:

@@ -21,6 +21,15 @@ def source_line(span: Span) -> str:
     return lines[span.line - 1] if 0 < span.line <= len(lines) else ""
 
 
+def source_text(span: Span) -> str:
+    """The text of a span of a loaded file, or ''."""
+    lines = _lines.get(span.file, [])[max(span.line - 1, 0) : span.end_line] if span.line else []
+    if not lines:
+        return ""
+    lines = [*lines[:-1], lines[-1][: span.end_column - 1]]
+    return "\n".join([lines[0][span.column - 1 :], *lines[1:]])
+
+
 def line_before(span: Span, pattern: str) -> Span | None:
     """The last line before a span of a loaded file that matches a regular expression."""
     lines = _lines.get(span.file, [])

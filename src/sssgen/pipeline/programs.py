@@ -14,6 +14,7 @@ from sssgen.lang.source_lines import comment_behind, comments_before, source_lin
 from sssgen.material.model import Material
 from sssgen.passes.cost import Cost
 from sssgen.passes.hoist import Note
+from sssgen.passes.ranges.origins import Origins, RangeTrace
 from sssgen.passes.ranges.range_pass import analyse
 from sssgen.passes.ranges.sites import Site, report
 from sssgen.passes.reachable import only
@@ -94,19 +95,32 @@ def analysed(material: Material, target: Target, form: str) -> Analysed:
     return Analysed(state.module, state.costs, state.guarded.sites if state.guarded else (), state.slots)
 
 
-def library_sites(
-    module: Module, called: Sequence[str] | None = None, chained: bool = False, assumed: Assumed | None = None,
-    unguarded: bool = False,
-) -> list[Site]:  # fmt: skip
+def library_sites(module: Module, called: Sequence[str] | None = None, chained: bool = False) -> list[Site]:
     """Every operation with a domain in a module of plain functions, or in the run of a whole shader.
 
     Raises SssgenError.
     """
+    module, roots = _analysed_part(module, called)
+    return analyse(module, roots, FLOAT32, chained).sites
+
+
+def traced_sites(
+    module: Module, called: Sequence[str] | None = None, chained: bool = False, assumed: Assumed | None = None,
+    unguarded: bool = False,
+) -> tuple[list[Site], Origins]:  # fmt: skip
+    """The same, and where the ranges come from; `assumed` and `unguarded` are those of the analysis."""
+    module, roots = _analysed_part(module, called)
+    trace = RangeTrace(module, chained, assumed, unguarded)
+    for key in roots:
+        trace.root(key)
+    return list(trace.sites.values()), Origins(module, trace)
+
+
+def _analysed_part(module: Module, called: Sequence[str] | None) -> tuple[Module, Sequence[str]]:
+    """A module of plain functions before guards, and the keys of what is called from outside."""
     module, _, roots = plain_module(module)
     entry = entry_of(module)
-    return analyse(
-        module, called or ([entry.key] if entry is not None else roots), FLOAT32, chained, assumed, unguarded
-    ).sites
+    return module, called or ([entry.key] if entry is not None else roots)
 
 
 def plain_module(module: Module) -> tuple[Module, list[Note], list[str]]:

@@ -24,11 +24,12 @@ from sssgen.lang.source_lines import source_line
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
 from sssgen.passes.guards import remedy
+from sssgen.passes.ranges.origins import Origins, Step
 from sssgen.passes.ranges.scalar_parts import innermost
-from sssgen.passes.ranges.sites import Site
+from sssgen.passes.ranges.sites import Site, shown
 from sssgen.passes.stage.stage_interface import stage_kind
 from sssgen.pipeline.compiler import guarded_sites
-from sssgen.pipeline.programs import library_sites
+from sssgen.pipeline.programs import traced_sites
 from sssgen.support.diagnostics import Diagnostic, did_you_mean, failure
 from sssgen.support.text_files import refuse_folder
 from sssgen.targets import registry
@@ -54,6 +55,8 @@ class Finding(NamedTuple):
     """Whether the emitted text has a guard there."""
     searched: bool = True
     """Whether an input was searched for."""
+    why: Sequence[Step] = ()
+    """Where the range of its operand comes from: from the operation to an input."""
 
     @property
     def kind(self) -> Kind:
@@ -89,11 +92,17 @@ class Finding(NamedTuple):
         lines = [self.diagnostic().render()]
         if self.site.range_text:
             lines.append(f"  found: {self.with_operands(self.site.range_text)}")
+        lines += [f"  because: {explanation(step)}" for step in self.shown_steps()]
         if self.example:
             lines.append(f"  example: {self.example}")
         if self.verdict != PROVEN:
             lines.append(f"  {'emitted' if self.guarded else 'write'}: {self.remedy}")
         return "\n".join(lines)
+
+    def shown_steps(self) -> list[Step]:
+        """The steps that tell most: the first, the one that widened the range, and the last."""
+        last = len(self.why) - 1
+        return [step for index, step in enumerate(self.why) if index in (0, last) or step.widens]
 
     def with_operands(self, text: str) -> str:
         """A text with the operands' names in place of their letters, or after the text if an operand is not a name."""
@@ -118,9 +127,41 @@ class Finding(NamedTuple):
             "operation": site.operation,
             "function": site.function,
             "found": self.with_operands(site.range_text),
+            "because": [
+                {
+                    "text": explanation(step),
+                    "file": step.span.file,
+                    "line": step.span.line,
+                    "column": step.span.column,
+                    "low": step.range.low,
+                    "high": step.range.high,
+                    "widens": step.widens,
+                }
+                for step in self.why
+            ],
             "example": self.example or None,
             "guarded": self.guarded and self.verdict != PROVEN,
         }
+
+
+def explanation(step: Step) -> str:
+    """A step on the way from an input to an operation, in words, with its place."""
+    line = source_line(step.span)
+    code = line[step.span.column - 1 : step.span.end_column - 1 if step.span.end_line == step.span.line else None]
+    code = " ".join(code.split())
+    code = code if len(code) <= LONGEST else f"{code[:LONGEST]}…"
+    where = f"{'of length ' if step.is_length else 'in '}{shown(step.range)}, line {step.span.line}"
+    if step.what in ("uniform", "input", "parameter"):
+        return f"{step.what} {step.name} is {where}"
+    if step.what == "definition":
+        return f"{step.name} = {code} is {where}"
+    if step.what == "argument":
+        return f"{step.name} is {code}, {where}"
+    if step.what == "result":
+        return f"{step.name} returns {code}, {where}"
+    if step.widens:
+        return f"{code} widens the range: {where}"
+    return f"{code} is {where}"
 
 
 class Report(NamedTuple):
@@ -156,8 +197,9 @@ def lint(
         return _report(name, guarded_sites(load_material(name)), kinds, specimens)
     if name.endswith(".sss") or name in library.index():
         specimen = _technique(name)
-        sites = library_sites(specimen.subject.module, specimen.subject.called, specimen.subject.chained)
-        return _report(name, sites, kinds, [specimen] if with_examples else [])
+        subject = specimen.subject
+        sites, origins = traced_sites(subject.module, subject.called, subject.chained)
+        return _report(name, sites, kinds, [specimen] if with_examples else [], origins=origins)
     if name.endswith((".glsl", ".frag", ".vert", ".inc")) or os.path.isfile(name):
         return _plain(name, with_examples, kinds, assumed)
     refuse_folder(name, (".glsl", ".sss", ".toml", ".frag", ".vert"))
@@ -175,14 +217,15 @@ def _plain(path: str, with_examples: bool, kinds: Collection[Kind], assumed: Seq
     module = loaded.module
     rules += rules_of_comments(loaded.assumed, frozenset(_inputs(module)).__contains__)
     assumptions = Assumptions(rules, stage_kind(module) == "vertex")
-    sites = library_sites(module, assumed=assumptions.of if rules else None, unguarded=True)
+    sites, origins = traced_sites(module, assumed=assumptions.of if rules else None, unguarded=True)
     facts = [*assumptions.applied.values(), *_stated(module)]
     specimens = []
     if with_examples and not facts and not any(map(endless, module.functions)):
         specimens = [
             _technique(f"{path}:{function.name}") for function in module.functions if _evaluable(module, function)
         ]
-    return _report(path, sites, kinds, specimens, guarded=False)._replace(assumptions=facts)
+    report = _report(path, sites, kinds, specimens, guarded=False, origins=origins)
+    return report._replace(assumptions=facts)
 
 
 def _inputs(module: Module) -> Iterator[str]:
@@ -232,8 +275,9 @@ def _stages(name: str) -> list[Any]:
 
 
 def _report(
-    name: str, sites: Sequence[Site], kinds: Collection[Kind], specimens: list[Any], guarded: bool = True
-) -> Report:
+    name: str, sites: Sequence[Site], kinds: Collection[Kind], specimens: list[Any], guarded: bool = True,
+    origins: Origins | None = None,
+) -> Report:  # fmt: skip
     findings = []
     hidden: Counter[str] = Counter()
     for site in sorted(sites, key=lambda site: (site.node.span, site.operation)):
@@ -245,7 +289,8 @@ def _report(
         example = _example(site, specimens) if selected else ""
         for guard in selected:
             verdict = MAY_FAIL if example else UNKNOWN
-            findings.append(Finding(site, verdict, guard, example, guarded, bool(specimens)))
+            why = origins.chain(site, guard) if origins is not None else ()
+            findings.append(Finding(site, verdict, guard, example, guarded, bool(specimens), why))
     return Report(name, findings, hidden)
 
 

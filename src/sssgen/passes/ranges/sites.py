@@ -88,11 +88,12 @@ class Site(NamedTuple):
     def range_text(self) -> str:
         """The ranges, for people."""
         if self.guard.replaces == "result" or not self.args:
-            return f"{_shown(self.args[0])}" if self.args and self.operation != "texel" else ""
-        return ", ".join([f"{letter} in {_shown(arg)}" for letter, arg in zip("xyz", self.args, strict=False)])
+            return f"{shown(self.args[0])}" if self.args and self.operation != "texel" else ""
+        return ", ".join([f"{letter} in {shown(arg)}" for letter, arg in zip("xyz", self.args, strict=False)])
 
 
-def _shown(range: Range) -> str:
+def shown(range: Range) -> str:
+    """A range, for people."""
     gap = f" but not within {range.gap:.4g} of 0" if range.gap and range.low < 0.0 < range.high else ""
     return f"{range.low:.4g}..{range.high:.4g}{gap}"
 
