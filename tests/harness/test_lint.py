@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from sssgen.cli.main import main
+from sssgen.harness.lint.input_assumptions import presets
 from sssgen.harness.lint.lint_findings import MAY_FAIL, PROVEN, UNKNOWN, lint
 from sssgen.support.diagnostics import SssgenError
 
@@ -231,3 +232,161 @@ def test_parameters_that_cannot_be_sampled_have_no_example(tmp_path: Path) -> No
         "float h(sampler2D t) { return sqrt(texture(t, vec2(0.5)).x - 2.0); }\nmat2 i(mat2 m) { return inverse(m); }\n"
     )
     assert {entry.verdict for entry in lint(str(path)).findings} <= {MAY_FAIL, UNKNOWN}
+
+
+ASSUMED = """\
+#version 300 es
+precision highp float;
+struct Light { vec3 direction; float decay; };
+uniform Light lights[2]; // sssgen: assume unit lights.direction
+uniform mat4 viewMatrix;
+uniform float roughness; // sssgen: assume 0.1 <= roughness <= 1
+in vec3 vNormal;
+out vec4 color;
+vec3 bent(vec3 v) // sssgen: assume nonzero v
+{
+    return normalize(v);
+}
+void main() {
+    vec3 n = normalize(vNormal);
+    vec3 world = normalize((vec4(n, 0.0) * viewMatrix).xyz);
+    vec3 l = normalize(lights[1].direction);
+    // sssgen: assume 0 <= tint <= 1
+    vec3 tint = color.rgb;
+    color = vec4(bent(world) + l + sqrt(tint), 1.0 / roughness);
+}
+"""
+
+
+def test_assumptions_of_presets_and_comments(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Each assumption proves something, and is listed."""
+    path = tmp_path / "assumed.frag"
+    path.write_text(re.sub(r"//.*", "", ASSUMED))
+    assert len(lint(str(path), False).unproven()) == 5
+    path.write_text(ASSUMED)
+    assert [finding.site.node.span.line for finding in lint(str(path), False).unproven()] == [14, 15]
+    report = lint(str(path), False, assumed=["threejs"])
+    assert report.unproven() == []
+    facts = {(fact.name, fact.source) for fact in report.assumptions}
+    assert facts >= {("vNormal", "threejs"), ("viewMatrix", "threejs"), ("lights.direction", "comment")}
+    assert ("bent(), line 9", "source") in facts
+    assert main(["lint", str(path), "--assume", "threejs", "--no-examples"]) == 0
+    assert "assumed (threejs): viewMatrix: orthonormal" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("comment", "message"),
+    [
+        ("assume", "nothing is assumed here"),
+        ("asume x > 0", "unknown words behind 'sssgen:'"),
+        ("assume unit", "'unit' is no assumption"),
+        ("assume nothing > 0", "there is no input 'nothing'"),
+        ("assume 2 <= roughness <= 1", "no number is in 2..1"),
+        ("assume roughness is small", "'roughness is small' is no assumption"),
+    ],
+)
+def test_wrong_comments_are_reported_with_their_place(comment: str, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "wrong.frag"
+    path.write_text(ASSUMED.replace("assume 0.1 <= roughness <= 1", comment))
+    with pytest.raises(SssgenError, match=re.escape(message)) as raised:
+        lint(str(path))
+    assert raised.value.diagnostics[0].span[:3] == (str(path), 6, 26)
+
+
+def test_wrong_comments_in_functions(tmp_path: Path) -> None:
+    path = tmp_path / "wrong.glsl"
+    for comment, message in (
+        ("assume missing > 0", "missing"),
+        ("assume finite x", "'finite' is for the inputs of a file"),
+        ("assume x >", "not expected here"),
+    ):
+        path.write_text(f"float f(float x)\n{{\n    // sssgen: {comment}\n    return x;\n}}\n")
+        with pytest.raises(SssgenError, match=re.escape(message)) as raised:
+            lint(str(path))
+        assert raised.value.diagnostics[0].span.line == 3
+    path.write_text(
+        "float f(float x)\n{\n    if (x < 0.0)\n        // sssgen: assume x > 1\n        x = 1.0;\n    return x;\n}\n"
+    )
+    with pytest.raises(SssgenError, match="an assumption cannot be here"):
+        lint(str(path))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[[assume]]\nnames = ['x']\n", "this rule assumes nothing"),
+        ("[[assume]]\nrange = [0, 1]\n", "this rule has no names"),
+        ("[[assume]]\nnames = ['x']\nrange = [1, 0]\n", "must be two numbers"),
+        ("[[assume]]\nnames = ['x']\nuni = true\n", "unknown key 'uni'"),
+        ("[[assume]]\nnames = ['x']\nunit = true\nstorage = 'varing'\n", "unknown storage 'varing'"),
+        ("assume = 1\n", "must be written [[assume]]"),
+        ("[[assume]\n", "expected"),
+    ],
+)
+def test_wrong_files_of_assumptions(text: str, message: str, tmp_path: Path, hazards: str) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(text)
+    with pytest.raises(SssgenError, match=re.escape(message)) as raised:
+        lint(hazards, False, assumed=[str(path)])
+    assert raised.value.diagnostics[0].span.file == str(path)
+
+
+def test_presets_are_for_plain_glsl(hazards: str) -> None:
+    for name in presets():
+        lint(hazards, False, assumed=[name])
+    with pytest.raises(SssgenError, match="did you mean 'threejs'"):
+        lint(hazards, False, assumed=["threejss"])
+    with pytest.raises(SssgenError, match="takes no assumptions"):
+        lint("ice", False, assumed=["threejs"])
+
+
+CHAIN = """\
+float half_of(float y) { return 0.5 * y; }
+float f(float x)
+{
+    float a = half_of(x);
+    float b = 1.0 - a * a;
+    return sqrt(b);
+}
+"""
+
+
+def test_the_way_to_the_input_is_explained(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "chain.glsl"
+    path.write_text(CHAIN)
+    (finding,) = lint(str(path), False).unproven()
+    steps = [(step.what, step.span.line, step.widens) for step in finding.why]
+    assert steps[:2] == [("definition", 5, False), ("operation", 5, True)]
+    assert steps[-1] == ("parameter", 2, False)
+    assert main(["lint", str(path), "--no-examples"]) == 1
+    output = capsys.readouterr().out
+    assert "because: 1.0 - a * a widens the range: in -2.5e+11..1, line 5" in output
+    assert "because: parameter x of f is in -1e+06..1e+06, line 2" in output
+
+
+def test_baselines_follow_moved_lines(hazards: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Known findings do not fail; a second one of the same kind and text does."""
+    baseline = str(tmp_path / "known.json")
+    command = ["lint", hazards, "--no-examples", "--baseline", baseline]
+    assert main([*command, "--write-baseline"]) == 0
+    assert main(command) == 0
+    text = Path(hazards).read_text()
+    Path(hazards).write_text(f"\n\n{text}")
+    assert main(command) == 0
+    Path(hazards).write_text(text.replace("return a / b;", "float twice = a / b;\n    return twice + a  /  b;"))
+    capsys.readouterr()
+    assert main([*command, "--json"]) == 0  # the second division cannot fail where the first did not
+    Path(hazards).write_text(
+        text.replace("return a / b;", "float twice = a / b;\n    b = a;\n    return twice + a / b;")
+    )
+    assert main(command) == 1
+    assert "accepts 2 findings; 1 new" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("text", ["{", "[]", '{"version": 1, "findings": [{}]}', '{"version": 2, "findings": []}'])
+def test_wrong_baselines(text: str, hazards: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "known.json"
+    path.write_text(text)
+    assert main(["lint", hazards, "--no-examples", "--baseline", str(path)]) == 2
+    assert str(path) in capsys.readouterr().err
+    assert main(["lint", hazards, "--write-baseline"]) == 2
