@@ -145,7 +145,8 @@ class ExpressionRanges(CallRanges):
         if isinstance(node.type, Matrix):
             return product._replace(stretch=widened(left.stretch * right.stretch, slack))
         matrix, vector = (left, right) if isinstance(node.left.type, Matrix) else (right, left)
-        if matrix.stretch.high == INF:
+        type_ = cast(Matrix, node.left.type if matrix is left else node.right.type)
+        if matrix.stretch.high == INF or type_.columns != type_.rows:
             return product
         if len(vector.parts) == 4:  # a direction, if its last component is 0
             if vector.parts[3].size > 0.0:
@@ -328,7 +329,8 @@ class ExpressionRanges(CallRanges):
                 else:
                     parts.append(as_range(float(row == column)))
                     numbers.append(one if row == column else zero)
-        return self.value(tuple(parts), tuple(numbers))._replace(stretch=value.stretch if size > 2 else ANY)
+        keeps = isinstance(old, Matrix) and min(type_.columns, type_.rows) > 2  # the first three rows and columns
+        return self.value(tuple(parts), tuple(numbers))._replace(stretch=value.stretch if keeps else ANY)
 
     def conversion(self, node: ir.Construct, value: Value) -> Value:
         """Between float, int, uint and bool."""

@@ -165,7 +165,8 @@ class AnalysisState:
         value = self.value(parts, tuple([self.numbers.fresh() for _ in parts]), ANY if is_matrix else size)
         if count > 1 and size is not ANY and not is_matrix:
             self.lengths[value.numbers] = size
-        return value._replace(stretch=size) if is_matrix else value
+        is_square = isinstance(type_, Matrix) and type_.columns == type_.rows
+        return value._replace(stretch=size) if is_square else value
 
     def unknown(self, type_: Type) -> Value:
         """A value of which only the type is known."""
