@@ -17,7 +17,7 @@ PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; 
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 BIN := .venv/bin
 BUNDLED_PACKAGES := three@0.187.0 esbuild@0.28.2 pyodide@314.0.7
-NODE_PACKAGES := webgpu@0.6.2 playcanvas@2.23.3 wesl@0.7.31 @babylonjs/core@9.34.0 $(BUNDLED_PACKAGES)
+NODE_PACKAGES := webgpu@0.6.2 playcanvas@2.23.3 wesl@0.7.31 @babylonjs/core@9.34.0 gltf-validator@2.0.0-dev.3.10 $(BUNDLED_PACKAGES)
 # Babylon.js is thousands of files: a page loads one.
 BABYLON_BUNDLE := src/sssgen/harness/backends/babylon_bundle.js
 # What the preview's page imports, as one file: the wheel has it.

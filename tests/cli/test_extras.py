@@ -65,6 +65,7 @@ NEEDS: dict[str, str | None] = {
     "pick cube --max-error 0.5": "chart,reference",
     "fit cube lobe_exp2": "chart,reference",
     "import lamp.gltf -o out": "import",
+    "export-gltf soap -o soap.glb": "import",
     "bake sdf a.obj -o a.npy": "bake",
     "bake thickness a.obj -o a.npy": "bake",
     "bake depth a.obj --direction 0,0,1 -o a.npy": "bake",

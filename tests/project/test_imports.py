@@ -19,6 +19,8 @@ LAZY_IMPORTS = {
     "sssgen.cli.emit": EMIT,
     "sssgen.cli.engine_options": HELP,
     "sssgen.cli.eval": HELP,
+    "sssgen.cli.exporting": HELP,
+    "sssgen.cli.importing": HELP,
     "sssgen.cli.listing": HELP,
     "sssgen.cli.fit": HELP,
     "sssgen.cli.fmt": HELP,

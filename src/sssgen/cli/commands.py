@@ -55,6 +55,7 @@ COMMANDS = {
     ),
     "fit": Command("fit", "measure", "fit the parameters of techniques to a scene's medium", "chart,reference"),
     "import": Command("importing", "import", "import materials of glTF, MaterialX and Unity files", "import"),
+    "export-gltf": Command("exporting", "import", "write a material as glTF, with Khronos' extensions", "import"),
     "transpile": Command("transpile", "import", "translate functions or whole shaders to a target's language"),
     "lsp": Command("lsp", "tool", "run the language server that an editor starts", "lsp"),
     "schema": Command("schema", "tool", "print the JSON schema of materials or scenes, for editors"),

@@ -7,9 +7,6 @@ from argparse import ArgumentParser, Namespace
 
 from sssgen.cli.options import given
 from sssgen.cli.output import OK, print_json
-from sssgen.interchange import format_readers
-from sssgen.interchange.mapping_report import Report
-from sssgen.interchange.material_writer import write_import
 from sssgen.support.paths import posix
 from sssgen.support.progress import ProgressBar
 
@@ -42,6 +39,10 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Reads the file, writes its materials, and prints what became of its elements."""
+    from sssgen.interchange import format_readers
+    from sssgen.interchange.mapping_report import Report
+    from sssgen.interchange.material_writer import write_import
+
     path = arguments.FILE
     report = Report(os.path.basename(path))
     materials = format_readers.read(path, report, arguments.material, arguments.root or "")

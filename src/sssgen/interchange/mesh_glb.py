@@ -78,16 +78,19 @@ def _unit_normals(normals: Array) -> Array:
 
 
 def document(buffer: Buffer, primitives: Sequence[Mapping[str, Any]], **more: Any) -> dict[str, Any]:
-    """The JSON of a glTF file with one mesh; `more` has further arrays, such as materials."""
-    return {
-        "asset": {"version": "2.0", "generator": f"sssgen {VERSION}"},
+    """The JSON of a glTF file with one mesh, or none; `more` has further arrays, such as materials."""
+    drawn: dict[str, Any] = {
         "scene": 0,
         "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0}],
         "meshes": [{"primitives": list(primitives)}],
-        "accessors": buffer.accessors,
-        "bufferViews": buffer.views,
-        "buffers": [{"byteLength": len(buffer.data)}],
+    }
+    stored = {"accessors": buffer.accessors, "bufferViews": buffer.views}
+    return {
+        "asset": {"version": "2.0", "generator": f"sssgen {VERSION}"},
+        **(drawn if primitives else {}),
+        **{key: values for key, values in stored.items() if values},
+        **({"buffers": [{"byteLength": len(buffer.data)}]} if buffer.data else {}),
         **more,
     }
 
@@ -103,6 +106,7 @@ def glb(content: Mapping[str, Any], data: bytes) -> bytes:
 
 
 def mesh_file(mesh: FileContent) -> bytes:
-    """A GLB file of the triangles alone."""
+    """A GLB file of the triangles, with an empty material: without one, trimesh drops texture coordinates."""
     buffer = Buffer()
-    return glb(document(buffer, [primitive(mesh, buffer)]), bytes(buffer.data))
+    drawn = {**primitive(mesh, buffer), "material": 0}
+    return glb(document(buffer, [drawn], materials=[{}]), bytes(buffer.data))

@@ -6,6 +6,7 @@ import dataclasses
 import json
 import os
 
+from sssgen.harness.scenes.mesh import Mesh
 from sssgen.harness.scenes.scene import Scene
 from sssgen.harness.scenes.scene_keys import KEYS
 from sssgen.harness.scenes.scene_loading import load, parse_scene
@@ -61,6 +62,12 @@ def _scene_beside(material: Material, path: str) -> Scene | None:
     if not scene.material or load_material(scene.material).name != material.name:
         return None
     return dataclasses.replace(scene, material=os.path.abspath(path))
+
+
+def mesh_beside(material: Material) -> str:
+    """The mesh file of the scene beside a material, or '' where it has none. Raises SssgenError."""
+    scene = _scene_beside(material, material.file)
+    return scene.geometry.path if scene is not None and isinstance(scene.geometry, Mesh) else ""
 
 
 def _plain_scene(material: Material) -> Scene:

@@ -1,0 +1,60 @@
+"""`sssgen export-gltf`: a material as glTF, with Khronos' extensions."""
+
+from __future__ import annotations
+
+import os
+from argparse import ArgumentParser, Namespace
+
+from sssgen.cli.options import given
+from sssgen.cli.output import OK, print_json
+from sssgen.material.material_loading import load_material
+from sssgen.support.diagnostics import failure
+from sssgen.support.file_writer import write_files
+from sssgen.support.paths import posix
+
+
+def add_options(parser: ArgumentParser) -> None:
+    parser.epilog = (
+        "examples:\n"
+        "  sssgen export-gltf paper_lantern -o lantern.glb\n"
+        "  sssgen export-gltf amber/amber.toml --mesh bead.obj -o bead.gltf\n"
+        "What is mapped to what: docs/import.md."
+    )
+    add = parser.add_argument
+    add("MATERIAL", help="an example's name, or a material file")
+    add("--mesh", type=given, metavar="FILE", help="the mesh; by default that of the scene beside the material")
+    add(
+        "-o",
+        "--output",
+        type=given,
+        metavar="FILE",
+        required=True,
+        help="a .glb, or a .gltf with pictures beside it",
+    )
+
+
+def run(arguments: Namespace) -> int:
+    """Writes the glTF file, and prints what became of the material's parameters."""
+    from sssgen.harness.scenes import mesh_files
+    from sssgen.harness.scenes.preview_scene import mesh_beside
+    from sssgen.interchange.gltf_container import SUFFIXES
+    from sssgen.interchange.gltf_writer import export
+    from sssgen.interchange.mapping_report import Report
+
+    path = arguments.output
+    if os.path.splitext(path)[1].lower() not in SUFFIXES:
+        raise failure("a glTF file is written", f"end the name in {' or '.join(SUFFIXES)}", posix(path))
+    material = load_material(arguments.MATERIAL)
+    mesh = arguments.mesh or mesh_beside(material)
+    report = Report(material.name)
+    files = export(material, mesh_files.read(mesh) if mesh else None, path, report)
+    written = write_files(os.path.dirname(path) or ".", files)
+    if arguments.json:
+        print_json({"ok": True, "files": [posix(file.path) for file in written], "report": report.as_json()})
+        return OK
+    print("\n".join([f"wrote {posix(file.path)}" for file in written]))
+    print(", ".join(f"{number} {outcome}" for outcome, number in report.counts().items()))
+    for row in report.rows:
+        if row.outcome != "mapped":
+            print(f"  {row.outcome}: {row.element}: {row.error or row.became}")
+    return OK
