@@ -24,6 +24,7 @@ from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.two_stages import Source, transpile_stages
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import folder
+from sssgen.targets.program_reflection import ROWS
 
 HERE = Path(__file__).parent / "engine_draws"
 SECONDS = 120.0
@@ -45,13 +46,13 @@ def open_page() -> tuple[Page, dict[str, Any]]:
     return page, page.receive(START)[0]
 
 
-def translated(programs: list[dict[str, str]]) -> list[dict[str, Any]]:
+def translated(programs: list[dict[str, str]], rows: str = ROWS[0]) -> list[dict[str, Any]]:
     """The programs in WGSL with their descriptions, as the loader takes them. Raises SssgenError."""
     results = []
     for number, program in enumerate(programs):
         loaded = [load_glsl_text(program[kind], f"{number}.{kind[:4]}") for kind in ("vertex", "fragment")]
         sources = [Source(each.module, each.head) for each in loaded]
-        *texts, description = transpile_stages(*sources, "wgsl", f"program_{number}").files.values()
+        *texts, description = transpile_stages(*sources, "wgsl", f"program_{number}", rows=rows).files.values()
         results.append({"description": json.loads(description), "vertex": texts[0], "fragment": texts[1]})
     return results
 
@@ -62,13 +63,13 @@ def ask(page: Page, message: dict[str, Any]) -> tuple[dict[str, Any], bytes]:
     return answer, data
 
 
-def run(page: Page, scene: str) -> tuple[dict[str, Any], Any, Any]:
+def run(page: Page, scene: str, rows: str = ROWS[0]) -> tuple[dict[str, Any], Any, Any]:
     """The facts of a scene, and its pictures by WebGL and WebGPU, empty where they fail."""
     facts, original = ask(page, {"scene": scene})
     if "error" in facts:
         return facts, original, b""
     try:
-        programs = translated(facts["programs"])
+        programs = translated(facts["programs"], rows)
     except SssgenError as error:
         return {**facts, "error": str(error)}, original, b""
     answer, copy = ask(page, {"programs": programs})

@@ -58,6 +58,11 @@ export class Program {
       vertex: { module: device.createShaderModule({ code: texts.vertex, label: vertex.file }), entryPoint: vertex.entry },
       fragment: { module: device.createShaderModule({ code: texts.fragment, label: fragment.file }), entryPoint: fragment.entry },
     };
+    for (const stage of ['vertex', 'fragment']) {
+      const count = description.textures.filter(({ stages }) => stages.includes(stage)).length;
+      const most = device.limits.maxSampledTexturesPerShaderStage;
+      if (count > most) throw new Error(`${description.program}: ${count} textures in the ${stage} shader, but the device grants ${most}: request more, or let the engine use fewer`);
+    }
     const visible = (stages) => (stages.includes('vertex') ? 1 : 0) | (stages.includes('fragment') ? 2 : 0);
     const block = description.uniform_block;
     const entries = block ? [{ binding: block.binding, visibility: 3, buffer: {} }] : [];

@@ -24,9 +24,9 @@ void main() { gl_FragColor = texture2D(map, at); }
 def test_the_command(run: Run) -> None:
     Path("a.vert").write_text(VERTEX, encoding="utf-8")
     Path("b.frag").write_text(FRAGMENT, encoding="utf-8")
-    assert run("transpile", "--stages", "a.vert", "b.frag", "-t", "wgsl", "-o", "out/water")[:2] == (0, "")
+    assert run("transpile", "--stages", "a.vert", "b.frag", "-t", "wgsl", "-o", "out/still-water.2")[:2] == (0, "")
     assert set(folder_content("out")) == {
-        "water.vertex.wgsl", "water.fragment.wgsl", "water.program.json", "webgl_program.js",
+        "still-water.2.vertex.wgsl", "still-water.2.fragment.wgsl", "still-water.2.program.json", "webgl_program.js",
     }  # fmt: skip
     texts = json.loads(run("transpile", "--stages", "a.vert", "b.frag", "-t", "hlsl", "--json").out)["texts"]
     assert list(texts) == ["a.vertex.hlsl", "a.fragment.hlsl", "a.program.json"]
@@ -57,10 +57,6 @@ def test_wrong_commands(run: Run, arguments: str, message: str) -> None:
 def test_inputs_are_not_overwritten(run: Run) -> None:
     Path("a.glsl-330.vert").write_text(VERTEX, encoding="utf-8")
     Path("b.frag").write_text(FRAGMENT, encoding="utf-8")
-    names = list(
-        json.loads(run("transpile", "--stages", "a.glsl-330.vert", "b.frag", "-t", "glsl-330", "--json").out)["texts"]
-    )
-    Path(names[0]).write_text(VERTEX, encoding="utf-8")
-    ran = run("transpile", "--stages", names[0], "b.frag", "-t", "glsl-330", "-o", names[0].split(".")[0])
-    assert (ran.status, Path(names[0]).read_text(encoding="utf-8")) == (2, VERTEX)
-    assert "is also an input file" in ran.err
+    ran = run("transpile", "--stages", "a.glsl-330.vert", "b.frag", "-t", "glsl-330", "-o", "a")
+    assert (ran.status, Path("a.glsl-330.vert").read_text(encoding="utf-8")) == (2, VERTEX)
+    assert "the output file a.glsl-330.vert is also an input file" in ran.err

@@ -152,3 +152,21 @@ def test_errors_of_both_stages_are_reported_together() -> None:
     with pytest.raises(SssgenError) as error:
         translate(vertex, fragment)
     assert [each.span.file for each in error.value.diagnostics] == ["a.vert", "b.frag"]
+
+
+def test_more_than_every_device_has() -> None:
+    reads = " + ".join(f"texture2D(maps[{index}], at)" for index in range(20))
+    vertex = "attribute vec2 p;\nvarying vec2 at;\nvoid main() { at = p; gl_Position = vec4(p, 0.0, 1.0); }\n"
+    fragment = (
+        "precision highp float;\nuniform sampler2D maps[20];\nuniform vec4 many[5000];\nuniform int which;\n"
+        f"varying vec2 at;\nvoid main() {{ gl_FragColor = {reads} + many[which]; }}\n"
+    )
+    counts = {"20 textures in the fragment shader": 16, "20 samplers in the fragment shader": 16}
+    counts["80016 bytes of uniforms"] = 65536
+    expected = [
+        f"the program has {count}: devices of WGSL (WebGPU) have at least {least}, and some no more"
+        for count, least in counts.items()
+    ]
+    program = translate(vertex, fragment)
+    assert [warning.message for warning in program.warnings] == expected
+    assert described(program)["warnings"] == expected

@@ -6,7 +6,7 @@ import os
 from argparse import Namespace
 
 from sssgen.cli.output import OK, print_json
-from sssgen.cli.translation import explained_renames, macros, one_target, print_changes, title
+from sssgen.cli.translation import explained_renames, macros, one_target, print_changes
 from sssgen.lang.plain_glsl import Loaded, load_glsl
 from sssgen.pipeline.two_stages import Source, transpile_stages
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
@@ -75,11 +75,11 @@ def _unfit(arguments: Namespace) -> list[Diagnostic]:
 
 def _place(arguments: Namespace) -> tuple[str, str]:
     """The folder of the output, and the name of the program."""
-    name = title(stem(arguments.stages[0]))
+    name = stem(arguments.stages[0])
     output = arguments.output
     if output in (None, "-"):
         arguments.output = None
         return ".", name
     if output.endswith(("/", os.sep)) or os.path.isdir(output):
         return output, name
-    return os.path.dirname(output) or ".", title(os.path.basename(output))
+    return os.path.dirname(output) or ".", os.path.basename(output)

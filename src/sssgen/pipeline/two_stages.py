@@ -19,7 +19,7 @@ from sssgen.support.gc_pause import paused
 from sssgen.targets import registry
 from sssgen.targets.assemble import About
 from sssgen.targets.descriptor import Target
-from sssgen.targets.program_reflection import ROWS, StageFacts, reflect_program
+from sssgen.targets.program_reflection import ROWS, StageFacts, beyond_limits, reflect_program
 from sssgen.targets.reflection import as_text
 
 
@@ -86,6 +86,9 @@ def transpile_stages(
                 program, reflection, state.variable_names, uniforms[kind], own[kind], sampled[kind]
             )
     described = reflect_program(name, chosen, rows, facts["vertex"], facts["fragment"])
+    beyond = beyond_limits(described, chosen)
+    described["warnings"] += beyond
+    warnings += [Diagnostic("warning", message) for message in beyond]
     files[f"{name}.program.json"] = as_text(described)
     return TranslatedProgram(files, list(dict.fromkeys(warnings)), (renames[kinds[0]], renames[kinds[1]]))
 

@@ -55,6 +55,24 @@ def reflect_program(name: str, target: Target, rows: str, vertex: StageFacts, fr
     }
 
 
+def beyond_limits(program: Mapping[str, Any], target: Target) -> list[str]:
+    """Where a program needs more than every device of the target has."""
+    limits, counts = target.limits, list[tuple[str, int, int]]()
+    for stage in program["stages"]:
+        textures = [texture for texture in program["textures"] if stage in texture["stages"]]
+        samplers = [texture for texture in textures if texture["sampler"]]
+        counts.append((f"textures in the {stage} shader", len(textures), limits.textures))
+        counts.append((f"samplers in the {stage} shader", len(samplers), limits.samplers))
+    counts.append(("values between the stages", len(program["varyings"]), limits.varyings))
+    block = program["uniform_block"] or {"size": 0}
+    counts.append(("bytes of uniforms", block["size"], limits.uniform_block))
+    return [
+        f"the program has {count} {what}: devices of {target.title} have at least {least}, and some no more"
+        for what, count, least in counts
+        if least and count > least
+    ]
+
+
 def _file(facts: StageFacts) -> dict[str, str]:
     (file,) = facts.reflection["files"]
     (entry,) = file["stages"].values()
