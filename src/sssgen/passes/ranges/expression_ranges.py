@@ -125,6 +125,8 @@ class ExpressionRanges(CallRanges):
         if polynomial is None:
             return part
         self.polynomials[number] = polynomial
+        if part.gap > 0.0:  # its sign is known
+            return part
         tighter = polynomials.bounds(polynomial, self.spans, self.format.epsilon)
         if tighter is None or tighter.high < part.low or tighter.low > part.high:
             return part

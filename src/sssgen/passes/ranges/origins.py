@@ -23,6 +23,8 @@ from sssgen.passes.ranges.range_state import variable_key
 from sssgen.passes.ranges.scalar_parts import hull_of
 from sssgen.passes.ranges.sites import ELEMENT, WHOLE_NUMBER, Site
 
+_BOUNDED = 1e3
+"""How much larger than a result its operand is where the operation is a bound, such as a normalized vector's."""
 LONGEST = 8
 """Steps of a chain."""
 
@@ -59,19 +61,28 @@ class RangeTrace(RangeAnalysis):
     def __init__(
         self, module: ir.Module, chained: bool = True, assumed: Assumed | None = None, unguarded: bool = False
     ) -> None:
-        self.seen: dict[int, tuple[tuple[Range, ...], Range]] = {}
-        """An expression's identity → the ranges of its components, and that of its length."""
+        self.seen: dict[int, list[Value]] = {}
+        """An expression's identity → its value at each visit."""
         super().__init__(module, FLOAT32, chained, assumed, unguarded)
 
     def expr(self, node: ir.Expr) -> Value:
         value = super().expr(node)
-        earlier = self.seen.get(id(node))
-        if earlier is None:
-            self.seen[id(node)] = value.parts, value.length
-        elif earlier[0] is not value.parts and len(earlier[0]) == len(value.parts):
-            parts = tuple([a.joined(b) for a, b in zip(earlier[0], value.parts, strict=True)])
-            self.seen[id(node)] = parts, earlier[1].joined(value.length)
+        values = self.seen.get(id(node))
+        if values is None:
+            self.seen[id(node)] = [value]
+        elif values[-1] is not value:
+            values.append(value)
         return value
+
+    def range_of(self, node: ir.Expr, is_length: bool) -> Range | None:
+        """The hull of an expression's values, or of their lengths; None where it was not visited or has no numbers."""
+        values = self.seen.get(id(node), ())
+        if not values or not values[0].parts:
+            return None
+        lengths = [value.length for value in values]
+        if is_length and all(length.high < INF for length in lengths):
+            return hull_of(tuple(lengths))
+        return hull_of(tuple([part for value in values for part in value.parts]))
 
 
 class Origins:
@@ -88,7 +99,8 @@ class Origins:
         """A function and the key of a variable → what is assigned to it there."""
         self.calls: dict[str, list[ir.Call]] = {}
         for function in module.functions:
-            self._read(function)
+            if trace.interpretations[function.key]:
+                self._read(function)
 
     def _read(self, function: ir.Function) -> None:
         key = function.key
@@ -150,12 +162,17 @@ class Origins:
                 if isinstance(node, ir.Intrinsic):
                     steps.append(Step(node.span, "texel" if BUILTINS[node.name].reads_texels else "operation", "", own))
                 break
-            failing = [] if widest else [part for part in parts if self._fails(part, by_length, fails)]
+            failing = [] if widest else self._failing(node, parts, by_length, fails)
             through = isinstance(node, ir.Swizzle | ir.Index | ir.Member | ir.Construct | ir.Select)
             if not failing and not widest and not through:
                 steps.append(Step(node.span, "operation", "", own, _is_length(node, by_length), widens=True))
                 widest, by_length = True, False
             node = self._worst(failing or parts, by_length, None)
+            part = self._range(node, by_length) if widest and node is not None else None
+            if (
+                part is not None and part.size > _BOUNDED * own.size
+            ):  # the operation is a bound: it does not come from there
+                break
         return steps
 
     def _operand(self, site: Site, guard: Guard) -> tuple[ir.Expr | None, Callable[[Range], bool]]:
@@ -181,14 +198,27 @@ class Origins:
         return args[index], fails
 
     def _range(self, node: ir.Expr, by_length: bool) -> Range | None:
-        seen = self.trace.seen.get(id(node))
-        if seen is None or not seen[0]:
-            return None
-        return seen[1] if _is_length(node, by_length) and seen[1].high < INF else hull_of(seen[0])
+        return self.trace.range_of(node, _is_length(node, by_length))
 
     def _fails(self, node: ir.Expr, by_length: bool, fails: Callable[[Range], bool]) -> bool:
         own = self._range(node, by_length)
         return own is not None and not isinstance(node, ir.Literal) and fails(own)
+
+    def _failing(
+        self, node: ir.Expr, parts: list[ir.Expr], by_length: bool, fails: Callable[[Range], bool]
+    ) -> list[ir.Expr]:
+        """The parts that are outside of the domain by themselves: of a sum, only if the rest of it may be 0."""
+        if not isinstance(node, ir.Binary) or node.op not in ("+", "-"):
+            return [part for part in parts if self._fails(part, by_length, fails)]
+        failing = []
+        for part, rest in ((node.left, node.right), (node.right, node.left)):
+            own, other = self._range(part, by_length), self._range(rest, by_length)
+            if own is None or other is None or other.gap > 0.0 or isinstance(part, ir.Literal):
+                continue
+            negated = node.op == "-" and part is node.right and not _is_length(part, by_length)
+            if fails(-own if negated else own):
+                failing.append(part)
+        return failing
 
     def _parts(self, node: ir.Expr) -> list[ir.Expr]:
         if isinstance(node, ir.Select):

@@ -18,6 +18,8 @@ Monomial = tuple[int, ...]
 Polynomial = Mapping[Monomial, float]
 
 MAX_TERMS, MAX_DEGREE, MAX_NUMBERS = 12, 4, 4
+_NARROW = 1e3
+"""The size of numbers up to which a range is taken as a whole."""
 _ROUNDINGS = 16
 """Roundings of each term, at most: of its products and of the sums that it is a part of."""
 
@@ -72,6 +74,8 @@ def _rounded(polynomial: Polynomial, ranges: Mapping[int, Range], epsilon: float
 
 def _pieces(over: Range) -> list[Range]:
     """Parts of a wide range in which a polynomial's error is small beside its terms."""
+    if over.size <= _NARROW:
+        return [over]
     ends = [0.0]
     while ends[-1] < over.size:
         ends.append(max(16.0 * ends[-1], 4.0))
