@@ -16,7 +16,7 @@ from sssgen.ir.types import BOOL, Array, Matrix, Struct, kind_of
 from sssgen.ir.vector_ranges import Value, length_of
 from sssgen.passes.ranges import polynomials
 from sssgen.passes.ranges.call_ranges import CallRanges
-from sssgen.passes.ranges.polynomials import Polynomial
+from sssgen.passes.ranges.polynomials import Factor, Polynomial
 from sssgen.passes.ranges.range_state import State, global_key
 from sssgen.passes.ranges.scalar_parts import field_at, hull_of, matrix_product, scalars
 from sssgen.passes.ranges.sites import COUNT, DIVISION, ELEMENT, SIGNED_COUNT, TEXEL, WHOLE_NUMBER, subnormal
@@ -136,10 +136,11 @@ class ExpressionRanges(CallRanges):
         """A number as a polynomial: of itself, if it is neither a sum nor a product."""
         key = self.numbers.definitions[number]
         if key[0] == "constant":
-            return {(): cast(float, key[1])}
+            return {(): Factor(cast(float, key[1]), abs(cast(float, key[1])))}
         if key[0] == "neg":
-            return {monomial: -factor for monomial, factor in self.polynomial(cast(int, key[1])).items()}
-        return self.polynomials.get(number) or {(number,): 1.0}
+            positive = self.polynomial(cast(int, key[1])).items()
+            return {monomial: Factor(-value, weight) for monomial, (value, weight) in positive}
+        return self.polynomials.get(number) or {(number,): Factor(1.0, 1.0)}
 
     def turned(self, node: ir.Binary, left: Value, right: Value, product: Value) -> Value:
         """A product with a matrix of which the stretch is known: a vector's length, or a matrix's stretch."""

@@ -10,12 +10,24 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from sssgen.ir.intervals import INF, Range
 
 Monomial = tuple[int, ...]
 """The numbers that are multiplied, in order, each as often as its power."""
-Polynomial = Mapping[Monomial, float]
+
+
+class Factor(NamedTuple):
+    """The factor of a monomial."""
+
+    value: float
+    weight: float
+    """The sum of the sizes of all that it was added up from: what cancels has rounded, too."""
+
+
+Polynomial = Mapping[Monomial, Factor]
+NOTHING = Factor(0.0, 0.0)
 
 MAX_TERMS, MAX_DEGREE, MAX_NUMBERS = 12, 4, 4
 _NARROW = 1e3
@@ -28,13 +40,14 @@ def product(first: Polynomial, second: Polynomial) -> Polynomial | None:
     """The product of two polynomials; None where it is too long."""
     if len(first) * len(second) > MAX_TERMS:
         return None
-    terms: dict[Monomial, float] = {}
+    terms: dict[Monomial, Factor] = {}
     for a, x in first.items():
         for b, y in second.items():
             monomial = tuple(sorted((*a, *b)))
             if len(monomial) > MAX_DEGREE:
                 return None
-            terms[monomial] = terms.get(monomial, 0.0) + x * y
+            value, weight = terms.get(monomial, NOTHING)
+            terms[monomial] = Factor(value + x.value * y.value, weight + x.weight * y.weight)
     return terms
 
 
@@ -42,15 +55,18 @@ def total(first: Polynomial, second: Polynomial, sign: float) -> Polynomial | No
     """The sum of two polynomials, the second one multiplied by `sign`; None where it is too long."""
     terms = dict(first)
     for monomial, factor in second.items():
-        terms[monomial] = terms.get(monomial, 0.0) + sign * factor
+        value, weight = terms.get(monomial, NOTHING)
+        terms[monomial] = Factor(value + sign * factor.value, weight + factor.weight)
     return terms if len(terms) <= MAX_TERMS else None
 
 
 def bounds(polynomial: Polynomial, ranges: Mapping[int, Range], epsilon: float) -> Range | None:
     """The range of a polynomial's rounded value; None where this says no more than intervals do."""
     numbers = sorted({number for monomial in polynomial for number in monomial})
-    terms = [monomial for monomial, factor in polynomial.items() if monomial and factor]
-    if len(numbers) > MAX_NUMBERS or sum(len(set(monomial)) for monomial in terms) <= len(numbers):
+    terms = [monomial for monomial, factor in polynomial.items() if monomial and factor.value]
+    cancels = any(abs(factor.value) < factor.weight for factor in polynomial.values())
+    repeats = sum(len(set(monomial)) for monomial in terms) > len(numbers) or cancels
+    if len(numbers) > MAX_NUMBERS or not repeats:
         return None
     if any(number not in ranges or ranges[number].size == INF for number in numbers):
         return None
@@ -66,7 +82,7 @@ def bounds(polynomial: Polynomial, ranges: Mapping[int, Range], epsilon: float) 
 def _rounded(polynomial: Polynomial, ranges: Mapping[int, Range], epsilon: float, values: list[float]) -> Range:
     """The hull of exact values, with the errors of the roundings."""
     size = sum(
-        abs(factor) * math.prod(ranges[number].size for number in monomial) for monomial, factor in polynomial.items()
+        factor.weight * math.prod(ranges[number].size for number in monomial) for monomial, factor in polynomial.items()
     )
     slack = _ROUNDINGS * epsilon * size
     return Range(min(values) - slack, max(values) + slack)
@@ -93,7 +109,7 @@ def _of_one(polynomial: Polynomial, over: Range, epsilon: float) -> Range:
     """The range of a polynomial of one number."""
     factors = [0.0] * (MAX_DEGREE + 1)
     for monomial, factor in polynomial.items():
-        factors[len(monomial)] += factor
+        factors[len(monomial)] += factor.value
     points = [over.low, over.high, *(root for root in _roots(_derivative(factors), over.low, over.high))]
     number = next(number for monomial in polynomial for number in monomial)
     return _rounded(polynomial, {number: over}, epsilon, [_value(factors, point) for point in points])
@@ -147,6 +163,9 @@ def _at_corners(
     for corner in itertools.product(*ends):
         at = dict(zip(numbers, corner, strict=True))
         values.append(
-            sum(factor * math.prod(at[number] for number in set(monomial)) for monomial, factor in polynomial.items())
+            sum(
+                factor.value * math.prod(at[number] for number in set(monomial))
+                for monomial, factor in polynomial.items()
+            )
         )
     return _rounded(polynomial, ranges, epsilon, values)
