@@ -76,3 +76,11 @@ def test_a_material_has_the_cost_of_its_chain_and_of_each_stage(opened: Callable
     ]
     conversion = lines.index('technique = "transmittance_from_thinness"') if name == "paper_lantern" else 0
     assert not conversion or lenses[conversion - 1] == "no operation is left of it"
+
+
+def test_comments_with_assumptions_count(opened: Callable[..., Any]) -> None:
+    assumed = "uniform float width; // sssgen: assume 0.1 <= width <= 1\n"
+    safe = opened("assumed.glsl", assumed + "float share(float x)\n{\n    return x / width;\n}\n")
+    assert [text.split(" · ")[1] for text in shown(safe).values()] == ["proven safe: all 1"]
+    wrong = opened("wrong.glsl", assumed.replace("0.1 <= ", "0.1 < < "))
+    assert [problem.severity for problem in wrong.analysis.diagnostics] == ["error"]

@@ -11,6 +11,7 @@ from sssgen.editor.documents import GLSL, MATERIAL, SCENE, TECHNIQUE, Document
 from sssgen.harness.scenes.scene import Scene
 from sssgen.harness.scenes.scene_loading import parse_scene
 from sssgen.ir.nodes import Module
+from sssgen.lang.assumption_comments import AssumedInput
 from sssgen.lang.loader import load_file
 from sssgen.lang.plain_glsl import load_glsl
 from sssgen.material import library
@@ -37,6 +38,8 @@ class Analysis(NamedTuple):
     technique: Technique | None = None
     material: Material | None = None
     scene: Scene | None = None
+    assumed: tuple[AssumedInput, ...] = ()
+    """What comments of plain GLSL assume of inputs."""
 
 
 def analyse(document: Document, before: Analysis | None = None) -> Analysis:
@@ -77,8 +80,8 @@ def _technique(document: Document) -> Analysis:
 
 def _glsl(document: Document) -> Analysis:
     entry = "shadertoy" if _SHADERTOY.search(document.text) and not _MAIN.search(document.text) else ""
-    loaded = load_glsl(document.path, document.shown, entry=entry)
-    return Analysis(tuple(loaded.warnings), module=loaded.module)
+    loaded = load_glsl(document.path, document.shown, entry=entry, assumptions=True)
+    return Analysis(tuple(loaded.warnings), module=loaded.module, assumed=tuple(loaded.assumed))
 
 
 def _material(document: Document) -> Analysis:

@@ -11,6 +11,7 @@ from sssgen.editor.documents import GLSL, MATERIAL, TECHNIQUE, Document
 from sssgen.editor.problems import Range, range_of
 from sssgen.editor.toml_places import tables_of
 from sssgen.harness.evaluate.probes import subject
+from sssgen.harness.lint.input_assumptions import Assumptions, input_names, rules_of_comments
 from sssgen.ir.intrinsics import KINDS
 from sssgen.ir.nodes import Module, Span
 from sssgen.ir.walk import all_expressions
@@ -18,7 +19,8 @@ from sssgen.material.model import Material
 from sssgen.passes.cost import cost_of
 from sssgen.passes.ranges.sites import Site
 from sssgen.passes.reachable import only
-from sssgen.pipeline.programs import analysed, library_sites, plain_module
+from sssgen.passes.stage.stage_interface import stage_kind
+from sssgen.pipeline.programs import analysed, library_sites, plain_module, traced_sites
 from sssgen.targets import registry
 
 PLAIN_TARGET = "glsl-330"
@@ -57,7 +59,11 @@ def _of_functions(document: Document, analysis: Analysis, module: Module) -> lis
         sites = library_sites(chain.module, chain.called, chain.chained)
         lenses = _above(functions, chain.module, sites)
     if functions.keys() - lenses.keys():
-        lenses = _above(functions, plain_module(module)[0], library_sites(module)) | lenses
+        assumptions = Assumptions(
+            rules_of_comments(analysis.assumed, input_names(module)), stage_kind(module) == "vertex"
+        )
+        sites, _ = traced_sites(module, assumed=assumptions.of, unguarded=document.kind == GLSL)
+        lenses = _above(functions, plain_module(module)[0], sites) | lenses
     return [lenses[span] for span in functions if span in lenses]
 
 

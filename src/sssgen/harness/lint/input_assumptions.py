@@ -9,15 +9,17 @@ uniform, varying, attribute, parameter, texture), their `types`, and what holds:
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from sssgen.ir.contracts import Assumption
 from sssgen.ir.intervals import INF
-from sssgen.ir.types import Matrix, Sampler, Type, Vector, spell
+from sssgen.ir.nodes import Module
+from sssgen.ir.types import Matrix, Sampler, Struct, Type, Vector, spell
 from sssgen.lang.assumption_comments import UNIT, AssumedInput, assumption_of
+from sssgen.passes.ranges.scalar_parts import innermost
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
 from sssgen.support.text_files import read_text
 from sssgen.support.toml_source import Document, parse
@@ -110,12 +112,32 @@ def load_rules(names: Sequence[str]) -> list[Rule]:
     return rules
 
 
-def rules_of_comments(assumed: Sequence[AssumedInput], is_input: Callable[[str], bool]) -> list[Rule]:
+def input_names(module: Module) -> frozenset[str]:
+    """The names of the inputs of a module; of structs, those of their fields, too."""
+    names: set[str] = set()
+    params = [(param.name, param.type) for function in module.functions for param in function.params]
+    inputs = [(variable.name, variable.type) for variable in module.variables if variable.storage == "in"]
+    pending = [*params, *inputs, *((uniform.name, uniform.type) for uniform in module.uniforms)]
+    while pending:
+        name, type_ = pending.pop()
+        names.add(name)
+        inner = innermost(type_)
+        if isinstance(inner, Struct):
+            pending += [(f"{name}.{field.name}", field.type) for field in inner.fields]
+    return frozenset(names)
+
+
+def rules_of_comments(assumed: Sequence[AssumedInput], names: Collection[str]) -> list[Rule]:
     """The rules of the comments beside inputs. Raises SssgenError for a name that is no input."""
     wrong = [
-        Diagnostic("error", f"there is no input '{row.name}'", row.span, "name a uniform, an input or a field of one")
+        Diagnostic(
+            "error",
+            f"there is no input '{row.name}'",
+            row.span,
+            did_you_mean(row.name, names) or "name a uniform, an input or a field of one",
+        )
         for row in assumed
-        if not is_input(row.name)
+        if row.name not in names
     ]
     if wrong:
         raise SssgenError(wrong)

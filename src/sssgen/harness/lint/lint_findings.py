@@ -12,11 +12,11 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from sssgen.harness.lint.input_assumptions import AssumedFact, Assumptions, load_rules, rules_of_comments
+from sssgen.harness.lint.input_assumptions import AssumedFact, Assumptions, input_names, load_rules, rules_of_comments
 from sssgen.ir.formats import FLOAT32
 from sssgen.ir.intrinsics import Guard, Kind
 from sssgen.ir.nodes import Assume, Function, Module
-from sssgen.ir.types import Matrix, Scalar, Struct, Vector, Void
+from sssgen.ir.types import Matrix, Scalar, Vector, Void
 from sssgen.ir.walk import operands, statements
 from sssgen.lang.check.termination import endless
 from sssgen.lang.plain_glsl import load_glsl
@@ -25,7 +25,6 @@ from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
 from sssgen.passes.guards import remedy
 from sssgen.passes.ranges.origins import Origins, Step
-from sssgen.passes.ranges.scalar_parts import innermost
 from sssgen.passes.ranges.sites import Site, shown
 from sssgen.passes.stage.stage_interface import stage_kind
 from sssgen.pipeline.compiler import guarded_sites
@@ -215,7 +214,7 @@ def _plain(path: str, with_examples: bool, kinds: Collection[Kind], assumed: Seq
     rules = load_rules(assumed)
     loaded = load_glsl(path, path, assumptions=True)
     module = loaded.module
-    rules += rules_of_comments(loaded.assumed, frozenset(_inputs(module)).__contains__)
+    rules += rules_of_comments(loaded.assumed, input_names(module))
     assumptions = Assumptions(rules, stage_kind(module) == "vertex")
     sites, origins = traced_sites(module, assumed=assumptions.of if rules else None, unguarded=True)
     facts = [*assumptions.applied.values(), *_stated(module)]
@@ -226,19 +225,6 @@ def _plain(path: str, with_examples: bool, kinds: Collection[Kind], assumed: Seq
         ]
     report = _report(path, sites, kinds, specimens, guarded=False, origins=origins)
     return report._replace(assumptions=facts)
-
-
-def _inputs(module: Module) -> Iterator[str]:
-    """The names of the inputs of a module; of structs, those of their fields, too."""
-    params = [(param.name, param.type) for function in module.functions for param in function.params]
-    inputs = [(variable.name, variable.type) for variable in module.variables if variable.storage == "in"]
-    pending = [*params, *inputs, *((uniform.name, uniform.type) for uniform in module.uniforms)]
-    while pending:
-        name, type_ = pending.pop()
-        yield name
-        inner = innermost(type_)
-        if isinstance(inner, Struct):
-            pending += [(f"{name}.{field.name}", field.type) for field in inner.fields]
 
 
 def _stated(module: Module) -> Iterator[AssumedFact]:
