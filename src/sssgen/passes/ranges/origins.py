@@ -210,7 +210,7 @@ class Origins:
         """The parts that are outside of the domain by themselves: of a sum, only if the rest of it may be 0."""
         if not isinstance(node, ir.Binary) or node.op not in ("+", "-"):
             return [part for part in parts if self._fails(part, by_length, fails)]
-        failing = []
+        failing: list[ir.Expr] = []
         for part, rest in ((node.left, node.right), (node.right, node.left)):
             own, other = self._range(part, by_length), self._range(rest, by_length)
             if own is None or other is None or other.gap > 0.0 or isinstance(part, ir.Literal):
