@@ -394,10 +394,9 @@ class ExpressionRanges(CallRanges):
             self.note(node, "index", outside, ELEMENT, (index,), (0.0, count - 1.0))
         if isinstance(node.value.type, Array):
             numbers = tuple([self.numbers.fresh() for _ in value.parts])
-            for old, length in list(self.lengths.items()):  # those of an input's vectors
-                if old[0] in value.numbers:
-                    at = value.numbers.index(old[0])
-                    self.lengths[numbers[at : at + len(old)]] = length
+            for old, new in zip(value.numbers, numbers, strict=True) if self.lengths else ():
+                if old in self.lengths:  # the first of a vector
+                    self.lengths[new] = self.lengths[old]
             return self.value(value.parts, numbers, value.length)
         size = scalars(node.type)
         if index.low == index.high and 0 <= index.low < count:
@@ -415,7 +414,8 @@ class ExpressionRanges(CallRanges):
         value = self.expr(node.value)
         start, count = field_at(cast(Struct, node.value.type), node.field)
         numbers = value.numbers[start : start + count]
-        return self.value(value.parts[start : start + count], numbers, self.lengths.get(numbers, ANY))
+        size, length = self.lengths.get(numbers[0], (0, ANY)) if numbers else (0, ANY)
+        return self.value(value.parts[start : start + count], numbers, length if size == count else ANY)
 
 
 def _components(left: Value, right: Value) -> Iterator[tuple[Range, int, Range, int]]:
