@@ -1,12 +1,14 @@
-"""Imports a folder of glTF assets, and compares imported media with the definitions of their extensions.
+"""Imports folders of assets and materials, and compares imported media with the definitions of their formats.
 
     python benchmarks/bench_import.py assets FOLDER [--pictures DIR] [--all]
+    python benchmarks/bench_import.py files FOLDER [--pictures DIR] [--root DIR]
     python benchmarks/bench_import.py slabs
 
 `assets`: for each asset its materials, the elements that were mapped, approximated and left out, and how many of its
 materials compile (WGSL and GLSL, by the compilers of this machine). FOLDER is a checkout of KhronosGroup's
 glTF-Sample-Assets, or another with an asset in each folder. `--all` takes assets without the extensions, too.
-`--pictures` draws up to four materials of each asset into one sheet per asset.
+`--pictures` draws up to four materials of each asset into one sheet per asset. `files`: the same for all MaterialX
+documents, Unity materials and diffusion profiles below a folder.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ from __future__ import annotations
 import argparse
 import json
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from sssgen.harness.check import compile_check, shader_files
@@ -81,29 +83,41 @@ def draw(materials: list[WrittenMaterial], folder: str, sheet: Path) -> None:
     images.write_png(sheet, np.concatenate(pictures, axis=1))
 
 
-def run_assets(folder: Path, pictures: Path | None, every: bool) -> None:
-    """Prints the table of a folder of assets."""
-    print("| Asset | Materials | Mapped | Approximated | Left out | Compile |\n|---|---:|---:|---:|---:|---:|")
+def files(folder: Path) -> Iterator[Path]:
+    """The MaterialX documents, Unity materials and diffusion profiles below a folder."""
+    for path in sorted(folder.rglob("*")):
+        profile = path.suffix == ".asset" and b"scatteringDistance:" in path.read_bytes()
+        if path.suffix in (".mtlx", ".mat") or profile:
+            yield path
+
+
+def run_imports(paths: Iterable[tuple[str, Path]], pictures: Path | None, root: str = "") -> None:
+    """Prints the table of some files with their names."""
+    print("| File | Materials | Mapped | Approximated | Left out | Compile |\n|---|---:|---:|---:|---:|---:|")
     totals, refused = [0, 0, 0, 0, 0], {}
-    for path in assets(folder):
-        name = path.relative_to(folder).parts[0]
+    for name, path in paths:
         try:
-            if not every and EXTENSIONS.isdisjoint(used(path)):
-                continue
             with tempfile.TemporaryDirectory() as output:
                 report = Report(path.name)
-                written = write_import(output, format_readers.read(str(path), report), report)
+                written = write_import(output, format_readers.read(str(path), report, top=root), report)
                 row = [len(written), *report.counts().values(), compiled(written, output)]
                 print(f"| {name} | {' | '.join(map(str, row))} |", flush=True)
                 totals = [total + part for total, part in zip(totals, row, strict=True)]
                 if pictures is not None:
                     pictures.mkdir(parents=True, exist_ok=True)
-                    draw(written, output, pictures / f"{name}.png")
+                    draw(written, output, pictures / f"{name.replace('/', '_')}.png")
         except SssgenError as error:
             refused[name] = error.diagnostics[0].message
             print(f"| {name} | {refused[name]} | | | | |", flush=True)
     print(f"| all | {' | '.join(map(str, totals))} |")
-    print(f"{totals[-1]} of {totals[0]} materials compile for {', '.join(TARGETS)}; {len(refused)} assets are refused.")
+    print(f"{totals[-1]} of {totals[0]} materials compile for {', '.join(TARGETS)}; {len(refused)} files are refused.")
+
+
+def chosen_assets(folder: Path, every: bool) -> Iterator[tuple[str, Path]]:
+    """The assets of a folder that use the extensions."""
+    for path in assets(folder):
+        if every or not EXTENSIONS.isdisjoint(used(path)):
+            yield path.relative_to(folder).parts[0], path
 
 
 def main() -> None:
@@ -113,14 +127,22 @@ def main() -> None:
     of_assets.add_argument("folder", type=Path)
     of_assets.add_argument("--pictures", type=Path)
     of_assets.add_argument("--all", action="store_true")
+    of_files = kinds.add_parser("files")
+    of_files.add_argument("folder", type=Path)
+    of_files.add_argument("--pictures", type=Path)
+    of_files.add_argument("--root", default="")
     kinds.add_parser("slabs")
     arguments = parser.parse_args()
     if arguments.kind == "assets":
-        run_assets(arguments.folder, arguments.pictures, arguments.all)
+        run_imports(chosen_assets(arguments.folder, arguments.all), arguments.pictures)
+    elif arguments.kind == "files":
+        named = ((str(path.relative_to(arguments.folder)), path) for path in files(arguments.folder))
+        run_imports(named, arguments.pictures, arguments.root)
     else:
-        from slab_check import run_slabs  # beside this file
+        from materialx_slabs import run_materialx  # beside this file
+        from slab_check import run_slabs
 
-        print(json.dumps(run_slabs(), indent=2))
+        print(json.dumps({"glTF": run_slabs(), "MaterialX": run_materialx()}, indent=2))
 
 
 if __name__ == "__main__":

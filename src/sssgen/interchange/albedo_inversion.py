@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-
+from sssgen.interchange.scatter_color import albedo_of_multiscatter
 from sssgen.interchange.surface_model import extinction_of_color, medium
 from sssgen.lab.scene.media import Medium
 
@@ -22,16 +21,13 @@ def albedo_of_color(color: float, anisotropy: float = 0.0) -> float:
     of the reflected share is at most 0.006 for an anisotropy from -0.9 to 0.95. Light along the normal is reflected
     less than diffuse light.
 
-    Source: van de Hulst's approximation of the spherical albedo, inverted by Kulla and Conty, Revisiting Physically
-    Based Shading at Imageworks, SIGGRAPH 2017; OpenPBR Surface 1.1, Subsurface; KHR_materials_volume_scatter. For
-    negative anisotropies, where it reflects too much, the colour is lowered first.
+    Source: OpenPBR Surface 1.1, Subsurface, which has the inverse of van de Hulst's approximation of the spherical
+    albedo. For negative anisotropies, where it reflects too much, the colour is lowered first.
     """
     c = min(max(color, 0.0), 1.0)
     if anisotropy < 0.0:
         c -= _BACK_SCATTERING * anisotropy * anisotropy * c * (1.0 - c) ** 2
-    s = 4.09712 + 4.20863 * c - math.sqrt(9.59217 + 41.6808 * c + 17.7126 * c * c)
-    squared = min(max(s, 0.0), 1.0) ** 2
-    return (1.0 - squared) / (1.0 - anisotropy * squared)
+    return albedo_of_multiscatter([c], anisotropy)[0]
 
 
 def subsurface_medium(color: tuple[float, ...], radius: tuple[float, ...], anisotropy: float = 0.0) -> Medium:
