@@ -176,19 +176,22 @@ def joined(values: Sequence[Value], node: str) -> Value:
     return pointwise(_concatenated, values, node)
 
 
-def quantity_of(value: Value, name: str, color: bool) -> Quantity:
-    """A value as a quantity of the record; `name` is that of the picture which is written for computed texels."""
+def quantity_of(value: Value, name: str, color: bool, most: float = 1.0) -> Quantity:
+    """A value as a quantity of the record; `name` is that of the picture which is written for computed texels.
+
+    Constants and computed texels are limited to 0 and `most`.
+    """
     if isinstance(value, Texture):
         return value.quantity
     if isinstance(value, Computed):
         components = value.texels.shape[-1]
-        largest = max(float(value.texels.max()), 1.0)
+        largest = min(max(float(value.texels.max()), 1.0), most)
         texels = np.clip(value.texels / largest, 0.0, 1.0)
         content = png_bytes(encode_srgb(texels) if color else texels)
         channels = "rgba"[:components] if components > 2 else "ra"[:components]
         image = Image(Picture(f"{name}.png", content), channels, color, *value.placement)
         return Quantity((largest,) * components, image)
-    return Quantity(mean(value))
+    return Quantity(tuple(min(max(part, 0.0), most) for part in mean(value)))
 
 
 def with_cause(value: Value, cause: str) -> Value:

@@ -11,6 +11,11 @@ from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.materialx_graph import Graph, Scope, applied
 from sssgen.interchange.surface_model import Quantity
 
+BRIGHTEST = 1000.0
+"""The largest emission of a material."""
+_MOST = {"emission": BRIGHTEST, "thickness": 1e6}
+"""Field → its largest number, where that is not 1."""
+
 
 class Shader:
     """Reads the inputs of a shader node. Each input that the document sets has one row in the report."""
@@ -77,7 +82,7 @@ class Shader:
 
     def as_quantity(self, value: Value, field: str, *, color: bool = False) -> Quantity:
         """A value as a quantity; `field` names the picture that is written for it."""
-        return quantity_of(value, f"{self.node.getName()}_{field}", color)
+        return quantity_of(value, f"{self.node.getName()}_{field}", color, _MOST.get(field, 1.0))
 
     def normal(self, name: str, field: str) -> Quantity:
         """A normal map and its strength."""

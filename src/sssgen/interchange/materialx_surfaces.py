@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from sssgen.interchange.albedo_inversion import subsurface_medium, transmission_medium
 from sssgen.interchange.graph_values import Constant, Value, mean
-from sssgen.interchange.materialx_shader import Shader
+from sssgen.interchange.materialx_shader import BRIGHTEST, Shader
 from sssgen.interchange.surface_model import (
     AlphaMode,
     Quantity,
@@ -51,6 +51,14 @@ def _coat_attenuation(shader: Shader, base: Value, weight: str, color: str) -> V
         shader.approximated(color, "multiplied to the base colour, for light along the normal")
     white = Constant((1.0, 1.0, 1.0))
     return shader.combined("multiply", base, shader.combined("mix", white, tint, shader.value(weight, "coat")))
+
+
+def _emission(shader: Shader, weight: str, color: str) -> Quantity:
+    """The emitted radiance: the number of the weight is taken as it is."""
+    quantity = shader.product(weight, color, "emission")
+    if max(quantity.factor) >= BRIGHTEST:
+        shader.approximated(weight, f"{BRIGHTEST:g}, the brightest emission of a material")
+    return quantity
 
 
 # OpenPBR and standard_surface
@@ -221,7 +229,7 @@ def open_pbr_surface(shader: Shader, name: str) -> SurfaceModel:
         specular=shader.quantity("specular_weight", "specular"),
         specular_color=shader.quantity("specular_color", "specular_color", color=True),
         normal=shader.normal("geometry_normal", "normal"),
-        emission=shader.product("emission_luminance", "emission_color", "emission"),
+        emission=_emission(shader, "emission_luminance", "emission_color"),
         coat=shader.quantity("coat_weight", "coat"),
         coat_roughness=shader.quantity("coat_roughness", "coat_roughness"),
     )
@@ -245,7 +253,7 @@ def standard_surface(shader: Shader, name: str) -> SurfaceModel:
         specular=shader.quantity("specular", "specular"),
         specular_color=shader.quantity("specular_color", "specular_color", color=True),
         normal=shader.normal("normal", "normal"),
-        emission=shader.product("emission", "emission_color", "emission"),
+        emission=_emission(shader, "emission", "emission_color"),
         coat=shader.quantity("coat", "coat"),
         coat_roughness=shader.quantity("coat_roughness", "coat_roughness"),
     )
@@ -287,7 +295,7 @@ def gltf_pbr(shader: Shader, name: str) -> SurfaceModel:
         specular_color=shader.quantity("specular_color", "specular_color", color=True),
         normal=shader.normal("normal", "normal"),
         occlusion=shader.quantity("occlusion", "occlusion"),
-        emission=shader.product("emissive_strength", "emissive", "emission"),
+        emission=_emission(shader, "emissive_strength", "emissive"),
         coat=shader.quantity("clearcoat", "coat"),
         coat_roughness=shader.quantity("clearcoat_roughness", "coat_roughness"),
         transmission=transmission,
