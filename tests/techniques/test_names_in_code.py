@@ -33,6 +33,8 @@ PERMITTED = {
     "harness/testing/project_run.py": (EXAMPLE, {"lobe_gdc2011"}),
     "interchange/gltf_materials.py": ("a field of the neutral record", {"base_color"}),
     "interchange/gltf_textures.py": ("what the report names", {"uv_transform"}),
+    "interchange/materialx_surfaces.py": ("a field of the neutral record", {"base_color"}),
+    "interchange/unity_surfaces.py": ("a field of the neutral record", {"base_color"}),
     "interchange/scene_text.py": ("the shell of a scene", {"khronos_neutral", "prefiltered_environment"}),
     "interchange/technique_choice.py": (
         "the choice of techniques for a foreign material",

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from sssgen.harness.pictures.images import encode_srgb, png_bytes
 from sssgen.interchange.surface_model import Image, Picture, Quantity, UvTransform, Wrap
-from sssgen.interchange.texels import Texels, resized, values_on
+from sssgen.interchange.texels import Texels, resized, stored, values_on
 
 MAX_SIDE = 2048
 """Texels on a side of a computed picture; larger ones are computed at this size."""
@@ -206,8 +206,6 @@ def _concatenated(*arrays: Array) -> Array:
 
 def _size(textures: Sequence[Textured]) -> tuple[int, int]:
     """The width and height on which texels are computed."""
-    from sssgen.interchange.texels import stored
-
     shapes = [
         value.texels.shape[:2] if isinstance(value, Computed) else stored(value.image.picture).shape[:2]
         for value in textures
