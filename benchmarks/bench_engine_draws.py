@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from sssgen.harness.backends.browser_page import START, WEBGL, WEBGPU, Page
-from sssgen.harness.installed import chromium, node_modules
+from sssgen.harness.installed import all_lacks, chromium, node_modules
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.two_stages import Source, transpile_stages
 from sssgen.support.diagnostics import SssgenError
@@ -81,6 +81,9 @@ def main() -> int:
     parser.add_argument("SCENE", nargs="*")
     parser.add_argument("--pictures", metavar="DIR", help="write each pair of pictures, and their difference times 64")
     arguments = parser.parse_args()
+    if lacking := all_lacks(["chromium", "npm three", "pip browser"]):
+        print(f"not measured: {lacking}")
+        return 0
     page, about = open_page()
     print(f"three.js {about['three']}, {about['size'][0]} × {about['size'][1]} pixels; differences in steps of 1/255")
     print(f"{'scene':24} programs draws  largest  > 1 step     mean")
