@@ -18,15 +18,15 @@ import json
 import sys
 from collections import Counter
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from queue import Queue
 from typing import Any, NamedTuple
 
 from public_code import (
     BATCHED,
     COMPILERS,
+    READ,
     Code,
+    Pool,
     TargetResult,
     file_errors,
     glslang,
@@ -37,13 +37,11 @@ from public_code import (
     without_names,
 )
 
-from sssgen.support.worker_process import LostError, Process
+from sssgen.support.worker_process import LostError
 
 SECONDS = 60.0
 """The time limit of a file."""
 REASONS = 10
-READ = "read"
-"""The name of the step before the targets."""
 
 
 class Verdict(NamedTuple):
@@ -55,36 +53,6 @@ class Verdict(NamedTuple):
     """Target, or `read` → the problem; empty if the file passes."""
     naga: str | None = None
     """The message of naga's own front end, '' if it accepts the file; None if it did not read the file."""
-
-
-class Pool:
-    """Worker processes. If one crashes or hangs, only the result of its file is lost."""
-
-    def __init__(self, jobs: int) -> None:
-        self.free: Queue[Process] = Queue()
-        self.processes = [Process("public_code", "", seconds=SECONDS) for _ in range(jobs)]
-        for process in self.processes:
-            self.free.put(process)
-        self.threads = ThreadPoolExecutor(jobs)
-
-    def ask(self, function: str, inputs: Sequence[tuple[object, ...]]) -> list[Any]:
-        """The results of a function of `public_code`, in order; a LostError where the process was lost."""
-        return list(self.threads.map(lambda arguments: self._ask((function, arguments)), inputs))
-
-    def _ask(self, question: object) -> Any:
-        process = self.free.get()
-        try:
-            return process.ask(question)
-        except LostError as lost:
-            return lost
-        finally:
-            self.free.put(process)
-
-    def close(self) -> None:
-        """Ends the processes."""
-        for process in self.processes:
-            process.close()
-        self.threads.shutdown()
 
 
 def verdicts_on(
@@ -202,7 +170,7 @@ def measure(kinds: dict[str, Path], targets: Sequence[str], inputs: argparse.Nam
     """Judges all files and prints the results."""
     skipped: Counter[str] = Counter()
     verdicts: list[Verdict] = []
-    pool = Pool(inputs.jobs)
+    pool = Pool(inputs.jobs, "public_code", SECONDS)
     try:
         for kind, folder in kinds.items():
             codes = [

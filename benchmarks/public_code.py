@@ -12,8 +12,10 @@ import re
 import subprocess
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import NamedTuple
+from queue import Queue
+from typing import Any, NamedTuple
 
 from sssgen.harness import compilers
 from sssgen.harness.check.handwritten import hand_written
@@ -27,7 +29,10 @@ from sssgen.lang.shadertoy import UNIFORMS
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.text_files import read_text
+from sssgen.support.worker_process import LostError, Process
 
+READ = "read"
+"""The name of the step before the targets."""
 BATCH = 40
 """The number of texts that a process of glslang compiles."""
 SECONDS = 60.0
@@ -196,6 +201,36 @@ def naga_glsl(text: str, stage: str) -> str:
     return ""
 
 
+class Pool:
+    """Worker processes. If one crashes or hangs, only the result of its file is lost."""
+
+    def __init__(self, jobs: int, module: str, seconds: float) -> None:
+        self.free: Queue[Process] = Queue()
+        self.processes = [Process(module, "", seconds=seconds) for _ in range(jobs)]
+        for process in self.processes:
+            self.free.put(process)
+        self.threads = ThreadPoolExecutor(jobs)
+
+    def ask(self, function: str, inputs: Sequence[tuple[object, ...]]) -> list[Any]:
+        """The results of a function of the module, in order; a LostError where the process was lost."""
+        return list(self.threads.map(lambda arguments: self._ask((function, arguments)), inputs))
+
+    def _ask(self, question: object) -> Any:
+        process = self.free.get()
+        try:
+            return process.ask(question)
+        except LostError as lost:
+            return lost
+        finally:
+            self.free.put(process)
+
+    def close(self) -> None:
+        """Ends the processes."""
+        for process in self.processes:
+            process.close()
+        self.threads.shutdown()
+
+
 def serve(_: str) -> tuple[str, Callable[[Question], object]]:
     """The entry of a worker process. It transpiles files and keeps the compilers loaded."""
 
@@ -212,13 +247,13 @@ def target_results(code: Code, folders: Sequence[Path], targets: Sequence[str]) 
         entry = "shadertoy" if code.is_scene else ""
         module = load_glsl(code.path, code.path.name, tuple(folders), entry=entry).module
     except Exception as error:
-        return {"": TargetResult(None, _reason(error))}
+        return {"": TargetResult(None, reason_of(error))}
     results = {}
     for target in targets:
         try:
             files = transpile(module, target, "file", keep=True).files
         except Exception as error:
-            results[target] = TargetResult(None, _reason(error))
+            results[target] = TargetResult(None, reason_of(error))
             continue
         text = "\n".join(text for name, text in files.items() if not name.endswith(".json"))
         source = hand_written(text, target, "file")[0]
@@ -233,7 +268,7 @@ def _complaints(source: Source) -> Iterator[str]:
                 yield f"{name}: {message.text}"
 
 
-def _reason(error: Exception) -> str:
+def reason_of(error: Exception) -> str:
     """The message of an error that sssgen reports, or a description of any other exception."""
     if isinstance(error, SssgenError):
         return error.diagnostics[0].message

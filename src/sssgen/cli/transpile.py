@@ -94,7 +94,12 @@ def add_options(parser: ArgumentParser) -> None:
     )
     add_seed(parser, "the seed of these inputs")
     add("--as", dest="as_", choices=("technique",), help="write a function as the start of a technique's file")
-    add("--function", metavar="NAME", default="", help="the function for --as (default: the last one of the file)")
+    add(
+        "--function",
+        metavar="NAME",
+        default="",
+        help="the function for --as (default: the last one of the file) or --verify (default: all)",
+    )
 
 
 def run(arguments: Namespace) -> int:
@@ -228,8 +233,9 @@ def _verify(arguments: Namespace, path: Path) -> int:
     text = includes.expanded(read_text(path, path.as_posix()), path, arguments.include)
     with ProgressBar() as progress:
         report = transpiled.verify(
-            text, path.as_posix(), arguments.samples, arguments.seed, arguments.entry, progress=progress
-        )
+            text, path.as_posix(), arguments.samples, arguments.seed, arguments.entry, progress=progress,
+            function=arguments.function,
+        )  # fmt: skip
     if arguments.json:
         print_json({"ok": report.ok, **report.as_json()})
     else:

@@ -45,7 +45,7 @@ from sssgen.passes.reachable import only
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.pipeline.compiler import transpile
-from sssgen.support.diagnostics import SssgenError, failure
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.progress import Progress, silent
 from sssgen.targets import registry
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -76,18 +76,20 @@ def load(text: str, shown: str, version: str = "") -> Module:
 def verify(
     text: str, shown: str, samples: int = SAMPLES, seed: int = 0, entry: str = "",
     read: Callable[[str, str], Module] | None = None, machines: Machines | None = None,
-    progress: Progress = silent,
+    progress: Progress = silent, function: str = "",
 ) -> Report:  # fmt: skip
     """Runs every function of a text without `#include` (see `inline_includes`) on `samples` inputs.
 
     `shown` is the text's name in messages; `entry` as in `load_glsl`; `read(text, shown)` parses it; without `machines`
-    the back ends are started here. Raises SssgenError where the front end refuses the text, and without OpenGL, which
-    runs the reference.
+    the back ends are started here; `function` is the name of the only one to run. Raises SssgenError where the front
+    end refuses the text, where no function has that name, and without OpenGL, which runs the reference.
     """
     written = plain(_scene(text) if entry == "shadertoy" else text)
     read = read or partial(load, version=written.version)
     module = read(written.text, shown)
     functions = [part for part in module.functions if part.body is not None and part.span.file == shown]
+    if function:
+        functions = _called(function, functions, shown)
     cases = probed(module, functions, written.text)
     probes = "\n".join(probe.text for case in cases for probe in case.probes)
     with_probes = read(written.text + probes, shown)
@@ -97,6 +99,14 @@ def verify(
             progress(index, len(cases), case.function.name)
             rows.append(Case(case, written, with_probes, running, samples, seed).row())
     return Report(rows, missing)
+
+
+def _called(name: str, functions: list[Function], shown: str) -> list[Function]:
+    """The functions of this name, which may be overloads. Raises SssgenError where there is none."""
+    names = {part.name.replace(MAIN, "main") for part in functions}
+    if name not in names:
+        raise failure(f"the file has no function '{name}'", did_you_mean(name, sorted(names)), shown)
+    return [part for part in functions if part.name.replace(MAIN, "main") == name]
 
 
 def _scene(text: str) -> str:
