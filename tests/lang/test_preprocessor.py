@@ -235,6 +235,19 @@ def test_versions() -> None:
     assert faults("#version 330\n#version 300 es") == [("the version is already 330", "main", 2, 1)]
 
 
+def test_a_text_without_version_that_sets_a_precision_is_es() -> None:
+    question = "#ifdef GL_ES\nyes\n#else\nno\n#endif\n"
+    for text, answer in [
+        (f"{question}precision mediump float;", "yes"),
+        (f"#ifdef A\n#endif\nprecision /* */ highp\nint;\n{question}", "yes"),
+        (f"#ifdef GL_ES\nprecision mediump float;\n#endif\n{question}", "no"),
+        (f"#version 330\nprecision mediump float;\n{question}", "no"),
+        (f"// precision mediump float;\n{question}", "no"),
+    ]:
+        assert answer in [token.text for token in run(text).tokens], text
+    assert [token.text for token in run("precision lowp float;\n__VERSION__").tokens][-1] == "100"
+
+
 def test_extensions_pragmas_and_lines() -> None:
     result = run("#extension GL_A:enable\n#extension  all : /* */ disable\n#pragma optimize(on) // x\n#line 7 2\n#\na")
     assert (result.extensions, result.pragmas) == (["GL_A:enable", "all : disable"], ["optimize(on)"])

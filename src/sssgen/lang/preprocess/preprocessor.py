@@ -68,11 +68,15 @@ def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | No
     token from a macro's body has the place of the macro's use. `#line` sets `__LINE__` and `__FILE__` alone: messages
     show the real lines. Macros that are names of numbers become constants (kept_constants.py).
 
+    Without #version, a text that sets a precision outside of any #if is GLSL ES 1.00: the GLSL 1.10 of desktops, the
+    other language without a version, has no precision. Engines rely on its `GL_ES`.
+
     Raises SssgenError with every error found, also where a limit is exceeded (those here and in macros.py).
     """
+    language = (100, "es") if _sets_precision(text) else (0, "")
     barred: frozenset[str] = frozenset()
     for keep in (True, True, False):
-        run = _Run(find, defines or {}, KeptConstants(barred) if keep else None)
+        run = _Run(find, defines or {}, KeptConstants(barred) if keep else None, language)
         run.read(text, file)
         run.finish()
         if run.constants is None:
@@ -83,6 +87,22 @@ def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | No
             return run.result(run.constants.declared(names, run.tokens), names)
         barred |= conflicts  # they are expanded everywhere; repeat, as macros that use them are then expanded, too
     return run.result(run.tokens, [])
+
+
+_PRECISION = re.compile(r"\bprecision\s+(?:low|medium|high)p\s+\w+\s*;")
+
+
+def _sets_precision(text: str) -> bool:
+    """Whether a text without #version has a statement such as `precision highp float;` outside of any #if."""
+    if "precision" not in text:
+        return False
+    depth = start = 0
+    for directive in directives(text):
+        if directive["name"] == "version" or (depth == 0 and _PRECISION.search(plain(text[start : directive.start()]))):
+            return directive["name"] != "version"
+        depth += {"if": 1, "ifdef": 1, "ifndef": 1, "endif": -1}.get(directive["name"], 0)
+        start = directive.end()
+    return depth == 0 and _PRECISION.search(plain(text[start:])) is not None
 
 
 _QUOTED = re.compile(rf'"[^"\n]*"{BLANK}$')
@@ -98,7 +118,9 @@ _KNOWN = (
 class _Run:
     """One run over a text and all that it includes."""
 
-    def __init__(self, find: Find, defines: Mapping[str, str], constants: KeptConstants | None) -> None:
+    def __init__(
+        self, find: Find, defines: Mapping[str, str], constants: KeptConstants | None, language: tuple[int, str]
+    ) -> None:
         self.find = find
         self.constants = constants
         self.lexer = Lexer()
@@ -116,7 +138,7 @@ class _Run:
         self.included = self.characters = 0
         self.depth = self.depth_at = 0  # how many brackets are open, and in how many tokens they were counted
         self.reporters: dict[str, Reporter] = {}
-        self.expander.macros |= builtin_macros(0, "")
+        self.expander.macros |= builtin_macros(*language)
         for name, value in defines.items():
             shown = f"the definition of {name}"
             tokens = self.split(self.directive_lexer, f"{name} {value}", shown, 1, 1)
