@@ -1,6 +1,8 @@
 """Inputs that reach what a function can do: its branches, the cases of its comparisons, and their boundaries.
 
-Random inputs (`plain_inputs`) are run on the interpreter. Then, for each comparison: where two inputs lie on both sides
+Random inputs (`plain_inputs`) are run on the interpreter. Where few of them are defined, as in a whole shader whose
+engine guarantees much of its uniforms, inputs with few undefined operations are changed step by step. Then, for each
+comparison: where two inputs lie on both sides
 of it, bisection finds neighbouring numbers on both sides; where only one side was reached, inputs that come near are
 changed at random, step by step. Of all inputs, some are chosen for each outcome, the others as they were drawn.
 
@@ -15,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.harness.backends import Array
+from sssgen.harness.backends.call_program import grid
 from sssgen.harness.verify.branch_outcomes import Outcomes, Site
 from sssgen.harness.verify.lane_interpreter import ROUNDS, Program, Run
 from sssgen.harness.verify.plain_inputs import (
@@ -24,6 +27,7 @@ from sssgen.harness.verify.plain_inputs import (
     draw_inputs,
     joined,
     select_lanes,
+    single,
     suggested,
 )
 from sssgen.ir.types import kind_of
@@ -41,6 +45,10 @@ BOUNDARY_DISTANCES = (1, 2**6, 2**11, 2**16, 2**19)
 """Distances of further inputs from a boundary, in units in the last place: next to it rounding may decide."""
 CLIMBS, CLIMBERS = 6, 16
 """Rounds of changing inputs that come near, and how many for each comparison."""
+FEW_DEFINED, REPAIRED = 0.3, 64
+"""The share of defined inputs below which others are repaired, and how many are."""
+REPAIR_WORK = 1_500_000
+"""As `WORK`, for the repair."""
 UNDEFINED_SHARE = 0.05
 """The largest share of inputs for which the result is undefined."""
 SEARCH_SHARE = 0.5
@@ -57,6 +65,12 @@ class Sampled(NamedTuple):
     outcomes: Outcomes
     random_count: int
     """How many of the first lanes were drawn at random; the search found the others."""
+
+    @property
+    def sound(self) -> Array:
+        """The lanes without an undefined operation of their own; those of neighbours may reach them."""
+        sound: Array = (self.run.faults == 0.0) & ~self.run.endless
+        return sound
 
 
 class Search:
@@ -83,14 +97,23 @@ class Search:
             first = self.run(values)
         self.work = 0.0
         parts = [values]
+        if first.sound.mean() < FEW_DEFINED:
+            parts.append(self.repaired(first))
+            first = self.run(joined(parts))._replace(random_count=first.random_count)
+            parts = [first.values]
+        self.work = 0.0
         if first.outcomes.distances:
             parts += [self.boundaries(first), self.nearer(first)]
         parts = [part for part in parts if part]
         return self.run(joined(parts))._replace(random_count=first.random_count) if len(parts) > 1 else first
 
     def run(self, values: dict[str, Array]) -> Sampled:
-        """Runs inputs."""
+        """Runs inputs; where lanes read their neighbours, the last is repeated to fill the grid."""
         lanes = next(value.shape[-1] for value in values.values())
+        shape = grid(lanes)
+        if self.program.neighbours and lanes < shape.rows * shape.width:
+            values = select_lanes(values, np.arange(shape.rows * shape.width).clip(max=lanes - 1))
+            lanes = shape.rows * shape.width
         outcomes = Outcomes(lanes)
         run = Run(self.program, lanes, {**self.textures, **values}, outcomes, limit=self.limit)
         run.result(self.key, {**self.textures, **values})
@@ -100,19 +123,25 @@ class Search:
     def rounds(self, sampled: Sampled, count: int, lanes: int) -> list[dict[str, Array]]:
         """The inputs of each round: in one round, all lanes have the same uniforms.
 
-        With several rounds each has four times as many lanes as requested, of which some may be chosen.
+        With several rounds each has more lanes than requested, of which some may be chosen. Where few inputs are
+        defined, the lanes of a round are changes of one of these, as most other pairs of uniforms and inputs are not.
         """
         order = select_inputs(sampled, max(lanes, 4 * count) if count > 1 else lanes, self.seed)
         if count == 1 or not len(order):
             return [select_lanes(sampled.values, order)]
+        scarce = 0.0 < sampled.sound.mean() < FEW_DEFINED
+        order = self.rng.permutation(np.flatnonzero(sampled.sound)) if scarce else order
         rounds = []
         for number in range(count):
-            others = np.resize(np.roll(order, -number * lanes), 4 * lanes)
-            values = select_lanes(sampled.values, others)
+            first = order[number * len(order) // count]
+            if scarce:
+                values = self.gentler(select_lanes(sampled.values, np.full(8 * lanes, first)))
+            else:
+                values = select_lanes(sampled.values, np.resize(np.roll(order, -number * lanes), 4 * lanes))
             for source in self.sources:
                 if source.uniform:
                     value = values[source.name]
-                    same = sampled.values[source.name][..., order[number * len(order) // count], None]
+                    same = sampled.values[source.name][..., first, None]
                     values[source.name] = np.broadcast_to(same, value.shape).copy()
             rounds.append(values)
         return rounds
@@ -231,6 +260,42 @@ class Search:
             result[source.name] = np.where(chosen == position, new, value)
         return result
 
+    # Inputs with undefined operations
+
+    def repaired(self, first: Sampled) -> dict[str, Array]:
+        """Inputs made of those with the fewest undefined operations, by changes that do not add one."""
+        faults = first.run.faults + np.where(first.run.endless, np.inf, 0.0)
+        chosen = np.resize(np.argsort(faults, kind="stable")[:REPAIRED], REPAIRED)
+        best, fewest = select_lanes(first.values, chosen), faults[chosen]
+        for number in range(len(fewest) * 4):
+            if self.work > REPAIR_WORK or np.median(fewest) == 0.0:
+                break
+            changed = self.gentler(best)
+            run = self.run(changed).run
+            count = run.faults + np.where(run.endless, np.inf, 0.0)
+            better = count <= fewest
+            best = {name: np.where(better, changed[name], value) for name, value in best.items()}
+            fewest = np.where(better, count, fewest)
+            if number % 8 == 7:  # the worst quarter starts again from the best
+                order = np.argsort(fewest, kind="stable")
+                order[-REPAIRED // 4 :] = order[: REPAIRED // 4]
+                best, fewest = select_lanes(best, order), fewest[order]
+        return best
+
+    def gentler(self, values: dict[str, Array]) -> dict[str, Array]:
+        """Inputs with some sources changed: to numbers in [0, 1], [1, 8] or [-1, 0], or to those of another input."""
+        lanes = next(value.shape[-1] for value in values.values())
+        share = 2.0 ** self.rng.uniform(0.0, 4.0, lanes) / max(len(self.sources), 1)
+        result = {}
+        for source in self.sources:
+            value = values[source.name]
+            new = value[..., self.rng.permutation(lanes)]
+            if kind_of(source.type) == "float":
+                low, high = self.rng.choice([(0.0, 1.0), (0.0, 1.0), (1.0, 8.0), (-1.0, 0.0)], lanes).T
+                new = np.where(self.rng.random(lanes) < 0.7, single(self.rng.uniform(low, high, value.shape)), new)
+            result[source.name] = np.where(self.rng.random(lanes) < share, new, value)
+        return result
+
     # Numbers as integers in the same order
 
     def coded(self, values: dict[str, Array]) -> dict[str, Array]:
@@ -296,3 +361,15 @@ def select_inputs(sampled: Sampled, count: int, seed: int) -> Array:
     if not result:
         return np.zeros(0, np.int64)
     return np.resize(np.array(result, np.int64), count) if len(result) < count else np.array(result[:count], np.int64)
+
+
+def select_quads(sampled: Sampled, count: int) -> Array:
+    """The lanes of the quads with the fewest undefined operations, so placed that `count` lanes are these quads."""
+    shape = grid(sampled.outcomes.lanes)
+    width = shape.width // 2 * 2
+    image = np.arange(shape.rows * shape.width).reshape(shape.rows, shape.width)[:, :width]
+    quads = image.reshape(shape.rows // 2, 2, width // 2, 2).swapaxes(1, 2).reshape(-1, 2, 2)
+    faults = sampled.run.faults + np.where(sampled.run.undefined | sampled.run.endless, 1.0, 0.0)
+    order = np.argsort(faults[quads].sum(axis=(1, 2)), kind="stable")
+    chosen: Array = quads[np.resize(order, count // 4)].swapaxes(0, 1)
+    return chosen.reshape(-1)

@@ -46,7 +46,7 @@ _ARITHMETIC: dict[str, Callable[..., Value]] = {
 _INT_DIVIDE: Callable[..., Value] = rt.int_divide.__wrapped__  # type: ignore[attr-defined]
 _UNARY: dict[str, Callable[..., Value]] = {"-": np.negative, "!": np.logical_not, "~": np.invert}
 _COMPARISONS = frozenset({"<", ">", "<=", ">=", "==", "!="})
-_DTYPES = {
+DTYPES = {
     "float": np.dtype(np.float64), "int": np.dtype(np.int32), "uint": np.dtype(np.uint32), "bool": np.dtype(bool),
 }  # fmt: skip
 
@@ -71,6 +71,8 @@ class Run:
         self.program, self.lanes, self.outcomes, self.exact_literals = program, lanes, outcomes, exact_literals
         self.limit = limit
         self.undefined = np.zeros(lanes, bool)
+        self.faults = np.zeros(lanes)
+        """How many operations of a lane were undefined."""
         self.endless = np.zeros(lanes, bool)
         self.stopped = np.zeros(lanes, bool)
         """Lanes that were discarded, or that take too long."""
@@ -106,6 +108,10 @@ class Run:
         """A value as this run computes with it."""
         return value
 
+    def unwritten(self, type_: Type) -> Value:
+        """What a variable has before it is written, which GLSL does not define."""
+        return zero(type_)
+
     # Functions
 
     def enter(self, function: ir.Function, args: list[Value]) -> tuple[Value, dict[str, Value]]:
@@ -114,8 +120,8 @@ class Run:
         self.frame, self.loops = {}, []
         inputs = iter(args)
         for param in function.params:
-            self.frame[param.name] = zero(param.type) if param.direction == "out" else next(inputs)
-        self.returned = zero(function.result) if function.result != VOID else None
+            self.frame[param.name] = self.unwritten(param.type) if param.direction == "out" else next(inputs)
+        self.returned = self.unwritten(function.result) if function.result != VOID else None
         active = self.active
         self.block(function.body or (), active)
         self.active = active & ~self.stopped
@@ -146,7 +152,7 @@ class Run:
 
     def statement(self, stmt: ir.Stmt, active: Array) -> Array:
         if isinstance(stmt, ir.Declare):
-            self.frame[stmt.name] = zero(stmt.type) if stmt.value is None else self.value(stmt.value)
+            self.frame[stmt.name] = self.unwritten(stmt.type) if stmt.value is None else self.value(stmt.value)
         elif isinstance(stmt, ir.Assign):
             place = self.pinned(stmt.target)
             value = self.value(stmt.value)
@@ -257,7 +263,7 @@ class Run:
             elif kind in ("int", "uint"):
                 number = int(number) & 0xFFFFFFFF
                 number = number - 2**32 if kind == "int" and number >= 2**31 else number
-            value = self.literals[id(literal)] = np.full(1, number, _DTYPES[kind])
+            value = self.literals[id(literal)] = np.full(1, number, DTYPES[kind])
         return value
 
     def local(self, expr: ir.Local) -> Value:
@@ -421,7 +427,9 @@ class Run:
         holds = np.asarray(holds)
         if not holds.all():
             lanes = holds.all(axis=tuple(range(holds.ndim - 1))) if holds.ndim > 1 else holds
-            self.undefined = self.undefined | self.active & ~lanes
+            faulty = self.active & ~lanes
+            self.undefined = self.undefined | faulty
+            self.faults = self.faults + faulty
 
     def finite(self, value: Value) -> Value:
         """The result of an operation; the lanes where it is no finite float32 are undefined."""
@@ -451,11 +459,16 @@ _EVALUATE: dict[type, Callable[[Any, Any], Value]] = {
 
 def zero(type_: Type) -> Value:
     """The value 0 of a type, in one lane."""
+    return filled(type_, lambda shape, kind: np.zeros((*shape, 1), DTYPES[kind]))
+
+
+def filled(type_: Type, numbers: Callable[[tuple[int, ...], str], Array]) -> Value:
+    """A value of a type whose parts are the `numbers` of a shape, without lanes, and a kind."""
     if isinstance(type_, Struct):
-        return rt.Record(**{field.name: zero(field.type) for field in type_.fields})
+        return rt.Record(**{field.name: filled(field.type, numbers) for field in type_.fields})
     if isinstance(type_, ArrayType):
-        return rt.array(*[zero(type_.element)] * type_.length)
-    return np.zeros((*shape_of(type_), 1), _DTYPES[kind_of(type_)])
+        return rt.array(*[filled(type_.element, numbers) for _ in range(type_.length)])
+    return numbers(shape_of(type_), kind_of(type_))
 
 
 def _readable(texture: Texture, coord: Array) -> Array:

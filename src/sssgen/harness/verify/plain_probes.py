@@ -14,9 +14,9 @@ from sssgen.ir.nodes import Function, Module
 from sssgen.ir.types import FLOAT, VOID, Array, Sampler, Struct, Type, spell, with_article
 from sssgen.passes.variable_effects import NONE, effects
 
-MAX_INPUTS = 64
+MAX_INPUTS = 256
 """The largest number of inputs (numbers, vectors, matrices): drivers do not support many more."""
-MAX_OUTPUTS = 16
+MAX_OUTPUTS = 64
 TEXTURES = [
     Sampler("Cube"),
     Sampler("2D", shadow=True),

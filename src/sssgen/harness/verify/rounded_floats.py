@@ -82,7 +82,7 @@ def with_error(value: Array, ulp: float, absolute: Array | float) -> Array:
     with np.errstate(all="ignore"):
         plain = np.asarray(value)
         size = np.maximum(ulp * np.spacing(np.abs(plain).astype(np.float32)), absolute)
-        return rounded(plain + _draw(plain.shape) * size)
+        return rounded(plain + drawn(plain.shape) * size)
 
 
 def _again(value: Any) -> Any:
@@ -99,15 +99,15 @@ def _with_error(exact: Array, ulp: float, always: Array | None = None) -> Array:
         if always is not None:
             inexact |= always & (result != 0.0)
         if inexact.any():
-            moved = exact + ulp * _draw(exact.shape) * np.spacing(np.abs(single))
+            moved = exact + ulp * drawn(exact.shape) * np.spacing(np.abs(single))
             result = np.where(inexact, moved.astype(np.float32).astype(np.float64), result)
         small = np.abs(result) < SMALLEST
         if small.any():
-            draw = _draw(exact.shape)
+            draw = drawn(exact.shape)
             flushed = np.where((draw < -0.5) | (result == 0.0), np.copysign(0.0, draw - 0.25), result)
             result = np.where(small, flushed, result)
     return result.view(Rounded)
 
 
-def _draw(shape: tuple[int, ...]) -> Array:
+def drawn(shape: tuple[int, ...]) -> Array:
     return _generator.get().uniform(-1.0, 1.0, shape)

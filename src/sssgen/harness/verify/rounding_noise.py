@@ -1,8 +1,9 @@
 """How far the result of a lane may move because of rounding: what a deviation is compared with.
 
-The function is run in float64, and many times with a random error of each operation (`rounded_floats`). No input moves:
-all drivers get the same numbers. The errors of builtins are a few units in the last place, or, for another language
-or driver, those that the table of builtins grants.
+The function is run in float64, and many times with a random error of each operation (`rounded_floats`), and with random
+numbers in variables that were not written, which have any number in a driver. No input moves: all drivers get the same
+numbers. The errors of builtins are a few units in the last place, or, for another language or driver, those that the
+table of builtins grants.
 """
 
 from __future__ import annotations
@@ -14,9 +15,11 @@ import numpy as np
 
 from sssgen.harness.backends import Array
 from sssgen.harness.evaluate.deviation import GOAL, MARGIN, errors
-from sssgen.harness.verify.lane_interpreter import Program, Run, Value
+from sssgen.harness.verify.lane_interpreter import DTYPES, Program, Run, Value, filled
 from sssgen.harness.verify.plain_inputs import select_lanes
-from sssgen.harness.verify.rounded_floats import rounded, seeded, with_error
+from sssgen.harness.verify.rounded_floats import drawn, rounded, seeded, with_error
+from sssgen.ir.intrinsics.table import LARGEST
+from sssgen.ir.types import Type
 from sssgen.targets import numpy_runtime as rt
 
 CHUNK = 8192
@@ -28,6 +31,9 @@ UNDETERMINED = 0.5
 direction of a vector that is only rounding errors."""
 
 
+NEARLY_LARGEST = 2.0**-8 * LARGEST
+
+
 class RoundedRun(Run):
     """A run with a random error of each operation; `granted` adds those that the table grants to builtins."""
 
@@ -35,6 +41,18 @@ class RoundedRun(Run):
 
     def number(self, value: Value) -> Value:
         return rounded(value)
+
+    def finite(self, value: Value) -> Value:
+        self.require(np.abs(np.asarray(value)) <= NEARLY_LARGEST)  # in another order, its terms may overflow
+        return value
+
+    def unwritten(self, type_: Type) -> Value:
+        def numbers(shape: tuple[int, ...], kind: str) -> Array:
+            values = drawn((*shape, self.lanes))
+            magnitudes = np.exp2(24.0 * drawn(values.shape))
+            return rounded(magnitudes * values) if kind == "float" else (2.0 * (values > 0.0)).astype(DTYPES[kind])
+
+        return filled(type_, numbers)
 
     def inexact(self, row: Any, args: list[Value], result: Value) -> Value:
         if row.ulp == 0.0 or row.kind == "derivative" or any(np.asarray(arg).dtype == bool for arg in args):

@@ -42,9 +42,12 @@ _PART = re.compile(
     r"(?P<skip>//[^\n]*|/\*.*?\*/|^[ \t]*\#(?:\\\n|[^\n])*)|(?P<name>[A-Za-z_]\w*)|(?P<mark>[{}()])",
     re.DOTALL | re.MULTILINE,
 )
+_CONDITION = re.compile(r"[ \t]*#[ \t]*(if|ifdef|ifndef|elif|else|endif)\b")
 _VERSION = re.compile(r"^[ \t]*#[ \t]*version[ \t]+(\d+)[ \t]*(\w*)[^\n]*$", re.MULTILINE)
 _EXTENSION = re.compile(r"^[ \t]*#[ \t]*extension\b[^\n]*$", re.MULTILINE)
 _LAYOUT = re.compile(r"layout\s*\([^()]*\)")
+_DEFAULTS = re.compile(r"(?:layout\s*\([^()]*\)\s*)?(?:uniform|in|out)\s*;")
+"""The defaults of a shader, such as `layout(std140) uniform;`."""
 _REQUALIFIED = re.compile(r"(?:invariant|precise)\s+\w+(?:\s*,\s*\w+)*\s*;")
 _UNIFORM = re.compile(r"uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s+\w+\s*(\[?)")
 _BLOCK = re.compile(r"uniform\s+(\w+)\s*\{([^{}]*)\}\s*(\w*)\s*;")
@@ -87,8 +90,12 @@ class Plain(NamedTuple):
 
 
 _ES_PRECISION = [
-    f"precision highp {type_};"
-    for type_ in ("float", "int", "sampler2D", "sampler3D", "samplerCube", "sampler2DArray", "sampler2DShadow")
+    # drivers compute some of these in 16 bits, which no other language has to
+    *("#define lowp highp", "#define mediump highp"),
+    *(
+        f"precision highp {type_};"
+        for type_ in ("float", "int", "sampler2D", "sampler3D", "samplerCube", "sampler2DArray", "sampler2DShadow")
+    ),
 ]
 
 
@@ -119,10 +126,18 @@ def _replaced(text: str, replacement: Callable[[str, re.Match[str]], tuple[str, 
     """A text with what `replacement` gives for the names at file scope: a text and the end of what it replaces."""
     parts: list[str] = []
     depth = done = 0
+    branches: list[int] = []  # the depth at each #if that is open: a bracket may be open in each of its branches
     for match in _PART.finditer(text):
         if match.start() < done:
             continue
-        if match["mark"]:
+        if directive := _CONDITION.match(match[0]):
+            if directive[1].startswith("if"):
+                branches.append(depth)
+            elif branches and directive[1] == "endif":
+                branches.pop()
+            elif branches:
+                depth = branches[-1]
+        elif match["mark"]:
             depth += 1 if match["mark"] in "{(" else -1
         elif match["name"] and depth == 0:
             replaced = replacement(text, match)
@@ -147,6 +162,8 @@ def _without_default(text: str, name: re.Match[str]) -> tuple[str, int] | None:
 
 def _replacement(text: str, name: re.Match[str]) -> tuple[str, int] | None:
     """The replacement of the declaration or qualifier at a name, and where that ends; None to keep it."""
+    if defaults := _DEFAULTS.match(text, name.start()):
+        return "", defaults.end()
     if layout := _LAYOUT.match(text, name.start()):
         return "", layout.end()
     if again := _REQUALIFIED.match(text, name.start()):

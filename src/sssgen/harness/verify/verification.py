@@ -29,7 +29,7 @@ from sssgen.harness.backends import call_program as calls
 from sssgen.harness.backends.isolated import Isolated, isolated
 from sssgen.harness.evaluate.deviation import GOAL, errors
 from sssgen.harness.verify.branch_outcomes import Outcomes, branches
-from sssgen.harness.verify.input_search import Search, select_inputs
+from sssgen.harness.verify.input_search import Search, select_inputs, select_quads
 from sssgen.harness.verify.lane_interpreter import Program, Run
 from sssgen.harness.verify.loop_inputs import loop_inputs
 from sssgen.harness.verify.plain_inputs import Source, picture, select_lanes
@@ -218,10 +218,14 @@ class Case:
         sampled = search.inputs(samples)
         rounds = ROUNDS if uniforms else 1
         lanes = -(-samples // rounds // 4) * 4  # derivatives need whole quads
-        picked = [
-            select_lanes(round_, select_inputs(search.run(round_), lanes, self.seed)) if rounds > 1 else round_
-            for round_ in search.rounds(sampled, rounds, lanes)
-        ]
+        picked = search.rounds(sampled, rounds, lanes)
+        if rounds > 1:
+            runs = [search.run(round_) for round_ in picked]
+            chosen = [
+                select_quads(run, lanes) if self.program.neighbours else select_inputs(run, lanes, self.seed)
+                for run in runs
+            ]
+            picked = [select_lanes(run.values, lanes_of) for run, lanes_of in zip(runs, chosen, strict=True)]
         return [Inputs(values, self.textures) for values in picked if next(iter(values.values())).shape[-1]]
 
     def row(self) -> Row:
