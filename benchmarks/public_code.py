@@ -28,7 +28,7 @@ from sssgen.lang.plain_glsl import load_glsl
 from sssgen.lang.shadertoy import UNIFORMS
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError
-from sssgen.support.text_files import read_text
+from sssgen.support.text_files import read_code
 from sssgen.support.worker_process import LostError, Process
 
 READ = "read"
@@ -84,7 +84,7 @@ class TargetResult(NamedTuple):
 def read(path: Path, folders: Sequence[Path]) -> Code:
     """A file with its includes, which are also searched in `folders`. A file with a missing include cannot compile."""
     try:
-        return Code(path, expanded(read_text(path, path.as_posix()), path, folders))
+        return Code(path, expanded(read_code(path, path.as_posix()), path, folders))
     except SssgenError as error:
         return Code(path, f"#error {error.diagnostics[0].message}\n")
 

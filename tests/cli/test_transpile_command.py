@@ -54,6 +54,14 @@ def test_a_file_that_is_no_text(run: Run, compiler: FakeCompiler) -> None:
 # With the real compiler
 
 
+def test_a_file_of_an_older_editor_is_windows_1252(run: Run) -> None:
+    Path("part.glsl").write_bytes("// Größe “x”\nfloat part(float x) { return x; }\n".encode("windows-1252"))
+    Path("old.glsl").write_text('#include "part.glsl"\nfloat f(float x) { return part(x); }\n', encoding="utf-8")
+    for name in ("part.glsl", "old.glsl"):
+        ran = run("transpile", name, "-t", "wgsl")
+        assert ran.status == 0 and "// Größe “x”" in ran.out
+
+
 def test_the_starter_emits_for_every_target(run: Run) -> None:
     from sssgen.pipeline.compiler import all_targets
 

@@ -10,7 +10,7 @@ import pytest
 
 from sssgen.harness.evaluate.deviation import GOAL
 from sssgen.harness.verify.inline_includes import expanded
-from sssgen.harness.verify.stage_variables import plain
+from sssgen.harness.verify.stage_variables import plain, without_functions
 from sssgen.harness.verify.verification import Machines, load, verify
 from sssgen.harness.verify.verification_report import BACKENDS, Comparison, Coverage, Report, Row
 from sssgen.ir.nodes import Module
@@ -230,6 +230,83 @@ def test_refusals_of_the_driver_are_reported(rows: Rows) -> None:
     results = rows(text, misread(("later(x); }\nfloat", "x; }\nfloat")))
     assert results["f(samplerCubeShadow,vec4)"].reason == "it takes a samplerCubeShadow, which is not supported here"
     assert results["g(float)"].reason.startswith("the driver refuses it as written: gl: ")
+
+
+def test_a_function_that_the_driver_refuses_does_not_hide_the_others(rows: Rows) -> None:
+    text = "float early(float x) { return later(x); }\nfloat later(float x) { return x; }\n"
+    results = rows(f"{text}float alone(float x) {{ return 2.0 * x; }}", misread(("later(x); }", "x; }")))
+    assert results["early(float)"].reason.startswith("the driver refuses it as written: gl: ")
+    assert results["later(float)"].ok and results["alone(float)"].ok
+
+
+def test_functions_are_removed_with_their_lines() -> None:
+    text = "float a(float x);\n#ifdef B\nfloat a(vec2 x[2]) {\n if (b) { }\n}\n#endif\nfloat u = a(1.0);\nS b(S a) { }"
+    assert without_functions(text, {"a"}) == "\n#ifdef B\n\n\n\n#endif\nfloat u = a(1.0);\nS b(S a) { }"
+
+
+def test_one_function_is_run_by_its_name(machines: Machines) -> None:
+    text = "float f(float x) { return x; }\nfloat f(vec2 x) { return x.y; }\nvoid main() { }"
+    report = verify(text, "a.frag", 50, machines=machines, function="f")
+    assert [row.function for row in report.rows] == ["f(float)", "f(vec2)"] and report.ok
+    with pytest.raises(SssgenError, match="the file has no function 'mains'") as error:
+        verify(text, "a.frag", 50, machines=machines, function="mains")
+    assert error.value.diagnostics[0].hint == "did you mean 'main'?"
+
+
+def test_old_text_of_webgl_runs_as_an_engine_writes_it(rows: Rows) -> None:
+    text = """#extension GL_EXT_draw_buffers : require
+#ifdef GL_ES
+#define in varying
+#define first gl_FragData[0]
+#endif
+precision mediump float;
+in vec2 at;
+uniform sampler2D image;
+void main() {
+    float fine = 1.0 + 0.0001 * at.x; // more than 16 bits
+    first = vec4(fine, 1.0, at);
+    gl_FragData[1] = texture2D(image, at);
+}
+"""
+    assert rows(text)["main()"].ok
+    assert not rows(text, misread(("vec4(fine,", "vec4(1.0,")))["main()"].ok
+
+
+def test_text_of_webgl_2_runs_as_an_engine_writes_it(rows: Rows) -> None:
+    text = """#version 300 es
+precision highp float;
+layout(std140, column_major) uniform;
+layout(std140) uniform Scene { mat4 view; };
+#ifdef FLIPPED
+vec2 turned(vec2 p) {
+#else
+vec2 turned(vec2 p) {
+#endif
+    return p.yx; }
+in vec3 normal;
+out vec4 color;
+void main() { color = view * vec4(turned(normal.xy), normal.z, 1.0); }
+"""
+    assert rows(text)["main()"].ok
+
+
+def test_a_variable_without_a_value_explains_a_deviation(rows: Rows) -> None:
+    text = """struct Surface { float height; float shade; };
+float f(float x, float y) { Surface s; s.shade = y; float h = 0.0; return x > 0.0 ? s.shade : s.height + h; }"""
+    row = rows(text, misread(("h = 0.0", "h = 3.0")))["f(float,float)"]
+    assert row.ok and row.comparisons["wgsl"].excluded > 0.3 * SAMPLES
+    assert not rows(text, misread(("? s.shade", "? -s.shade")))["f(float,float)"].ok
+
+
+def test_functions_of_rare_inputs_are_run(rows: Rows) -> None:
+    ordered = " + ".join(f"smoothstep(low[{i}], high[{i}], x)" for i in range(12))
+    text = f"uniform float scale;\nfloat f(float low[12], float high[12], float x) {{ return scale * ({ordered}); }}"
+    row = rows(text)["f(float[12],float[12],float)"]
+    assert row.ok and row.undefined < 0.7 * SAMPLES
+
+
+def test_a_search_around_one_comparison_has_whole_quads(rows: Rows) -> None:
+    assert rows("float f(vec2 p) { float d = dFdx(p.x); return p.y < 0.3 ? d : p.x; }")["f(vec2)"].ok
 
 
 @pytest.mark.slow

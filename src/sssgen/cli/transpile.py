@@ -21,7 +21,7 @@ from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_writer import write_files
 from sssgen.support.paths import posix
 from sssgen.support.progress import ProgressBar
-from sssgen.support.text_files import read_text
+from sssgen.support.text_files import read_code
 from sssgen.targets.program_reflection import ROWS
 
 
@@ -230,7 +230,7 @@ def _verify(arguments: Namespace, path: Path) -> int:
 
     if arguments.define:
         raise failure("-D cannot be used with --verify", "write the #define into the file")
-    text = includes.expanded(read_text(path, path.as_posix()), path, arguments.include)
+    text = includes.expanded(read_code(path, path.as_posix()), path, arguments.include)
     with ProgressBar() as progress:
         report = transpiled.verify(
             text, path.as_posix(), arguments.samples, arguments.seed, arguments.entry, progress=progress,

@@ -19,7 +19,7 @@ from sssgen.lang.syntax.parser import parse_tokens
 from sssgen.lang.syntax.tokens import Comment, Token
 from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError, did_you_mean, failure
 from sssgen.support.gc_pause import paused
-from sssgen.support.text_files import read_text
+from sssgen.support.text_files import read_code
 
 ENTRIES = ("shadertoy",)
 """The conventions for a file's entry point other than `main()`."""
@@ -66,7 +66,7 @@ def load_glsl(
     """
     name = shown or os.fspath(path)
     return load_glsl_text(
-        read_text(path, name), name, (os.path.dirname(path) or ".", *roots), defines, entry, assumptions
+        read_code(path, name), name, (os.path.dirname(path) or ".", *roots), defines, entry, assumptions
     )
 
 
@@ -159,6 +159,6 @@ class _Finder:
                 shown = shown.replace(os.sep, "/")
                 self.folders[shown] = os.path.dirname(path)
                 self.paths.append(path)
-                return shown, read_text(path, shown)
+                return shown, read_code(path, shown)
         hint = "it is searched for next to the file and in the folders of -I"
         raise SssgenError([Diagnostic("error", f"cannot find '{name}' to include", place, hint)])

@@ -19,10 +19,10 @@ TEXTS = (".toml", ".sss", ".glsl")
 """The suffixes of the texts that most commands read."""
 
 
-def read_text(path: str | os.PathLike[str], shown: str) -> str:
+def read_text(path: str | os.PathLike[str], shown: str, otherwise: str = "") -> str:
     """The text of a UTF-8 file, its lines ended by `\\n`; `shown` is its name in messages.
 
-    An editor's unsaved text is read in place of the file's.
+    An editor's unsaved text is read in place of the file's. `otherwise` is the encoding of a file that is not UTF-8.
 
     Raises SssgenError where the file is missing, too large, not a regular file (a pipe, a device), or not text.
     """
@@ -42,7 +42,7 @@ def read_text(path: str | os.PathLike[str], shown: str) -> str:
         raise failure(f"cannot read the file: {error.strerror}", file=shown) from None
     except ValueError:  # a zero byte or a lone surrogate in its name
         raise failure("this is not a valid file name", file=shown) from None
-    return _checked_text(data, shown)
+    return _checked_text(data, shown, otherwise)
 
 
 def _check_size(size: int, shown: str) -> None:
@@ -50,13 +50,20 @@ def _check_size(size: int, shown: str) -> None:
         raise failure(f"the file is too large: {size} bytes; at most {MAX_BYTES} are read", file=shown)
 
 
-def _checked_text(data: bytes, shown: str) -> str:
+def read_code(path: str | os.PathLike[str], shown: str) -> str:
+    """As `read_text`, for code of others: a file that is not UTF-8 is in Windows-1252, which older editors wrote."""
+    return read_text(path, shown, "windows-1252")
+
+
+def _checked_text(data: bytes, shown: str, otherwise: str = "") -> str:
     """The text of a file's bytes. Raises SssgenError where they are too many, or no text."""
     _check_size(len(data), shown)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise _not_text("this is not UTF-8 text", data, error.start, shown) from None
+        if not otherwise:
+            raise _not_text("this is not UTF-8 text", data, error.start, shown) from None
+        text = data.decode(otherwise, "replace")
     if "\x00" in text:
         raise _not_text("this is not a text file: it contains a zero byte", data, data.index(b"\x00"), shown)
     return text.replace("\r\n", "\n")

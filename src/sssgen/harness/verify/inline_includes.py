@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from sssgen.support.diagnostics import failure
-from sssgen.support.text_files import read_text
+from sssgen.support.text_files import read_code
 
 _INCLUDE = re.compile(r"""^[ \t]*\#[ \t]*include[ \t]+(?:"([^"\n]+)"|<([^>\n]+)>)[^\n]*$""", re.MULTILINE)
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
@@ -35,7 +35,7 @@ def _expanded(text: str, path: Path, roots: Sequence[Path], seen: set[Path]) -> 
             if file.is_file():
                 if file.resolve() in seen:
                     return ""
-                return _expanded(read_text(file, file.as_posix()), file, roots, seen)
+                return _expanded(read_code(file, file.as_posix()), file, roots, seen)
         raise failure(
             f"cannot find '{name}' to include",
             "it is searched for next to the file, and in the folders of -I",

@@ -10,7 +10,7 @@ uniforms become variables.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import NamedTuple
 
 from sssgen.ir.old_names import OLD_NAMES
@@ -25,6 +25,7 @@ STAGE = {
     "gl_FrontFacing": ("bool", "sssgen_facing"),
     "gl_PointCoord": ("vec2", "sssgen_point"),
     "gl_FragColor": ("vec4", "sssgen_color"),
+    "gl_FragData": ("vec4", "sssgen_colors"),
     "gl_FragDepth": ("float", "sssgen_depth"),
     "gl_FragDepthEXT": ("float", "sssgen_depth_ext"),
     "gl_Position": ("vec4", "sssgen_position"),
@@ -39,12 +40,14 @@ STAGE = {
 """The variables of the stages: their types and new names."""
 
 _PART = re.compile(
-    r"(?P<skip>//[^\n]*|/\*.*?\*/|^[ \t]*\#(?:\\\n|[^\n])*)|(?P<name>[A-Za-z_]\w*)|(?P<mark>[{}()])",
+    r"(?P<skip>//[^\n]*|/\*.*?\*/|^[ \t]*\#(?:\\\n|[^\n])*)|(?P<name>[A-Za-z_]\w*)|(?P<mark>[{}();])",
     re.DOTALL | re.MULTILINE,
 )
 _CONDITION = re.compile(r"[ \t]*#[ \t]*(if|ifdef|ifndef|elif|else|endif)\b")
 _VERSION = re.compile(r"^[ \t]*#[ \t]*version[ \t]+(\d+)[ \t]*(\w*)[^\n]*$", re.MULTILINE)
 _EXTENSION = re.compile(r"^[ \t]*#[ \t]*extension\b[^\n]*$", re.MULTILINE)
+_CALL = re.compile(r"\s*\(")
+_COLOR_INDEX = re.compile(r"\bgl_FragData\s*\[\s*(\w*)")
 _LAYOUT = re.compile(r"layout\s*\([^()]*\)")
 _DEFAULTS = re.compile(r"(?:layout\s*\([^()]*\)\s*)?(?:uniform|in|out)\s*;")
 """The defaults of a shader, such as `layout(std140) uniform;`."""
@@ -82,7 +85,8 @@ class Plain(NamedTuple):
         default values; old functions get their new names, by macros, or are defined.
         """
         renames = [f"#define {old} {new}" for old, (new, _) in OLD_NAMES.items() if _uses(self.text, old)]
-        extensions = _EXTENSION.findall(self.text)
+        # what an extension of ES has, drivers of other versions have without it
+        extensions = [line.replace("require", "enable") for line in _EXTENSION.findall(self.text)]
         text = _replaced(_EXTENSION.sub("", self.text), _without_default if version.endswith("es") else _without_hints)
         precision = _ES_PRECISION if version.endswith("es") else []
         definitions = [OUT_BUILTINS[name].strip() for name in _SHADOW_READS if _uses(self.text, name)]
@@ -104,11 +108,20 @@ def plain(text: str) -> Plain:
     version = _VERSION.search(text)
     body = without_interface(_VERSION.sub("", text, count=1))
     renamed = {name: new for name, (_, new) in STAGE.items() if _uses(body, name)}
-    head = [f"{STAGE[name][0]} {new};" for name, new in renamed.items()]
+    head = [f"{STAGE[name][0]} {new}{_length(name, body)};" for name, new in renamed.items()]
     renamed |= {"main": MAIN} if _uses(body, "main") else {}
     head += [f"#define {name} {new}" for name, new in renamed.items()]
     tail = [f"#undef {name}" for name in renamed]  # the text that follows has its own main
     return Plain(f"{version[1]} {version[2]}".strip() if version else "", "\n".join([*head, body, *tail, ""]))
+
+
+def _length(name: str, text: str) -> str:
+    """The length of `gl_FragData` as far as a text uses it: drivers have no value in what is not written."""
+    if name != "gl_FragData":
+        return ""
+    indices = [index[1] for index in _COLOR_INDEX.finditer(text)]
+    constant = indices and all(index.isdigit() for index in indices)
+    return f"[{1 + max(map(int, indices))}]" if constant else "[8]"
 
 
 def _uses(text: str, name: str) -> bool:
@@ -120,6 +133,30 @@ def _uses(text: str, name: str) -> bool:
 def without_interface(text: str) -> str:
     """A text without the qualifiers that connect declarations at file scope with a stage."""
     return _replaced(text, _replacement)
+
+
+def without_functions(text: str, names: Collection[str]) -> str:
+    """A text in which the definitions and declarations of these functions are blank lines."""
+    parts: list[str] = []
+    done = start = 0  # the end of the last kept part, and of the last declaration at file scope
+    depth, called = 0, ""
+    for match in _PART.finditer(text):
+        mark = match["mark"]
+        if match["skip"] and match["skip"].lstrip().startswith("#") and depth == 0:
+            start, called = match.end(), ""
+        elif match["name"] and depth == 0:
+            is_function = _CALL.match(text, match.end()) and "=" not in text[start : match.start()]
+            called = called or (match[0] if is_function else "")
+        elif mark in ("{", "("):
+            depth += 1
+        elif mark in ("}", ")"):
+            depth -= 1
+        if depth == 0 and mark in ("}", ";"):
+            if called in names:
+                parts += [text[done:start], "\n" * text.count("\n", start, match.end())]
+                done = match.end()
+            start, called = match.end(), ""
+    return "".join([*parts, text[done:]])
 
 
 def _replaced(text: str, replacement: Callable[[str, re.Match[str]], tuple[str, int] | None]) -> str:
@@ -138,7 +175,7 @@ def _replaced(text: str, replacement: Callable[[str, re.Match[str]], tuple[str, 
             elif branches:
                 depth = branches[-1]
         elif match["mark"]:
-            depth += 1 if match["mark"] in "{(" else -1
+            depth += {"{": 1, "(": 1, "}": -1, ")": -1}.get(match["mark"], 0)
         elif match["name"] and depth == 0:
             replaced = replacement(text, match)
             if replaced is not None:

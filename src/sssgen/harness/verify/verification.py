@@ -35,7 +35,7 @@ from sssgen.harness.verify.loop_inputs import loop_inputs
 from sssgen.harness.verify.plain_inputs import Source, picture, select_lanes
 from sssgen.harness.verify.plain_probes import TEXTURES, Leaf, Probe, Probed, probed
 from sssgen.harness.verify.rounding_noise import explained, noise
-from sssgen.harness.verify.stage_variables import MAIN, Plain, plain
+from sssgen.harness.verify.stage_variables import MAIN, Plain, plain, without_functions
 from sssgen.harness.verify.verification_report import BACKENDS, Comparison, Coverage, Report, Row
 from sssgen.ir.nodes import Function, Module, Param, Span
 from sssgen.ir.types import Sampler
@@ -176,6 +176,7 @@ class Case:
         self.texts: dict[str, list[_Emitted]] = {}
         names = {probe.name for probe in case.probes}
         self.keys = {function.name: function.key for function in module.functions if function.name in names}
+        self.written_names = {function.name for function in module.functions if function.name not in names}
         module = only(module, list(self.keys.values()))
         # probes set the variables that are read; their initial values might need a main() that is not there
         variables = tuple([variable._replace(value=None) for variable in module.variables])
@@ -351,21 +352,38 @@ class Case:
         }
 
     def original(self, inputs: Inputs) -> list[Array]:
-        """The outputs of the author's text, in the first version that the driver accepts."""
-        number = self.written.version.split(" ")[0]
-        versions = [self.written.version] if number and (int(number) >= 330 or self.written.is_es) else VERSIONS
+        """The outputs of the author's text, in the first version that the driver accepts.
+
+        Where it accepts none, functions that this one does not call are removed: the driver may refuse only those.
+        """
+        try:
+            return self.original_of(self.written, inputs)
+        except SssgenError:
+            called = {function.name for function in self.module.functions}
+            others = {name for name in self.written_names if name not in called}
+            if not others:
+                raise
+            alone = self.written._replace(text=without_functions(self.written.text, others))
+            outputs = self.original_of(alone, inputs)
+            self.written = alone  # for the next rounds
+            return outputs
+
+    def original_of(self, written: Plain, inputs: Inputs) -> list[Array]:
+        """The outputs of a text of the author, in the first version that the driver accepts."""
+        number = written.version.split(" ")[0]
+        versions = [written.version] if number and (int(number) >= 330 or written.is_es) else VERSIONS
         refusals: list[SssgenError] = []
         for version in versions:
             try:
-                return self.draw_original(version, inputs)
+                return self.draw_original(written, version, inputs)
             except SssgenError as error:
                 refusals.append(error)
         raise refusals[0]
 
-    def draw_original(self, version: str, inputs: Inputs) -> list[Array]:
+    def draw_original(self, written: Plain, version: str, inputs: Inputs) -> list[Array]:
         """The outputs of the author's text, followed by the probes. Its uniforms are bound by their names."""
         probes = "\n".join(probe.text for probe in self.case.probes)
-        text = Text(f"{self.written.for_driver(version)}\n{probes}")
+        text = Text(f"{written.for_driver(version)}\n{probes}")
         probe_calls = [
             self.call(probe, probe.name, [leaf.name for leaf in probe.leaves], inputs) for probe in self.case.probes
         ]
