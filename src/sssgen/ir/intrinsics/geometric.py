@@ -43,20 +43,30 @@ def _away_from_total_reflection(rt: Any, x: Any, y: Any, z: Any, rounding: float
     return unit & (z > 0.0) & (abs(1.0 - z * z * (1.0 - rt.dot(x, y) ** 2)) > 0.1)
 
 
+def _measurable(rt: Any, x: Any) -> Any:
+    """Where the sum of squares neither overflows nor underflows, or is 0."""
+    return (rt.dot(x, x) < 1e38) & ((rt.dot(x, x) > 1e-30) | (rt.dot(x, x) == 0.0))
+
+
+def _directed(rt: Any, x: Any) -> Any:
+    """Where the sum of squares neither overflows nor underflows."""
+    return (rt.dot(x, x) < 1e38) & (rt.dot(x, x) > 1e-30)
+
+
 # A table: several fields to a line.
 # fmt: off
 ROWS = (
     Builtin("length", ("float(vecF)", "float(float)"), "Euclidean length.",
         texts={"wgsl-metal/float": "abs"},
         fold=lambda x: [_length(x)], relation="length", componentwise=False, range=vector_ranges.length,
-        inside=lambda rt, x: (rt.dot(x, x) < 1e38) & ((rt.dot(x, x) > 1e-30) | (rt.dot(x, x) == 0.0)),
+        inside=_measurable, defined=_measurable,
         domain="dot(x, x) does not overflow: |x| < 1e19", kind="transcendental", cost=2, once=4, ulp=8.0,
         clause="WGSL, Vulkan: that of sqrt(dot(x, x))",
         vectors=((((3.0, 4.0),), 5.0), (((0.0, 0.0, 0.0),), 0.0), ((-2.0,), 2.0)),
     ),
     Builtin("distance", _REDUCE, "Length of x - y.",
         fold=lambda x, y: [_length([a - b for a, b in zip(x, y)])], componentwise=False, range=vector_ranges.distance,
-        inside=lambda rt, x, y: (rt.dot(x - y, x - y) < 1e38) & ((rt.dot(x - y, x - y) > 1e-30) | (rt.dot(x - y, x - y) == 0.0)),
+        inside=lambda rt, x, y: _measurable(rt, x - y), defined=lambda rt, x, y: _measurable(rt, x - y),
         domain="|x - y| < 1e19", texts={"hlsl/float,float": "", "wgsl-metal/float,float": ""}, polyfill="float distance(float x, float y) { return abs(x - y); }",
         kind="transcendental", cost=3, once=4, ulp=8.0, clause="WGSL, Vulkan: that of length(x - y)",
         vectors=(
@@ -92,7 +102,7 @@ ROWS = (
             Guard(lambda F, x: x.high < F.largest**0.5, "overflow", "a vector whose squares overflow", _DIRECTION, doc=_DIRECTION_DOC,
                 succeeds=lambda F, x: x.met(Range(0.0, 0.99 * F.largest**0.5))),
         ),
-        inside=lambda rt, x: (rt.dot(x, x) < 1e38) & (rt.dot(x, x) > 1e-30),
+        inside=_directed, defined=_directed,
         domain="dot(x, x) > 0 and does not overflow", texts={"hlsl/float": "", "wgsl/float": ""},
         polyfill="float normalize(float x) { return sign(x); }", kind="transcendental", cost=3, once=4, ulp=8.0,
         clause="WGSL, Vulkan: that of x / length(x)",
