@@ -388,6 +388,13 @@ void main() { color = vec4(gl_FragCoord.x); }
     ]
 
 
+def test_textures_of_a_kind_that_is_not_drawn_have_a_reason(rows: Rows) -> None:
+    text = "uniform samplerCubeShadow lamp;\nuniform sampler2D maps[1];\nfloat f(vec4 p) { return texture(lamp, p); }\n"
+    results = rows(f"{text}vec4 g(vec2 p) {{ return texture(maps[0], p); }}")
+    assert results["f(vec4)"].reason == "it reads 'lamp', a samplerCubeShadow, which is not supported here"
+    assert results["g(vec2)"].ok
+
+
 def test_old_names_are_renamed_for_the_driver_alone() -> None:
     result = plain("varying vec2 uv;\nvec4 f(sampler2D s) { return texture2D(s, uv); }")
     assert "#define texture2D texture\n" in result.for_driver("450 core")

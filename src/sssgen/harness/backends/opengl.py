@@ -111,7 +111,7 @@ class OpenGL(DrawingBackend):
                     units = [next(unit) for _ in bound]
                     for number, texture in zip(units, bound, strict=True):
                         textures[texture].use(number)
-                    program[member].value = units[0] if name else tuple(units)
+                    program[member].value = units[0] if len(units) == 1 else tuple(units)
                 elif member in drawing.values:
                     _write(program[member], drawing.values[member])
             self.bind_blocks(program, drawing.blocks, keep)

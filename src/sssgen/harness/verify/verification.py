@@ -38,7 +38,7 @@ from sssgen.harness.verify.rounding_noise import explained, noise
 from sssgen.harness.verify.stage_variables import MAIN, Plain, plain, without_functions
 from sssgen.harness.verify.verification_report import BACKENDS, Comparison, Coverage, Report, Row
 from sssgen.ir.nodes import Function, Module, Param, Span
-from sssgen.ir.types import Sampler
+from sssgen.ir.types import Sampler, spell, with_article
 from sssgen.lang import shadertoy
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.passes.reachable import only
@@ -184,7 +184,15 @@ class Case:
         closed = {function.name: function.params for function in uniforms_to_parameters(self.module).functions}
         self.params: dict[str, tuple[Param, ...]] = {name: closed[name] for name in names if name in closed}
         self.inputs: list[Inputs] = []
+        self.unread = ""
+        """Why its textures cannot be drawn; '' where they can."""
         if case.probes:
+            samplers = [param for param in self.uniforms().values() if isinstance(param.type, Sampler)]
+            lacking = [param for param in samplers if param.type not in TEXTURES]
+            if lacking:
+                kind = with_article(spell(lacking[0].type))
+                self.unread = f"it reads '{lacking[0].name}', {kind}, which is not supported here"
+        if case.probes and not self.unread:
             self.program = Program(self.module)
             self.key = self.keys[case.probes[0].name]
             self.textures = self.drawn_textures()
@@ -234,6 +242,8 @@ class Case:
         row = Row(_title(self.case.function), self.case.function.span.line)
         if self.case.reason or not self.case.probes:
             return row._replace(reason=self.case.reason)
+        if self.unread:
+            return row._replace(reason=self.unread)
         if not self.inputs:
             return row._replace(reason="its loops do not end")
         undefined, coverage = self.analysis()
