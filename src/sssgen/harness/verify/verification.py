@@ -41,6 +41,7 @@ from sssgen.ir.nodes import Function, Module, Param, Span
 from sssgen.ir.types import Sampler, spell, with_article
 from sssgen.lang import shadertoy
 from sssgen.lang.plain_glsl import load_glsl_text
+from sssgen.passes.prune import prune
 from sssgen.passes.reachable import only
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
@@ -193,7 +194,8 @@ class Case:
                 kind = with_article(spell(lacking[0].type))
                 self.unread = f"it reads '{lacking[0].name}', {kind}, which is not supported here"
         if case.probes and not self.unread:
-            self.program = Program(self.module)
+            # without what has no effect: an undefined value there does no harm
+            self.program = Program(prune(self.module, list(self.keys.values())))
             self.key = self.keys[case.probes[0].name]
             self.textures = self.drawn_textures()
             self.inputs = self.search(samples)
