@@ -46,7 +46,7 @@ _ARITHMETIC: dict[str, Callable[..., Value]] = {
 _INT_DIVIDE: Callable[..., Value] = rt.int_divide.__wrapped__  # type: ignore[attr-defined]
 _UNARY: dict[str, Callable[..., Value]] = {"-": np.negative, "!": np.logical_not, "~": np.invert}
 _COMPARISONS = frozenset({"<", ">", "<=", ">=", "==", "!="})
-DTYPES = {
+DTYPES: dict[str, np.dtype[Any]] = {
     "float": np.dtype(np.float64), "int": np.dtype(np.int32), "uint": np.dtype(np.uint32), "bool": np.dtype(bool),
 }  # fmt: skip
 
