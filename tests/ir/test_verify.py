@@ -274,7 +274,6 @@ WRONG: dict[str, tuple[Callable[[], ir.Module], str]] = {
     "vector of doubles": (lambda: body(params=(param(Vector("double", 2)),)), "not a type: Vector"),
     "double": (lambda: body(ir.Declare("q", Scalar("double"), None, NOWHERE)), "this cannot be Scalar"),
     "integer matrix": (lambda: body(result=Matrix(2, 2, "int")), "not a type: Matrix"),
-    "array of arrays": (lambda: evaluated(local(Array(Array(FLOAT, 2), 2))), "this cannot be Array"),
     "array of nothing": (lambda: evaluated(local(Array(FLOAT, 0))), "this cannot be Array"),
     "operator on no types": (
         lambda: evaluated(ir.Unary(FLOAT, "-", local(Scalar("half")), NOWHERE)), "'-' is not defined for (Scalar"),

@@ -136,6 +136,9 @@ def run(arguments: Namespace) -> int:
     if wrong or module is None:
         raise SssgenError(wrong)
     if arguments.verify:
+        if module.workgroup:
+            hint = "it runs functions of one invocation; compare the buffers of both in your program"
+            raise failure("--verify does not run compute shaders", hint, path.as_posix())
         return _verify(arguments, path)
     if arguments.as_ == "technique":
         return _technique(arguments, module, path)

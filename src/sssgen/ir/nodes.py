@@ -214,7 +214,18 @@ class Discard(NamedTuple):
     span: Span
 
 
-Stmt: TypeAlias = Declare | Assign | Evaluate | Assume | If | For | While | Break | Continue | Return | Discard
+class MemoryOperation(NamedTuple):
+    """An operation of `ir.memory_operations`; its first argument is the place in memory, `result` takes its result."""
+
+    name: str
+    args: tuple[Expr, ...]
+    result: Expr | None
+    span: Span
+
+
+Stmt: TypeAlias = (
+    Declare | Assign | Evaluate | Assume | If | For | While | Break | Continue | Return | Discard | MemoryOperation
+)
 Block: TypeAlias = tuple[Stmt, ...]
 
 
@@ -280,9 +291,11 @@ class Constant(NamedTuple):
 class Variable(NamedTuple):
     """A module variable: each run of a shader has its own.
 
-    `storage` is private, in (an input of the stage, read-only) or out (an output). A private one may have a `value` of
+    `storage` is private, in (an input of the stage, read-only), out (an output), or of a compute shader shared (by its
+    workgroup) or buffer (a storage buffer; its type is the struct of its members). A private one may have a `value` of
     constants, uniforms and earlier variables. `builtin` is the `gl_` name of a variable of GLSL, or ''. `interpolation`
-    is flat, noperspective, centroid or ''; `location` is -1 if none is given.
+    is flat, noperspective, centroid or ''; `location` is -1 if none is given, of a buffer its binding. `access` is that
+    of a buffer: readonly, writeonly or ''; `layout` is std430 or std140.
     """
 
     name: str
@@ -294,6 +307,8 @@ class Variable(NamedTuple):
     location: int
     doc: str
     span: Span
+    access: str = ""
+    layout: str = ""
 
 
 class StructDecl(NamedTuple):
@@ -312,6 +327,8 @@ class Module(NamedTuple):
     uniforms: tuple[Uniform, ...] = ()
     functions: tuple[Function, ...] = ()
     variables: tuple[Variable, ...] = ()
+    workgroup: tuple[int, ...] = ()
+    """The three sizes of a compute shader's workgroup; () for all other modules."""
 
 
 def function_key(name: str, types: list[Type]) -> str:

@@ -150,8 +150,8 @@ def _same_shape(first: Type, second: Type) -> bool:
     return isinstance(first, Scalar) and isinstance(second, Scalar)
 
 
-def is_type(type: Type) -> bool:
-    """Whether a type and everything in it is valid in the IR."""
+def is_type(type: Type, ends_buffer: bool = False) -> bool:
+    """Whether a type and everything in it is valid in the IR; `ends_buffer`: it is the last member of a struct."""
     if isinstance(type, Scalar | Vector):
         sized = isinstance(type, Scalar) or type.size in (2, 3, 4)
         return sized and type.kind in ("float", "int", "uint", "bool")
@@ -159,11 +159,16 @@ def is_type(type: Type) -> bool:
         return type.columns in (2, 3, 4) and type.rows in (2, 3, 4) and type.kind == "float"
     if isinstance(type, Array):
         holds = not isinstance(type.element, Sampler | Void)
-        return holds and 1 <= type.length <= 65536 and is_type(type.element)
+        return (
+            holds and 1 - ends_buffer <= type.length <= 65536 and is_type(type.element)
+        )  # 0: the end of a storage buffer
     if isinstance(type, Struct):
         names = sorted(field.name for field in type.fields)
         unique = bool(names) and all(name != next_name for name, next_name in pairwise(names))
-        return unique and all(is_type(f.type) and not isinstance(f.type, Sampler | Void) for f in type.fields)
+        return unique and all(
+            is_type(field.type, field is type.fields[-1]) and not isinstance(field.type, Sampler | Void)
+            for field in type.fields
+        )
     if isinstance(type, Sampler):
         return type.dim in ("2D", "3D", "Cube")
     return isinstance(type, Void)

@@ -46,6 +46,7 @@ from sssgen.ir.nodes import (
     Literal,
     Local,
     Member,
+    MemoryOperation,
     Module,
     Return,
     Span,
@@ -79,6 +80,8 @@ class _Printer:
         parts += [self.uniform(uniform) for uniform in module.uniforms]
         parts += [self.variable(variable) for variable in module.variables]
         parts += [self.function(function) for function in module.functions]
+        if module.workgroup:
+            parts.append(f"workgroup {' '.join(map(str, module.workgroup))}\n")
         files = [f"file {index} {_quoted(name)}\n" for name, index in self.files.items()]
         return "".join(files + parts)
 
@@ -110,6 +113,8 @@ class _Printer:
         hints += [("builtin", (variable.builtin,))] if variable.builtin else []
         hints += [("interpolation", (variable.interpolation,))] if variable.interpolation else []
         hints += [("location", (float(variable.location),))] if variable.location >= 0 else []
+        hints += [("access", (variable.access,))] if variable.access else []
+        hints += [("layout", (variable.layout,))] if variable.layout else []
         value = f" = {self.expr(variable.value)}" if variable.value is not None else ""
         return f"{_doc(variable.doc)}variable{self.at(variable.span)} {declared}{_hints(hints)}{value}\n"
 
@@ -148,6 +153,9 @@ class _Printer:
             return f"for{at} ({init}{condition};{step}) {self.block(stmt.body, depth)}"
         if isinstance(stmt, While):
             return f"while{at} {self.expr(stmt.condition)} do {self.block(stmt.body, depth)}"
+        if isinstance(stmt, MemoryOperation):
+            result = f" -> {self.expr(stmt.result)}" if stmt.result is not None else ""
+            return f"memory{at} {stmt.name}({self.list(stmt.args)}){result};"
         if isinstance(stmt, Return) and stmt.value is not None:
             return f"return{at} {self.expr(stmt.value)};"
         return f"{type(stmt).__name__.lower()}{at};"

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from math import isfinite
 
+from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.nodes import (
     NOWHERE,
     Assign,
@@ -30,6 +31,7 @@ from sssgen.ir.nodes import (
     Literal,
     Local,
     Member,
+    MemoryOperation,
     Module,
     Param,
     Return,
@@ -91,6 +93,7 @@ class _Reader:
         self.globals: dict[str, Type] = {}
         self.locals: dict[str, Type] = {}
         self.results: dict[str, Type] = {}
+        self.workgroup: tuple[int, ...] = ()
         position = 0
         while position < len(text):
             match = _TOKEN.match(text, position)
@@ -174,7 +177,7 @@ class _Reader:
     def array_of(self, element: Type) -> Type:
         if not self.take("["):
             return element
-        length = int(self.number())
+        length = 0 if self.peek() == "]" else int(self.number())
         self.expect("]")
         return Array(self.array_of(element), length)
 
@@ -201,6 +204,9 @@ class _Reader:
                 while self.tokens[self.next][0] == "text":
                     doc.append(self.string())
                 keyword = self.kind("name")
+                if keyword == "workgroup":
+                    self.workgroup = tuple([int(self.number()) for _ in range(3)])
+                    continue
                 if keyword not in declarations:
                     raise self.fail(f"a declaration is expected here, not '{keyword}'", 1)
                 read = getattr(self, keyword)
@@ -215,7 +221,8 @@ class _Reader:
                 functions[index] = function._replace(body=self.block())
         except RecursionError:
             raise self.fail("nested too deeply") from None
-        return Module(*(tuple(of_one_kind) for of_one_kind in declarations.values()))  # type: ignore[arg-type]
+        module = Module(*(tuple(of_one_kind) for of_one_kind in declarations.values()))  # type: ignore[arg-type]
+        return module._replace(workgroup=self.workgroup)
 
     def skip_block(self) -> None:
         self.expect("{")
@@ -255,15 +262,20 @@ class _Reader:
 
     def variable(self, doc: str, span: Span) -> Variable:
         storage, type_, name = self.name(), self.type(), self.name()
-        values: dict[str, float | str] = {"builtin": "", "interpolation": "", "location": -1.0}
+        values: dict[str, float | str] = {
+            "builtin": "", "interpolation": "", "location": -1.0, "access": "", "layout": ""
+        }  # fmt: skip
         for hint, args in self.hints():
             if hint not in values or len(args) != 1 or type(args[0]) is not type(values[hint]):
                 raise self.fail(f"a variable has no hint '{hint}'", 1)
             values[hint] = args[0]
         value = self.expr() if self.take("=") else None
         self.globals[name] = type_
-        builtin, interpolation, location = values.values()
-        return Variable(name, type_, storage, value, str(builtin), str(interpolation), int(location), doc, span)
+        builtin, interpolation, location, access, layout = values.values()
+        return Variable(
+            name, type_, storage, value, str(builtin), str(interpolation), int(location), doc, span, str(access),
+            str(layout),
+        )  # fmt: skip
 
     def hints(self) -> tuple[tuple[str, tuple[float | str, ...]], ...]:
         hints = []
@@ -331,6 +343,8 @@ class _Reader:
             stmt = Assign(target, op[:-1], self.expr(), span)
         elif keyword == "call":
             stmt = Evaluate(self.expr(), span)
+        elif keyword == "memory":
+            stmt = self.memory(span)
         elif keyword == "assume":
             stmt = Assume(self.expr(), span)
         elif keyword == "return":
@@ -341,6 +355,17 @@ class _Reader:
             raise self.fail(f"a statement is expected here, not '{keyword}'", 1)
         self.expect(";")
         return stmt
+
+    def memory(self, span: Span) -> MemoryOperation:
+        name = self.name()
+        if name not in MEMORY:
+            raise self.fail(f"there is no operation '{name}'", 1)
+        args = self.list("(", ")")
+        if self.peek() != "-":
+            return MemoryOperation(name, args, None, span)
+        self.expect("-")
+        self.expect(">")
+        return MemoryOperation(name, args, self.expr(), span)
 
     def loop(self, span: Span) -> For:
         self.expect("(")

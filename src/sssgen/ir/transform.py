@@ -20,6 +20,7 @@ from sssgen.ir.nodes import (
     For,
     Function,
     If,
+    MemoryOperation,
     Module,
     Param,
     Return,
@@ -90,6 +91,8 @@ class Transformer:
             return self.while_loop(stmt)
         if isinstance(stmt, Assume):
             return self.assume(stmt)
+        if isinstance(stmt, MemoryOperation):
+            return self.memory(stmt)
         return stmt
 
     def declare(self, stmt: Declare) -> Stmt | None:
@@ -114,6 +117,12 @@ class Transformer:
     def assume(self, stmt: Assume) -> Stmt | None:
         condition = self.expression(stmt.condition)
         return stmt if condition is stmt.condition else Assume(condition, stmt.span)
+
+    def memory(self, stmt: MemoryOperation) -> Stmt | None:
+        args = tuple([self.expression(arg) for arg in stmt.args])
+        result = self.expression(stmt.result) if stmt.result is not None else None
+        same = result is stmt.result and all(map(is_, args, stmt.args))
+        return stmt if same else MemoryOperation(stmt.name, args, result, stmt.span)
 
     def branch(self, stmt: If) -> Stmt | None:
         condition = self.expression(stmt.condition)

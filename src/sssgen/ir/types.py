@@ -30,7 +30,7 @@ class Matrix(NamedTuple):
 
 
 class Array(NamedTuple):
-    """A fixed number of elements of one type."""
+    """A fixed number of elements of one type; 0 at the end of a storage buffer, whose size the program sets."""
 
     element: Type
     length: int
@@ -107,7 +107,7 @@ def spell(type: Type) -> str:
         return name
     if isinstance(type, Array):
         innermost, lengths = unnested(type)
-        return spell(innermost) + "".join([f"[{length}]" for length in lengths])
+        return spell(innermost) + "".join([f"[{length or ''}]" for length in lengths])
     if isinstance(type, Struct):
         return type.name
     raise TypeError(f"not an IR type: {type!r}")

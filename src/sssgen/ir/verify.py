@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from math import isfinite
 
 from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.nodes import (
     Assign,
     Assume,
@@ -32,6 +33,7 @@ from sssgen.ir.nodes import (
     Literal,
     Local,
     Member,
+    MemoryOperation,
     Module,
     Return,
     Span,
@@ -129,7 +131,8 @@ class _Verifier:
                 self.report(struct.span, f"not a struct type: {struct.type!r}")
                 continue
             for field in struct.type.fields:
-                self.type(field.type, struct.span)
+                innermost, lengths = unnested(field.type)
+                self.type(innermost if lengths[:1] == (0,) else field.type, struct.span)
             self.structs[struct.type.name] = struct.type
         for uniform in whole.uniforms:
             self.uniform(uniform)
@@ -185,7 +188,7 @@ class _Verifier:
     def variable(self, variable: Variable) -> None:
         name, span = variable.name, variable.span
         self.type(variable.type, span, (Sampler, type(VOID)))
-        if variable.storage not in ("private", "in", "out"):
+        if variable.storage not in ("private", "in", "out", "shared", "buffer"):
             self.report(span, f"'{variable.storage}' is not a storage")
         if variable.interpolation not in ("", "flat", "noperspective", "centroid"):
             self.report(span, f"'{variable.interpolation}' is not an interpolation")
@@ -285,6 +288,8 @@ class _Verifier:
                 self.report(stmt.span, f"{type(stmt).__name__.lower()} outside a loop")
         elif isinstance(stmt, Return):
             self.leave(stmt)
+        elif isinstance(stmt, MemoryOperation):
+            self.memory(stmt)
         elif not isinstance(stmt, Discard):
             self.report(Span("", 0, 0, 0, 0), f"not a statement: {stmt!r}")
 
@@ -297,6 +302,16 @@ class _Verifier:
             self.same(value, target, stmt.span, "an assignment")
         elif operator_type(stmt.op, target, value) != target or target == BOOL:
             self.report(stmt.span, f"'{stmt.op}=' is not defined for {_name(target)} and {_name(value)}")
+
+    def memory(self, stmt: MemoryOperation) -> None:
+        row = MEMORY[stmt.name]
+        for arg in stmt.args:
+            self.expression(arg)
+        if len(stmt.args) != row.has_place + row.values:
+            self.report(stmt.span, f"{stmt.name} has {len(stmt.args)} arguments")
+        if stmt.result is not None:
+            self.expression(stmt.result)
+            self.writable(stmt.result)
 
     def loop(self, stmt: For) -> None:
         self.scopes.append({})
@@ -377,7 +392,7 @@ class _Verifier:
                 yield f"{_operation(node)} of {types} is {_a_type(wanted)}, not {_a_type(node.type)}"
             elif isinstance(node, Index) and isinstance(node.index, Literal):
                 elements = element_type(node.value.type)
-                if elements is not None and not 0 <= node.index.value < elements[1]:
+                if elements is not None and not 0 <= node.index.value < (elements[1] or node.index.value + 1):
                     yield f"index {node.index.value} is outside {_name(node.value.type)}"
 
     def named(self, node: Local | Global, declared: Type | None) -> Iterator[str]:

@@ -25,6 +25,7 @@ from sssgen.ir.nodes import (
     Literal,
     Local,
     Member,
+    MemoryOperation,
     Module,
     Return,
     Select,
@@ -93,6 +94,17 @@ def expressions(stmt: Stmt) -> tuple[Expr, ...]:
         return (stmt.condition,) if stmt.condition is not None else ()
     if isinstance(stmt, Evaluate):
         return (stmt.call,)
+    if isinstance(stmt, MemoryOperation):
+        return (*stmt.args, stmt.result) if stmt.result is not None else stmt.args
+    return ()
+
+
+def written_places(stmt: Stmt) -> tuple[Expr, ...]:
+    """The places that a statement itself writes; those that its calls write are not among them."""
+    if type(stmt) is Assign:
+        return (stmt.target,)
+    if isinstance(stmt, MemoryOperation):
+        return (*stmt.args[:1], stmt.result) if stmt.result is not None else stmt.args[:1]
     return ()
 
 

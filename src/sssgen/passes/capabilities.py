@@ -14,6 +14,8 @@ class Capabilities(NamedTuple):
     """`bool(x)` of a number is 0 or 1 also where it is converted again; if not, it is compared with 0."""
     bool_uniforms: bool = False
     """A uniform block may hold a bool; if not, it holds an int in its place."""
+    buffer_blocks: bool = False
+    """A storage buffer may have several members; if not, it has elements of one type without padding."""
     constant_choices: bool = False
     """A choice between constant vectors that are made of vectors is computed; if not, its value is written."""
     dynamic_stores: bool = False
@@ -63,6 +65,8 @@ class Capabilities(NamedTuple):
     """Functions have `out` and `inout` parameters; if not, pointers."""
     overloads: bool = False
     """Functions of one name may differ in their parameters' types."""
+    std140_buffers: bool = False
+    """A storage buffer may have the layout std140 where that is not std430."""
     struct_choices: bool = False
     """`?:` chooses between structs and between arrays, too."""
     struct_constructors: bool = False

@@ -139,7 +139,7 @@ class _Namer:
         if self.structs or self.globals:
             variables = tuple([self.variable(variable) for variable in variables])
         functions = tuple([self.function(key, function) for key, function in self.keyed])
-        return Module(structs, constants, uniforms, functions, variables), self.renamed
+        return Module(structs, constants, uniforms, functions, variables, module.workgroup), self.renamed
 
     # The module's own names
 

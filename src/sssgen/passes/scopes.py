@@ -10,7 +10,6 @@ from collections.abc import Callable, Collection, Container, Iterable, Mapping
 from typing import Any
 
 from sssgen.ir.nodes import (
-    Assign,
     Binary,
     Block,
     Call,
@@ -26,7 +25,7 @@ from sssgen.ir.nodes import (
     While,
 )
 from sssgen.ir.transform import Transformer
-from sssgen.ir.walk import calls_of, expressions, inner_statements, operands, root, statements
+from sssgen.ir.walk import calls_of, expressions, inner_statements, operands, root, statements, written_places
 
 _NONE: Mapping[str, str] = {}
 
@@ -85,7 +84,7 @@ def assigned(function: Function, outs: Mapping[str, tuple[int, ...]]) -> set[str
     `outs` is the result of `outs_of` for the module's functions.
     """
     body = function.body or ()
-    targets: list[Expr] = [stmt.target for stmt in statements(body) if type(stmt) is Assign]
+    targets: list[Expr] = [place for stmt in statements(body) for place in written_places(stmt)]
     for call in calls_of(body) if outs else ():
         targets += [call.args[index] for index in outs.get(call.function, ())]
     return {variable.name for variable in map(root, targets) if variable is not None}

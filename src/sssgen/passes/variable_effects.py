@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from sssgen.ir.nodes import Assign, Call, Expr, Function, Global, Literal, Local, Module
-from sssgen.ir.walk import expressions, operands, statements, written_root
+from sssgen.ir.nodes import Call, Expr, Function, Global, Literal, Local, Module
+from sssgen.ir.walk import expressions, operands, statements, written_places, written_root
 from sssgen.passes.scopes import outs_of
 
 
@@ -52,8 +52,7 @@ class _Finder:
         targets: list[Expr] = []
         calls: set[str] = set()
         for stmt in statements(function.body or ()):
-            if type(stmt) is Assign:
-                targets.append(stmt.target)
+            targets += written_places(stmt)
             stack = list(expressions(stmt))
             while stack:
                 node = stack.pop()

@@ -40,6 +40,7 @@ class Pass(NamedTuple):
 
 
 _SHADER = Condition("it is a whole shader", lambda state: state.whole_shader)
+_COMPUTE = Condition("it is a compute shader", lambda state: bool(state.module.workgroup))
 _NO_MAIN = Condition(
     "there are module variables and no main()",
     lambda state: bool(state.module.variables) and entry_of(state.module) is None,
@@ -50,8 +51,8 @@ _PARTNER = Condition(
 )
 _Y_DOWN = Condition("it is a whole shader and y counts down", lambda state: state.whole_shader and state.y_down)
 _NO_VERTEX_LEVELS = Condition(
-    "it is a vertex shader and the target has no implicit levels there",
-    lambda state: state.form == "vertex" and not state.target.capabilities.implicit_levels,
+    "it is a vertex or compute shader and the target has no implicit levels there",
+    lambda state: state.form in ("vertex", "compute") and not state.target.capabilities.implicit_levels,
 )
 _CALLED = Condition("the called functions are given", lambda state: state.called is not None)
 _NO_LEVELS = Condition(
@@ -143,6 +144,7 @@ TARGET: tuple[Pass, ...] = (
     ),
     Pass("initial_values", steps.set_variables_at_start, "set module variables in main()", _CONSTANT_VALUES),
     Pass("uniform_parameters", steps.pass_uniforms, "pass uniforms as parameters", _PARAMETERS),
+    Pass("buffers", steps.check_storage_buffers, "refuse storage buffers with another layout", _COMPUTE),
     Pass("nested_arrays", steps.wrap_nested_arrays, "put the arrays in arrays into structs", _FLAT_ARRAYS),
     Pass("legalise", steps.legalise_nodes, "rewrite what the target cannot express; printing is then a table"),
     Pass("masks", steps.convert_to_masks, "replace control flow by masks; no other pass expects these", _MASKS),

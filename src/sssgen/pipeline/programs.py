@@ -62,11 +62,23 @@ def make_library(
     if partner is not None:
         check_partner(kind, stage_kind(partner))
     form = kind if kind in target.files else "functions"
+    if module.workgroup:
+        _check_compute(target, form, guards)
     state = State(module, form, guards, target, keep, called, at, chained, partner)
     if trace is not None:
         trace.start(module)
     pass_list.run(pass_list.KEPT if keep else pass_list.PLAIN, state, trace)
     return finish_program(state, trace)
+
+
+def _check_compute(target: Target, form: str, guards: str) -> None:
+    """Raises SssgenError where a target has no compute shaders, and for guards, which know one invocation alone."""
+    if form != "compute":
+        raise failure(
+            f"{target.title} has no compute shaders here", "they go to glsl-330 (as GLSL 4.30), hlsl and wgsl"
+        )
+    if guards != "none":
+        raise failure("a compute shader takes no guards: other invocations write its memory, too", "--guards none")
 
 
 def check_partner(kind: str, other: str) -> None:

@@ -24,7 +24,7 @@ class State:
 
     module: Module
     form: str = "functions"
-    """shader, functions, vertex or fragment; the last two are whole shaders of plain GLSL."""
+    """shader, functions, vertex, fragment or compute; the last three are whole shaders of plain GLSL."""
     guards: str = "none"
     """auto, all or none"""
     chosen: Target | None = None
@@ -80,7 +80,7 @@ class State:
 
     @property
     def whole_shader(self) -> bool:
-        return self.form in ("vertex", "fragment")
+        return self.form in ("vertex", "fragment", "compute")
 
     @property
     def y_down(self) -> bool:

@@ -32,6 +32,7 @@ from sssgen.passes.stage.stage_interface import (
     remarks,
     turned_derivatives,
 )
+from sssgen.passes.stage.storage_layout import check_buffers
 from sssgen.passes.stage.uniform_structs import uniform_structs
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.stage.varyings import interpolated_alike, mismatches
@@ -209,6 +210,10 @@ def _start(state: State) -> str:
 
 def pass_uniforms(state: State) -> Module:
     return uniforms_to_parameters(state.module)
+
+
+def check_storage_buffers(state: State) -> Module:
+    return check_buffers(state.module, state.target.capabilities)
 
 
 def wrap_nested_arrays(state: State) -> Module:

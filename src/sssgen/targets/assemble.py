@@ -136,9 +136,12 @@ def print_parts(
     if source is not None:
         printer.source = source
     return {
-        "types": [printer.print_struct(struct) for struct in module.structs],
+        "types": [lines for struct in module.structs if (lines := printer.print_struct(struct))],
         "constants": [[line for constant in module.constants for line in printer.print_constant(constant)]],
-        "variables": [[line for variable in module.variables for line in printer.print_variable(variable)]],
+        "variables": [
+            printer.print_layout(),
+            [line for variable in module.variables for line in printer.print_variable(variable)],
+        ],
         "functions": [printer.print_function(function) for function in module.functions],
         "entry": [printer.print_entry(entry)] if stage is not None else [],
     }

@@ -19,7 +19,8 @@ _Record = TypeVar("_Record", bound=NamedTuple)
 
 STAGE_BUILTINS = (
     "gl_Position", "gl_FragCoord", "gl_FrontFacing", "gl_FragDepth", "gl_VertexID", "gl_InstanceID", "gl_PointSize",
-    "gl_PointCoord",
+    "gl_PointCoord", "gl_GlobalInvocationID", "gl_LocalInvocationID", "gl_WorkGroupID", "gl_NumWorkGroups",
+    "gl_LocalInvocationIndex",
 )  # fmt: skip
 """GLSL's variables that a stage of another language may have as inputs and outputs."""
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from sssgen.ir.nodes import Uniform
-from sssgen.ir.types import Sampler, spell
-from sssgen.targets.assemble import Emitted, Program, property_name
+from sssgen.ir.types import Sampler, Struct, spell
+from sssgen.passes.stage.storage_layout import extent, offsets
+from sssgen.targets.assemble import Emitted, Program, printer_for, property_name
 from sssgen.targets.chain_inputs import CHAIN_INPUTS
 from sssgen.targets.descriptor import Target
 from sssgen.targets.texture_import import has_hint, import_of
@@ -61,6 +62,7 @@ def reflect(
             for output in target.files.get(form, ())
         ],
         **_stage(program),
+        **_compute(target, program),
         "uniforms": uniforms,
         "uniform_block_size": emitted.block_size if blocked else None,
         "textures": textures,
@@ -118,6 +120,29 @@ def _stage(program: Program) -> dict[str, Any]:
         ]
         for name, slots in sides.items()
     }
+
+
+def _compute(target: Target, program: Program) -> dict[str, Any]:
+    """The workgroup of a compute shader, and its storage buffers with the layout of their members."""
+    module = program.module
+    if not module.workgroup:
+        return {}
+    printer = printer_for(target, module)
+    buffers = []
+    for variable in printer.buffers:
+        assert isinstance(variable.type, Struct)
+        places = zip(variable.type.fields, offsets(variable.type, variable.layout), strict=True)
+        members = [
+            {"name": field.name, "type": spell(field.type), "offset": offset}
+            | {"size": extent(field.type, variable.layout).size, "stride": extent(field.type, variable.layout).stride}
+            for field, offset in places
+        ]
+        buffers.append(
+            {"name": variable.name, "block": variable.type.name, "access": variable.access or "read_write"}
+            | {"layout": variable.layout, "binding": {"binding": printer.buffer_binding(variable)}}
+            | {"least_size": extent(variable.type, variable.layout).size, "members": members}
+        )
+    return {"workgroup_size": list(module.workgroup), "storage_buffers": buffers}
 
 
 def _conventions(target: Target) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from typing import Literal
 
-Stage = Literal["vertex", "fragment", "library"]
+Stage = Literal["vertex", "fragment", "compute", "library"]
 Severity = Literal["error", "warning", "info"]
 
 

@@ -16,7 +16,7 @@ from sssgen.harness.compilers.glslang import LIBRARY_ENTRY
 from sssgen.support.installation import install_hint
 from sssgen.support.worker_process import LostError, Process
 
-_PROFILES = {"vertex": "vs_6_0", "fragment": "ps_6_0", "library": "ps_6_0"}
+_PROFILES = {"vertex": "vs_6_0", "fragment": "ps_6_0", "compute": "cs_6_0", "library": "ps_6_0"}
 _OWN = ("", "hlsl.hlsl")  # the name of the text without a #line that names it
 _SEVERITY: dict[str, Severity] = {
     "error": "error",

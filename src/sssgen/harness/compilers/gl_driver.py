@@ -45,6 +45,8 @@ class DriverGL(Compiler):
         text = with_version(as_program(source), source.language)
         if source.stage == "library":
             text = glsl_entry(text)
+        if source.stage == "compute":
+            return _in_text(messages(log), source.text) if (log := self._compute(text)) else []
         if source.stage == "vertex":
             vertex, fragment = text, source.companion or _empty_fragment(source.language)
         else:
@@ -57,6 +59,15 @@ class DriverGL(Compiler):
         if log:
             return _in_text(messages(log), source.text)
         return _unfed(vertex, fragment) if source.companion else []
+
+    def _compute(self, text: str) -> str:
+        """The driver's messages about a compute shader; '' where it compiles."""
+        try:
+            with self.context:
+                self.context.compute_shader(text).release()
+        except Exception as error:
+            return str(error) or type(error).__name__
+        return ""
 
     def _link(self, vertex: str, fragment: str) -> str:
         """The driver's messages about two stages that do not compile or link; '' where they do."""

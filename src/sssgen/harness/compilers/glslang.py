@@ -14,7 +14,7 @@ from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissin
 from sssgen.harness.compilers.gl_driver import with_version
 from sssgen.harness.compilers.shadertoy_page import as_program
 
-_STAGES = {"vertex": "vert", "fragment": "frag", "library": "frag"}
+_STAGES = {"vertex": "vert", "fragment": "frag", "compute": "comp", "library": "frag"}
 _OWN = (None, "0", "stdin")  # the name of the text without a #line that names it
 _SEVERITY: dict[str, Severity] = {"ERROR": "error", "WARNING": "warning"}
 LIBRARY_ENTRY = "sssgen_check_main"

@@ -40,7 +40,7 @@ class AccessChecker:
             raise self.context.fail(index.span, f"{a_type(type_)} has no elements to index")
         result, length = element
         constant = integer(self.context, position.expr)
-        if constant is not None and not 0 <= constant < length:
+        if constant is not None and not 0 <= constant < (length or constant + 1):  # 0: a buffer's own length
             raise self.context.fail(index.index.span, f"index {constant} is outside {spell(type_)}: 0 to {length - 1}")
         quantity = value.quantity if isinstance(type_, Array) else ""
         return Typed(ir.Index(result, value.expr, position.expr, index.span), quantity)
@@ -86,6 +86,8 @@ class AccessChecker:
             parts = name.translate(str.maketrans(letters, "xyzw")) if set(name) <= set(letters) else ""
             result = swizzle_type(type_, parts)
             if result is not None:
+                if isinstance(member.value, s.Name) and member.value.text == "gl_WorkGroupSize" and len(parts) == 1:
+                    return Typed(ir.Literal(UINT, context.workgroup["xyz".index(parts)], member.span))
                 quantity = q.channel_of(value.quantity) if len(parts) == 1 else ""
                 return Typed(ir.Swizzle(result, value.expr, parts, member.span), quantity)
         letters = _SWIZZLES[0][: type_.size]

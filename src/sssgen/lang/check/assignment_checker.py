@@ -59,6 +59,7 @@ class AssignmentChecker:
             if yes or no:
                 prelude.append(ir.If(condition, tuple(yes), tuple(no), expression.span))
         else:
+            self.expressions.dropped.add(id(expression))
             self.calls_of(self.expressions.check(expression).expr)
 
     def calls_of(self, value: ir.Expr) -> None:
@@ -128,6 +129,8 @@ def check_writable(context: CheckContext, target: ir.Expr, span: ir.Span) -> Non
         inner = inner.value
     if isinstance(inner, ir.Global) and context.globals[inner.name].writable:
         return
+    if isinstance(inner, ir.Global) and getattr(context.variables.get(inner.name), "access", "") == "readonly":
+        raise context.fail(span, "this cannot be assigned to: the storage buffer is readonly")
     if isinstance(inner, ir.Global) or isinstance(target.type, Sampler):
         name = inner.name if isinstance(inner, ir.Global | ir.Local) else "this"
         raise context.fail(span, f"'{name}' cannot be assigned to; copy it to a local variable")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VEC2, VEC4, Array, Type
+from sssgen.ir.types import BOOL, FLOAT, INT, UINT, VEC2, VEC4, Array, Type, Vector
 from sssgen.lang.check.context import CheckContext
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.syntax import tree as s
@@ -22,6 +22,11 @@ BUILTIN_VARIABLES: dict[str, tuple[Type, str]] = {
     "gl_FragDepthEXT": (FLOAT, "out"),
     "gl_FragColor": (VEC4, "out"),
     "gl_FragData": (Array(VEC4, 8), "out"),
+    "gl_GlobalInvocationID": (Vector("uint", 3), "in"),
+    "gl_LocalInvocationID": (Vector("uint", 3), "in"),
+    "gl_WorkGroupID": (Vector("uint", 3), "in"),
+    "gl_NumWorkGroups": (Vector("uint", 3), "in"),
+    "gl_LocalInvocationIndex": (UINT, "in"),
 }
 """The variables that have a counterpart in other languages: type, and whether a stage reads or writes them."""
 
@@ -49,6 +54,9 @@ def builtin_variable(context: CheckContext, name: s.Name) -> GlobalValue | None:
     if text in _LIMITS:
         limit = context.globals[text] = GlobalValue(INT, "", (_LIMITS[text],), True)
         return limit
+    if text == "gl_WorkGroupSize" and context.workgroup:
+        size = context.globals[text] = GlobalValue(Vector("uint", 3), "", context.workgroup, True)
+        return size
     if text in DRAW_UNIFORMS:
         uniform = ir.Uniform(text, DRAW_UNIFORMS[text], (0.0,), (), "", "", name.span)
         context.draw_uniforms.append(uniform)

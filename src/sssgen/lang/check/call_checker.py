@@ -8,6 +8,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir import old_names, out_builtins
 from sssgen.ir.constant_expressions import literal
 from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.rules import element_type
 from sssgen.ir.signatures import candidates, resolve
 from sssgen.ir.types import INT, Sampler, Type, kind_of, spell
@@ -19,6 +20,7 @@ from sssgen.lang.check.constructor_checker import ConstructorChecker
 from sssgen.lang.check.context import AlreadyReported, Typed
 from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.implicit_conversions import as_kind, converts
+from sssgen.lang.check.memory_checker import MemoryChecker
 from sssgen.lang.check.name_scope import Signature
 from sssgen.lang.check.wording import a_type, declared, overload_hint
 from sssgen.lang.syntax import tree as s
@@ -34,6 +36,7 @@ class CallChecker:
         self.context = expressions.context
         self.expressions = expressions
         self.constructors = ConstructorChecker(expressions)
+        self.memory = MemoryChecker(expressions)
         self.add_function = add_function
         self.out_positions: dict[int, tuple[s.CallOf, set[int]]] = {}
         """By the call's id: a call inside a call would be checked again and again. The call keeps its id taken."""
@@ -50,6 +53,8 @@ class CallChecker:
         if struct is not None and (name not in context.functions or struct is not context.structs.get(name)):
             return self.constructors.construct_parts(struct, call)
         overloads = context.functions.get(name, ())
+        if name in MEMORY and not overloads and context.plain and name != "arrayLength":
+            return self.memory.operation(MEMORY[name], call)
         args = self.expressions.operands(call.args, self.outs(name, overloads, call))
         types = tuple([arg.expr.type for arg in args])
         exact = next((signature for signature in overloads if signature.types == types), None)
@@ -114,6 +119,8 @@ class CallChecker:
         element = element_type(value.type)
         if element is None:
             raise self.context.fail(call.span, f"{a_type(value.type)} has no length()")
+        if element[1] == 0:
+            return self.memory.length(value, call)
         return Typed(ir.Literal(INT, element[1], call.span))
 
     def overload(self, name: str, args: list[Typed], call: s.CallOf) -> Signature:

@@ -83,6 +83,12 @@ class CheckContext:
         self.globals: dict[str, GlobalValue] = {}
         self.variables: dict[str, ir.Variable] = {}
         """The inputs, outputs and private variables of a whole shader."""
+        self.workgroup: tuple[int, ...] = ()
+        """The sizes of a compute shader's workgroup."""
+        self.buffer_members: dict[str, ir.Member] = {}
+        """The members of storage buffers without an instance name."""
+        self.memory_operations: list[ir.Span] = []
+        """The places of atomics and barriers."""
         self.draw_uniforms: list[ir.Uniform] = []
         """The uniforms in place of variables that other languages lack."""
         self.file_names: set[str] = set()

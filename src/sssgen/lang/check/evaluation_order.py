@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.walk import all_expressions, statements, subexpressions, written_root
+from sssgen.ir.walk import all_expressions, statements, subexpressions, written_places, written_root
 
 OutArguments = Callable[[ir.Call], Iterable[ir.Expr]]
 """Gives the arguments that a call writes to."""
@@ -21,7 +21,7 @@ def root_name(target: ir.Expr) -> str:
 def writes_of(stmts: Iterable[ir.Stmt], out_arguments: OutArguments) -> tuple[set[str], bool]:
     """The variables that statements write, and whether they call functions, which may write more."""
     block = tuple(stmts)
-    written = {root_name(stmt.target) for stmt in statements(block) if isinstance(stmt, ir.Assign)}
+    written = {root_name(place) for stmt in statements(block) for place in written_places(stmt)}
     calls = False
     for expr in all_expressions(block):
         if isinstance(expr, ir.Call):

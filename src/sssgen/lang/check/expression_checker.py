@@ -40,6 +40,8 @@ class ExpressionChecker:
     def __init__(self, context: CheckContext) -> None:
         self.context = context
         context.check_expression = self.check
+        self.dropped: set[int] = set()
+        """The ids of the calls whose results are not used."""
         self.places: set[int] = set()
         """The ids of the accesses in places that are written to."""
         self.methods: dict[type, Callable[[Any], Typed]] = {
@@ -218,9 +220,14 @@ class ExpressionChecker:
         value = context.globals.get(text) or builtin_variable(context, name)
         if value is not None:
             reference = ir.Global(value.type, text, name.span)
+            if value.constant and name.text == "gl_WorkGroupSize":
+                sizes = tuple([ir.Literal(UINT, size, name.span) for size in context.workgroup])
+                return Typed(ir.Construct(value.type, sizes, name.span))
             if value.constant and name.text.startswith("gl_"):
                 return Typed(ir.Literal(INT, integer(context, reference) or 0, name.span))
             return Typed(reference, value.quantity)
+        if name.text in context.buffer_members:
+            return Typed(context.buffer_members[name.text]._replace(span=name.span))
         if name.text in context.blocks:
             raise context.fail(name.span, f"'{name.text}' is a block; write the name of a member behind it")
         if name.text in context.functions or candidates(name.text):

@@ -11,6 +11,7 @@ from sssgen.ir.walk import subexpressions
 from sssgen.lang.check.constant_values import constant_value
 from sssgen.lang.check.declared_names import check_global_name, declare_struct
 from sssgen.lang.check.expression_checker import ExpressionChecker
+from sssgen.lang.check.memory_checker import MemoryChecker
 from sssgen.lang.check.name_scope import GlobalValue
 from sssgen.lang.check.shader_interface import ShaderInterface
 from sssgen.lang.check.type_names import array_type, named_type
@@ -22,15 +23,18 @@ from sssgen.lang.syntax import tree as s
 class GlobalChecker:
     """Checks and collects the constants, uniforms and interface variables of one file."""
 
-    def __init__(self, expressions: ExpressionChecker, interface: ShaderInterface) -> None:
+    def __init__(self, expressions: ExpressionChecker, interface: ShaderInterface, memory: MemoryChecker) -> None:
         self.context = expressions.context
         self.expressions = expressions
-        self.interface = interface
+        self.interface, self.memory = interface, memory
         self.constants: list[ir.Constant] = []
         self.uniforms: list[ir.Uniform] = []
 
     def block(self, block: s.BlockSyntax) -> None:
         """The members of a block, as separate globals."""
+        if "buffer" in block.qualifiers.keywords and self.context.plain:
+            self.memory.buffer(block)
+            return
         members = self.interface.members(block)
         for member in members:
             self.global_(member)

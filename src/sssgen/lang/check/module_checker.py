@@ -61,12 +61,12 @@ class ModuleChecker:
         expressions = ExpressionChecker(context)
         OperatorChecker(expressions)
         AccessChecker(expressions)
-        CallChecker(expressions, self.add_function)
+        self.memory = CallChecker(expressions, self.add_function).memory
         statements = StatementChecker(AssignmentChecker(expressions))
         LoopChecker(statements)
         SwitchChecker(statements)
         self.function_checker = FunctionChecker(statements)
-        self.globals = GlobalChecker(expressions, ShaderInterface(expressions, vertex))
+        self.globals = GlobalChecker(expressions, ShaderInterface(expressions, vertex), self.memory)
         self.functions: dict[str, ir.Function] = {}
         self.added: dict[str, ir.Function] = {}
         """The functions that replace builtins with out parameters, by their keys."""
@@ -117,6 +117,7 @@ class ModuleChecker:
         if context.plain and not context.reporter.diagnostics:
             functions = callees_first(functions, calls, self.function_checker.define_zeros)
         report_deep_calls(functions, calls, context.reporter)
+        self.memory.check_stage()
         main = functions.get("main()") if self.vertex else None
         if main is not None and "gl_Position" not in context.variables:  # a stage that has it is a vertex shader
             builtin_variable(context, s.Name("gl_Position", main.span))
@@ -126,12 +127,15 @@ class ModuleChecker:
             (*self.globals.uniforms, *context.draw_uniforms),
             tuple(functions.values()),
             tuple(context.variables.values()),
+            context.workgroup,
         )
 
     def external(self, external: s.External) -> None:
         """Checks one declaration."""
         if isinstance(external, s.StructSyntax):
             declare_struct(self.context, external)
+        elif isinstance(external, s.LayoutSyntax):
+            self.memory.layout(external)
         elif isinstance(external, s.BlockSyntax):
             self.globals.block(external)
         elif isinstance(external, s.GlobalSyntax):

@@ -130,5 +130,10 @@ class Scopes:
         self.taken[-1].append(variable.ir_name)
         return variable
 
+    def forget(self, ir_name: str) -> None:
+        """Makes the name of a variable of the compiler free again, which no statement has."""
+        del self.visible[ir_name]
+        self.taken[-1].remove(ir_name)
+
     def names(self) -> list[str]:
         return [name for scope in self.stack for name in scope]

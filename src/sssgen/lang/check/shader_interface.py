@@ -29,9 +29,8 @@ class ShaderInterface:
     def declare(self, declaration: s.Declaration, doc: str) -> None:
         """Declares inputs, outputs or private variables."""
         context, keywords = self.context, declaration.qualifiers.keywords
-        if "buffer" in keywords or "shared" in keywords:
-            message = "storage buffers and shared memory belong to compute shaders"
-            raise context.fail(declaration.qualifiers.span, message)
+        if "buffer" in keywords:
+            raise context.fail(declaration.qualifiers.span, "a storage buffer is a block: buffer Name { … };")
         storage = self.storage(keywords)
         element, quantity = named_type(context, replace(declaration.type, lengths=()))
         for declarator in declaration.declarators:
@@ -56,7 +55,9 @@ class ShaderInterface:
                 (keyword for keyword in keywords if keyword in ("flat", "noperspective", "centroid")), ""
             )
             location = self.location(declaration.qualifiers)
-            if storage == "private":
+            if value is not None and storage == "shared":
+                raise context.fail(span, "shared memory has no initial value", "write it in main(), before a barrier()")
+            if storage in ("private", "shared"):
                 interpolation, location = "", -1
             context.variables[name] = ir.Variable(name, type_, storage, value, "", interpolation, location, doc, span)
             context.globals[name] = GlobalValue(type_, quantity, writable=storage != "in")
@@ -79,7 +80,7 @@ class ShaderInterface:
             return "in"
         if "varying" in keywords:
             return "out" if self.vertex else "in"
-        return next((keyword for keyword in keywords if keyword in ("in", "out")), "private")
+        return next((keyword for keyword in keywords if keyword in ("in", "out", "shared")), "private")
 
     def location(self, qualifiers: s.Qualifiers) -> int:
         """The n of `layout(location = n)`, or -1."""
@@ -113,8 +114,6 @@ class ShaderInterface:
         context, keywords = self.context, block.qualifiers.keywords
         if not context.plain:
             raise context.fail(block.name.span, "a technique cannot declare blocks", "write uniform …;")
-        if "buffer" in keywords:
-            raise context.fail(block.name.span, "storage buffers belong to compute shaders")
         if block.lengths:
             raise context.fail(block.lengths[0].span, "there are no arrays of blocks", "declare one block of arrays")
         if block.name.text == "gl_PerVertex":

@@ -30,6 +30,7 @@ from sssgen.lang.check.assignment_checker import AssignmentChecker
 from sssgen.lang.check.constant_values import constant_value
 from sssgen.lang.check.context import AlreadyReported
 from sssgen.lang.check.declared_names import check_not_reserved, declare_struct
+from sssgen.lang.check.memory_checker import stored_directly
 from sssgen.lang.check.type_names import array_type, named_type
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s
@@ -74,7 +75,7 @@ class StatementChecker:
         outer, function.prelude = function.prelude, []
         try:
             result: list[ir.Stmt] = self.methods[statement.__class__](statement)
-            return [*function.prelude, *result] if function.prelude else result
+            return stored_directly([*function.prelude, *result], function.scopes) if function.prelude else result
         except AlreadyReported:
             function.has_faults = True
             if isinstance(statement, s.Declaration):
@@ -155,6 +156,7 @@ class StatementChecker:
         callee = value.callee if isinstance(value, s.CallOf) else None
         if isinstance(callee, s.Name) and callee.text == "assume" and "assume" not in self.context.functions:
             return self.assumption(value)
+        self.expressions.dropped.add(id(value))
         call = self.expressions.check(value).expr
         if isinstance(call, ir.Call):
             return [ir.Evaluate(call, statement.span)]

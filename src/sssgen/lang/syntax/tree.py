@@ -329,7 +329,16 @@ class StructSyntax:
     doc: str
 
 
-External: TypeAlias = FunctionSyntax | GlobalSyntax | BlockSyntax | StructSyntax
+@dataclass(slots=True)
+class LayoutSyntax:
+    """`layout(local_size_x = 8) in;`: qualifiers of the whole shader."""
+
+    qualifiers: Qualifiers
+    name: Name
+    doc: str = ""
+
+
+External: TypeAlias = FunctionSyntax | GlobalSyntax | BlockSyntax | StructSyntax | LayoutSyntax
 
 
 @dataclass(slots=True)

@@ -46,7 +46,10 @@ class Builder:
     def nothing(self, children: list[Any]) -> None:
         return None
 
-    default_precision = empty = qualifiers_alone = nothing
+    default_precision = empty = nothing
+
+    def qualifiers_alone(self, children: list[Any]) -> s.LayoutSyntax:
+        return s.LayoutSyntax(children[0], s.Name("", children[0].span))
 
     def head(self, children: list[Any]) -> tuple[s.Qualifiers, s.TypeName, s.Name]:
         qualifiers, type_, token = children

@@ -57,7 +57,7 @@ class Stage(NamedTuple):
     """A whole shader's interface."""
 
     kind: str
-    """vertex or fragment"""
+    """vertex, fragment or compute"""
     function: str
     """The key of the author's main function."""
     inputs: tuple[Slot, ...]
@@ -86,9 +86,11 @@ def entry_of(module: Module) -> Function | None:
 
 
 def stage_kind(module: Module) -> str:
-    """vertex or fragment; '' for a module without an entry."""
+    """vertex, fragment or compute; '' for a module without an entry."""
     if entry_of(module) is None:
         return ""
+    if module.workgroup:
+        return "compute"
     return "vertex" if any(variable.builtin == "gl_Position" for variable in module.variables) else "fragment"
 
 
@@ -120,6 +122,8 @@ def interface(
         output for output in outputs if not output.builtin or output.builtin in builtins or output.builtin in COLORS
     ]
     resolution = resolution_of(module) if turned and kind == "fragment" else ""
+    if kind == "compute":
+        return Stage(kind, function, _slots(inputs), (), "")
     if kind == "vertex":
         return Stage(kind, function, _slots(inputs), _matched_slots(outputs, kind, matching), resolution)
     return Stage(kind, function, _matched_slots(inputs, kind, matching), _slots(outputs), resolution)

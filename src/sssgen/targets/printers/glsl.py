@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.types import Array, Scalar, Type, Vector, kind_of
+from sssgen.ir.types import Array, Scalar, Struct, Type, Vector, kind_of
 from sssgen.passes.stage.stage_interface import COLORS
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.printer import PRIMARY, WIDTH, Line, Printer, comment_text, documented, wrap
@@ -43,10 +43,30 @@ class GlslPrinter(Printer):
             return []
         if variable.storage == "private":
             return super().print_variable(variable)
+        if variable.storage == "buffer":
+            return self.with_comments(variable, self.buffer(variable))
         word = variable.interpolation
         words = [word] if word and (word != "noperspective" or self.target.capabilities.noperspective) else []
         text = " ".join([*words, variable.storage, self.variable(variable.type, variable.name)])
         return self.with_comments(variable, [Line(f"{self.layout(variable)}{text};", variable.span)])
+
+    def buffer(self, variable: ir.Variable) -> list[Line]:
+        """A storage buffer: a block with an instance name."""
+        struct, access = variable.type, f"{variable.access} " if variable.access else ""
+        assert isinstance(struct, Struct)
+        head = f"layout({variable.layout}, binding = {self.buffer_binding(variable)}) {access}buffer {struct.name} {{"
+        fields = [Line(f"    {self.variable(field.type, field.name)};", variable.span) for field in struct.fields]
+        return [Line(head, variable.span), *fields, Line(f"}} {variable.name};")]
+
+    def print_struct(self, struct: ir.StructDecl) -> list[Line]:
+        """A struct; a storage buffer's is its block."""
+        return super().print_struct(struct) if all(buffer.type != struct.type for buffer in self.buffers) else []
+
+    def print_layout(self) -> list[Line]:
+        if not self.module.workgroup:
+            return []
+        sizes = zip("xyz", self.module.workgroup, strict=True)
+        return [Line(f"layout({', '.join([f'local_size_{axis} = {size}' for axis, size in sizes])}) in;")]
 
     def layout(self, variable: ir.Variable) -> str:
         """The location of a variable where the version has a text for it; vertex attributes and fragment colours do."""

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections import Counter
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import FLOAT, INT, Array, Matrix, Scalar, Struct, Vector, kind_of
+from sssgen.ir.types import FLOAT, INT, Array, Matrix, Sampler, Scalar, Struct, Vector, kind_of
 from sssgen.ir.walk import subexpressions
 from sssgen.passes.uniform_blocks import block_type
 from sssgen.targets.descriptor import Target
@@ -143,6 +143,40 @@ class HlslPrinter(Printer):
             )
             lines += [Line(part, texture.span) for part in text.splitlines()]
         return lines
+
+    def print_struct(self, struct: ir.StructDecl) -> list[Line]:
+        """A struct; a storage buffer has elements instead of members."""
+        return super().print_struct(struct) if all(buffer.type != struct.type for buffer in self.buffers) else []
+
+    def print_variable(self, variable: ir.Variable) -> list[Line]:
+        if variable.storage == "shared":
+            text = f"groupshared {self.variable(variable.type, variable.name)};"
+            return self.with_comments(variable, [Line(text, variable.span)])
+        if variable.storage != "buffer":
+            return super().print_variable(variable)
+        assert isinstance(variable.type, Struct)
+        (member,) = variable.type.fields
+        element = member.type.element if isinstance(member.type, Array) else member.type
+        kind, register = ("StructuredBuffer", "t") if variable.access == "readonly" else ("RWStructuredBuffer", "u")
+        first = sum([isinstance(uniform.type, Sampler) for uniform in self.module.uniforms]) if register == "t" else 0
+        place = f"register({register}{first + self.buffer_binding(variable)})"
+        text = f"{kind}<{self.type(element)}> {variable.name} : {place};"
+        return self.with_comments(variable, [Line(text, variable.span)])
+
+    def bound(self, expr: ir.Expr) -> tuple[str, int]:
+        """An expression; the member of a storage buffer is the buffer, or its first element."""
+        if isinstance(expr, ir.Member) and isinstance(expr.value, ir.Global):
+            name = expr.value.name
+            if any(buffer.name == name for buffer in self.buffers):
+                return (name, PRIMARY) if isinstance(expr.type, Array) else (f"{name}[0]", POSTFIX)
+        return super().bound(expr)
+
+    def memory(self, stmt: ir.MemoryOperation) -> str:
+        if stmt.name != "arrayLength" or stmt.result is None:
+            return super().memory(stmt)
+        name = self.expr(stmt.result)
+        sizes = f"{name}_size, {name}_stride"
+        return f"uint {sizes};\n{self.expr(stmt.args[0])}.GetDimensions({sizes});\n{name} = int({name}_size);"
 
     def print_entry(self, name: str) -> list[Line]:
         assert self.stage is not None

@@ -24,8 +24,8 @@ from sssgen.targets.printers.entry_points import (
 from sssgen.targets.printers.printer import Line, Printer, wrap
 
 _INTERPOLATION = {"flat": "nointerpolation ", "noperspective": "noperspective ", "centroid": "centroid "}
-_INPUT_SEMANTICS = {"vertex": "ATTR", "fragment": "TEXCOORD"}
-_OUTPUT_SEMANTICS = {"vertex": "TEXCOORD", "fragment": "SV_Target"}
+_INPUT_SEMANTICS = {"vertex": "ATTR", "fragment": "TEXCOORD", "compute": ""}
+_OUTPUT_SEMANTICS = {"vertex": "TEXCOORD", "fragment": "SV_Target", "compute": ""}
 
 
 def semantic(slot: Slot) -> str:
@@ -90,5 +90,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
         body.append(f"return {result};")
     else:
         signature = f"void {name}({params}) {{"
+    if printer.module.workgroup:
+        lines.append(Line(f"[numthreads({', '.join(map(str, printer.module.workgroup))})]"))
     lines += wrap(signature, NOWHERE)
     return [*lines, *[line for text in body for line in wrap(f"    {text}", NOWHERE)], Line("}")]

@@ -15,6 +15,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
 from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.operators import PRECEDENCE
 from sssgen.ir.rules import FLOAT_MAX
 from sssgen.ir.types import FLOAT, INT, UINT, Array, Sampler, Scalar, Struct, Type, components, spell, unnested
@@ -23,6 +24,7 @@ from sssgen.support.diagnostics import failure
 from sssgen.targets.descriptor import Target
 from sssgen.targets.uniform_layout import Member
 
+_RETURNS = "{result}="
 _COLOR_LETTERS = str.maketrans("xyzw", "rgba")
 
 UNARY, POSTFIX, PRIMARY, TERNARY = 13, 14, 15, -1
@@ -77,6 +79,7 @@ class Printer:
         """A uniform's name → the technique that it belongs to."""
         self.stage: Stage | None = None
         """The interface of a whole shader."""
+        self.buffers = [variable for variable in module.variables if variable.storage == "buffer"]
 
     # Types and literals
 
@@ -98,7 +101,7 @@ class Printer:
     def variable(self, type_: Type, name: str) -> str:
         """A variable's declaration; in C the length of an array follows the name."""
         innermost, lengths = unnested(type_)
-        listed = "".join([f"[{length}]" for length in lengths])
+        listed = "".join([f"[{length or ''}]" for length in lengths])
         return f"{self.type(innermost)} {name}{listed}" if name else f"{self.type(innermost)}{listed}"
 
     def literal(self, literal: ir.Literal) -> str:
@@ -286,7 +289,20 @@ class Printer:
         if isinstance(stmt, ir.While):
             head = Line(f"{pad}while ({self.expr(stmt.condition)}) {{", stmt.span)
             return [head, *self.block(stmt.body, indent + 1), Line(f"{pad}}}")]
+        if isinstance(stmt, ir.MemoryOperation):
+            return [Line(f"{pad}{text}", stmt.span) for text in self.memory(stmt).split("\n")]
         return wrap(f"{pad}{self.simple(stmt)};", stmt.span)
+
+    def memory(self, stmt: ir.MemoryOperation) -> str:
+        """An operation on shared memory, by its row's text for this language."""
+        pattern = MEMORY[stmt.name].texts[self.target.dialect.partition("-")[0]]
+        result = self.expr(stmt.result) if stmt.result is not None else ""
+        if pattern.startswith(_RETURNS):
+            pattern = f"{'{result} = ' if result else ''}{pattern.removeprefix(_RETURNS)}"
+        elif not result:
+            pattern = pattern.replace(", {result}", "")
+        text = pattern.format(*map(self.expr, stmt.args), result=result)
+        return text if text.endswith("}") else f"{text};"
 
     def loop_header(self, loop: ir.For) -> str:
         init = self.simple(loop.init) if loop.init is not None else ""
@@ -361,6 +377,14 @@ class Printer:
         assert isinstance(struct.type, Struct)
         fields = [Line(f"    {self.variable(field.type, field.name)};", struct.span) for field in struct.type.fields]
         return [Line(f"struct {struct.type.name} {{", struct.span), *fields, Line("};")]
+
+    def print_layout(self) -> list[Line]:
+        """What a whole shader states before its variables."""
+        return []
+
+    def buffer_binding(self, buffer: ir.Variable) -> int:
+        """The binding of a storage buffer: that of the source, or else its number."""
+        return buffer.location if buffer.location >= 0 else self.buffers.index(buffer)
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The declarations of the uniforms without textures."""

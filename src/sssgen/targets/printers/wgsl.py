@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.types import VOID, Array, Sampler, Struct, Type
+from sssgen.ir.types import VOID, Array, Sampler, Scalar, Struct, Type
 from sssgen.ir.walk import subexpressions
 from sssgen.passes.scopes import assigned, outs_of
+from sssgen.passes.stage.atomic_places import atomic_places, memory_of
 from sssgen.passes.uniform_blocks import block_type
 from sssgen.targets.descriptor import Target
-from sssgen.targets.printers.printer import PRIMARY, UNARY, Line, Printer, documented, wrap
+from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented, wrap
 from sssgen.targets.printers.wgsl_entry import print_entry
 from sssgen.targets.uniform_layout import Member, padding
 
@@ -28,10 +29,16 @@ class WgslPrinter(Printer):
         self.outs = outs_of(module.functions)
         self.assigned: set[str] = set()
         """The variables that the current function assigns to after their declaration."""
+        self.atomics = atomic_places(module)
+        """The shared variables and the members of storage buffers that hold atomics."""
+        self.addressed = False
+        """Whether a place is printed and not its value."""
         self.pointers: set[str] = set()
         """The parameters of the current function that are pointers."""
 
     def type(self, type_: Type) -> str:
+        if isinstance(type_, Array) and not type_.length:
+            return f"array<{self.type(type_.element)}>"
         if isinstance(type_, Array):
             return f"array<{self.type(type_.element)}, {type_.length}>"
         return super().type(type_)
@@ -45,9 +52,58 @@ class WgslPrinter(Printer):
         return super().print_function(function)
 
     def bound(self, expr: ir.Expr) -> tuple[str, int]:
+        """An expression; memory of atomics is read by atomicLoad."""
+        if self.atomics and isinstance(expr.type, Scalar) and memory_of(expr) in self.atomics and not self.addressed:
+            return f"atomicLoad(&{self.place(expr)})", PRIMARY
+        if self.addressed and isinstance(expr, ir.Index):
+            place = self.place(expr.value)
+            self.addressed = False
+            text = f"{place}[{self.expr(expr.index)}]"
+            self.addressed = True
+            return text, POSTFIX
         if type(expr) is ir.Local:
             return (f"*{expr.name}", UNARY) if expr.name in self.pointers else (expr.name, PRIMARY)
         return super().bound(expr)
+
+    def place(self, expr: ir.Expr) -> str:
+        """A place in memory, without reading it."""
+        outer, self.addressed = self.addressed, True
+        text = self.expr(expr, POSTFIX)
+        self.addressed = outer
+        return text
+
+    def memory(self, stmt: ir.MemoryOperation) -> str:
+        if not stmt.args:
+            return super().memory(stmt)
+        place, *values = stmt.args
+        name = ir.Local(place.type, self.place(place), place.span)
+        return super().memory(stmt._replace(args=(name, *values)))
+
+    def simple(self, stmt: ir.Stmt) -> str:
+        """A statement; memory of atomics is written by atomicStore."""
+        if isinstance(stmt, ir.Assign) and self.atomics and memory_of(stmt.target) in self.atomics:
+            value = stmt.value
+            if stmt.op:
+                value = ir.Binary(value.type, stmt.op, stmt.target, value, stmt.span)
+            return f"atomicStore(&{self.place(stmt.target)}, {self.expr(value)})"
+        return super().simple(stmt)
+
+    def block(self, block: ir.Block, indent: int) -> list[Line]:
+        """A block; a barrier of memory beside one of control is the same barrier."""
+        lines: list[Line] = []
+        for line in super().block(block, indent):
+            if not (lines and line.text.endswith("Barrier();") and lines[-1].text == line.text):
+                lines.append(line)
+        return lines
+
+    def stored_type(self, type_: Type, key: tuple[str, ...]) -> str:
+        """The type of shared memory or of a member of a storage buffer."""
+        if key not in self.atomics:
+            return self.type(type_)
+        if isinstance(type_, Array):
+            length = f", {type_.length}" if type_.length else ""
+            return f"array<{self.stored_type(type_.element, key)}{length}>"
+        return f"atomic<{self.type(type_)}>"
 
     def global_value(self, value: ir.Global) -> str:
         in_block = value.name in self.uniforms and not isinstance(value.type, Sampler)
@@ -102,14 +158,30 @@ class WgslPrinter(Printer):
 
     def print_struct(self, struct: ir.StructDecl) -> list[Line]:
         assert isinstance(struct.type, Struct)
-        fields = [Line(f"    {self.variable(field.type, field.name)},", struct.span) for field in struct.type.fields]
-        return [Line(f"struct {struct.type.name} {{", struct.span), *fields, Line("}")]
+        name = struct.type.name
+        fields = [
+            Line(f"    {field.name}: {self.stored_type(field.type, (name, field.name))},", struct.span)
+            for field in struct.type.fields
+        ]
+        return [Line(f"struct {name} {{", struct.span), *fields, Line("}")]
 
     def print_constant(self, constant: ir.Constant) -> list[Line]:
         declared = self.variable(constant.type, constant.name)
         return wrap(f"const {declared} = {self.expr(constant.value)};", constant.span)
 
+    def buffer_binding(self, buffer: ir.Variable) -> int:
+        """Behind those of the textures and samplers."""
+        textures = sum([isinstance(uniform.type, Sampler) for uniform in self.module.uniforms])
+        return self.target.bindings.first + 1 + 2 * textures + self.buffers.index(buffer)
+
     def print_variable(self, variable: ir.Variable) -> list[Line]:
+        if variable.storage in ("shared", "buffer"):
+            text = f"{variable.name}: {self.stored_type(variable.type, (variable.name,))};"
+            if variable.storage == "shared":
+                return self.with_comments(variable, [Line(f"var<workgroup> {text}", variable.span)])
+            place = f"@group({self.group}) @binding({self.buffer_binding(variable)})"
+            access = "read" if variable.access == "readonly" else "read_write"
+            return self.with_comments(variable, [Line(f"{place} var<storage, {access}> {text}", variable.span)])
         declared = f"var<private> {self.variable(variable.type, variable.name)}"
         value = f" = {self.expr(variable.value)}" if variable.value is not None else ""
         return self.with_comments(variable, wrap(f"{declared}{value};", variable.span))

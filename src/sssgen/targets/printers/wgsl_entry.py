@@ -59,5 +59,6 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
         lines += [Line("}"), Line("")]
         result = f" -> {struct}"
         body.append(f"return {struct}({', '.join(map(place_text, stage.outputs))});")
-    lines += [Line(f"@{stage.kind}"), *wrap(f"fn {name}({params}){result} {{", NOWHERE)]
+    sizes = f" @workgroup_size({', '.join(map(str, printer.module.workgroup))})" if printer.module.workgroup else ""
+    lines += [Line(f"@{stage.kind}{sizes}"), *wrap(f"fn {name}({params}){result} {{", NOWHERE)]
     return [*lines, *[line for text in body for line in wrap(f"    {text}", NOWHERE)], Line("}")]

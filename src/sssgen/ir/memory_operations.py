@@ -1,0 +1,87 @@
+"""Operations on memory that invocations of a compute shader share: atomics, barriers, the length of a buffer.
+
+They are statements (`nodes.MemoryOperation`), as they write memory or wait; the table of builtins has functions of
+values alone. A text has `{0}` for the place, `{1}` and `{2}` for the values, `{result}` for the variable that takes the
+old value; `{result}=` begins the text of a language whose operation returns it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+KINDS = ("int", "uint")
+"""What atomics work on."""
+
+
+class MemoryRow(NamedTuple):
+    """One operation."""
+
+    name: str
+    doc: str
+    values: int = 0
+    """How many values follow the place."""
+    has_place: bool = True
+    returns: bool = True
+    """Whether it has a result: of an atomic the old value."""
+    needs_result: bool = False
+    """Whether some language has it only with a result."""
+    uniform_flow: bool = False
+    """All invocations of a workgroup must reach it: control flow must be uniform."""
+    orders: tuple[str, ...] = ()
+    """The memory that it orders: shared, buffer. Of a barrier without control it orders that alone."""
+    texts: Mapping[str, str] = {}
+    """Language → its text. WGSL has no barrier of memory alone: there the invocations wait, too."""
+
+
+def _atomic(name: str, doc: str, hlsl: str, values: int = 1, needs_result: bool = False, **other: str) -> MemoryRow:
+    args = ", ".join([f"{{{index}}}" for index in range(1, values + 1)])
+    texts = {
+        "glsl": f"{{result}}={name}({{0}}, {args})",
+        "wgsl": f"{{result}}={name}(&{{0}}, {args})",
+        "hlsl": f"{hlsl}({{0}}, {args}, {{result}})",
+    }
+    return MemoryRow(name, doc, values, needs_result=needs_result, texts={**texts, **other})
+
+
+def _barrier(name: str, doc: str, hlsl: str, wgsl: str, orders: tuple[str, ...], uniform: bool = False) -> MemoryRow:
+    texts = {"glsl": f"{name}()", "hlsl": hlsl, "wgsl": wgsl}
+    return MemoryRow(name, doc, has_place=False, returns=False, uniform_flow=uniform, orders=orders, texts=texts)
+
+
+ROWS = (
+    _atomic("atomicAdd", "Adds, and gives the old value.", "InterlockedAdd"),
+    _atomic("atomicMin", "The smaller value; gives the old one.", "InterlockedMin"),
+    _atomic("atomicMax", "The larger value; gives the old one.", "InterlockedMax"),
+    _atomic("atomicAnd", "Bitwise and; gives the old value.", "InterlockedAnd"),
+    _atomic("atomicOr", "Bitwise or; gives the old value.", "InterlockedOr"),
+    _atomic("atomicXor", "Bitwise exclusive or; gives the old value.", "InterlockedXor"),
+    _atomic("atomicExchange", "Stores; gives the old value.", "InterlockedExchange", needs_result=True),
+    _atomic(
+        "atomicCompSwap", "Stores the second value where the first is there; gives the old value.",
+        "InterlockedCompareExchange", 2, True,
+        wgsl="loop {{\n    let swapped = atomicCompareExchangeWeak(&{0}, {1}, {2});\n"
+        "    {result} = swapped.old_value;\n"
+        "    if (swapped.exchanged || swapped.old_value != {1}) {{\n        break;\n    }}\n}}",
+    ),
+    _barrier(
+        "barrier", "All invocations of the workgroup wait for each other; orders shared memory.",
+        "GroupMemoryBarrierWithGroupSync()", "workgroupBarrier()", ("shared",), True,
+    ),
+    _barrier("memoryBarrierShared", "Orders shared memory.", "GroupMemoryBarrier()", "workgroupBarrier()", ("shared",)),
+    _barrier(
+        "memoryBarrierBuffer", "Orders storage buffers.", "DeviceMemoryBarrier()", "storageBarrier()", ("buffer",),
+    ),
+    _barrier("memoryBarrier", "Orders all memory.", "AllMemoryBarrier()", "storageBarrier()", ("shared", "buffer")),
+    _barrier(
+        "groupMemoryBarrier", "Orders all memory for the workgroup.", "AllMemoryBarrier()", "storageBarrier()",
+        ("shared", "buffer"),
+    ),
+    MemoryRow(
+        "arrayLength", "How many elements a buffer's last member has.",
+        texts={"glsl": "{result}={0}.length()", "wgsl": "{result}=i32(arrayLength(&{0}))"},
+    ),
+)  # fmt: skip
+
+MEMORY: dict[str, MemoryRow] = {row.name: row for row in ROWS}
+"""The rows by their names."""
