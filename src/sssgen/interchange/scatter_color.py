@@ -13,11 +13,13 @@ def albedo_of_multiscatter(color: Sequence[float], anisotropy: float = 0.0) -> t
     KHR_materials_volume_scatter: s = 4.09712 + 4.20863 c - sqrt(9.59217 + 41.6808 c + 17.7126 c^2), albedo = 1 - s^2.
     With an anisotropy g, as in the draft KHR_materials_scatter: (1 - s^2) / (1 - g s^2), the similarity relation.
     """
-    albedo = []
-    for part in color:
-        s = 4.09712 + 4.20863 * part - math.sqrt(9.59217 + 41.6808 * part + 17.7126 * part * part)
-        albedo.append(min(max((1.0 - s * s) / (1.0 - anisotropy * s * s), 0.0), 1.0))
-    return tuple(albedo)
+    squares = [absorbing_root(part) ** 2 for part in color]
+    return tuple(min(max((1.0 - square) / (1.0 - anisotropy * square), 0.0), 1.0) for square in squares)
+
+
+def absorbing_root(color: float) -> float:
+    """The root of the absorbed share, s of the equation above, of a medium with isotropic scattering."""
+    return 4.09712 + 4.20863 * color - math.sqrt(9.59217 + 41.6808 * color + 17.7126 * color * color)
 
 
 def multiscatter_of_albedo(albedo: Sequence[float], anisotropy: float = 0.0) -> tuple[float, ...]:
@@ -30,8 +32,7 @@ def _color_of(albedo: float, anisotropy: float) -> float:
     low, high = 0.0, 1.0
     for _ in range(60):  # the albedo grows with the colour
         middle = 0.5 * (low + high)
-        root = math.sqrt(9.59217 + 41.6808 * middle + 17.7126 * middle * middle)
-        if 4.09712 + 4.20863 * middle - root > s:
+        if absorbing_root(middle) > s:
             low = middle
         else:
             high = middle
