@@ -16,6 +16,7 @@ from PIL import Image
 
 from amounts import COUNTED
 from folders import TESTS
+from gltf_files import box, data_uri, inlined, png
 from ir_sample import SAMPLE
 from sssgen.bake import bake_light as light
 from sssgen.bake.volume_files import encoded
@@ -28,6 +29,8 @@ from sssgen.harness.scenes import scene_loading
 from sssgen.harness.scenes.mesh import Mesh
 from sssgen.harness.testing import project_run as ci
 from sssgen.harness.verify.inline_includes import expanded
+from sssgen.interchange import gltf_reader
+from sssgen.interchange.mapping_report import Report
 from sssgen.ir.nodes import Span
 from sssgen.ir.text import print_module
 from sssgen.ir.text_reader import TextError, read_module
@@ -199,6 +202,24 @@ def _mesh(path: Path) -> None:
     _ = Mesh(path=str(path)).triangles
 
 
+def _imported(path: Path) -> None:
+    gltf_reader.read(str(path), Report(path.name))
+
+
+def _gltf_files() -> list[bytes]:
+    """A cube with a volume and a texture, in one file."""
+    volume = {"thicknessFactor": 0.5, "attenuationDistance": 2.0, "attenuationColor": [0.5, 0.25, 1.0]}
+    scatter = {"multiscatterColor": [0.9, 0.5, 0.1], "scatterAnisotropy": 0.5}
+    extensions = {"transmission": {"transmissionFactor": 1.0}, "volume": volume, "volume_scatter": scatter}
+    transform = {"KHR_texture_transform": {"rotation": 0.5, "scale": [2.0, 2.0]}}
+    material = {
+        "pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "extensions": transform}},
+        "extensions": {f"KHR_materials_{name}": value for name, value in extensions.items()},
+    }
+    content, data = box(material, textures=[{"source": 0}], images=[{"uri": data_uri(png((1, 2, 3)))}])
+    return [inlined(content, data)]
+
+
 def _volumes(kind: str) -> Callable[[], list[bytes]]:
     def contents() -> list[bytes]:
         types = (np.uint8, np.uint16, np.float16, np.float32)
@@ -251,6 +272,8 @@ FRONT_ENDS = {
     "ply": FrontEnd(".ply", _mesh, _meshes("ply"), False),
     "stl": FrontEnd(".stl", _mesh, _meshes("stl"), False),
     "glb": FrontEnd(".glb", _mesh, _meshes("glb"), False),
+    "imported gltf": FrontEnd(".gltf", _imported, _gltf_files, False),
+    "imported glb": FrontEnd(".glb", _imported, _meshes("glb"), False),
 }
 
 

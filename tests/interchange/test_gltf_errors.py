@@ -12,6 +12,7 @@ from gltf_files import box, data_uri, glb_header, png, write_gltf
 from sssgen.interchange.gltf_container import LARGEST_FILE
 from sssgen.interchange.gltf_reader import read
 from sssgen.interchange.mapping_report import Report
+from sssgen.material.model import wrong_name
 from sssgen.support.diagnostics import SssgenError
 
 Edit = Callable[[dict[str, Any]], Any]
@@ -50,6 +51,7 @@ FAULTS: dict[str, tuple[Edit, str, str]] = {
     "a path that climbs": (textured("../wood.png"), "/images/0/uri", "leaves the folder"),
     "an encoded path that climbs": (textured("%2e%2e/wood.png"), "/images/0/uri", "leaves the folder"),
     "an absolute path": (textured("/etc/passwd"), "/images/0/uri", "absolute path"),
+    "a lone surrogate": (textured("wood\ud800.png"), "/images/0/uri", "not the name of a file"),
     "a drive": (textured("C:\\wood.png"), "/images/0/uri", "is not a file beside this one"),
     "a URL": (textured("https://example.org/wood.png"), "/images/0/uri", "is not a file beside this one"),
     "a host": (textured("//example.org/wood.png"), "/images/0/uri", "is not a file beside this one"),
@@ -186,6 +188,6 @@ def test_the_names_of_materials_stay_in_the_folder(name: str, tmp_path: Path) ->
     report = Report("box")
     materials = read(str(write_gltf(tmp_path / "box.gltf", content, data)), report)
     (written,) = write_import(str(tmp_path / "out"), materials, report)
-    assert written.name.isidentifier() and written.name.isascii() and len(written.name) <= 64
+    assert wrong_name(written.name) is None
     assert (tmp_path / "out" / written.material).is_file()
     assert {path.name for path in tmp_path.iterdir()} == {"box.gltf", "out"}

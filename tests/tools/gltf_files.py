@@ -60,11 +60,16 @@ def write_gltf(path: Path, content: dict[str, Any], data: bytes) -> Path:
     if path.suffix == ".glb":
         path.write_bytes(glb(content, data))
         return path
+    path.write_bytes(inlined(content, data))
+    return path
+
+
+def inlined(content: dict[str, Any], data: bytes) -> bytes:
+    """The text of a .gltf file with its buffer inside."""
     if content.get("buffers") and "uri" not in content["buffers"][0]:
         uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
         content = {**content, "buffers": [{**content["buffers"][0], "uri": uri}]}
-    path.write_text(json.dumps(content), encoding="utf-8")
-    return path
+    return json.dumps(content).encode()
 
 
 def png(color: tuple[int, ...], size: tuple[int, int] = (2, 2)) -> bytes:

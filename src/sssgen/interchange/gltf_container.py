@@ -57,7 +57,7 @@ class Container:
                 f"'{uri[:80]}' is not a file beside this one", "download it, and name it relative to the file"
             )
         name = urllib.parse.unquote(uri).replace("\\", "/")
-        if not name or "\0" in name:
+        if not name or "\0" in name or not name.isprintable():
             raise place.fault("this is not the name of a file")
         if name.startswith("/") or _SCHEME.match(name):
             raise place.fault(f"'{name[:80]}' is an absolute path", "name the file relative to this one")
@@ -92,6 +92,8 @@ def open_file(path: str, top: str = "") -> Container:
         raise failure("no such file", file=shown) from None
     except OSError as error:
         raise failure(f"cannot read the file: {error.strerror}", file=shown) from None
+    except ValueError:  # a zero byte or a lone surrogate in its name
+        raise failure("this is not a valid file name", file=shown) from None
     text, binary = _chunks(data, shown) if binary_format else (data, None)
     root = _document(text, shown)
     folder = os.path.dirname(path) or "."

@@ -16,6 +16,7 @@ from sssgen.interchange.scene_text import ball_radius, scene_text
 from sssgen.interchange.technique_choice import Choice, choose
 from sssgen.interchange.texture_composer import Coordinates
 from sssgen.lab.measure.measured_chain import material_text
+from sssgen.material.model import wrong_name
 from sssgen.support.file_writer import write_files
 from sssgen.support.paths import place
 
@@ -83,7 +84,7 @@ def identifiers(names: Sequence[str]) -> list[str]:
     for name in names:
         words = re.sub(r"[^a-z0-9]+", "_", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()).strip("_")
         base = words[:_LONGEST_NAME].strip("_") or "material"
-        base = f"material_{base}" if base[0].isdigit() else base
+        base = f"material_{base}" if wrong_name(base) else base
         unused, number = base, 2
         while unused in result:
             unused, number = f"{base}_{number}", number + 1
