@@ -9,10 +9,9 @@ from sssgen.interchange.graph_values import Computed, Constant, Normal, Texture,
 from sssgen.interchange.imported import Element
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.materialx_graph import Graph, Scope, applied
+from sssgen.interchange.record_limits import BRIGHTEST
 from sssgen.interchange.surface_model import Quantity
 
-BRIGHTEST = 1000.0
-"""The largest emission of a material."""
 _MOST = {"emission": BRIGHTEST, "thickness": 1e6}
 """Field → its largest number, where that is not 1."""
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from sssgen.interchange.albedo_inversion import subsurface_medium, transmission_medium
 from sssgen.interchange.graph_values import Constant, Value, mean
-from sssgen.interchange.materialx_shader import BRIGHTEST, Shader
+from sssgen.interchange.materialx_shader import Shader
+from sssgen.interchange.record_limits import BRIGHTEST
 from sssgen.interchange.surface_model import (
     AlphaMode,
     Quantity,
@@ -100,7 +101,7 @@ def _with_interior(shader: Shader, model: SurfaceModel, base: Value, layers: _La
     model = replace(model, thin_walled=thin, two_sided=thin)
     weight = shader.value(layers.subsurface, "diffuse_transmission" if thin else "subsurface")
     transmission = shader.quantity(layers.transmission, "transmission")
-    scatters, transmits = any(mean(weight)), not transmission.is_zero
+    scatters, transmits = any(part > 0.0 for part in mean(weight)), not transmission.is_zero
     if thin:
         model = _sheet(shader, model, base, weight, layers) if scatters else model
         if transmits:

@@ -8,6 +8,7 @@ import numpy as np
 
 from sssgen.interchange.dense_bodies import as_matte
 from sssgen.interchange.imported import Notes
+from sssgen.interchange.record_limits import limited
 from sssgen.interchange.surface_model import ONE, WHITE, Quantity, SurfaceModel
 from sssgen.interchange.texels import mean_of
 from sssgen.interchange.texture_composer import Composer, Coordinates, Written
@@ -254,7 +255,7 @@ class _Chooser:
             extinction=[min(part * self.metres, _DENSEST) for part in extinction],
             scattering_albedo=[s / t if t > 0.0 else 0.0 for s, t in zip(reduced, extinction, strict=True)],
             octaves=[weight * part for part in _OCTAVES],
-            mean_free_path=3.0 / max(sum(extinction) * self.metres, 3e-6),
+            mean_free_path=min(max(3.0 / max(sum(extinction) * self.metres, 3e-6), 1e-4), 100.0),
         )  # fmt: skip
 
 
@@ -263,7 +264,7 @@ def choose(model: SurfaceModel, notes: Notes, mean_chord: float) -> Choice:
 
     `notes` gets what the stages cannot express.
     """
-    return _Chooser(as_matte(model, notes, mean_chord), notes, mean_chord).all()
+    return _Chooser(as_matte(limited(model, notes), notes, mean_chord), notes, mean_chord).all()
 
 
 def _kept(metalness: Any, transmission: Any, diffuse: Any, subsurface: Any) -> Any:

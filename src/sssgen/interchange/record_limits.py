@@ -1,0 +1,30 @@
+"""Limits the numbers of a record to those that materials have; files have others by mistake."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from sssgen.interchange.imported import Notes
+from sssgen.interchange.surface_model import Quantity, SurfaceModel
+
+BRIGHTEST = 1000.0
+"""The largest emission of a material."""
+_LARGEST = {"emission": BRIGHTEST, "thickness": 1e6, "normal": 4.0, "specular": 1e3, "specular_color": 1e3}
+"""Field → its largest number, where that is not 1."""
+
+
+def limited(model: SurfaceModel, notes: Notes) -> SurfaceModel:
+    """The record with constants from 0 to the largest number of their field; `notes` gets what was outside.
+
+    The factor of a picture is only kept from being negative: a dark picture may have a large one.
+    """
+    changed: dict[str, Quantity] = {}
+    for field, value in vars(model).items():
+        if not isinstance(value, Quantity):
+            continue
+        most = float("inf") if value.image is not None else _LARGEST.get(field, 1.0)
+        factor = tuple(min(max(part, 0.0), most) for part in value.factor)
+        if factor != value.factor:
+            changed[field] = value._replace(factor=factor)
+            notes.approximated(field, f"limited to 0 to {most:g}" if value.image is None else "limited to 0")
+    return replace(model, **changed) if changed else model  # type: ignore[arg-type]

@@ -1,0 +1,22 @@
+"""Numbers that no material has are limited, with a note."""
+
+from __future__ import annotations
+
+from sssgen.interchange.imported import Notes
+from sssgen.interchange.record_limits import limited
+from sssgen.interchange.surface_model import Image, Picture, Quantity, SurfaceModel
+
+
+def test_constants_are_limited() -> None:
+    notes = Notes()
+    model = SurfaceModel("m", metalness=Quantity((2.0,)), emission=Quantity((-1.0, 5.0, 1e9)))
+    result = limited(model, notes)
+    assert (result.metalness.factor, result.emission.factor) == ((1.0,), (0.0, 5.0, 1000.0))
+    assert {*notes.by_field} == {"metalness", "emission"}
+
+
+def test_usual_records_stay() -> None:
+    """A picture may have a factor above 1."""
+    image = Image(Picture("dark.png", b""))
+    model = SurfaceModel("m", base_color=Quantity((4.0, 4.0, 4.0), image))
+    assert limited(model, Notes()) is model
