@@ -115,9 +115,9 @@ class GltfWriter:
         total = np.clip(first + second, 0.0, 1.0)
         share = second.max(axis=-1) / np.maximum(total.max(axis=-1), 1e-6)
         base = np.concatenate([images.encode_srgb(total), texels[0][..., 3:]], axis=-1)
-        self.pictures["base_color"] = images.png_bytes(base)
+        self.pictures["unmixed_color"] = images.png_bytes(base)
         self.add("transmission", images.png_bytes(share), reflected)
-        return reflected._replace(file="base_color")
+        return reflected._replace(file="unmixed_color")
 
     def surface(self) -> None:
         parameters, material = self.parameters, self.json
