@@ -101,9 +101,9 @@ def run(arguments: Namespace) -> int:
         for source, assumed in _assumptions(report):
             print(f"  assumed ({source}): {assumed}")
     if arguments.baseline:
-        known = len(unproven) - len(new)
+        count = len(unproven) - len(new)
         written = " now" if arguments.write_baseline else ""
-        print(f"{arguments.baseline}{written} accepts {known} finding{'s' * (known != 1)}; {len(new)} new")
+        print(f"{arguments.baseline}{written} accepts {count} finding{'s' * (count != 1)}; {len(new)} new")
     return CHECK_FAILED if unguarded else OK
 
 

@@ -72,8 +72,8 @@ def _with_mesh(material: Imported, mesh: FileContent | None) -> Imported:
 
 
 def _check_required(root: JsonElement) -> None:
-    known = {*READ, *_ALSO_READ, *_WITHOUT_EFFECT}
+    supported = {*READ, *_ALSO_READ, *_WITHOUT_EFFECT}
     for element in root.items("extensionsRequired"):
-        if element.value not in known:
+        if element.value not in supported:
             hint = "export the file without this extension: it says that the file is wrong without it"
             raise element.fault(f"the file requires '{str(element.value)[:60]}', which is not read", hint)

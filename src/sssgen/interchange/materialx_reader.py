@@ -39,8 +39,8 @@ def read(path: str, report: Report, name: str = "", top: str = "") -> list[Impor
         model = SURFACES[node.getCategory()](shader, title)
         result.append(Imported(model, {field: parts for field, parts in shader.elements.items() if parts}))
     if not result:
-        found = sorted({row.value for row in report.rows})
-        hint = f"{'its shaders are ' + ', '.join(found) + '; ' if found else ''}read are {', '.join(SURFACES)}"
+        refused = sorted({row.value for row in report.rows})
+        hint = f"{'its shaders are ' + ', '.join(refused) + '; ' if refused else ''}read are {', '.join(SURFACES)}"
         raise failure("the document has no material that can be read", hint, posix(path))
     return result
 

@@ -86,16 +86,16 @@ class Shader:
     def normal(self, name: str, field: str) -> Quantity:
         """A normal map and its strength."""
         value = self.graph.input(self.node, name, self.scope)
-        known = isinstance(value, Normal) and not value.cause
+        is_map = isinstance(value, Normal) and not value.cause
         if name in self._set:
             self._reported.add(name)
-            if known:
+            if is_map:
                 self.elements.setdefault(field, []).append(Element(self.path(name), _shown(value)))
             else:
                 cause = value.cause or self.node.getNamePath()
                 text = f"{cause} is not a normal map; bake one"
                 self.report.left_out(self.path(name), f"graph with {cause}", text)
-        if not isinstance(value, Normal) or value.texels is None or not known:
+        if not isinstance(value, Normal) or value.texels is None or not is_map:
             return Quantity((1.0,))
         quantity = quantity_of(value.texels, f"{self.node.getName()}_{field}", False)
         return Quantity((value.strength,), quantity.image)

@@ -167,9 +167,9 @@ class UnityMaterial:
 
     def approximated(self, name: str, value: object, became: str, error: str = "") -> None:
         """Reports a property that the record keeps only in part."""
-        found = next((group[name] for group in self.properties.values() if name in group), None)
-        if found is not None:
-            path = self._shown(found)
+        written = next((group[name] for group in self.properties.values() if name in group), None)
+        if written is not None:
+            path = self._shown(written)
             for elements in self.elements.values():
                 elements[:] = [element for element in elements if element.path != path]
             self.report.approximated(path, value, became, error)
@@ -204,8 +204,8 @@ def import_settings(meta: str, color: bool) -> ImportSettings:
 
     def setting(name: str, default: float, group: str = "") -> float:
         part = importer.mapping.get(group) if group else importer
-        found = part.mapping.get(name) if part is not None else None
-        return default if found is None else found.number
+        written = part.mapping.get(name) if part is not None else None
+        return default if written is None else written.number
 
     srgb = bool(setting("sRGBTexture", float(color), "mipmaps")) and setting("textureType", 0.0) != _NORMAL_MAP
     clamped = setting("wrapU", 0.0, "textureSettings") == 1.0

@@ -69,10 +69,10 @@ def guid_of(meta: str) -> str:
     """The GUID in a .meta file, or ''."""
     try:
         with open(meta, "rb") as file:
-            found = _GUID.search(file.read(_HEAD_BYTES))
+            match = _GUID.search(file.read(_HEAD_BYTES))
     except OSError:
         return ""
-    return found[1].decode("ascii").lower() if found else ""
+    return match[1].decode("ascii").lower() if match else ""
 
 
 def guid_of_vector(numbers: tuple[float, ...]) -> str:

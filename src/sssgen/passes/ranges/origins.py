@@ -230,9 +230,9 @@ class Origins:
 
     def _worst(self, nodes: list[ir.Expr], by_length: bool, fails: Callable[[Range], bool] | None) -> ir.Expr | None:
         """The node whose range fails, else the one with the widest range."""
-        known = [(node, own) for node in nodes if (own := self._range(node, by_length)) is not None]
-        failing = [pair for pair in known if fails is not None and fails(pair[1])]
-        return max(failing or known, key=lambda pair: pair[1].high - pair[1].low, default=(None, None))[0]
+        ranges = [(node, own) for node in nodes if (own := self._range(node, by_length)) is not None]
+        failing = [pair for pair in ranges if fails is not None and fails(pair[1])]
+        return max(failing or ranges, key=lambda pair: pair[1].high - pair[1].low, default=(None, None))[0]
 
     def _behind(
         self, node: ir.Local | ir.Global, own: Range, by_length: bool, fails: Callable[[Range], bool] | None
