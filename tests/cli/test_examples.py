@@ -58,6 +58,7 @@ def test_an_example_is_a_valid_command_line(example: str) -> None:
 def test_quick_examples_run(run: Run) -> None:
     Path("wax.toml").write_text(WAX, encoding="utf-8")
     Path("mine.glsl").write_text("float halved(float x) { return 0.5 * x; }\n", encoding="utf-8")
+    Path("mine.frag").write_text("in vec2 uv; out vec4 color; void main() { color = uv.xyxy; }\n", encoding="utf-8")
     Path("materials").mkdir()
     technique = Path(library.load("thinness_uniform").path).read_text(encoding="utf-8")
     Path("mine.sss").write_text(technique.replace("thinness_uniform", "mine"), encoding="utf-8")

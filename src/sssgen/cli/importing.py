@@ -15,7 +15,6 @@ def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
         "examples:\n"
         "  sssgen import lantern.glb -o lantern\n"
-        "  sssgen render lantern/paper/scene.toml -o paper.png\n"
         "  sssgen import lantern.glb -o lantern --material paper --bake\n"
         "  sssgen import library/soap/soap.mtlx -o soap --root library\n"
         "  sssgen import Assets/Materials/Skin.mat -o skin\n"

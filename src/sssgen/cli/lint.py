@@ -21,7 +21,8 @@ def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
         "examples:\n  sssgen lint ice\n  sssgen lint mine.glsl --json\n"
         "  sssgen lint mine.frag --kind nan,division\n  sssgen lint mine.frag --assume threejs\n"
-        "  sssgen lint shaders/*.frag --sarif lint.sarif --baseline lint.json\n"
+        "  sssgen lint mine.frag --baseline lint.json --write-baseline\n"
+        "  sssgen lint mine.frag --baseline lint.json --sarif lint.sarif\n"
         "Kinds: nan, division (by 0), undefined (by the language), range (out of range), overflow (to infinity).\n"
         "Exit status 1: an operation of a plain function may fail. The shaders that emit writes for materials have "
         "guards."
