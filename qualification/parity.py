@@ -162,7 +162,7 @@ def _program(backend: Backend, chosen: Sequence[Case]) -> list[Array]:
             tuple(case.args[index] for index in passed_in),
         )
         calls.append(Call(f"case_{number}", *passed))
-    compiled = transpile(load_text("\n".join(lines), "cases"), backend.target.name, "cases")
+    compiled = transpile(load_text("\n".join(lines), "intrinsics/cases"), backend.target.name, "cases")
     text = next(text for name, text in compiled.files.items() if not name.endswith(".json"))
     renames = compiled.reflection["renames"]
     calls = [call._replace(function=renames.get(call.function, call.function)) for call in calls]

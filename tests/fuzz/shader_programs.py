@@ -43,7 +43,7 @@ int count_to(int x, out float rest, inout int count) {
 
 RULES: dict[str, list[str]] = {
     "exact": [
-        "({exact} + {exact})", "({exact} - {exact})", "({exact} * 0.5)", "(-{exact} * 1.5)", "(-{exact})",
+        "({exact} + {exact})", "({exact} - {exact})", "({exact} * 0.5)", "(- {exact} * 1.5)", "(- {exact})",
         "abs({exact})",
         "min({exact}, {exact})", "max({exact}, {exact})", "clamp({exact}, -2.0, 3.0)", "floor({exact})",
         "ceil({exact})",
@@ -86,7 +86,7 @@ RULES: dict[str, list[str]] = {
         "{vec4}.yzw",
         "{vec3}.zxy", "{vec2}.xyx", "({mat3} * {vec3} * 0.1)", "{mat3}[2]",
         "faceforward({vec3}, vec3(0.0, 0.0, {exact}), vec3(0.0, 0.0, 1.0))",
-        "refract(normalize(sin({vec3}) + 2.0), vec3(0.0, 0.6, 0.8), 0.7)", "(-{vec3})", "max({vec3}, {float})", "d",
+        "refract(normalize(sin({vec3}) + 2.0), vec3(0.0, 0.6, 0.8), 0.7)", "(- {vec3})", "max({vec3}, {float})", "d",
     ],
     "vec4": [
         "vec4({vec2}, {vec2})", "vec4({vec3}, {float})", "vec4({float})", "({vec4} - {vec4})", "{vec4}.wzyx",
@@ -123,7 +123,7 @@ RULES: dict[str, list[str]] = {
     "ivec2": [
         "ivec2({int}, {int})", "ivec2({int})", "({ivec2} + {ivec2})", "({ivec2} * {int})", "{ivec2}.yx",
         "({ivec2} / {IVEC2})",
-        "({ivec2} % {INT})", "({ivec2} ^ {ivec2})", "({ivec2} << {IVEC2})", "(-{ivec2})", "max({ivec2}, {ivec2})",
+        "({ivec2} % {INT})", "({ivec2} ^ {ivec2})", "({ivec2} << {IVEC2})", "(- {ivec2})", "max({ivec2}, {ivec2})",
         "abs({IVEC2})",
         "ivec2({bvec2})", "grid[{int} & 1]",
     ],

@@ -361,7 +361,7 @@ def test_the_way_to_the_input_is_explained(tmp_path: Path, capsys: pytest.Captur
     assert main(["lint", str(path), "--no-examples"]) == 1
     output = capsys.readouterr().out
     assert "because: 1.0 - a * a widens the range: in -2.5e+11..1, line 5" in output
-    assert "because: parameter x of f is in -1e+06..1e+06, line 2" in output
+    assert "because: parameter x is in -1e+06..1e+06, line 2" in output
 
 
 def test_baselines_follow_moved_lines(hazards: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

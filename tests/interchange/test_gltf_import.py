@@ -164,11 +164,13 @@ def test_the_mean_chord_of_a_cube(tmp_path: Path) -> None:
     assert mean_chord(mesh) == pytest.approx(4.0 / 6.0)
 
 
-def test_the_mesh_has_its_own_thickness(tmp_path: Path) -> None:
+def test_the_mesh_has_its_own_thickness(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for package in ("xatlas", "embreex", "igl"):
         pytest.importorskip(package)
     from sssgen.interchange import thickness_bake
 
+    monkeypatch.setattr(thickness_bake, "SIDE", 32)
+    monkeypatch.setattr(thickness_bake, "RAYS", 16)
     result, report = imported(tmp_path, volume(attenuationDistance=0.5, attenuationColor=[0.5, 0.5, 0.5]))
     baked = thickness_bake.with_baked_thickness(result, report)
     image = baked.model.thickness.image

@@ -257,8 +257,10 @@ class Origins:
             arguments = [call.args[position] for call in self.calls.get(owner, ()) if id(call) in self.trace.seen]
             argument = self._worst(arguments, by_length, fails) if arguments else None
             span = param.span if argument is None else argument.span
-            what = "parameter" if argument is None else "argument"
-            return argument, Step(span, what, f"{param.name} of {function.name}", own, _is_length(node, by_length))
+            length = _is_length(node, by_length)
+            if argument is None:
+                return None, Step(span, "parameter", param.name, own, length)
+            return argument, Step(span, "argument", f"{param.name} of {function.name}", own, length)
         written = [*before, *self._outs(owner, key)]
         value = self._worst(written, by_length, fails)
         if value is None:

@@ -10,7 +10,7 @@ import math
 from sssgen.ir import nodes as ir
 from sssgen.ir.formats import FLOAT16
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.types import FLOAT, Sampler, kind_of
+from sssgen.ir.types import FLOAT, Matrix, Sampler, kind_of, spell
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.targets.descriptor import OutputFile, Target
 from sssgen.targets.printers.printer import PRIMARY, Line, shortest
@@ -23,7 +23,9 @@ def target() -> Target:
     """The target `wgsl` in half precision. It has only the functions form: uniform blocks hold float32."""
     base = load("wgsl")
     sizes = (2, 3, 4)
-    halves = {f"vec{size}": f"vec{size}h" for size in sizes} | {f"mat{size}": f"mat{size}x{size}h" for size in sizes}
+    halves = {f"vec{size}": f"vec{size}h" for size in sizes} | {
+        spell(Matrix(columns, rows)): f"mat{columns}x{rows}h" for columns in sizes for rows in sizes
+    }
     library = OutputFile("{material}.functions.wgsl", "wgsl/functions_half.wgsl.j2", {"library": ""})
     return base._replace(
         name="wgsl-f16",
