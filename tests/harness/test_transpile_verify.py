@@ -203,6 +203,11 @@ def test_the_tolerance_of_drivers_does_not_hide_larger_errors(rows: Rows) -> Non
     assert not any(one.ok for one in wrong.comparisons.values())
 
 
+def test_a_struct_of_uniforms_needs_no_name(rows: Rows) -> None:
+    text = "uniform struct { float scale; } u;\nfloat scaled(float x) { return x * u.scale; }\n"
+    assert rows(text)["scaled(float)"].ok
+
+
 def test_initial_values_of_variables_need_no_main(rows: Rows) -> None:
     text = "uniform float time;\nfloat start = time * 2.0;\nfloat next(float x) { return start + x; }"
     assert rows(text)["next(float)"].ok

@@ -80,6 +80,16 @@ def test_a_control_changes_the_picture_and_save_writes_the_file(shown: Shown, st
     assert color(shown.picture()) == pytest.approx(after, abs=2.0)
 
 
+def test_a_body_of_millimetres_is_seen(browser: Any, stone: Path) -> None:
+    scene = stone.with_name("scene.toml")
+    text = '[geometry]\nkind = "ball"\nradius = 0.003\n[camera]\nposition = [0.0, 0.0, 0.012]\n[[light]]\n'
+    scene.write_text(f'material = "stone.toml"\n{text}direction = [0.0, 0.0, 1.0]\n', encoding="utf-8")
+    shown = Shown(browser, str(scene))
+    red = color(shown.picture())
+    shown.close()
+    assert red[0] > 1.5 * red[1]
+
+
 def test_undo_gives_the_values_of_the_file(shown: Shown) -> None:
     before = color(shown.picture())
     shown.page.fill("[data-property=tint] input[type=number]", "0.5")

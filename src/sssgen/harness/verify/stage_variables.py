@@ -53,7 +53,8 @@ _DEFAULTS = re.compile(r"(?:layout\s*\([^()]*\)\s*)?(?:uniform|in|out)\s*;")
 """The defaults of a shader, such as `layout(std140) uniform;`."""
 _REQUALIFIED = re.compile(r"(?:invariant|precise)\s+\w+(?:\s*,\s*\w+)*\s*;")
 _UNIFORM = re.compile(r"uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s+\w+\s*(\[?)")
-_BLOCK = re.compile(r"uniform\s+(\w+)\s*\{([^{}]*)\}\s*(\w*)\s*;")
+_BLOCK = re.compile(r"uniform\s+(?!struct\b)(\w+)\s*\{([^{}]*)\}\s*(\w*)\s*;")
+_STRUCT = re.compile(r"uniform\s+struct\b")
 _HINT = rf"(?:{'|'.join(HINTS)})\b\s*" + r"""(?:\((?:"[^"\n]*"|[^()"])*\))?"""
 _HINTS = re.compile(rf":\s*{_HINT}(?:\s*,\s*{_HINT})*")
 _DEFAULT = re.compile(r"=(?:\((?:[^()]|\([^()]*\))*\)|[^;,()])*")
@@ -205,7 +206,7 @@ def _replacement(text: str, name: re.Match[str]) -> tuple[str, int] | None:
         return "", layout.end()
     if again := _REQUALIFIED.match(text, name.start()):
         return "", again.end()
-    if name[0] in _DROPPED:
+    if name[0] in _DROPPED or _STRUCT.match(text, name.start()):
         return "", name.end()
     if block := _BLOCK.match(text, name.start()):
         members = _LAYOUT.sub("", block[2])

@@ -16,7 +16,7 @@ export class Stage {
   constructor(root, kind, pieceOf) {
     Object.assign(this, { root, kind, pieceOf, textures: new Map(), lamps: [], handles: [] });
     this.scene = new THREE.Scene();
-    this.camera = new THREE.PerspectiveCamera(35, 1, 0.05, 100);
+    this.camera = new THREE.PerspectiveCamera();
     this.drafts = new Drafts(this);
   }
 
@@ -198,6 +198,8 @@ export class Stage {
   frame() {
     if (!this.mesh) return;
     this.hold();
+    const away = this.camera.position.distanceTo(this.ball.center);  // bodies are millimetres or kilometres large
+    Object.assign(this.camera, { near: 0.005 * away, far: 50 * away }).updateProjectionMatrix();
     const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
     const distant = this.lamps.find((lamp) => lamp.isDirectionalLight) ?? this.lamps[0];
     if (distant) this.views.draw(this.renderer, this.mesh, this.mesh.material, this.camera, distant, size);
