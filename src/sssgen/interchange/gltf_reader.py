@@ -58,6 +58,8 @@ def read(path: str, report: Report, name: str = "", top: str = "") -> list[Impor
             if spread > 1e-3 and "thickness" in material.elements:
                 became = f"the mean scale {scale:.4g} of its nodes"
                 report.approximated(f"{element.path} at nodes of different scales", spread, became, f"{spread:.1%}")
+            if mesh is not None and mesh.color is not None:
+                report.mapped(f"{element.path}: COLOR_0", "colours of vertices", "a factor of the base colour")
             result.append(_with_mesh(material, mesh))
     if -1 in parts and not name:
         result.append(_with_mesh(default_material(root.file), joined(parts[-1])[0]))

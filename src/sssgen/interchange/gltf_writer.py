@@ -50,7 +50,10 @@ class GltfWriter:
             self.volume()
             self.scattering()
         for number, stage in enumerate(self.material.stages):
-            if number not in self.parameters.read and stage.technique.function.params:
+            inputs = {param.name for param in stage.technique.function.params}
+            if "vertex_color" in inputs:
+                self.report.mapped(stage.technique.name, "a stage", "COLOR_0, where the mesh has colours")
+            elif number not in self.parameters.read and inputs:
                 self.report.left_out(stage.technique.name, "a stage", "glTF has nothing for it")
         return self.json
 
