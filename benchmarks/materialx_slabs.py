@@ -70,7 +70,7 @@ def slab(albedo: float, depth: float, anisotropy: float) -> tuple[float, float, 
     """What a slab reflects and transmits of light along the normal, and of diffuse light."""
     import iadpython
 
-    return tuple(map(float, iadpython.Sample(a=albedo, b=depth, g=anisotropy, n=1.0, quad_pts=PARALLEL).rt()))  # type: ignore[return-value]
+    return tuple(map(float, iadpython.Sample(a=albedo, b=depth, g=anisotropy, n=1.0, quad_pts=PARALLEL).rt()))
 
 
 def albedo_of(color: float, anisotropy: float) -> float:

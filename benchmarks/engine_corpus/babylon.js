@@ -56,7 +56,7 @@ const assign = (object, values) => {
   for (const [path, value] of Object.entries(values)) {
     const parts = path.split('.');
     const last = parts.pop();
-    parts.reduce((one, part) => one[part], object)[last] = typeof value === 'function' ? value() : value;
+    parts.reduce((parent, part) => parent[part], object)[last] = typeof value === 'function' ? value() : value;
   }
   return object;
 };

@@ -21,7 +21,8 @@ import numpy as np
 
 sys.path[:0] = [str(Path(__file__).parents[1] / "tools")]
 
-from hazard_programs import PARAMETERS, source  # noqa: E402  # tests/tools is not on the path of a script
+# After the line above, because tests/tools is not on the path of a script.
+from hazard_programs import PARAMETERS, source  # noqa: E402
 from sssgen.harness.backends import Array, Backend, Call, Text, get  # noqa: E402
 from sssgen.harness.evaluate.evaluation import shape_of  # noqa: E402
 from sssgen.ir import contracts  # noqa: E402

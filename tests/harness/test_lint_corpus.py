@@ -18,22 +18,30 @@ from sssgen.ir.intrinsics import KINDS
 CORPUS = sorted((ROOT / "tests/lint_corpus").glob("*.glsl"))
 
 
+def stated(key: str, text: str) -> str:
+    """What a file's line `// key: value` states."""
+    line = re.search(rf"^// {key}: (\S+)$", text, re.MULTILINE)
+    assert line is not None
+    return line[1]
+
+
 def test_the_corpus_is_complete() -> None:
-    heads = [path.read_text(encoding="utf-8") for path in CORPUS]
-    references = {re.search(r"^// reference: (https://\S+)$", head, re.MULTILINE)[1] for head in heads}  # type: ignore[index]
+    texts = [path.read_text(encoding="utf-8") for path in CORPUS]
+    references = {stated("reference", text) for text in texts}
+    assert all(reference.startswith("https://") for reference in references)
     assert len(references) == len(CORPUS) >= 15
-    assert {re.search(r"^// kind: (\w+)$", head, re.MULTILINE)[1] for head in heads} >= {"nan", "division", "undefined"}  # type: ignore[index]
+    assert {stated("kind", text) for text in texts} >= {"nan", "division", "undefined"}
 
 
 @pytest.mark.parametrize("path", CORPUS, ids=lambda path: path.stem)
 def test_the_bug_is_reported_and_its_repair_is_not(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
-    kind = re.search(r"^// kind: (\w+)$", text, re.MULTILINE)[1]  # type: ignore[index]
+    kind = stated("kind", text)
     failing = [number for number, line in enumerate(text.split("\n"), 1) if line.endswith("// fails")]
     kinds = ("nan", "division", "undefined", "range", *(("overflow",) if kind == "overflow" else ()))
-    report = lint(str(path), with_examples=False, kinds=kinds)  # type: ignore[arg-type]  # those of KINDS
+    report = lint(str(path), with_examples=False, kinds=kinds)
     assert set(kinds) <= set(KINDS)
-    found = {(finding.site.node.span.line, finding.kind) for finding in report.unproven()}
-    assert found == {(line, kind) for line in failing}
+    reported = {(finding.site.node.span.line, finding.kind) for finding in report.unproven()}
+    assert reported == {(line, kind) for line in failing}
     assert all(not finding.site.function.endswith("_mended") for finding in report.unproven())
     assert all(finding.why for finding in report.unproven())

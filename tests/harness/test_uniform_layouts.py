@@ -10,6 +10,7 @@ import pytest
 
 from sssgen.harness.backends import Backend, Block, Call, DrawingBackend, Place, Text
 from sssgen.harness.backends.call_program import drawing, results
+from sssgen.ir.nodes import Module
 from sssgen.ir.types import BY_NAME, VEC2, VEC4, column_size, components
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
@@ -65,9 +66,9 @@ def test_oblong_matrices_and_nested_arrays(name: str, backend: Callable[[str], B
     exec(next(iter(transpile(_functions(), "numpy", "probe").files.values())), functions)
     shapes = {"a": (2, 3), "b": (), "c": (3, 4), "d": (2, 4, 2), "e": (3,), "f": (2, 4, 3), "g": (6,), "h": (4, 3),
               "k": (4, 3, 2), "m": (2, 4), "n": (2,)}  # fmt: skip
-    expected = functions["probe"](uv, **{name: values[name].reshape(*shape, 1) for name, shape in shapes.items()})  # type: ignore[operator]
+    expected = functions["probe"](uv, **{name: values[name].reshape(*shape, 1) for name, shape in shapes.items()})
     np.testing.assert_allclose(actual, np.broadcast_to(expected, (4, 16)), rtol=1e-6)
 
 
-def _functions():  # type: ignore[no-untyped-def]
+def _functions() -> Module:
     return load_glsl_text(PROBE.replace("out vec4 color;", "").split("void main")[0], "probe.glsl").module

@@ -75,9 +75,9 @@ def answer(folder: Path, commands: str) -> Any:
     script = ROOT / "tests" / "tools" / "webgl_program.mjs"
     command = [node(), str(script), str(node_modules().parent), str(folder), "a", commands]
     process = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
-    told = json.loads(process.stdout.splitlines()[-1])
-    assert told["fault"] == ""
-    return told["result"]
+    reply = json.loads(process.stdout.splitlines()[-1])
+    assert reply["fault"] == ""
+    return reply["result"]
 
 
 def test_a_draw_is_valid_with_nothing_set(folder: Path) -> None:

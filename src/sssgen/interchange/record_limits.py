@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from sssgen.interchange.imported import Notes
 from sssgen.interchange.surface_model import Quantity, SurfaceModel
@@ -18,7 +19,7 @@ def limited(model: SurfaceModel, notes: Notes) -> SurfaceModel:
 
     The factor of a picture is only kept from being negative: a dark picture may have a large one.
     """
-    changed: dict[str, Quantity] = {}
+    changed: dict[str, Any] = {}
     for field, value in vars(model).items():
         if not isinstance(value, Quantity):
             continue
@@ -27,4 +28,4 @@ def limited(model: SurfaceModel, notes: Notes) -> SurfaceModel:
         if factor != value.factor:
             changed[field] = value._replace(factor=factor)
             notes.approximated(field, f"limited to 0 to {most:g}" if value.image is None else "limited to 0")
-    return replace(model, **changed) if changed else model  # type: ignore[arg-type]
+    return replace(model, **changed) if changed else model

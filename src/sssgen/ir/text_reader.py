@@ -221,7 +221,7 @@ class _Reader:
                 functions[index] = function._replace(body=self.block())
         except RecursionError:
             raise self.fail("nested too deeply") from None
-        module = Module(*(tuple(of_one_kind) for of_one_kind in declarations.values()))  # type: ignore[arg-type]
+        module = Module(*(tuple(of_one_kind) for of_one_kind in declarations.values()))  # type: ignore[arg-type]  # its fields, in order
         return module._replace(workgroup=self.workgroup)
 
     def skip_block(self) -> None:

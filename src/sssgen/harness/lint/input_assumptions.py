@@ -207,8 +207,12 @@ def _shown(assumption: Assumption, type_: Type) -> str:
     """An assumption in words."""
     low, high, shortest, longest, finite = assumption
     texts = []
-    if low > -INF or high < INF:
-        texts.append(f"in {low:g}..{high:g}" if high < INF and low > -INF else f">= {low:g}" if low > -INF else f"<= {high:g}")  # fmt: skip  # noqa: E501
+    if low > -INF and high < INF:
+        texts.append(f"in {low:g}..{high:g}")
+    elif low > -INF:
+        texts.append(f">= {low:g}")
+    elif high < INF:
+        texts.append(f"<= {high:g}")
     if isinstance(type_, Matrix) and (shortest, longest) != (0.0, INF):
         texts.append("orthonormal" if (shortest, longest) == UNIT else f"lengthens by {shortest:g}..{longest:g}")
     elif (shortest, longest) == UNIT:
