@@ -18,7 +18,8 @@ from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.targets.descriptor import Target
-from sssgen.targets.printers.printer import WIDTH, Comments, Line, Printer, comment_text
+from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text
+from sssgen.targets.printers.printer import Comments, Printer
 from sssgen.targets.templates import render
 from sssgen.targets.uniform_layout import Member, padding, place
 

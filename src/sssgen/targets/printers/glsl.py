@@ -10,7 +10,8 @@ from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import Array, Scalar, Struct, Type, Vector, kind_of
 from sssgen.passes.stage.stage_interface import COLORS
 from sssgen.targets.descriptor import Target
-from sssgen.targets.printers.printer import PRIMARY, WIDTH, Line, Printer, comment_text, documented, wrap
+from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, documented, wrap
+from sssgen.targets.printers.printer import PRIMARY, Printer
 from sssgen.targets.uniform_layout import Member
 
 

@@ -19,7 +19,8 @@ from sssgen.passes.uniform_blocks import block_type
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers import hlsl_sizes
 from sssgen.targets.printers.hlsl_entry import print_entry
-from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented
+from sssgen.targets.printers.printed_lines import Line, documented
+from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Printer
 from sssgen.targets.uniform_layout import Member
 
 _SHIFTS = ("<<", ">>")

@@ -21,7 +21,8 @@ from sssgen.targets.printers.entry_points import (
     parameters,
     place_text,
 )
-from sssgen.targets.printers.printer import Line, Printer, wrap
+from sssgen.targets.printers.printed_lines import Line, wrap
+from sssgen.targets.printers.printer import Printer
 
 _INTERPOLATION = {"flat": "nointerpolation ", "noperspective": "noperspective ", "centroid": "centroid "}
 _INPUT_SEMANTICS = {"vertex": "ATTR", "fragment": "TEXCOORD", "compute": ""}

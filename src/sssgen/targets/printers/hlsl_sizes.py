@@ -9,7 +9,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import Sampler
 from sssgen.ir.walk import all_expressions
-from sssgen.targets.printers.printer import Line
+from sssgen.targets.printers.printed_lines import Line
 
 _NAME = "texture_size"
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import Array, Sampler, Struct, Type
-from sssgen.targets.printers.printer import POSTFIX, PRIMARY, Line, Printer, documented
+from sssgen.targets.printers.printed_lines import Line, documented
+from sssgen.targets.printers.printer import POSTFIX, PRIMARY, Printer
 from sssgen.targets.uniform_layout import Member
 
 ARRAY = "fixed_array"

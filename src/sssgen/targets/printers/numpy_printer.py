@@ -15,7 +15,8 @@ from sssgen.ir.walk import all_expressions, subexpressions
 from sssgen.passes.numpy.uniformity import count
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.numpy_expressions import PYTHON_PRECEDENCE, NumpyExpressions
-from sssgen.targets.printers.printer import POSTFIX, Line, summary
+from sssgen.targets.printers.printed_lines import Line, summary
+from sssgen.targets.printers.printer import POSTFIX
 from sssgen.targets.printers.python_text import texture_text, value_text, wrap
 from sssgen.targets.registry import load
 from sssgen.targets.uniform_layout import Member

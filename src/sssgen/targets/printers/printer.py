@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from functools import lru_cache
-from typing import NamedTuple
 
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
@@ -22,6 +21,7 @@ from sssgen.ir.types import FLOAT, INT, UINT, Array, Sampler, Scalar, Struct, Ty
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import failure
 from sssgen.targets.descriptor import Target
+from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, summary, wrap
 from sssgen.targets.uniform_layout import Member
 
 _RETURNS = "{result}="
@@ -32,8 +32,6 @@ _SUM, _RELATIONAL, _EQUALITY = PRECEDENCE["+"], PRECEDENCE["<"], PRECEDENCE["=="
 _ALONE = frozenset(("<<", ">>", "&", "|", "^", "&&", "||"))
 _SMALLEST = 2.0**-126
 """The smallest normal float32."""
-WIDTH = 110
-"""Lines longer than this are broken at a call's arguments."""
 
 
 Comments = Callable[[str, int], list[str]]
@@ -43,13 +41,6 @@ Comments = Callable[[str, int], list[str]]
 def no_comments(file: str, line: int) -> list[str]:
     """For modules without a source."""
     return []
-
-
-class Line(NamedTuple):
-    """One printed line, without its line break, and where it came from."""
-
-    text: str
-    span: ir.Span = ir.NOWHERE
 
 
 class Printer:
@@ -424,13 +415,6 @@ def _channel(arg: ir.Expr) -> str:
     return ("Red", "Green", "Blue", "Alpha")[number] if 0 <= number < 4 else "Red"
 
 
-def documented(text: str, uniform: ir.Uniform) -> Line:
-    """A uniform's declaration with the first sentence of its documentation, where that fits on the line."""
-    words = comment_text(" ".join(uniform.doc.split()).split(". ")[0].rstrip("."))
-    full = f"{text}  // {words}"
-    return Line(full if words and len(full) <= WIDTH else text, uniform.span)
-
-
 def float_text(value: float, kept: bool = False) -> str:
     """The shortest decimal that reads back to the same float32, always with a point; `kept`: to the same float64."""
     if kept and _SMALLEST <= abs(value) < FLOAT_MAX:
@@ -463,45 +447,3 @@ def _with_point(text: str) -> str:
     if "." not in mantissa:
         mantissa += ".0"
     return f"{mantissa}e{int(exponent)}" if exponent else mantissa
-
-
-def comment_text(text: str) -> str:
-    """Text that is safe in a line comment: a backslash at its end would continue the comment."""
-    return text.rstrip("\\ ")
-
-
-def summary(doc: str) -> list[str]:
-    """The first sentence or line of a doc comment."""
-    first = doc.strip().split("\n", 1)[0].strip()
-    return [comment_text(first)] if first else []
-
-
-def wrap(text: str, span: ir.Span) -> list[Line]:
-    """Breaks a long line at the outermost commas and operators; the rest is indented once more."""
-    if len(text) <= WIDTH:
-        return [Line(text, span)]
-    indent = len(text) - len(text.lstrip())
-    lines = []
-    while len(text) > WIDTH:
-        place = _break_place(text)
-        if place == 0:
-            break
-        lines.append(Line(text[:place].rstrip(), span))
-        text = " " * (indent + 4) + text[place:].lstrip()
-    return [*lines, Line(text, span)]
-
-
-_BREAKS = (" + ", " - ", " * ", " ? ", " : ", " && ", " || ")
-
-
-def _break_place(text: str) -> int:
-    """Where to break a line: inside as few parentheses as possible, then as late as possible; 0 for nowhere."""
-    position, best_score, depth = 0, -1000.0, 0
-    start = len(text) - len(text.lstrip()) + 8
-    for index, char in enumerate(text[:WIDTH]):
-        depth += (char in "([") - (char in ")]")
-        if index > start and (text[index - 1 : index + 1] == ", " or text.startswith(_BREAKS, index)):
-            score = index / WIDTH - 2.0 * depth
-            if score > best_score:
-                position, best_score = index, score
-    return position

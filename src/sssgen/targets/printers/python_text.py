@@ -6,7 +6,7 @@ import re
 
 from sssgen.ir.nodes import Span, Uniform
 from sssgen.ir.types import Array, Matrix, Sampler, Scalar, Type, components, kind_of
-from sssgen.targets.printers.printer import WIDTH, Line
+from sssgen.targets.printers.printed_lines import WIDTH, Line
 
 _TEXELS = {
     "default_white": "[1.0, 1.0, 1.0, 1.0]",

@@ -13,7 +13,8 @@ from sssgen.passes.scopes import assigned, outs_of
 from sssgen.passes.stage.atomic_places import atomic_places, memory_of
 from sssgen.passes.uniform_blocks import block_type
 from sssgen.targets.descriptor import Target
-from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Line, Printer, documented, wrap
+from sssgen.targets.printers.printed_lines import Line, documented, wrap
+from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Printer
 from sssgen.targets.printers.wgsl_entry import print_entry
 from sssgen.targets.uniform_layout import Member, padding
 

@@ -15,7 +15,8 @@ from sssgen.targets.printers.entry_points import (
     parameters,
     place_text,
 )
-from sssgen.targets.printers.printer import Line, Printer, wrap
+from sssgen.targets.printers.printed_lines import Line, wrap
+from sssgen.targets.printers.printer import Printer
 
 _INTERPOLATION = {"flat": "flat", "noperspective": "linear", "centroid": "perspective, centroid"}
 

@@ -13,7 +13,8 @@ from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import FLOAT, Matrix, Sampler, kind_of, spell
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.targets.descriptor import OutputFile, Target
-from sssgen.targets.printers.printer import PRIMARY, Line, shortest
+from sssgen.targets.printers.printed_lines import Line
+from sssgen.targets.printers.printer import PRIMARY, shortest
 from sssgen.targets.printers.wgsl import WgslPrinter
 from sssgen.targets.registry import load
 from sssgen.targets.uniform_layout import Member

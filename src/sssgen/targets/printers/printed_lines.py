@@ -1,0 +1,66 @@
+"""The printed lines: where a long line is broken, and the comments on lines."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from sssgen.ir import nodes as ir
+
+WIDTH = 110
+"""Lines longer than this are broken at a call's arguments."""
+
+
+class Line(NamedTuple):
+    """One printed line, without its line break, and where it came from."""
+
+    text: str
+    span: ir.Span = ir.NOWHERE
+
+
+def wrap(text: str, span: ir.Span) -> list[Line]:
+    """Breaks a long line at the outermost commas and operators; the rest is indented once more."""
+    if len(text) <= WIDTH:
+        return [Line(text, span)]
+    indent = len(text) - len(text.lstrip())
+    lines = []
+    while len(text) > WIDTH:
+        place = _break_place(text)
+        if place == 0:
+            break
+        lines.append(Line(text[:place].rstrip(), span))
+        text = " " * (indent + 4) + text[place:].lstrip()
+    return [*lines, Line(text, span)]
+
+
+_BREAKS = (" + ", " - ", " * ", " ? ", " : ", " && ", " || ")
+
+
+def _break_place(text: str) -> int:
+    """Where to break a line: inside as few parentheses as possible, then as late as possible; 0 for nowhere."""
+    position, best_score, depth = 0, -1000.0, 0
+    start = len(text) - len(text.lstrip()) + 8
+    for index, char in enumerate(text[:WIDTH]):
+        depth += (char in "([") - (char in ")]")
+        if index > start and (text[index - 1 : index + 1] == ", " or text.startswith(_BREAKS, index)):
+            score = index / WIDTH - 2.0 * depth
+            if score > best_score:
+                position, best_score = index, score
+    return position
+
+
+def comment_text(text: str) -> str:
+    """Text that is safe in a line comment: a backslash at its end would continue the comment."""
+    return text.rstrip("\\ ")
+
+
+def summary(doc: str) -> list[str]:
+    """The first sentence or line of a doc comment."""
+    first = doc.strip().split("\n", 1)[0].strip()
+    return [comment_text(first)] if first else []
+
+
+def documented(text: str, uniform: ir.Uniform) -> Line:
+    """A uniform's declaration with the first sentence of its documentation, where that fits on the line."""
+    words = comment_text(" ".join(uniform.doc.split()).split(". ")[0].rstrip("."))
+    full = f"{text}  // {words}"
+    return Line(full if words and len(full) <= WIDTH else text, uniform.span)
