@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 from sssgen.interchange.albedo_inversion import subsurface_medium, transmission_medium
 from sssgen.interchange.graph_values import Constant, Value, mean
@@ -65,26 +66,38 @@ def _emission(shader: Shader, weight: str, color: str) -> Quantity:
 # OpenPBR and standard_surface
 
 
-class _Layers:
-    """The names of the inputs that OpenPBR and standard_surface share, and how they differ."""
+class _Names(NamedTuple):
+    """The names of the inputs whose names differ between OpenPBR and standard_surface."""
 
-    def __init__(self, open_pbr: bool) -> None:
-        self.open_pbr = open_pbr
-        names = _OPEN_PBR if open_pbr else _STANDARD
-        self.transmission, self.subsurface, self.thin_walled, self.subsurface_anisotropy = names
+    base: str
+    metalness: str
+    ior: str
+    specular: str
+    normal: str
+    opacity: str
+    emission: str
+    coat: str
+    transmission: str
+    subsurface: str
+    subsurface_scale: str
+    subsurface_radii: str
+    subsurface_anisotropy: str
+    thin_walled: str
 
-    def radius(self, shader: Shader) -> tuple[float, ...]:
-        """The mean free paths in metres."""
-        if self.open_pbr:
-            scale, radii = "subsurface_radius", "subsurface_radius_scale"
-        else:
-            scale, radii = "subsurface_scale", "subsurface_radius"
-        factor = shader.number(scale, "interior")
-        return tuple(factor * part for part in shader.numbers(radii, "interior"))
 
-
-_OPEN_PBR = ("transmission_weight", "subsurface_weight", "geometry_thin_walled", "subsurface_scatter_anisotropy")
-_STANDARD = ("transmission", "subsurface", "thin_walled", "subsurface_anisotropy")
+_OPEN_PBR = _Names(
+    base="base_weight", metalness="base_metalness", ior="specular_ior", specular="specular_weight",
+    normal="geometry_normal", opacity="geometry_opacity", emission="emission_luminance", coat="coat_weight",
+    transmission="transmission_weight", subsurface="subsurface_weight", subsurface_scale="subsurface_radius",
+    subsurface_radii="subsurface_radius_scale", subsurface_anisotropy="subsurface_scatter_anisotropy",
+    thin_walled="geometry_thin_walled",
+)  # fmt: skip
+_STANDARD = _Names(
+    base="base", metalness="metalness", ior="specular_IOR", specular="specular", normal="normal", opacity="opacity",
+    emission="emission", coat="coat", transmission="transmission", subsurface="subsurface",
+    subsurface_scale="subsurface_scale", subsurface_radii="subsurface_radius",
+    subsurface_anisotropy="subsurface_anisotropy", thin_walled="thin_walled",
+)  # fmt: skip
 
 _SUBSURFACE_INPUTS = (
     "subsurface_color", "subsurface_radius", "subsurface_radius_scale", "subsurface_scale",
@@ -95,15 +108,15 @@ _TRANSMISSION_INPUTS = (
 )  # fmt: skip
 
 
-def _with_interior(shader: Shader, model: SurfaceModel, base: Value, layers: _Layers) -> SurfaceModel:
+def _with_interior(shader: Shader, model: SurfaceModel, base: Value, names: _Names) -> SurfaceModel:
     """The record with what is below the surface: a sheet's two sides, or a body's medium."""
-    thin = bool(shader.number(layers.thin_walled, "thin_walled"))
+    thin = bool(shader.number(names.thin_walled, "thin_walled"))
     model = replace(model, thin_walled=thin, two_sided=thin)
-    weight = shader.value(layers.subsurface, "diffuse_transmission" if thin else "subsurface")
-    transmission = shader.quantity(layers.transmission, "transmission")
+    weight = shader.value(names.subsurface, "diffuse_transmission" if thin else "subsurface")
+    transmission = shader.quantity(names.transmission, "transmission")
     scatters, transmits = any(part > 0.0 for part in mean(weight)), not transmission.is_zero
     if thin:
-        model = _sheet(shader, model, base, weight, layers) if scatters else model
+        model = _sheet(shader, model, base, weight, names) if scatters else model
         if transmits:
             tint = shader.quantity("transmission_color", "transmission_tint", color=True)
             model = replace(model, transmission=transmission, transmission_tint=tint)
@@ -117,8 +130,8 @@ def _with_interior(shader: Shader, model: SurfaceModel, base: Value, layers: _La
         if depth <= 0.0:
             tint = shader.quantity("transmission_color", "transmission_tint", color=True)
             model = replace(model, transmission_tint=tint)
-            return _with_subsurface(shader, model, layers) if scatters else model
-        if not scatters or mean(shader.value(layers.transmission, "transmission"))[0] >= 0.5:
+            return _with_subsurface(shader, model, names) if scatters else model
+        if not scatters or mean(shader.value(names.transmission, "transmission"))[0] >= 0.5:
             interior = transmission_medium(
                 shader.numbers("transmission_color", "interior"),
                 depth,
@@ -129,7 +142,7 @@ def _with_interior(shader: Shader, model: SurfaceModel, base: Value, layers: _La
                 _drop(shader, _SUBSURFACE_INPUTS, "the body has one medium: that of the transmission")
             return replace(model, interior=interior)
         _drop(shader, _TRANSMISSION_INPUTS, "the body has one medium: that of the subsurface")
-    return _with_subsurface(shader, model, layers) if scatters else model
+    return _with_subsurface(shader, model, names) if scatters else model
 
 
 def _drop(shader: Shader, names: tuple[str, ...], reason: str) -> None:
@@ -137,16 +150,18 @@ def _drop(shader: Shader, names: tuple[str, ...], reason: str) -> None:
         shader.approximated(name, reason)
 
 
-def _with_subsurface(shader: Shader, model: SurfaceModel, layers: _Layers) -> SurfaceModel:
+def _with_subsurface(shader: Shader, model: SurfaceModel, names: _Names) -> SurfaceModel:
     color = shader.numbers("subsurface_color", "interior")
-    anisotropy = shader.number(layers.subsurface_anisotropy, "interior")
-    interior = subsurface_medium(color, layers.radius(shader), anisotropy)
+    anisotropy = shader.number(names.subsurface_anisotropy, "interior")
+    scale = shader.number(names.subsurface_scale, "interior")
+    radii = tuple(scale * part for part in shader.numbers(names.subsurface_radii, "interior"))  # in metres
+    interior = subsurface_medium(color, radii, anisotropy)
     albedo = ", ".join(f"{part:.4g}" for part in interior.albedo)
     shader.approximated("subsurface_color", f"the scattering albedo {albedo}", _INVERSION)
     return replace(model, interior=interior)
 
 
-def _sheet(shader: Shader, model: SurfaceModel, base: Value, weight: Value, layers: _Layers) -> SurfaceModel:
+def _sheet(shader: Shader, model: SurfaceModel, base: Value, weight: Value, names: _Names) -> SurfaceModel:
     """A thin sheet: its subsurface reflects and transmits diffusely.
 
     With the share T of the sheet's light that is transmitted (OpenPBR: (1 + g) / 2; standard_surface: all), the weight
@@ -155,8 +170,8 @@ def _sheet(shader: Shader, model: SurfaceModel, base: Value, weight: Value, laye
     """
     color = shader.value("subsurface_color", "diffuse_transmission_color")
     through = 1.0
-    if layers.open_pbr:
-        through = 0.5 * (1.0 + shader.number(layers.subsurface_anisotropy, "diffuse_transmission"))
+    if names is _OPEN_PBR:
+        through = 0.5 * (1.0 + shader.number(names.subsurface_anisotropy, "diffuse_transmission"))
     share = shader.combined("multiply", weight, Constant((through,)))
     back = shader.combined("multiply", color, shader.combined("multiply", weight, Constant((1.0 - through,))))
     front = shader.combined("multiply", base, _one_minus(shader, weight))
@@ -215,51 +230,35 @@ _STANDARD_LEFT_OUT: Reasons = {
 
 def open_pbr_surface(shader: Shader, name: str) -> SurfaceModel:
     """OpenPBR Surface 1.1."""
-    base = _coat_attenuation(
-        shader, shader.weighted("base_weight", "base_color", "base_color"), "coat_weight", "coat_color"
-    )
-    opacity, alpha_mode = _opacity(shader, "geometry_opacity")
-    model = SurfaceModel(
-        name,
-        alpha_mode=alpha_mode,
-        base_color=shader.as_quantity(base, "base_color", color=True),
-        opacity=opacity,
-        metalness=shader.quantity("base_metalness", "metalness"),
-        roughness=shader.quantity("specular_roughness", "roughness"),
-        ior=shader.number("specular_ior", "ior"),
-        specular=shader.quantity("specular_weight", "specular"),
-        specular_color=shader.quantity("specular_color", "specular_color", color=True),
-        normal=shader.normal("geometry_normal", "normal"),
-        emission=_emission(shader, "emission_luminance", "emission_color"),
-        coat=shader.quantity("coat_weight", "coat"),
-        coat_roughness=shader.quantity("coat_roughness", "coat_roughness"),
-    )
-    model = _with_interior(shader, model, base, _Layers(open_pbr=True))
-    shader.left_out(_OPEN_PBR_LEFT_OUT)
-    return model
+    return _layered(shader, name, _OPEN_PBR, _OPEN_PBR_LEFT_OUT)
 
 
 def standard_surface(shader: Shader, name: str) -> SurfaceModel:
     """Autodesk's standard_surface 1.0.1."""
-    base = _coat_attenuation(shader, shader.weighted("base", "base_color", "base_color"), "coat", "coat_color")
-    opacity, alpha_mode = _opacity(shader, "opacity")
+    return _layered(shader, name, _STANDARD, _STANDARD_LEFT_OUT)
+
+
+def _layered(shader: Shader, name: str, names: _Names, left_out: Reasons) -> SurfaceModel:
+    """A base with an interior, below a coat."""
+    base = _coat_attenuation(shader, shader.weighted(names.base, "base_color", "base_color"), names.coat, "coat_color")
+    opacity, alpha_mode = _opacity(shader, names.opacity)
     model = SurfaceModel(
         name,
         alpha_mode=alpha_mode,
         base_color=shader.as_quantity(base, "base_color", color=True),
         opacity=opacity,
-        metalness=shader.quantity("metalness", "metalness"),
+        metalness=shader.quantity(names.metalness, "metalness"),
         roughness=shader.quantity("specular_roughness", "roughness"),
-        ior=shader.number("specular_IOR", "ior"),
-        specular=shader.quantity("specular", "specular"),
+        ior=shader.number(names.ior, "ior"),
+        specular=shader.quantity(names.specular, "specular"),
         specular_color=shader.quantity("specular_color", "specular_color", color=True),
-        normal=shader.normal("normal", "normal"),
-        emission=_emission(shader, "emission", "emission_color"),
-        coat=shader.quantity("coat", "coat"),
+        normal=shader.normal(names.normal, "normal"),
+        emission=_emission(shader, names.emission, "emission_color"),
+        coat=shader.quantity(names.coat, "coat"),
         coat_roughness=shader.quantity("coat_roughness", "coat_roughness"),
     )
-    model = _with_interior(shader, model, base, _Layers(open_pbr=False))
-    shader.left_out(_STANDARD_LEFT_OUT)
+    model = _with_interior(shader, model, base, names)
+    shader.left_out(left_out)
     return model
 
 
