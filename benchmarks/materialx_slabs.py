@@ -60,7 +60,7 @@ def imported(folder: Path, shader: str, inputs: dict[str, Any]) -> tuple[np.ndar
     content = f'<{shader} name="slab" type="surfaceshader">{"".join(lines)}</{shader}>'
     file.write_text(f'<materialx version="1.39">{content}</materialx>', encoding="utf-8")
     report = Report("slab")
-    (written,) = write_import(str(folder / "out"), format_readers.read(str(file), report), report)
+    (written,) = write_import(str(folder / "out"), format_readers.read(str(file), report), report, force=True)
     text = (folder / "out" / written.scene).read_text(encoding="utf-8")
     medium, unit = tomllib.loads(text)["medium"], float(text.split("A world unit is ")[1].split(" m.")[0])
     return np.array(medium["absorption"]) / unit, np.array(medium["scattering"]) / unit, medium["anisotropy"]

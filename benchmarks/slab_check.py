@@ -67,7 +67,7 @@ def imported(point: dict[str, Any], folder: Path) -> tuple[Array, Array, float]:
     file = folder / "slab.gltf"
     file.write_text(json.dumps(asset(point)), encoding="utf-8")
     report = Report("slab")
-    (written,) = write_import(str(folder / "out"), format_readers.read(str(file), report), report)
+    (written,) = write_import(str(folder / "out"), format_readers.read(str(file), report), report, force=True)
     text = (folder / "out" / written.scene).read_text(encoding="utf-8")
     medium, unit = tomllib.loads(text)["medium"], float(text.split("A world unit is ")[1].split(" m.")[0])
     absorption, scattering = (np.array(medium[key]) / unit for key in ("absorption", "scattering"))

@@ -142,7 +142,7 @@ BROKEN = {
     "a cut file": (glb_header(5000) + bytes(40), "truncated: it has 52 of 5000 bytes"),
     "a chunk beyond the end": (glb_header(40) + b"\xff\0\0\0JSON" + bytes(20), "longer than the file"),
     "no chunk of JSON": (glb_header(28) + b"\x08\0\0\0BIN\0" + bytes(8), "no JSON chunk"),
-    "nothing": (b"", "not JSON"),
+    "nothing": (b"", "the file is empty"),
 }
 
 

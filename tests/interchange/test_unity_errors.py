@@ -50,6 +50,8 @@ def saved(*lines: str) -> str:
         (saved("m_Floats:", "- _Metallic: {x: 1}"), "a number or a text is expected", 8),
         (saved("m_Colors:", "- _BaseColor: {r: 1, g: 1}"), "the key 'b' is missing", 8),
         (saved("m_TexEnvs:", "- _BaseMap: {m_Texture: {fileID: 0}}"), "the key 'm_Scale' is missing", 8),
+        (material(), "the key 'm_SavedProperties' is missing: the file is truncated", 5),
+        (saved("m_TexEnvs: []", "m_Floats: []"), "the key 'm_Colors' is missing: the file is truncated", 7),
         (material(PARENT.replace("GUID", "7" * 32)), "the parent material", 6),
         (f"{HEAD}Material:\n  m_Shader: {{fileID: 1, guid: {'8' * 32}, type: 3}}\n", "the shader 8888", 5),
     ],
@@ -105,7 +107,8 @@ def test_a_texture_that_is_gone(tmp_path: Path) -> None:
     texture = (
         f"- _BaseMap: {{m_Texture: {{fileID: 1, guid: {guid}}}, m_Scale: {{x: 1, y: 1}}, m_Offset: {{x: 0, y: 0}}}}"
     )
-    (tmp_path / "a.mat").write_text(saved("m_TexEnvs:", texture), encoding="utf-8")
+    text = saved("m_TexEnvs:", texture, "m_Floats: []", "m_Colors: []")
+    (tmp_path / "a.mat").write_text(text, encoding="utf-8")
     report = Report("a")
     unity_reader.read(str(tmp_path / "a.mat"), report)
     assert [row.value for row in report.rows if row.outcome == "left out"] == [guid]

@@ -99,3 +99,8 @@ def test_the_nearest_is_the_one_with_the_fewest_other_techniques() -> None:
 def test_the_command_takes_the_scene() -> None:
     asked = settings_of(command_parser("chart").parse_args(["scene.toml"]))
     assert (asked.samples, asked.seed, asked.roles) == (Settings().samples, Settings().seed, Settings().roles)
+
+
+def test_a_clear_medium_is_not_measured(scene: Path) -> None:
+    scene.write_text(SCENE + MEDIUM.replace("[1.0, 1.0, 1.0]", "[0.0, 0.0, 0.0]"), encoding="utf-8")
+    assert error_of(scene).startswith("Error: not measured, as a clear medium scatters no light")

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import json
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from sssgen.cli.main import main
 from sssgen.preview.page_library import Library
 from sssgen.preview.preview_server import FILES, HOST, PAGE, PreviewServer
 from sssgen.preview.shown_picture import ShownPicture
@@ -127,3 +129,17 @@ def test_a_port_in_use_is_an_error(server: PreviewServer, monkeypatch: pytest.Mo
         taken.listen()
         with pytest.raises(SssgenError, match="cannot be used"):
             asyncio.run(server.run(taken.getsockname()[1], False, print))
+
+
+def test_the_address_as_json(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    async def run(self: PreviewServer, port: int, opened: bool, ready: Callable[[str], None]) -> None:
+        ready(self.url)
+        ready("no browser was found: open this address in one")
+
+    monkeypatch.setattr(PreviewServer, "run", run)
+    (tmp_path / "stone.toml").write_text(MATERIAL, encoding="utf-8")
+    assert main(["preview", str(tmp_path / "stone.toml"), "--json"]) == 0
+    (line,) = capsys.readouterr().out.splitlines()
+    assert json.loads(line)["address"].startswith(f"http://{HOST}")

@@ -50,9 +50,12 @@ def run(arguments: Namespace) -> int:
     files = export(material, mesh_files.read(mesh) if mesh else None, path, report)
     written = write_files(os.path.dirname(path) or ".", files)
     if arguments.json:
-        print_json({"ok": True, "files": [posix(file.path) for file in written], "report": report.as_json()})
+        listed = [posix(file.path) for file in written]
+        print_json({"ok": True, "files": listed, "mesh": posix(mesh) if mesh else None, "report": report.as_json()})
         return OK
     print("\n".join([f"wrote {posix(file.path)}" for file in written]))
+    if not mesh:
+        print("the file has the material alone: there is no mesh beside it; name one with --mesh")
     print(", ".join(f"{number} {outcome}" for outcome, number in report.counts().items()))
     for row in report.rows:
         if row.outcome != "mapped":

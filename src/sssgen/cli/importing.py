@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 from argparse import ArgumentParser, Namespace
 
 from sssgen.cli.options import given
@@ -15,7 +16,7 @@ def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
         "examples:\n"
         "  sssgen import lantern.glb -o lantern\n"
-        "  sssgen import lantern.glb -o lantern --material paper --bake\n"
+        "  sssgen import lantern.glb -o lantern --material paper --bake --force\n"
         "  sssgen import library/soap/soap.mtlx -o soap --root library\n"
         "  sssgen import Assets/Materials/Skin.mat -o skin\n"
         "For each material: NAME/NAME.toml, its textures, mesh and scene. For the file: report.md and report.json.\n"
@@ -34,6 +35,7 @@ def add_options(parser: ArgumentParser) -> None:
         action="store_true",
         help="compute the mesh's own thickness where the file has a constant or none: a texture of 256 texels a side",
     )
+    add("--force", action="store_true", help="replace files of materials that were there before, also edited ones")
 
 
 def run(arguments: Namespace) -> int:
@@ -41,19 +43,19 @@ def run(arguments: Namespace) -> int:
     from sssgen.interchange import format_readers
     from sssgen.interchange.mapping_report import Report
     from sssgen.interchange.material_writer import write_import
+    from sssgen.interchange.thickness_bake import OPTION as BAKE_OPTION
+    from sssgen.interchange.thickness_bake import baked_materials
 
     path = arguments.FILE
     report = Report(os.path.basename(path))
-    materials = format_readers.read(path, report, arguments.material, arguments.root or "")
-    if arguments.bake:
-        from sssgen.interchange.thickness_bake import with_baked_thickness
-
-        with ProgressBar() as bar:
-            materials = [with_baked_thickness(material, report, bar) for material in materials]
-    written = write_import(arguments.output, materials, report)
-    counts = report.counts()
+    with ProgressBar() as bar:
+        bar(0, 1, f"reading {report.source}")
+        materials = format_readers.read(path, report, arguments.material, arguments.root or "")
+        if arguments.bake:
+            materials = baked_materials(materials, report, bar)
+        written = write_import(arguments.output, materials, report, force=arguments.force, progress=bar)
+    folder = posix(arguments.output)
     if arguments.json:
-        folder = posix(arguments.output)
         listed = [
             {"name": part.name, "material": f"{folder}/{part.material}", "scene": f"{folder}/{part.scene}"}
             for part in written
@@ -61,7 +63,13 @@ def run(arguments: Namespace) -> int:
         print_json({"ok": True, "materials": listed, "report": report.as_json()})
         return OK
     for part in written:
-        print(f"wrote {posix(os.path.join(arguments.output, part.material))} and its scene")
-    summary = ", ".join(f"{number} {outcome}" for outcome, number in counts.items())
-    print(f"{summary}: {posix(os.path.join(arguments.output, 'report.md'))}")
+        print(f"wrote {folder}/{part.material} and its scene")
+    for row in report.rows:
+        if row.value == BAKE_OPTION:
+            print(f"{BAKE_OPTION} has no effect: {row.element}: {row.became}")
+    summary = ", ".join(f"{number} {outcome}" for outcome, number in report.counts().items())
+    print(f"{summary}: {folder}/report.md")
+    scene = shlex.quote(f"{folder}/{written[0].scene}")
+    print(f"draw it: sssgen render {scene} -o {written[0].name}.png")
+    print(f"change it: sssgen preview {scene}")
     return OK

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import json
 from argparse import ArgumentParser, Namespace
 
 from sssgen.cli.output import OK
@@ -31,10 +32,16 @@ def run(arguments: Namespace) -> int:
 
     mesh = checked_mesh(Mesh(path=arguments.mesh)) if arguments.mesh else None
 
+    def announce(line: str) -> None:
+        if not arguments.json:
+            print(line, flush=True)
+        elif line.startswith("http"):
+            print(json.dumps({"ok": True, "address": line}), flush=True)
+
     async def serve() -> None:
         other = ShownPicture(arguments.OTHER, mesh) if arguments.OTHER else None
         server = PreviewServer(ShownPicture(arguments.NAME, mesh), other)
-        await server.run(arguments.port, not arguments.no_browser, lambda line: print(line, flush=True))
+        await server.run(arguments.port, not arguments.no_browser, announce)
 
     with contextlib.suppress(KeyboardInterrupt):
         asyncio.run(serve())

@@ -94,6 +94,10 @@ def open_file(path: str, top: str = "") -> Container:
         raise failure(f"cannot read the file: {error.strerror}", file=shown) from None
     except ValueError:  # a zero byte or a lone surrogate in its name
         raise failure("this is not a valid file name", file=shown) from None
+    if not data:
+        raise failure("the file is empty", "copy or export it again", shown)
+    if suffix == ".glb" and not binary_format and data.lstrip()[:1] != b"{":
+        raise failure("this is not a GLB file: it does not begin with 'glTF'", "copy or export it again", shown)
     text, binary = _chunks(data, shown) if binary_format else (data, None)
     root = _document(text, shown)
     folder = os.path.dirname(path) or "."

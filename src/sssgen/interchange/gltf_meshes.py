@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from sssgen.harness.scenes.mesh import FARTHEST, SMALLEST
 from sssgen.harness.scenes.mesh_files import FileContent, Indices, moved_normals
 from sssgen.harness.scenes.placed import Array, unit
 from sssgen.interchange.gltf_buffers import Buffers, optional
@@ -54,8 +55,21 @@ def meshes(buffers: Buffers, report: Report) -> dict[int, list[Part]]:
             if primitive.has("material"):
                 primitive.reference("material", materials, "material")
                 index = primitive.whole("material")
-            parts[index].append(_moved(content, matrix))
+            part = _moved(content, matrix)
+            if reason := _undrawable(part.content):
+                report.left_out(node.path, mesh.path, reason)
+            else:
+                parts[index].append(part)
     return parts
+
+
+def _undrawable(content: FileContent) -> str:
+    """Why a scene cannot have these triangles, or ''."""
+    if not (np.abs(content.vertices) <= FARTHEST).all():
+        return f"with the node's transform, it reaches beyond {FARTHEST:g} m"
+    if _area(content) == 0.0 or np.ptp(content.vertices, axis=0).max() < SMALLEST:
+        return "with the node's transform, no triangle has an area"
+    return ""
 
 
 def joined(parts: list[Part]) -> tuple[FileContent, float, float]:

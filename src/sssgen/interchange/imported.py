@@ -56,10 +56,12 @@ class Notes:
 
 
 def report_fields(imported: Imported, notes: Notes, report: Report) -> None:
-    """Adds a row for each element of the material."""
+    """Adds a row for each element of the material, and for each note of a field that no element gives."""
     for field, elements in imported.elements.items():
         for element in elements:
             if field in notes.by_field:
                 report.approximated(element.path, element.value, *notes.by_field[field])
             else:
                 report.mapped(element.path, element.value, field.replace("_", " "))
+    for field in notes.by_field.keys() - imported.elements.keys():
+        report.approximated(f"{imported.model.name}: {field.replace('_', ' ')}", "none", *notes.by_field[field])

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal, NamedTuple, TypeAlias
+
+import numpy as np
 
 Outcome: TypeAlias = Literal["mapped", "approximated", "left out"]
 OUTCOMES: tuple[Outcome, ...] = ("mapped", "approximated", "left out")
@@ -78,10 +80,14 @@ def _table(rows: Sequence[Row], outcome: Outcome) -> Iterable[str]:
 
 
 def shown(value: object, length: int = 60) -> str:
-    """A value as short text: numbers with 6 digits."""
-    if isinstance(value, float):
+    """A value as short text, in the words of JSON: numbers with 6 digits, `true`, `null`, `scale: 2, 2`."""
+    if value is None or isinstance(value, bool | np.bool_):
+        text = {None: "null", True: "true", False: "false"}[value if value is None else bool(value)]
+    elif isinstance(value, float | np.floating):
         text = f"{value:.6g}"
-    elif isinstance(value, list | tuple):
+    elif isinstance(value, Mapping):
+        text = "; ".join(f"{key}: {shown(part)}" for key, part in value.items())
+    elif isinstance(value, list | tuple | np.ndarray):
         text = ", ".join(shown(part) for part in value)
     else:
         text = str(value)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -17,8 +17,10 @@ from sssgen.interchange.technique_choice import Choice, choose
 from sssgen.interchange.texture_composer import Coordinates
 from sssgen.lab.measure.measured_chain import material_text
 from sssgen.material.model import wrong_name
-from sssgen.support.file_writer import write_files
-from sssgen.support.paths import place
+from sssgen.support.diagnostics import failure
+from sssgen.support.file_writer import as_bytes, has_content, write_files
+from sssgen.support.paths import place, posix
+from sssgen.support.progress import Progress, silent
 
 _LONGEST_NAME = 48
 """Letters of a material's name; sssgen takes 64."""
@@ -36,26 +38,42 @@ class WrittenMaterial:
         self.folder = folder
 
 
-def write_import(folder: str, materials: Sequence[Imported], report: Report) -> list[WrittenMaterial]:
+def write_import(
+    folder: str, materials: Sequence[Imported], report: Report, *, force: bool = False, progress: Progress = silent
+) -> list[WrittenMaterial]:
     """Writes the materials of a file to sub-folders of `folder`, all files atomically and together.
 
     Adds the rows of the materials' fields to the report, which is written as report.md and report.json. Raises
-    SssgenError for a picture that cannot be read, and where the system refuses.
+    SssgenError for a picture that cannot be read, where the system refuses, and, without `force`, where a file of a
+    material is there already with another content: it may have been edited.
     """
     files: dict[str, str | bytes] = {}
     written: list[WrittenMaterial] = []
-    for imported, name in zip(materials, identifiers([part.model.name for part in materials]), strict=True):
+    names = identifiers([part.model.name for part in materials])
+    for done, (imported, name) in enumerate(zip(materials, names, strict=True)):
+        progress(done, len(materials), name)
         notes = Notes()
         chord = 4.0 / 3.0 * ball_radius(imported.model) if imported.mesh is None else mean_chord(imported.mesh)
         choice = choose(imported.model, notes, chord)
         report_fields(imported, notes, report)
         files |= {f"{name}/{path}": content for path, content in _material_files(imported, choice, name).items()}
         written.append(WrittenMaterial(name, folder))
+    if not force:
+        _check_unchanged(folder, files)
     with open(os.path.join(place("examples"), "surroundings", "textures", "studio.png"), "rb") as file:
         files[SURROUNDINGS] = file.read()
     files["report.md"], files["report.json"] = report.markdown(), report.json_text()
     write_files(folder, files)
     return written
+
+
+def _check_unchanged(folder: str, files: Mapping[str, str | bytes]) -> None:
+    """Raises SssgenError where a file is there already with another content."""
+    for name, content in files.items():
+        path = os.path.join(folder, name)
+        if os.path.isfile(path) and not has_content(path, as_bytes(content)):
+            hint = "it may have been edited: choose another folder, or replace all files with --force"
+            raise failure("the file already exists, with another content", hint, posix(path))
 
 
 def _material_files(imported: Imported, choice: Choice, name: str) -> dict[str, str | bytes]:

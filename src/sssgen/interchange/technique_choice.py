@@ -9,9 +9,9 @@ import numpy as np
 from sssgen.interchange.dense_bodies import as_matte
 from sssgen.interchange.imported import Notes
 from sssgen.interchange.record_limits import limited
-from sssgen.interchange.surface_model import ONE, WHITE, Quantity, SurfaceModel
+from sssgen.interchange.surface_model import ONE, WHITE, Quantity, SurfaceModel, UvTransform
 from sssgen.interchange.texels import mean_of
-from sssgen.interchange.texture_composer import Composer, Coordinates, Written
+from sssgen.interchange.texture_composer import Composer, Coordinates, Written, coordinates
 from sssgen.lab.measure.measured_chain import MaterialSection
 
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
@@ -21,6 +21,8 @@ _MOST_REFLECTED = 0.08
 _USUAL_REFLECTED = 0.04
 _OCTAVES = (1.0, 1.0, 0.25, 0.125)
 """The defaults of `interior_octaves`."""
+_MOST_TILED = 100.0
+"""The largest tiling and offset of texture coordinates that `uv_transform` takes."""
 _LONGEST, _DENSEST = 10.0, 1000.0
 """The largest thickness and extinction that techniques take, in world units."""
 
@@ -84,12 +86,24 @@ class _Chooser:
 
     def coordinates(self) -> None:
         for name, placed in zip(("uv", "uv2"), self.composer.sets, strict=False):
-            tiling, offset, rotation = placed.transform
+            tiling, offset, rotation = self.limited(placed)
             if placed.transform != Coordinates().transform:
                 self.add(
                     "coordinates", "uv_transform", uv=name if name == "uv2" else None,
                     uv_tiling=tiling, uv_offset=offset, uv_rotation=float(np.fmod(rotation, 360.0)),
                 )  # fmt: skip
+
+    def limited(self, placed: Coordinates) -> UvTransform:
+        """The transform in the ranges of `uv_transform`: of an offset whole repetitions go first."""
+        tiling, offset, rotation = placed.transform
+        placed_images = {image: field for image, field in self.composer.fields.items() if coordinates(image) == placed}
+        if _within(offset) != offset and all(image.wrap == "repeat" for image in placed_images):
+            offset = offset[0] % 1.0, offset[1] % 1.0
+        within = UvTransform(_within(tiling), _within(offset), rotation)
+        if within.tiling != tiling or within.offset != offset:
+            for field in placed_images.values():
+                self.notes.approximated(field, f"its picture with a tiling and an offset of at most {_MOST_TILED:g}")
+        return within
 
     def thickness(self) -> None:
         model = self.model
@@ -112,7 +126,8 @@ class _Chooser:
         else:
             if factor == 0.0:
                 factor = self.mean_chord / self.metres
-                self.notes.approximated("interior", f"the mean chord of the body, {self.mean_chord:.4g} m, everywhere")
+                became = f"{self.mean_chord:.4g} m everywhere, the mean chord of the body"
+                self.notes.approximated("thickness", became, "not known: it differs from place to place")
             self.add("thickness", "constant_thickness", thickness_factor=factor)
 
     def colors(self) -> None:
@@ -265,6 +280,12 @@ def choose(model: SurfaceModel, notes: Notes, mean_chord: float) -> Choice:
     `notes` gets what the stages cannot express.
     """
     return _Chooser(as_matte(limited(model, notes), notes, mean_chord), notes, mean_chord).all()
+
+
+def _within(pair: tuple[float, float]) -> tuple[float, float]:
+    """The numbers, none beyond the largest tiling."""
+    first, second = (min(max(part, -_MOST_TILED), _MOST_TILED) for part in pair)
+    return first, second
 
 
 def _kept(metalness: Any, transmission: Any, diffuse: Any, subsurface: Any) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -26,14 +27,31 @@ SIDE, RAYS = 256, 128
 """Texels along a side of the map, and rays per texel."""
 
 
+OPTION = "--bake"
+"""The value of the report's rows about what was not baked."""
+
+
+def baked_materials(materials: Sequence[Imported], report: Report, progress: Progress = silent) -> list[Imported]:
+    """The materials with the thicknesses of their meshes; the report says where it has no effect, and why."""
+    before = len(report.rows)
+    result = [with_baked_thickness(material, report, progress) for material in materials]
+    if all(old is new for old, new in zip(materials, result, strict=True)) and len(report.rows) == before:
+        report.left_out("all materials", OPTION, "no material has a medium that light enters: a volume or a subsurface")
+    return result
+
+
 def with_baked_thickness(imported: Imported, report: Report, progress: Progress = silent) -> Imported:
     """The material with the thickness of its mesh, in texture coordinates of their own.
 
-    It stays as it is without a mesh or a medium, where nothing is transmitted, and where the file has a texture of the
-    thickness. An open sheet has no thickness: the report says so.
+    It stays as it is without a medium, and where nothing is transmitted. Without a mesh, with a texture of the
+    thickness in the file, and for an open sheet, which has no thickness, the report says so.
     """
     model, mesh = imported.model, imported.mesh
-    if mesh is None or model.interior is None or not model.transmits or model.thickness.image is not None:
+    if model.interior is None or not model.transmits:
+        return imported
+    if mesh is None or model.thickness.image is not None:
+        reason = "the material has no mesh" if mesh is None else "the thickness in the file is a texture"
+        report.left_out(f"{model.name}: thickness", OPTION, reason)
         return imported
     elements = imported.elements.get("thickness", ())
     path = elements[0].path if elements else f"{model.name}: thickness"
@@ -41,7 +59,7 @@ def with_baked_thickness(imported: Imported, report: Report, progress: Progress 
     try:
         baked, picture, facts = _bake(mesh, progress)
     except SssgenError as error:
-        report.left_out(path, "--bake", f"{error.diagnostics[0].message}: the thickness stays as it is in the file")
+        report.left_out(path, OPTION, f"{error.diagnostics[0].message}: the thickness stays as it is in the file")
         return imported
     error_of_mean = facts["error"]["mean_standard_error"]
     became = f"the mesh's own, baked: 0 to {facts['range'][1]:.4g} m, mean {facts['mean']:.4g} m"

@@ -83,6 +83,14 @@ class UnityMaterial:
             if saved is not None and name in saved.mapping:
                 self.properties[name] |= dict(saved.mapping[name].pairs())
 
+    def check_complete(self) -> None:
+        """Raises SssgenError for a file that ends early: Unity writes all lists, also those that are empty."""
+        saved = self.body.mapping.get("m_SavedProperties", self.body)
+        for name in ("m_TexEnvs", "m_Floats", "m_Colors"):
+            if saved is self.body or name not in saved.mapping:
+                missing = "m_SavedProperties" if saved is self.body else name
+                raise saved.error(f"the key '{missing}' is missing: the file is truncated", "copy it again")
+
     def has(self, name: str) -> bool:
         """Whether the material has a property."""
         return any(name in properties for properties in self.properties.values())

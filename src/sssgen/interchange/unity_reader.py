@@ -44,6 +44,7 @@ def read(path: str, report: Report, name: str = "", top: str = "") -> list[Impor
     else:
         material = material_of(path, UnityProject(path, top), report)
         model = _reader_of(material)(material)
+        material.check_complete()
         imported = Imported(model, {field: parts for field, parts in material.elements.items() if parts})
     check_name(name, [imported.model.name], posix(path))
     return [imported]

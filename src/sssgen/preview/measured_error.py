@@ -23,6 +23,8 @@ def measured_error(scene: Scene, material: Material) -> str:
     """The error with its entry, or what is to be done to have one. Raises SssgenError for a faulty scene."""
     if not {"medium", "inlay"} & set(scene.measured):
         return "Error: not measured, as the scene has no [medium] and no [inlay]."
+    if _is_clear(scene.measured.get("medium")):
+        return "Error: not measured, as a clear medium scatters no light; sssgen chart compares scattering bodies."
     file = scene.document.reporter.file
     record = cached(measured_scene.load(file), Settings())
     if record is None:
@@ -35,6 +37,11 @@ def measured_error(scene: Scene, material: Material) -> str:
     error, highest = measures(point)[1], limit_of(point)
     numbers = f"{error:.3g}, at most {highest:.3g}; its cost {cost_of(point):g}"
     return f"Error of {same} in the chart, {point['label']}: {numbers}."
+
+
+def _is_clear(medium: Any) -> bool:
+    """Whether a section [medium] says that nothing scatters; without the key it scatters."""
+    return isinstance(medium, Mapping) and medium.get("scattering") == [0, 0, 0]
 
 
 def nearest(points: Sequence[Mapping[str, Any]], names: frozenset[str]) -> Mapping[str, Any] | None:

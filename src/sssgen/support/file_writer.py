@@ -72,8 +72,8 @@ def write_files(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]
             path = os.path.join(folder, name)
             if _is_special(path):
                 raise failure("cannot write the file: this is a device or a pipe", "name a file", posix(path))
-            data = content if isinstance(content, bytes) else content.encode("utf-8")
-            if _has_content(path, data):
+            data = as_bytes(content)
+            if has_content(path, data):
                 written.append(Written(path, False))
                 continue
             parent, base = os.path.split(path)
@@ -112,7 +112,12 @@ def _replace(temporary: str, path: str) -> None:
     os.replace(temporary, path)
 
 
-def _has_content(path: str, data: bytes) -> bool:
+def as_bytes(content: str | bytes) -> bytes:
+    """What a file with this content has: texts are UTF-8."""
+    return content if isinstance(content, bytes) else content.encode("utf-8")
+
+
+def has_content(path: str, data: bytes) -> bool:
     """Whether the file already has this content: engines import a file again when it is written."""
     try:
         if os.stat(path).st_size != len(data) or not os.path.isfile(path):
