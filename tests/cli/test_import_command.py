@@ -131,3 +131,15 @@ def test_a_tiling_beyond_the_range_is_limited(tmp_path: Path, capsys: pytest.Cap
     assert stage.values["uv_tiling"] == (100.0, 100.0)
     assert stage.values["uv_offset"] == (0.25, 0.0)  # whole repetitions change nothing
     assert "at most 100" in (tmp_path / "out" / "report.md").read_text(encoding="utf-8")
+
+
+def test_an_import_shows_its_progress(tmp_path: Path) -> None:
+    from sssgen.interchange.gltf_reader import read
+    from sssgen.interchange.mapping_report import Report
+    from sssgen.interchange.material_writer import write_import
+
+    states: list[tuple[float, int, str]] = []
+    report = Report("box")
+    path = asset(tmp_path, materials=[GLASS, {"name": "clay"}])
+    write_import(str(tmp_path / "out"), read(str(path), report), report, progress=lambda *state: states.append(state))
+    assert states == [(0, 2, "glass"), (1, 2, "clay")]

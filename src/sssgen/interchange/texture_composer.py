@@ -13,6 +13,8 @@ from sssgen.interchange.surface_model import Image, Quantity, SurfaceModel, UvTr
 from sssgen.interchange.texels import Texels, mean_of, resized, stored, texel_values, values_on
 
 FOLDER = "textures"
+_QUICKLY = 1
+"""The level of compression: an import has dozens of large textures; photographs are hardly larger than at level 6."""
 
 
 class Coordinates(NamedTuple):
@@ -101,7 +103,7 @@ class Composer:
 
     def _write(self, name: str, values: Texels, like: Image) -> Written:
         file = f"{FOLDER}/{name}.png"
-        self.files[file] = png_bytes(values)
+        self.files[file] = png_bytes(values, level=_QUICKLY)
         return Written(file, "uv" if coordinates(like) == self.sets[0] else "uv2", like.wrap)
 
 
