@@ -76,31 +76,7 @@ def _(geometry: Capsule, origins: Array, directions: Array, needed: int | None =
 
 @intervals.register
 def _(geometry: Torus, origins: Array, directions: Array, needed: int | None = None) -> Array:
-    """Between the roots of a quartic (the eigenvalues of its companion matrix), where the middle is inside."""
-    middle = -np.einsum("nc,nc->n", origins, directions)
-    closest = origins + middle[:, None] * directions
-    y, slope = closest[:, 1], directions[:, 1]
-    square = np.einsum("nc,nc->n", closest, closest)
-    k = square + geometry.major**2 - geometry.minor**2
-    # t^4 + a t^2 + b t + c, with t from the point nearest to the centre
-    a = 2.0 * k - 4.0 * geometry.major**2 * (1.0 - slope**2)
-    b = 8.0 * geometry.major**2 * y * slope
-    c = k * k - 4.0 * geometry.major**2 * (square - y * y)
-    companion = np.zeros((len(a), 4, 4))
-    companion[:, 1, 0] = companion[:, 2, 1] = companion[:, 3, 2] = 1.0
-    companion[:, 0, 3], companion[:, 1, 3], companion[:, 2, 3] = -c, -b, -a
-    roots = np.sort(np.linalg.eigvals(companion).real, axis=1)
-    for _ in range(3):  # Newton steps for the real roots; complex roots are excluded below
-        value = ((roots**2 + a[:, None]) * roots + b[:, None]) * roots + c[:, None]
-        slopes = (4.0 * roots**2 + 2.0 * a[:, None]) * roots + b[:, None]
-        step = np.divide(value, slopes, out=np.zeros_like(value), where=np.abs(slopes) > 1e-9)
-        roots = roots - np.clip(step, -1e-3, 1e-3)
-    roots = np.sort(roots, axis=1)
-    centres = 0.5 * (roots[:, 1:] + roots[:, :-1])
-    points = closest[:, None] + centres[..., None] * directions[:, None]
-    inside = geometry.distance(points.reshape(-1, 3)).reshape(centres.shape) < 0.0
-    ends = np.stack([roots[:, :-1], roots[:, 1:]], axis=-1) + middle[:, None, None]
-    return merged(np.where(inside[..., None], ends, 0.0))  # the middle of complex roots divides an interval
+    return geometry.intervals(origins, directions)
 
 
 @intervals.register

@@ -129,12 +129,8 @@ class Torus(Geometry):
     minor: float = 0.4
 
     def cast(self, origin: Array, directions: Array) -> Hits:
-        nearest = -directions @ origin
-        closest = origin + nearest[:, None] * directions
-        # wider than the torus, so that both ends of the search are outside it
-        reach = (1.001 * (self.major + self.minor)) ** 2 - np.einsum("nc,nc->n", closest, closest)
-        near = np.flatnonzero(reach > 0.0)
-        t, has_root = self._first_root(closest[near], directions[near], np.sqrt(reach[near]), -nearest[near])
+        nearest, closest, reach, near = self._near(np.broadcast_to(origin, directions.shape), directions)
+        t, has_root = self._first_root(closest[near], directions[near], reach, -nearest[near])
         hit = np.zeros(len(directions), np.bool_)
         hit[near[has_root]] = True
         position = closest[hit] + t[has_root, None] * directions[hit]
@@ -155,11 +151,40 @@ class Torus(Geometry):
         distance: Array = np.hypot(np.hypot(x, z) - self.major, y) - self.minor
         return distance
 
-    def _first_root(self, closest: Array, directions: Array, reach: Array, start: Array) -> tuple[Array, Bools]:
-        """The first t after `start`, within ± `reach`, at which rays hit the torus, and which rays do.
+    def intervals(self, origins: Array, directions: Array) -> Array:
+        """The two intervals of each line inside the torus, (n, 2, 2), in order; an empty one has equal ends."""
+        nearest, closest, reach, near = self._near(origins, directions)
+        quartic, ends, change = self._pieces(closest[near], directions[near], -reach, reach)
+        # a line can enter, leave, enter and leave, in this order; with one interval, it does the first and the last
+        rows, piece = np.nonzero(change)
+        roots = np.zeros(change.shape)
+        roots[rows, piece] = _bracketed_root(*quartic[:, rows], ends[rows, piece], ends[rows, piece + 1])
+        enters, exits, enters_again, exits_at_last = roots.T
+        crosses, again = change[:, 0], change[:, 2]
+        first = np.stack([enters, np.where(change[:, 1], exits, exits_at_last)], axis=1)
+        second = np.stack([enters_again, exits_at_last], axis=1)
+        result = np.zeros((len(directions), 2, 2))
+        result[near, 0] = np.where(crosses[:, None], first + nearest[near, None], 0.0)
+        result[near, 1] = np.where(again[:, None], second + nearest[near, None], 0.0)
+        return result
 
-        t counts from the point nearest to the centre, so the quartic t⁴ + a t² + b t + c has no cubic term and its
-        turning points have a closed form. Between two of them there is at most one root.
+    def _near(self, origins: Array, directions: Array) -> tuple[Array, Array, Array, Array]:
+        """Each line's parameter and point nearest to the centre, and of the lines near the torus their numbers.
+
+        For these also half the length within a ball that is wider than the torus: both ends are outside the torus.
+        """
+        nearest = -np.einsum("nc,nc->n", origins, directions)
+        closest = origins + nearest[:, None] * directions
+        reach = (1.001 * (self.major + self.minor)) ** 2 - np.einsum("nc,nc->n", closest, closest)
+        near = np.flatnonzero(reach > 0.0)
+        return nearest, closest, np.sqrt(reach[near]), near
+
+    def _pieces(self, closest: Array, directions: Array, low: Array, high: Array) -> tuple[Array, Array, Bools]:
+        """Coefficients of the quartic t⁴ + a t² + b t + c, which is negative inside, (3, n); its monotonic pieces.
+
+        t counts from the point nearest to the centre, so the quartic has no cubic term and its turning points have a
+        closed form. Between two of the five ends of the pieces, (n, 5), there is at most one root: the last result,
+        (n, 4), says where there is one.
         """
         y, slope = closest[:, 1], directions[:, 1]
         square = np.einsum("nc,nc->n", closest, closest)
@@ -167,16 +192,20 @@ class Torus(Geometry):
         a = 2.0 * k - 4.0 * self.major**2 * (1.0 - slope**2)
         b = 8.0 * self.major**2 * y * slope
         c = k * k - 4.0 * self.major**2 * (square - y * y)
-        low = np.maximum(-reach, start)
-        ends = np.stack([low, *_turning_points(a, b).T, reach], axis=1)
-        ends = np.clip(ends, low[:, None], np.maximum(reach, low)[:, None])
+        ends = np.stack([low, *_turning_points(a, b).T, high], axis=1)
+        ends = np.clip(ends, low[:, None], np.maximum(high, low)[:, None])
         values = ((ends * ends + a[:, None]) * ends + b[:, None]) * ends + c[:, None]
-        change = (values[:, :-1] > 0.0) != (values[:, 1:] > 0.0)
+        return np.stack([a, b, c]), ends, (values[:, :-1] > 0.0) != (values[:, 1:] > 0.0)
+
+    def _first_root(self, closest: Array, directions: Array, reach: Array, start: Array) -> tuple[Array, Bools]:
+        """The first t after `start`, within ± `reach`, at which rays hit the torus, and which rays do."""
+        low = np.maximum(-reach, start)
+        quartic, ends, change = self._pieces(closest, directions, low, reach)
         has_root = change.any(axis=1) & (low < reach)
         rows = np.flatnonzero(has_root)
         piece = change[rows].argmax(axis=1)
-        t = np.zeros(len(a))
-        t[rows] = _bracketed_root(a[rows], b[rows], c[rows], ends[rows, piece], ends[rows, piece + 1])
+        t = np.zeros(len(low))
+        t[rows] = _bracketed_root(*quartic[:, rows], ends[rows, piece], ends[rows, piece + 1])
         return t, has_root
 
 
