@@ -16,7 +16,7 @@ from sssgen.harness.render.environment_maps import irradiance_map, reflection_ma
 from sssgen.harness.render.shell_values import Shell
 from sssgen.harness.scenes.drawn_views import light_depth
 from sssgen.harness.scenes.environment import read_environment
-from sssgen.harness.scenes.geometry import Geometry
+from sssgen.harness.scenes.geometry import Distance, Geometry
 from sssgen.harness.scenes.light_view import LightView
 from sssgen.harness.scenes.scene import DistanceTexture, Picture, Scene, placement
 from sssgen.ir.drawn import CUBES, DISTANT_VIEWS, IRRADIANCE, LAYERS, LIGHT_VIEWS, REFLECTIONS
@@ -34,6 +34,8 @@ from sssgen.targets.runtime.numpy_textures import Texture
 MOST_TEXTURES = 16
 """The number of textures that are kept in memory."""
 _made: dict[str, CachedResult] = {}
+MOST_LIGHT_MAPS = 4
+_light_maps: dict[str, CachedResult] = {}
 
 
 def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> Shell:
@@ -77,9 +79,20 @@ def _light_views(
             hint = "add [[light]] with a direction" if drawn in DISTANT_VIEWS else "add [[light]]"
             file = scene.document.reporter.file
             raise failure(f"'{texture['source_name']}' is drawn from a light, and the scene has none", hint, file)
-        view, depth = light_depth(scene.geometry, np.array(light), drawn == LAYERS)
-        views[drawn] = view, half(Texture(depth, wrap="clamp"))
+        views[drawn] = _light_view(scene.geometry, light, drawn == LAYERS)
     return views
+
+
+def _light_view(geometry: Geometry, light: list[float], layers: bool) -> tuple[LightView, Texture]:
+    """A light's view of a body; those of slow bodies, distance functions, are kept until a file of theirs changes."""
+
+    def make() -> tuple[LightView, Texture]:
+        # the copy has no compiled function, so that the files of the function are read here
+        view, depth = light_depth(copy.deepcopy(geometry) if slow else geometry, np.array(light), layers)
+        return view, half(Texture(depth, wrap="clamp"))
+
+    slow = isinstance(geometry, Distance)
+    return remembered(_light_maps, repr((geometry, light, layers)), make, MOST_LIGHT_MAPS) if slow else make()
 
 
 def _surroundings(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, Texture]:

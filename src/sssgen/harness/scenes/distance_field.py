@@ -35,6 +35,8 @@ MOST_FUNCTIONS = 32
 _functions: dict[str, CachedResult] = {}
 
 _STEPS = 1000
+BISECTION_STEPS = 80
+"""Enough for the last bit."""
 _SHORTEST = 1e-4
 """The shortest step, relative to `reach`: thinner parts may be missed."""
 
@@ -114,14 +116,18 @@ class Distance(Geometry):
             active, value = active[continues], value[continues]
             previous[active] = t[active]
             t[active] = np.minimum(t[active] + np.maximum(np.abs(value), _SHORTEST * self.reach), end[active])
-        return self._bisected(origin, directions, previous, t, inside, np.flatnonzero(hit)), hit
+        t[hit] = self.bisected(origin, directions[hit], previous[hit], t[hit])
+        return t, hit
 
-    def _bisected(self, origin: Array, directions: Array, low: Array, high: Array, inside: Bools, rays: Any) -> Array:
-        for _ in range(60):
+    def bisected(self, origins: Array, directions: Array, low: Array, high: Array) -> Array:
+        """The distance along each ray at which the sign changes, exact to the last bit, between `low` and `high`."""
+        negative = self.distance(origins + low[:, None] * directions) < 0.0
+        for _ in range(BISECTION_STEPS):
             middle = 0.5 * (low + high)
-            crossed = (self._at(origin, directions, middle, rays) < 0.0) != inside[rays]
-            high[rays[crossed]] = middle[rays[crossed]]
-            low[rays[~crossed]] = middle[rays[~crossed]]
+            if np.all((middle <= low) | (middle >= high)):
+                break
+            same_sign = (self.distance(origins + middle[:, None] * directions) < 0.0) == negative
+            low, high = np.where(same_sign, middle, low), np.where(same_sign, high, middle)
         return high
 
     def _at(self, origin: Array, directions: Array, t: Array, rays: Any) -> Array:

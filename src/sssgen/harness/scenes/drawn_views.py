@@ -10,8 +10,8 @@ from sssgen.harness.scenes.inside_intervals import in_object_space, intervals
 from sssgen.harness.scenes.light_view import LightView, directional_view, point_view
 from sssgen.harness.scenes.placed import Array
 
-BLOCK = 1 << 16
-"""The number of rays that are cast at once."""
+BLOCK = 1 << 18
+"""The number of rays that are cast at once: many, as a march goes on for its last ray with few rays left."""
 TEXELS = 512
 """Width and height of a light's depth map."""
 

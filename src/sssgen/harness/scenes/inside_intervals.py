@@ -14,9 +14,6 @@ import numpy as np
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.harness.scenes.placed import Array
 
-BISECTION_STEPS = 80
-"""Bisection steps: enough for the last bit."""
-
 
 def in_object_space(geometry: Geometry, origins: Array, directions: Array) -> tuple[Array, Array]:
     """Rays of world space in object space, with unit directions."""
@@ -162,23 +159,13 @@ def _(geometry: Distance, origins: Array, directions: Array, needed: int | None 
         active[rays] = (after < end[rays]) & (left[rays] > 0)
     rays, low, high = (np.concatenate(parts) for parts in zip(*brackets, strict=True)) if brackets else (t[:0],) * 3
     rays = rays.astype(np.int64)
-    at = _bisected(geometry, origins[rays], directions[rays], low, high)
+    at = geometry.bisected(origins[rays], directions[rays], low, high)
     ends_inside = np.flatnonzero(value < 0.0)
     # entries and exits alternate; a start or an end inside the body counts as one of them
     rays = np.concatenate([starts_inside, rays, ends_inside])
     at = np.concatenate([np.zeros(len(starts_inside)), at, end[ends_inside]])
     order = np.lexsort((at, rays))
     return _gathered(rays[order][::2], at[order].reshape(-1, 2), len(origins))
-
-
-def _bisected(geometry: Geometry, origins: Array, directions: Array, low: Array, high: Array) -> Array:
-    """The position of the sign change between low and high, along each ray."""
-    negative = geometry.distance(origins + low[:, None] * directions) < 0.0
-    for _ in range(BISECTION_STEPS):
-        middle = 0.5 * (low + high)
-        same_sign = (geometry.distance(origins + middle[:, None] * directions) < 0.0) == negative
-        low, high = np.where(same_sign, middle, low), np.where(same_sign, high, middle)
-    return high
 
 
 def _gathered(rays: Any, ends: Array, count: int) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -158,7 +159,7 @@ class Torus(Geometry):
         # a line can enter, leave, enter and leave, in this order; with one interval, it does the first and the last
         rows, piece = np.nonzero(change)
         roots = np.zeros(change.shape)
-        roots[rows, piece] = _bracketed_root(*quartic[:, rows], ends[rows, piece], ends[rows, piece + 1])
+        roots[rows, piece] = _bracketed_root(quartic[:, rows], ends[rows, piece], ends[rows, piece + 1])
         enters, exits, enters_again, exits_at_last = roots.T
         crosses, again = change[:, 0], change[:, 2]
         first = np.stack([enters, np.where(change[:, 1], exits, exits_at_last)], axis=1)
@@ -168,7 +169,7 @@ class Torus(Geometry):
         result[near, 1] = np.where(again[:, None], second + nearest[near, None], 0.0)
         return result
 
-    def _near(self, origins: Array, directions: Array) -> tuple[Array, Array, Array, Array]:
+    def _near(self, origins: Array, directions: Array) -> tuple[Array, Array, Array, Any]:
         """Each line's parameter and point nearest to the centre, and of the lines near the torus their numbers.
 
         For these also half the length within a ball that is wider than the torus: both ends are outside the torus.
@@ -205,7 +206,7 @@ class Torus(Geometry):
         rows = np.flatnonzero(has_root)
         piece = change[rows].argmax(axis=1)
         t = np.zeros(len(low))
-        t[rows] = _bracketed_root(*quartic[:, rows], ends[rows, piece], ends[rows, piece + 1])
+        t[rows] = _bracketed_root(quartic[:, rows], ends[rows, piece], ends[rows, piece + 1])
         return t, has_root
 
 
@@ -226,8 +227,9 @@ def _turning_points(a: Array, b: Array) -> Array:
     return roots
 
 
-def _bracketed_root(a: Array, b: Array, c: Array, low: Array, high: Array) -> Array:
+def _bracketed_root(quartic: Array, low: Array, high: Array) -> Array:
     """The root of t⁴ + a t² + b t + c between two points of different sign: Newton's method, limited to the bracket."""
+    a, b, c = quartic
     rises = ((high * high + a) * high + b) * high + c > 0.0
     t = 0.5 * (low + high)
     for _ in range(80):
