@@ -12,7 +12,7 @@ import pytest
 
 from sssgen.cli.main import main
 from sssgen.harness.lint.input_assumptions import presets
-from sssgen.harness.lint.lint_findings import MAY_FAIL, PROVEN, UNKNOWN, lint
+from sssgen.harness.lint.lint_findings import MAY_FAIL, NOT_PROVEN, PROVEN, lint
 from sssgen.support.diagnostics import SssgenError
 
 HAZARDS = """\
@@ -51,7 +51,9 @@ def test_plain_functions_have_no_guard(hazards: str, capsys: pytest.CaptureFixtu
     assert " 6 |     return a / b;\n   |            ^^^^^" in output
     assert "found: a in -1e+06..1e+06, b in -1e+06..1e+06" in output
     assert "write: max(abs(b), 1e-20)" in output
-    assert output.endswith("4 operations with a domain: 2 proven safe, 2 may fail, 0 unknown (division: 1, nan: 1)\n")
+    assert output.endswith(
+        "4 operations with a domain: 2 proven safe, 2 may fail, 0 not proven (division: 1, nan: 1)\n"
+    )
 
 
 def test_proven_functions_pass(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -100,7 +102,7 @@ def test_a_material_is_analysed_as_a_whole() -> None:
     assert ("thickness", MAY_FAIL) in alone
     chained = lint("paper_lantern", with_examples=False).findings
     assert all(entry.guarded for entry in chained)
-    assert sum(entry.verdict == PROVEN for entry in chained) > sum(entry.verdict == UNKNOWN for entry in chained)
+    assert sum(entry.verdict == PROVEN for entry in chained) > sum(entry.verdict == NOT_PROVEN for entry in chained)
 
 
 def test_fixed_values_prove_more(tmp_path: Path) -> None:
@@ -218,6 +220,20 @@ def test_wrong_files(tmp_path: Path) -> None:
         lint(str(tmp_path))
 
 
+@pytest.mark.parametrize(("size", "message"), [(0, "a local_size_x must be"), (64, "compute shaders are not analysed")])
+def test_compute_shaders_have_one_error(size: int, message: str, tmp_path: Path) -> None:
+    """With a wrong size, too, it is a compute shader: the buffer and the builtins are no errors."""
+    path = tmp_path / "compute.glsl"
+    path.write_text(
+        f"#version 430\nlayout(local_size_x = {size}) in;\nlayout(std430, binding = 0) buffer B {{ float v[]; }};\n"
+        "void main() { v[gl_GlobalInvocationID.x] = float(gl_WorkGroupSize.x); barrier(); }\n"
+    )
+    with pytest.raises(SssgenError) as raised:
+        lint(str(path))
+    (diagnostic,) = raised.value.diagnostics
+    assert message in diagnostic.message and diagnostic.hint
+
+
 def test_names_mean_nothing_in_plain_functions(tmp_path: Path) -> None:
     """In a plain function `roughness` is any number; in a technique it is a quantity with a range."""
     path = tmp_path / "names.glsl"
@@ -231,7 +247,7 @@ def test_parameters_that_cannot_be_sampled_have_no_example(tmp_path: Path) -> No
         "struct S { float a; };\nfloat f(S s) { return sqrt(s.a); }\nfloat g(float a[3]) { return 1.0 / a[1]; }\n"
         "float h(sampler2D t) { return sqrt(texture(t, vec2(0.5)).x - 2.0); }\nmat2 i(mat2 m) { return inverse(m); }\n"
     )
-    assert {entry.verdict for entry in lint(str(path)).findings} <= {MAY_FAIL, UNKNOWN}
+    assert {entry.verdict for entry in lint(str(path)).findings} <= {MAY_FAIL, NOT_PROVEN}
 
 
 ASSUMED = """\
@@ -329,6 +345,64 @@ def test_wrong_files_of_assumptions(text: str, message: str, tmp_path: Path, haz
     with pytest.raises(SssgenError, match=re.escape(message)) as raised:
         lint(hazards, False, assumed=[str(path)])
     assert raised.value.diagnostics[0].span.file == str(path)
+
+
+UNUSED = """\
+[[assume]]
+names = ["roughnes"]
+range = [0.0, 1.0]
+
+[[assume]]
+names = ["roughness"]
+storage = "varying"
+range = [0.0, 1.0]
+
+[[assume]]
+names = ["*Normal", "nothing"]
+nonzero = true
+"""
+
+
+def test_assumptions_that_match_nothing_are_mentioned(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A rule of a file, with the likely name; a preset as a whole; not what another file of the run has."""
+    mine, shader, other = tmp_path / "mine.toml", tmp_path / "assumed.frag", tmp_path / "other.glsl"
+    mine.write_text(UNUSED)
+    shader.write_text(ASSUMED)
+    other.write_text("uniform float roughnes;\nfloat f(float x) { return x * roughnes; }\n")
+    command = ["lint", str(shader), "--no-examples", "--assume", str(mine)]
+    main(command)
+    errors = capsys.readouterr().err
+    assert f"there is no 'roughnes'\n  --> {mine}:2:9\n" in errors and "did you mean 'roughness'?" in errors
+    assert "the input 'roughness' has another storage or type than this rule is about" in errors
+    assert errors.count("warning: ") == 2
+    main([*command, "--json"])
+    warnings = json.loads(capsys.readouterr().out)["warnings"]
+    assert [warning["line"] for warning in warnings] == [2, 6]
+    main([*command, str(other)])
+    assert "roughnes'" not in capsys.readouterr().err
+    main(["lint", str(shader), "--no-examples", "--assume", "playcanvas"])
+    assert "the preset 'playcanvas' matches no input of this shader" in (errors := capsys.readouterr().err)
+    assert "presets that match: babylonjs, colors, generic, threejs, unit-normals" in errors
+
+
+RESTRICTED = """\
+uniform float scale; // sssgen: assume scale > 0
+float root(float x) { return sqrt(x); }
+float scaled(float x) { return sqrt(x) / scale; }
+float stated(float x)
+{
+    // sssgen: assume x > 0
+    return log(x) + sqrt(x - 1.0);
+}
+"""
+
+
+def test_examples_are_searched_where_nothing_is_assumed(tmp_path: Path) -> None:
+    """An assumption stops the search in the functions that it is about."""
+    path = tmp_path / "some.glsl"
+    path.write_text(RESTRICTED)
+    verdicts = {finding.site.node.span.line: finding.verdict for finding in lint(str(path)).unproven()}
+    assert verdicts == {2: MAY_FAIL, 3: NOT_PROVEN, 7: NOT_PROVEN}
 
 
 def test_presets_are_for_plain_glsl(hazards: str) -> None:

@@ -8,7 +8,7 @@ from argparse import ArgumentParser, Namespace
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from sssgen.cli.output import CHECK_FAILED, OK, print_json
+from sssgen.cli.output import CHECK_FAILED, OK, print_json, print_warnings
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
 from sssgen.support.progress import ProgressBar
 
@@ -68,6 +68,7 @@ def run(arguments: Namespace) -> int:
                 wrong += error.diagnostics
     if wrong:
         raise SssgenError(wrong)
+    warnings = _warnings(reports)
     unproven = [finding for report in reports for finding in report.unproven()]
     new = unproven
     if accepted is not None:
@@ -92,13 +93,14 @@ def run(arguments: Namespace) -> int:
             }
             for report in reports
         ]
-        print_json({"ok": not unguarded, "results": listed})
+        print_json({"ok": not unguarded, "results": listed, "warnings": [warning.as_json() for warning in warnings]})
         return CHECK_FAILED if unguarded else OK
+    print_warnings(warnings)
     for report in reports:
         for finding in report.findings:
             if id(finding) in is_new or (finding.verdict == PROVEN and arguments.all):
                 print(f"{finding.render()}\n")
-        print(_summary(report, arguments.no_examples))
+        print(_summary(report))
         for source, assumed in _assumptions(report):
             print(f"  assumed ({source}): {assumed}")
     if arguments.baseline:
@@ -116,6 +118,13 @@ def _write(path: str, text: str) -> None:
         print(text, end="")
         return
     write_files(os.path.dirname(path) or ".", {os.path.basename(path): text})
+
+
+def _warnings(reports: list[Report]) -> list[Diagnostic]:
+    """The assumptions that match an input of none of the files."""
+    counts = Counter((warning.message, warning.span) for report in reports for warning in report.warnings)
+    last = {(warning.message, warning.span): warning for report in reports for warning in report.warnings}
+    return [warning for key, warning in last.items() if counts[key] == len(reports)]
 
 
 def _kinds(option: str | None) -> tuple[Kind, ...]:
@@ -139,17 +148,16 @@ def _assumptions(report: Report) -> list[tuple[str, str]]:
     return [(source, f"{', '.join(group)}: {text}") for (source, text), group in names.items()]
 
 
-def _summary(report: Report, no_examples: bool) -> str:
+def _summary(report: Report) -> str:
     """The line below the findings of a file: how many operations were proven, and how many findings are not shown."""
-    from sssgen.harness.lint.lint_findings import MAY_FAIL, PROVEN, UNKNOWN
+    from sssgen.harness.lint.lint_findings import MAY_FAIL, NOT_PROVEN, PROVEN
 
     counts = Counter(finding.verdict for finding in report.findings)
     total = len({id(finding.site) for finding in report.findings})
-    unseen = "not proven" if no_examples else UNKNOWN
     kinds = Counter(finding.kind for finding in report.unproven())
     by_kind = f" ({', '.join(f'{kind}: {count}' for kind, count in kinds.items())})" if len(kinds) > 1 else ""
     hidden = "".join(f"; --kind {kind} shows {count} more" for kind, count in report.hidden.items())
     return (
         f"{report.name}: {total} operation{'s' * (total != 1)} with a domain: "
-        f"{counts[PROVEN]} proven safe, {counts[MAY_FAIL]} may fail, {counts[UNKNOWN]} {unseen}{by_kind}{hidden}"
+        f"{counts[PROVEN]} proven safe, {counts[MAY_FAIL]} may fail, {counts[NOT_PROVEN]} {NOT_PROVEN}{by_kind}{hidden}"
     )

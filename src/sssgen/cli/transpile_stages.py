@@ -66,7 +66,13 @@ def _unfit(arguments: Namespace) -> list[Diagnostic]:
         "FILE": arguments.FILE, "--with": arguments.partner, "--verify": arguments.verify, "--as": arguments.as_,
         "--entry": arguments.entry, "--trace": arguments.trace,
     }  # fmt: skip
-    wrong = [Diagnostic("error", f"{option} cannot be used with --stages") for option, value in unfit.items() if value]
+    wrong = [
+        Diagnostic(
+            "error", f"{option} cannot be used with --stages", hint=f"leave {option} out, or translate each stage"
+        )
+        for option, value in unfit.items()
+        if value
+    ]
     if arguments.output in (None, "-") and not arguments.json:
         hint = "write -o FOLDER or -o FOLDER/NAME; or add --json, which prints all files"
         wrong.append(Diagnostic("error", "--stages writes several files, and needs a place for them", hint=hint))

@@ -25,6 +25,8 @@ class Contract(NamedTuple):
     """False for texels of a texture that holds data: a float format may hold NaN and infinity."""
     shortest: float = 0.0
     """The least length of a vector, or size of a number. `shortest` and `length` of a matrix are its stretch."""
+    channels: tuple[Range, ...] = ()
+    """The range of each channel of a texture, where they differ."""
 
 
 LENGTH = 1.001
@@ -235,5 +237,7 @@ def normal_of_texel(format: Format, x: Value) -> Result:
 
 
 def texels(format: Format, x: Value, *coordinates: Value) -> Result:
+    if x.texel is not None and x.texel.channels:
+        return list(x.texel.channels), ANY
     texel = UNIT if x.texel is None else hull(x.texel.low, x.texel.high)
     return [texel] * 4, ANY

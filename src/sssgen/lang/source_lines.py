@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from sssgen.ir.spans import Span
 
 _lines: dict[str, list[str]] = {}
+_LINES_BEHIND = 8
+"""How far below a span the end of its brackets may be."""
 
 
 def keep_lines(texts: Mapping[str, str]) -> None:
@@ -28,6 +30,53 @@ def source_text(span: Span) -> str:
         return ""
     lines = [*lines[:-1], lines[-1][: span.end_column - 1]]
     return "\n".join([lines[0][span.column - 1 :], *lines[1:]])
+
+
+def whole(span: Span) -> Span:
+    """A span of a loaded file with the brackets that it begins or ends inside of, and the arguments of a macro."""
+    lines = _lines.get(span.file, [])[max(span.line - 1, 0) : span.end_line + _LINES_BEHIND] if span.line else []
+    if not lines:
+        return span
+    text = "\n".join(lines)
+    start = span.column - 1
+    end = sum(len(line) + 1 for line in lines[: span.end_line - span.line]) + span.end_column - 1
+    if re.fullmatch(r"[A-Za-z_]\w*", text[start:end]) and (call := re.compile(r"[ \t]*\(").match(text, end)):
+        end = call.end()
+    opened = closed = 0
+    for char in text[start:end]:
+        if char in "([":
+            opened += 1
+        elif char in ")]" and opened:
+            opened -= 1
+        elif char in ")]":
+            closed += 1
+    before, behind = _past(text[:start][::-1], "([", ")]", closed), _past(text[end:], ")]", "([", opened)
+    if before is None or behind is None:
+        return span
+    start, end = start - before, end + behind
+    first, last = text[:start].rpartition("\n"), text[:end].rpartition("\n")
+    return Span(
+        span.file, span.line + text[:start].count("\n"), len(first[2]) + 1,
+        span.line + text[:end].count("\n"), len(last[2]) + 1,
+    )  # fmt: skip
+
+
+def _past(text: str, wanted: str, other: str, count: int) -> int | None:
+    """The length of a text up to and with the bracket that closes `count` of them; None if it has too few."""
+    depth = count
+    for index, char in enumerate(text):
+        if not depth:
+            return index
+        depth += (char in other) - (char in wanted)
+    return None if depth else len(text)
+
+
+def excerpt(span: Span, longest: int) -> str:
+    """The text of a span in one line, with whole brackets; what is too long is cut at a blank."""
+    text = " ".join(re.sub(r"(?m)^[ \t]*#.*$", "", source_text(whole(span))).split())
+    if len(text) <= longest:
+        return text
+    return f"{text[:longest].rpartition(' ')[0] or text[:longest]} …"
 
 
 def line_before(span: Span, pattern: str) -> Span | None:

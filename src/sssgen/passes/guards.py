@@ -202,6 +202,8 @@ def _of_whole_call(guard: Guard, node: ir.Intrinsic) -> Guard:
 def remedy(site: Site, format: Format, guard: Guard | None = None) -> str:
     """What replaces the argument, the result or the call, for people; `guard` is that of one of the failures."""
     guard = guard_of(site if guard is None else site._replace(guard=guard))
+    if guard.advice is not None:
+        return with_constants(guard.advice(*site.args), format, site.limits, "{:g}".format)
     text = guard.text or guard.doc
     text = with_constants(text, format, site.limits, "{:g}".format)
     replaced = operands(site.node)["xyz".index(guard.replaces)] if guard.replaces in ("x", "y", "z") else site.node

@@ -78,7 +78,9 @@ def _check_compute(target: Target, form: str, guards: str) -> None:
             f"{target.title} has no compute shaders here", "they go to glsl-330 (as GLSL 4.30), hlsl and wgsl"
         )
     if guards != "none":
-        raise failure("a compute shader takes no guards: other invocations write its memory, too", "--guards none")
+        raise failure(
+            "a compute shader takes no guards: other invocations write its memory, too", "write --guards none"
+        )
 
 
 def check_partner(kind: str, other: str) -> None:

@@ -14,7 +14,7 @@ from sssgen.pipeline import pass_list
 from sssgen.pipeline.compiler import finish
 from sssgen.pipeline.programs import check_partner, finish_program
 from sssgen.pipeline.state import State
-from sssgen.support.diagnostics import Diagnostic, SssgenError
+from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.gc_pause import paused
 from sssgen.targets import registry
 from sssgen.targets.assemble import About
@@ -55,12 +55,14 @@ def transpile_stages(
     sources = {"vertex": first, "fragment": second} if kinds[0] == "vertex" else {"vertex": second, "fragment": first}
     chosen = registry.load(target)._replace(prefix="", material_group=0)
     if any(kind not in chosen.files for kind in sources):
-        raise SssgenError([Diagnostic("error", f"{target} has no whole shaders of plain GLSL")])
+        able = [name for name in registry.names() if "vertex" in registry.load(name).files]
+        raise failure(f"{target} has no whole shaders of plain GLSL", f"they go to {', '.join(able)}")
     with paused():
         modules = {kind: used(only(source.module, [ENTRY]), True) for kind, source in sources.items()}
         wrong = disagreements(modules["vertex"], modules["fragment"])
         if wrong:
-            raise SssgenError([Diagnostic("error", text, span, "", source_line(span)) for text, span in wrong])
+            hint = "declare it with one type in both stages"
+            raise SssgenError([Diagnostic("error", text, span, hint, source_line(span)) for text, span in wrong])
         modules["vertex"], modules["fragment"] = linked(modules["vertex"], modules["fragment"])
         states = _states(modules, guards, chosen, rows)
         own = {kind: {uniform.name for uniform in state.module.uniforms} for kind, state in states.items()}

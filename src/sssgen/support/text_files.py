@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from sssgen.ir.spans import Span
 from sssgen.support import unsaved
-from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
+from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
 from sssgen.support.file_memo import note
 from sssgen.support.paths import posix, stem
 
@@ -36,18 +36,27 @@ def read_text(path: str | os.PathLike[str], shown: str, otherwise: str = "") -> 
             _check_size(size, shown)
             data = file.read()
     except FileNotFoundError:
-        raise failure("no such file", file=shown) from None
+        raise failure("no such file", _near(path), shown) from None
     except OSError as error:
         refuse_folder(path)
-        raise failure(f"cannot read the file: {error.strerror}", file=shown) from None
+        raise failure(f"cannot read the file: {error.strerror}", "check its permissions", shown) from None
     except ValueError:  # a zero byte or a lone surrogate in its name
-        raise failure("this is not a valid file name", file=shown) from None
+        raise failure("this is not a valid file name", "name a file that exists", shown) from None
     return _checked_text(data, shown, otherwise)
+
+
+def _near(path: str | os.PathLike[str]) -> str:
+    """What to do about a file that is missing: a file of a similar name, or the folder that is missing, too."""
+    folder, name = os.path.split(os.fspath(path))
+    try:
+        return did_you_mean(name, sorted(os.listdir(folder or "."))) or "check the name"
+    except OSError:
+        return f"there is no folder '{folder}'"
 
 
 def _check_size(size: int, shown: str) -> None:
     if size > MAX_BYTES:
-        raise failure(f"the file is too large: {size} bytes; at most {MAX_BYTES} are read", file=shown)
+        raise failure(f"the file is too large: {size} bytes; at most {MAX_BYTES} are read", "split it", shown)
 
 
 def read_code(path: str | os.PathLike[str], shown: str) -> str:

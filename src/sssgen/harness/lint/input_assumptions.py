@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 from sssgen.ir.contracts import Assumption
 from sssgen.ir.intervals import INF
 from sssgen.ir.nodes import Module
+from sssgen.ir.spans import NOWHERE, Span
 from sssgen.ir.types import Matrix, Sampler, Struct, Type, Vector, spell
 from sssgen.lang.assumption_comments import UNIT, AssumedInput, assumption_of
 from sssgen.passes.ranges.scalar_parts import innermost
@@ -26,6 +27,8 @@ from sssgen.support.toml_source import Document, parse
 
 FOLDER = Path(__file__).parent / "presets"
 STORAGES = ("uniform", "varying", "attribute", "parameter", "texture")
+DIFFERENCE = "difference"
+"""The storage of a rule about `A - B`, a uniform minus an input."""
 _FLAGS = ("unit", "nonzero", "orthonormal", "finite")
 _KEYS = ("names", "storage", "types", "range", "length", *_FLAGS, "because")
 
@@ -41,6 +44,8 @@ class Rule(NamedTuple):
     """The types as GLSL spells them; none means all."""
     assumption: Assumption
     because: str
+    span: Span = NOWHERE
+    """The place of the names; NOWHERE in a preset."""
 
     def matches(self, storage: str, name: str, type_: Type) -> bool:
         """Whether it is about an input."""
@@ -48,6 +53,21 @@ class Rule(NamedTuple):
             storage in self.storages
             and (not self.types or spell(type_) in self.types)
             and any(fnmatchcase(name, pattern) for pattern in self.names)
+        )
+
+    def warning(self, names: Collection[str], read: Collection[str]) -> Diagnostic | None:
+        """The warning where it matches none of the inputs with these names, of which the program reads some."""
+        matching = [name for name in {*names, *read} if any(fnmatchcase(name, pattern) for pattern in self.names)]
+        other = sorted(set(matching) & set(read))
+        if other:
+            message = f"the input '{other[0]}' has another storage or type than this rule is about"
+            return Diagnostic("warning", message, self.span, "change storage or types of the rule")
+        if matching:
+            return None
+        hint = did_you_mean(self.names[0].strip("*"), names)
+        message = f"this rule matches no input: there is no '{self.names[0]}'"
+        return Diagnostic(
+            "warning", message, self.span, hint or "name a uniform, an input, a parameter or a field of one"
         )
 
 
@@ -71,6 +91,9 @@ class Assumptions:
         self.rules = list(rules)
         self.is_vertex = is_vertex
         self.applied: dict[tuple[str, str], AssumedFact] = {}
+        self.inputs: dict[tuple[str, str], Type] = {}
+        """The inputs that it was asked about: storage and name → type."""
+        self.matched: set[Rule] = set()
 
     def of(self, storage: str, name: str, type_: Type) -> Assumption | None:
         """What is assumed of an input; None for nothing. Of several rules, all hold."""
@@ -78,9 +101,11 @@ class Assumptions:
             storage = "texture"
         elif storage == "input":
             storage = "attribute" if self.is_vertex else "varying"
+        self.inputs[storage, name] = type_
         matching = [rule for rule in self.rules if rule.matches(storage, name, type_)]
         if not matching:
             return None
+        self.matched.update(matching)
         for rule in matching:
             fact = AssumedFact(name, _shown(rule.assumption, type_), rule.source, rule.because)
             self.applied[name, rule.source] = fact
@@ -91,6 +116,27 @@ class Assumptions:
             min(rule.assumption.longest for rule in matching),
             any(rule.assumption.finite for rule in matching),
         )
+
+    def warnings(self, names: Collection[str]) -> list[Diagnostic]:
+        """A warning for each rule of a file, and for each preset, that matches none of the inputs."""
+        result = []
+        chosen = {rule.source for rule in self.rules}
+        for source in sorted(chosen & set(presets()) - {rule.source for rule in self.matched}):
+            others = [other for other in presets() if other not in chosen and self._matches(other)]
+            hint = (
+                f"presets that match: {', '.join(others)}"
+                if others
+                else "write a .toml file with the names of your engine"
+            )
+            result.append(Diagnostic("warning", f"the preset '{source}' matches no input of this shader", hint=hint))
+        read = {name for _, name in self.inputs}
+        files = [rule.warning(names, read) for rule in self.rules if rule.span.file and rule not in self.matched]
+        return [*result, *(warning for warning in files if warning is not None)]
+
+    def _matches(self, preset: str) -> bool:
+        """Whether a preset is about one of the inputs."""
+        rules = load_rules([preset])
+        return any(rule.matches(*key, type_) for key, type_ in self.inputs.items() for rule in rules)
 
 
 def presets() -> list[str]:
@@ -113,7 +159,7 @@ def load_rules(names: Sequence[str]) -> list[Rule]:
 
 
 def input_names(module: Module) -> frozenset[str]:
-    """The names of the inputs of a module; of structs, those of their fields, too."""
+    """The names of the inputs of a module; of structs, those of their fields, of textures, those of channels."""
     names: set[str] = set()
     params = [(param.name, param.type) for function in module.functions for param in function.params]
     inputs = [(variable.name, variable.type) for variable in module.variables if variable.storage == "in"]
@@ -122,7 +168,9 @@ def input_names(module: Module) -> frozenset[str]:
         name, type_ = pending.pop()
         names.add(name)
         inner = innermost(type_)
-        if isinstance(inner, Struct):
+        if isinstance(inner, Sampler):
+            names.update([f"{name}.{channel}" for channel in "rgba"])
+        elif isinstance(inner, Struct):
             pending += [(f"{name}.{field.name}", field.type) for field in inner.fields]
     return frozenset(names)
 
@@ -181,8 +229,8 @@ def _rule(document: Document, table: dict[str, Any], index: int, source: str) ->
     for key in table.keys() - set(_KEYS):
         wrong(key, f"unknown key '{key}'", did_you_mean(key, _KEYS) or f"keys: {', '.join(_KEYS)}")
     for word in words("storage"):
-        if word not in STORAGES:
-            wrong("storage", f"unknown storage '{word}'", f"storages: {', '.join(STORAGES)}")
+        if word not in (*STORAGES, DIFFERENCE):
+            wrong("storage", f"unknown storage '{word}'", f"storages: {', '.join((*STORAGES, DIFFERENCE))}")
     if not words("names"):
         wrong("names", "this rule has no names", 'write names = ["roughness"]')
     (low, high), (shortest, longest) = interval("range", -INF), interval("length", 0.0)
@@ -200,6 +248,7 @@ def _rule(document: Document, table: dict[str, Any], index: int, source: str) ->
     return Rule(
         source, words("names"), words("storage") or STORAGES, words("types"),
         Assumption(low, high, shortest, longest, finite), because if isinstance(because, str) else "",
+        NOWHERE if source in presets() else document.place("assume", index, "names").value,
     )  # fmt: skip
 
 

@@ -16,16 +16,18 @@ from sssgen.harness.lint.input_assumptions import AssumedFact, Assumptions, inpu
 from sssgen.ir.formats import FLOAT32
 from sssgen.ir.intrinsics import Guard, Kind
 from sssgen.ir.nodes import Assume, Function, Module
+from sssgen.ir.spans import Span
 from sssgen.ir.types import Matrix, Scalar, Vector, Void
 from sssgen.ir.walk import operands, statements
 from sssgen.lang.check.termination import endless
 from sssgen.lang.plain_glsl import load_glsl
-from sssgen.lang.source_lines import source_line
+from sssgen.lang.source_lines import excerpt, source_line, whole
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
 from sssgen.passes.guards import remedy
 from sssgen.passes.ranges.origins import Origins, Step
 from sssgen.passes.ranges.sites import Site, shown
+from sssgen.passes.reachable import only, used
 from sssgen.passes.stage.stage_interface import stage_kind
 from sssgen.pipeline.compiler import guarded_sites
 from sssgen.pipeline.programs import traced_sites
@@ -33,9 +35,9 @@ from sssgen.support.diagnostics import Diagnostic, did_you_mean, failure
 from sssgen.support.text_files import refuse_folder
 from sssgen.targets import registry
 
-LONGEST = 40
-"""Characters of an operand that are shown in place of its letter."""
-PROVEN, MAY_FAIL, UNKNOWN = "proven", "may fail", "unknown"
+LONGEST = 60
+"""Characters of an operand or a definition that are shown."""
+PROVEN, MAY_FAIL, NOT_PROVEN = "proven", "may fail", "not proven"
 REPORTED: tuple[Kind, ...] = ("nan", "division", "undefined", "range")
 """The kinds that are reported if no others are selected: nearly every sum of numbers without a range may overflow."""
 
@@ -45,7 +47,7 @@ class Finding(NamedTuple):
 
     site: Site
     verdict: str
-    """`proven`, `may fail` (there is an example) or `unknown`."""
+    """`proven`, `may fail` (there is an example) or `not proven`."""
     guard: Guard
     """That of the failure; of an operation that is proven safe, any."""
     example: str = ""
@@ -68,8 +70,13 @@ class Finding(NamedTuple):
         if self.verdict == PROVEN:
             return f"{self.site.operation}: proven safe"
         unseen = "not proven, and no input was found that fails" if self.searched else "not proven"
-        noted = f" ({unseen})" if self.verdict == UNKNOWN else ""
+        noted = f" ({unseen})" if self.verdict == NOT_PROVEN else ""
         return f"{self.site.operation}: {self.guard.problem} [{self.kind}]{noted}"
+
+    @property
+    def span(self) -> Span:
+        """The place of the operation, with whole brackets."""
+        return whole(self.site.node.span)
 
     @property
     def severity(self) -> str:
@@ -81,16 +88,20 @@ class Finding(NamedTuple):
         """What makes the operation safe; '' if it is."""
         return "" if self.verdict == PROVEN else self.with_operands(remedy(self.site, FLOAT32, self.guard))
 
+    @property
+    def found(self) -> str:
+        """The ranges of its operands; '' where there are none."""
+        return self.with_operands(self.site.range_text)
+
     def diagnostic(self, hint: str = "") -> Diagnostic:
         """The finding as a diagnostic, with its place."""
-        span = self.site.node.span
-        return Diagnostic(self.severity, self.message, span, hint, source_line(span))
+        return Diagnostic(self.severity, self.message, self.span, hint, source_line(self.span))
 
     def render(self) -> str:
         """For a terminal: the place, the ranges found, an example, the remedy."""
         lines = [self.diagnostic().render()]
-        if self.site.range_text:
-            lines.append(f"  found: {self.with_operands(self.site.range_text)}")
+        if self.found:
+            lines.append(f"  found: {self.found}")
         lines += [f"  because: {explanation(step)}" for step in self.shown_steps()]
         if self.example:
             lines.append(f"  example: {self.example}")
@@ -109,9 +120,8 @@ class Finding(NamedTuple):
             return text
         operand_texts = {}
         for letter, arg in zip("xyz", operands(self.site.node), strict=False):
-            span, line = arg.span, source_line(arg.span)
-            operand_text = line[span.column - 1 : span.end_column - 1].strip()
-            if span.line == span.end_line and 0 < len(operand_text) <= LONGEST and re.search(rf"\b{letter}\b", text):
+            operand_text = excerpt(arg.span, LONGEST)
+            if operand_text not in ("", letter) and re.search(rf"\b{letter}\b", text):
                 operand_texts[letter] = operand_text
         if all(re.fullmatch(r"[\w.]+", operand_text) for operand_text in operand_texts.values()):
             return re.sub(r"\b[xyz]\b", lambda match: operand_texts.get(match[0], match[0]), text)
@@ -125,7 +135,7 @@ class Finding(NamedTuple):
             "kind": None if self.verdict == PROVEN else self.kind,
             "operation": site.operation,
             "function": site.function,
-            "found": self.with_operands(site.range_text),
+            "found": self.found,
             "because": [
                 {
                     "text": explanation(step),
@@ -145,14 +155,11 @@ class Finding(NamedTuple):
 
 def explanation(step: Step) -> str:
     """A step on the way from an input to an operation, in words, with its place."""
-    line = source_line(step.span)
-    code = line[step.span.column - 1 : step.span.end_column - 1 if step.span.end_line == step.span.line else None]
-    code = " ".join(code.split())
-    code = code if len(code) <= LONGEST else f"{code[:LONGEST]}…"
+    code = excerpt(step.span, LONGEST)
     where = f"{'of length ' if step.is_length else 'in '}{shown(step.range)}, line {step.span.line}"
     if step.what in ("uniform", "input", "parameter"):
         return f"{step.what} {step.name} is {where}"
-    if step.what == "definition":
+    if step.what == "definition" and not re.match(r"[\w.\[\] ]+[-+*/]=", code):
         return f"{step.name} = {code} is {where}"
     if step.what == "argument":
         return f"{step.name} is {code}, {where}"
@@ -173,6 +180,8 @@ class Report(NamedTuple):
     """How many operations may fail in a way of another kind."""
     assumptions: Sequence[AssumedFact] = ()
     """What was assumed of inputs, beyond their contracts."""
+    warnings: Sequence[Diagnostic] = ()
+    """Assumptions that match no input."""
 
     def unproven(self) -> list[Finding]:
         """The findings that are not proven safe."""
@@ -215,18 +224,31 @@ def _plain(path: str, with_examples: bool, kinds: Collection[Kind], assumed: Seq
     loaded = load_glsl(path, path, assumptions=True)
     module = loaded.module
     if module.workgroup:  # what other invocations write is not in the ranges
-        raise failure("compute shaders are not analysed: other invocations write their memory, too", file=path)
+        message = "compute shaders are not analysed: other invocations write their memory, too"
+        raise failure(message, "put the functions that are to be analysed into a file of their own", path)
     rules += rules_of_comments(loaded.assumed, input_names(module))
     assumptions = Assumptions(rules, stage_kind(module) == "vertex")
     sites, origins = traced_sites(module, assumed=assumptions.of if rules else None, unguarded=True)
     facts = [*assumptions.applied.values(), *_stated(module)]
     specimens = []
-    if with_examples and not facts and not any(map(endless, module.functions)):
+    if with_examples and not any(map(endless, module.functions)):
+        names = {name.split(".")[0] for name, _ in assumptions.applied}
         specimens = [
-            _technique(f"{path}:{function.name}") for function in module.functions if _evaluable(module, function)
+            _technique(f"{path}:{function.name}")
+            for function in module.functions
+            if _evaluable(module, function) and not _is_restricted(module, function, names)
         ]
     report = _report(path, sites, kinds, specimens, guarded=False, origins=origins)
-    return report._replace(assumptions=facts)
+    return report._replace(assumptions=facts, warnings=assumptions.warnings(input_names(module)))
+
+
+def _is_restricted(module: Module, function: Function, names: Collection[str]) -> bool:
+    """Whether something is assumed where a function runs, so that an input that is drawn for it may not occur."""
+    part = used(only(module, [function.key]), False)
+    inputs = {param.name for param in function.params} | {uniform.name for uniform in part.uniforms}
+    return not inputs.isdisjoint(names) or any(
+        isinstance(stmt, Assume) for each in part.functions for stmt in statements(each.body or ())
+    )
 
 
 def _stated(module: Module) -> Iterator[AssumedFact]:
@@ -276,7 +298,7 @@ def _report(
         hidden.update({guard.kind for guard in site.failures if guard.kind not in kinds})
         example = _example(site, specimens) if selected else ""
         for guard in selected:
-            verdict = MAY_FAIL if example else UNKNOWN
+            verdict = MAY_FAIL if example else NOT_PROVEN
             why = origins.chain(site, guard) if origins is not None else ()
             findings.append(Finding(site, verdict, guard, example, guarded, bool(specimens), why))
     return Report(name, findings, hidden)

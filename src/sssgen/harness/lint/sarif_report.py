@@ -17,7 +17,7 @@ from sssgen.harness.lint.finding_baseline import identity
 from sssgen.harness.lint.lint_findings import PROVEN, Finding, Report, explanation
 from sssgen.ir.intrinsics import KINDS
 from sssgen.ir.spans import Span
-from sssgen.lang.source_lines import source_text
+from sssgen.lang.source_lines import source_text, whole
 from sssgen.version import VERSION
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
@@ -65,7 +65,7 @@ def _result(finding: Finding, equal: Counter[str], state: str | None) -> dict[st
     equal[key] += 1
     mark = hashlib.sha256(f"{key}\n{equal[key]}".encode()).hexdigest()[:32]
     message = f"{finding.message}. {'Emitted' if finding.guarded else 'Write'}: {finding.remedy}"
-    location = _location(finding.site.node.span, "")
+    location = _location(finding.span, "")
     if finding.site.function:
         location["logicalLocations"] = [{"name": finding.site.function, "kind": "function"}]
     result = {
@@ -75,19 +75,19 @@ def _result(finding: Finding, equal: Counter[str], state: str | None) -> dict[st
         "message": {"text": message},
         "locations": [location],
         "partialFingerprints": {"sssgenFinding/v1": mark},
-        "properties": {"operation": finding.site.operation, "found": finding.with_operands(finding.site.range_text)},
+        "properties": {"operation": finding.site.operation, "found": finding.found},
     }
     if state is not None:
         result["baselineState"] = state
     if finding.why:
-        steps = [(step.span, explanation(step)) for step in reversed(finding.why)]
-        flow = [*steps, (finding.site.node.span, finding.message)]
+        steps = [(whole(step.span), explanation(step)) for step in reversed(finding.why)]
+        flow = [*steps, (finding.span, finding.message)]
         result["codeFlows"] = [
             {"threadFlows": [{"locations": [{"location": _location(span, text)} for span, text in flow]}]}
         ]
         shown = finding.shown_steps()
         result["relatedLocations"] = [
-            _location(step.span, explanation(step)) | {"id": index} for index, step in enumerate(shown, 1)
+            _location(whole(step.span), explanation(step)) | {"id": index} for index, step in enumerate(shown, 1)
         ]
     return result
 

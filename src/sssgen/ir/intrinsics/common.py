@@ -37,6 +37,16 @@ _STEP = "{ genF t = clamp((z - x) / clamp(y - x, DIVISOR, LARGEST), 0.0, 1.0); r
 _STEP_DOC = "smoothstep; a step if the edges are equal or in the wrong order."
 
 
+def _step_advice(x: Range, y: Range, z: Range) -> str:
+    reverse = "1.0 - smoothstep(y, x, z)"
+    if x.low > y.high:
+        return f"{reverse} in place of the call"
+    if x.low == x.high == y.low == y.high:
+        return "step(x, z) in place of the call"
+    text = "t * t * (3.0 - 2.0 * t), with t = clamp((z - x) / max(y - x, DIVISOR), 0.0, 1.0), in place of the call"
+    return text if x.high <= y.low else f"{text}; or {reverse} where x > y"
+
+
 def _bits(x: float) -> int:
     return int.from_bytes(struct.pack("<f", x), "little")
 
@@ -206,8 +216,8 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
         "Cubic step t·t·(3 - 2·t) with t = clamp((z - x)/(y - x), 0, 1).",
         not_constant=("wgsl",), fold=_smoothstep, same_quantity=3, range=within(0.0, 1.0),
         guards=(
-            Guard(lambda F, x, y, z: (y - x).low >= F.tiny, "undefined", "edges in the wrong order, or equal", _STEP, doc=_STEP_DOC),
-            Guard(lambda F, x, y, z: (y - x).high <= F.largest, "overflow", "a difference of the edges that overflows", _STEP, doc=_STEP_DOC),
+            Guard(lambda F, x, y, z: (y - x).low >= F.tiny, "undefined", "edges in the wrong order, or equal", _STEP, doc=_STEP_DOC, advice=_step_advice),
+            Guard(lambda F, x, y, z: (y - x).high <= F.largest, "overflow", "a difference of the edges that overflows", _STEP, doc=_STEP_DOC, advice=_step_advice),
         ),
         defined=lambda rt, x, y, z: x < y, inside=lambda rt, x, y, z: (x < y) & (y - x < 1e30),
         domain="x < y", explicit_type=("wgsl",), cost=8, ulp=16.0,

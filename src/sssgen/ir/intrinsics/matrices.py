@@ -77,7 +77,7 @@ mat4R outerProduct(vecR x, vec4 y) { return mat4R(x * y.x, x * y.y, x * y.z, x *
     Builtin("inverse", ("mat(mat)",), "Inverse matrix.",
         samples=Samples(invertible=True), componentwise=False, range=vector_ranges.inverse, overflow_is_nan=True,
         guards=(Guard(None, "division", "a matrix without an inverse", "", doc="The inverse; of a matrix without one, large numbers.",
-            result=lambda F, range: range),),  # not finite, where a cofactor overflows
+            advice=lambda *ranges: "call it only where abs(determinant(x)) > DIVISOR", result=lambda F, range: range),),  # not finite, where a cofactor overflows
         domain="determinant(x) != 0, and well away from it for accuracy", texts={"hlsl": "", "wgsl": ""},
         polyfill="""
 mat2 inverse(mat2 x) {

@@ -57,6 +57,8 @@ class Guard(NamedTuple):
     """The range of the replaced argument after the guard, where the row's range function needs it."""
     result: Callable[[Format, Range], Range] = lambda F, range: clip(range, -F.largest, F.largest)
     """The range of the call's result after the guard: by default it is finite."""
+    advice: Callable[..., str] | None = None
+    """What an author writes instead, for people, for the ranges of the arguments; where more than `text` is to be said."""
     succeeds: Callable[[Format, Range], Range] | None = None
     """The range of the first argument (of its length) where the call does not fail, if its result tells of that."""
 

@@ -31,6 +31,11 @@ def _reduced(rt: Any, x: Any) -> Any:
     return abs(x) <= 2.0**15
 
 
+def _unit_advice(x: Range) -> str:
+    noted = ", as rounding alone can exceed 1" if 1.0 < x.size <= 1.01 else ""
+    return f"clamp(x, -1.0, 1.0) in place of x{noted}"
+
+
 # A table: several fields to a line.
 # fmt: off
 ROWS = (
@@ -66,14 +71,14 @@ ROWS = (
     ),
     Builtin("asin", F1, "Arc sine, in [-pi/2, pi/2].",
         fold=math.asin, samples=Samples(floats=((-1.0, 1.0),)), range=within(-1.5708, 1.5708),
-        guards=(Guard(lambda F, x: x.low >= -1.0 and x.high <= 1.0, "nan", "an arc sine of a number outside of -1..1", "clamp(x, -1.0, 1.0)", "x"),),
+        guards=(Guard(lambda F, x: x.low >= -1.0 and x.high <= 1.0, "nan", "an arc sine of a number outside of -1..1", "clamp(x, -1.0, 1.0)", "x", advice=_unit_advice),),
         inside=lambda rt, x: abs(x) <= 1.0,
         domain="-1 <= x <= 1", kind="transcendental", cost=16, ulp=4096.0, absolute=2.0**-11, clause=_ASIN,
         vectors=(((1.0,), HALF_PI), ((0.0,), 0.0), ((-0.5,), -0.5235987755982989)),
     ),
     Builtin("acos", F1, "Arc cosine, in [0, pi].",
         fold=math.acos, samples=Samples(floats=((-1.0, 1.0),)), range=within(0.0, 3.1416),
-        guards=(Guard(lambda F, x: x.low >= -1.0 and x.high <= 1.0, "nan", "an arc cosine of a number outside of -1..1", "clamp(x, -1.0, 1.0)", "x"),),
+        guards=(Guard(lambda F, x: x.low >= -1.0 and x.high <= 1.0, "nan", "an arc cosine of a number outside of -1..1", "clamp(x, -1.0, 1.0)", "x", advice=_unit_advice),),
         inside=lambda rt, x: abs(x) <= 1.0,
         domain="-1 <= x <= 1", kind="transcendental", cost=16, ulp=4096.0, absolute=2.0**-11, clause=_ASIN,
         vectors=(((1.0,), 0.0), ((0.5,), 1.0471975511965979), ((-1.0,), PI)),

@@ -35,16 +35,19 @@ class MemoryChecker:
         if not sizes or "in" not in layout.qualifiers.keywords:
             return
         context = self.context
+        context.workgroup = (1, 1, 1)  # with a wrong size it is a compute shader, too
         numbers = []
         for name in _SIZES:
             number = constant_int(context, sizes[name]) if name in sizes else 1
             if number is None or not 1 <= number <= MAX_INVOCATIONS:
-                raise context.fail(sizes[name].span, f"a {name} must be a constant from 1 to {MAX_INVOCATIONS}")
+                message = f"a {name} must be a constant from 1 to {MAX_INVOCATIONS}"
+                raise context.fail(sizes[name].span, message, "write layout(local_size_x = 64) in;")
             numbers.append(number)
         if math.prod(numbers) > MAX_INVOCATIONS:
             raise context.fail(
                 layout.qualifiers.span,
                 f"a workgroup has at most {MAX_INVOCATIONS} invocations, not {math.prod(numbers)}",
+                "the invocations are local_size_x * local_size_y * local_size_z",
             )
         context.workgroup = tuple(numbers)
 

@@ -15,12 +15,12 @@ from sssgen.ir.contracts import Assumed
 from sssgen.ir.formats import FLOAT32
 from sssgen.ir.intervals import INF, Range
 from sssgen.ir.intrinsics import BUILTINS, Guard
-from sssgen.ir.types import Vector
-from sssgen.ir.vector_ranges import Value
+from sssgen.ir.types import Array, Sampler, Struct, Type, Vector
+from sssgen.ir.vector_ranges import Value, length_of
 from sssgen.ir.walk import all_expressions, operands, statements, written_root
 from sssgen.passes.ranges.range_pass import RangeAnalysis
 from sssgen.passes.ranges.range_state import variable_key
-from sssgen.passes.ranges.scalar_parts import hull_of
+from sssgen.passes.ranges.scalar_parts import field_at, hull_of
 from sssgen.passes.ranges.sites import ELEMENT, WHOLE_NUMBER, Site
 
 _BOUNDED = 1e3
@@ -44,15 +44,71 @@ class Step(NamedTuple):
     """Whether the range begins to leave the domain here: no part of what is computed here does."""
 
 
-def _is_length(node: ir.Expr, by_length: bool) -> bool:
-    return by_length and isinstance(node.type, Vector)
+Path = tuple[str | int | None, ...]
+"""The fields and elements that lead to a part of a value; None stands for any element."""
 
 
-def _is_name(node: ir.Expr | None) -> bool:
-    """Whether an expression is a variable, or a part of one."""
+class Place(NamedTuple):
+    """An expression, or a part of its value."""
+
+    node: ir.Expr
+    path: Path = ()
+
+    @property
+    def type(self) -> Type:
+        """The type of the part."""
+        type_ = self.node.type
+        for step in self.path:
+            if isinstance(type_, Struct):
+                type_ = next(field.type for field in type_.fields if field.name == step)
+            elif isinstance(type_, Array):
+                type_ = type_.element
+        return type_
+
+    def is_length(self, by_length: bool) -> bool:
+        """Whether its range is that of its length."""
+        return by_length and isinstance(self.type, Vector)
+
+
+def _access(node: ir.Expr) -> Place:
+    """The variable that an expression is a part of, if it is one, and the way from there."""
+    path: list[str | int | None] = []
     while isinstance(node, ir.Swizzle | ir.Index | ir.Member):
+        if isinstance(node, ir.Member):
+            path.insert(0, node.field)
+        elif isinstance(node, ir.Index):
+            path.insert(0, int(node.index.value) if isinstance(node.index, ir.Literal) else None)
         node = node.value
-    return isinstance(node, ir.Local | ir.Global)
+    return Place(node, tuple(path))
+
+
+def _part(value: ir.Expr, path: Path) -> Place:
+    """A part of a value: the argument of the constructor that it is, where that is known."""
+    while path and isinstance(value, ir.Construct) and isinstance(value.type, Struct | Array):
+        index = path[0]
+        if isinstance(value.type, Struct):
+            index = [field.name for field in value.type.fields].index(str(index))
+        if not isinstance(index, int) or index >= len(value.args):
+            break
+        value, path = value.args[index], path[1:]
+    return Place(value, path)
+
+
+def _is_direction(node: ir.Expr) -> bool:
+    """Whether the size of an operand does not matter for a result."""
+    return isinstance(node, ir.Intrinsic) and any(guard.succeeds is not None for guard in BUILTINS[node.name].guards)
+
+
+def _overlap(first: Path, second: Path) -> bool:
+    """Whether two parts of a variable have something in common."""
+    return all(a == b or a is None or b is None for a, b in zip(first, second, strict=False))
+
+
+def _spelled(name: str, path: Path) -> str:
+    """A part of a variable, as the language writes it."""
+    return name + "".join(
+        [f".{step}" if isinstance(step, str) else "" if step is None else f"[{step}]" for step in path]
+    )
 
 
 class RangeTrace(RangeAnalysis):
@@ -67,22 +123,40 @@ class RangeTrace(RangeAnalysis):
 
     def expr(self, node: ir.Expr) -> Value:
         value = super().expr(node)
+        self.keep(node, value)
+        return value
+
+    def operation(self, node: ir.Binary, left: Value, right: Value) -> Value:
+        value = super().operation(node, left, right)
+        self.keep(node, value)  # that of a compound assignment is no expression of its own
+        return value
+
+    def keep(self, node: ir.Expr, value: Value) -> None:
+        """Keeps the value of an expression at this visit."""
         values = self.seen.get(id(node))
         if values is None:
             self.seen[id(node)] = [value]
         elif values[-1] is not value:
             values.append(value)
-        return value
 
-    def range_of(self, node: ir.Expr, is_length: bool) -> Range | None:
-        """The hull of an expression's values, or of their lengths; None where it was not visited or has no numbers."""
-        values = self.seen.get(id(node), ())
+    def range_of(self, place: Place, by_length: bool) -> Range | None:
+        """The hull of a place's values, or of their lengths; None where it was not visited or has no numbers."""
+        values = self.seen.get(id(place.node), ())
         if not values or not values[0].parts:
             return None
-        lengths = [value.length for value in values]
-        if is_length and all(length.high < INF for length in lengths):
+        start, count, type_ = 0, len(values[0].parts), place.node.type
+        for step in place.path:
+            if isinstance(type_, Struct):
+                first, count = field_at(type_, str(step))
+                start, type_ = start + first, next(field.type for field in type_.fields if field.name == step)
+            elif isinstance(type_, Array):
+                type_ = type_.element
+        whole = count == len(values[0].parts)
+        parts = [value.parts[start : start + count] for value in values]
+        lengths = [value.length if whole else length_of(own) for value, own in zip(values, parts, strict=True)]
+        if place.is_length(by_length) and all(length.high < INF for length in lengths):
             return hull_of(tuple(lengths))
-        return hull_of(tuple([part for value in values for part in value.parts]))
+        return hull_of(tuple([part for own in parts for part in own]))
 
 
 class Origins:
@@ -95,8 +169,8 @@ class Origins:
         self.functions = {function.key: function for function in module.functions}
         self.owner: dict[int, str] = {}
         """The key of the function that an expression is in."""
-        self.definitions: dict[tuple[str, str], list[ir.Expr]] = {}
-        """A function and the key of a variable → what is assigned to it there."""
+        self.definitions: dict[tuple[str, str], list[tuple[Path, ir.Expr]]] = {}
+        """A function and the key of a variable → what is assigned to its parts there."""
         self.calls: dict[str, list[ir.Call]] = {}
         for function in module.functions:
             if trace.interpretations[function.key]:
@@ -110,7 +184,7 @@ class Origins:
                 self.calls.setdefault(expr.function, []).append(expr)
         for stmt in statements(function.body or ()):
             if isinstance(stmt, ir.Declare) and stmt.value is not None:
-                self.definitions.setdefault((key, stmt.name), []).append(stmt.value)
+                self.definitions.setdefault((key, stmt.name), []).append(((), stmt.value))
             elif isinstance(stmt, ir.Assign) and (name := variable_key(stmt.target)) is not None:
                 value: ir.Expr = stmt.value
                 compound = self.trace.compounds.get(id(stmt))
@@ -118,46 +192,44 @@ class Origins:
                     self.owner[id(compound)] = key
                     value = compound
                 owner = "" if name.startswith("@") else key
-                self.definitions.setdefault((owner, name), []).append(value)
+                self.definitions.setdefault((owner, name), []).append((_access(stmt.target).path, value))
 
     def chain(self, site: Site, guard: Guard) -> list[Step]:
         """The steps behind a site's failure, from the operation on."""
         start, fails = self._operand(site, guard)
-        if start is None:
-            return []
+        place = None if start is None else Place(start)
         steps: list[Step] = []
-        visited: set[int] = set()
-        node: ir.Expr | None = start
+        visited: set[tuple[int, Path]] = set()
         by_length = isinstance(site.node, ir.Intrinsic) and not BUILTINS[site.node.name].componentwise
         widest = False
-        while node is not None and id(node) not in visited and len(steps) < LONGEST:
-            visited.add(id(node))
-            own = self._range(node, by_length)
+        while place is not None and (id(place.node), place.path) not in visited and len(steps) < LONGEST:
+            visited.add((id(place.node), place.path))
+            own = self.trace.range_of(place, by_length)
             if own is None:
                 break
-            parts = self._parts(node)
-            if isinstance(node, ir.Local | ir.Global):
-                node, step = self._behind(node, own, by_length, fails if not widest else None)
-                if step is not None and not (step.what in ("argument", "definition") and _is_name(node)):
+            node, path = place
+            variable = _access(node)
+            if isinstance(variable.node, ir.Local | ir.Global):
+                variable = Place(variable.node, (*variable.path, *path))
+                length = place.is_length(by_length)
+                place, step = self._behind(variable, own, length, by_length, None if widest else fails)
+                is_name = place is not None and isinstance(_access(place.node).node, ir.Local | ir.Global)
+                if step is not None and not (step.what in ("argument", "definition") and is_name):
                     steps.append(step)
                 continue
             if isinstance(node, ir.Call):
                 function = self.functions[node.function]
                 returned = [
-                    stmt.value for stmt in statements(function.body or ()) if isinstance(stmt, ir.Return) and stmt.value
+                    _part(stmt.value, path)
+                    for stmt in statements(function.body or ())
+                    if isinstance(stmt, ir.Return) and stmt.value
                 ]
-                node = self._worst(returned, by_length, None if widest else fails)
-                if node is not None:
-                    steps.append(
-                        Step(
-                            node.span,
-                            "result",
-                            function.name,
-                            self._range(node, by_length) or own,
-                            _is_length(node, by_length),
-                        )
-                    )
+                place = self._worst(returned, by_length, None if widest else fails)
+                if place is not None:
+                    own = self.trace.range_of(place, by_length) or own
+                    steps.append(Step(place.node.span, "result", function.name, own, place.is_length(by_length)))
                 continue
+            parts = self._parts(node)
             if not parts:
                 if isinstance(node, ir.Intrinsic):
                     steps.append(Step(node.span, "texel" if BUILTINS[node.name].reads_texels else "operation", "", own))
@@ -165,14 +237,12 @@ class Origins:
             failing = [] if widest else self._failing(node, parts, by_length, fails)
             through = isinstance(node, ir.Swizzle | ir.Index | ir.Member | ir.Construct | ir.Select)
             if not failing and not widest and not through:
-                steps.append(Step(node.span, "operation", "", own, _is_length(node, by_length), widens=True))
+                steps.append(Step(node.span, "operation", "", own, place.is_length(by_length), widens=True))
                 widest, by_length = True, False
-            node = self._worst(failing or parts, by_length, None)
-            part = self._range(node, by_length) if widest and node is not None else None
-            if (
-                part is not None and part.size > _BOUNDED * own.size
-            ):  # the operation is a bound: it does not come from there
-                break
+            place = self._worst([Place(part) for part in failing or parts], by_length, None)
+            part = self.trace.range_of(place, by_length) if widest and place is not None else None
+            if part is not None and (part.size > _BOUNDED * own.size or _is_direction(node)):
+                break  # the operation is a bound: its range is not from there
         return steps
 
     def _operand(self, site: Site, guard: Guard) -> tuple[ir.Expr | None, Callable[[Range], bool]]:
@@ -198,7 +268,7 @@ class Origins:
         return args[index], fails
 
     def _range(self, node: ir.Expr, by_length: bool) -> Range | None:
-        return self.trace.range_of(node, _is_length(node, by_length))
+        return self.trace.range_of(Place(node), by_length)
 
     def _fails(self, node: ir.Expr, by_length: bool, fails: Callable[[Range], bool]) -> bool:
         own = self._range(node, by_length)
@@ -215,7 +285,7 @@ class Origins:
             own, other = self._range(part, by_length), self._range(rest, by_length)
             if own is None or other is None or other.gap > 0.0 or isinstance(part, ir.Literal):
                 continue
-            negated = node.op == "-" and part is node.right and not _is_length(part, by_length)
+            negated = node.op == "-" and part is node.right and not Place(part).is_length(by_length)
             if fails(-own if negated else own):
                 failing.append(part)
         return failing
@@ -225,27 +295,32 @@ class Origins:
             return [node.yes, node.no]
         if isinstance(node, ir.Index):
             return [node.value]
+        if isinstance(node, ir.Intrinsic) and any(isinstance(arg.type, Sampler) for arg in node.args):
+            return []  # what a texture has does not come from its coordinates
         parts = [part for part in operands(node) if not isinstance(part, ir.Literal)]
         return [part for part in parts if self._range(part, False) is not None]
 
-    def _worst(self, nodes: list[ir.Expr], by_length: bool, fails: Callable[[Range], bool] | None) -> ir.Expr | None:
-        """The node whose range fails, else the one with the widest range."""
-        ranges = [(node, own) for node in nodes if (own := self._range(node, by_length)) is not None]
+    def _worst(
+        self, places: list[Place], by_length: bool, fails: Callable[[Range], bool] | None
+    ) -> Place | None:  # fmt: skip
+        """The place whose range fails, else the one with the widest range."""
+        ranges = [(place, own) for place in places if (own := self.trace.range_of(place, by_length)) is not None]
         failing = [pair for pair in ranges if fails is not None and fails(pair[1])]
         return max(failing or ranges, key=lambda pair: pair[1].high - pair[1].low, default=(None, None))[0]
 
     def _behind(
-        self, node: ir.Local | ir.Global, own: Range, by_length: bool, fails: Callable[[Range], bool] | None
-    ) -> tuple[ir.Expr | None, Step | None]:
-        """What a variable is defined by, or the input that it is."""
+        self, variable: Place, own: Range, is_length: bool, by_length: bool, fails: Callable[[Range], bool] | None
+    ) -> tuple[Place | None, Step | None]:
+        """What a part of a variable is defined by, or the input that it is."""
+        node, path = variable
+        assert isinstance(node, ir.Local | ir.Global)
         owner = self.owner.get(id(node), "")
-        if isinstance(node, ir.Global) and node.name in self.uniforms:
-            return None, Step(self.uniforms[node.name].span, "uniform", node.name, own, _is_length(node, by_length))
-        if isinstance(node, ir.Global) and node.name in self.inputs:
-            return None, Step(self.inputs[node.name].span, "input", node.name, own, _is_length(node, by_length))
+        for inputs, what in ((self.uniforms, "uniform"), (self.inputs, "input")):
+            if isinstance(node, ir.Global) and node.name in inputs:
+                return None, Step(inputs[node.name].span, what, _spelled(node.name, path), own, is_length)
         key = variable_key(node) or ""
-        defined = self.definitions.get(("" if isinstance(node, ir.Global) else owner, key), [])
-        before = [value for value in defined if value.span[1:3] < node.span[1:3]] or defined
+        defined = list(self._assigned("" if isinstance(node, ir.Global) else owner, key, path))
+        before = [value for value in defined if value.node.span[1:3] < node.span[1:3]] or defined
         function = self.functions.get(owner)
         position = next((at for at, param in enumerate(function.params) if param.name == key), -1) if function else -1
         if (
@@ -254,30 +329,29 @@ class Origins:
             and not any(self._reaches(value, fails, by_length) for value in before)
         ):
             param = function.params[position]
-            arguments = [call.args[position] for call in self.calls.get(owner, ()) if id(call) in self.trace.seen]
-            argument = self._worst(arguments, by_length, fails) if arguments else None
-            span = param.span if argument is None else argument.span
-            length = _is_length(node, by_length)
+            calls = [call for call in self.calls.get(owner, ()) if id(call) in self.trace.seen]
+            argument = self._worst([Place(call.args[position], path) for call in calls], by_length, fails)
+            name = _spelled(param.name, path)
             if argument is None:
-                return None, Step(span, "parameter", param.name, own, length)
-            return argument, Step(span, "argument", f"{param.name} of {function.name}", own, length)
-        written = [*before, *self._outs(owner, key)]
-        value = self._worst(written, by_length, fails)
+                return None, Step(param.span, "parameter", name, own, is_length)
+            return argument, Step(argument.node.span, "argument", f"{name} of {function.name}", own, is_length)
+        value = self._worst([*before, *self._outs(owner, key, path)], by_length, fails)
         if value is None:
             return None, None
-        return value, Step(
-            value.span,
-            "definition",
-            key.lstrip("@"),
-            self._range(value, by_length) or own,
-            _is_length(value, by_length),
-        )
+        own, name = self.trace.range_of(value, by_length) or own, _spelled(key.lstrip("@"), path)
+        return value, Step(value.node.span, "definition", name, own, value.is_length(by_length))
 
-    def _reaches(self, value: ir.Expr, fails: Callable[[Range], bool] | None, by_length: bool) -> bool:
-        own = self._range(value, by_length)
+    def _assigned(self, owner: str, key: str, path: Path) -> Iterator[Place]:
+        """What is assigned to a part of a variable, or to what contains it or is in it."""
+        for target, value in self.definitions.get((owner, key), ()):
+            if _overlap(target, path):
+                yield _part(value, path[len(target) :])
+
+    def _reaches(self, value: Place, fails: Callable[[Range], bool] | None, by_length: bool) -> bool:
+        own = self.trace.range_of(value, by_length)
         return own is not None and (fails is None or fails(own))
 
-    def _outs(self, owner: str, key: str) -> Iterator[ir.Expr]:
+    def _outs(self, owner: str, key: str, path: Path) -> Iterator[Place]:
         """What functions that a function calls assign to a variable of it, as their out parameter."""
         for callee, calls in self.calls.items():
             for call in calls:
@@ -285,5 +359,6 @@ class Origins:
                     continue
                 for param, arg in zip(self.functions[callee].params, call.args, strict=True):
                     variable = written_root(arg) if param.direction != "in" else None
-                    if variable is not None and variable_key(variable) == key:
-                        yield from self.definitions.get((callee, param.name), [])
+                    target = _access(arg).path
+                    if variable is not None and variable_key(variable) == key and _overlap(target, path):
+                        yield from self._assigned(callee, param.name, path[len(target) :])

@@ -10,6 +10,7 @@ uniforms' hints.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple, cast
 
@@ -17,16 +18,21 @@ from sssgen.ir import contracts
 from sssgen.ir import nodes as ir
 from sssgen.ir.contracts import Assumed
 from sssgen.ir.formats import FLOAT32, Format
-from sssgen.ir.intervals import clip, rounded
-from sssgen.ir.types import VOID, Array, Struct, kind_of
+from sssgen.ir.intervals import Range, clip, rounded
+from sssgen.ir.types import VOID, Array, Struct, Type, Vector, kind_of
 from sssgen.ir.vector_ranges import Contract, Value
 from sssgen.ir.walk import root
-from sssgen.passes.ranges.facts import Facts
 from sssgen.passes.ranges.range_state import Frame, State, global_key, variable_key
 from sssgen.passes.ranges.scalar_parts import field_at, hull_of, innermost, scalars
 from sssgen.passes.ranges.sites import BOUNDS, Site
 from sssgen.passes.ranges.summaries import CallSummaries, Result
 from sssgen.passes.stage.stage_interface import ENTRY
+
+
+def _has_difference(left: Type, right: Type) -> bool:
+    """Whether a vector, or its first components, minus another one is a vector of floats."""
+    vectors = isinstance(left, Vector) and isinstance(right, Vector)
+    return vectors and kind_of(left) == kind_of(right) == "float" and scalars(left) >= scalars(right)
 
 
 class Findings(NamedTuple):
@@ -58,6 +64,26 @@ class RangeAnalysis(CallSummaries):
     ) -> None:  # fmt: skip
         super().__init__(module, format, chained, assumed, unguarded)
         self.variable_keys = frozenset(map(global_key, self.variables))
+        if assumed is not None:
+            self.assume_differences(module, assumed)
+
+    def assume_differences(self, module: ir.Module, assumed: Assumed) -> None:
+        """Learns what is assumed of a uniform minus an input, such as the way from a point to the camera."""
+        inputs = [variable for variable in module.variables if variable.storage == "in"]
+        for uniform, variable in itertools.product(module.uniforms, inputs):
+            if not _has_difference(uniform.type, variable.type):
+                continue
+            assumption = assumed("difference", f"{uniform.name} - {variable.name}", variable.type)
+            if assumption is None:
+                continue
+            left, right = self.globals[uniform.name], self.globals[variable.name]
+            for first, second in ((left, right), (right, left)):
+                rows = zip(first.parts, first.numbers, second.parts, second.numbers, strict=False)
+                numbers = [
+                    self.numbers.sum("-", m, n, "float", self.slack(a, b, a - b, "float")) for a, m, b, n in rows
+                ]
+                length = self.numbers.of("length", *numbers)
+                self.assumed_facts.learn(self.numbers, length, Range(assumption.shortest, assumption.longest))
 
     # Functions
 
@@ -66,7 +92,7 @@ class RangeAnalysis(CallSummaries):
         function = self.functions[key]
         if function.body is None:
             return
-        self.state = State({}, Facts({}, {}))
+        self.state = State({}, self.assumed_facts.copy())
         if key == ENTRY:  # what else is called from outside may find them changed
             for variable in self.variables.values():
                 value = self.expr(variable.value) if variable.value is not None else self.unknown(variable.type)

@@ -107,6 +107,8 @@ class AnalysisState:
         """The module variables that functions change."""
         self.changed = {key: frozenset(map(global_key, effect.writes)) for key, effect in effects(module).items()}
         """A function's key → the keys of the module variables that it may change."""
+        self.assumed_facts = Facts({}, {})
+        """What holds everywhere."""
         self.state = State({}, Facts({}, {}))
         for uniform in module.uniforms:
             value = self.uniform(uniform)
@@ -155,9 +157,10 @@ class AnalysisState:
         if assumption is not None:
             contract = assumption.applied(contract)
         if isinstance(type_, Sampler):
-            return Value((), (), ANY, contract)
+            return Value((), (), ANY, contract._replace(channels=self.channels(type_, contract, storage, name)))
         count = scalars(type_)
-        parts = tuple([Range(contract.low, contract.high, contract.shortest if count == 1 else 0.0)] * count)
+        low, high = max(contract.low, -contract.length), min(contract.high, contract.length)
+        parts = tuple([Range(low, high, contract.shortest if count == 1 else 0.0)] * count)
         size = ANY
         if contract.length < INF or contract.shortest > 0.0:
             size = Range(contract.shortest, contract.length)
@@ -167,6 +170,16 @@ class AnalysisState:
             self.lengths[value.numbers[0]] = count, size
         is_square = isinstance(type_, Matrix) and type_.columns == type_.rows
         return value._replace(stretch=size) if is_square else value
+
+    def channels(self, type_: Sampler, contract: Contract, storage: str, name: str) -> tuple[Range, ...]:
+        """The ranges of a texture's channels, if something is assumed of one: `name.r`."""
+        if self.assumed is None:
+            return ()
+        assumptions = [self.assumed(storage, f"{name}.{letter}", type_) for letter in "rgba"]
+        if all(own is None for own in assumptions):
+            return ()
+        contracts = [contract if own is None else own.applied(contract) for own in assumptions]
+        return tuple([Range(own.low, own.high) for own in contracts])
 
     def unknown(self, type_: Type) -> Value:
         """A value of which only the type is known."""

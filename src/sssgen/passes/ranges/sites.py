@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from sssgen.ir import nodes as ir
 from sssgen.ir.intervals import Range
 from sssgen.ir.intrinsics import NONZERO, Guard
+from sssgen.ir.walk import operands
 
 OVERFLOW = Guard(
     None, "overflow", "a number too large for its format", "clamp(x, -LARGEST, LARGEST)", "result", function="bounded"
@@ -89,7 +90,11 @@ class Site(NamedTuple):
         """The ranges, for people."""
         if self.guard.replaces == "result" or not self.args:
             return f"{shown(self.args[0])}" if self.args and self.operation != "texel" else ""
-        return ", ".join([f"{letter} in {shown(arg)}" for letter, arg in zip("xyz", self.args, strict=False)])
+        first = "xyz".index(self.guard.replaces) if self.guard is ELEMENT else 0  # only the index has a range
+        rows = zip("xyz"[first:], self.args, operands(self.node)[first:], strict=False)
+        return ", ".join(
+            [f"{letter} in {shown(arg)}" for letter, arg, node in rows if not isinstance(node, ir.Literal)]
+        )
 
 
 def shown(range: Range) -> str:

@@ -17,7 +17,6 @@ from sssgen.ir.contracts import Assumed
 from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.intervals import ANY, Range, clip
 from sssgen.ir.vector_ranges import Value
-from sssgen.passes.ranges.facts import Facts
 from sssgen.passes.ranges.loop_ranges import LoopRanges
 from sssgen.passes.ranges.range_state import State
 from sssgen.passes.ranges.scalar_parts import innermost, scalar_kinds
@@ -86,7 +85,7 @@ class CallSummaries(LoopRanges):
             ]
         args = [self.unrelated(arg) for arg in args]
         outer = self.state
-        self.state = State({}, Facts({}, {}))
+        self.state = State({}, self.assumed_facts.copy())
         result = self.interpret(function, args)
         self.state = outer
         self.summaries[key] = Summary(args, result, widenings)
