@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from gltf_files import box, data_uri, glb_header, png, write_gltf
+from sssgen.harness.scenes.scene_loading import load
 from sssgen.interchange.gltf_container import LARGEST_FILE
 from sssgen.interchange.gltf_reader import read
 from sssgen.interchange.mapping_report import Report
@@ -51,7 +52,7 @@ FAULTS: dict[str, tuple[Edit, str, str]] = {
     "a path that climbs": (textured("../wood.png"), "/images/0/uri", "leaves the folder"),
     "an encoded path that climbs": (textured("%2e%2e/wood.png"), "/images/0/uri", "leaves the folder"),
     "an absolute path": (textured("/etc/passwd"), "/images/0/uri", "absolute path"),
-    "a lone surrogate": (textured("wood\ud800.png"), "/images/0/uri", "not the name of a file"),
+    "a name that is not printable": (textured("wood\u0007.png"), "/images/0/uri", "not the name of a file"),
     "a drive": (textured("C:\\wood.png"), "/images/0/uri", "is not a file beside this one"),
     "a URL": (textured("https://example.org/wood.png"), "/images/0/uri", "is not a file beside this one"),
     "a host": (textured("//example.org/wood.png"), "/images/0/uri", "is not a file beside this one"),
@@ -105,6 +106,12 @@ FAULTS: dict[str, tuple[Edit, str, str]] = {
         "/materials/0/normalTexture/index",
         "there is no texture 2",
     ),
+    "a requirement that is no text": (
+        at("extensionsRequired", value=[["KHR_materials_ior"]]),
+        "/extensionsRequired/0",
+        "a string is needed",
+    ),
+    "a newer glTF": (at("asset", value={"version": "2.1", "minVersion": "2.1"}), "/asset/minVersion", "2.0 is read"),
     "glTF 1": (at("asset", "version", value="1.0"), "/asset", "not glTF 2"),
 }
 
@@ -135,6 +142,7 @@ BROKEN = {
     "half a JSON": (b'{"asset": {"version": "2.0"', "not JSON"),
     "a list": (b"[]", "an object"),
     "no asset": (b"{}", "'asset' is missing"),
+    "half of a character": (b'{"asset": {"version": "2.0"}, "materials": [{"name": "\\ud800"}]}', "lone surrogate"),
     "no text": (b"\xff\xfe\x00", "not UTF-8"),
     "nested too deeply": (b"[" * 100_000, "nested too deeply"),
     "thousands of digits": (b'{"asset": ' + b"1" * 5000 + b"}", "thousands of digits"),
@@ -167,6 +175,17 @@ def test_a_large_file_is_refused_unread(tmp_path: Path, monkeypatch: pytest.Monk
         read(str(path), Report("large"))
 
 
+def test_a_buffer_that_is_too_large_is_not_read(tmp_path: Path) -> None:
+    with (tmp_path / "box.bin").open("wb") as file:
+        file.truncate(LARGEST_FILE + 1)
+    content, data = box()
+    content["buffers"][0]["uri"] = "box.bin"
+    path = write_gltf(tmp_path / "box.gltf", content, data)
+    with pytest.raises(SssgenError) as caught:
+        read(str(path), Report("box"))
+    assert caught.value.diagnostics[0].message.startswith("/buffers/0/uri: 'box.bin' is too large")
+
+
 def test_a_picture_that_is_none(tmp_path: Path) -> None:
     from sssgen.interchange.material_writer import write_import
 
@@ -180,7 +199,9 @@ def test_a_picture_that_is_none(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("name", ["../../escape", "/etc", "CON", "a/b\\c", "", "..", "x" * 300, "1st", "名前"])
+@pytest.mark.parametrize(
+    "name", ["../../escape", "/etc", "CON", "a/b\\c", "", "..", "x" * 300, "1st", "名前", "\0\x07\n"]
+)
 def test_the_names_of_materials_stay_in_the_folder(name: str, tmp_path: Path) -> None:
     from sssgen.interchange.material_writer import write_import
 
@@ -189,5 +210,5 @@ def test_the_names_of_materials_stay_in_the_folder(name: str, tmp_path: Path) ->
     materials = read(str(write_gltf(tmp_path / "box.gltf", content, data)), report)
     (written,) = write_import(str(tmp_path / "out"), materials, report)
     assert wrong_name(written.name) is None
-    assert (tmp_path / "out" / written.material).is_file()
+    assert load(str(tmp_path / "out" / written.scene)).material
     assert {path.name for path in tmp_path.iterdir()} == {"box.gltf", "out"}

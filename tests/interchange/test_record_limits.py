@@ -20,3 +20,17 @@ def test_usual_records_stay() -> None:
     image = Image(Picture("dark.png", b""))
     model = SurfaceModel("m", base_color=Quantity((4.0, 4.0, 4.0), image))
     assert limited(model, Notes()) is model
+
+
+def test_a_thickness_is_a_length_also_with_a_picture() -> None:
+    notes, image = Notes(), Image(Picture("thickness", b""), "r")
+    model = SurfaceModel("thick", thickness=Quantity((1e9,), image), base_color=Quantity((5.0, 5.0, 5.0), image))
+    result = limited(model, notes)
+    assert result.thickness.factor == (1e6,) and result.base_color.factor == (5.0, 5.0, 5.0)
+    assert "1e+06" in notes.by_field["thickness"][0]
+
+
+def test_an_index_is_not_negative() -> None:
+    notes = Notes()
+    assert limited(SurfaceModel("m", ior=-1.0), notes).reflectance == 0.0
+    assert "ior" in notes.by_field

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import binascii
+import json
 import os
 import re
 import struct
@@ -24,6 +25,7 @@ LARGEST_JSON = 256 << 20
 """Bytes of the JSON; it may contain pictures and meshes as text."""
 
 _MAGIC, _JSON, _BIN = b"glTF", 0x4E4F534A, 0x004E4942
+_SURROGATE = re.compile(rb"\\u[dD][89a-fA-F]")
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:")
 
 
@@ -147,6 +149,8 @@ def _document(text: bytes, shown: str) -> JsonElement:
         raise failure(f"the JSON is not UTF-8 text: byte {error.start}", "export the file again", shown) from None
     if not isinstance(content, dict):
         raise failure("the JSON of a glTF file is an object", "", shown)
+    if _SURROGATE.search(text) and not _is_text(content):
+        raise failure("the JSON has half of a character: a lone surrogate", "export the file again", shown)
     root = JsonElement(content, "", shown)
     asset = root.child("asset")
     if asset is None:
@@ -154,7 +158,18 @@ def _document(text: bytes, shown: str) -> JsonElement:
     version = asset.text("version", "?")
     if version.split(".")[0] != "2":
         raise asset.fault(f"this is glTF {version}, not glTF 2", "export it again as glTF 2.0")
+    if (needed := asset.text("minVersion", "2.0")) != "2.0":
+        raise asset.required("minVersion").fault(f"it needs glTF {needed}; 2.0 is read", "export it again as glTF 2.0")
     return root
+
+
+def _is_text(content: object) -> bool:
+    """Whether all texts of a JSON document can be written to a file."""
+    try:
+        json.dumps(content, ensure_ascii=False).encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def _data_uri(uri: str, place: JsonElement) -> bytes:
@@ -171,13 +186,13 @@ def _read(path: str, place: JsonElement, uri: str) -> bytes:
     note(path)
     try:
         refuse_special(path, posix(path))
-        if os.path.getsize(path) > LARGEST_FILE:
-            raise place.fault(f"'{uri[:80]}' is too large; at most {LARGEST_FILE} bytes are read")
-        with open(path, "rb") as file:
-            return file.read()
+        if os.path.getsize(path) <= LARGEST_FILE:
+            with open(path, "rb") as file:
+                return file.read()
     except FileNotFoundError:
         raise place.fault(f"there is no file '{uri[:80]}' beside this one", "copy it to the same folder") from None
     except (OSError, ValueError) as error:
         raise place.fault(f"'{uri[:80]}' cannot be read: {getattr(error, 'strerror', error)}") from None
     except SssgenError as error:
         raise place.fault(error.diagnostics[0].message) from None
+    raise place.fault(f"'{uri[:80]}' is too large; at most {LARGEST_FILE} bytes are read")

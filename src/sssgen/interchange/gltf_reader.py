@@ -12,7 +12,7 @@ from sssgen.interchange.gltf_materials import READ, MaterialReader, default_mate
 from sssgen.interchange.gltf_meshes import joined, meshes
 from sssgen.interchange.gltf_textures import Textures
 from sssgen.interchange.imported import Imported, check_name
-from sssgen.interchange.mapping_report import Report
+from sssgen.interchange.mapping_report import Report, shown
 
 _ALSO_READ = ("KHR_texture_transform", "EXT_texture_webp", "KHR_mesh_quantization")
 _WITHOUT_EFFECT = (
@@ -76,6 +76,8 @@ def _with_mesh(material: Imported, mesh: FileContent | None) -> Imported:
 def _check_required(root: JsonElement) -> None:
     supported = {*READ, *_ALSO_READ, *_WITHOUT_EFFECT}
     for element in root.items("extensionsRequired"):
+        if not isinstance(element.value, str):
+            raise element.fault(f"a string is needed, not {shown(element.value)}")
         if element.value not in supported:
             hint = "export the file without this extension: it says that the file is wrong without it"
-            raise element.fault(f"the file requires '{str(element.value)[:60]}', which is not read", hint)
+            raise element.fault(f"the file requires '{element.value[:60]}', which is not read", hint)

@@ -17,15 +17,20 @@ _LARGEST = {"emission": BRIGHTEST, "thickness": 1e6, "normal": 4.0, "specular": 
 def limited(model: SurfaceModel, notes: Notes) -> SurfaceModel:
     """The record with constants from 0 to the largest number of their field; `notes` gets what was outside.
 
-    The factor of a picture is only kept from being negative: a dark picture may have a large one.
+    The factor of a picture is only kept from being negative, as a dark picture may have a large one; that of the
+    thickness is a length.
     """
     changed: dict[str, Any] = {}
+    if model.ior < 0.0:
+        changed["ior"] = 1.0
+        notes.approximated("ior", "1: an index of refraction is not negative")
     for field, value in vars(model).items():
         if not isinstance(value, Quantity):
             continue
-        most = float("inf") if value.image is not None else _LARGEST.get(field, 1.0)
+        of_picture = value.image is not None and field != "thickness"
+        most = float("inf") if of_picture else _LARGEST.get(field, 1.0)
         factor = tuple(min(max(part, 0.0), most) for part in value.factor)
         if factor != value.factor:
             changed[field] = value._replace(factor=factor)
-            notes.approximated(field, f"limited to 0 to {most:g}" if value.image is None else "limited to 0")
+            notes.approximated(field, "limited to 0" if of_picture else f"limited to 0 to {most:g}")
     return replace(model, **changed) if changed else model

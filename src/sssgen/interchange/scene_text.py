@@ -39,8 +39,9 @@ def scene_text(model: SurfaceModel, choice: Choice, name: str, mesh: FileContent
     centre, radius = centre / choice.metres, radius / choice.metres
     distance = 1.15 * radius / np.sin(np.radians(0.5 * _FIELD_OF_VIEW))
     eye = centre + distance * np.array(_VIEW) / np.linalg.norm(_VIEW)
+    title = "".join(filter(str.isprintable, " ".join(model.name.split())))
     lines = [
-        f"# {' '.join(model.name.split()) or name}, imported. A world unit is {choice.metres:g} m.",
+        f"# {title or name}, imported. A world unit is {choice.metres:g} m.",
         "",
         *_keys(material=f"{name}.toml", size=[480, 480], samples=2, background=[_BELOW, _ABOVE]),
         *_section("shell", tone_mapping="khronos_neutral", **({} if model.unlit else _LIT)),
