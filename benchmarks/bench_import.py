@@ -71,10 +71,7 @@ def draw(materials: list[WrittenMaterial], folder: str, sheet: Path) -> None:
     from sssgen.harness.render.scene_render import render
     from sssgen.harness.scenes import scene_loading
 
-    def transmits(material: WrittenMaterial) -> bool:
-        return "[[translucency]]" in Path(folder, material.material).read_text(encoding="utf-8")
-
-    chosen = sorted(materials, key=transmits, reverse=True)[:DRAWN]
+    chosen = sorted(materials, key=lambda material: material.transmits, reverse=True)[:DRAWN]
     pictures = []
     for material in chosen:
         scene = scene_loading.load(str(Path(folder, material.scene)))

@@ -53,7 +53,7 @@ def test_an_edited_material_is_not_replaced(tmp_path: Path, capsys: pytest.Captu
 def test_the_commands_that_follow_are_printed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asset(tmp_path)
+    asset(tmp_path, materials=[{"name": "clay"}, GLASS])
     monkeypatch.chdir(tmp_path)
     assert run("import", "box.glb", "-o", "my glass") == 0
     printed = capsys.readouterr().out

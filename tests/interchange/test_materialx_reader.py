@@ -205,7 +205,8 @@ class TestShaders:
     def test_usd_preview_surface(self, tmp_path: Path) -> None:
         inputs = value("diffuseColor", "color3", "0.1, 0.2, 0.3") + value("opacity", "float", "0.25")
         result = model(tmp_path, shader(inputs, category="UsdPreviewSurface"))
-        assert (result.base_color.factor, result.alpha_mode) == ((0.1, 0.2, 0.3), "blend")
+        assert (result.base_color.factor, result.alpha_mode) == ((0.1, 0.2, 0.3), "opaque")
+        assert (result.transmission.factor, result.thin_walled) == ((0.75,), True)  # it still reflects, unlike a blend
 
     def test_a_document_without_materials_has_its_shaders(self, tmp_path: Path) -> None:
         assert model(tmp_path, '<standard_surface name="alone" type="surfaceshader"/>').name == "alone"

@@ -69,7 +69,8 @@ def run(arguments: Namespace) -> int:
             print(f"{BAKE_OPTION} has no effect: {row.element}: {row.became}")
     summary = ", ".join(f"{number} {outcome}" for outcome, number in report.counts().items())
     print(f"{summary}: {folder}/report.md")
-    scene = shlex.quote(f"{folder}/{written[0].scene}")
-    print(f"draw it: sssgen render {scene} -o {written[0].name}.png")
+    first = next((part for part in written if part.transmits), written[0])
+    scene = shlex.quote(f"{folder}/{first.scene}")
+    print(f"draw it: sssgen render {scene} -o {first.name}.png")
     print(f"change it: sssgen preview {scene}")
     return OK

@@ -64,4 +64,6 @@ def report_fields(imported: Imported, notes: Notes, report: Report) -> None:
             else:
                 report.mapped(element.path, element.value, field.replace("_", " "))
     for field in notes.by_field.keys() - imported.elements.keys():
-        report.approximated(f"{imported.model.name}: {field.replace('_', ' ')}", "none", *notes.by_field[field])
+        report.approximated(
+            f"{imported.model.name}: {field.replace('_', ' ')}", "not in the file", *notes.by_field[field]
+        )

@@ -31,8 +31,9 @@ SURROUNDINGS = "surroundings.png"
 class WrittenMaterial:
     """Where a material was written."""
 
-    def __init__(self, name: str, folder: str) -> None:
+    def __init__(self, name: str, folder: str, transmits: bool) -> None:
         self.name = name
+        self.transmits = transmits
         self.material = f"{name}/{name}.toml"
         self.scene = f"{name}/scene.toml"
         self.folder = folder
@@ -57,7 +58,7 @@ def write_import(
         choice = choose(imported.model, notes, chord)
         report_fields(imported, notes, report)
         files |= {f"{name}/{path}": content for path, content in _material_files(imported, choice, name).items()}
-        written.append(WrittenMaterial(name, folder))
+        written.append(WrittenMaterial(name, folder, imported.model.transmits))
     if not force:
         _check_unchanged(folder, files)
     with open(os.path.join(place("examples"), "surroundings", "textures", "studio.png"), "rb") as file:

@@ -341,6 +341,13 @@ def usd_preview_surface(shader: Shader, name: str) -> SurfaceModel:
         coat_roughness=shader.quantity("clearcoatRoughness", "coat_roughness"),
     )
     shader.left_out(_PREVIEW_LEFT_OUT)
+    if model.alpha_mode == "blend" and opacity.image is None:  # UsdPreviewSurface 2.6: what is clear still reflects
+        shader.approximated("opacity", "light that comes through without refraction: the surface still reflects")
+        through, white = Quantity((1.0 - opacity.factor[0],)), Quantity((1.0, 1.0, 1.0))
+        model = replace(
+            model, alpha_mode="opaque", opacity=Quantity((1.0,)), transmission=through, transmission_tint=white,
+            thin_walled=True, two_sided=True,
+        )  # fmt: skip
     return model
 
 
