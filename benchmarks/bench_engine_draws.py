@@ -1,10 +1,10 @@
-"""Scenes of three.js, drawn by three.js in WebGL 2, and the same draws in WebGPU with the translated programs.
+"""Scenes of an engine, drawn by it in WebGL 2, and the same draws in WebGPU with the translated programs.
 
-    python benchmarks/bench_engine_draws.py [SCENE...] [--pictures DIR]
+    python benchmarks/bench_engine_draws.py [SCENE...] [--engine three|babylon] [--pictures DIR]
 
-A page records what three.js draws (`engine_draws/record.js`), `sssgen transpile --stages` translates the programs, and
-the page draws it again in WebGPU with the loader (`engine_draws/replay.js`). Both pictures are made by one browser on
-one CPU. For each scene: how many programs and draws it has, the largest difference of a pixel in steps of 1/255, the
+A page records what the engine draws (`engine_draws/record.js`), `sssgen transpile --stages` translates the programs,
+and the page draws it again in WebGPU with the loader (`engine_draws/replay.js`). Both pictures are made by one browser
+on one CPU. For each scene: how many programs and draws it has, the largest difference of a pixel in steps of 1/255, the
 share of pixels that differ by more than one step, and the mean difference.
 """
 
@@ -12,7 +12,10 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
+import subprocess
 import sys
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -27,23 +30,38 @@ from sssgen.support.paths import folder
 from sssgen.targets.program_reflection import ROWS
 
 HERE = Path(__file__).parent / "engine_draws"
+ENGINES = {"three": "npm three", "babylon": "babylon bundle"}
+"""Engine → what it needs."""
 SECONDS = 120.0
 RASTERISED = {"lines": 0.01}
 """Scene → the share of pixels that may differ: the browser's WebGL draws lines by another rule than its WebGPU."""
 
 
-def open_page() -> tuple[Page, dict[str, Any]]:
-    """The page, and its version of three.js, its scenes and the size of its pictures."""
-    three = node_modules() / "three" / "build"
+def open_page(engine: str = "three") -> tuple[Page, dict[str, Any]]:
+    """The page, and its engine, its scenes and the size of its pictures."""
     modules = {
-        "three": three / "three.module.js",
-        "three core": three / "three.core.js",
         "loader": folder("templates") / "wgsl" / "webgl_program.js",
-        **{name: HERE / f"{name}.js" for name in ("record", "replay", "scenes")},
+        **{name: HERE / f"{name}.js" for name in ("record", "replay")},
     }
     script = (HERE / "page.js").read_text(encoding="utf-8")
-    page = Page(chromium(), "swiftshader", script, (*WEBGPU, WEBGL[2]), modules)
-    return page, page.receive(START)[0]
+    with tempfile.TemporaryDirectory() as bundles:
+        if engine == "three":
+            build = node_modules() / "three" / "build"
+            modules |= {"three": build / "three.module.js", "three core": build / "three.core.js"}
+            modules["scenes"] = HERE / "three_scenes.js"
+        else:
+            modules["scenes"] = bundled(HERE / f"{engine}_scenes.js", Path(bundles))
+        page = Page(chromium(), "swiftshader", script, (*WEBGPU, WEBGL[2]), modules)
+        return page, page.receive(START)[0]
+
+
+def bundled(file: Path, place: Path) -> Path:
+    """A module and what it imports from npm's packages, as one file."""
+    bundle = place / file.name
+    command = [str(node_modules() / ".bin" / "esbuild"), str(file), "--bundle", "--format=esm", f"--outfile={bundle}"]
+    environment = {**os.environ, "NODE_PATH": str(node_modules())}
+    subprocess.run([*command, "--log-level=error"], env=environment, check=True)
+    return bundle
 
 
 def translated(programs: list[dict[str, str]], rows: str = ROWS[0]) -> list[dict[str, Any]]:
@@ -79,13 +97,14 @@ def run(page: Page, scene: str, rows: str = ROWS[0]) -> tuple[dict[str, Any], An
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("SCENE", nargs="*")
+    parser.add_argument("--engine", choices=ENGINES, default="three")
     parser.add_argument("--pictures", metavar="DIR", help="write each pair of pictures, and their difference times 64")
     arguments = parser.parse_args()
-    if lacking := all_lacks(["chromium", "npm three", "pip browser"]):
+    if lacking := all_lacks(["chromium", ENGINES[arguments.engine], "pip browser"]):
         print(f"not measured: {lacking}")
         return 0
-    page, about = open_page()
-    print(f"three.js {about['three']}, {about['size'][0]} × {about['size'][1]} pixels; differences in steps of 1/255")
+    page, about = open_page(arguments.engine)
+    print(f"{about['engine']}, {about['size'][0]} × {about['size'][1]} pixels; differences in steps of 1/255")
     print(f"{'scene':24} programs draws  largest  > 1 step     mean")
     width, height = about["size"]
     failed = 0

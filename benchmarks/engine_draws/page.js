@@ -1,9 +1,8 @@
-// The page: draws a scene with three.js in WebGL 2, and, once its programs are translated, the same draws in WebGPU.
+// The page: draws a scene with an engine in WebGL 2, and, once its programs are translated, the same draws in WebGPU.
 
-import * as THREE from 'three';
 import { record } from 'record';
 import { replay } from 'replay';
-import { SCENES } from 'scenes';
+import { ENGINE, SCENES, draw } from 'scenes';
 
 const SIZE = [256, 192];
 const complaints = [];
@@ -16,13 +15,11 @@ for (const level of ['error', 'warn']) {
 }
 
 let recording;
-function original(name) {
+async function original(name) {
   const canvas = Object.assign(document.createElement('canvas'), { width: SIZE[0], height: SIZE[1] });
   const gl = canvas.getContext('webgl2', { antialias: false, alpha: true, preserveDrawingBuffer: true });
   recording = record(gl);
-  const renderer = new THREE.WebGLRenderer({ canvas, context: gl, antialias: false });
-  renderer.setSize(...SIZE, false);
-  SCENES[name](THREE, renderer);
+  await draw(name, canvas, gl);
   const picture = new Uint8Array(SIZE[0] * SIZE[1] * 4);
   gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   gl.readPixels(0, 0, ...SIZE, gl.RGBA, gl.UNSIGNED_BYTE, picture);
@@ -48,13 +45,13 @@ const say = (answer, bytes = new ArrayBuffer(0)) => {
   socket.send(JSON.stringify(answer));
   socket.send(bytes);
 };
-socket.onopen = () => say({ three: THREE.REVISION, scenes: Object.keys(SCENES), size: SIZE });
+socket.onopen = () => say({ engine: ENGINE, scenes: Object.keys(SCENES), size: SIZE });
 socket.onmessage = async ({ data }) => {
   if (typeof data !== 'string') return;
   const { scene, programs } = JSON.parse(data);
   complaints.length = 0;
   try {
-    const picture = scene ? original(scene) : await copied(programs);
+    const picture = scene ? await original(scene) : await copied(programs);
     await device?.queue.onSubmittedWorkDone();
     const facts = scene ? { programs: recording.programs.map(({ vertex, fragment }) => ({ vertex, fragment })), draws: recording.commands.filter(({ kind }) => kind === 'draw').length } : {};
     say({ ...facts, complaints: [...complaints] }, picture.buffer);

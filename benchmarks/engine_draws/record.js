@@ -57,7 +57,7 @@ export function record(gl) {
   });
   wrap('texImage3D', ([target, level, format, width, height, depth, , , type]) => (level ? fail('levels by texImage3D') : placed(target, 1, sized(format, type), width, height, depth)));
   for (const method of ['texSubImage2D', 'texSubImage3D']) wrap(method, ([target]) => (bound(target).isChanged = true));
-  for (const method of ['compressedTexImage2D', 'compressedTexSubImage2D', 'copyTexImage2D', 'copyTexSubImage2D', 'copyTexSubImage3D', 'bindSampler', 'uniformBlockBinding', 'drawRangeElements', 'beginTransformFeedback', 'clearBufferfv', 'clearBufferfi', 'clearBufferiv'])
+  for (const method of ['compressedTexImage2D', 'compressedTexSubImage2D', 'copyTexImage2D', 'copyTexSubImage2D', 'copyTexSubImage3D', 'bindSampler', 'drawRangeElements', 'beginTransformFeedback', 'clearBufferfv', 'clearBufferfi', 'clearBufferiv'])
     before(method, () => fail(method));
   wrap('generateMipmap', ([target]) => {
     const texture = bound(target);
@@ -180,8 +180,15 @@ export function record(gl) {
 
   const draw = (topology, count, first, instances, index) => {
     const program = gl.getParameter(gl.CURRENT_PROGRAM), uniforms = {}, used = {}, attributes = {};
-    if (gl.getProgramParameter(program, gl.ACTIVE_UNIFORM_BLOCKS)) fail('uniform blocks');
+    const blocks = {}, inBlocks = new Set();
+    for (let number = 0; number < gl.getProgramParameter(program, gl.ACTIVE_UNIFORM_BLOCKS); number++) {
+      const parameter = (which) => gl.getActiveUniformBlockParameter(program, number, which), slot = parameter(gl.UNIFORM_BLOCK_BINDING);
+      const part = (which) => gl.getIndexedParameter(which, slot), bytes = bytesOf(part(gl.UNIFORM_BUFFER_BINDING)), start = part(gl.UNIFORM_BUFFER_START);
+      blocks[gl.getActiveUniformBlockName(program, number)] = bytes.slice(start, start + (part(gl.UNIFORM_BUFFER_SIZE) || bytes.length));
+      for (const member of parameter(gl.UNIFORM_BLOCK_ACTIVE_UNIFORM_INDICES)) inBlocks.add(member);
+    }
     for (let number = 0; number < gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); number++) {
+      if (inBlocks.has(number)) continue;
       const { name: label, size, type } = gl.getActiveUniform(program, number), base = label.replace(/\[0\]$/, ''), values = [];
       for (let element = 0; element < size; element++) {
         const each = size > 1 || base !== label ? `${base}[${element}]` : label, value = gl.getUniform(program, gl.getUniformLocation(program, each));
@@ -205,7 +212,7 @@ export function record(gl) {
     const get = (parameter) => gl.getParameter(parameter), has = (parameter) => gl.isEnabled(parameter);
     if (has(gl.STENCIL_TEST) && get(gl.STENCIL_BITS)) fail('the stencil test');
     commands.push({
-      kind: 'draw', program: id, uniforms, textures: used, attributes, topology, count, first, instances, index, into: targets(gl.DRAW_FRAMEBUFFER),
+      kind: 'draw', program: id, uniforms, blocks, textures: used, attributes, topology, count, first, instances, index, into: targets(gl.DRAW_FRAMEBUFFER),
       viewport: Array.from(get(gl.VIEWPORT)), depthRange: Array.from(get(gl.DEPTH_RANGE)), scissor: has(gl.SCISSOR_TEST) ? Array.from(get(gl.SCISSOR_BOX)) : null,
       cull: has(gl.CULL_FACE) ? get(gl.CULL_FACE_MODE) : 0, front: get(gl.FRONT_FACE), mask: get(gl.COLOR_WRITEMASK), color: Array.from(get(gl.BLEND_COLOR)),
       depth: { test: has(gl.DEPTH_TEST), write: get(gl.DEPTH_WRITEMASK), compare: get(gl.DEPTH_FUNC), bias: has(gl.POLYGON_OFFSET_FILL) ? [get(gl.POLYGON_OFFSET_UNITS), get(gl.POLYGON_OFFSET_FACTOR)] : [0, 0] },

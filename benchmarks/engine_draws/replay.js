@@ -28,9 +28,10 @@ export async function replay(device, { commands }, translated) {
   const samplerOf = ({ min, mag, wrap, compare, anisotropy }) => {
     const key = JSON.stringify([min, mag, wrap, compare, anisotropy]);
     if (!samplers.has(key)) {
-      const linear = min === 0x2601 || min === 0x2701 || min === 0x2703, mips = min >= 0x2700, between = min === 0x2702 || min === 0x2703;
+      const linear = min === 0x2601 || min === 0x2701 || min === 0x2703, mips = min >= 0x2700, between = min === 0x2702 || min === 0x2703 || (linear && !mips); // anisotropy wants it, also without levels
+      const maxAnisotropy = linear && between && mag === 0x2601 ? anisotropy : 1;
       samplers.set(key, device.createSampler({
-        minFilter: linear ? 'linear' : 'nearest', magFilter: mag === 0x2601 ? 'linear' : 'nearest', mipmapFilter: between ? 'linear' : 'nearest', ...(mips ? {} : { lodMaxClamp: 0 }),
+        minFilter: linear ? 'linear' : 'nearest', magFilter: mag === 0x2601 ? 'linear' : 'nearest', mipmapFilter: between ? 'linear' : 'nearest', ...(mips ? {} : { lodMaxClamp: 0 }), maxAnisotropy,
         addressModeU: WRAPS[wrap[0]], addressModeV: WRAPS[wrap[1]], addressModeW: WRAPS[wrap[2]], ...(compare ? { compare: COMPARES[compare] } : {}),
       }));
     }
@@ -64,6 +65,7 @@ export async function replay(device, { commands }, translated) {
     const program = programs[command.program], values = program.values(), sources = {}, topology = TOPOLOGIES[command.topology];
     if (!topology) throw new Error(`WebGPU has no triangle fans`);
     for (const [name, value] of Object.entries(command.uniforms)) values.set(name, value);
+    for (const [name, bytes] of Object.entries(command.blocks)) values.setBlock(name, bytes);
     for (const [name, texture] of Object.entries(command.textures)) if (texture) values.setTexture(name, textureOf(texture), samplerOf(texture));
     for (const [name, columns] of Object.entries(command.attributes)) {
       if (columns[0].constant) sources[name] = { constant: columns.flatMap(({ constant }) => constant) };

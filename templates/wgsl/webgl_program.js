@@ -13,7 +13,9 @@
 // `show(device, texture, view, format)`, which turns it.
 
 /** @typedef {{ name: string, stages: string[], type: string, lengths: number[], offset: number, size: number,
- *   array_stride: number, matrix_stride: number }} Uniform */
+ *   array_stride: number, matrix_stride: number, block?: BlockPlace }} Uniform */
+/** @typedef {{ name: string, offset: number, strides: number[], matrix_stride: number, row_major: boolean }} BlockPlace
+ *   Where a uniform is in a uniform buffer of WebGL. */
 /** @typedef {{ name: string, stages: string[], dimension: GPUTextureViewDimension, sample_type: GPUTextureSampleType,
  *   filterable: boolean, sampler: string, binding: { group: number, texture: number, sampler: number } }} Texture */
 /** @typedef {{ name: string, type: string, location: number, locations: number, format: GPUVertexFormat }} Attribute */
@@ -171,6 +173,7 @@ export class Values {
     this.integers = new Int32Array(this.data);
     this.buffer = description.uniform_block && device.createBuffer({ size: this.data.byteLength, usage: GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST });
     this.resources = new Map();
+    this.given = new Set();
     this.isChanged = true;
     this.bindGroup = null;
   }
@@ -192,7 +195,39 @@ export class Values {
       words[(offset + element * array_stride + column * matrix_stride) / 4 + (index % rows)] = Number(numbers[index]);
     }
     this.isChanged = true;
+    this.given.add(place.uniform);
     return true;
+  }
+
+  /** The uniforms and textures that the program reads and that were never set: they are 0 and black.
+   * @returns {string[]} */
+  missing() {
+    const { uniforms, textures } = this.program.description;
+    const left = uniforms.filter(({ name }) => !this.given.has(name)), black = textures.filter(({ name }) => !this.resources.has(name));
+    return [...left, ...black].map(({ name }) => name);
+  }
+
+  /** Sets the uniforms of a block from the bytes of WebGL's uniform buffer, in the layout std140.
+   * @param {string} name  of the block, not of its instance @param {ArrayBuffer | ArrayBufferView} data
+   * @returns {boolean} whether the program reads a member of it */
+  setBlock(name, data) {
+    const places = [...this.program.places.values()].filter(({ block }) => block?.name === name), view = ArrayBuffer.isView(data) ? data : new Uint8Array(data);
+    const bytes = new DataView(view.buffer, view.byteOffset, view.byteLength), words = [];
+    for (const { type, count, offset, array_stride, matrix_stride, block } of places) {
+      const { columns, rows } = shapeOf(type);
+      for (let index = 0; index < count * columns * rows; index++) {
+        const element = Math.floor(index / (columns * rows)), column = Math.floor(index / rows) % columns, row = index % rows;
+        const [line, place] = block.row_major ? [row, column] : [column, row];
+        const from = block.offset + element * block.stride + line * block.matrix_stride + 4 * place;
+        words.push([(offset + element * array_stride + column * matrix_stride) / 4 + row, from]);
+      }
+    }
+    const needed = Math.max(0, ...words.map(([, from]) => from + 4));
+    if (bytes.byteLength < needed) throw new Error(`${name}: ${bytes.byteLength} bytes, but its members need ${needed}`);
+    for (const [to, from] of words) this.integers[to] = bytes.getInt32(from, true);
+    for (const { uniform } of places) this.given.add(uniform);
+    this.isChanged ||= places.length > 0;
+    return places.length > 0;
   }
 
   /** Sets a texture and how it is read.
@@ -219,7 +254,8 @@ export class Values {
       for (const { name, dimension, sample_type, sampler, binding } of description.textures) {
         const given = this.resources.get(name);
         entries.push({ binding: binding.texture, resource: given?.view ?? blackTexture(device, sample_type, dimension === '3d' ? '3d' : '2d').createView({ dimension }) });
-        if (sampler) entries.push({ binding: binding.sampler, resource: given?.sampler ?? device.createSampler(sampler === 'comparison' ? { compare: 'less-equal' } : {}) });
+        const own = sampler === 'non-filtering' ? null : given?.sampler; // its texels are read one by one
+        if (sampler) entries.push({ binding: binding.sampler, resource: own ?? device.createSampler(sampler === 'comparison' ? { compare: 'less-equal' } : {}) });
       }
       this.bindGroup = device.createBindGroup({ layout: group, entries });
     }
@@ -228,12 +264,16 @@ export class Values {
 }
 
 /** Each name of a uniform, with its place: `lights[].color` with 2 lights has two. */
-function placesOf({ name, type, lengths, offset, array_stride, matrix_stride }) {
-  const parts = name.split('[]'), own = lengths.slice(parts.length - 1).reduce((a, b) => a * b, 1);
-  let names = [parts[0]];
+function placesOf({ name, type, lengths, offset, array_stride, matrix_stride, block }) {
+  const parts = name.split('[]'), outer = parts.length - 1, count = lengths.slice(outer).reduce((a, b) => a * b, 1);
+  let places = [[parts[0], block?.offset ?? 0]];
   for (const [index, part] of parts.slice(1).entries())
-    names = names.flatMap((head) => Array.from({ length: lengths[index] }, (_, element) => `${head}[${element}]${part}`));
-  return names.map((each, index) => [each, { type, count: own, offset: offset + index * own * array_stride, array_stride, matrix_stride }]);
+    places = places.flatMap(([head, start]) =>
+      Array.from({ length: lengths[index] }, (_, element) => [`${head}[${element}]${part}`, start + element * (block?.strides[index] ?? 0)]));
+  return places.map(([each, start], index) => [each, {
+    uniform: name, type, count, offset: offset + index * count * array_stride, array_stride, matrix_stride,
+    ...(block ? { block: { ...block, offset: start, stride: block.strides.at(-1) ?? 0 } } : {}),
+  }]);
 }
 
 function find(places, name) {

@@ -24,7 +24,16 @@ void main() { gl_FragColor = texture2D(map, at); }
 def test_the_command(run: Run) -> None:
     Path("a.vert").write_text(VERTEX, encoding="utf-8")
     Path("b.frag").write_text(FRAGMENT, encoding="utf-8")
-    assert run("transpile", "--stages", "a.vert", "b.frag", "-t", "wgsl", "-o", "out/still-water.2")[:2] == (0, "")
+    arguments = ["transpile", "--stages", "a.vert", "b.frag", "-t", "wgsl", "-o", "out/still-water.2"]
+    first, second = run(*arguments), run(*arguments)
+    names = [
+        "still-water.2.vertex.wgsl",
+        "still-water.2.fragment.wgsl",
+        "still-water.2.program.json",
+        "webgl_program.js",
+    ]
+    assert first[:2] == (0, "".join([f"wrote out/{name}\n" for name in names]))
+    assert second[:2] == (0, "".join([f"kept  out/{name}\n" for name in names]))
     assert set(folder_content("out")) == {
         "still-water.2.vertex.wgsl", "still-water.2.fragment.wgsl", "still-water.2.program.json", "webgl_program.js",
     }  # fmt: skip
@@ -60,3 +69,14 @@ def test_inputs_are_not_overwritten(run: Run) -> None:
     ran = run("transpile", "--stages", "a.glsl-330.vert", "b.frag", "-t", "glsl-330", "-o", "a")
     assert (ran.status, Path("a.glsl-330.vert").read_text(encoding="utf-8")) == (2, VERTEX)
     assert "the output file a.glsl-330.vert is also an input file" in ran.err
+
+
+@pytest.mark.parametrize("name", ["out/water.wgsl", "out/water.program.json", "out/water.frag"])
+def test_the_name_of_the_program(run: Run, name: str) -> None:
+    Path("a.vert").write_text(VERTEX, encoding="utf-8")
+    Path("b.frag").write_text(FRAGMENT, encoding="utf-8")
+    assert run("transpile", "--stages", "a.vert", "b.frag", "-t", "wgsl", "-o", name).status == 0
+    program = {"out/water.wgsl": "water", "out/water.program.json": "water.program", "out/water.frag": "water.frag"}[
+        name
+    ]
+    assert f"{program}.vertex.wgsl" in folder_content("out")

@@ -142,6 +142,50 @@ def test_bools_and_integers(folder: Path) -> None:
     assert words[is_on + 4 : is_on + 6] == [0, 1]
 
 
+BLOCK = """#version 300 es
+struct Light { vec3 color; float weights[3]; mat3 turn; };
+layout(std140, row_major) uniform Scene { float first; Light lights[2]; layout(column_major) mat2 skew; } scene;
+in vec2 p;
+void main() {
+    vec3 sum = scene.lights[1].turn * scene.lights[1].color + scene.lights[1].weights[2] + scene.first;
+    gl_Position = vec4(p * scene.skew, sum.xy);
+}
+"""
+
+
+def test_a_buffer_of_webgl(folder: Path, tmp_path: Path) -> None:
+    """Byte k of the buffer is k / 4 as an integer: so each word names its place in the source."""
+    (tmp_path / "a.vert").write_text(BLOCK, encoding="utf-8")
+    text = "#version 300 es\nprecision highp float;\nout vec4 color;\nvoid main() { color = vec4(1.0); }\n"
+    (tmp_path / "a.frag").write_text(text, encoding="utf-8")
+    stages = [str(tmp_path / f"a.{suffix}") for suffix in ("vert", "frag")]
+    assert cli.main(["transpile", "--stages", *stages, "-t", "wgsl", "-o", str(tmp_path)]) == 0
+    (tmp_path / "webgl_program.js").rename(tmp_path / "webgl_program.mjs")
+    set_ = "values.setBlock('Scene', Int32Array.from({ length: 68 }, (_, word) => word))"
+    done, words = answer(tmp_path, f"return [{set_}, [...values.integers]]")
+    assert done is True
+
+    def stored(name: str, *steps: int) -> list[int]:
+        first = (place(tmp_path, name)["offset"]) // 4
+        return [words[first + step] for step in steps]
+
+    assert stored("Scene.first", 0) == [0]
+    assert stored("Scene.lights[].color", 4, 5, 6) == [32, 33, 34]  # of the second light
+    assert stored("Scene.lights[].weights", 4 * 5) == [36 + 8]
+    turn = [12 + 4 * column + row for column in range(3) for row in range(3)]
+    assert stored("Scene.lights[].turn", *turn) == [48, 52, 56, 49, 53, 57, 50, 54, 58]
+    assert stored("Scene.skew", 0, 1, 4, 5) == [60, 61, 64, 65]
+    assert answer(tmp_path, "return values.setBlock('gone', new ArrayBuffer(4))") is False
+    short = answer(tmp_path, "return values.setBlock('Scene', new Uint8Array(32))")
+    assert short == {"error": "Scene: 32 bytes, but its members need 264"}
+
+
+def test_what_was_not_set(folder: Path) -> None:
+    names = answer(folder, "values.set('turns[1]', [1, 2, 3, 4, 5, 6, 7, 8, 9]); return values.missing()")
+    assert "turns" not in names
+    assert {"view", "lights[].color", "map", "ids"} <= set(names)
+
+
 def test_names_and_lengths_that_do_not_fit(folder: Path) -> None:
     assert answer(folder, "return values.set('gone', 1)") is False
     assert answer(folder, "return values.set('turns[2]', [1])") is False
@@ -199,6 +243,15 @@ def page(bench: ModuleType) -> Iterator[tuple[Page, list[str]]]:
     page.close()
 
 
+@pytest.fixture(scope="module")
+def babylon(bench: ModuleType) -> Iterator[tuple[Page, list[str]]]:
+    if lacking := all_lacks(["babylon bundle"]):
+        pytest.skip(lacking)
+    page, about = bench.open_page("babylon")
+    yield page, about["scenes"]
+    page.close()
+
+
 def pictures(bench: ModuleType, page: Page, scene: str, rows: str = ROWS[0]) -> list[Any]:
     """Both pictures, the bottom row first, (height, width, 4)."""
     facts, *data = bench.run(page, scene, rows)
@@ -228,3 +281,9 @@ def test_the_rows_of_webgpu(bench: ModuleType, page: tuple[Page, list[str]]) -> 
 def test_all_scenes_of_three_js(bench: ModuleType, page: tuple[Page, list[str]]) -> None:
     for scene in page[1]:
         compare(bench, page[0], scene)
+
+
+@pytest.mark.slow
+def test_all_scenes_of_babylon_js(bench: ModuleType, babylon: tuple[Page, list[str]]) -> None:
+    for scene in babylon[1]:
+        compare(bench, babylon[0], scene)

@@ -21,6 +21,12 @@ DUMP = ROOT / "tools" / "dump_shaders.js"
 SIZE = (240, 320)
 
 STAND_IN = """
+    const create = GPUDevice.prototype.createTexture;
+    GPUDevice.prototype.createTexture = function (options) {
+      const texture = create.call(this, options);
+      if ((options.usage & 5) === 5) globalThis.drawn ??= texture; // it is drawn and then read
+      return texture;
+    };
     GPUCanvasContext.prototype.configure = function (options) { this.options = options; };
     GPUCanvasContext.prototype.getCurrentTexture = function () {
       const { device, format } = this.options, size = [this.canvas.width, this.canvas.height];
@@ -47,6 +53,11 @@ READ_WEBGPU = """async () => {
     const line = (y) => Array.from({ length: w * 4 }, (_, x) => pixels[y * row + (x & ~3) + order[x & 3]]);
     return Array.from({ length: h }, (_, y) => line(y));
 }"""
+READ_BY_THE_STEP = """async () => {
+    const { pixels } = await import('./pixels.js'), { device } = globalThis.shown;
+    return [...await pixels(device, globalThis.drawn)];
+}"""
+"""The step of the page that reads a picture back, for the one that the page drew into."""
 
 
 @pytest.fixture(scope="module")
@@ -96,6 +107,8 @@ def test_the_pages_show_one_picture(browser: Any, tmp_path: Path) -> None:
         page.goto(f"{url}flag_webgpu.html")
         page.wait_for_function("() => globalThis.shown", timeout=60_000)
         copy = np.array(page.evaluate(READ_WEBGPU)).reshape(*SIZE, 4)
+        read = np.array(page.evaluate(READ_BY_THE_STEP)).reshape(*SIZE, 4)
     assert [text for text in complaints if "favicon" not in text and "404" not in text] == []
     assert np.ptp(original[..., :3]) > 100
     assert np.abs(original - copy).max() <= 1
+    assert np.abs(copy - read[::-1]).max() <= 1

@@ -170,3 +170,111 @@ def test_more_than_every_device_has() -> None:
     program = translate(vertex, fragment)
     assert [warning.message for warning in program.warnings] == expected
     assert described(program)["warnings"] == expected
+
+
+BLOCKS = """#version 300 es
+layout(std140, row_major) uniform;
+struct Light { vec3 color; float weights[3]; mat3 turn; };
+uniform Scene { float first; Light lights[2]; layout(column_major) mat2 skew; bool is; mat2x3 rows; vec3 last; } scene;
+uniform Own { vec2 size; float unread[2]; mat4 view; };
+in vec3 position;
+out vec3 v;
+void main() {
+    v = scene.lights[1].turn * scene.last + scene.lights[0].weights[2] + vec3(scene.skew[0], 0.0) + scene.rows[1];
+    gl_Position = view * vec4(position, scene.is ? 1.0 : size.x);
+}
+"""
+READER = """#version 300 es
+precision highp float;
+layout(row_major) uniform;
+struct Light { vec3 color; float weights[3]; mat3 turn; };
+uniform Scene { float first; Light lights[2]; layout(column_major) mat2 skew; bool is; mat2x3 rows; vec3 last; } other;
+in vec3 v;
+out vec4 color;
+void main() { color = vec4(v + other.lights[1].color + other.last, other.first); }
+"""
+
+
+def test_places_in_the_blocks_of_the_source() -> None:
+    """The numbers are those of OpenGL ES 3.0, section 2.12.6.4; Chromium's WebGL has the same."""
+    uniforms = described(translate(BLOCKS, READER))["uniforms"]
+    places = {uniform["name"]: tuple(uniform["block"].values()) for uniform in uniforms}
+    assert places == {
+        "Scene.first": ("Scene", 0, [], 0, False),
+        "Scene.lights[].color": ("Scene", 16, [112], 0, False),
+        "Scene.lights[].weights": ("Scene", 32, [112, 16], 0, False),
+        "Scene.lights[].turn": ("Scene", 80, [112], 16, True),
+        "Scene.skew": ("Scene", 240, [], 16, False),
+        "Scene.is": ("Scene", 272, [], 0, False),
+        "Scene.rows": ("Scene", 288, [], 16, True),
+        "Scene.last": ("Scene", 336, [], 0, False),
+        "size": ("Own", 0, [], 0, False),
+        "view": ("Own", 48, [], 16, True),
+    }
+    (last,) = [uniform for uniform in uniforms if uniform["name"] == "Scene.last"]
+    assert last["stages"] == ["vertex", "fragment"]  # under other names of the instance
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("vec3 last;", "vec4 last;", "has 'last' here (a.vert:4:106)"),
+        ("float first; ", "", "has 'first' here (a.vert:4:23)"),
+        (" vec3 last;", "", "has 'last' here (a.vert:4:106)"),
+        ("vec3 last;", "vec3 last; float more;", "ends before this member (a.vert:4:106)"),
+        ("layout(column_major) ", "", "has 'skew' here (a.vert:4:73)"),
+        ("vec3 color; float", "vec4 color; float", "has 'lights' here (a.vert:4:36)"),
+    ],
+)
+def test_blocks_of_one_name_with_other_members(old: str, new: str, message: str) -> None:
+    with pytest.raises(SssgenError) as error:
+        translate(
+            BLOCKS, READER.replace(old, new).replace("v + other.lights[1].color + other.last, other.first", "v, 1.0")
+        )
+    (each,) = error.value.diagnostics
+    assert each.message == f"the block 'Scene' differs from that of the vertex shader, which {message}"
+    assert each.hint == "declare the same members in the same order in both stages"
+
+
+def test_structs_without_a_name_are_compared_by_their_members() -> None:
+    vertex = """struct { vec3 own; } hidden;
+uniform struct { vec4 tint; float w; } material;
+attribute vec3 p;
+void main() { hidden.own = material.tint.xyz; gl_Position = vec4(p + hidden.own, material.w); }
+"""
+    fragment = "uniform struct { vec4 tint; float w; } material;\nvoid main() { gl_FragColor = material.tint; }\n"
+    program = described(translate(vertex, fragment))
+    assert [uniform["name"] for uniform in program["uniforms"]] == ["material.tint", "material.w"]
+    with pytest.raises(SssgenError) as error:
+        translate(vertex, fragment.replace("float w", "vec2 w"))
+    (each,) = error.value.diagnostics
+    there, here = "a struct { vec4 tint; float w; }", "a struct { vec4 tint; vec2 w; }"
+    assert each.message == f"the uniform 'material' is {there} in a.vert:2:40, but {here} here"
+
+
+def test_a_texture_that_functions_get_has_a_sampler() -> None:
+    """WGSL's functions take the sampler with the texture: the layout must have it, though only texels are read."""
+    vertex = """#version 300 es
+uniform highp sampler2D bones;
+uniform highp sampler2DArray targets;
+in vec3 p;
+vec4 row(highp sampler2D map, int index) { return texelFetch(map, ivec2(index, 0), 0); }
+void main() {
+    gl_Position = row(bones, 1) + texelFetch(targets, ivec3(int(p.x), int(p.y), int(p.z)), 0) + vec4(p, 1.0);
+}
+"""
+    fragment = "#version 300 es\nprecision highp float;\nout vec4 color;\nvoid main() { color = vec4(1.0); }\n"
+    program = translate(vertex, fragment)
+    textures = {texture["name"]: texture for texture in described(program)["textures"]}
+    for name in ("bones", "targets"):
+        assert (textures[name]["filterable"], textures[name]["sampler"]) == (False, "non-filtering")
+        assert f"{name}, {name}_sampler" in program.files["pair.vertex.wgsl"]
+
+
+def test_points() -> None:
+    vertex = "attribute vec3 p;\nvoid main() { gl_PointSize = 4.0; gl_Position = vec4(p, 1.0); }\n"
+    (warning,) = translate(vertex, "void main() { gl_FragColor = vec4(1.0); }\n").warnings
+    assert "draw two triangles for each" in warning.hint
+    with pytest.raises(SssgenError) as error:
+        translate(vertex, "void main() { gl_FragColor = gl_PointCoord.xyxy; }\n")
+    assert "with a varying in its place" in error.value.diagnostics[0].hint

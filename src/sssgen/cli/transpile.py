@@ -60,7 +60,8 @@ def add_options(parser: ArgumentParser) -> None:
         "--stages",
         nargs=2,
         metavar=("VERTEX", "FRAGMENT"),
-        help="both stages of a program instead of FILE: their bindings agree, and one JSON file describes them",
+        help="both stages of a program instead of FILE: their bindings agree, and one JSON file describes them;"
+        " -o NAME writes NAME.vertex.wgsl, NAME.fragment.wgsl, NAME.program.json and, for wgsl, webgl_program.js",
     )
     add(
         "--rows",

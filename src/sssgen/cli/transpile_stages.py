@@ -13,6 +13,7 @@ from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_writer import write_files
 from sssgen.support.paths import place, posix, stem
 from sssgen.support.text_files import read_text
+from sssgen.targets.registry import load
 
 LOADER = "webgl_program.js"
 """The ES module that makes a pipeline of the files, for WebGPU."""
@@ -30,7 +31,7 @@ def run(arguments: Namespace) -> int:
             wrong += error.diagnostics
     if wrong:
         raise SssgenError(wrong)
-    folder, name = _place(arguments)
+    folder, name = _place(arguments, targets[0])
     first, second = [Source(each.module, each.head) for each in loaded]
     program = transpile_stages(first, second, targets[0], name, arguments.guards, arguments.rows)
     files = dict(program.files)
@@ -57,6 +58,8 @@ def run(arguments: Namespace) -> int:
         print_json({"ok": True, "files": [{"file": posix(f.path), "changed": f.changed} for f in written], **details})
     else:
         print_changes(warnings, renamed)
+        for each in written:
+            print(f"{'wrote' if each.changed else 'kept '} {posix(each.path)}")
     return OK
 
 
@@ -79,8 +82,8 @@ def _unfit(arguments: Namespace) -> list[Diagnostic]:
     return wrong
 
 
-def _place(arguments: Namespace) -> tuple[str, str]:
-    """The folder of the output, and the name of the program."""
+def _place(arguments: Namespace, target: str) -> tuple[str, str]:
+    """The folder of the output, and the name of the program, without a suffix of the target: `-o web/water.wgsl`."""
     name = stem(arguments.stages[0])
     output = arguments.output
     if output in (None, "-"):
@@ -88,4 +91,7 @@ def _place(arguments: Namespace) -> tuple[str, str]:
         return ".", name
     if output.endswith(("/", os.sep)) or os.path.isdir(output):
         return output, name
-    return os.path.dirname(output) or ".", os.path.basename(output)
+    given = os.path.basename(output)
+    files = [file for kind in ("vertex", "fragment") for file in load(target).files.get(kind, ())]
+    is_file = os.path.splitext(given)[1] in {".json", *[os.path.splitext(file.name)[1] for file in files]}
+    return os.path.dirname(output) or ".", stem(given) if is_file else given

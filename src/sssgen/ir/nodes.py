@@ -266,7 +266,8 @@ class Uniform(NamedTuple):
 
     `hints` are the declaration's hints with their arguments, as in `("hint_range", (0.0, 1.0))`. `path` is what a
     program calls it where it is a part of a uniform of the source, or '': `lights[2].color` for a member of all
-    elements, `maps[1]` for one texture.
+    elements, `maps[1]` for one texture, `Camera.view` for a member of a block with an instance name. `block` is the
+    uniform block that declares it, or ''; `row_major` is whether the block stores its matrices row by row.
     """
 
     name: str
@@ -277,6 +278,13 @@ class Uniform(NamedTuple):
     doc: str
     span: Span
     path: str = ""
+    block: str = ""
+    row_major: bool = False
+
+    @property
+    def source(self) -> str:
+        """What a program calls it."""
+        return self.path or self.name
 
 
 class Constant(NamedTuple):

@@ -13,7 +13,6 @@ Place: after `prune`, which removes unused operations; before the passes for one
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
 
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import (
@@ -50,16 +49,10 @@ from sssgen.ir.walk import (
 from sssgen.passes.divergence import CallContext, Divergence, Summary, implicit, joined, summaries
 from sssgen.passes.explicit_levels import at_level
 from sssgen.passes.scopes import declared, fresh, qualified_name
+from sssgen.passes.unsupported import Note
 
 _LARGEST = 64
 """How many nodes an expression may have that replaces a variable."""
-
-
-class Note(NamedTuple):
-    """Something that the user should know although the shader works."""
-
-    message: str
-    span: Span
 
 
 def hoist(module: Module, entries: Iterable[str]) -> tuple[Module, list[Note]]:

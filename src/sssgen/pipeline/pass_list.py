@@ -171,7 +171,8 @@ def run(passes: Sequence[Pass], state: State, trace: Trace | None = None) -> Sta
 
 
 def _error(message: str, error: LinkError | Unsupported) -> Diagnostic:
-    return Diagnostic("error", message, error.span, "", source_line(error.span))
+    hint = error.hint if isinstance(error, Unsupported) else ""
+    return Diagnostic("error", message, error.span, hint, source_line(error.span))
 
 
 def describe(passes: Sequence[Pass]) -> str:

@@ -13,12 +13,12 @@ from sssgen.ir.types import Struct
 from sssgen.lang.source_lines import comment_behind, comments_before, source_line
 from sssgen.material.model import Material
 from sssgen.passes.cost import Cost
-from sssgen.passes.hoist import Note
 from sssgen.passes.ranges.origins import Origins, RangeTrace
 from sssgen.passes.ranges.range_pass import analyse
 from sssgen.passes.ranges.sites import Site, report
 from sssgen.passes.reachable import only
 from sssgen.passes.stage.stage_interface import entry_of, stage_kind
+from sssgen.passes.unsupported import Note
 from sssgen.pipeline import pass_list
 from sssgen.pipeline.material_stages import check_shell, check_values
 from sssgen.pipeline.state import State
@@ -179,7 +179,9 @@ def finish_program(state: State, trace: Trace | None = None) -> Program:
     name = renamed.get("Surface", "Surface")
     surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == name), None)
     module = module._replace(functions=tuple([function._replace(body=()) for function in module.functions]))
-    warnings = [Diagnostic("warning", note.message, note.span, "", source_line(note.span)) for note in state.notes]
+    warnings = [
+        Diagnostic("warning", note.message, note.span, note.hint, source_line(note.span)) for note in state.notes
+    ]
     return Program(
         module, entries, surface, state.source_names, About("", ""), encoded, parts, state.owners, state.renames,
         {kind: cost._asdict() for kind, cost in state.costs.items()}, warnings, state.settings,

@@ -11,9 +11,9 @@ from sssgen.material.chain_assembly import Entry
 from sssgen.material.model import Material
 from sssgen.passes.cost import Cost
 from sssgen.passes.guards import Guarded
-from sssgen.passes.hoist import Note
 from sssgen.passes.ranges.sites import Site
 from sssgen.passes.stage.stage_interface import Stage
+from sssgen.passes.unsupported import Note
 from sssgen.pipeline.material_stages import TargetTechnique
 from sssgen.targets.descriptor import Target
 

@@ -14,7 +14,7 @@ from sssgen.passes.conversions import drop_conversions
 from sssgen.passes.cost import cost_of
 from sssgen.passes.fold import fold
 from sssgen.passes.guards import guard
-from sssgen.passes.hoist import Note, hoist
+from sssgen.passes.hoist import hoist
 from sssgen.passes.legal.legalise import legalise
 from sssgen.passes.legal.nested_arrays import nested_arrays
 from sssgen.passes.link import link
@@ -101,9 +101,9 @@ def match_partner(state: State) -> Module:
     assert state.partner is not None
     is_vertex = state.form == "vertex"
     vertex, fragment = (state.module, state.partner) if is_vertex else (state.partner, state.module)
-    errors = [Unsupported(*mismatch) for mismatch in mismatches(vertex, fragment)]
+    errors = mismatches(vertex, fragment)
     if errors:
-        raise Unsupported(errors[0].message, errors[0].span, errors[1:])
+        raise Unsupported(errors[0].message, errors[0].span, errors[1:], errors[0].hint)
     return interpolated_alike(vertex, fragment) if is_vertex else fragment
 
 
@@ -111,7 +111,7 @@ def note_differences(state: State) -> Module:
     differences = remarks(
         state.module, state.form, state.stage_builtins, state.y_down, state.target.capabilities, state.partner is None
     )
-    state.notes += [Note(*remark) for remark in differences]
+    state.notes += differences
     return state.module
 
 

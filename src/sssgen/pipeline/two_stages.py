@@ -8,7 +8,14 @@ from typing import NamedTuple
 from sssgen.ir.nodes import Module
 from sssgen.lang.source_lines import source_line
 from sssgen.passes.reachable import only, used
-from sssgen.passes.stage.linked_stages import disagreements, linked, sampled_textures, with_shared_uniforms
+from sssgen.passes.stage.linked_stages import (
+    disagreements,
+    linked,
+    passed_textures,
+    sampled_textures,
+    unlike_blocks,
+    with_shared_uniforms,
+)
 from sssgen.passes.stage.stage_interface import ENTRY, stage_kind
 from sssgen.pipeline import pass_list
 from sssgen.pipeline.compiler import finish
@@ -18,6 +25,7 @@ from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.gc_pause import paused
 from sssgen.targets import registry
 from sssgen.targets.assemble import About
+from sssgen.targets.block_places import block_members
 from sssgen.targets.descriptor import Target
 from sssgen.targets.program_reflection import ROWS, StageFacts, beyond_limits, reflect_program
 from sssgen.targets.reflection import as_text
@@ -58,11 +66,14 @@ def transpile_stages(
         able = [name for name in registry.names() if "vertex" in registry.load(name).files]
         raise failure(f"{target} has no whole shaders of plain GLSL", f"they go to {', '.join(able)}")
     with paused():
+        blocks = {kind: block_members(source.module) for kind, source in sources.items()}
         modules = {kind: used(only(source.module, [ENTRY]), True) for kind, source in sources.items()}
         wrong = disagreements(modules["vertex"], modules["fragment"])
+        wrong += unlike_blocks(sources["vertex"].module, sources["fragment"].module)
         if wrong:
-            hint = "declare it with one type in both stages"
-            raise SssgenError([Diagnostic("error", text, span, hint, source_line(span)) for text, span in wrong])
+            raise SssgenError(
+                [Diagnostic("error", each.message, each.span, each.hint, source_line(each.span)) for each in wrong]
+            )
         modules["vertex"], modules["fragment"] = linked(modules["vertex"], modules["fragment"])
         states = _states(modules, guards, chosen, rows)
         own = {kind: {uniform.name for uniform in state.module.uniforms} for kind, state in states.items()}
@@ -78,6 +89,9 @@ def transpile_stages(
                 state.module = module
             about = About(name, name, head=tuple(sources[kind].head))
             program = finish_program(state)._replace(about=about)
+            given = passed_textures(state.module)  # the target's passes make functions, too
+            final = zip(uniforms[kind], state.module.uniforms, strict=True) if chosen.layout else ()
+            passed = {uniform.name for uniform, named in final if named.name in given}
             compiled = finish(program, chosen, kind)
             reflection = compiled.reflection
             *texts, _ = compiled.files.items()
@@ -85,7 +99,14 @@ def transpile_stages(
             warnings += compiled.warnings
             renames[kind] = reflection["renames"]
             facts[kind] = StageFacts(
-                program, reflection, state.variable_names, uniforms[kind], own[kind], sampled[kind]
+                program,
+                reflection,
+                state.variable_names,
+                uniforms[kind],
+                own[kind],
+                sampled[kind],
+                passed,
+                blocks[kind],
             )
     described = reflect_program(name, chosen, rows, facts["vertex"], facts["fragment"])
     beyond = beyond_limits(described, chosen)

@@ -10,6 +10,7 @@ from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Array, Matrix, Sampler, Type, components, kind_of, spell
 from sssgen.passes.stage.stage_interface import Slot, interpolation
 from sssgen.targets.assemble import Program
+from sssgen.targets.block_places import Member, place_in_block
 from sssgen.targets.descriptor import Target
 from sssgen.targets.uniform_layout import place
 
@@ -35,6 +36,10 @@ class StageFacts(NamedTuple):
     """Those of them that the stage itself reads."""
     sampled: Set[str]
     """The textures that it reads with a sampler."""
+    passed: Set[str]
+    """Those that it gives to functions."""
+    blocks: Mapping[tuple[str, str], Member]
+    """The members of its uniform blocks."""
 
 
 def reflect_program(name: str, target: Target, rows: str, vertex: StageFacts, fragment: StageFacts) -> dict[str, Any]:
@@ -132,17 +137,21 @@ def _bindings(target: Target, stages: Mapping[str, StageFacts]) -> dict[str, Any
     uniforms: list[dict[str, Any]] = []
     textures: list[dict[str, Any]] = []
     bindings = [texture.get("binding") for texture in first.reflection["textures"]] if target.layout else []
-    for index, uniform in enumerate(first.uniforms):
+    for index, declared in enumerate(first.uniforms):
         readers = {kind: facts for kind, facts in stages.items() if facts.uniforms[index].name in facts.own}
-        source = next(facts.uniforms[index].name for facts in readers.values())
-        entry: dict[str, Any] = {"name": uniform.path or source, "stages": list(readers)}
+        reader = next(iter(readers.values()))
+        uniform = reader.uniforms[index]
+        entry: dict[str, Any] = {"name": uniform.source, "stages": list(readers)}
         if isinstance(uniform.type, Sampler):
-            sampled = any(facts.uniforms[index].name in facts.sampled for facts in readers.values())
-            textures.append(entry | _texture(uniform.type, sampled, bindings[len(textures)] if bindings else None))
+            names = [(facts.uniforms[index].name, facts) for facts in readers.values()]
+            sampled = any(name in facts.sampled for name, facts in names)
+            passed = any(name in facts.passed for name, facts in names)
+            binding = bindings[len(textures)] if bindings else None
+            textures.append(entry | _texture(uniform.type, sampled, passed, binding))
         else:
-            entry |= _described(uniform)
+            entry |= _described(uniform) | place_in_block(uniform, reader.blocks)
             if target.layout:
-                entry |= _in_block(uniform.type, *offsets[uniform.name])
+                entry |= _in_block(uniform.type, *offsets[declared.name])
             uniforms.append(entry)
     block = {"size": size} | _block_place(target) if target.layout and uniforms else None
     return {"uniform_block": block, "uniforms": uniforms, "textures": textures}
@@ -159,12 +168,10 @@ def _described(uniform: Uniform) -> dict[str, Any]:
     """
     element = uniform.type.element if isinstance(uniform.type, Array) else uniform.type
     lengths = [int(length) for length in _ARRAY.findall(uniform.path)]
-    if isinstance(uniform.type, Array) and not uniform.path:
+    if isinstance(uniform.type, Array) and not lengths:
         lengths = [uniform.type.length]
-    described: dict[str, Any] = {"type": spell(element), "lengths": lengths}
-    if uniform.path:
-        described["name"] = _ARRAY.sub("[]", uniform.path).removesuffix("[]")
-    return described
+    name = _ARRAY.sub("[]", uniform.source).removesuffix("[]")
+    return {"name": name, "type": spell(element), "lengths": lengths}
 
 
 def _in_block(type_: Type, offset: int, size: int) -> dict[str, int]:
@@ -174,14 +181,14 @@ def _in_block(type_: Type, offset: int, size: int) -> dict[str, int]:
     return {"offset": offset, "size": size, "array_stride": array_stride, "matrix_stride": matrix_stride}
 
 
-def _texture(type_: Sampler, sampled: bool, binding: Mapping[str, Any] | None) -> dict[str, Any]:
+def _texture(type_: Sampler, sampled: bool, passed: bool, binding: Mapping[str, Any] | None) -> dict[str, Any]:
     dimension = type_.dim.lower() + ("-array" if type_.array else "")
     sample = "depth" if type_.shadow else {"int": "sint", "uint": "uint"}.get(type_.kind, "float")
-    sampler = "comparison" if type_.shadow else "filtering" if sample == "float" else "non-filtering"
+    sampler = "comparison" if type_.shadow else "filtering" if sample == "float" and sampled else "non-filtering"
     return {
         "dimension": dimension,
         "sample_type": sample,
         "filterable": sampled and sample == "float",
-        "sampler": sampler if sampled else "",
+        "sampler": sampler if sampled or passed else "",
         "binding": binding,
     }

@@ -36,9 +36,11 @@ class GlobalChecker:
             self.memory.buffer(block)
             return
         members = self.interface.members(block)
+        count = len(self.uniforms)
         for member in members:
             self.global_(member)
         self.interface.name_instance(block, members)
+        self.uniforms[count:] = self.interface.uniforms_of(block, members, self.uniforms[count:])
 
     def global_(self, external: s.GlobalSyntax) -> None:
         context, declaration = self.context, external.declaration

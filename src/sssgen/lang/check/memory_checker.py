@@ -30,11 +30,13 @@ class MemoryChecker:
         self.expressions = expressions
 
     def layout(self, layout: s.LayoutSyntax) -> None:
-        """`layout(local_size_x = 8, local_size_y = 8) in;`; other layouts of a whole shader have no effect."""
+        """`layout(local_size_x = 8, local_size_y = 8) in;`, and the order in which uniform blocks store matrices."""
         sizes = {name: value for name, value in layout.qualifiers.layout if name in _SIZES and value is not None}
+        context = self.context
+        if "uniform" in layout.qualifiers.keywords:
+            context.uniform_layout = (*context.uniform_layout, *layout.qualifiers.layout)
         if not sizes or "in" not in layout.qualifiers.keywords:
             return
-        context = self.context
         context.workgroup = (1, 1, 1)  # with a wrong size it is a compute shader, too
         numbers = []
         for name in _SIZES:

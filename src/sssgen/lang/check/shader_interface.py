@@ -136,6 +136,32 @@ class ShaderInterface:
             members.append(s.GlobalSyntax(declaration, block.doc))
         return members
 
+    def uniforms_of(
+        self, block: s.BlockSyntax, members: list[s.GlobalSyntax], uniforms: list[ir.Uniform]
+    ) -> list[ir.Uniform]:
+        """The uniforms that the members of a block became, with what a program knows of them."""
+        by_rows: dict[str, bool] = {}
+        written: dict[str, str] = {}
+        for member, renamed in zip(block.members if members else (), members, strict=True):
+            orders = [
+                name
+                for qualifiers in (self.context.uniform_layout, block.qualifiers.layout, member.qualifiers.layout)
+                for name, _ in qualifiers
+                if name in ("row_major", "column_major")
+            ]
+            for declarator, now in zip(member.declarators, renamed.declaration.declarators, strict=True):
+                by_rows[now.name.text] = orders[-1:] == ["row_major"]
+                written[now.name.text] = declarator.name.text
+        head = f"{block.name.text}." if block.instance is not None else ""
+        return [
+            uniform._replace(
+                path=head + written.get(uniform.name, uniform.name) if head else uniform.path,
+                block=block.name.text,
+                row_major=by_rows.get(uniform.name, False),
+            )
+            for uniform in uniforms
+        ]
+
     def name_instance(self, block: s.BlockSyntax, members: list[s.GlobalSyntax]) -> None:
         """Makes the members of a block, which are declared by now, accessible by the block's instance name, if it has
         one, or by their own."""

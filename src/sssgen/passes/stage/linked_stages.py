@@ -8,28 +8,63 @@ Place: after the functions that main() does not call are gone, before names are 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import zip_longest
+
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.nodes import Call, Expr, Function, Global, Intrinsic, Local, Module, Span, Uniform
-from sssgen.ir.types import Sampler, spell, with_article
+from sssgen.ir.nodes import Call, Expr, Function, Global, Intrinsic, Local, Module, Uniform
+from sssgen.ir.types import Sampler
 from sssgen.ir.walk import all_expressions, subexpressions
 from sssgen.passes.scopes import fresh
-from sssgen.passes.stage.varyings import mismatches, output_of, varyings
-
-Mismatch = tuple[str, Span]
-"""A message and the place in the fragment shader."""
+from sssgen.passes.stage.varyings import contrast, mismatches, output_of, place, varyings
+from sssgen.passes.unsupported import Unsupported
 
 
-def disagreements(vertex: Module, fragment: Module) -> list[Mismatch]:
-    """Where the stages cannot be one program: values between them, and uniforms of one name but two types."""
-    uniforms = {uniform.name: uniform for uniform in vertex.uniforms}
+def disagreements(vertex: Module, fragment: Module) -> list[Unsupported]:
+    """Where the stages cannot be one program: values between them, and uniforms of one name but two types.
+
+    Their places are in the fragment shader.
+    """
+    uniforms = {uniform.source: uniform for uniform in vertex.uniforms}
     wrong = mismatches(vertex, fragment)
     for uniform in fragment.uniforms:
-        other = uniforms.get(uniform.name)
-        if other is not None and other.type != uniform.type:
-            here, there = with_article(spell(uniform.type)), with_article(spell(other.type))
-            place = f"{other.span.file}:{other.span.line}:{other.span.column}"
-            wrong.append((f"the uniform '{uniform.name}' is {there} in {place}, but {here} here", uniform.span))
+        other = uniforms.get(uniform.source)
+        if other is None or uniform.block:
+            continue
+        there, here = contrast(other.type, uniform.type)
+        if other.block:
+            there, here = f"a member of the block '{other.block}'", "outside of blocks"
+        if there != here:
+            message = f"the uniform '{uniform.source}' is {there} in {place(other.span)}, but {here} here"
+            wrong.append(Unsupported(message, uniform.span, hint="it is one variable of the program: declare it alike"))
     return wrong
+
+
+def unlike_blocks(vertex: Module, fragment: Module) -> Iterator[Unsupported]:
+    """The blocks of one name with other members: they are one buffer of the program.
+
+    The modules are those of the source, with the members that nothing reads.
+    """
+    for block in dict.fromkeys(uniform.block for uniform in fragment.uniforms if uniform.block):
+        mine, theirs = [
+            [uniform for uniform in module.uniforms if uniform.block == block] for module in (fragment, vertex)
+        ]
+        for here, there in zip_longest(mine, theirs) if theirs else ():
+            if here and there and (_name(here), here.row_major) == (_name(there), there.row_major):
+                first, second = contrast(there.type, here.type)
+                if first == second:
+                    continue
+            span = (here or mine[-1]).span
+            what = f"has '{_name(there)}' here" if there else "ends before this member"
+            message = f"the block '{block}' differs from that of the vertex shader, which {what}"
+            message += f" ({place((there or theirs[-1]).span)})"
+            yield Unsupported(message, span, hint="declare the same members in the same order in both stages")
+            break
+
+
+def _name(member: Uniform) -> str:
+    """The name of a member of a block, without that of the block."""
+    return member.source.rpartition(".")[2]
 
 
 def linked(vertex: Module, fragment: Module) -> tuple[Module, Module]:
@@ -66,26 +101,30 @@ def with_shared_uniforms(vertex: Module, fragment: Module) -> tuple[Module, Modu
 
     A name of the other stage that this stage has for something else is changed here, where nothing reads it.
     """
-    own = {uniform.name for uniform in vertex.uniforms}
-    names = [uniform.name for uniform in vertex.uniforms]
-    names += [uniform.name for uniform in fragment.uniforms if uniform.name not in own]
+    names = list(dict.fromkeys(uniform.source for uniform in (*vertex.uniforms, *fragment.uniforms)))
     return _declared(vertex, names, fragment), _declared(fragment, names, vertex)
 
 
 def _declared(module: Module, names: list[str], other: Module) -> Module:
-    mine = {uniform.name: uniform for uniform in module.uniforms}
-    theirs = {uniform.name: uniform for uniform in other.uniforms}
+    mine = {uniform.source: uniform for uniform in module.uniforms}
+    theirs = {uniform.source: uniform for uniform in other.uniforms}
     declared = (module.constants, module.uniforms, module.variables, module.functions)
     taken = {declaration.name for group in declared for declaration in group}
     uniforms = list[Uniform]()
     for name in names:
         uniform = mine.get(name)
         if uniform is None:
-            free = fresh(name, taken)
-            taken.add(free)
-            uniform = theirs[name]._replace(name=free)
+            uniform = theirs[name]._replace(name=fresh(theirs[name].name, taken))
+            taken.add(uniform.name)
         uniforms.append(uniform)
     return module._replace(uniforms=tuple(uniforms))
+
+
+def passed_textures(module: Module) -> set[str]:
+    """The names of the textures that are given to functions: in most languages, each is given with its sampler."""
+    calls = [node for function in module.functions for node in all_expressions(function.body or ())]
+    arguments = [argument for call in calls if isinstance(call, Call) for argument in call.args]
+    return {each.name for each in arguments if isinstance(each, Global) and isinstance(each.type, Sampler)}
 
 
 def sampled_textures(module: Module) -> set[str]:

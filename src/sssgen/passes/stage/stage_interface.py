@@ -13,13 +13,13 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.nodes import Expr, Function, Global, Index, Intrinsic, Literal, Module, Span, Unary, Variable
+from sssgen.ir.nodes import Expr, Function, Global, Index, Intrinsic, Literal, Module, Unary, Variable
 from sssgen.ir.transform import rewrite_module
 from sssgen.ir.types import VOID, Array, Type, Vector, kind_of
 from sssgen.ir.walk import all_expressions, builtins_of, operands
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.stage.varyings import locations, output_of, parts, varyings
-from sssgen.passes.unsupported import Unsupported
+from sssgen.passes.unsupported import Note, Unsupported
 
 ENTRY = "main()"
 """The key of the function that a stage begins with."""
@@ -29,6 +29,12 @@ RESOLUTION = "iResolution"
 
 COLORS = ("gl_FragColor", "gl_FragData")
 """Builtins that are colours of the framebuffer at the locations from 0 on."""
+
+_INSTEAD = {
+    "gl_PointSize": "for larger points draw two triangles for each: docs/webgl-to-webgpu.md#points",
+    "gl_PointCoord": "draw two triangles for each point, with a varying in its place: docs/webgl-to-webgpu.md#points",
+}
+"""Builtin → what to do where the target does not have it."""
 
 
 class Slot(NamedTuple):
@@ -117,7 +123,8 @@ def interface(
     outputs = [variable for variable in module.variables if variable.storage == "out"]
     for variable in inputs:
         if variable.builtin and variable.builtin not in builtins:
-            raise Unsupported(f"a {kind} shader of this target has no {variable.builtin}", variable.span)
+            message = f"a {kind} shader of this target has no {variable.builtin}"
+            raise Unsupported(message, variable.span, hint=_INSTEAD.get(variable.builtin, ""))
     outputs = [
         output for output in outputs if not output.builtin or output.builtin in builtins or output.builtin in COLORS
     ]
@@ -228,7 +235,7 @@ def colors_in_use(module: Module) -> Module:
 
 def remarks(
     module: Module, kind: str, builtins: Collection[str], turned: bool, capabilities: Capabilities, alone: bool
-) -> list[tuple[str, Span]]:
+) -> list[Note]:
     """What differs from the source in a target's whole shader, with its place.
 
     `alone`: the other stage is not given.
@@ -236,31 +243,28 @@ def remarks(
     differences = _unmatched(module, kind, capabilities) if alone else []
     for variable in module.variables:
         if variable.interpolation == "noperspective" and not capabilities.noperspective:
-            differences.append(
-                (
-                    f"'{variable.name}' is interpolated with perspective here: this target has no other interpolation",
-                    variable.span,
-                )
-            )
+            message = f"'{variable.name}' is interpolated with perspective here: this target has no other interpolation"
+            differences.append(Note(message, variable.span))
         if variable.builtin == "gl_FragCoord" and turned and not resolution_of(module):
+            message = "gl_FragCoord.y counts from the top of the framebuffer here"
             hint = f"declare a uniform vec2 {RESOLUTION}, and it is flipped"
-            differences.append((f"gl_FragCoord.y counts from the top of the framebuffer here; {hint}", variable.span))
+            differences.append(Note(message, variable.span, hint))
         elif variable.storage == "out" and variable.builtin and variable.builtin not in (*builtins, *COLORS):
-            differences.append(
-                (f"{variable.builtin} has no effect here: this target has no such output", variable.span)
-            )
+            message = f"{variable.builtin} has no effect here: this target has no such output"
+            differences.append(Note(message, variable.span, _INSTEAD.get(variable.builtin, "")))
     return differences
 
 
-def _unmatched(module: Module, kind: str, capabilities: Capabilities) -> list[tuple[str, Span]]:
+def _unmatched(module: Module, kind: str, capabilities: Capabilities) -> list[Note]:
     """What only the other stage can tell."""
     passed = varyings(module, kind)
     named = sorted([variable for variable in passed if variable.location < 0], key=lambda variable: variable.name)
     if named and kind == "fragment" and not capabilities.named_varyings:
         names = ", ".join([f"'{variable.name}'" for variable in named])
         are = f"the inputs {names} are numbered" if len(named) > 1 else f"the input {names} is numbered"
-        return [(f"{are} by name: give the vertex shader (--with FILE) if it has other outputs", named[0].span)]
+        hint = "give the vertex shader, --with FILE, if it has other outputs; or both, --stages A.vert B.frag"
+        return [Note(f"{are} by name", named[0].span, hint)]
     if capabilities.varying_locations:
         return []
     message = "has a location, but is matched by its name here: the other stage must have the same name"
-    return [(f"'{variable.name}' {message}", variable.span) for variable in passed if variable.location >= 0]
+    return [Note(f"'{variable.name}' {message}", variable.span) for variable in passed if variable.location >= 0]

@@ -98,7 +98,7 @@ class _Splitter:
             name = fresh("_".join(path), self.taken) if len(path) > 1 else uniform.name
             self.taken.add(name)
             leaf = self.leaves[path] = _Leaf(name, lengths, element)
-            spelt = _spelt(path, uniform.type)
+            spelt = _spelt((uniform.path or uniform.name, *path[1:]), uniform.type)
             yield uniform._replace(name=name, type=leaf.type, default=default, path=spelt)
 
     # Rewriting, from the leaves up: a chain of members and indices is rewritten as a whole, at its end

@@ -15,6 +15,7 @@ from sssgen.ir.rules import element_type
 from sssgen.ir.types import Array, Matrix, Struct, Type, spell, unnested, with_article
 from sssgen.passes.scopes import mentions
 from sssgen.passes.unsupported import Unsupported
+from sssgen.support.diagnostics import did_you_mean
 
 Part = tuple[tuple[int, ...], Type]
 """A scalar or vector of a variable, after the indices that lead to it."""
@@ -53,7 +54,8 @@ def parts(variable: Variable) -> list[Part]:
 def _parts(variable: Variable, type_: Type, path: tuple[int, ...]) -> list[Part]:
     inner, _ = unnested(type_)
     if isinstance(inner, Struct):
-        raise Unsupported(f"'{variable.name}' contains structs, which cannot be passed between stages", variable.span)
+        message = f"'{variable.name}' contains structs, which cannot be passed between stages"
+        raise Unsupported(message, variable.span, hint="pass the members as variables of their own")
     if not isinstance(type_, Array | Matrix):
         return [(path, type_)]
     elements = element_type(type_)
@@ -86,21 +88,54 @@ def interpolated_alike(vertex: Module, fragment: Module) -> Module:
     return vertex._replace(variables=tuple(variables))
 
 
-def mismatches(vertex: Module, fragment: Module) -> list[tuple[str, Span]]:
+def mismatches(vertex: Module, fragment: Module) -> list[Unsupported]:
     """Where the inputs that a fragment shader reads are not the outputs of the vertex shader, with their places."""
     outputs = varyings(vertex, "vertex")
     read = set[str]().union(*[mentions(function)[0] for function in fragment.functions])
-    wrong = []
+    wrong = list[Unsupported]()
     for input_ in varyings(fragment, "fragment"):
         output = output_of(input_, outputs)
         if output is None and input_.name in read:
             file = next((function.span.file for function in reversed(vertex.functions)), "")
             message = f"the vertex shader {file} does not write '{input_.name}', which the fragment shader reads"
-            wrong.append((message, input_.span))
-        elif output is not None and output.type != input_.type:
-            written, expected = (with_article(spell(variable.type)) for variable in (output, input_))
-            there = f"({output.span.file}:{output.span.line}:{output.span.column})"
-            message = f"the vertex shader writes '{input_.name}' as {written} {there}"
+            hint = did_you_mean(input_.name, [variable.name for variable in outputs])
+            hint = hint or f"declare '{input_.name}' as an output of the vertex shader, and write it there"
+            wrong.append(Unsupported(message, input_.span, hint=hint))
+        elif output is not None:
+            written, expected = contrast(output.type, input_.type)
+            if written == expected:
+                continue
+            message = f"the vertex shader writes '{input_.name}' as {written} ({place(output.span)})"
             message += f", but the fragment shader reads {expected}"
-            wrong.append((message, input_.span))
+            wrong.append(Unsupported(message, input_.span, hint="declare it with one type in both stages"))
     return wrong
+
+
+def contrast(there: Type, here: Type) -> tuple[str, str]:
+    """The types of a variable in both stages, in words that differ where the types do.
+
+    A struct is one of its members: its name may be missing, and numbers may make it unique.
+    """
+    if _shape(there) == _shape(here):
+        return spell(here), spell(here)
+    words = [with_article(spell(type_)) for type_ in (there, here)]
+    structs = [unnested(type_)[0] for type_ in (there, here)]
+    for index, struct in enumerate(structs):
+        if isinstance(struct, Struct):
+            members = "; ".join([f"{spell(field.type)} {field.name}" for field in struct.fields])
+            words[index] = f"a struct {{ {members}; }}"
+    return words[0], words[1]
+
+
+def _shape(type_: Type) -> object:
+    """A type without the names of structs."""
+    if isinstance(type_, Array):
+        return type_.length, _shape(type_.element)
+    if isinstance(type_, Struct):
+        return tuple([(field.name, _shape(field.type)) for field in type_.fields])
+    return type_
+
+
+def place(span: Span) -> str:
+    """A place in the other stage, in a message."""
+    return f"{span.file}:{span.line}:{span.column}"

@@ -1,4 +1,14 @@
-// The scenes: one for each kind of program that three.js makes. Nothing is loaded: textures and meshes are computed.
+// The scenes of three.js: one for each kind of program that it makes. Nothing is loaded: textures and meshes are computed.
+
+import * as THREE from 'three';
+
+export const ENGINE = `three.js ${THREE.REVISION}`;
+
+export function draw(name, canvas, context) {
+  const renderer = new THREE.WebGLRenderer({ canvas, context, antialias: false });
+  renderer.setSize(canvas.width, canvas.height, false);
+  SCENES[name](THREE, renderer);
+}
 
 /** A camera, a sun, a lamp, and a sphere and a knot of the material. */
 function shown(material, change = () => {}) {
