@@ -1,4 +1,4 @@
-"""Compute shaders of plain GLSL run in WebGPU and OpenGL, compared with NumPy: a prefix sum, a histogram, a blur."""
+"""Compute shaders of plain GLSL run in WebGPU, OpenGL and, as Metal, on the processor, and are compared with NumPy."""
 
 from __future__ import annotations
 
@@ -9,105 +9,62 @@ import numpy as np
 import pytest
 
 from folders import TESTS
-from sssgen.harness.backends import Backend
+from sssgen.harness.backends import Backend, Bound, Place, Text
+from sssgen.harness.backends.dispatch import Dispatch, by_opengl, by_webgpu
+from sssgen.harness.backends.metal_kernel import run_kernel
+from sssgen.harness.render import metal_values, shell_values
 from sssgen.lang.plain_glsl import load_glsl
-from sssgen.pipeline.compiler import Compiled, transpile
+from sssgen.pipeline.compiler import transpile
+from sssgen.targets.runtime.numpy_textures import Texture
 
 Array = np.ndarray[Any, Any]
-Buffers = Mapping[str, Array]
-Uniforms = Mapping[str, Any]
-Run = Callable[[str, tuple[int, int], Buffers, Uniforms, "Array | None"], dict[str, Array]]
+Run = Callable[[str, tuple[int, int, int], Mapping[str, Array], Mapping[str, Any], "Array | None"], dict[str, Array]]
+TARGETS = {"gl": "glsl-330", "webgpu": "wgsl", "metal": "metal"}
 
 
-def compiled(name: str, target: str) -> Compiled:
-    module = load_glsl(TESTS / "transpile" / f"{name}.comp", f"{name}.comp").module
-    return transpile(module, target, name, keep=True)
-
-
-def by_webgpu(backend: Any) -> Run:
-    gpu = backend.gpu
+@pytest.fixture(params=list(TARGETS))
+def run(request: pytest.FixtureRequest, backend: Callable[[str], Backend]) -> Run:
+    machine: Any = backend(request.param)
 
     def run(
-        name: str, groups: tuple[int, int], buffers: Buffers, uniforms: Uniforms, picture: Array | None
-    ) -> dict[str, Array]:
-        result = compiled(name, "wgsl")
+        name: str, groups: tuple[int, int, int], buffers: Mapping[str, Array], values: Mapping[str, Any],
+        picture: Array | None,
+    ) -> dict[str, Array]:  # fmt: skip
+        module = load_glsl(TESTS / "transpile" / f"{name}.comp", f"{name}.comp").module
+        result = transpile(module, TARGETS[request.param], name, keep=True)
         reflection = result.reflection
-        entries = []
-        if reflection["uniforms"]:
-            block = np.zeros(reflection["uniform_block_size"] // 4, np.uint32)
-            for uniform in reflection["uniforms"]:
-                for index, value in enumerate(np.atleast_1d(uniforms[uniform["name"]])):
-                    start = uniform["offset"] // 4 + 4 * index
-                    block[start : start + 1] = np.atleast_1d(value).view(np.uint32)
-            entries.append((0, {"buffer": gpu.create_buffer_with_data(data=block.tobytes(), usage=0x40)}))
+        x, y, z = module.workgroup
+        dispatch = Dispatch(
+            Text(next(iter(result.files.values()))), groups, (x, y, z), buffers,
+            {one["block"]: one["binding"]["binding"] for one in reflection["storage_buffers"]},
+            next(iter(reflection["files"][0]["stages"].values())), values,
+            group=1 if request.param == "webgpu" else 0,
+            readonly=frozenset(one["block"] for one in reflection["storage_buffers"] if one["access"] == "readonly"),
+        )  # fmt: skip
         if picture is not None:
             (texture,) = reflection["textures"]
-            height, width = picture.shape[:2]
-            stored = gpu.create_texture(size=(width, height, 1), format="rgba32float", usage=0x4 | 0x2)
-            gpu.queue.write_texture(
-                {"texture": stored}, picture.astype(np.float32).tobytes(), {"bytes_per_row": 16 * width},
-                (width, height, 1),
-            )  # fmt: skip
-            entries.append((texture["binding"]["texture"], stored.create_view()))
-        stores = {}
-        for buffer in reflection["storage_buffers"]:
-            data = buffers[buffer["block"]]
-            stores[buffer["block"]] = gpu.create_buffer_with_data(data=data.tobytes(), usage=0x80 | 0x4)
-            entries.append((buffer["binding"]["binding"], {"buffer": stores[buffer["block"]]}))
-        module = gpu.create_shader_module(code=next(iter(result.files.values())))
-        pipeline = gpu.create_compute_pipeline(layout="auto", compute={"module": module, "entry_point": "compute_main"})
-        encoder = gpu.create_command_encoder()
-        work = encoder.begin_compute_pass()
-        work.set_pipeline(pipeline)
-        listed = [{"binding": place, "resource": resource} for place, resource in entries]
-        work.set_bind_group(1, gpu.create_bind_group(layout=pipeline.get_bind_group_layout(1), entries=listed))
-        work.dispatch_workgroups(*groups)
-        work.end()
-        gpu.queue.submit([encoder.finish()])
-        return {
-            block: np.frombuffer(gpu.queue.read_buffer(store), buffers[block].dtype).reshape(buffers[block].shape)
-            for block, store in stores.items()
-        }
+            binding = texture.get("binding", {})
+            place = Place(binding.get("group", 0), binding.get("texture", 0), binding.get("sampler", -1))
+            dispatch = dispatch._replace(textures={texture["name"]: Bound(Texture(picture), place)})
+        if request.param == "gl":
+            return by_opengl(machine, dispatch)
+        if request.param == "webgpu":
+            block = shell_values.material_block(reflection, values) if reflection["uniforms"] else b""
+            return by_webgpu(machine, dispatch._replace(block=block))
+        lengths = {one["name"]: [buffers[block].size] for one in reflection["uniforms"]
+                   for block in buffers if f" of {block}." in one["doc"]}  # fmt: skip
+        block = metal_values.material_block(reflection, {**values, **lengths})
+        after = run_kernel(machine, dispatch._replace(block=block), order=2)
+        assert after.fault == ""
+        return after.buffers
 
     return run
-
-
-def by_opengl(backend: Any) -> Run:
-    def run(
-        name: str, groups: tuple[int, int], buffers: Buffers, uniforms: Uniforms, picture: Array | None
-    ) -> dict[str, Array]:
-        result = compiled(name, "glsl-330")
-        with backend.context as context:
-            program = context.compute_shader(next(iter(result.files.values())))
-            for uniform, value in uniforms.items():
-                program[uniform].value = value.tolist() if isinstance(value, np.ndarray) else value
-            if picture is not None:
-                texture = context.texture(picture.shape[1::-1], 4, picture.astype(np.float32).tobytes(), dtype="f4")
-                texture.use(0)
-            stores = {}
-            for buffer in result.reflection["storage_buffers"]:
-                stores[buffer["block"]] = context.buffer(buffers[buffer["block"]].tobytes())
-                stores[buffer["block"]].bind_to_storage_buffer(buffer["binding"]["binding"])
-            program.run(*groups)
-            context.finish()
-            return {
-                block: np.frombuffer(store.read(), buffers[block].dtype).reshape(buffers[block].shape)
-                for block, store in stores.items()
-            }
-
-    return run
-
-
-@pytest.fixture(params=["gl", "webgpu"])
-def run(request: pytest.FixtureRequest, backend: Callable[[str], Backend]) -> Run:
-    machine = backend(request.param)
-    return by_webgpu(machine) if request.param == "webgpu" else by_opengl(machine)
 
 
 def test_a_prefix_sum(run: Run) -> None:
     values = np.random.default_rng(1).integers(0, 100, 200).astype(np.float32)
     buffers = {"Input": values, "Output": np.zeros(200, np.float32), "Totals": np.zeros(4, np.float32)}
-    results = run("prefix_sum", (4, 1), buffers, {}, None)
+    results = run("prefix_sum", (4, 1, 1), buffers, {}, None)
     groups = np.pad(values, (0, 56)).reshape(4, 64)
     np.testing.assert_array_equal(results["Output"], groups.cumsum(axis=1).ravel()[:200])
     np.testing.assert_array_equal(results["Totals"], groups.sum(axis=1))
@@ -120,7 +77,7 @@ def test_a_histogram(run: Run) -> None:
     texels["weight"] = rng.integers(1, 5, 150)
     extremes = np.array([900, -900, 0, 0, 0, 0], np.int32)
     buffers = {"Texels": texels, "Bins": np.zeros(16, np.uint32), "Extremes": extremes}
-    results = run("histogram", (3, 1), buffers, {"count": np.uint32(150), "scale": np.float32(16.0)}, None)
+    results = run("histogram", (3, 1, 1), buffers, {"count": np.array(150), "scale": np.array(16.0)}, None)
     bins = np.minimum(texels["value"] * np.float32(16.0), 15.0).astype(int)
     np.testing.assert_array_equal(results["Bins"], np.bincount(bins, texels["weight"], 16))
     low, high, flag, mixed, old, new = results["Extremes"]
@@ -130,10 +87,10 @@ def test_a_histogram(run: Run) -> None:
 
 
 def test_a_blur(run: Run) -> None:
-    picture = np.random.default_rng(3).random((5, 70, 4)).astype(np.float32)
+    picture = np.random.default_rng(3).random((5, 70, 4)).astype(np.float16).astype(np.float32)
     weights = np.array([0.4, 0.2, 0.1], np.float32)
     buffers = {"Result": np.zeros((5, 70, 4), np.float32)}
-    results = run("blur", (3, 5), buffers, {"weights": weights}, picture)
+    results = run("blur", (3, 5, 1), buffers, {"weights": weights}, picture)
     padded = np.pad(picture, ((0, 0), (2, 2), (0, 0)), mode="edge")
     expected = sum(weights[abs(step)] * padded[:, 2 + step : 72 + step] for step in range(-2, 3))
     np.testing.assert_allclose(results["Result"], expected, rtol=1e-5)

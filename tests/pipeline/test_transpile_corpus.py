@@ -25,8 +25,8 @@ from sssgen.support.diagnostics import SssgenError
 CORPUS = TESTS / "transpile"
 FILES = sorted(path.name for path in CORPUS.iterdir() if path.is_file())
 TARGETS = ("wgsl", "hlsl", "glsl-330")
-SUFFIXES = {"wgsl": "wgsl", "hlsl": "hlsl", "glsl-330": "glsl"}
-COMPILERS = ("naga", "tint", "glslang", "dxc")
+SUFFIXES = {"wgsl": "wgsl", "hlsl": "hlsl", "glsl-330": "glsl", "metal": "metal"}
+COMPILERS = ("naga", "tint", "glslang", "dxc", "metal")
 REFUSED: set[tuple[str, str]] = set()
 """(file, target) pairs that the target cannot express; the snapshot is the error."""
 STAGES: dict[str, Stage] = {"vert": "vertex", "comp": "compute"}
@@ -61,6 +61,7 @@ def source(name: str, target: str) -> Source:
 
 
 CASES = [(name, target) for name in FILES for target in TARGETS]
+CASES += [(name, "metal") for name in FILES if name.endswith(".comp")]
 
 
 @pytest.mark.parametrize(("name", "target"), CASES)

@@ -39,6 +39,7 @@ LAZY_IMPORTS = {
     "sssgen.cli.transpile": EXTRA,
     "sssgen.harness.backends.browser_page": EXTRA,
     "sssgen.harness.backends.opengl": EXTRA,
+    "sssgen.harness.backends.dispatch": EXTRA,
     "sssgen.harness.backends.webgpu": EXTRA,
     "sssgen.harness.compilers.dxc": EXTRA,
     "sssgen.harness.compilers.gl_driver": EXTRA,

@@ -137,10 +137,7 @@ def run(arguments: Namespace) -> int:
     if wrong or module is None:
         raise SssgenError(wrong)
     if arguments.verify:
-        if module.workgroup:
-            hint = "it runs functions of one invocation; compare the buffers of both in your program"
-            raise failure("--verify does not run compute shaders", hint, path.as_posix())
-        return _verify(arguments, path)
+        return _verify(arguments, path, bool(module.workgroup))
     if arguments.as_ == "technique":
         return _technique(arguments, module, path)
     return _translate(arguments, module, loaded, names[0], path, partner)
@@ -227,19 +224,26 @@ def _print(
         print_changes(warnings, renamed)
 
 
-def _verify(arguments: Namespace, path: Path) -> int:
-    """Runs each function as written and as translated, and prints the differences."""
+def _verify(arguments: Namespace, path: Path, computes: bool) -> int:
+    """Runs each function, or a compute shader, as written and as translated, and prints the differences."""
+    from sssgen.harness.verify import compute_verification as compute
     from sssgen.harness.verify import inline_includes as includes
     from sssgen.harness.verify import verification as transpiled
 
     if arguments.define:
         raise failure("-D cannot be used with --verify", "write the #define into the file")
     text = includes.expanded(read_code(path, path.as_posix()), path, arguments.include)
-    with ProgressBar() as progress:
-        report = transpiled.verify(
-            text, path.as_posix(), arguments.samples, arguments.seed, arguments.entry, progress=progress,
-            function=arguments.function,
-        )  # fmt: skip
+    report: Any
+    if computes:
+        if arguments.function:
+            raise failure("a compute shader is run as a whole", "leave out --function", path.as_posix())
+        report = compute.verify_compute(text, path.as_posix(), arguments.seed)
+    else:
+        with ProgressBar() as progress:
+            report = transpiled.verify(
+                text, path.as_posix(), arguments.samples, arguments.seed, arguments.entry, progress=progress,
+                function=arguments.function,
+            )  # fmt: skip
     if arguments.json:
         print_json({"ok": report.ok, **report.as_json()})
     else:

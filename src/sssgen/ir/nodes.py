@@ -233,13 +233,17 @@ Block: TypeAlias = tuple[Stmt, ...]
 
 
 class Param(NamedTuple):
-    """A parameter; `direction` is in, out or inout; `quantity` its quantity type or ''."""
+    """A parameter; `direction` is in, out or inout; `quantity` its quantity type or ''.
+
+    `passes` is the uniform or module variable that every caller passes, or ''.
+    """
 
     name: str
     type: Type
     direction: str
     quantity: str
     span: Span
+    passes: str = ""
 
 
 class Function(NamedTuple):

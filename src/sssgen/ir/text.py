@@ -121,6 +121,7 @@ class _Printer:
     def function(self, function: Function) -> str:
         params = [
             f"{param.direction}{self.at(param.span)} {spell(param.type)} {param.name}{_colon(param.quantity)}"
+            f"{f' passes {param.passes}' if param.passes else ''}"
             for param in function.params
         ]
         at, declared = self.at(function.span), f"{spell(function.result)} {function.name}({', '.join(params)})"

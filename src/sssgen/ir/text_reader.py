@@ -301,7 +301,9 @@ class _Reader:
         while not self.take(")"):
             direction, place = self.name(), self.span()
             type_, param = self.type(), self.name()
-            params.append(Param(param, type_, direction, self.quantity(), place))
+            quantity = self.quantity()
+            passes = self.name() if self.take("passes") else ""
+            params.append(Param(param, type_, direction, quantity, place, passes))
             if self.peek() != ")":
                 self.expect(",")
         function = Function(name, tuple(params), result, self.quantity(), None, doc, span)

@@ -16,6 +16,8 @@ class Capabilities(NamedTuple):
     """A uniform block may hold a bool; if not, it holds an int in its place."""
     buffer_blocks: bool = False
     """A storage buffer may have several members; if not, it has elements of one type without padding."""
+    buffer_lengths: bool = False
+    """A storage buffer has a length; if not, the program passes it as a uniform."""
     constant_choices: bool = False
     """A choice between constant vectors that are made of vectors is computed; if not, its value is written."""
     dynamic_stores: bool = False
@@ -65,6 +67,8 @@ class Capabilities(NamedTuple):
     """Functions have `out` and `inout` parameters; if not, pointers."""
     overloads: bool = False
     """Functions of one name may differ in their parameters' types."""
+    plain_atomics: bool = False
+    """Atomics work on any int or uint in memory; if not, their memory has a type of its own, which is not copied."""
     std140_buffers: bool = False
     """A storage buffer may have the layout std140 where that is not std430."""
     struct_choices: bool = False

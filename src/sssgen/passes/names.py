@@ -300,6 +300,9 @@ class _Namer:
         new, renamed = rename_locals(function, bad, self.choose, self.globals, self.keys, self.loop_scope)
         for old, local in renamed.items():
             self.renamed[f"{function.name}.{old}"] = local
+        if not self.globals.keys().isdisjoint([param.passes for param in new.params]):
+            passed = [param._replace(passes=self.globals.get(param.passes, param.passes)) for param in new.params]
+            new = new._replace(params=tuple(passed))
         return new if name == new.name else new._replace(name=name)
 
     def hidden(self, function: Function, names: set[str]) -> set[str]:

@@ -27,7 +27,8 @@ def uniforms_to_parameters(module: Module, textures: bool = True) -> Module:
         uniform.name: uniform for uniform in module.uniforms if textures or not isinstance(uniform.type, Sampler)
     }
     parameters = {
-        name: Param(name, uniform.type, "in", uniform.quantity, uniform.span) for name, uniform in uniforms.items()
+        name: Param(name, uniform.type, "in", uniform.quantity, uniform.span, name)
+        for name, uniform in uniforms.items()
     }
     if not parameters:
         return module

@@ -140,11 +140,17 @@ TARGET: tuple[Pass, ...] = (
         _NO_MAIN,
     ),
     Pass(
+        "memory",
+        steps.check_shared_memory,
+        "refuse storage buffers with another layout, and copies of atomics",
+        _COMPUTE,
+    ),
+    Pass("host_uniforms", steps.pass_host_uniforms, "make uniforms of what only the program knows there", _COMPUTE),
+    Pass(
         "variable_parameters", steps.pass_variables, "pass module variables to functions as parameters", _NO_VARIABLES
     ),
     Pass("initial_values", steps.set_variables_at_start, "set module variables in main()", _CONSTANT_VALUES),
     Pass("uniform_parameters", steps.pass_uniforms, "pass uniforms as parameters", _PARAMETERS),
-    Pass("buffers", steps.check_storage_buffers, "refuse storage buffers with another layout", _COMPUTE),
     Pass("nested_arrays", steps.wrap_nested_arrays, "put the arrays in arrays into structs", _FLAT_ARRAYS),
     Pass("legalise", steps.legalise_nodes, "rewrite what the target cannot express; printing is then a table"),
     Pass("masks", steps.convert_to_masks, "replace control flow by masks; no other pass expects these", _MASKS),

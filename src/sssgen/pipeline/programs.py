@@ -74,9 +74,8 @@ def make_library(
 def _check_compute(target: Target, form: str, guards: str) -> None:
     """Raises SssgenError where a target has no compute shaders, and for guards, which know one invocation alone."""
     if form != "compute":
-        raise failure(
-            f"{target.title} has no compute shaders here", "they go to glsl-330 (as GLSL 4.30), hlsl and wgsl"
-        )
+        hint = "they go to glsl-330 (as GLSL 4.30), hlsl, metal and wgsl"
+        raise failure(f"{target.title} has no compute shaders here", hint)
     if guards != "none":
         raise failure(
             "a compute shader takes no guards: other invocations write its memory, too", "write --guards none"

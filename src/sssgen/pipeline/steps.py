@@ -22,6 +22,8 @@ from sssgen.passes.names import rename
 from sssgen.passes.numpy.predicate import predicate
 from sssgen.passes.prune import prune
 from sssgen.passes.reachable import only, used
+from sssgen.passes.stage.atomic_places import check_atomics
+from sssgen.passes.stage.host_uniforms import group_count_to_uniform, lengths_to_uniforms
 from sssgen.passes.stage.initial_values import set_at_start, set_in_functions
 from sssgen.passes.stage.stage_interface import (
     ENTRY,
@@ -212,7 +214,20 @@ def pass_uniforms(state: State) -> Module:
     return uniforms_to_parameters(state.module)
 
 
-def check_storage_buffers(state: State) -> Module:
+def pass_host_uniforms(state: State) -> Module:
+    module = state.module
+    if not state.target.capabilities.buffer_lengths:
+        module, notes = lengths_to_uniforms(module)
+        state.notes += notes
+    if "gl_NumWorkGroups" not in state.stage_builtins:
+        module, notes = group_count_to_uniform(module)
+        state.notes += notes
+    return module
+
+
+def check_shared_memory(state: State) -> Module:
+    if not state.target.capabilities.plain_atomics:
+        check_atomics(state.module)
     return check_buffers(state.module, state.target.capabilities)
 
 
@@ -265,7 +280,7 @@ def _reserved(state: State, others: Names) -> ReservedNames:
     names, prefixes = others.exact | own.exact | own.macros, others.prefixes + own.prefixes
     if state.entry_name == "main":
         return ReservedNames(names - own.shell - {"main"}, prefixes)
-    return ReservedNames(names | {"main"}, prefixes)
+    return ReservedNames(names | {"main", state.entry_name}, prefixes)
 
 
 def _uniform_style(style: str) -> Callable[[str], str]:
@@ -277,7 +292,12 @@ def _uniform_style(style: str) -> Callable[[str], str]:
 def find_interface(state: State) -> Module:
     main = state.renames.get(ENTRY) or state.renames.get("main", "main")
     matching = Matching(state.variable_names, state.partner, state.target.capabilities.subset_varyings)
-    stage = interface(state.module, state.form, f"{main}()", state.stage_builtins, state.y_down, matching)
+    entries = (
+        function.key
+        for function in state.module.functions
+        if function.name == main and all(param.passes for param in function.params)
+    )
+    stage = interface(state.module, state.form, next(entries), state.stage_builtins, state.y_down, matching)
     upends = state.form == "vertex" and state.turned_framebuffer and state.bottom_first
     state.stage = stage._replace(upends=upends)
     return state.module

@@ -250,6 +250,7 @@ def _context(target: Target, program: Program, printer: Printer, form: str, code
         "surface_fields": [{"name": f.name, "type": printer.type(f.type)} for f in surface.fields] if surface else [],
         "library": [function.name for function in program.module.functions],
         "encoded": program.encoded or "output" in entries,
+        "workgroup": program.module.workgroup,
         "varying_locations": program.stage is not None and program.stage.passes_locations,
     }
 
@@ -286,11 +287,10 @@ def _entry(target: Target, printer: Printer, kind: str, function: Function, inpu
     expressions = {**target.inputs, **(target.light_inputs if kind in ("translucency", "lighting") else {})}
     leading = ["surface"] if len(function.params) > 0 and isinstance(function.params[0].type, Struct) else []
     names = [*leading, *inputs]
-    uniforms = {uniform.span: uniform.name for uniform in printer.module.uniforms}
     params = []
     for index, param in enumerate(function.params):
         name = names[index] if index < len(names) else ""
-        uniform = "" if name else uniforms[param.span]
+        uniform = "" if name else param.passes
         text = expressions.get(name, name) if name else _passed(printer, param, uniform)
         described = {"name": param.name, "type": printer.type(param.type), "base": spell(param.type)}
         params.append({**described, "input": name, "uniform": uniform, "expression": text})

@@ -59,8 +59,8 @@ fn main_() {
         var seen: u32;
         loop {
             let swapped = atomicCompareExchangeWeak(&bins_buffer.bins[15], 0u, 0u);
-            seen = swapped.old_value;
             if (swapped.exchanged || swapped.old_value != 0u) {
+                seen = swapped.old_value;
                 break;
             }
         }

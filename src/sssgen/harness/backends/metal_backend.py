@@ -45,7 +45,7 @@ class MetalOnCpu(Backend):
         lanes = max(np.shape(arg)[-1] for call in calls for arg in call.args if not isinstance(arg, str))
         used = list(dict.fromkeys(arg for call in calls for arg in call.args if isinstance(arg, str)))
         library = self.library(text, program(self.target, text.text, calls, used))
-        kept = [_bind(library, number, textures[name]) for number, name in enumerate(used)]
+        kept = [bind_texture(library, number, textures[name]) for number, name in enumerate(used)]
         results = [_run(library, number, call, lanes) for number, call in enumerate(calls)]
         del kept  # the library reads the texels until here
         return results
@@ -59,7 +59,7 @@ class MetalOnCpu(Backend):
         `points` are those of `pixel_mesh`, all of them on front faces or on back faces.
         """
         library = self.library(text, shading(text.text, list(textures)))
-        kept = [_bind(library, number, texture) for number, texture in enumerate(textures.values())]
+        kept = [bind_texture(library, number, texture) for number, texture in enumerate(textures.values())]
         buffers = [np.frombuffer(blocks.get(name, b"\0") + bytes(16), np.uint8) for name in BLOCKS]
         pointers = (ctypes.c_void_p * len(buffers))(*[buffer.ctypes.data for buffer in buffers])
         result = np.zeros((size[1], size[0], 4), np.float32)
@@ -89,7 +89,7 @@ def _compiled(compiler: str, source: str) -> tuple[str, Any]:
         return ran.stderr, ctypes.CDLL(str(path)) if ran.returncode == 0 else None
 
 
-def _bind(library: Any, number: int, texture: Texture) -> list[Array]:
+def bind_texture(library: Any, number: int, texture: Texture) -> list[Array]:
     """Gives the library a texture; the arrays must live as long as it is read."""
     last = 6 if texture.dim == "Cube" else 1  # faces, or one layer
     sizes = np.array([[*texture.size(level), last][:3] for level in range(len(texture.levels))], np.int32)

@@ -20,7 +20,7 @@ _STORED = {"float": "float", "int": "int", "uint": "uint", "bool": "uint"}
 def program(target: Target, text: str, calls: Sequence[Call], textures: Sequence[str]) -> str:
     """C++ that defines `sssgen_texture` and, for each call, `sssgen_run_N(args, result, width, rows)`."""
     lines = [
-        *_declarations(len(textures)),
+        *declarations(len(textures)),
         "static const void* const* sssgen_args;",
         "static void* sssgen_result;",
         "static long sssgen_width, sssgen_lanes;",
@@ -37,10 +37,10 @@ def shading(text: str, textures: Sequence[str]) -> str:
     triangle covers the picture. The blocks are those of the shell by their names, in the order of `BLOCKS`.
     """
     points = "VertexInput" in text
-    vertex_args = ", ".join([_argument(name, kind, textures) for kind, name in _parameters(text, "vertex")[1:]])
-    fragment_args = ", ".join([_argument(name, kind, textures) for kind, name in _parameters(text, "fragment")[1:]])
+    vertex_args = ", ".join([_argument(name, kind, textures) for kind, name, _ in parameters(text, "vertex")[1:]])
+    fragment_args = ", ".join([_argument(name, kind, textures) for kind, name, _ in parameters(text, "fragment")[1:]])
     listed = f", {vertex_args}" if vertex_args else ""
-    lines = _declarations(len(textures))
+    lines = declarations(len(textures))
     lines += [
         "static const char* const* sssgen_blocks;",
         "static const float* sssgen_points;",
@@ -84,11 +84,11 @@ def shading(text: str, textures: Sequence[str]) -> str:
 BLOCKS = ("Camera", "Lights", "Object", "Material")
 
 
-def _parameters(text: str, stage: str) -> list[tuple[str, str]]:
-    """(type, name) of the parameters of a stage's entry."""
-    found = re.search(rf"^{stage} \w+ \w+\((.*?)\n?\) {{", text, re.MULTILINE | re.DOTALL)
-    listed = re.sub(r"\[\[.*?\]\]", "", found[1]).split(",") if found else []
-    return [(kind, name) for kind, _, name in (part.strip().rpartition(" ") for part in listed)]
+def parameters(text: str, stage: str) -> list[tuple[str, str, str]]:
+    """(type, name, attribute) of the parameters of a stage's entry."""
+    entry = re.search(rf"^{stage} \w+ \w+\((.*?)\n?\) {{", text, re.MULTILINE | re.DOTALL)
+    listed = re.findall(r"^\s*(.*?) (\w+)(?: \[\[(.*?)\]\])?,?$", entry[1] if entry else "", re.MULTILINE)
+    return [(kind, name, attribute) for kind, name, attribute in listed]
 
 
 def _members(text: str, struct: str) -> list[tuple[str, str]]:
@@ -114,7 +114,8 @@ def _together(text: str) -> str:
     return "true" if _DERIVATIVES.search(text) else "false"
 
 
-def _declarations(textures: int) -> list[str]:
+def declarations(textures: int) -> list[str]:
+    """What holds that many textures, and the function that sets them."""
     return [
         "#line 1 \"calls\"",
         "#include <metal_quads>",

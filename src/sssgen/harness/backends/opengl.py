@@ -13,7 +13,16 @@ from typing import Any
 import numpy as np
 
 from sssgen.harness import compilers
-from sssgen.harness.backends.backend_interface import ATTRIBUTES, Array, Block, Drawing, Text, backend_failure, refused
+from sssgen.harness.backends.backend_interface import (
+    ATTRIBUTES,
+    Array,
+    Block,
+    Bound,
+    Drawing,
+    Text,
+    backend_failure,
+    refused,
+)
 from sssgen.harness.backends.draw_backend import DrawingBackend
 from sssgen.harness.compilers.gl_driver import DriverGL, messages
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -98,22 +107,7 @@ class OpenGL(DrawingBackend):
         try:
             kind = "f4" if drawing.floats else "u4"
             frame = keep(context.framebuffer([keep(context.texture(drawing.size, 4, dtype=kind))]))
-            textures = {name: keep(self.upload(bound.data)) for name, bound in drawing.textures.items()}
-            unit = count()
-            for member in [name for name in program if is_loose(program[name])]:
-                name = self.owner(member, textures)
-                elements = [f"{member}[{index}]" for index in range(program[member].array_length)]
-                default = next((element for element in elements if element in textures), "")
-                bound = [name] if name else []
-                if default and not name:
-                    bound = [element if element in textures else default for element in elements]
-                if bound:
-                    units = [next(unit) for _ in bound]
-                    for number, texture in zip(units, bound, strict=True):
-                        textures[texture].use(number)
-                    program[member].value = units[0] if len(units) == 1 else tuple(units)
-                elif member in drawing.values:
-                    _write(program[member], drawing.values[member])
+            self.bind_uniforms(program, drawing.textures, drawing.values, keep)
             self.bind_blocks(program, drawing.blocks, keep)
             array = keep(self.vertex_array(program, drawing, keep))
             frame.use()
@@ -131,6 +125,27 @@ class OpenGL(DrawingBackend):
         finally:
             for resource in resources:
                 resource.release()
+
+    def bind_uniforms(
+        self, program: Any, bound_textures: Mapping[str, Bound], values: Mapping[str, Array], keep: Any
+    ) -> None:
+        """Binds the textures and sets the uniforms that the program has."""
+        textures = {name: keep(self.upload(bound.data)) for name, bound in bound_textures.items()}
+        unit = count()
+        for member in [name for name in program if is_loose(program[name])]:
+            name = self.owner(member, textures)
+            elements = [f"{member}[{index}]" for index in range(program[member].array_length)]
+            default = next((element for element in elements if element in textures), "")
+            bound = [name] if name else []
+            if default and not name:
+                bound = [element if element in textures else default for element in elements]
+            if bound:
+                units = [next(unit) for _ in bound]
+                for number, texture in zip(units, bound, strict=True):
+                    textures[texture].use(number)
+                program[member].value = units[0] if len(units) == 1 else tuple(units)
+            elif member in values:
+                _write(program[member], values[member])
 
     def bind_blocks(self, program: Any, blocks: Mapping[str, Block], keep: Any) -> None:
         """Binds the uniform blocks that the program has."""

@@ -82,14 +82,15 @@ def plan(drawing: Drawing) -> Plan:
         drawing.fragment.entry,
         "rgba32float" if drawing.floats else "rgba32uint",
         *drawing.size,
-        [_texture(bound) for bound in drawing.textures.values()],
+        [texture_plan(bound) for bound in drawing.textures.values()],
         [BlockPlan(block.place.group, block.place.binding, block.data) for block in drawing.blocks.values()],
         b"" if drawing.vertices is None else np.ascontiguousarray(drawing.vertices, np.float32).tobytes(),
         b"" if triangles is None else np.ascontiguousarray(triangles, np.uint32).tobytes(),
     )
 
 
-def _texture(bound: Bound) -> TexturePlan:
+def texture_plan(bound: Bound) -> TexturePlan:
+    """What WebGPU makes of a texture."""
     data, place = bound.data, bound.place
     if not isinstance(data, Texture):
         size = data.shape[1], data.shape[0], 1

@@ -22,11 +22,12 @@ OPTIONS = ("-std=c++17", "-x", "c++", "-fsingle-precision-constant", "-ffp-contr
 _SEVERITY: dict[str, Severity] = {"error": "error", "fatal error": "error", "warning": "warning", "note": "info"}
 _NAME = "shader.metal"
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
-_REFERENCE = re.compile(r"(?:(\w+)\s+)?\b(\w+(?:<[^<>()]*>)?)&\s+(\w+)\b")
+_REFERENCE = re.compile(r"(?:(\w+)\s+)?\b(\w+(?:<(?:[^<>()]|<(?:[^<>()]|<[^<>()]*>)*>)*>)?)&\s+(\w+)\b")
 _LOOSE = re.compile(
     r"^(?:(?:static|const|constexpr)\s+)*(\w+)(?:<[^<>()]*>)?\s+(\w+)(?:\[\w*\])?\s*(?:=[^;]*)?;", re.MULTILINE
 )
-_ENTRY = {"vertex": re.compile(r"^vertex\s", re.MULTILINE), "fragment": re.compile(r"^fragment\s", re.MULTILINE)}
+_ENTRIES = {"vertex": "vertex", "fragment": "fragment", "compute": "kernel"}
+"""Stage → the word before its entry function."""
 
 
 class Metal(Compiler):
@@ -43,10 +44,9 @@ class Metal(Compiler):
 
     def check(self, source: Source) -> list[Message]:
         found = placeless(source.text)
-        if source.stage in _ENTRY and not re.search(
-            rf"^{source.stage}\s.*\b{source.entry}\(", source.text, re.MULTILINE
-        ):
-            found.append(Message("error", 0, 0, f"there is no {source.stage} function {source.entry}"))
+        word = _ENTRIES.get(source.stage)
+        if word and not re.search(rf"^{word}\s.*\b{source.entry}\(", source.text, re.MULTILINE):
+            found.append(Message("error", 0, 0, f"there is no {word} function {source.entry}"))
         command = [self.program, *OPTIONS, "-fsyntax-only", "-Wno-attributes", "-"]
         completed = subprocess.run(
             command, input=with_swizzles(source.text), capture_output=True, encoding="utf-8", check=False

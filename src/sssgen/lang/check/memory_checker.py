@@ -7,7 +7,7 @@ import math
 from sssgen.ir import nodes as ir
 from sssgen.ir.memory_operations import MEMORY, MemoryRow
 from sssgen.ir.types import INT, UINT, VOID, Array, Field, Sampler, Struct, Type, unnested
-from sssgen.ir.walk import written_root
+from sssgen.ir.walk import subexpressions, written_root
 from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.context import Typed
 from sssgen.lang.check.declared_names import check_global_name, unused_global_name
@@ -180,6 +180,11 @@ def stored_directly(stmts: list[ir.Stmt], scopes: Scopes) -> list[ir.Stmt]:
     result = operation.result
     if not isinstance(taken, ir.Local) or not isinstance(result, ir.Local) or taken.name != result.name:
         return stmts
+    written = last.target.name if isinstance(last, ir.Assign) and isinstance(last.target, ir.Local) else ""
+    if any(
+        isinstance(part, ir.Local) and part.name == written for arg in operation.args for part in subexpressions(arg)
+    ):
+        return stmts  # a language may write the result before it has read the values
     if isinstance(last, ir.Declare) and last.type == result.type:
         scopes.forget(result.name)
         place = ir.Local(last.type, last.name, last.span)

@@ -9,7 +9,8 @@ variable of the same name is renamed. A caller from outside passes the initial v
 sets them.
 
 The entry of a stage has the stage's `in` variables as parameters and its `out` variables as `out` parameters; private
-variables become local variables with their initial values.
+variables become local variables with their initial values. A compute shader keeps its other variables: what calls its
+entry declares and passes them.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from sssgen.passes.variable_effects import effects
 
 
 class Handed(NamedTuple):
-    """A module without variables."""
+    """A module whose functions read no variables."""
 
     module: Module
     added: dict[str, tuple[Param, ...]]
@@ -42,7 +43,8 @@ def variables_to_parameters(module: Module, entry: str = "") -> Handed:
     # from here on a call that writes is a separate statement, so that no variable is passed twice
     module = module._replace(functions=tuple([lift(variable, calls) for variable in module.functions]))
     parameters = {
-        variable.name: Param(variable.name, variable.type, "in", "", variable.span) for variable in module.variables
+        variable.name: Param(variable.name, variable.type, "in", "", variable.span, variable.name)
+        for variable in module.variables
     }
     closer = Closer(module, parameters, {key: effect.writes for key, effect in shared.items()})
     added: dict[str, tuple[Param, ...]] = {}
@@ -53,7 +55,8 @@ def variables_to_parameters(module: Module, entry: str = "") -> Handed:
         if len(new.params) > len(old.params):
             added[old.key] = new.params[len(old.params) :]
         functions.append(new)
-    return Handed(module._replace(functions=tuple(functions), variables=()), added)
+    kept = [variable for variable in module.variables if module.workgroup and variable.storage != "private"]
+    return Handed(module._replace(functions=tuple(functions), variables=tuple(kept)), added)
 
 
 def _entered(function: Function, own: int, module: Module) -> Function:
@@ -66,5 +69,5 @@ def _entered(function: Function, own: int, module: Module) -> Function:
         if kind == "private":
             begins.append(Declare(param.name, param.type, None, param.span))
         else:
-            params.append(param._replace(direction=kind))
+            params.append(param._replace(direction=kind if kind in ("in", "out") else param.direction))
     return function._replace(params=tuple(params), body=(*begins, *(function.body or ())))

@@ -176,8 +176,9 @@ class HlslPrinter(Printer):
         if stmt.name != "arrayLength" or stmt.result is None:
             return super().memory(stmt)
         name = self.expr(stmt.result)
-        sizes = f"{name}_size, {name}_stride"
-        return f"uint {sizes};\n{self.expr(stmt.args[0])}.GetDimensions({sizes});\n{name} = int({name}_size);"
+        size, stride = self.free_name(f"{name}_size"), self.free_name(f"{name}_stride")
+        call = f"{self.expr(stmt.args[0])}.GetDimensions({size}, {stride})"
+        return f"uint {size}, {stride};\n{call};\n{name} = int({size});"
 
     def print_entry(self, name: str) -> list[Line]:
         assert self.stage is not None

@@ -18,6 +18,7 @@ from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.operators import PRECEDENCE
 from sssgen.ir.rules import FLOAT_MAX
 from sssgen.ir.types import FLOAT, INT, UINT, Array, Sampler, Scalar, Struct, Type, components, spell, unnested
+from sssgen.passes.scopes import declared, fresh
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import failure
 from sssgen.targets.descriptor import Target
@@ -55,7 +56,12 @@ class Printer:
         self.target = target
         self.module = module
         self.by_key = {function.key: function for function in module.functions}
+        self.module_names = {function.name for function in module.functions}
+        declarations = (module.variables, module.uniforms, module.constants)
+        self.module_names |= {declaration.name for group in declarations for declaration in group}
         self.function: ir.Function | None = None
+        self.chosen: set[str] = set()
+        """The names of the current function, once `free_name` gave one."""
         self.comments: Comments = no_comments
         self.behind: Callable[[str, int], str] = lambda file, line: ""
         """Returns the author's comment behind the code of a line."""
@@ -281,19 +287,34 @@ class Printer:
             head = Line(f"{pad}while ({self.expr(stmt.condition)}) {{", stmt.span)
             return [head, *self.block(stmt.body, indent + 1), Line(f"{pad}}}")]
         if isinstance(stmt, ir.MemoryOperation):
-            return [Line(f"{pad}{text}", stmt.span) for text in self.memory(stmt).split("\n")]
+            return [line for text in self.memory(stmt).split("\n") for line in wrap(f"{pad}{text}", stmt.span)]
         return wrap(f"{pad}{self.simple(stmt)};", stmt.span)
 
     def memory(self, stmt: ir.MemoryOperation) -> str:
         """An operation on shared memory, by its row's text for this language."""
-        pattern = MEMORY[stmt.name].texts[self.target.dialect.partition("-")[0]]
+        pattern = MEMORY[stmt.name].texts[self.target.language]
         result = self.expr(stmt.result) if stmt.result is not None else ""
         if pattern.startswith(_RETURNS):
             pattern = f"{'{result} = ' if result else ''}{pattern.removeprefix(_RETURNS)}"
         elif not result:
             pattern = pattern.replace(", {result}", "")
-        text = pattern.format(*map(self.expr, stmt.args), result=result)
+        free = self.free_name("swapped") if "{free}" in pattern else ""
+        args = [*map(self.place, stmt.args[:1]), *map(self.expr, stmt.args[1:])]
+        text = pattern.format(*args, result=result, free=free)
         return text if text.endswith("}") else f"{text};"
+
+    def place(self, expr: ir.Expr) -> str:
+        """A place in memory, without reading it."""
+        return self.expr(expr, POSTFIX)
+
+    def free_name(self, name: str) -> str:
+        """About this name, which neither the function nor the module has; each call gives another one."""
+        assert self.function is not None
+        if not self.chosen:
+            self.chosen.update(declared(self.function), self.module_names)
+        name = fresh(name, self.chosen)
+        self.chosen.add(name)
+        return name
 
     def loop_header(self, loop: ir.For) -> str:
         init = self.simple(loop.init) if loop.init is not None else ""
@@ -349,7 +370,7 @@ class Printer:
     def print_function(self, function: ir.Function) -> list[Line]:
         """A function with the first line of its documentation."""
         body = function.body or ()
-        self.function = function
+        self.function, self.chosen = function, set()
         self.commented = {(function.span.file, function.span.line)}
         lines = [Line(f"// {text}", function.span) for text in self.doc_of(function)]
         lines += wrap(f"{self.signature(function)} {{", function.span)

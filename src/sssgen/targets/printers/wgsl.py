@@ -7,22 +7,26 @@ from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.types import VOID, Array, Sampler, Scalar, Struct, Type
+from sssgen.ir.types import VOID, Array, Sampler, Struct, Type
 from sssgen.ir.walk import subexpressions
 from sssgen.passes.scopes import assigned, outs_of
-from sssgen.passes.stage.atomic_places import atomic_places, memory_of
 from sssgen.passes.uniform_blocks import block_type
 from sssgen.targets.descriptor import Target
+from sssgen.targets.printers.atomic_printer import AtomicPrinter
 from sssgen.targets.printers.printed_lines import Line, documented, wrap
-from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Printer
+from sssgen.targets.printers.printer import PRIMARY, UNARY
 from sssgen.targets.printers.wgsl_entry import print_entry
 from sssgen.targets.uniform_layout import Member, padding
 
 _TYPED = (ir.Local, ir.Global, ir.Call, ir.Construct)
 
 
-class WgslPrinter(Printer):
+class WgslPrinter(AtomicPrinter):
     """Overrides declarations and parameters; expressions differ in conversions and selects."""
+
+    load = "atomicLoad(&{0})"
+    store = "atomicStore(&{0}, {1})"
+    atomic = "atomic<{0}>"
 
     def __init__(self, target: Target, module: ir.Module) -> None:
         super().__init__(target, module)
@@ -30,19 +34,16 @@ class WgslPrinter(Printer):
         self.outs = outs_of(module.functions)
         self.assigned: set[str] = set()
         """The variables that the current function assigns to after their declaration."""
-        self.atomics = atomic_places(module)
-        """The shared variables and the members of storage buffers that hold atomics."""
-        self.addressed = False
-        """Whether a place is printed and not its value."""
         self.pointers: set[str] = set()
         """The parameters of the current function that are pointers."""
 
     def type(self, type_: Type) -> str:
-        if isinstance(type_, Array) and not type_.length:
-            return f"array<{self.type(type_.element)}>"
         if isinstance(type_, Array):
-            return f"array<{self.type(type_.element)}, {type_.length}>"
+            return self.array_of(self.type(type_.element), type_.length)
         return super().type(type_)
+
+    def array_of(self, element: str, length: int) -> str:
+        return f"array<{element}, {length}>" if length else f"array<{element}>"
 
     def variable(self, type_: Type, name: str) -> str:
         return f"{name}: {self.type(type_)}"
@@ -53,58 +54,9 @@ class WgslPrinter(Printer):
         return super().print_function(function)
 
     def bound(self, expr: ir.Expr) -> tuple[str, int]:
-        """An expression; memory of atomics is read by atomicLoad."""
-        if self.atomics and isinstance(expr.type, Scalar) and memory_of(expr) in self.atomics and not self.addressed:
-            return f"atomicLoad(&{self.place(expr)})", PRIMARY
-        if self.addressed and isinstance(expr, ir.Index):
-            place = self.place(expr.value)
-            self.addressed = False
-            text = f"{place}[{self.expr(expr.index)}]"
-            self.addressed = True
-            return text, POSTFIX
         if type(expr) is ir.Local:
             return (f"*{expr.name}", UNARY) if expr.name in self.pointers else (expr.name, PRIMARY)
         return super().bound(expr)
-
-    def place(self, expr: ir.Expr) -> str:
-        """A place in memory, without reading it."""
-        outer, self.addressed = self.addressed, True
-        text = self.expr(expr, POSTFIX)
-        self.addressed = outer
-        return text
-
-    def memory(self, stmt: ir.MemoryOperation) -> str:
-        if not stmt.args:
-            return super().memory(stmt)
-        place, *values = stmt.args
-        name = ir.Local(place.type, self.place(place), place.span)
-        return super().memory(stmt._replace(args=(name, *values)))
-
-    def simple(self, stmt: ir.Stmt) -> str:
-        """A statement; memory of atomics is written by atomicStore."""
-        if isinstance(stmt, ir.Assign) and self.atomics and memory_of(stmt.target) in self.atomics:
-            value = stmt.value
-            if stmt.op:
-                value = ir.Binary(value.type, stmt.op, stmt.target, value, stmt.span)
-            return f"atomicStore(&{self.place(stmt.target)}, {self.expr(value)})"
-        return super().simple(stmt)
-
-    def block(self, block: ir.Block, indent: int) -> list[Line]:
-        """A block; a barrier of memory beside one of control is the same barrier."""
-        lines: list[Line] = []
-        for line in super().block(block, indent):
-            if not (lines and line.text.endswith("Barrier();") and lines[-1].text == line.text):
-                lines.append(line)
-        return lines
-
-    def stored_type(self, type_: Type, key: tuple[str, ...]) -> str:
-        """The type of shared memory or of a member of a storage buffer."""
-        if key not in self.atomics:
-            return self.type(type_)
-        if isinstance(type_, Array):
-            length = f", {type_.length}" if type_.length else ""
-            return f"array<{self.stored_type(type_.element, key)}{length}>"
-        return f"atomic<{self.type(type_)}>"
 
     def global_value(self, value: ir.Global) -> str:
         in_block = value.name in self.uniforms and not isinstance(value.type, Sampler)

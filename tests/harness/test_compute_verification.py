@@ -1,0 +1,102 @@
+"""`sssgen transpile --verify` of compute shaders: agreement, differences, and what has no result to compare."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from folders import TESTS
+from sssgen.harness.backends import Backend
+from sssgen.harness.verify import compute_verification
+from sssgen.harness.verify.compute_report import ComputeReport
+from sssgen.harness.verify.compute_verification import verify_compute
+from sssgen.pipeline.compiler import transpile
+
+HEAD = "#version 430 core\nlayout(local_size_x = 32) in;\n"
+BUFFERS = "layout(std430) readonly buffer In { uint a[]; };\nlayout(std430) buffer Out { uint b[]; };\n"
+SHARED = "shared uint x[32];\n"
+START = "    uint i = gl_GlobalInvocationID.x, lane = gl_LocalInvocationID.x;\n"
+
+
+class InThisProcess:
+    """A back end with the method of one in a process of its own."""
+
+    def __init__(self, backend: Backend) -> None:
+        self.backend = backend
+
+    def apply(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        return function(self.backend, *arguments)
+
+
+@pytest.fixture
+def verify(backend: Callable[[str], Backend]) -> Callable[[str], ComputeReport]:
+    machines: Any = {name: InThisProcess(backend(name)) for name in ("gl", "metal", "webgpu")}
+    return lambda text: verify_compute(text, "x.comp", machines=machines)
+
+
+def body(text: str, declared: str = "") -> str:
+    return f"{HEAD}{BUFFERS}{declared}void main() {{\n{START}{text}}}\n"
+
+
+@pytest.mark.parametrize("name", ["prefix_sum", "histogram", "blur"])
+def test_translations_agree(name: str, verify: Callable[[str], ComputeReport]) -> None:
+    report = verify((TESTS / "transpile" / f"{name}.comp").read_text("utf-8"))
+    assert report.ok
+    assert report.rounds == compute_verification.ROUNDS
+    assert report.ordered == 0
+    assert {each.deviation for each in report.differences.values()} == {0.0}
+    assert set(report.differences) == {"glsl", "wgsl", "metal"}
+
+
+@pytest.mark.parametrize(
+    ("text", "declared", "reason"),
+    [
+        ("b[i] = a[i + 40u];", "", "out of range"),
+        ("b[i] = a[i] / (a[0] - a[0]);", "", "an operation is undefined"),
+        ("x[lane] = a[i]; b[i] = x[31u - lane];", SHARED, "without a barrier after that"),
+        ("b[i] = b[(i + 32u) % 96u] + 1u;", "", "without a barrier"),
+        ("x[lane] = a[i]; if (lane < 9u) { return; } barrier(); b[i] = x[0];", SHARED, "at a barrier"),
+        ("b[i] = x[lane];", SHARED, "before it is written"),
+        ("b[i] = atomicAdd(total, 1u);", "shared uint total;\n", "before it is written"),
+        ("uint v[4]; for (int k = 0; k < 4; k++) { v[k] = a[i]; } b[i] = v[i];", "", "out of range"),
+        ("", "", "it writes no buffer"),
+    ],
+)
+def test_undefined_programs_are_not_compared(
+    text: str, declared: str, reason: str, verify: Callable[[str], ComputeReport]
+) -> None:
+    source = body(text, declared)
+    report = verify(source if text else source.replace("buffer Out", "readonly buffer Out"))
+    assert reason in report.reason
+    assert not report.ok
+
+
+def test_numbers_that_depend_on_the_order_are_not_compared(verify: Callable[[str], ComputeReport]) -> None:
+    report = verify(body("b[i] = a[i];\n    if (i > 0u) {\n        b[atomicAdd(b[0], 0u) % 2u + 40u] = i;\n    }\n"))
+    assert report.ordered > 0
+    assert report.order_places
+    assert all(place.startswith("out") for place in report.order_places), report.order_places
+    everything = verify(body("b[lane * 0u] = i;").replace("b[];", "b[1];"))
+    assert everything.reason == "all that it writes depends on the order of the invocations"
+
+
+def test_a_wrong_translation_is_found(verify: Callable[[str], ComputeReport], monkeypatch: pytest.MonkeyPatch) -> None:
+    def wrong(module: Any, target: str, name: str, keep: bool) -> Any:
+        result = transpile(module, target, name, keep=keep)
+        if target != "wgsl":
+            return result
+        return result._replace(files={name: text.replace("* 3u", "* 4u") for name, text in result.files.items()})
+
+    text = body("b[i] = a[i] * 3u;")
+    assert verify(text).ok
+    monkeypatch.setattr(compute_verification, "transpile", wrong)
+    report = verify(text)
+    assert not report.ok
+    assert not report.differences["wgsl"].ok
+    assert report.differences["glsl"].ok
+    assert report.differences["metal"].ok
+    assert "the author's text gives" in report.differences["wgsl"].at
+    assert any("wgsl" in line and "author" in line for line in report.lines())
+    assert report.as_json()["texts"]["wgsl"]["ok"] is False
