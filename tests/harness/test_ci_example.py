@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from folders import EXAMPLES
+from sssgen.cli import main as cli
 from sssgen.harness.backends import Backend
 from sssgen.harness.pictures import images
 from sssgen.material.material_loading import examples
@@ -23,6 +24,8 @@ pytest.importorskip("flip_evaluator", reason="flip-evaluator is missing: pip ins
 EXAMPLE = EXAMPLES / "ci"
 NO_DRIVER = {"__EGL_VENDOR_LIBRARY_FILENAMES": os.devnull}
 GL = ("--backend", "gl")
+
+RunCI = Callable[..., tuple[int, str]]
 
 
 @pytest.fixture(autouse=True)
@@ -49,8 +52,16 @@ def run_pytest(*arguments: str, **variables: str) -> tuple[int, str]:
     )
 
 
-def run_ci(*arguments: str, **variables: str) -> tuple[int, str]:
-    return run("sssgen", "ci", *arguments, **variables)
+@pytest.fixture
+def run_ci(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> RunCI:
+    """`run_ci(ARGUMENTS)`: `sssgen ci` in the current folder; its exit status and its output."""
+    monkeypatch.delenv("CI", raising=False)
+
+    def run_here(*arguments: str) -> tuple[int, str]:
+        status = cli.main(["ci", *arguments])
+        return status, "".join(capsys.readouterr())
+
+    return run_here
 
 
 def brighten() -> None:
@@ -85,7 +96,7 @@ def test_with_pytest() -> None:
     assert failures() == []
 
 
-def test_with_the_command() -> None:
+def test_with_the_command(run_ci: RunCI) -> None:
     status, message = run_ci(".", *GL, "--junit", "report.xml")
     assert status == 0, message
     suite, cases = report()
@@ -107,11 +118,11 @@ def test_with_the_command() -> None:
 
 
 def test_a_missing_back_end_is_skipped_and_fails_in_ci() -> None:
-    status, message = run_ci("scenes", "--junit", "report.xml", **NO_DRIVER)
+    status, message = run("sssgen", "ci", "scenes", "--junit", "report.xml", **NO_DRIVER)
     assert status == 1 and "nothing was checked" in message and "libgl1-mesa-dri" in message
     skipped = report()[1]["render"].find("skipped")
     assert skipped is not None and "the back end gl is missing" in skipped.attrib["message"]
-    assert run_ci("scenes", "--junit", "report.xml", **NO_DRIVER, CI="true")[0] == 1
+    assert run("sssgen", "ci", "scenes", "--junit", "report.xml", **NO_DRIVER, CI="true")[0] == 1
     assert report()[0]["failures"] == "1"
     status, message = run_pytest("-rs", "-k", "looks", **NO_DRIVER)
     assert status == 0 and "1 skipped" in message and "libgl1-mesa-dri" in message
@@ -119,7 +130,7 @@ def test_a_missing_back_end_is_skipped_and_fails_in_ci() -> None:
     assert status == 1 and "the back end gl is missing" in message
 
 
-def test_another_size_and_no_golden_picture() -> None:
+def test_another_size_and_no_golden_picture(run_ci: RunCI) -> None:
     images.write_png("scenes/golden/lamp.png", np.zeros((36, 48, 3)))
     status, message = run_ci("scenes")
     assert status == 1 and "has 96 × 72 pixels" in message and "has 48 × 36" in message
@@ -129,7 +140,7 @@ def test_another_size_and_no_golden_picture() -> None:
     assert status == 1 and "no golden picture scenes/golden/lamp.png: --update writes it" in message
 
 
-def test_folders_that_cannot_be_written() -> None:
+def test_folders_that_cannot_be_written(run_ci: RunCI) -> None:
     brighten()
     Path("scenes/sssgen-failures").write_text("a file", encoding="utf-8")
     status, message = run_ci("scenes")
