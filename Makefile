@@ -30,6 +30,8 @@ MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notd
 	$(addprefix examples/bake/,wax_distance.toml wax_map.toml wax_depth.toml ice_baked.toml)
 
 export PYTHONUTF8 := 1
+# Without stored bytecode, each of the hundreds of processes that the tests start would compile all of sssgen.
+unexport PYTHONDONTWRITEBYTECODE
 .DELETE_ON_ERROR:
 .PHONY: setup accuracy bake demo preview first test test-long fuzz lint bench bench-gpu gallery stability engines site vscode dist clean
 
