@@ -79,7 +79,7 @@ class Reader:
         self.folder = folder
         path = os.pathsep.join([str(programs), os.environ.get("PATH", "")])
         stored = {name: value for name, value in os.environ.items() if not name.startswith(("SSSGEN", "PYTHON"))}
-        self.environment = {**stored, "PATH": path, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONUTF8": "1", **environment}
+        self.environment = {**stored, "PATH": path, "PYTHONUTF8": "1", **environment}
 
     def run(self, command: str, status: int = 0) -> tuple[str, str]:
         """The standard output and the standard error of a command."""
