@@ -68,6 +68,9 @@ build/view/bin/sssgen: pyproject.toml
 	build/view/bin/python -m pip --disable-pip-version-check --quiet install --editable '.[preview]'
 	@touch $@
 
+# Each of the two workers has one core.
+test test-long: export OPENBLAS_NUM_THREADS := 1
+
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 

@@ -12,6 +12,7 @@ import random
 import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ from processes import HANG
 from sssgen.harness.installed import chromium
 from sssgen.lab.chart import drawing
 from sssgen.lab.chart.drawing import figure
-from sssgen.lab.chart.drawing.panels import COLORS, charts_of, label_texts, medians, number, styles
+from sssgen.lab.chart.drawing.panels import COLORS, Chart, charts_of, label_texts, medians, number, styles
 from sssgen.lab.chart.record import LEAST, checked, front, hypervolume, measures, to_csv, to_json
 from sssgen.support.diagnostics import SssgenError
 
@@ -205,13 +206,19 @@ CHARTS = {
 DRAWN = [pytest.param(name, marks=[pytest.mark.slow] if name == "docs" else []) for name in CHARTS]
 
 
+@cache
+def drawn(name: str) -> list[tuple[Chart, Any]]:
+    """The charts of a record and their figures."""
+    pytest.importorskip("textalloc")
+    with figure.settings():
+        return [(chart, figure.figure_of(chart)) for chart in CHARTS[name]()]
+
+
 @pytest.mark.parametrize("name", DRAWN)
 def test_texts_do_not_overlap(name: str) -> None:
     """No text of a chart covers another text or a marker, or crosses the edge of the picture; few are omitted."""
-    pytest.importorskip("textalloc")
-    for chart in CHARTS[name]():
+    for chart, picture in drawn(name):
         with figure.settings():
-            picture = figure.figure_of(chart)
             picture.draw_without_rendering()
             texts = [text for text in visible_texts(picture) if text.get_text()]
             boxes = [text.get_window_extent() for text in texts]
@@ -246,10 +253,7 @@ def visible_texts(picture: Any) -> list[Any]:
 
 @pytest.mark.parametrize("name", DRAWN)
 def test_axes_show_every_point(name: str) -> None:
-    pytest.importorskip("textalloc")
-    for chart in CHARTS[name]():
-        with figure.settings():
-            picture = figure.figure_of(chart)
+    for chart, picture in drawn(name):
         for axes, panel in zip(picture.axes, chart.panels, strict=True):
             (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
             finite = [measures(point) for point in panel.points if not point["failed"]]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from sssgen.ir import nodes as ir
 from sssgen.targets.printers.glsl import GlslPrinter
-from sssgen.targets.printers.printer import Line, documented
+from sssgen.targets.printers.printed_lines import Line, documented
 from sssgen.targets.uniform_layout import Member
 
 DESCRIPTOR = Path(__file__).with_name("vulkan.toml")
