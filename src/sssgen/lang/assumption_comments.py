@@ -148,7 +148,7 @@ def _terms(words: str, span: Span) -> list[str]:
     if match is None:
         raise _fail(span, f"unknown words behind 'sssgen:': '{words[:40]}'", f"after 'sssgen: assume' {_SYNTAX}")
     terms, depth = [""], 0
-    for char in match[1]:
+    for char in re.sub(r"//.*", "", match[1]):
         depth += (char in "([") - (char in ")]")
         if char == "," and depth == 0:
             terms.append("")

@@ -18,7 +18,7 @@ from sssgen.ir.transform import Transformer, rewrite_function
 from sssgen.ir.types import BOOL, FLOAT, UINT, Matrix, Type, components, kind_of, spell, vector_of
 from sssgen.ir.walk import operands, subexpressions, with_operands
 from sssgen.passes.ranges.range_pass import Findings, analyse
-from sssgen.passes.ranges.sites import BOUNDS, DIVISION, ELEMENT, Site
+from sssgen.passes.ranges.sites import BOUNDS, DIVISION, ELEMENT, WHOLE_DIVISION, Site
 from sssgen.passes.substitute import inlined, with_larger_bound
 
 Source = Callable[[Guard, str, Sequence[Type], Type, Format, tuple[float, float]], tuple[ir.Module, str]]
@@ -183,6 +183,8 @@ def guard_of(site: Site) -> Guard:
             return guard._replace(text="max(x, LOW)")
         if site.args[0].low >= low:
             return guard._replace(text="min(x, HIGH)")
+    if guard is WHOLE_DIVISION and kind_of(operands(site.node)[1].type) == "uint":
+        return guard._replace(text="max(y, 1u)")
     if guard is ELEMENT and operands(site.node)[1].type == UINT:
         return guard._replace(text="min(y, uint(LAST))")
     return guard

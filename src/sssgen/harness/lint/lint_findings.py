@@ -6,6 +6,7 @@ for finding in lint("lobe_gdc2011").findings:
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 from collections import Counter
@@ -15,13 +16,13 @@ from typing import Any, NamedTuple
 from sssgen.harness.lint.input_assumptions import AssumedFact, Assumptions, input_names, load_rules, rules_of_comments
 from sssgen.ir.formats import FLOAT32
 from sssgen.ir.intrinsics import Guard, Kind
-from sssgen.ir.nodes import Assume, Function, Module
+from sssgen.ir.nodes import Assume, Expr, Function, Global, Index, Literal, Local, Member, Module, Swizzle
 from sssgen.ir.spans import Span
 from sssgen.ir.types import Matrix, Scalar, Vector, Void
-from sssgen.ir.walk import operands, statements
+from sssgen.ir.walk import operands, statements, subexpressions
 from sssgen.lang.check.termination import endless
 from sssgen.lang.plain_glsl import load_glsl
-from sssgen.lang.source_lines import excerpt, source_line, whole
+from sssgen.lang.source_lines import excerpt, source_line, source_text, whole
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
 from sssgen.passes.guards import remedy
@@ -35,6 +36,8 @@ from sssgen.support.diagnostics import Diagnostic, did_you_mean, failure
 from sssgen.support.text_files import refuse_folder
 from sssgen.targets import registry
 
+_COMMENT_LINES = 20
+"""Lines of a comment that are shown."""
 LONGEST = 60
 """Characters of an operand or a definition that are shown."""
 PROVEN, MAY_FAIL, NOT_PROVEN = "proven", "may fail", "not proven"
@@ -111,8 +114,13 @@ class Finding(NamedTuple):
 
     def shown_steps(self) -> list[Step]:
         """The steps that tell most: the first, the one that widened the range, and the last."""
-        last = len(self.why) - 1
-        return [step for index, step in enumerate(self.why) if index in (0, last) or step.widens]
+        why = [step for step in self.why if not isinstance(step.node, Literal)]  # a constant says nothing
+        shown = [step for index, step in enumerate(why) if index in (0, len(why) - 1) or step.widens]
+        return [
+            step
+            for step, after in itertools.zip_longest(shown, shown[1:])
+            if after is None or step.span != after.span  # of a compound assignment, that it widens
+        ]
 
     def with_operands(self, text: str) -> str:
         """A text with the operands' names in place of their letters, or after the text if an operand is not a name."""
@@ -120,8 +128,10 @@ class Finding(NamedTuple):
             return text
         operand_texts = {}
         for letter, arg in zip("xyz", operands(self.site.node), strict=False):
-            operand_text = excerpt(arg.span, LONGEST)
-            if operand_text not in ("", letter) and re.search(rf"\b{letter}\b", text):
+            operand_text = _text_of(arg)
+            if operand_text not in ("", letter, excerpt(self.site.node.span, LONGEST)) and re.search(
+                rf"\b{letter}\b", text
+            ):
                 operand_texts[letter] = operand_text
         if all(re.fullmatch(r"[\w.]+", operand_text) for operand_text in operand_texts.values()):
             return re.sub(r"\b[xyz]\b", lambda match: operand_texts.get(match[0], match[0]), text)
@@ -153,13 +163,23 @@ class Finding(NamedTuple):
         }
 
 
+def _text_of(node: Expr) -> str:
+    """An expression as its author wrote it; '' where only an argument of a macro is known, of which it is computed."""
+    text = excerpt(node.span, LONGEST)
+    is_name = re.fullmatch(r"[\w.]+", text) is not None
+    if isinstance(node, Local | Global):
+        return text if is_name else node.name
+    leaves = {part.name for part in subexpressions(node) if isinstance(part, Local | Global)}
+    return "" if is_name and text in leaves and not isinstance(node, Swizzle | Index | Member) else text
+
+
 def explanation(step: Step) -> str:
     """A step on the way from an input to an operation, in words, with its place."""
-    code = excerpt(step.span, LONGEST)
+    code = (excerpt(step.span, LONGEST) if step.node is None else _text_of(step.node)) or "a part of a macro"
     where = f"{'of length ' if step.is_length else 'in '}{shown(step.range)}, line {step.span.line}"
     if step.what in ("uniform", "input", "parameter"):
         return f"{step.what} {step.name} is {where}"
-    if step.what == "definition" and not re.match(r"[\w.\[\] ]+[-+*/]=", code):
+    if step.what == "definition" and not re.match(r"(\+\+|--)|[\w.\[\] ]+([-+*/]=|\+\+|--)", code):
         return f"{step.name} = {code} is {where}"
     if step.what == "argument":
         return f"{step.name} is {code}, {where}"
@@ -260,8 +280,11 @@ def _stated(module: Module) -> Iterator[AssumedFact]:
         if isinstance(stmt, Assume)
     }
     for span, function in spans.items():
-        text = source_line(span)[span.column - 1 : span.end_column - 1]
-        words = text.partition("assume")[2].removesuffix("*/").strip() if "sssgen" in text else text
+        text = source_text(span)
+        if "sssgen" in text:
+            below = source_text(span._replace(end_line=span.line + _COMMENT_LINES, end_column=1 << 20))
+            text = (below if text.startswith("/*") else text).partition("assume")[2].partition("*/")[0]
+        words = " ".join(text.partition("//")[0].split())
         yield AssumedFact(f"{function}(), line {span.line}", words, "source", "")
 
 
@@ -290,7 +313,7 @@ def _report(
 ) -> Report:  # fmt: skip
     findings = []
     hidden: Counter[str] = Counter()
-    for site in sorted(sites, key=lambda site: (site.node.span, site.operation)):
+    for site in _merged(sites):
         if site.proven:
             findings.append(Finding(site, PROVEN, site.guard))
             continue
@@ -302,6 +325,19 @@ def _report(
             why = origins.chain(site, guard) if origins is not None else ()
             findings.append(Finding(site, verdict, guard, example, guarded, bool(specimens), why))
     return Report(name, findings, hidden)
+
+
+def _merged(sites: Sequence[Site]) -> list[Site]:
+    """The sites in the order of the source; copies of one, as of a case that others fall into, are one."""
+    merged: list[Site] = []
+    for site in sorted(sites, key=lambda site: (site.node.span, site.operation)):
+        last = merged[-1] if merged else None
+        place = site.operation, site.node.span
+        if last is not None and (last.operation, last.node.span) == place and last.node == site.node:
+            merged[-1] = last.joined(site)
+            continue
+        merged.append(site)
+    return merged
 
 
 def _example(site: Site, specimens: list[Any]) -> str:

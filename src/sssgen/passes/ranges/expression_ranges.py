@@ -19,7 +19,16 @@ from sssgen.passes.ranges.call_ranges import CallRanges
 from sssgen.passes.ranges.polynomials import Factor, Polynomial
 from sssgen.passes.ranges.range_state import State, global_key
 from sssgen.passes.ranges.scalar_parts import field_at, hull_of, matrix_product, scalars
-from sssgen.passes.ranges.sites import COUNT, DIVISION, ELEMENT, SIGNED_COUNT, TEXEL, WHOLE_NUMBER, subnormal
+from sssgen.passes.ranges.sites import (
+    COUNT,
+    DIVISION,
+    ELEMENT,
+    SIGNED_COUNT,
+    TEXEL,
+    WHOLE_DIVISION,
+    WHOLE_NUMBER,
+    subnormal,
+)
 
 
 class ExpressionRanges(CallRanges):
@@ -239,6 +248,10 @@ class ExpressionRanges(CallRanges):
     def integer(self, node: ir.Binary, left: Value, right: Value) -> Value:
         """The other integer operators. `legalise` defines what languages leave undefined."""
         parts, numbers = [], []
+        if self.unguarded and node.op in ("/", "%"):
+            by_zero = any(b.has_zero() for _, _, b, _ in _components(left, right))
+            ranges = hull_of(left.parts), hull_of(right.parts)
+            self.note(node, node.op, by_zero, WHOLE_DIVISION, ranges)
         for a, _, b, _ in _components(left, right):
             part = self.limits(kind_of(node.type))
             if node.op == "/" and b.low > 0.0 and a.low >= 0.0:
@@ -386,12 +399,7 @@ class ExpressionRanges(CallRanges):
 
     def index(self, node: ir.Index) -> Value:
         value, index = self.expr(node.value), self.expr(node.index).parts[0]
-        elements = element_type(node.value.type)
-        assert elements is not None
-        count = elements[1]
-        if not isinstance(node.index, ir.Literal):
-            outside = index.low < 0.0 or index.high > count - 1.0
-            self.note(node, "index", outside, ELEMENT, (index,), (0.0, count - 1.0))
+        count = self.check_index(node, index)
         if isinstance(node.value.type, Array):
             numbers = tuple([self.numbers.fresh() for _ in value.parts])
             for old, new in zip(value.numbers, numbers, strict=True) if self.lengths else ():
@@ -409,6 +417,15 @@ class ExpressionRanges(CallRanges):
                 part = part.joined(value.parts[column * size + row])
             parts.append(part)
         return self.value(tuple(parts), tuple([self.numbers.fresh() for _ in parts]))
+
+    def check_index(self, node: ir.Index, index: Range) -> int:
+        """Notes an index that may be beyond the elements; returns how many there are."""
+        elements = element_type(node.value.type)
+        assert elements is not None
+        if not isinstance(node.index, ir.Literal):
+            outside = index.low < 0.0 or index.high > elements[1] - 1.0
+            self.note(node, "index", outside, ELEMENT, (index,), (0.0, elements[1] - 1.0))
+        return elements[1]
 
     def member(self, node: ir.Member) -> Value:
         value = self.expr(node.value)

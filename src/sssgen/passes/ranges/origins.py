@@ -7,6 +7,7 @@ widened the range, and the chain goes on to the widest part.
 
 from __future__ import annotations
 
+import bisect
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
@@ -25,6 +26,8 @@ from sssgen.passes.ranges.sites import ELEMENT, WHOLE_NUMBER, Site
 
 _BOUNDED = 1e3
 """How much larger than a result its operand is where the operation is a bound, such as a normalized vector's."""
+_NEAREST = 64
+"""Assignments to a variable that are looked at."""
 LONGEST = 8
 """Steps of a chain."""
 
@@ -42,6 +45,8 @@ class Step(NamedTuple):
     """Whether the range is that of a vector's length."""
     widens: bool = False
     """Whether the range begins to leave the domain here: no part of what is computed here does."""
+    node: ir.Expr | None = None
+    """What is computed there; None for a declaration."""
 
 
 Path = tuple[str | int | None, ...]
@@ -107,7 +112,7 @@ def _overlap(first: Path, second: Path) -> bool:
 def _spelled(name: str, path: Path) -> str:
     """A part of a variable, as the language writes it."""
     return name + "".join(
-        [f".{step}" if isinstance(step, str) else "" if step is None else f"[{step}]" for step in path]
+        [f".{step}" if isinstance(step, str) else "[…]" if step is None else f"[{step}]" for step in path]
     )
 
 
@@ -227,17 +232,20 @@ class Origins:
                 place = self._worst(returned, by_length, None if widest else fails)
                 if place is not None:
                     own = self.trace.range_of(place, by_length) or own
-                    steps.append(Step(place.node.span, "result", function.name, own, place.is_length(by_length)))
+                    length = place.is_length(by_length)
+                    steps.append(Step(place.node.span, "result", function.name, own, length, node=place.node))
                 continue
             parts = self._parts(node)
             if not parts:
                 if isinstance(node, ir.Intrinsic):
-                    steps.append(Step(node.span, "texel" if BUILTINS[node.name].reads_texels else "operation", "", own))
+                    what = "texel" if BUILTINS[node.name].reads_texels else "operation"
+                    steps.append(Step(node.span, what, "", own, node=node))
                 break
             failing = [] if widest else self._failing(node, parts, by_length, fails)
             through = isinstance(node, ir.Swizzle | ir.Index | ir.Member | ir.Construct | ir.Select)
             if not failing and not widest and not through:
-                steps.append(Step(node.span, "operation", "", own, place.is_length(by_length), widens=True))
+                length = place.is_length(by_length)
+                steps.append(Step(node.span, "operation", "", own, length, widens=True, node=node))
                 widest, by_length = True, False
             place = self._worst([Place(part) for part in failing or parts], by_length, None)
             part = self.trace.range_of(place, by_length) if widest and place is not None else None
@@ -319,8 +327,7 @@ class Origins:
             if isinstance(node, ir.Global) and node.name in inputs:
                 return None, Step(inputs[node.name].span, what, _spelled(node.name, path), own, is_length)
         key = variable_key(node) or ""
-        defined = list(self._assigned("" if isinstance(node, ir.Global) else owner, key, path))
-        before = [value for value in defined if value.node.span[1:3] < node.span[1:3]] or defined
+        before = list(self._assigned("" if isinstance(node, ir.Global) else owner, key, path, node.span))
         function = self.functions.get(owner)
         position = next((at for at, param in enumerate(function.params) if param.name == key), -1) if function else -1
         if (
@@ -334,16 +341,24 @@ class Origins:
             name = _spelled(param.name, path)
             if argument is None:
                 return None, Step(param.span, "parameter", name, own, is_length)
-            return argument, Step(argument.node.span, "argument", f"{name} of {function.name}", own, is_length)
+            span = argument.node.span
+            return argument, Step(span, "argument", f"{name} of {function.name}", own, is_length, node=argument.node)
         value = self._worst([*before, *self._outs(owner, key, path)], by_length, fails)
         if value is None:
             return None, None
-        own, name = self.trace.range_of(value, by_length) or own, _spelled(key.lstrip("@"), path)
-        return value, Step(value.node.span, "definition", name, own, value.is_length(by_length))
+        own = self.trace.range_of(value, by_length) or own
+        name = _spelled(key.lstrip("@"), path[: max(len(path) - len(value.path), 0)])
+        is_length = value.is_length(by_length)
+        return value, Step(value.node.span, "definition", name, own, is_length, node=value.node)
 
-    def _assigned(self, owner: str, key: str, path: Path) -> Iterator[Place]:
-        """What is assigned to a part of a variable, or to what contains it or is in it."""
-        for target, value in self.definitions.get((owner, key), ()):
+    def _assigned(self, owner: str, key: str, path: Path, use: ir.Span | None = None) -> Iterator[Place]:
+        """What is assigned to a part of a variable, or to what contains it or is in it: before its use, if anything is.
+
+        Of many assignments, those nearest to the use.
+        """
+        defined = self.definitions.get((owner, key), [])
+        end = 0 if use is None else bisect.bisect_right(defined, use[1:3], key=lambda each: each[1].span[3:5])
+        for target, value in defined[max(end - _NEAREST, 0) : end] or defined[:_NEAREST]:
             if _overlap(target, path):
                 yield _part(value, path[len(target) :])
 

@@ -297,10 +297,12 @@ class RangeAnalysis(CallSummaries):
             start, count = field_at(cast(Struct, target.value.type), target.field)
             chosen = list(range(start, start + count))
         else:
+            index = self.expr(target.index).parts[0]
+            if self.unguarded:  # where guards are inserted, no index of a store is changed
+                self.check_index(target, index)
             if isinstance(target.value.type, Array):
                 return inner, False
             size, count = scalars(target.type), scalars(target.value.type)
-            index = self.expr(target.index).parts[0]
             if index.low != index.high or not 0 <= index.low < count // size:
                 return inner, False
             chosen = list(range(int(index.low) * size, (int(index.low) + 1) * size))

@@ -127,7 +127,8 @@ class AnalysisState:
         """A uniform within its contract; of a struct, each field within that of a uniform of its type."""
         inner = innermost(uniform.type)
         if not isinstance(inner, Struct):
-            return self.input(inner, contracts.of_uniform(uniform, self.format), "uniform", uniform.name)
+            contract = contracts.of_uniform(uniform._replace(type=inner), self.format)
+            return self.input(inner, contract, "uniform", uniform.name)
         names = [f"{uniform.name}.{field.name}" for field in inner.fields]
         return self.assembled([
             self.uniform(uniform._replace(name=name, type=field.type))

@@ -33,6 +33,8 @@ DIVISION = Guard(
 COUNT = Guard(None, "division", "a division by a count of 0", "max(y, 1.0)", "y", function="nonzero")
 SIGNED_COUNT = COUNT._replace(text=NONZERO.replace("DIVISOR", "1.0"), doc=DIVISION.doc)
 """For a count that may be below 0."""
+WHOLE_DIVISION = Guard(None, "division", "a division of integers by 0", "(y != 0 ? y : 1)", "y")
+"""Only for authors: the texts of languages that do not define it are made safe by `legalise`."""
 WHOLE_NUMBER = Guard(None, "undefined", "a float too large for an integer", "clamp(x, LOW, HIGH)", "x")
 ELEMENT = Guard(None, "range", "an index beyond the elements", "clamp(y, 0, LAST)", "y")
 
@@ -66,6 +68,8 @@ class Site(NamedTuple):
         failures = self.failures
         if failures != other.failures:
             failures = tuple(dict.fromkeys((*failures, *other.failures)))
+            if SIGNED_COUNT in failures:  # it is that of both signs
+                failures = tuple([guard for guard in failures if guard is not COUNT])
         if self.proven != other.proven:
             worse = other if self.proven else self
         else:
@@ -100,7 +104,12 @@ class Site(NamedTuple):
 def shown(range: Range) -> str:
     """A range, for people."""
     gap = f" but not within {range.gap:.4g} of 0" if range.gap and range.low < 0.0 < range.high else ""
-    return f"{range.low:.4g}..{range.high:.4g}{gap}"
+    return f"{_number(range.low)}..{_number(range.high)}{gap}"
+
+
+def _number(value: float) -> str:
+    text = f"{value:.4g}"
+    return f"{value:.7g}" if text in ("1", "-1") else text  # what is a little beyond 1 is not 1
 
 
 def report(sites: Sequence[Site], guarded: Sequence[Site]) -> dict[str, Any]:
