@@ -49,6 +49,7 @@ def test_the_command(run: Run) -> None:
         ("--stages a.vert b.frag -t wgsl -o x b.frag", "FILE cannot be used with --stages"),
         ("--stages a.vert b.frag -t metal -o x", "metal has no whole shaders of plain GLSL"),
         ("--stages a.vert c.frag -t wgsl -o x", "no such file"),
+        ("--stages a.vert empty.frag -t wgsl -o x", "empty.frag"),
         ("--stages a.vert b.frag -o x", "the target is missing"),
         ("-t wgsl", "the file is missing"),
     ],
@@ -56,6 +57,7 @@ def test_the_command(run: Run) -> None:
 def test_wrong_commands(run: Run, arguments: str, message: str) -> None:
     Path("a.vert").write_text(VERTEX, encoding="utf-8")
     Path("b.frag").write_text(FRAGMENT, encoding="utf-8")
+    Path("empty.frag").write_text("// nothing\n", encoding="utf-8")
     before = folder_content(".")
     ran = run("transpile", *arguments.split())
     assert (ran.status, ran.out) == (2, "")

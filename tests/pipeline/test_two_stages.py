@@ -156,12 +156,17 @@ def test_errors_of_both_stages_are_reported_together() -> None:
 
 def test_more_than_every_device_has() -> None:
     reads = " + ".join(f"texture2D(maps[{index}], at)" for index in range(20))
-    vertex = "attribute vec2 p;\nvarying vec2 at;\nvoid main() { at = p; gl_Position = vec4(p, 0.0, 1.0); }\n"
+    vertex = """attribute vec2 p;
+attribute mat4 a, b, c, d;
+varying vec2 at;
+void main() { at = p; gl_Position = a * b * c * d * vec4(p, 0.0, 1.0); }
+"""
     fragment = (
         "precision highp float;\nuniform sampler2D maps[20];\nuniform vec4 many[5000];\nuniform int which;\n"
         f"varying vec2 at;\nvoid main() {{ gl_FragColor = {reads} + many[which]; }}\n"
     )
     counts = {"20 textures in the fragment shader": 16, "20 samplers in the fragment shader": 16}
+    counts["17 locations of attributes"] = 16
     counts["80016 bytes of uniforms"] = 65536
     expected = [
         f"the program has {count}: devices of WGSL (WebGPU) have at least {least}, and some no more"
@@ -278,3 +283,61 @@ def test_points() -> None:
     with pytest.raises(SssgenError) as error:
         translate(vertex, "void main() { gl_FragColor = gl_PointCoord.xyxy; }\n")
     assert "with a varying in its place" in error.value.diagnostics[0].hint
+
+
+POSITION = "in vec3 p;\nvoid main() { gl_Position = vec4(p, t); }\n"
+COLOR = "precision highp float;\nout vec4 color;\nvoid main() { color = vec4(t); }\n"
+
+
+@pytest.mark.parametrize(
+    ("vertex", "fragment", "message", "hint"),
+    [
+        ("uniform B { float t; };", "uniform float t;", "the uniform 't' is a member of the block 'B' in", "alike"),
+        ("uniform float t;", "uniform B { float t; };", "the uniform 't' is outside of blocks in", "alike"),
+        ("uniform float t;", "uniform vec2 t[2];", "the uniform 't' is a float in", "alike"),
+        ("uniform B { float t; }; uniform B { float u; } b;", "", "the block 'B' is already declared", "another name"),
+        ("uniform B { sampler2D maps[2]; float t; };", "", "a block cannot contain textures", "outside of the block"),
+        (
+            "layout(location = 1) in mat2 m; layout(location = 2) in float t;",
+            "",
+            "'t' has a location of 'm'",
+            "its own",
+        ),
+    ],
+)
+def test_programs_that_do_not_link(vertex: str, fragment: str, message: str, hint: str) -> None:
+    position = POSITION.replace("t);", "t + m[0].x);") if "mat2" in vertex else POSITION
+    color = COLOR.replace(
+        "vec4(t)", "vec4(t[1], 0.0, 0.0)" if "[2]" in fragment else "vec4(t)" if fragment else "vec4(1.0)"
+    )
+    with pytest.raises(SssgenError) as error:
+        translate(
+            f"#version 300 es\n{vertex}\n{position}", f"#version 300 es\nprecision highp float;\n{fragment}\n{color}"
+        )
+    assert message in error.value.diagnostics[0].message
+    assert hint in error.value.diagnostics[0].hint
+
+
+@pytest.mark.parametrize("ending", ["\n", "\r\n"])
+def test_stages_that_agree_in_other_words(ending: str) -> None:
+    """Other versions, precisions, orders, interpolations and ends of lines."""
+    vertex = """attribute vec3 p;
+uniform highp float t;
+varying highp vec2 a;
+varying vec3 unread;
+varying mat3 turn;
+void main() { a = p.xy; unread = p; turn = mat3(t); gl_Position = vec4(p, 1.0); }
+"""
+    fragment = """#version 300 es
+precision mediump float;
+uniform mediump float t;
+in mat3 turn;
+centroid in vec2 a;
+out vec4 color;
+void main() { color = vec4(turn * vec3(a, t), 1.0); }
+"""
+    program = described(translate(vertex.replace("\n", ending), fragment.replace("\n", ending)))
+    varyings = {(varying["name"], *varying["path"]): varying["interpolation"] for varying in program["varyings"]}
+    turn = {("turn", column): "smooth" for column in range(3)}
+    assert varyings == {("a",): "centroid", **turn}
+    assert program["uniforms"][0]["stages"] == ["vertex", "fragment"]

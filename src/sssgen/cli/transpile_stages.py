@@ -8,6 +8,7 @@ from argparse import Namespace
 from sssgen.cli.output import OK, print_json
 from sssgen.cli.translation import explained_renames, macros, one_target, print_changes
 from sssgen.lang.plain_glsl import Loaded, load_glsl
+from sssgen.passes.stage.stage_interface import entry_of
 from sssgen.pipeline.two_stages import Source, transpile_stages
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_writer import write_files
@@ -27,6 +28,9 @@ def run(arguments: Namespace) -> int:
     for file in arguments.stages:
         try:
             loaded.append(load_glsl(file, posix(file), arguments.include, macros(arguments.define)))
+            if entry_of(loaded[-1].module) is None:
+                hint = "give a vertex shader and a fragment shader, each with a main()"
+                wrong += failure("the file has no main()", hint, posix(file)).diagnostics
         except SssgenError as error:
             wrong += error.diagnostics
     if wrong:

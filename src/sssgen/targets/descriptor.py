@@ -103,6 +103,8 @@ class Limits(NamedTuple):
 
     samplers: int = 0
     textures: int = 0
+    attributes: int = 0
+    """Locations of the vertex shader's inputs."""
     varyings: int = 0
     uniform_components: int = 0
     uniform_vectors: int = 0

@@ -68,6 +68,8 @@ def beyond_limits(program: Mapping[str, Any], target: Target) -> list[str]:
         samplers = [texture for texture in textures if texture["sampler"]]
         counts.append((f"textures in the {stage} shader", len(textures), limits.textures))
         counts.append((f"samplers in the {stage} shader", len(samplers), limits.samplers))
+    places = sum(attribute["locations"] for attribute in program["attributes"])
+    counts.append(("locations of attributes", places, limits.attributes))
     counts.append(("values between the stages", len(program["varyings"]), limits.varyings))
     block = program["uniform_block"] or {"size": 0}
     counts.append(("bytes of uniforms", block["size"], limits.uniform_block))

@@ -83,6 +83,8 @@ class CheckContext:
         self.globals: dict[str, GlobalValue] = {}
         self.variables: dict[str, ir.Variable] = {}
         """The inputs, outputs and private variables of a whole shader."""
+        self.uniform_blocks: set[str] = set()
+        """The names of the uniform blocks so far."""
         self.uniform_layout: tuple[tuple[str, s.Expression | None], ...] = ()
         """The layout of all uniform blocks that follow."""
         self.workgroup: tuple[int, ...] = ()

@@ -118,6 +118,8 @@ class ShaderInterface:
             raise context.fail(block.lengths[0].span, "there are no arrays of blocks", "declare one block of arrays")
         if block.name.text == "gl_PerVertex":
             return []
+        if "uniform" in keywords:
+            self.check_uniform_block(block)
         members: list[s.GlobalSyntax] = []
         # both stages of a program know the names of the block and of its members
         head = block.name if {"in", "out"} & set(keywords) else block.instance
@@ -135,6 +137,17 @@ class ShaderInterface:
             declaration = replace(member, qualifiers=qualifiers, declarators=tuple(renamed))
             members.append(s.GlobalSyntax(declaration, block.doc))
         return members
+
+    def check_uniform_block(self, block: s.BlockSyntax) -> None:
+        context = self.context
+        if block.name.text in context.uniform_blocks:
+            hint = "a block is declared once: give the other one another name"
+            raise context.fail(block.name.span, f"the block '{block.name.text}' is already declared", hint)
+        context.uniform_blocks.add(block.name.text)
+        for member in block.members:
+            if "sampler" in member.type.name:
+                hint = "declare it outside of the block, as a uniform"
+                raise context.fail(member.type.span, "a block cannot contain textures", hint)
 
     def uniforms_of(
         self, block: s.BlockSyntax, members: list[s.GlobalSyntax], uniforms: list[ir.Uniform]

@@ -29,11 +29,14 @@ def disagreements(vertex: Module, fragment: Module) -> list[Unsupported]:
     wrong = mismatches(vertex, fragment)
     for uniform in fragment.uniforms:
         other = uniforms.get(uniform.source)
-        if other is None or uniform.block:
+        if other is None or (uniform.block and uniform.block == other.block):
             continue
         there, here = contrast(other.type, uniform.type)
-        if other.block:
-            there, here = f"a member of the block '{other.block}'", "outside of blocks"
+        if other.block != uniform.block:
+            there, here = [
+                f"a member of the block '{each.block}'" if each.block else "outside of blocks"
+                for each in (other, uniform)
+            ]
         if there != here:
             message = f"the uniform '{uniform.source}' is {there} in {place(other.span)}, but {here} here"
             wrong.append(Unsupported(message, uniform.span, hint="it is one variable of the program: declare it alike"))

@@ -29,12 +29,17 @@ def varyings(module: Module, kind: str) -> list[Variable]:
 
 def locations(variables: Sequence[Variable], partner: Mapping[str, range], by_name: bool) -> dict[str, range]:
     """The locations of each variable, by its name: those that it states, those of the partner, or the lowest free
-    ones, in the order of the names or of the declarations."""
+    ones, in the order of the names or of the declarations. Raises Unsupported where stated ones overlap."""
     placed: dict[str, range] = {}
     counts = {variable.name: len(parts(variable)) for variable in variables}
     for variable in variables:
         if variable.location >= 0:
             placed[variable.name] = range(variable.location, variable.location + counts[variable.name])
+            for name, others in placed.items():
+                if name != variable.name and set(others) & set(placed[variable.name]):
+                    message = f"'{variable.name}' has a location of '{name}'"
+                    hint = "give each variable locations of its own; a matrix has one for each column"
+                    raise Unsupported(message, variable.span, hint=hint)
         elif variable.name in partner:
             placed[variable.name] = partner[variable.name]
     taken = {location for places in (*placed.values(), *partner.values()) for location in places}
