@@ -76,7 +76,7 @@ def test_a_mesh_that_cannot_be_drawn_is_left_out(
 @pytest.mark.parametrize(
     ("material", "reason"),
     [
-        ({"name": "clay"}, "all materials: no material has a medium that light enters"),
+        ({"name": "clay"}, "the materials: none has a medium that light enters"),
         (GLASS, "glass: thickness: the material has no mesh"),
     ],
 )
@@ -85,7 +85,7 @@ def test_a_bake_without_effect_says_why(
 ) -> None:
     path = asset(tmp_path, material, nodes=[{}])
     assert run("import", path, "-o", tmp_path / "out", "--bake") == 0
-    assert f"--bake has no effect: {reason}" in capsys.readouterr().out
+    assert f"--bake has no effect on {reason}" in capsys.readouterr().out
     assert "--bake" in (tmp_path / "out" / "report.md").read_text(encoding="utf-8")
 
 

@@ -66,7 +66,7 @@ def run(arguments: Namespace) -> int:
         print(f"wrote {folder}/{part.material} and its scene")
     for row in report.rows:
         if row.value == BAKE_OPTION:
-            print(f"{BAKE_OPTION} has no effect: {row.element}: {row.became}")
+            print(f"{BAKE_OPTION} has no effect on {row.element}: {row.became}")
     summary = ", ".join(f"{number} {outcome}" for outcome, number in report.counts().items())
     print(f"{summary}: {folder}/report.md")
     first = next((part for part in written if part.transmits), written[0])

@@ -36,7 +36,7 @@ def baked_materials(materials: Sequence[Imported], report: Report, progress: Pro
     before = len(report.rows)
     result = [with_baked_thickness(material, report, progress) for material in materials]
     if all(old is new for old, new in zip(materials, result, strict=True)) and len(report.rows) == before:
-        report.left_out("all materials", OPTION, "no material has a medium that light enters: a volume or a subsurface")
+        report.left_out("the materials", OPTION, "none has a medium that light enters, a volume or a subsurface")
     return result
 
 
@@ -59,7 +59,7 @@ def with_baked_thickness(imported: Imported, report: Report, progress: Progress 
     try:
         baked, picture, facts = _bake(mesh, progress)
     except SssgenError as error:
-        report.left_out(path, OPTION, f"{error.diagnostics[0].message}: the thickness stays as it is in the file")
+        report.left_out(path, OPTION, f"{error.diagnostics[0].message}; the thickness stays as it is in the file")
         return imported
     error_of_mean = facts["error"]["mean_standard_error"]
     became = f"the mesh's own, baked: 0 to {facts['range'][1]:.4g} m, mean {facts['mean']:.4g} m"
