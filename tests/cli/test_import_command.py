@@ -50,6 +50,14 @@ def test_an_edited_material_is_not_replaced(tmp_path: Path, capsys: pytest.Captu
     assert written.read_text(encoding="utf-8") == before
 
 
+def test_a_report_of_something_else_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "report.md").write_text("of last year", encoding="utf-8")
+    assert run("import", asset(tmp_path), "-o", tmp_path) == 2
+    assert "report.md" in capsys.readouterr().err
+    assert not (tmp_path / "glass").exists()
+    assert (tmp_path / "report.md").read_text(encoding="utf-8") == "of last year"
+
+
 def test_the_commands_that_follow_are_printed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -59,11 +59,13 @@ def write_import(
         report_fields(imported, notes, report)
         files |= {f"{name}/{path}": content for path, content in _material_files(imported, choice, name).items()}
         written.append(WrittenMaterial(name, folder, imported.model.transmits))
-    if not force:
-        _check_unchanged(folder, files)
     with open(os.path.join(place("examples"), "surroundings", "textures", "studio.png"), "rb") as file:
         files[SURROUNDINGS] = file.read()
-    files["report.md"], files["report.json"] = report.markdown(), report.json_text()
+    reports: dict[str, str | bytes] = {"report.md": report.markdown(), "report.json": report.json_text()}
+    if not force:
+        imported_before = all(os.path.isfile(os.path.join(folder, name)) for name in reports)
+        _check_unchanged(folder, files if imported_before else files | reports)
+    files |= reports
     write_files(folder, files)
     return written
 
