@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -12,6 +13,7 @@ from sssgen.harness.backends import Backend
 from sssgen.harness.verify import compute_verification
 from sssgen.harness.verify.compute_report import ComputeReport
 from sssgen.harness.verify.compute_verification import verify_compute
+from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
 
 HEAD = "#version 430 core\nlayout(local_size_x = 32) in;\n"
@@ -100,3 +102,28 @@ def test_a_wrong_translation_is_found(verify: Callable[[str], ComputeReport], mo
     assert "the author's text gives" in report.differences["wgsl"].at
     assert any("wgsl" in line and "author" in line for line in report.lines())
     assert report.as_json()["texts"]["wgsl"]["ok"] is False
+
+
+@pytest.mark.parametrize("target", ["wgsl", "hlsl", "metal"])
+def test_stores_of_components_leave_the_others_alone(target: str) -> None:
+    """Other invocations may write the other components, and the whole vector is not read and written again."""
+    buffers = "layout(std430) buffer V { vec4 v[]; };\n"
+    text = HEAD + buffers + f"void main() {{\n{START}    v[i].zx = vec2(1.0, 2.0);\n    v[i][lane % 4u] = 3.0;\n}}\n"
+    (emitted, *_) = transpile(load_glsl_text(text, "x.comp").module, target, "x", keep=True).files.values()
+    assert not re.search(r"(?<!RWStructuredBuffer<)\b(?:float4|vec4f)\(", emitted), emitted
+
+
+def test_stores_of_components_by_several_invocations(verify: Callable[[str], ComputeReport]) -> None:
+    buffers = "layout(std430) buffer V { vec4 v[]; };\nshared mat2x3 m[16];\n"
+    stores = "v[i / 4u][i % 4u] = float(i); m[lane / 2u][lane % 2u].zx = vec2(i, lane); barrier();"
+    read = "v[i / 4u][i % 4u] = m[15u - lane / 2u][lane % 2u].z;"
+    report = verify(f"{HEAD}{buffers}void main() {{\n{START}    {stores} {read}\n}}\n")
+    assert report.ok, list(report.lines())
+
+
+def test_uniform_blocks_have_values(verify: Callable[[str], ComputeReport]) -> None:
+    block = "layout(std140) uniform Params { uint count; float gains[3]; vec3 add; } params;\n"
+    report = verify(
+        body("b[i] = i < params.count ? uint(abs(params.gains[i % 3u] + params.add.y) * 64.0) : 7u;", block)
+    )
+    assert report.ok, list(report.lines())

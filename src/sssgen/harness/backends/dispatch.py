@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.harness.backends.backend_interface import Array, Bound, Text, backend_failure, refused
+from sssgen.harness.backends.backend_interface import Array, Block, Bound, Text, backend_failure, refused
 from sssgen.harness.backends.opengl import OpenGL
 from sssgen.harness.backends.webgpu import WebGPU
 from sssgen.harness.backends.webgpu_plan import BlockPlan, Plan, layout_entries, texture_plan
@@ -38,6 +38,8 @@ class Dispatch(NamedTuple):
     """WebGPU: the group of all resources; the block has the binding 0."""
     readonly: frozenset[str] = frozenset()
     """WebGPU: the buffers that the text only reads."""
+    blocks: Mapping[str, Block] = {}
+    """OpenGL: the uniform blocks by name."""
 
 
 def by_opengl(backend: OpenGL, dispatch: Dispatch) -> dict[str, Array]:
@@ -55,6 +57,7 @@ def by_opengl(backend: OpenGL, dispatch: Dispatch) -> dict[str, Array]:
             raise refused(backend.name, dispatch.text, messages(str(error))) from None
         try:
             backend.bind_uniforms(program, dispatch.textures, dispatch.values, keep)
+            backend.bind_blocks(program, dispatch.blocks, keep)
             stores = {name: keep(context.buffer(data.tobytes())) for name, data in dispatch.buffers.items()}
             for number, (name, store) in enumerate(stores.items()):
                 if name in program and type(program[name]).__name__ == "StorageBlock":

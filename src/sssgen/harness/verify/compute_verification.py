@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.backends import Array, Bound, CompilerMissing, Place, Text
+from sssgen.harness.backends import Array, Block, Bound, CompilerMissing, Place, Text
 from sssgen.harness.backends.dispatch import Dispatch, by_opengl, by_webgpu
 from sssgen.harness.backends.isolated import Isolated, isolated
 from sssgen.harness.backends.metal_kernel import KernelRun, run_kernel
@@ -29,11 +29,13 @@ from sssgen.harness.render import metal_values, shell_values
 from sssgen.harness.verify.compute_inputs import Filled, Word, filled, group_counts, words
 from sssgen.harness.verify.compute_report import ComputeReport, Difference
 from sssgen.ir.nodes import Module, Variable
-from sssgen.ir.types import Struct
+from sssgen.ir.types import Struct, spell, unnested
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.passes.stage.host_uniforms import COUNT_TEXT, length_text
+from sssgen.passes.stage.storage_layout import extent
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import SssgenError, failure
+from sssgen.targets.block_places import block_members
 
 TEXTS = {"glsl": ("gl", "glsl-330"), "wgsl": ("webgpu", "wgsl"), "metal": ("metal", "metal")}
 """The translations that are compared, with the back end and the target of each."""
@@ -98,6 +100,10 @@ class _Verification:
             raise self.compiled["metal"]
         if not written:
             return report._replace(reason="it writes no buffer")
+        unset = [uniform.name for uniform in self.module.uniforms
+                 if uniform.row_major or isinstance(unnested(uniform.type)[0], Struct)]  # fmt: skip
+        if unset:
+            return report._replace(reason=f"'{unset[0]}' gets no value: it is a struct, or is stored row by row")
         faults: list[str] = []
         order_places: list[str] = []
         for number in range(TRIES):
@@ -176,10 +182,27 @@ class _Verification:
         dispatch = Dispatch(
             Text(self.text), self.groups, self._size(), {names[name]: data for name, data in values.buffers.items()},
             {},
-            values=values.uniforms, textures=textures,
+            values=values.uniforms, textures=textures, blocks=self.blocks(values),
         )  # fmt: skip
         after = self.machines["gl"].apply(by_opengl, dispatch)
         return {name: after[block] for name, block in names.items()}
+
+    def blocks(self, values: Filled) -> dict[str, Block]:
+        """The uniform blocks of the author's text."""
+        places = block_members(self.module)
+        blocks = {}
+        for block in dict.fromkeys([uniform.block for uniform in self.module.uniforms if uniform.block]):
+            own = [uniform for uniform in self.module.uniforms if uniform.block == block]
+            ends = [places[block, uniform.source].offset + extent(uniform.type, "std140").size for uniform in own]
+            layout = {
+                "uniform_block_size": -(-max(ends) // 16) * 16,
+                "uniforms": [
+                    {"name": uniform.name, "type": spell(uniform.type), "offset": places[block, uniform.source].offset}
+                    for uniform in own
+                ],
+            }
+            blocks[block] = Block(shell_values.material_block(layout, values.uniforms), Place(0, 0))
+        return blocks
 
     def on_processor(self, values: Filled, order: int) -> KernelRun:
         """The run of the translation to Metal."""

@@ -6,7 +6,7 @@ import math
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.memory_operations import MEMORY, MemoryRow
-from sssgen.ir.types import INT, UINT, VOID, Array, Field, Sampler, Struct, Type, unnested
+from sssgen.ir.types import INT, UINT, VOID, Array, Field, Matrix, Sampler, Struct, Type, unnested
 from sssgen.ir.walk import subexpressions, written_root
 from sssgen.lang.check.constant_values import constant_int
 from sssgen.lang.check.context import Typed
@@ -65,6 +65,12 @@ class MemoryChecker:
                     message = "only the last member of a storage buffer can have no length"
                     raise context.fail(declarator.name.span, message)
                 fields.append(Field(declarator.name.text, self.member_type(member, declarator)))
+        layouts = [block.qualifiers.layout, *[member.qualifiers.layout for member in block.members]]
+        rows = any(name == "row_major" for layout in layouts for name, _ in layout)
+        if rows and any(_has_matrix(field.type) for field in fields):
+            message = "matrices of storage buffers are stored column by column here, not row_major"
+            hint = "leave row_major out, and transpose the matrix where it is read"
+            context.reporter.error(block.name.span, message, hint)
         access = next((word for word in keywords if word in ("readonly", "writeonly")), "")
         if not access and all("readonly" in member.qualifiers.keywords for member in block.members):
             access = "readonly"
@@ -193,6 +199,13 @@ def stored_directly(stmts: list[ir.Stmt], scopes: Scopes) -> list[ir.Stmt]:
         scopes.forget(result.name)
         return [*before, operation._replace(result=last.target)]
     return stmts
+
+
+def _has_matrix(type_: Type) -> bool:
+    innermost, _ = unnested(type_)
+    if isinstance(innermost, Struct):
+        return any(_has_matrix(field.type) for field in innermost.fields)
+    return isinstance(innermost, Matrix)
 
 
 def _holds(type_: Type, kind: str) -> bool:

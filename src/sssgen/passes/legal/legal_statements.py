@@ -5,11 +5,12 @@ from __future__ import annotations
 from sssgen.ir import nodes as ir
 from sssgen.ir.loops import at_every_end
 from sssgen.ir.types import BOOL, Array, Matrix, Struct
+from sssgen.ir.walk import written_root
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.legal.builtin_forms import Polyfill
 from sssgen.passes.legal.integer_operators import counts_up
 from sssgen.passes.legal.legal_expressions import LegalExpressions
-from sssgen.passes.legal.part_stores import is_dynamic_store, is_swizzle_store, parts_of, whole_store
+from sssgen.passes.legal.part_stores import component_stores, is_dynamic_store, is_swizzle_store, parts_of, whole_store
 
 _JUMPS = (ir.Return, ir.Break, ir.Continue)  # in WGSL a discarded invocation goes on
 
@@ -25,6 +26,7 @@ class LegalStatements(LegalExpressions):
         super().__init__(module, dialect, capabilities, polyfill)
         self.ordered: set[int] = set()
         """The ids of the statements of which no part may be computed before them."""
+        self.memories = {variable.name for variable in module.variables if variable.storage in ("shared", "buffer")}
 
     def block(self, block: ir.Block) -> ir.Block:
         if not self.capabilities.unreachable_statements:
@@ -72,6 +74,9 @@ class LegalStatements(LegalExpressions):
         if type(place) is not ir.Local and any(map(self.refused, parts_of(place))):
             if op:
                 value = self.binary(ir.Binary(place.type, op, place, value, span))
+            if self.is_memory(place):
+                self.out += component_stores(place, value, self.refused, self.keep_expensive)
+                return None
             place, value = whole_store(place, value, self.refused, self.keep_expensive)
             return ir.Assign(place, "", value, span)
         if op:
@@ -82,6 +87,14 @@ class LegalStatements(LegalExpressions):
             value = result.right
         same = place is stmt.target and value is stmt.value
         return stmt if same else ir.Assign(place, op, value, span)
+
+    def is_memory(self, place: ir.Expr) -> bool:
+        """Whether other invocations may write what is beside a place."""
+        root = written_root(place)
+        if isinstance(root, ir.Local):
+            params = self.current.params if self.memories and self.current is not None else ()
+            return any(param.passes in self.memories for param in params if param.name == root.name)
+        return root is not None and root.name in self.memories
 
     def refused(self, part: ir.Expr) -> bool:
         """Whether the target has no store into such a part."""

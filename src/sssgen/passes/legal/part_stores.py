@@ -25,6 +25,65 @@ def whole_store(
     return place, value
 
 
+def component_stores(place: ir.Expr, value: ir.Expr, refused: Callable[[ir.Expr], bool], keep: Keep) -> list[ir.Stmt]:
+    """Stores that mean `place = value` in memory of several invocations: each of one component or column.
+
+    A store of the whole would also write the components that other invocations write.
+    """
+    return _each(_pinned(place, keep), keep(value, f"{base_name(place)}_new"), refused)
+
+
+def _each(place: ir.Expr, value: ir.Expr, refused: Callable[[ir.Expr], bool]) -> list[ir.Stmt]:
+    if not any(map(refused, parts_of(place))):
+        return [ir.Assign(place, "", value, place.span)]
+    if isinstance(place, ir.Swizzle) and len(place.components) > 1:
+        kind = Scalar(kind_of(place.type))
+        return [
+            stmt
+            for number, letter in enumerate(place.components)
+            for stmt in _each(
+                _part(place.value, "xyzw".index(letter), place.span), _component(value, number, kind), refused
+            )
+        ]
+    if isinstance(place, ir.Index) and _in_registers(place):
+        if isinstance(place.index, ir.Literal):
+            return _each(_part(place.value, int(place.index.value), place.span), value, refused)
+        type_ = place.value.type
+        assert isinstance(type_, Vector | Matrix)
+        stores: list[ir.Stmt] = []
+        for number in range(type_.columns if isinstance(type_, Matrix) else type_.size):
+            chosen = ir.Literal(place.index.type, number, place.span)
+            selected = ir.Binary(BOOL, "==", place.index, chosen, place.span)
+            inner = _each(_part(place.value, number, place.span), value, refused)
+            stores.append(ir.If(selected, tuple(inner), (), place.span))
+        return stores
+    assert isinstance(place, ir.Swizzle)  # one component of what has a part that is refused
+    if isinstance(place.value, ir.Swizzle):
+        return _each(_part(place.value, "xyzw".index(place.components), place.span), value, refused)
+    stores = []
+    for stmt in _each(place.value, place.value, refused):
+        stores.append(_narrowed(stmt, place, value))
+    return stores
+
+
+def _narrowed(stmt: ir.Stmt, place: ir.Swizzle, value: ir.Expr) -> ir.Stmt:
+    """A store of a whole column as the store of its component."""
+    if isinstance(stmt, ir.If):
+        return stmt._replace(then=tuple([_narrowed(inner, place, value) for inner in stmt.then]))
+    assert isinstance(stmt, ir.Assign)
+    return stmt._replace(target=place._replace(value=stmt.target), value=value)
+
+
+def _part(whole: ir.Expr, number: int, span: ir.Span) -> ir.Expr:
+    """A component of a vector, or a column of a matrix."""
+    type_ = whole.type
+    if isinstance(type_, Matrix):
+        return ir.Index(Vector("float", type_.rows), whole, ir.Literal(Scalar("int"), number, span), span)
+    if isinstance(whole, ir.Swizzle):
+        return whole._replace(type=Scalar(kind_of(type_)), components=whole.components[number])
+    return ir.Swizzle(Scalar(kind_of(type_)), whole, "xyzw"[number], span)
+
+
 def is_swizzle_store(part: ir.Expr) -> bool:
     """Whether several components would be stored at once."""
     return isinstance(part, ir.Swizzle) and len(part.components) > 1

@@ -1,0 +1,102 @@
+"""What each target makes of a compute shader, and which errors it reports."""
+
+from __future__ import annotations
+
+import pytest
+
+from sssgen.lang.plain_glsl import load_glsl_text
+from sssgen.pipeline.compiler import Compiled, transpile
+from sssgen.support.diagnostics import SssgenError
+
+HEAD = "#version 430\nlayout(local_size_x = 16) in;\n"
+
+
+def compiled(text: str, target: str) -> Compiled:
+    return transpile(load_glsl_text(HEAD + text, "x.comp").module, target, "x", keep=True)
+
+
+def emitted(text: str, target: str) -> str:
+    return next(iter(compiled(text, target).files.values()))
+
+
+ITEM = "struct Item { uint count; float x; };\nbuffer Items { Item items[]; };\n"
+COUNTED = "void main() {\n    atomicAdd(items[0].count, 1u);\n"
+
+
+@pytest.mark.parametrize("target", ["wgsl", "metal"])
+@pytest.mark.parametrize(
+    ("text", "message", "line"),
+    [
+        (ITEM + COUNTED + "    Item item = items[1];\n}", "'Item.count' is an atomic", 7),
+        (ITEM + COUNTED + "    items[2] = items[1];\n}", "'Item.count' is an atomic", 7),
+        (ITEM + "float f(Item i) { return i.x; }\n" + COUNTED + "}", "'Item.count' is an atomic", 5),
+        ("buffer A { uvec2 a[]; };\nvoid main() { atomicAdd(a[0].y, 1u); }", "atomicAdd works on a component", 4),
+        ("shared uint n[4];\nvoid main() { atomicAdd(n[0], 1u); uint m[4] = n; }", "'n' has atomics, and is copied", 4),
+    ],
+)  # fmt: skip
+def test_what_atomics_cannot_do_has_a_place(text: str, message: str, line: int, target: str) -> None:
+    with pytest.raises(SssgenError) as caught:
+        emitted(text, target)
+    error = caught.value.diagnostics[0]
+    assert message in error.message
+    assert error.hint
+    assert error.span.line == line
+    assert "^" in str(caught.value)
+    assert emitted(text, "glsl-330")
+
+
+def test_atomics_on_members_of_structs() -> None:
+    text = ITEM + "void main() { atomicAdd(items[0].count, 1u); items[1].x = float(items[2].count); }"
+    assert "count: atomic<u32>," in emitted(text, "wgsl")
+    assert "f32(atomicLoad(&items_buffer.items[2].count))" in emitted(text, "wgsl").replace(
+        "itemsBuffer", "items_buffer"
+    )
+    assert "atomic_uint count;" in emitted(text, "metal")
+
+
+def test_metal_has_the_layout_of_the_source() -> None:
+    structs = "struct P { vec3 p; float m; vec3 v; vec2 u; };\nbuffer Ps { vec3 first; P ps[]; };\n"
+    text = structs + "void main() { ps[0].p = first; }"
+    metal = emitted(text, "metal")
+    assert "alignas(16) packed_float3 p;" in metal
+    assert "    float3 v;" in metal
+    assert "    float3 first;" in metal
+    assert "P ps[1];" in metal
+
+
+@pytest.mark.parametrize(
+    ("target", "text", "name"),
+    [
+        ("metal", "buffer A { float a[]; };\nvoid main() { a[0] = float(a.length()); }", "a_length"),
+        ("hlsl", "buffer A { uint a[]; };\nvoid main() { a[0] = gl_NumWorkGroups.x; }", "NumWorkGroups"),
+    ],
+)
+def test_what_only_the_program_can_tell_is_a_uniform(target: str, text: str, name: str) -> None:
+    result = compiled(text, target)
+    (uniform,) = result.reflection["uniforms"]
+    assert uniform["name"] == name
+    assert uniform["doc"]
+    assert f"'{name}'" in result.warnings[0].message
+
+
+def test_an_exchange_compares_with_what_it_was_given() -> None:
+    """`swapped` of the source is no name of the loop, and the result is written after the comparison."""
+    main = "void main() { uint swapped = a[1]; swapped = atomicCompSwap(a[0], swapped, swapped + 1u); }"
+    text = "buffer A { uint a[2]; };\n" + main
+    wgsl = emitted(text, "wgsl")
+    assert "atomicCompareExchangeWeak(&a_buffer.a[0], swapped, swapped + 1u)" in wgsl
+    assert "let swapped_2 = " in wgsl
+
+
+def test_a_function_has_the_name_of_the_entry() -> None:
+    text = "buffer A { uint a[2]; };\nuint compute_main() { return 1u; }\nvoid main() { a[0] = compute_main(); }"
+    for target in ("wgsl", "hlsl", "metal"):
+        assert emitted(text, target).count("compute_main(") == 1
+
+
+def test_two_lengths_in_a_variable() -> None:
+    main = "void main() { int n = a.length(); n += 1; n = b.length(); b[0] = n; }"
+    text = "buffer A { uint a[]; };\nbuffer B { int b[]; };\n" + main
+    hlsl = emitted(text, "hlsl")
+    assert hlsl.count("uint n_size, ") == 1
+    assert "uint n_size_2, " in hlsl
