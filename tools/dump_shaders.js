@@ -7,9 +7,10 @@
 //     dumpedShaders.programs()    // the same as an array
 //
 // A program is collected when the page links it or uses it. Its first draw is described in programs.json, in the words of
-// webgl_program.js: the values of uniforms, the attributes, how textures are read, and the state of the pipeline. Programs with equal texts are one. NAME is the name that the
-// engine writes into the text (`#define SHADER_NAME` or `SHADER_TYPE`), or `program`; a number makes it unique. Not collected are
-// programs of a worker (OffscreenCanvas), and programs of WebGPU, which has WGSL.
+// webgl_program.js: the values of uniforms, the attributes, how textures are read, and the state of the pipeline; draws by
+// extensions (instances in WebGL 1, WEBGL_multi_draw) are not. Programs with equal texts are one. NAME is the name that
+// the engine writes into the text (`#define SHADER_NAME` or `SHADER_TYPE`), or `program`; a number makes it unique. Not
+// collected are programs of a worker (OffscreenCanvas), and programs of WebGPU, which has WGSL.
 
 (() => {
   if (globalThis.dumpedShaders) return;
