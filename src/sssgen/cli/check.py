@@ -76,9 +76,9 @@ def _passed(report: Report, shaders: list[Shader]) -> bool:
 
 
 def _print(report: Report, shaders: list[Shader], verbose: bool) -> None:
-    found = [(name, visible(version)) for name, version in report.versions.items()]
+    available = [(name, visible(version)) for name, version in report.versions.items()]
     missing = [(name, f"not found: {visible(instruction)}") for name, instruction in report.missing.items()]
-    _print_rows(found + missing, 7)
+    _print_rows(available + missing, 7)
     _print_engines()
     print()
     cells: dict[tuple[str, str], list[Result]] = {}

@@ -22,18 +22,22 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Prints what is found and what is missing, with how to get it."""
-    found = facts(arguments.run)
+    machine = facts(arguments.run)
     if arguments.json:
-        print_json({"ok": True, **found.as_json()})
+        print_json({"ok": True, **machine.as_json()})
         return OK
-    rows = [("sssgen", f"{found.sssgen}, {found.source}"), ("Python", found.python), ("platform", found.platform)]
-    rows.append(("cache", found.cache or "none: nothing is cached"))
+    rows = [
+        ("sssgen", f"{machine.sssgen}, {machine.source}"),
+        ("Python", machine.python),
+        ("platform", machine.platform),
+    ]
+    rows.append(("cache", machine.cache or "none: nothing is cached"))
     _print_rows(rows)
     print("\nEnvironment variables:")
-    _print_rows(_variables(found) or [("none is set", "")])
+    _print_rows(_variables(machine) or [("none is set", "")])
     print("\nPackages:")
-    _print_rows([("", ", ".join(f"{name} {version}" for name, version in found.packages.items()) or "none")], first=0)
-    for title, items in (("Extras", found.extras), ("Compilers", found.compilers), ("Back ends", found.backends)):
+    _print_rows([("", ", ".join(f"{name} {version}" for name, version in machine.packages.items()) or "none")], first=0)
+    for title, items in (("Extras", machine.extras), ("Compilers", machine.compilers), ("Back ends", machine.backends)):
         print(f"\n{title}:")
         _print_items(items)
     if not arguments.run:
@@ -41,11 +45,11 @@ def run(arguments: Namespace) -> int:
     return OK
 
 
-def _variables(found: Facts) -> list[tuple[str, str]]:
-    unknown = {name: f"{value}  (sssgen reads no such variable)" for name, value in found.variables.items()}
+def _variables(machine: Facts) -> list[tuple[str, str]]:
+    unknown = {name: f"{value}  (sssgen reads no such variable)" for name, value in machine.variables.items()}
     return [
         (name, f"{value!r}: {VARIABLES[name]}" if name in VARIABLES else unknown[name])
-        for name, value in found.variables.items()
+        for name, value in machine.variables.items()
     ]
 
 

@@ -22,26 +22,26 @@ class UnityProject:
         """`root` is the folder where the search ends; by default the folder that contains `Assets`."""
         self.folder = os.path.dirname(os.path.realpath(path))
         self.root = os.path.realpath(root) if root else _project_of(self.folder)
-        self._known: dict[str, str] = {}
+        self._paths: dict[str, str] = {}
         self._files = self._search()
 
     def file(self, guid: str) -> str:
         """The path of the file with a GUID, or ''."""
         wanted = guid.lower()
-        while wanted not in self._known:
+        while wanted not in self._paths:
             following = next(self._files, None)
             if following is None:
                 return ""
             name, path = following
-            self._known.setdefault(name, path)
-        path = self._known[wanted]
+            self._paths.setdefault(name, path)
+        path = self._paths[wanted]
         return path if os.path.isfile(path) else ""
 
     def files(self, suffix: str) -> list[str]:
         """All files of the project that end in a suffix."""
         for name, path in self._files:
-            self._known.setdefault(name, path)
-        return sorted(path for path in self._known.values() if path.endswith(suffix))
+            self._paths.setdefault(name, path)
+        return sorted(path for path in self._paths.values() if path.endswith(suffix))
 
     def _search(self) -> Iterator[tuple[str, str]]:
         """GUID and path of each file; a folder before those around it."""

@@ -39,18 +39,18 @@ TEXEL_BYTES = 4
 
 def requirements(uses: Iterable[TechniqueUse]) -> tuple[str, ...]:
     """What the techniques of a material require, with the functions that are bound to them; in a fixed order."""
-    found: set[str] = set()
+    required: set[str] = set()
     for use in uses:
         for module, function in _functions(use):
-            found.update(_declared(function))
+            required.update(_declared(function))
             textures = [uniform for uniform in _read(module, function) if isinstance(uniform.type, Sampler)]
             volume = any(is_volume(uniform) for uniform in textures)
             slots = needs(module, function)[1]
             for texture in textures:
-                found.update(*(DRAWN[str(view)] for view in dict(texture.hints).get("drawn", ())))
-            found.update({"bake"} if any(map(is_baked, textures)) else ())
-            found.update({"rigid"} if volume or any(map(_is_distance, slots)) else ())
-    return tuple(name for name in REQUIREMENTS if name in found)
+                required.update(*(DRAWN[str(view)] for view in dict(texture.hints).get("drawn", ())))
+            required.update({"bake"} if any(map(is_baked, textures)) else ())
+            required.update({"rigid"} if volume or any(map(_is_distance, slots)) else ())
+    return tuple(name for name in REQUIREMENTS if name in required)
 
 
 def described(uses: Sequence[TechniqueUse]) -> list[str]:
@@ -67,13 +67,13 @@ def bodies(uses: Iterable[TechniqueUse]) -> list[str]:
 
     A function that reads a volume is left out: it describes the body that the volume was baked from.
     """
-    found = [
+    functions = [
         binding.function.name
         for use in uses
         for binding in use.bindings.values()
         if _is_distance(binding.function) and not any(map(is_volume, _read(binding.module, binding.function)))
     ]
-    return list(dict.fromkeys(found))
+    return list(dict.fromkeys(functions))
 
 
 def baked_textures(uses: Iterable[TechniqueUse]) -> list[Uniform]:

@@ -43,18 +43,18 @@ class Metal(Compiler):
         return f"g++ {text.strip()} with a stand-in for metal_stdlib"
 
     def check(self, source: Source) -> list[Message]:
-        found = placeless(source.text)
+        reported = placeless(source.text)
         word = _ENTRIES.get(source.stage)
         if word and not re.search(rf"^{word}\s.*\b{source.entry}\(", source.text, re.MULTILINE):
-            found.append(Message("error", 0, 0, f"there is no {word} function {source.entry}"))
+            reported.append(Message("error", 0, 0, f"there is no {word} function {source.entry}"))
         command = [self.program, *OPTIONS, "-fsyntax-only", "-Wno-attributes", "-"]
         completed = subprocess.run(
             command, input=with_swizzles(source.text), capture_output=True, encoding="utf-8", check=False
         )
-        found += messages(completed.stderr)
-        if completed.returncode and not any(message.severity == "error" for message in found):
-            found.append(Message("error", 0, 0, completed.stderr.strip() or f"exit status {completed.returncode}"))
-        return found
+        reported += messages(completed.stderr)
+        if completed.returncode and not any(message.severity == "error" for message in reported):
+            reported.append(Message("error", 0, 0, completed.stderr.strip() or f"exit status {completed.returncode}"))
+        return reported
 
 
 def find() -> Metal:
@@ -104,10 +104,10 @@ def placeless(text: str) -> list[Message]:
 
 def messages(log: str) -> list[Message]:
     """The messages in g++'s log; those about the stand-in's own lines are with the line that uses them."""
-    found = []
+    result = []
     for line in log.splitlines():
         if match := re.match(r"(.+?):(\d+):(\d+): (fatal error|error|warning|note): (.*)", line):
             own = match[1] == _NAME
             place = (int(match[2]), int(match[3])) if own else (0, 0)
-            found.append(Message(_SEVERITY[match[4]], *place, match[5], "" if own else Path(match[1]).name))
-    return found
+            result.append(Message(_SEVERITY[match[4]], *place, match[5], "" if own else Path(match[1]).name))
+    return result

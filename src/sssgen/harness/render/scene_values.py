@@ -33,9 +33,10 @@ from sssgen.targets.runtime.numpy_textures import Texture
 
 MOST_TEXTURES = 16
 """The number of textures that are kept in memory."""
-_made: dict[str, CachedResult] = {}
+_kept_textures: dict[str, CachedResult] = {}
 MOST_LIGHT_MAPS = 4
-_light_maps: dict[str, CachedResult] = {}
+"""The number of light maps that are kept in memory."""
+_kept_light_maps: dict[str, CachedResult] = {}
 
 
 def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> Shell:
@@ -92,7 +93,7 @@ def _light_view(geometry: Geometry, light: list[float], layers: bool) -> tuple[L
         return view, half(Texture(depth, wrap="clamp"))
 
     slow = isinstance(geometry, Distance)
-    return remembered(_light_maps, repr((geometry, light, layers)), make, MOST_LIGHT_MAPS) if slow else make()
+    return remembered(_kept_light_maps, repr((geometry, light, layers)), make, MOST_LIGHT_MAPS) if slow else make()
 
 
 def _surroundings(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, Texture]:
@@ -285,14 +286,14 @@ def _distances(chosen: DistanceTexture, geometry: Geometry) -> Texture:
     def make() -> Texture:
         return half(Texture(chosen.values(copy.deepcopy(geometry)), wrap="clamp"))
 
-    return remembered(_made, repr((chosen, geometry)), make, MOST_TEXTURES)
+    return remembered(_kept_textures, repr((chosen, geometry)), make, MOST_TEXTURES)
 
 
 def _picture(file: str, wrap: str, texture: Mapping[str, Any]) -> Texture:
     """The texture of a file; the last ones are kept until their files change."""
     declared = [texture[name] for name in ("source_name", "type", "color_space")]
     key = repr((os.path.abspath(file), wrap, declared))
-    return remembered(_made, key, lambda: _read_picture(file, wrap, texture), MOST_TEXTURES)
+    return remembered(_kept_textures, key, lambda: _read_picture(file, wrap, texture), MOST_TEXTURES)
 
 
 def _read_picture(file: str, wrap: str, texture: Mapping[str, Any]) -> Texture:

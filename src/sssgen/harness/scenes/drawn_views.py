@@ -32,12 +32,12 @@ def light_depth(geometry: Geometry, light: Array, layers: bool = False) -> tuple
     """
     corners, size = placed_corners(geometry), (TEXELS, TEXELS)
     view = point_view(corners, light[:3], size) if light[3] else directional_view(corners, light[:3], size)
-    found = _nearest(geometry, view.origins, view.directions, 0, 2 if layers else 1)
+    distances = _nearest(geometry, view.origins, view.directions, 0, 2 if layers else 1)
     if layers:
-        found = np.insert(found, 1, _nearest(geometry, view.origins, view.directions, 1)[:, 0], axis=1)
+        distances = np.insert(distances, 1, _nearest(geometry, view.origins, view.directions, 1)[:, 0], axis=1)
     end = float((corners @ view.matrix[2, :3] + view.matrix[2, 3]).max())
     view = view._replace(far=end)
-    depth = np.where(np.isfinite(found), found * view.slopes[:, None], end)
+    depth = np.where(np.isfinite(distances), distances * view.slopes[:, None], end)
     return view, depth.reshape(TEXELS, TEXELS, -1)
 
 
@@ -49,6 +49,6 @@ def _nearest(geometry: Geometry, origins: Array, directions: Array, side: int, c
         part = slice(start, start + BLOCK)
         ends = geometry.scale * intervals(geometry, *in_object_space(geometry, origins[part], directions[part]), needed)
         ahead = (ends[..., 0] < ends[..., 1]) & (ends[..., side] > 0.0)
-        found = np.sort(np.where(ahead, ends[..., side], np.inf), axis=1)[:, :count]
-        nearest[part, : found.shape[1]] = found
+        distances = np.sort(np.where(ahead, ends[..., side], np.inf), axis=1)[:, :count]
+        nearest[part, : distances.shape[1]] = distances
     return nearest

@@ -130,13 +130,15 @@ def _suppliers(technique: Technique, given: tuple[str, ...]) -> list[MaterialSec
     for quantity in dict.fromkeys(_needed(technique)):
         if quantity in given:
             continue
-        found = min(_giving(quantity), key=lambda one: (len(_needed(one)), len(one.function.params)), default=None)
-        if found is None:
+        supplier = min(
+            _giving(quantity), key=lambda item: (len(_needed(item)), len(item.function.params)), default=None
+        )
+        if supplier is None:
             raise failure(
                 f"nothing in the library gives the {quantity} that '{technique.name}' takes", "", technique.path
             )
-        stages += _suppliers(found, (*given, quantity))
-        stages.append(MaterialSection("thickness", found.name))
+        stages += _suppliers(supplier, (*given, quantity))
+        stages.append(MaterialSection("thickness", supplier.name))
     return stages
 
 

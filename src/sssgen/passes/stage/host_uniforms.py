@@ -35,7 +35,7 @@ def length_text(block: Type, member: str) -> str:
 
 def lengths_to_uniforms(module: Module) -> tuple[Module, list[Note]]:
     """The module with an int uniform `values_length` for each length of a buffer's member `values` that it reads."""
-    made = _Uniforms(module)
+    uniforms = _Uniforms(module)
 
     def restate(stmt: Stmt) -> Block | None:
         if not isinstance(stmt, MemoryOperation) or stmt.name != "arrayLength" or stmt.result is None:
@@ -44,12 +44,12 @@ def lengths_to_uniforms(module: Module) -> tuple[Module, list[Note]]:
         assert isinstance(array, Member) and isinstance(array.value, Global)
         message = f"'{array.field}.length()' is the uniform '{{}}' here"
         doc = length_text(array.value.type, array.field)
-        uniform = made.uniform(
+        uniform = uniforms.uniform(
             doc, f"{array.field}_length", INT, message, "set it to the number of elements", stmt.span
         )
         return (Assign(stmt.result, "", uniform, stmt.span),)
 
-    return made.added_to(rewrite_module(module, lambda expr: expr, restate))
+    return uniforms.added_to(rewrite_module(module, lambda expr: expr, restate))
 
 
 def group_count_to_uniform(module: Module) -> tuple[Module, list[Note]]:
@@ -57,16 +57,16 @@ def group_count_to_uniform(module: Module) -> tuple[Module, list[Note]]:
     variable = next((variable for variable in module.variables if variable.builtin == _COUNT), None)
     if variable is None:
         return module, []
-    made = _Uniforms(module)
+    uniforms = _Uniforms(module)
     message = f"{_COUNT} is the uniform '{{}}' here"
     hint = "set it to the number of workgroups for each dispatch"
-    uniform = made.uniform(COUNT_TEXT, _COUNT.removeprefix("gl_"), variable.type, message, hint, variable.span)
+    uniform = uniforms.uniform(COUNT_TEXT, _COUNT.removeprefix("gl_"), variable.type, message, hint, variable.span)
 
     def change(expr: Expr) -> Expr:
         return uniform if isinstance(expr, Global) and expr.name == variable.name else expr
 
     others = tuple([other for other in module.variables if other is not variable])
-    return made.added_to(rewrite_module(module._replace(variables=others), change))
+    return uniforms.added_to(rewrite_module(module._replace(variables=others), change))
 
 
 class _Uniforms:
