@@ -8,11 +8,12 @@ outside are not clamped: a thickness may be any number.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from math import prod
 from typing import NamedTuple
 
 from sssgen.ir.formats import FLOAT32, Format
-from sssgen.ir.intervals import INF
+from sssgen.ir.intervals import INF, Range
 from sssgen.ir.nodes import Param, Uniform, Variable
 from sssgen.ir.types import FLOAT, VEC3, VEC4, Array, Matrix, Sampler, Type, kind_of
 from sssgen.ir.vector_ranges import LENGTH, Contract
@@ -160,6 +161,28 @@ def of_stage_input(variable: Variable, format: Format = FLOAT32) -> Contract:
     if variable.builtin == "gl_PointCoord":
         return Contract(0.0, 1.0)
     return _around((MATRIX if isinstance(variable.type, Matrix) else POSITION)[format.name])
+
+
+GROUPS = 65535
+"""The most workgroups along an axis (OpenGL's and WebGPU's least limit, D3D's limit)."""
+
+
+def of_invocation(variable: Variable, workgroup: Sequence[int]) -> tuple[Range, ...]:
+    """The components of a variable that places an invocation of a compute shader; () for any other variable."""
+    if not workgroup:
+        return ()
+    if variable.builtin == "gl_LocalInvocationIndex":
+        return (Range(0.0, prod(workgroup) - 1.0),)
+    highs = {
+        "gl_LocalInvocationID": [size - 1.0 for size in workgroup],
+        "gl_GlobalInvocationID": [GROUPS * size - 1.0 for size in workgroup],
+        "gl_WorkGroupID": [GROUPS - 1.0] * 3,
+        "gl_NumWorkGroups": [float(GROUPS)] * 3,
+    }.get(variable.builtin)  # fmt: skip
+    if highs is None:
+        return ()
+    least = 1.0 if variable.builtin == "gl_NumWorkGroups" else 0.0
+    return tuple([Range(least, high) for high in highs])
 
 
 def alpha_at(uniform: Uniform) -> int | None:

@@ -71,7 +71,7 @@ def fold(module: Module, fixed: Mapping[str, tuple[float, ...]] = {}) -> Module:
     if folder.fixed:
         uniforms = tuple([uniform for uniform in uniforms if uniform.name not in folder.fixed])
     variables = tuple([folder.variable(variable) for variable in module.variables])
-    return Module(module.structs, tuple(constants), uniforms, functions, variables)
+    return module._replace(constants=tuple(constants), uniforms=uniforms, functions=functions, variables=variables)
 
 
 class _Folder(Transformer):

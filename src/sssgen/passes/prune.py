@@ -63,6 +63,7 @@ def prune(module: Module, roots: Iterable[str]) -> Module:
         _same(module.uniforms, [uniform for uniform in module.uniforms if uniform.name in names]),
         _same(module.functions, [cleaned.function for cleaned in kept.values()]),
         _same(module.variables, variables[::-1]),
+        module.workgroup,
     )
 
 

@@ -243,9 +243,6 @@ def _plain(path: str, with_examples: bool, kinds: Collection[Kind], assumed: Seq
     rules = load_rules(assumed)
     loaded = load_glsl(path, path, assumptions=True)
     module = loaded.module
-    if module.workgroup:  # what other invocations write is not in the ranges
-        message = "compute shaders are not analysed: other invocations write their memory, too"
-        raise failure(message, "put the functions that are to be analysed into a file of their own", path)
     rules += rules_of_comments(loaded.assumed, input_names(module))
     assumptions = Assumptions(rules, stage_kind(module) == "vertex")
     sites, origins = traced_sites(module, assumed=assumptions.of if rules else None, unguarded=True)

@@ -422,7 +422,7 @@ class ExpressionRanges(CallRanges):
         """Notes an index that may be beyond the elements; returns how many there are."""
         elements = element_type(node.value.type)
         assert elements is not None
-        if not isinstance(node.index, ir.Literal):
+        if not isinstance(node.index, ir.Literal) and elements[1]:  # the length of a buffer is not known
             outside = index.low < 0.0 or index.high > elements[1] - 1.0
             self.note(node, "index", outside, ELEMENT, (index,), (0.0, elements[1] - 1.0))
         return elements[1]

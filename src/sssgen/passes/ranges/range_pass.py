@@ -95,6 +95,8 @@ class RangeAnalysis(CallSummaries):
         self.state = State({}, self.assumed_facts.copy())
         if key == ENTRY:  # what else is called from outside may find them changed
             for variable in self.variables.values():
+                if global_key(variable.name) in self.memories:
+                    continue
                 value = self.expr(variable.value) if variable.value is not None else self.unknown(variable.type)
                 self.state.env[global_key(variable.name)] = value
         args = [
@@ -198,7 +200,21 @@ class RangeAnalysis(CallSummaries):
             return None
         elif isinstance(stmt, ir.Discard):
             return None
+        elif isinstance(stmt, ir.MemoryOperation):
+            self.memory_operation(stmt)
         return self.state
+
+    def memory_operation(self, stmt: ir.MemoryOperation) -> None:
+        """An atomic, whose old value may be any; or the length of a buffer."""
+        for place in stmt.args[:1]:
+            self.places(place)
+        for value in stmt.args[1:]:
+            self.expr(value)
+        if stmt.result is not None:
+            result = self.unknown(stmt.result.type)
+            if not stmt.args[1:]:
+                result = self.value((Range(0.0, self.limits("int").high),), result.numbers)
+            self.store(stmt.result, result)
 
     def returned(self, expr: ir.Expr) -> Value:
         """A function's result: a quantity is kept in its range."""
@@ -212,8 +228,10 @@ class RangeAnalysis(CallSummaries):
         node: ir.Expr = stmt.value
         variable = root(stmt.target)
         if stmt.op:
-            if stmt.op in ("+", "-") and isinstance(stmt.target, ir.Local | ir.Global) and self.loops:
-                self.add(cast(str, variable_key(stmt.target)), stmt, value)
+            key = cast(str, variable_key(stmt.target))
+            whole = isinstance(stmt.target, ir.Local | ir.Global) and key not in self.memories
+            if stmt.op in ("+", "-") and whole and self.loops:
+                self.add(key, stmt, value)
             node = self.compound_of(stmt)
             value = self.operation(node, self.expr(stmt.target), value)
         param = self.out_param(variable) if kind_of(node.type) == "float" else None
@@ -269,6 +287,8 @@ class RangeAnalysis(CallSummaries):
     def store(self, target: ir.Expr, value: Value, places: tuple[list[int], bool] | None = None) -> None:
         """Writes to a variable or a part of one; `places` is the result of `places`, if it is known already."""
         key = variable_key(target)
+        if key in self.memories:
+            self.places(target)  # its indices
         if key is None or key not in self.state.env:
             return
         if isinstance(target, ir.Local | ir.Global):

@@ -103,6 +103,10 @@ class AnalysisState:
         self.frames: list[Frame] = []
         self.loops: list[Loop] = []
         self.globals: dict[str, Value] = {}
+        self.memories = {
+            global_key(variable.name) for variable in module.variables if variable.storage in ("shared", "buffer")
+        }
+        """The keys of what other invocations may write at any time: each read is another value."""
         self.variables = {variable.name: variable for variable in module.variables if variable.storage != "in"}
         """The module variables that functions change."""
         self.changed = {key: frozenset(map(global_key, effect.writes)) for key, effect in effects(module).items()}
@@ -117,7 +121,9 @@ class AnalysisState:
             self.globals[uniform.name] = value
         for variable in module.variables:
             if variable.storage == "in":
-                self.globals[variable.name] = self.stage_input(variable)
+                limits = contracts.of_invocation(variable, module.workgroup)
+                value = self.stage_input(variable)
+                self.globals[variable.name] = self.value(limits, value.numbers) if limits else value
         for constant in module.constants:
             self.globals[constant.name] = self.expr(constant.value)
 
