@@ -15,6 +15,7 @@ from sssgen.harness.verify.compute_report import ComputeReport
 from sssgen.harness.verify.compute_verification import verify_compute
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
+from sssgen.support.diagnostics import failure
 
 HEAD = "#version 430 core\nlayout(local_size_x = 32) in;\n"
 BUFFERS = "layout(std430) readonly buffer In { uint a[]; };\nlayout(std430) buffer Out { uint b[]; };\n"
@@ -127,3 +128,15 @@ def test_uniform_blocks_have_values(verify: Callable[[str], ComputeReport]) -> N
         body("b[i] = i < params.count ? uint(abs(params.gains[i % 3u] + params.add.y) * 64.0) : 7u;", block)
     )
     assert report.ok, list(report.lines())
+
+
+def test_a_program_without_an_end_has_a_reason(
+    verify: Callable[[str], ComputeReport], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def hangs(*arguments: Any) -> Any:
+        raise failure("the back end did not finish")
+
+    monkeypatch.setattr(compute_verification, "run_kernel", hangs)
+    report = verify(body("b[i] = a[i];"))
+    assert not report.ok
+    assert "did not finish" in report.reason

@@ -110,7 +110,10 @@ class _Verification:
             if report.rounds == ROUNDS:
                 break
             values = filled(self.module, self.layouts, self.length, number, self.seed)
-            runs = [self.on_processor(values, order) for order in ORDERS]
+            try:
+                runs = [self.on_processor(values, order) for order in ORDERS]
+            except SssgenError as error:  # such as a loop without an end
+                return report._replace(reason=f"the run on the processor failed: {error.diagnostics[0].message}")
             fault = next((run.fault for run in runs if run.fault), "")
             if fault:
                 faults.append(fault)
