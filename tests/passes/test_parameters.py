@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pass_cases import assert_is, key, module_of
+from sssgen.ir.nodes import Module
 from sssgen.ir.verify import verify
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 
@@ -15,9 +16,22 @@ SOURCE = """
     """
 
 
+def passed_on(module: Module) -> Module:
+    """The module after the pass, whose new parameters name the uniforms that they pass; the test's own text cannot."""
+    result = uniforms_to_parameters(module)
+    names = {uniform.name for uniform in module.uniforms}
+    functions = []
+    for function in result.functions:
+        assert all(param.passes == param.name for param in function.params if param.passes)
+        assert {param.passes for param in function.params} <= names | {""}
+        plain = tuple([param._replace(passes="") for param in function.params])
+        functions.append(function._replace(params=plain))
+    return result._replace(functions=tuple(functions))
+
+
 def test_uniforms_and_textures_are_passed_along() -> None:
     assert_is(
-        uniforms_to_parameters(module_of(SOURCE)),
+        passed_on(module_of(SOURCE)),
         """
         uniform sampler2D map; uniform float depth = 1.0; uniform vec3 tint = vec3(1.0); const float HALF = 0.5;
         float sdf(vec3 p, float depth) { return p.x * depth * HALF; }
@@ -34,6 +48,7 @@ def test_textures_may_stay_global() -> None:
     result = uniforms_to_parameters(module_of(SOURCE), textures=False)
     assert verify(result) == []
     assert [param.name for param in result.functions[-1].params] == ["uv", "depth", "tint"]
+    assert [param.passes for param in result.functions[-1].params] == ["", "depth", "tint"]
 
 
 def test_quantities_and_places_are_preserved() -> None:
@@ -47,7 +62,7 @@ def test_quantities_and_places_are_preserved() -> None:
 
 def test_variables_make_way_for_uniforms() -> None:
     assert_is(
-        uniforms_to_parameters(
+        passed_on(
             module_of(
                 """
                 uniform float depth = 1.0;
@@ -70,7 +85,7 @@ def test_variables_make_way_for_uniforms() -> None:
 
 def test_colliding_overloads_get_different_names() -> None:
     assert_is(
-        uniforms_to_parameters(
+        passed_on(
             module_of(
                 """
                 uniform float depth = 1.0;
