@@ -31,8 +31,12 @@ def run(arguments: Namespace) -> int:
     for name in sorted(wanted - techniques):
         hint = did_you_mean(name, techniques) or f"techniques: {', '.join(sorted(techniques))}"
         raise failure(f"unknown technique '{name}'", hint)
-    points = chart.chart_record([scene], settings)["points"]
-    points = [point for point in points if point["name"] != "none" and (not wanted or point["name"] in wanted)]
+    points = chart.chart_record([scene], settings._replace(techniques=frozenset(wanted)))["points"]
+    points = [point for point in points if point["name"] != "none"]
+    if not points:
+        names = ", ".join(sorted(wanted)) or "any technique"
+        hint = "a technique needs light from afar, a boundary, or a body of a size that its parameters allow"
+        raise failure(f"{names} cannot be fitted to '{scene.name}'", hint)
     if arguments.json:
         print_json({"ok": True, "scene": scene.name, "points": points})
         return OK

@@ -1,4 +1,4 @@
-"""Bodies that are many mean free paths thick: hardly any light comes through, so they reflect like matte surfaces."""
+"""Bodies that scatter light inside: those that are many mean free paths thick reflect like matte surfaces."""
 
 from __future__ import annotations
 
@@ -8,9 +8,27 @@ from sssgen.interchange.imported import Notes
 from sssgen.interchange.scatter_color import multiscatter_of_albedo
 from sssgen.interchange.surface_model import ZERO, Quantity, SurfaceModel
 from sssgen.interchange.texels import mean_of
+from sssgen.lab.scene.media import Medium
 
 DENSE = 30.0
 """The mean chord of a body, in mean free paths, from which on it is matte."""
+
+
+def scatters_inside(model: SurfaceModel) -> bool:
+    """Whether light is scattered between two surfaces of the body."""
+    return model.interior is not None and not model.thin_walled and any(model.interior.scattering)
+
+
+def weight_inside(model: SurfaceModel) -> float:
+    """The share of the light that enters the body, 0 to 1."""
+    shares = (model.transmission, model.diffuse_transmission, model.subsurface)
+    return min(sum(mean_of(share)[0] for share in shares), 1.0)
+
+
+def reduced(medium: Medium) -> Medium:
+    """A medium with isotropic scattering that looks the same from afar: the similarity relation."""
+    red, green, blue = ((1.0 - medium.anisotropy) * part for part in medium.scattering)
+    return replace(medium, scattering=(red, green, blue), anisotropy=0.0)
 
 
 def as_matte(model: SurfaceModel, notes: Notes, mean_chord: float) -> SurfaceModel:
@@ -19,12 +37,11 @@ def as_matte(model: SurfaceModel, notes: Notes, mean_chord: float) -> SurfaceMod
     Techniques that follow light into a body serve one light; those of matte surfaces serve all. `mean_chord`, in
     metres, is that of the body. A picture of the base colour is kept, and scaled so that its mean is right.
     """
-    interior = model.interior
-    if interior is None or model.thin_walled or not any(interior.scattering):
+    if not scatters_inside(model):
         return model
-    forward = 1.0 - interior.anisotropy
-    reduced = [a + forward * s for a, s in zip(interior.absorption, interior.scattering, strict=True)]
-    depth = min(reduced) * mean_chord
+    interior = model.interior
+    assert interior is not None
+    depth = min(reduced(interior).extinction) * mean_chord
     if depth < DENSE:
         return model
     through = 4.0 / (3.0 * depth + 4.0)
@@ -32,9 +49,7 @@ def as_matte(model: SurfaceModel, notes: Notes, mean_chord: float) -> SurfaceMod
     error = f"at most {through:.1%} of the light would come through"
     for field in ("interior", "subsurface", "transmission", "diffuse_transmission"):
         notes.approximated(field, reason, error)
-    weight = min(
-        sum(mean_of(part)[0] for part in (model.transmission, model.diffuse_transmission, model.subsurface)), 1.0
-    )
+    weight = weight_inside(model)
     base, color = mean_of(model.base_color), multiscatter_of_albedo(interior.albedo, interior.anisotropy)
     mixed = [(1.0 - weight) * b + weight * c for b, c in zip(base, color, strict=True)]
     if model.base_color.image is None or min(base) <= 0.0:

@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.interchange.dense_bodies import as_matte
+from sssgen.interchange.body_shares import Shares, shares_of
+from sssgen.interchange.dense_bodies import as_matte, reduced, scatters_inside, weight_inside
 from sssgen.interchange.imported import Notes
 from sssgen.interchange.record_limits import limited
 from sssgen.interchange.surface_model import ONE, WHITE, Quantity, SurfaceModel, UvTransform
@@ -19,10 +20,10 @@ _LUMINANCE = (0.2126, 0.7152, 0.0722)
 _MOST_REFLECTED = 0.08
 """The largest reflectance that `specular_level` has."""
 _USUAL_REFLECTED = 0.04
-_OCTAVES = (1.0, 1.0, 0.25, 0.125)
-"""The defaults of `interior_octaves`."""
 _MOST_TILED = 100.0
 """The largest tiling and offset of texture coordinates that `uv_transform` takes."""
+_DARKEST = 1e-3
+"""A base colour that is darker counts as this where it is multiplied."""
 _LONGEST, _DENSEST = 10.0, 1000.0
 """The largest thickness and extinction that techniques take, in world units."""
 
@@ -109,7 +110,7 @@ class _Chooser:
         model = self.model
         if model.unlit or not model.transmits:
             return
-        if model.interior is not None and any(model.interior.scattering) and not model.thin_walled:
+        if scatters_inside(model):
             self.add("thickness", "back_face_thickness")
         if not (model.transmission.is_zero and model.diffuse_transmission.is_zero):
             self.thickness_of_absorption()
@@ -133,23 +134,24 @@ class _Chooser:
     def colors(self) -> None:
         model = self.model
         base, opacity = self.composer.together(model.base_color, model.opacity)
+        base, matte = self.with_matte_share(base)
         cutoff = 0.5 / max(model.alpha_cutoff, 1e-3) if model.alpha_mode == "mask" else 1.0
         shares = self.composer.together(
             base, model.metalness, model.transmission, model.diffuse_transmission, model.subsurface
         )
         removed = any(not share.is_zero for share in shares[2:])
-        computed = removed and any(share.image is not None for share in shares[1:])
+        kept = _kept(*(np.array(share.factor) for share in shares[1:])) + matte
+        computed = removed and (any(share.image is not None for share in shares[1:]) or _exceeds_one(base, kept))
         if not removed and cutoff == 1.0:
             texture = self.composer.packed("base_color", [base, opacity], srgb=True)
             tint = (*base.factor, *opacity.factor)
         elif not computed and cutoff == 1.0:
             texture = self.composer.packed("base_color", [base, opacity], srgb=True)
-            kept = _kept(*(np.array(share.factor) for share in shares[1:]))
             tint = (*(np.array(base.factor) * kept).tolist(), *opacity.factor)
         else:
             grid = self.composer.grid(*shares, opacity)
             values = [np.array(share.factor) for share in (*shares, opacity)] if grid is None else grid[0]
-            rgb = values[0] * _kept(*values[1:5])
+            rgb = values[0] * (_kept(*values[1:5]) + matte)
             alpha = np.clip(values[5] * cutoff, 0.0, 1.0)
             rgba = np.concatenate([np.clip(rgb, 0.0, 1.0), alpha], axis=-1)
             texture = None if grid is None else self.composer.computed("base_color", rgba, grid[1], srgb=True)
@@ -159,6 +161,15 @@ class _Chooser:
             self.add("surface", "vertex_tint")
         if model.unlit:
             self.add("lighting", "base_color_alone")
+
+    def with_matte_share(self, base: Quantity) -> tuple[Quantity, Any]:
+        """The base colour, and the factor of it that is the matte share of a body with light inside: 0 for others."""
+        if not scatters_inside(self.model):
+            return base, 0.0
+        if base.image is None:
+            base = Quantity(tuple(max(part, _DARKEST) for part in base.factor))
+        mean = np.maximum(mean_of(base), _DARKEST)
+        return base, weight_inside(self.model) * np.array(self.shares().matte) / mean
 
     def relief(self) -> None:
         model = self.model
@@ -232,10 +243,9 @@ class _Chooser:
                 "translucency", "seen_through", entering_texture=texture, entering_color=color,
                 extinction=extinction, ior=1.0 if model.thin_walled else min(max(model.ior, 1.0), 3.0),
             )  # fmt: skip
-        scatters = interior is not None and any(interior.scattering) and not model.thin_walled
-        if scatters:
+        if scatters_inside(model):
             self.interior()
-        if not model.diffuse_transmission.is_zero and not scatters:
+        elif not model.diffuse_transmission.is_zero:
             texture, color = self.product(
                 "diffuse_transmission", model.diffuse_transmission_color, model.diffuse_transmission
             )
@@ -256,22 +266,22 @@ class _Chooser:
 
     def interior(self) -> None:
         """Light that is scattered inside; anisotropic scattering by the similarity relation."""
-        model, interior = self.model, self.model.interior
-        assert interior is not None
-        forward = 1.0 - interior.anisotropy
-        reduced = [s * forward for s in interior.scattering]
-        extinction = [a + s for a, s in zip(interior.absorption, reduced, strict=True)]
-        weight = min(
-            sum(mean_of(part)[0] for part in (model.transmission, model.diffuse_transmission, model.subsurface)), 1.0
-        )
-        self.notes.approximated("interior", "four exponentials in place of light transport; `sssgen fit` adapts them")
+        assert self.model.interior is not None
+        medium, weight = reduced(self.model.interior), weight_inside(self.model)
+        self.notes.approximated("interior", "four exponentials and a matte share in place of light transport")
         self.add(
             "translucency", "interior_octaves", {"light_path": "depth_map_path"},
-            extinction=[min(part * self.metres, _DENSEST) for part in extinction],
-            scattering_albedo=[s / t if t > 0.0 else 0.0 for s, t in zip(reduced, extinction, strict=True)],
-            octaves=[weight * part for part in _OCTAVES],
-            mean_free_path=min(max(3.0 / max(sum(extinction) * self.metres, 3e-6), 1e-4), 100.0),
+            extinction=[min(part * self.metres, _DENSEST) for part in medium.extinction],
+            scattering_albedo=medium.albedo,
+            octaves=[weight * part for part in self.shares().octaves],
+            mean_free_path=min(max(medium.mean_free_path / self.metres, 1e-4), 100.0),
         )  # fmt: skip
+
+    def shares(self) -> Shares:
+        """How the light in the body is divided."""
+        assert self.model.interior is not None
+        medium = reduced(self.model.interior)
+        return shares_of([part * self.mean_chord for part in medium.extinction], medium.albedo)
 
 
 def choose(model: SurfaceModel, notes: Notes, mean_chord: float) -> Choice:
@@ -292,6 +302,11 @@ def _kept(metalness: Any, transmission: Any, diffuse: Any, subsurface: Any) -> A
     """The share of the base colour that is left for the reflection: metals keep all, as it is their mirror's colour."""
     m, t, d, s = (np.asarray(share) for share in (metalness, transmission, diffuse, subsurface))
     return 1.0 - (1.0 - m) * (1.0 - (1.0 - t) * (1.0 - d) * (1.0 - s))
+
+
+def _exceeds_one(base: Quantity, kept: Any) -> bool:
+    """Whether the factor of a picture would be larger than a tint can be."""
+    return base.image is not None and bool((np.array(base.factor) * kept > 1.0).any())
 
 
 def _unit(model: SurfaceModel) -> float:

@@ -25,6 +25,7 @@ from sssgen.lab.measure.fitting import Fitted
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.measure.problem import LENGTHS
 from sssgen.lab.scene.measured_scene import MeasuredScene
+from sssgen.lab.scene.scene_body import span
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.version import VERSION
@@ -54,10 +55,13 @@ class Settings(NamedTuple):
     processes: int | None = None
     progress_bar: Callable[[], AbstractContextManager[Progress]] = lambda: nullcontext(lambda *_: None)
     """Returns the progress bar of a stage of the work, as a context"""
+    techniques: frozenset[str] = frozenset()
+    """Of the candidates of translucency and of coordinates, those to measure; empty for all"""
 
     def cache_name(self, scene: MeasuredScene) -> str:
         """The file of a scene's points in the cache."""
-        key = repr((scene.key, self.samples, self.seed, self.roles, code_stamp(__name__)))
+        chosen = self.roles, sorted(self.techniques)
+        key = repr((scene.key, self.samples, self.seed, chosen, code_stamp(__name__)))
         return f"chart-{cache.digest(key)}.json"
 
 
@@ -100,7 +104,7 @@ def _measured(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[
         if role == "material":
             continue
         jobs = [(scene, candidate) for scene in scenes for candidate in _candidates(role, scene, points[scene.key])]
-        jobs = [job for job in jobs if _applies(*job)]
+        jobs = [job for job in jobs if _applies(*job) and _is_wanted(job[1], settings)]
         for scene, point in _points(jobs, views, settings, {}):
             points[scene.key].append(point)
     if "material" in settings.roles:
@@ -138,7 +142,9 @@ def _candidates(role: str, scene: MeasuredScene, measured: Sequence[Mapping[str,
 
 def _applies(scene: MeasuredScene, candidate: Candidate) -> bool:
     """Whether a candidate is charted on a scene: refraction only where the body refracts, light that is baked without
-    refraction only elsewhere, and maps of lights from afar only where all lights are."""
+    refraction only elsewhere, maps of lights from afar only where all lights are, and marches that reach through it."""
+    if not candidates.reaches(candidate, span(scene.geometry)):
+        return False
     if any(light.position is not None for light in scene.lights) and candidates.needs_distant_light(candidate):
         return False
     if candidate.role == "coordinates" or scene.medium is None:
@@ -146,6 +152,12 @@ def _applies(scene: MeasuredScene, candidate: Candidate) -> bool:
     if scene.medium.ior == 1.0:
         return not candidates.refracts(candidate)
     return candidates.refracts(candidate) or not candidates.is_calibrated(candidate)
+
+
+def _is_wanted(candidate: Candidate, settings: Settings) -> bool:
+    """Whether a candidate of one technique is to be measured."""
+    wanted = settings.techniques
+    return not wanted or candidate.role in LENGTHS or candidate.name in wanted
 
 
 Before = Mapping[tuple[str, tuple[str, ...], Any], Mapping[str, tuple[float, ...]]]

@@ -98,6 +98,18 @@ def _spans(technique: Technique) -> list[str]:
     return [uniform.name for uniform in technique.uniforms if "spans_body" in dict(uniform.hints)]
 
 
+def reaches(candidate: Candidate, span: float) -> bool:
+    """Whether the techniques can be set to the length that spans a body."""
+    names = [*candidate.techniques, *filter(None, [candidate.path.partition(":")[0]])]
+    ranges = [
+        hints["hint_range"]
+        for name in names
+        for uniform in load(name).uniforms
+        if "spans_body" in (hints := dict(uniform.hints)) and "hint_range" in hints
+    ]
+    return all(float(low) <= span <= float(high) for low, high, *_ in ranges)
+
+
 def is_path(slot: Function) -> bool:
     """Whether a slot takes the length inside the body from a point in it, towards a light."""
     return len(slot.params) == 2 and slot.quantity == "thickness"

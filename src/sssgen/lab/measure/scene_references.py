@@ -104,14 +104,14 @@ def training(scene: MeasuredScene) -> list[MeasuredScene]:
     small = 0.4 * size
     for part in (size, small):
         ball, bar = Ball(0.5 * part), Capsule(0.14 * part, 0.7 * part, rotation=(0.0, 0.0, 35.0))
-        result.append(_lit("ball", ball, scene.medium, (0.0, 0.4 * part, 3.2 * part), ROUND_LIGHTS))
-        result.append(_lit("bar", bar, scene.medium, (0.5 * part, 0.4 * part, 3.1 * part), ROUND_LIGHTS))
+        result.append(lit_body("ball", ball, scene.medium, (0.0, 0.4 * part, 3.2 * part), ROUND_LIGHTS))
+        result.append(lit_body("bar", bar, scene.medium, (0.5 * part, 0.4 * part, 3.1 * part), ROUND_LIGHTS))
     slab = Slab(1.4 * small, 1.4 * small, 0.3 * small)
-    result.append(_lit("slab", slab, scene.medium, (0.9 * small, 0.7 * small, 3.0 * small), SLAB_LIGHTS))
+    result.append(lit_body("slab", slab, scene.medium, (0.9 * small, 0.7 * small, 3.0 * small), SLAB_LIGHTS))
     return result
 
 
-def _lit(
+def lit_body(
     name: str, geometry: Geometry, medium: Medium, eye: tuple[float, float, float], lights: Sequence[Sequence[float]]
 ) -> MeasuredScene:
     directions = [np.array(light) / np.linalg.norm(light) for light in lights]
