@@ -56,6 +56,16 @@ def test_a_body_has_the_rest_of_its_base_colour_and_the_matte_share() -> None:
     assert octaves == pytest.approx(share * np.array(shares_of((5.0,) * 3, ALBEDO).octaves))
 
 
+def test_no_light_enters_a_metal() -> None:
+    model = SurfaceModel(
+        "gold", base_color=Quantity((0.9, 0.7, 0.3)), metalness=Quantity((1.0,)), subsurface=Quantity((1.0,)),
+        interior=medium((5.0,) * 3, ALBEDO),
+    )  # fmt: skip
+    choice = choose(model, Notes(), 1.0)
+    assert value(choice, "base_color", "tint")[:3] == pytest.approx((0.9, 0.7, 0.3))
+    assert "interior_octaves" not in [stage.technique for stage in choice.stages]
+
+
 @pytest.mark.parametrize("shade", [0.1, 0.6])
 def test_a_picture_of_the_base_colour_keeps_its_pattern(shade: float) -> None:
     """Its mean becomes the matte share; where a tint would exceed 1, the texture is computed."""

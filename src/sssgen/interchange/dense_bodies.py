@@ -15,14 +15,15 @@ DENSE = 30.0
 
 
 def scatters_inside(model: SurfaceModel) -> bool:
-    """Whether light is scattered between two surfaces of the body."""
-    return model.interior is not None and not model.thin_walled and any(model.interior.scattering)
+    """Whether light enters the body and is scattered between its surfaces."""
+    interior = model.interior
+    return interior is not None and not model.thin_walled and any(interior.scattering) and weight_inside(model) > 0.0
 
 
 def weight_inside(model: SurfaceModel) -> float:
-    """The share of the light that enters the body, 0 to 1."""
+    """The share of the light that enters the body, 0 to 1; none enters a metal."""
     shares = (model.transmission, model.diffuse_transmission, model.subsurface)
-    return min(sum(mean_of(share)[0] for share in shares), 1.0)
+    return (1.0 - mean_of(model.metalness)[0]) * min(sum(mean_of(share)[0] for share in shares), 1.0)
 
 
 def reduced(medium: Medium) -> Medium:
