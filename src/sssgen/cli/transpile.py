@@ -38,7 +38,7 @@ def add_options(parser: ArgumentParser) -> None:
         "The accepted language: docs/transpile.md. Exit status 1: --verify found a difference."
     )
     add = parser.add_argument
-    add("FILE", nargs="?", help="a file of GLSL 1.00 ES to 4.60: functions, or a fragment or vertex shader")
+    add("FILE", nargs="?", help="a file of GLSL 1.00 ES to 4.60: functions, or a vertex, fragment or compute shader")
     add("--target", "-t", metavar="T", help="a target from `sssgen list targets`")
     add(
         "--include",
