@@ -68,4 +68,4 @@ def test_the_memory_of_textures_is_bounded(tmp_path: Path) -> None:
         file = tmp_path / f"{number}.png"
         Image.new("RGB", (1, 1)).save(file)
         scene_values._picture(str(file), "repeat", {"source_name": "a", "type": "sampler2D", "color_space": "linear"})
-    assert len(scene_values._made) <= scene_values.MOST_TEXTURES
+    assert len(scene_values._kept_textures) <= scene_values.MOST_TEXTURES

@@ -118,7 +118,8 @@ def test_the_wheel_has_exactly_its_data(wheel: Path) -> None:
     for name in ("templates", "targets", "examples"):
         prefix = f"sssgen/_data/{name}/"
         carried = {Path(one.removeprefix(prefix)) for one in names if one.startswith(prefix)}
-        assert carried == {path.relative_to(ROOT / name) for path in (ROOT / name).rglob("*") if path.is_file()}
+        files = {path.relative_to(ROOT / name) for path in (ROOT / name).rglob("*") if path.is_file()}
+        assert carried == {file for file in files if "__pycache__" not in file.parts}
     for path in (ROOT / "src" / "sssgen").rglob("*"):
         inside = path.relative_to(ROOT / "src")
         if path.is_file() and not any(part.startswith((".", "__pycache__")) for part in inside.parts):

@@ -201,7 +201,7 @@ def test_the_webgpu_page_draws_every_example(tmp_path: Path, compiler: Callable[
 
 def test_the_examples_hold_nothing_built() -> None:
     """The wheel has the folder unchanged."""
-    ends = (".pyc", ".egg-info", ".wgsl", "reflection.json")
+    ends = (".egg-info", ".wgsl", "reflection.json")
     built = [path for path in (ROOT / "examples").rglob("*") if path.name.endswith(ends)]
     assert not built, built
     assert os.path.commonpath([ROOT, *(ROOT / "examples").rglob("*")]) == str(ROOT)

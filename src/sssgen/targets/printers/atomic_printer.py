@@ -28,7 +28,8 @@ class AtomicPrinter(Printer):
         super().__init__(target, module)
         self.atomics = atomic_places(module)
         """The shared variables and the members of structs that hold atomics."""
-        self.barriers = {row.texts[target.language] for row in ROWS if not row.has_place}
+        texts = (row.texts.get(target.language) for row in ROWS if not row.has_place)
+        self.barriers = set(filter(None, texts))
         self.addressed = False
         """Whether a place is printed and not its value."""
         self.memory_names: dict[str, str] = {}
