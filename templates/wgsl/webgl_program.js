@@ -148,6 +148,7 @@ export class Vertices {
         stride = 0;
       }
       stride ??= column * locations;
+      if (stride % 4) throw new Error(`the attribute '${name}' has a stride of ${stride} bytes: WebGPU takes multiples of 4`);
       const base = stride ? Math.floor(offset / stride) * stride : 0;
       const slot = slotOf(buffer, base, stride, perInstance ? 'instance' : 'vertex');
       for (let index = 0; index < locations; index++)

@@ -384,6 +384,17 @@ def test_assumptions_that_match_nothing_are_mentioned(tmp_path: Path, capsys: py
     assert "presets that match: babylonjs, colors, generic, threejs, unit-normals" in errors
 
 
+def test_a_difference_of_fields_has_a_warning_of_its_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shader, rules = tmp_path / "lit.glsl", tmp_path / "mine.toml"
+    shader.write_text(
+        "struct Lamp { vec3 place; };\nuniform Lamp lamp;\nfloat f(float x) { return x / lamp.place.x; }\n"
+    )
+    rules.write_text('[[assume]]\nnames = ["lamp.place - p"]\nstorage = "difference"\nnonzero = true\n')
+    main(["lint", str(shader), "--no-examples", "--assume", str(rules)])
+    errors = capsys.readouterr().err
+    assert "matches no difference: there is no 'lamp.place - p'" in errors and "write a comment" in errors
+
+
 RESTRICTED = """\
 uniform float scale; // sssgen: assume scale > 0
 float root(float x) { return sqrt(x); }

@@ -105,6 +105,11 @@ def test_interleaved_and_instanced_attributes(folder: Path) -> None:
     ]
 
 
+def test_a_stride_that_webgpu_does_not_take_names_the_attribute(folder: Path) -> None:
+    result = answer(folder, "return draw({ shade: { buffer, format: 'unorm8x4', stride: 1 } })")
+    assert result == {"error": "the attribute 'shade' has a stride of 1 bytes: WebGPU takes multiples of 4"}
+
+
 def place(folder: Path, name: str) -> dict[str, Any]:
     program = json.loads((folder / "a.program.json").read_text(encoding="utf-8"))
     found: dict[str, Any] = next(uniform for uniform in program["uniforms"] if uniform["name"] == name)

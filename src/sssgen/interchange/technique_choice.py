@@ -24,6 +24,9 @@ _MOST_TILED = 100.0
 """The largest tiling and offset of texture coordinates that `uv_transform` takes."""
 _DARKEST = 1e-3
 """A base colour that is darker counts as this where it is multiplied."""
+_ONE_MEDIUM = (
+    "These values belong to one medium, with a share of the tint above and [medium] of the scene: change them together."
+)
 _LONGEST, _DENSEST = 10.0, 1000.0
 """The largest thickness and extinction that techniques take, in world units."""
 
@@ -268,7 +271,9 @@ class _Chooser:
         """Light that is scattered inside; anisotropic scattering by the similarity relation."""
         assert self.model.interior is not None
         medium, weight = reduced(self.model.interior), weight_inside(self.model)
-        self.notes.approximated("interior", "four exponentials and a matte share in place of light transport")
+        extinction = ", ".join(f"{part:.4g}" for part in medium.extinction)
+        became = f"four exponentials and a matte share in place of light transport; extinction {extinction} per metre"
+        self.notes.approximated("interior", became)
         self.add(
             "translucency", "interior_octaves", {"light_path": "depth_map_path"},
             extinction=[min(part * self.metres, _DENSEST) for part in medium.extinction],
@@ -276,6 +281,7 @@ class _Chooser:
             octaves=[weight * part for part in self.shares().octaves],
             mean_free_path=min(max(medium.mean_free_path / self.metres, 1e-4), 100.0),
         )  # fmt: skip
+        self.stages[-1] = self.stages[-1]._replace(comment=_ONE_MEDIUM)
 
     def shares(self) -> Shares:
         """How the light in the body is divided."""

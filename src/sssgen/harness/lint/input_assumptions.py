@@ -64,6 +64,10 @@ class Rule(NamedTuple):
             return Diagnostic("warning", message, self.span, "change storage or types of the rule")
         if matching:
             return None
+        if self.storages == (DIFFERENCE,):
+            message = f"this rule matches no difference: there is no '{self.names[0]}'"
+            hint = "a difference is that of a uniform and an input, without fields and elements of arrays"
+            return Diagnostic("warning", message, self.span, f"{hint}; for these write a comment at the statement")
         hint = did_you_mean(self.names[0].strip("*"), names)
         message = f"this rule matches no input: there is no '{self.names[0]}'"
         return Diagnostic(

@@ -33,6 +33,8 @@ class MaterialSection(NamedTuple):
     """The parameters that are constants in the emitted text"""
     bind: tuple[tuple[str, str], ...] = ()
     """Slot → function"""
+    comment: str = ""
+    """A line above the section"""
 
 
 def material_text(
@@ -46,7 +48,8 @@ def material_text(
     keys = {"name": name, "title": title, "doc": doc, **(settings or {})}
     lines = ["[material]", *(f"{key} = {toml_value(value)}" for key, value in keys.items() if value != "")]
     for stage in stages:
-        lines += ["", f"[[{stage.section}]]", f"technique = {toml_value(stage.technique)}"]
+        lines += ["", *([f"# {stage.comment}"] if stage.comment else [])]
+        lines += [f"[[{stage.section}]]", f"technique = {toml_value(stage.technique)}"]
         if stage.bind:
             lines.append(f"bind = {{ {', '.join(f'{slot} = {toml_value(to)}' for slot, to in stage.bind)} }}")
         for key, value in stage.values:
