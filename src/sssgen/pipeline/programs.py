@@ -24,6 +24,7 @@ from sssgen.pipeline.material_stages import check_shell, check_values
 from sssgen.pipeline.state import State
 from sssgen.pipeline.trace import Trace
 from sssgen.support.diagnostics import Diagnostic, failure
+from sssgen.targets import registry
 from sssgen.targets.assemble import About, Program, print_parts
 from sssgen.targets.descriptor import Target
 from sssgen.targets.uniform_support import check_uniforms
@@ -74,8 +75,8 @@ def make_library(
 def _check_compute(target: Target, form: str, guards: str) -> None:
     """Raises SssgenError where a target has no compute shaders, and for guards, which know one invocation alone."""
     if form != "compute":
-        hint = "they go to glsl-330 (as GLSL 4.30), hlsl, metal and wgsl"
-        raise failure(f"{target.title} has no compute shaders here", hint)
+        able = [name for name in registry.names() if "compute" in registry.load(name).files]
+        raise failure(f"{target.title} has no compute shaders here", f"they go to {', '.join(able)}")
     if guards != "none":
         raise failure(
             "a compute shader takes no guards: other invocations write its memory, too", "write --guards none"

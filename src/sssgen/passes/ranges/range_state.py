@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple, cast
 
 from sssgen.ir import contracts
@@ -130,28 +130,29 @@ class AnalysisState:
     # Values
 
     def uniform(self, uniform: ir.Uniform) -> Value:
-        """A uniform within its contract; of a struct, each field within that of a uniform of its type."""
-        inner = innermost(uniform.type)
-        if not isinstance(inner, Struct):
-            contract = contracts.of_uniform(uniform._replace(type=inner), self.format)
-            return self.input(inner, contract, "uniform", uniform.name)
-        names = [f"{uniform.name}.{field.name}" for field in inner.fields]
-        return self.assembled([
-            self.uniform(uniform._replace(name=name, type=field.type))
-            for name, field in zip(names, inner.fields, strict=True)
-        ])  # fmt: skip
+        """A uniform within its contract."""
+
+        def read(name: str, type_: Type) -> Value:
+            contract = contracts.of_uniform(uniform._replace(name=name, type=type_), self.format)
+            return self.input(type_, contract, "uniform", name)
+
+        return self.by_fields(uniform.name, uniform.type, read)
 
     def stage_input(self, variable: ir.Variable) -> Value:
-        """An input of the stage; of a struct, each field within the contract of an input of its type."""
-        inner = innermost(variable.type)
+        """An input of the stage within its contract."""
+
+        def read(name: str, type_: Type) -> Value:
+            contract = contracts.of_stage_input(variable._replace(name=name, type=type_), self.format)
+            return self.input(type_, contract, "input", name)
+
+        return self.by_fields(variable.name, variable.type, read)
+
+    def by_fields(self, name: str, type_: Type, read: Callable[[str, Type], Value]) -> Value:
+        """What `read` has for a name and its type; of a struct, for each of its fields by its path."""
+        inner = innermost(type_)
         if not isinstance(inner, Struct):
-            contract = contracts.of_stage_input(variable._replace(type=inner), self.format)
-            return self.input(inner, contract, "input", variable.name)
-        names = [f"{variable.name}.{field.name}" for field in inner.fields]
-        return self.assembled([
-            self.stage_input(variable._replace(name=name, type=field.type))
-            for name, field in zip(names, inner.fields, strict=True)
-        ])  # fmt: skip
+            return read(name, inner)
+        return self.assembled([self.by_fields(f"{name}.{field.name}", field.type, read) for field in inner.fields])
 
     def assembled(self, fields: Sequence[Value]) -> Value:
         """A struct of these fields."""

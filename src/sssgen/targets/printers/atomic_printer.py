@@ -61,7 +61,7 @@ class AtomicPrinter(Printer):
         return f"{array}[{index}]"
 
     def array_of(self, element: str, length: int) -> str:
-        """The type of an array; the length is 0 at the end of a storage buffer."""
+        """The type of an array, which each language spells; the length is 0 at the end of a storage buffer."""
         raise NotImplementedError
 
     def stored_type(self, type_: Type, key: Memory) -> str:
