@@ -29,22 +29,22 @@ class Difference(NamedTuple):
 
 
 class ComputeReport(NamedTuple):
-    """All rounds."""
+    """The result of all rounds."""
 
     groups: tuple[int, int, int]
     size: tuple[int, ...]
     """Of a workgroup."""
     rounds: int = 0
-    """How many were compared."""
+    """The number of rounds that were compared."""
     numbers: int = 0
     """In all written buffers of these rounds."""
     ordered: int = 0
-    """How many of them depend on the order of the invocations, and are not compared."""
+    """The numbers that are not compared, as they depend on the order of the invocations."""
     order_places: tuple[str, ...] = ()
     undefined: int = 0
-    """How many rounds were not compared, as something is undefined in them."""
+    """The number of rounds that are not compared, as something is undefined in them."""
     faults: tuple[str, ...] = ()
-    """What is."""
+    """What is undefined in these rounds."""
     differences: Mapping[str, Difference] = {}
     """By translation."""
     reason: str = ""
