@@ -15,6 +15,7 @@ from typing import NamedTuple
 from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.intervals import INF, Range
 from sssgen.ir.nodes import Param, Uniform, Variable
+from sssgen.ir.surface_fields import COLORS, FRACTIONS
 from sssgen.ir.types import FLOAT, VEC3, VEC4, Array, Matrix, Sampler, Type, kind_of
 from sssgen.ir.vector_ranges import LENGTH, Contract
 
@@ -37,8 +38,7 @@ INTEGERS = {"int": (-(2.0**31), 2.0**31 - 1.0), "uint": (0.0, 2.0**32 - 1.0), "b
 
 _UNIT = {"thinness", "transmittance"}
 _LENGTHS = {"thickness", "view_thickness"}
-_FRACTIONS = {"alpha", "metallic", "roughness", "occlusion", "specular", "clearcoat", "clearcoat_roughness"}
-_COLORS = {"albedo", "light_color", "emission", "color", "translucency"}
+_COLORS = COLORS | {"light_color", "color", "translucency"}
 _FRAME = {"N", "V", "L", "T", "B", "normal"}
 
 
@@ -83,7 +83,7 @@ def of_name(param: Param, format: Format = FLOAT32) -> Contract | None:
     """The contract of a value of the chain by its name; None for any other name."""
     if param.name in _FRAME and param.type == VEC3:
         return Contract(-LENGTH, LENGTH, LENGTH)
-    if param.name in _FRACTIONS and param.type == FLOAT:
+    if param.name in FRACTIONS and param.type == FLOAT:
         return Contract(0.0, 1.0)
     if param.name == "eye_distance" and param.type == FLOAT:
         return Contract(0.0, THICKNESS[format.name])

@@ -40,6 +40,7 @@ from sssgen.ir.nodes import (
     Stmt,
     StructDecl,
 )
+from sssgen.ir.surface_fields import FIELDS, NAMES
 from sssgen.ir.transform import rewrite, rewrite_block
 from sssgen.ir.types import BOOL, FLOAT, VEC2, VEC3, VEC4, VOID, Field, Struct, Type
 from sssgen.lang.check.quantities import SCALARS
@@ -67,25 +68,11 @@ OF_MESH = frozenset({
 """The inputs that a shell computes from a mesh."""
 
 DEFAULTS: dict[str, tuple[Type, tuple[float, ...]]] = {
-    "albedo": (VEC3, (1.0, 1.0, 1.0)),
-    "alpha": (FLOAT, (1.0,)),
-    "normal": (VEC3, (0.0, 0.0, 1.0)),
-    "metallic": (FLOAT, (0.0,)),
-    "roughness": (FLOAT, (0.5,)),
-    "occlusion": (FLOAT, (1.0,)),
-    "emission": (VEC3, (0.0, 0.0, 0.0)),
-    "specular": (FLOAT, (0.04,)),
-    "clearcoat": (FLOAT, (0.0,)),
-    "clearcoat_roughness": (FLOAT, (0.0,)),
+    **{field.name: (field.type, field.default) for field in FIELDS},
     "translucency": (VEC3, (0.0, 0.0, 0.0)),
     "color": (VEC3, (0.0, 0.0, 0.0)),
 }
-"""The values of the surface, with their defaults where no technique writes them."""
-
-OPTIONAL = ("specular", "clearcoat", "clearcoat_roughness")
-"""Values that are constants in the text of the techniques that read them, where no stage writes them."""
-
-SURFACE_FIELDS = ("albedo", "alpha", "normal", "metallic", "roughness", "occlusion", "emission", *OPTIONAL)
+"""The values that a chain computes, with their defaults where no technique writes them."""
 
 _RESULT_OF_ROLE = {
     "geometry": "hit", "lighting": "color", "shadow": "shadow", "environment": "color",
@@ -98,10 +85,10 @@ _APART = ("lighting", "shadow", "environment", *_LAST)
 
 
 TAKEN = frozenset(
-    {"Surface", "surface", "light", *INPUTS}
+    {"Surface", "surface", "light", "shade_fragment", "MAX_LIGHTS", *INPUTS}
     | {f"evaluate_{kind}" for kind in ("surface", "translucency", "lighting", "shadow", "environment", "color", *_LAST)}
 )
-"""The names of the assembled functions, their inputs and their surface, which no uniform may have. The other names
+"""The names of the assembled functions, their shell, inputs and surface, which no uniform may have. The other names
 that a shell declares are reserved by its descriptor."""
 
 
@@ -158,8 +145,8 @@ def assemble(module: Module, stages: Sequence[ChainFunction], lit: bool, opaque:
         if stage.role in apart:
             apart[stage.role].add(stage)
     named = [name for body in (light, *apart.values()) for name in body.crossing]
-    crossing = [name for name in named if name not in SURFACE_FIELDS]
-    own = [name for name in SURFACE_FIELDS if name in surface.values and not (opaque and name == "alpha")]
+    crossing = [name for name in named if name not in NAMES]
+    own = [name for name in NAMES if name in surface.values and not (opaque and name == "alpha")]
     fields = own + list(dict.fromkeys(crossing))
     if not fields:  # no shading language has empty structs
         surface.store("albedo", constant(*DEFAULTS["albedo"], surface.span), surface.statements, False, surface.span)

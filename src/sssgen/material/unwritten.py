@@ -8,9 +8,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 
 from sssgen.ir.nodes import Assign, Call, Declare, Expr, Function, Local, Module
+from sssgen.ir.surface_fields import OPTIONAL
 from sssgen.ir.transform import rewrite_function
 from sssgen.ir.walk import all_expressions, statements, written_root
-from sssgen.material.chain_assembly import DEFAULTS, OPTIONAL, constant
+from sssgen.material.chain_assembly import DEFAULTS, constant
 
 
 def unwritten(functions: Sequence[Function]) -> frozenset[str]:

@@ -18,6 +18,7 @@ from sssgen.material.model import Material, TechniqueUse
 from sssgen.material.requirements import bodies
 from sssgen.passes.names import checked_prefix
 from sssgen.pipeline.emitted_cache import installation
+from sssgen.pipeline.facts import facts_of
 from sssgen.support import cache
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.gc_pause import paused
@@ -94,7 +95,8 @@ def compile(
 
         raise failure(f"unknown form '{form}'", did_you_mean(form, FORMS) or "forms: shader, functions")
     _check_guards(guards)
-    chosen = _prefixed(registry.load(target), prefix, form, material.name)
+    facts = facts_of(material)
+    chosen = _prefixed(registry.load(target).for_material(facts), prefix, form, material.name)
     key = (id(material), target, form, guards, prefix)
     cached = _compiled.get(key) if templates is None and trace is None else None
     if cached is not None and cached[0] is material:
@@ -133,7 +135,8 @@ def _inner(target: Target, embedded: Embedded) -> Target:
     """The target of an embedded text: that language under the outer target's engine."""
     return registry.load(embedded.target)._replace(
         name=f"{target.name}.{embedded.target}", inputs=embedded.inputs, light_inputs=embedded.light_inputs,
-        lighting=target.lighting, engine_encodes=target.engine_encodes, parameters=target.parameters,
+        lighting=target.lighting, fragment_shell=target.fragment_shell, engine_encodes=target.engine_encodes,
+        parameters=target.parameters,
         prefix=target.prefix, properties=target.properties,
     )  # fmt: skip
 
@@ -262,6 +265,7 @@ def _about(material: Material) -> About:
         material.shading,
         material.alpha_mode,
         material.two_sided,
+        frozenset(facts_of(material)),
         material.makes_rays,
         bodies=tuple(bodies(material.stages)),
     )

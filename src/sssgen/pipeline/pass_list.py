@@ -54,6 +54,7 @@ _NO_VERTEX_LEVELS = Condition(
     "it is a vertex or compute shader and the target has no implicit levels there",
     lambda state: state.form in ("vertex", "compute") and not state.target.capabilities.implicit_levels,
 )
+_SHELL = Condition("the target has no engine", lambda state: state.has_shell)
 _CALLED = Condition("the called functions are given", lambda state: state.called is not None)
 _NO_LEVELS = Condition(
     "the target has no derivatives in non-uniform flow", lambda state: not state.target.capabilities.implicit_levels
@@ -90,15 +91,17 @@ _GUARDS = Pass(
 MATERIAL: tuple[Pass, ...] = (
     Pass("link", steps.link_stages, "bind slots and merge the techniques into one module, which all others need"),
     Pass("chain", steps.assemble_chain, "assemble the functions that the shell calls, from the linked functions"),
+    Pass("shell", steps.write_shell, "write the shell around these functions, which is simplified with them", _SHELL),
     _FOLD,
     _UNDEFINED,
     Pass("conversions", steps.remove_conversions, "remove conversions, which serve the type check alone"),
     _PRUNE,
+    Pass("frame", steps.find_frame, "find the values that the target supplies to what is left of the shell", _SHELL),
     _HOIST,
     _GUARDS,
     Pass("cost", steps.count_cost, "count the operations of the program that all targets get"),
 )
-"""A material. Of the target they depend on its lighting, on whether the engine encodes colours, and on its precision:
+"""A material. Of the target they depend on its lighting and shell, on whether the engine encodes colours, and on its precision:
 their result is cached for all targets that agree in these."""
 
 _SHADER_INPUT: tuple[Pass, ...] = (

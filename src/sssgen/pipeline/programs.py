@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 from sssgen.ir.contracts import Assumed
 from sssgen.ir.formats import FLOAT32
-from sssgen.ir.nodes import Module
+from sssgen.ir.nodes import Function, Module
 from sssgen.ir.types import Struct
 from sssgen.lang.source_lines import comment_behind, comments_before, source_line
+from sssgen.material.chain_assembly import Entry
 from sssgen.material.model import Material
 from sssgen.passes.cost import Cost
 from sssgen.passes.ranges.origins import Origins, RangeTrace
@@ -29,7 +30,7 @@ from sssgen.targets.assemble import About, Program, print_parts
 from sssgen.targets.descriptor import Target
 from sssgen.targets.uniform_support import check_uniforms
 
-_material_programs: dict[tuple[str, str, bool, str, str, str], State] = {}
+_material_programs: dict[tuple[str, str, tuple[str, ...], bool, str, str, str], State] = {}
 """The states after the passes of a material, which are the same for all targets of one kind."""
 _CACHED = 8
 """Few, as materials are compiled one after another, each for all targets."""
@@ -148,7 +149,8 @@ def _material_program(
 ) -> State:
     """The state after the passes of a material; cached for the other targets of the same kind."""
     new = State(Module(), form, guards, target, material=material)
-    key = (structure, target.lighting, target.engine_encodes, form, guards, new.format.name)
+    shell = (target.fragment_shell, str(target.discards), *target.inputs) if new.has_shell else ()
+    key = (structure, target.lighting, shell, target.engine_encodes, form, guards, new.format.name)
     state = _material_programs.get(key) if structure else None
     if state is None:
         state = pass_list.run(pass_list.MATERIAL, new, trace)
@@ -163,20 +165,23 @@ def finish_program(state: State, trace: Trace | None = None) -> Program:
     """Runs the passes for the target, and prints the result."""
     pass_list.run(pass_list.TARGET, state, trace)
     module, target, material = state.module, state.target, state.material
+
+    def final(entry: Entry) -> tuple[Function, tuple[str, ...]]:
+        """An assembled function as the target has it, with its inputs."""
+        name = state.renames.get(entry.function.name, entry.function.name)
+        return next(function for function in module.functions if function.name == name), entry.inputs
+
     check_uniforms(target, state.form, module.uniforms, state.source_names, source_line)
+    shell = final(state.shell) if state.shell is not None else None
     parts = print_parts(
-        target, module, comments_before, state.stage, state.entry_name, state.keep, comment_behind, source_line
-    )
+        target, module, comments_before, state.stage, state.entry_name, state.keep, comment_behind, source_line,
+        shell,
+    )  # fmt: skip
     unlit = material is not None and material.shading != "lit"
     encoded = unlit and any(stage.link.role == "output" for stage in state.stages)
     reached = _reached(state, module) if any(file.without for file in target.files.get(state.form, ())) else {}
-    functions = {function.name: function._replace(body=()) for function in module.functions}
-    renamed = state.renames
-    entries = {
-        kind: (functions[renamed.get(entry.function.name, entry.function.name)], entry.inputs)
-        for kind, entry in state.entries.items()
-    }
-    name = renamed.get("Surface", "Surface")
+    entries = {kind: final(entry) for kind, entry in state.entries.items()}
+    name = state.renames.get("Surface", "Surface")
     surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == name), None)
     module = module._replace(functions=tuple([function._replace(body=()) for function in module.functions]))
     warnings = [
@@ -186,7 +191,7 @@ def finish_program(state: State, trace: Trace | None = None) -> Program:
         module, entries, surface, state.source_names, About("", ""), encoded, parts, state.owners, state.renames,
         {kind: cost._asdict() for kind, cost in state.costs.items()}, warnings, state.settings,
         report(state.guarded.sites, state.guarded.guarded) if state.guarded else {}, state.stage,
-        reached=reached,
+        reached=reached, shell=shell,
     )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from sssgen.ir.formats import FLOAT16, FLOAT32, Format
 from sssgen.ir.nodes import Function, Module
+from sssgen.ir.types import Struct
 from sssgen.material.chain_assembly import Entry
 from sssgen.material.model import Material
 from sssgen.passes.cost import Cost
@@ -57,6 +58,10 @@ class State:
     slots: frozenset[str] = frozenset()
     """The keys of the functions that are bound to slots."""
     entries: Mapping[str, Entry] = field(default_factory=dict)
+    surface: Struct | None = None
+    """The struct of the chain's surface."""
+    shell: Entry | None = None
+    """The shell with the values that the target supplies; None where the target's engine has it."""
     notes: list[Note] = field(default_factory=list)
     guarded: Guarded | None = None
     costs: Mapping[str, Cost] = field(default_factory=dict)
@@ -77,6 +82,11 @@ class State:
     def format(self) -> Format:
         """The number format in which the target's text computes."""
         return FLOAT16 if self.target.half_of else FLOAT32
+
+    @property
+    def has_shell(self) -> bool:
+        """Whether the program has a shell: a whole material for a target without an engine."""
+        return self.form == "shader" and bool(self.target.fragment_shell)
 
     @property
     def whole_shader(self) -> bool:

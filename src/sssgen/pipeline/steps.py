@@ -9,7 +9,8 @@ from sssgen.ir.nodes import Module
 from sssgen.lang.polyfills import guard as guard_source
 from sssgen.lang.polyfills import polyfill
 from sssgen.lang.source_lines import source_line
-from sssgen.material.chain_assembly import TAKEN, ChainFunction, assemble
+from sssgen.material.chain_assembly import TAKEN, ChainFunction, Entry, assemble
+from sssgen.material.shell_assembly import add_shell, supplied
 from sssgen.passes.conversions import drop_conversions
 from sssgen.passes.cost import cost_of
 from sssgen.passes.fold import fold
@@ -75,9 +76,32 @@ def assemble_chain(state: State) -> Module:
         for stage, function in zip(state.stages, state.linked, strict=True)
     ]
     chain = assemble(state.module, stages, material.shading == "lit", material.alpha_mode == "opaque")
-    state.entries = dict(chain.entries)
+    state.entries, state.surface = dict(chain.entries), chain.surface
     state.roots = [entry.function.key for entry in chain.entries.values()]
     return chain.module
+
+
+def write_shell(state: State) -> Module:
+    material = state.material
+    assert material is not None
+    target = state.target
+    masked = material.alpha_mode == "mask" and target.discards
+    facts = {"two_sided": material.two_sided, "masked": masked}
+    module, shell = add_shell(
+        state.module, state.entries, state.surface, facts, target.fragment_shell, target.inputs.keys()
+    )
+    state.roots.append(shell.key)
+    return module
+
+
+def find_frame(state: State) -> Module:
+    old = next(function for function in state.module.functions if function.key == state.roots[-1])
+    shell = supplied(old)
+    state.shell = Entry(shell, tuple([param.name for param in shell.params]))
+    state.roots[-1] = shell.key
+    return state.module._replace(
+        functions=tuple([shell if function is old else function for function in state.module.functions])
+    )
 
 
 # The beginning of plain GLSL

@@ -18,12 +18,16 @@ from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.targets.descriptor import Target
+from sssgen.targets.frame import LIGHT, used_parts
 from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text
 from sssgen.targets.printers.printer import Comments, Printer
 from sssgen.targets.templates import render
 from sssgen.targets.uniform_layout import Member, padding, place
 
 _MARK = re.compile(r"\x02(\d{1,9})\x03", re.ASCII)
+
+PER_LIGHT = ("translucency", "lighting")
+"""The kinds of the entries that a shell calls once per light."""
 
 _DEFAULTS = {"default_white": "white", "default_black": "black", "default_gray": "gray", "default_bump": "bump"}
 
@@ -38,6 +42,8 @@ class About(NamedTuple):
     alpha_mode: str = "opaque"
     two_sided: bool = False
     """Whether back faces are drawn, too, and lit with the reversed normal."""
+    facts: frozenset[str] = frozenset()
+    """Its properties for which a target may have variants (`FACTS` of the descriptor)."""
     raymarched: bool = False
     """Whether the chain makes its own geometry, so that the shell needs no mesh."""
     head: tuple[str, ...] = ()
@@ -74,6 +80,8 @@ class Program(NamedTuple):
     """The interface, where the module is a whole shader."""
     embedded: Mapping[str, tuple[Target, Program]] = {}
     """The same material in the other languages of the target's files."""
+    shell: tuple[Function, tuple[str, ...]] | None = None
+    """The function around the chain of a target without an engine, and the values that the target supplies to it."""
     reached: Mapping[str, frozenset[str]] = {}
     """Entry kind → the names of the functions that it calls, where a file of the target leaves an entry out."""
 
@@ -124,10 +132,12 @@ def print_parts(
     kept: bool = False,
     behind: Callable[[str, int], str] | None = None,
     source: Callable[[Span], str] | None = None,
+    shell: tuple[Function, tuple[str, ...]] | None = None,
 ) -> dict[str, list[list[Line]]]:
     """Prints a legal module without its uniforms; `entry` is the name of a whole shader's entry function.
 
-    `kept`: numbers have the digits that they were written with.
+    `kept`: numbers have the digits that they were written with. `shell` is the function around the chain and the values
+    that it takes: its body is a part of its own where the target's template has the function around it.
     """
     printer = printer_for(target, module)
     printer.comments = comments
@@ -136,6 +146,7 @@ def print_parts(
         printer.behind = behind
     if source is not None:
         printer.source = source
+    inlined = shell[0] if shell is not None and target.fragment_result else None
     return {
         "types": [lines for struct in module.structs if (lines := printer.print_struct(struct))],
         "constants": [[line for constant in module.constants for line in printer.print_constant(constant)]],
@@ -143,7 +154,8 @@ def print_parts(
             printer.print_layout(),
             [line for variable in module.variables for line in printer.print_variable(variable)],
         ],
-        "functions": [printer.print_function(function) for function in module.functions],
+        "functions": [printer.print_function(function) for function in module.functions if function is not inlined],
+        "shell": [printer.print_body(inlined, _texts(target, printer, inlined, shell[1]))] if inlined and shell else [],
         "entry": [printer.print_entry(entry)] if stage is not None else [],
     }
 
@@ -192,6 +204,7 @@ def _printed(
         "variables": _text(program.parts["variables"], marks),
         "functions": _text(program.parts["functions"], marks),
         "entry": _text(program.parts["entry"], marks),
+        "shell": _text(program.parts["shell"], marks),
     }
     bindings = [printer.binding(index) for index in range(len(textures))] if declares else []
     context = _context(target, program, printer, form, code) | {"padding": padding(members)}
@@ -233,8 +246,13 @@ def _context(target: Target, program: Program, printer: Printer, form: str, code
     inputs = {name for _, entry_inputs in program.entries.values() for name in entry_inputs}
     _check_properties(target, program)
     surface = program.surface
+    fields = {field.name for field in surface.fields} if surface is not None else set()
+    sinks = {place: [text for name, text in rows.items() if name in fields] for place, rows in target.surface.items()}
     return {
+        "frame": _frame(target, program, sinks),
+        "surface": {place: "\n".join(texts) for place, texts in sinks.items()},
         "material": program.about._asdict(),
+        "facts": program.about.facts,
         "target": target,
         "form": form,
         "header": _header(target, program),
@@ -253,6 +271,21 @@ def _context(target: Target, program: Program, printer: Printer, form: str, code
         "workgroup": program.module.workgroup,
         "varying_locations": program.stage is not None and program.stage.passes_locations,
     }
+
+
+def _frame(target: Target, program: Program, sinks: Mapping[str, Sequence[str]]) -> dict[str, str]:
+    """The used parts of the target's frame by place, and what gives the surface to the engine."""
+    if program.shell is not None:
+        _, inputs = program.shell
+        texts, light_texts = [target.inputs.get(name, name) for name in inputs], []
+    else:
+        per_light = [name for kind in PER_LIGHT if kind in program.entries for name in program.entries[kind][1]]
+        others = [name for kind, (_, names) in program.entries.items() if kind not in PER_LIGHT for name in names]
+        texts = [target.inputs.get(name, name) for name in others]
+        light_texts = [{**target.inputs, **target.light_inputs}.get(name, name) for name in per_light]
+    texts += [text for place, rows in sinks.items() if place != LIGHT for text in rows]
+    light_texts += sinks.get(LIGHT, ())
+    return used_parts(target.frame, target.reads, texts, light_texts)
 
 
 def _header(target: Target, program: Program) -> list[str]:
@@ -284,7 +317,7 @@ def _supplied(target: Target, program: Program, uniform: Uniform) -> str:
 
 def _entry(target: Target, printer: Printer, kind: str, function: Function, inputs: tuple[str, ...]) -> dict[str, Any]:
     """An entry with the text of its call: the shell's expressions for its inputs, then the uniforms."""
-    expressions = {**target.inputs, **(target.light_inputs if kind in ("translucency", "lighting") else {})}
+    expressions = {**target.inputs, **(target.light_inputs if kind in PER_LIGHT else {})}
     leading = ["surface"] if len(function.params) > 0 and isinstance(function.params[0].type, Struct) else []
     names = [*leading, *inputs]
     params = []
@@ -299,6 +332,13 @@ def _entry(target: Target, printer: Printer, kind: str, function: Function, inpu
         listed = textwrap.fill(listed, WIDTH - 12, subsequent_indent=" " * 12, break_long_words=False)
     call = f"{function.name}({listed})"
     return {"name": function.name, "params": params, "result": printer.type(function.result), "call": call}
+
+
+def _texts(target: Target, printer: Printer, shell: Function, inputs: Sequence[str]) -> dict[str, str]:
+    """What the body of a shell reads in place of its parameters."""
+    texts = [target.inputs.get(name, name) for name in inputs]
+    texts += [_passed(printer, param, param.passes) for param in shell.params[len(inputs) :]]
+    return {param.name: text for param, text in zip(shell.params, texts, strict=True)}
 
 
 def _passed(printer: Printer, param: Param, uniform: str) -> str:

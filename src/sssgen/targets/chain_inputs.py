@@ -14,9 +14,6 @@ class ChainInput(NamedTuple):
     """world, object, texture or screen; '' for what has no space."""
 
 
-OPTIONAL_VALUES = ("specular", "clearcoat", "clearcoat_roughness")
-"""The values of the surface that not every engine has."""
-
 CHAIN_INPUTS: Mapping[str, ChainInput] = {
     "uv": ChainInput("the texture coordinate", "texture"),
     "P": ChainInput("the position of the surface point", "world"),
@@ -41,3 +38,18 @@ CHAIN_INPUTS: Mapping[str, ChainInput] = {
     "surface": ChainInput("the result of evaluate_surface"),
     "color": ChainInput("the final color"),
 }
+
+SHELL_INPUTS: Mapping[str, ChainInput] = {
+    "camera_position": ChainInput("the position of the eye", "world"),
+    "vertex_normal": ChainInput("the normal of the mesh, of any length", "world"),
+    "vertex_tangent": ChainInput("the tangent of the mesh, of any length; w: the handedness, +1 or -1", "world"),
+    "front_facing": ChainInput("whether this is a front face"),
+    "ray": ChainInput("the direction of the eye's ray, of any length", "world"),
+    "model": ChainInput("the matrix from object to world"),
+    "inverse_model": ChainInput("its inverse"),
+    "ambient_color": ChainInput("the uniform light from all around"),
+    "light_count": ChainInput("the number of lights, at most 4"),
+    "light_positions": ChainInput("w = 1: where a light is; w = 0: the direction towards it", "world"),
+    "light_colors": ChainInput("the light that a white surface reflects which faces the light, at the distance 1"),
+}
+"""What the shells of targets without an engine read, in addition (`shells/fragment.sss`)."""

@@ -7,13 +7,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Mapping
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar, cast
 
+from sssgen.ir.surface_fields import NAMES, OPTIONAL
 from sssgen.ir.types import BY_NAME
 from sssgen.passes.capabilities import Capabilities
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.paths import stem
-from sssgen.targets.chain_inputs import CHAIN_INPUTS, OPTIONAL_VALUES
+from sssgen.targets.chain_inputs import CHAIN_INPUTS, SHELL_INPUTS
+from sssgen.targets.frame import Parts, Variant
 
 _Record = TypeVar("_Record", bound=NamedTuple)
 
@@ -187,6 +189,14 @@ class Target(NamedTuple):
     """Chain input → the shell's expression for it."""
     light_inputs: Mapping[str, str] = {}
     """The same, where it differs inside the loop over the lights."""
+    frame: Parts = {}
+    """Place in the templates → name → text: what the shell declares and computes where a text mentions the name."""
+    surface: Parts = {}
+    """Place in the templates → value of the surface → the text that gives it to the engine."""
+    reads: tuple[str, ...] = ()
+    """Names of parts of the frame that the templates themselves mention."""
+    variants: Mapping[str, Variant] = {}
+    """Property of a material (see `FACTS`) → what differs for materials that have it."""
     names: Names = Names()
     capabilities: Capabilities = Capabilities()
     """What the language can express; the passes rewrite the rest."""
@@ -210,6 +220,12 @@ class Target(NamedTuple):
     """Value of the surface that the engine does not have → what a user can do instead."""
     lighting: str = ""
     """The technique that lights a lit material; '' where the engine does."""
+    fragment_shell: str = ""
+    """The function of `shells/` that draws a fragment, where the target has no engine."""
+    fragment_result: str = ""
+    """What the shell's body does with its result, `{}`; '' where the shell is printed as a function."""
+    discards: bool = True
+    """Whether the shell discards the fragments of a masked material with a low alpha."""
     shell: tuple[str, ...] = ()
     """Which of the roles that add to a plain shell (shadow, environment, tone_mapping) its own can carry; an engine has
     its own instead."""
@@ -242,6 +258,16 @@ class Target(NamedTuple):
     half_of: str = ""
     """The target of which this one is the variant in half precision; '' for every other."""
 
+    def for_material(self, facts: Collection[str]) -> Target:
+        """The target with its variants for a material of these properties."""
+        variants = [self.variants[fact] for fact in FACTS if fact in facts and fact in self.variants]
+        if not variants:
+            return self
+        own = Variant(self.inputs, self.light_inputs, self.frame, self.surface, self.reads)
+        for variant in variants:
+            own = own.with_variant(variant)
+        return self._replace(**own._asdict())
+
     def declares(self, form: str) -> bool:
         """Whether the text of a form declares the uniforms and textures."""
         return form not in self.parameters or form in self.declared
@@ -252,14 +278,21 @@ class Target(NamedTuple):
         return output.name.format(material=material, module=f"{material}_" if taken else material)
 
 
+_NESTED = ("files", "ports", "embedded", "frame", "surface", "variants")
+"""The sections of sections."""
 _REQUIRED = ("title", "language", "types", "files")
+FACTS = ("lit", "unlit", "two_sided", "mesh", "screen", "picture", "opaque", "mask", "blend")
+"""The properties of a material for which a descriptor may have variants; the later ones win. `screen` is a material
+that makes its own picture, without a mesh, and `picture` one of these that reads no ray of the eye; the last three
+are alpha modes."""
 _KEYS: dict[str, Collection[str]] = {
     "": Target._fields[:-2],
     "types": (*BY_NAME, "sampler", "samplerShadow"),
-    "inputs": CHAIN_INPUTS,
+    "inputs": {**CHAIN_INPUTS, **SHELL_INPUTS},
     "light_inputs": CHAIN_INPUTS,
     "ports": CHAIN_INPUTS,
-    "lacks": OPTIONAL_VALUES,
+    "lacks": OPTIONAL,
+    "variants": FACTS,
     "stage_builtins": STAGE_BUILTINS,
 }
 """The keys of the sections that have no record type."""
@@ -297,7 +330,7 @@ class _Reader:
         missing = [key for key in _REQUIRED if key not in table]
         if missing:
             raise self.wrong(f"is incomplete: it has no {' and no '.join(missing)}")
-        simple = {key: value for key, value in table.items() if key not in ("files", "ports", "embedded")}
+        simple = {key: value for key, value in table.items() if key not in _NESTED}
         target = self.record(Target(name=stem(self.file), dialect=table["language"]), simple, "")
         files = {
             form: tuple([self.record(OutputFile(), entry, f"files.{form}") for entry in self.is_a(list, entries, form)])
@@ -307,11 +340,36 @@ class _Reader:
             name: self.record(Embedded(), entry, f"embedded.{name}")
             for name, entry in self.is_a(dict, table.get("embedded", {}), "embedded").items()
         }
+        variants = self.is_a(dict, table.get("variants", {}), "variants")
+        self.check_keys(variants, FACTS, "variants")
         self.check_keys(ports := self.is_a(dict, table.get("ports", {}), "ports"), _KEYS["ports"], "ports")
         return target._replace(
             files=files,
             embedded=embedded,
+            frame=self.parts(table.get("frame", {}), "frame"),
+            surface=self.parts(table.get("surface", {}), "surface", NAMES),
+            variants={fact: self.variant(entry, f"variants.{fact}") for fact, entry in variants.items()},
             ports={name: self.record(Port(), port, f"ports.{name}") for name, port in ports.items()},
+        )
+
+    def parts(self, table: object, section: str, names: Collection[str] = ()) -> Parts:
+        """Parts of a frame: place → name → text; only these `names`, where any are given."""
+        places = self.is_a(dict, table, section)
+        for place, texts in places.items():
+            self.is_a(dict, texts, place, section)
+            if names:
+                self.check_keys(texts, names, f"{section}.{place}")
+            for name, text in texts.items():
+                self.is_a(str, text, name, f"{section}.{place}")
+        return cast(Parts, places)
+
+    def variant(self, table: object, section: str) -> Variant:
+        """What differs for some materials."""
+        entry = self.is_a(dict, table, section)
+        simple = {key: value for key, value in entry.items() if key not in ("frame", "surface")}
+        return self.record(Variant(), simple, section)._replace(
+            frame=self.parts(entry.get("frame", {}), f"{section}.frame"),
+            surface=self.parts(entry.get("surface", {}), f"{section}.surface", NAMES),
         )
 
     def record(self, defaults: _Record, table: object, section: str) -> _Record:

@@ -76,6 +76,7 @@ def reflect(
             }
             for kind, (function, inputs) in program.entries.items()
         },
+        **_shell(program),
         "proven_safe": program.guards.get("proven", 0),
         "guards": program.guards.get("guarded", []),
         "renames": dict(program.renames),
@@ -104,6 +105,14 @@ def _signature(kind: str, emitted: Emitted) -> list[dict[str, Any]]:
             entry["embedded_expressions"] = others
         params.append(entry)
     return params
+
+
+def _shell(program: Program) -> dict[str, Any]:
+    """The function around the chain, with the values that it takes, where the text has it as a function."""
+    if program.shell is None:
+        return {}
+    function, inputs = program.shell
+    return {"shell": {"function": function.name, "inputs": list(inputs)}}
 
 
 def _stage(program: Program) -> dict[str, Any]:

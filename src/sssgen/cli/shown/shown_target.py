@@ -10,9 +10,10 @@ from sssgen.harness.backend_registry import BACKENDS
 from sssgen.harness.compiler_registry import readers
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.surface_fields import OPTIONAL
 from sssgen.material.library import OF_SHELLS
 from sssgen.targets import registry
-from sssgen.targets.chain_inputs import CHAIN_INPUTS, OPTIONAL_VALUES
+from sssgen.targets.chain_inputs import CHAIN_INPUTS
 from sssgen.targets.descriptor import OutputFile, Target
 
 FORMS = {
@@ -68,7 +69,7 @@ def _lacks(target: Target) -> dict[str, Any]:
         if not row.polyfill and "" in signatures.texts(row.name, target.dialect).values()
     ]
     return {
-        "values": {name: target.lacks[name] for name in OPTIONAL_VALUES if name in target.lacks},
+        "values": {name: target.lacks[name] for name in OPTIONAL if name in target.lacks},
         "inputs": [name for name in missing if name not in target.light_inputs],
         "roles": [role for role in OF_SHELLS if role not in target.shell],
         "parameter_types": _others(target.types, target.parameter_types, texture=False),

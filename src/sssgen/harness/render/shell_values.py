@@ -109,7 +109,7 @@ def _texture_place(binding: Mapping[str, Any]) -> Place:
 
 def _values(shell: Shell) -> dict[str, Array]:
     """Every loose uniform of the GLSL shells."""
-    positions, colors = _lights(shell)
+    positions, colors = lights_of(shell)
     return {
         "model": shell.model.T,
         "inverse_model": inverse(shell.model).T,
@@ -127,7 +127,7 @@ def _values(shell: Shell) -> dict[str, Array]:
 def _blocks(reflection: Mapping[str, Any], shell: Shell, parameters: Mapping[str, Array]) -> dict[str, Block]:
     """The uniform blocks of the HLSL and WGSL shells."""
     values = _values(shell)
-    positions, colors = _lights(shell)
+    positions, colors = lights_of(shell)
     camera = ("view_projection", "inverse_view_projection", "camera_position", "time")
     lights = np.concatenate([shell.ambient, [0.0], positions.ravel(), colors.ravel()]).astype(np.float32)
     lights[3] = np.array(len(shell.light_positions), np.int32).view(np.float32)
@@ -141,7 +141,7 @@ def _blocks(reflection: Mapping[str, Any], shell: Shell, parameters: Mapping[str
     return blocks
 
 
-def _lights(shell: Shell) -> tuple[Array, Array]:
+def lights_of(shell: Shell) -> tuple[Array, Array]:
     positions, colors = np.zeros((LIGHTS, 4)), np.zeros((LIGHTS, 4))
     positions[: len(shell.light_positions)] = shell.light_positions
     colors[: len(shell.light_colors), :3] = shell.light_colors

@@ -14,7 +14,7 @@ _REDUCE = ("float(vecF, vecF)", "float(float, float)")
 _SUM = "WGSL, Vulkan: that of the formula, whose sum rounds in any order"
 
 
-_DIRECTION = "x * inversesqrt(max(dot(x, x), SQUARE))"
+_DIRECTION = "x * (dot(x, x) > SQUARE ? inversesqrt(dot(x, x)) : 0.0)"
 _DIRECTION_DOC = "The direction of `x`; of a zero vector, 0."
 
 

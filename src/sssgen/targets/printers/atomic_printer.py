@@ -35,9 +35,9 @@ class AtomicPrinter(Printer):
         self.memory_names: dict[str, str] = {}
         """The parameters of the current function that pass module variables, with the names of these."""
 
-    def print_function(self, function: ir.Function) -> list[Line]:
+    def enter(self, function: ir.Function) -> None:
+        super().enter(function)
         self.memory_names = passed_variables(function)
-        return super().print_function(function)
 
     def is_atomic(self, expr: ir.Expr) -> bool:
         """Whether an expression is a number in memory of atomics."""

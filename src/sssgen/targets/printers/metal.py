@@ -62,7 +62,8 @@ class MetalPrinter(AtomicPrinter):
         return f"{self.type(type_)} {name}"
 
     def element(self, array: str, type_: Type, index: str) -> str:
-        return f"{array}.items[{index}]" if isinstance(type_, Array) and type_.length else f"{array}[{index}]"
+        is_struct = isinstance(type_, Array) and type_.length and array not in self.inlined.values()
+        return f"{array}.items[{index}]" if is_struct else f"{array}[{index}]"
 
     def is_packed(self, expr: ir.Expr) -> bool:
         return isinstance(expr, ir.Member) and (getattr(expr.value.type, "name", ""), expr.field) in self.packed

@@ -72,6 +72,8 @@ class Printer:
         self.kept = False
         """Whether the author's text is kept: numbers have their digits, and every comment stays."""
         self.texts: dict[tuple[str, tuple[Type, ...]], str] = {}
+        self.inlined: Mapping[str, str] = {}
+        """The texts of the current function's parameters, where its body is printed into other text."""
         self.groups: Mapping[str, str] = {}
         """A uniform's name → the technique that it belongs to."""
         self.stage: Stage | None = None
@@ -122,7 +124,7 @@ class Printer:
         """The expression's text and its precedence."""
         kind = type(expr)
         if kind is ir.Local:
-            return self.local(expr), PRIMARY  # type: ignore[arg-type]  # narrowed by its exact class
+            return self.local(expr)  # type: ignore[arg-type]  # narrowed by its exact class
         if kind is ir.Literal:
             text = self.literal(expr)  # type: ignore[arg-type]  # narrowed by its exact class
             return text, UNARY if text[0] == "-" else PRIMARY
@@ -158,8 +160,11 @@ class Printer:
             return f"{self.expr(expr.value, POSTFIX)}[{self.expr(expr.index)}]", POSTFIX
         raise TypeError(f"not an expression: {expr!r}")
 
-    def local(self, local: ir.Local) -> str:
-        return local.name
+    def local(self, local: ir.Local) -> tuple[str, int]:
+        text = self.inlined.get(local.name)
+        if text is None:
+            return local.name, PRIMARY
+        return text, PRIMARY if _is_postfix(text) else TERNARY
 
     def global_value(self, value: ir.Global) -> str:
         return value.name
@@ -369,14 +374,31 @@ class Printer:
 
     def print_function(self, function: ir.Function) -> list[Line]:
         """A function with the first line of its documentation."""
-        body = function.body or ()
-        self.function, self.chosen = function, set()
-        self.commented = {(function.span.file, function.span.line)}
+        self.enter(function)
         lines = [Line(f"// {text}", function.span) for text in self.doc_of(function)]
         lines += wrap(f"{self.signature(function)} {{", function.span)
-        lines += self.block(body, 1)
+        lines += self.block(function.body or (), 1)
         lines.append(Line("}"))
         return lines
+
+    def print_body(self, function: ir.Function, texts: Mapping[str, str]) -> list[Line]:
+        """The statements of a function, with these texts in place of its parameters.
+
+        Its last statement returns the value, for which the descriptor has the text.
+        """
+        self.enter(function)
+        self.inlined = texts
+        *body, last = function.body or ()
+        assert isinstance(last, ir.Return) and last.value is not None
+        lines = self.block(tuple(body), 0)
+        lines += wrap(self.target.fragment_result.replace("{}", self.expr(last.value)), last.span)
+        self.inlined = {}
+        return lines
+
+    def enter(self, function: ir.Function) -> None:
+        """Prepares for the text of a function."""
+        self.function, self.chosen = function, set()
+        self.commented = {(function.span.file, function.span.line)}
 
     def doc_of(self, function: ir.Function) -> list[str]:
         """The comment before a function: its author's, or the first sentence of its documentation."""
@@ -428,6 +450,22 @@ class Printer:
     def print_entry(self, name: str) -> list[Line]:
         """The entry function of the stage, where that is not the author's own."""
         return []
+
+
+def _is_postfix(text: str) -> bool:
+    """Whether a text is a name with members, or a call, so that a member or an index can be added."""
+    name, _, rest = text.partition("(")
+    return name.replace(".", "").isidentifier() and (not rest or _closes(rest))
+
+
+def _closes(text: str) -> bool:
+    """Whether only the last character closes the parenthesis that is open before the text."""
+    depth = 1
+    for index, char in enumerate(text):
+        depth += (char == "(") - (char == ")")
+        if depth == 0:
+            return index == len(text) - 1
+    return False
 
 
 def _channel(arg: ir.Expr) -> str:

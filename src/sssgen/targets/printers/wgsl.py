@@ -48,15 +48,13 @@ class WgslPrinter(AtomicPrinter):
     def variable(self, type_: Type, name: str) -> str:
         return f"{name}: {self.type(type_)}"
 
-    def print_function(self, function: ir.Function) -> list[Line]:
+    def enter(self, function: ir.Function) -> None:
+        super().enter(function)
         self.assigned = assigned(function, self.outs)
         self.pointers = {param.name for param in function.params if param.direction != "in"}
-        return super().print_function(function)
 
-    def bound(self, expr: ir.Expr) -> tuple[str, int]:
-        if type(expr) is ir.Local:
-            return (f"*{expr.name}", UNARY) if expr.name in self.pointers else (expr.name, PRIMARY)
-        return super().bound(expr)
+    def local(self, local: ir.Local) -> tuple[str, int]:
+        return (f"*{local.name}", UNARY) if local.name in self.pointers else super().local(local)
 
     def global_value(self, value: ir.Global) -> str:
         in_block = value.name in self.uniforms and not isinstance(value.type, Sampler)
