@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from sssgen.ir.constant_expressions import literal
 from sssgen.ir.nodes import (
     NOWHERE,
     Assign,
@@ -85,7 +86,7 @@ _APART = ("lighting", "shadow", "environment", *_LAST)
 
 
 TAKEN = frozenset(
-    {"Surface", "surface", "light", "shade_fragment", "MAX_LIGHTS", *INPUTS}
+    {"Surface", "surface", "light", "shade_fragment", "MAX_LIGHTS", "safe_normalize", "tangent_frame", *INPUTS}
     | {f"evaluate_{kind}" for kind in ("surface", "translucency", "lighting", "shadow", "environment", "color", *_LAST)}
 )
 """The names of the assembled functions, their shell, inputs and surface, which no uniform may have. The other names
@@ -149,7 +150,7 @@ def assemble(module: Module, stages: Sequence[ChainFunction], lit: bool, opaque:
     own = [name for name in NAMES if name in surface.values and not (opaque and name == "alpha")]
     fields = own + list(dict.fromkeys(crossing))
     if not fields:  # no shading language has empty structs
-        surface.store("albedo", constant(*DEFAULTS["albedo"], surface.span), surface.statements, False, surface.span)
+        surface.store("albedo", literal(*DEFAULTS["albedo"], surface.span), surface.statements, False, surface.span)
         fields = ["albedo"]
     struct = Struct("Surface", tuple(Field(name, surface.values[name].type) for name in fields))
     entries: dict[str, Entry] = {"surface": surface.finish_surface(struct)}
@@ -303,7 +304,7 @@ class _Body:
             self.supply(name, INPUTS[name])
             return Local(param.type, name, span)
         if name in DEFAULTS:
-            return constant(*DEFAULTS[name], span)
+            return literal(*DEFAULTS[name], span)
         raise LinkError(_missing(name, param, stage), span)
 
     def hands_over(self, name: str) -> bool:
@@ -325,7 +326,7 @@ class _Body:
             target.append(Assign(Local(value.type, name, span), "", value, span))
         elif waits and name in DEFAULTS:  # needed after the `if` too
             type_, default = DEFAULTS[name]
-            self.statements.append(Declare(name, type_, constant(type_, default, span), span))
+            self.statements.append(Declare(name, type_, literal(type_, default, span), span))
             self.values[name] = _Value(type_, False)
             target.append(Assign(Local(type_, name, span), "", value, span))
         else:
@@ -418,14 +419,6 @@ def _retype(expr: Expr, struct: Struct) -> Expr:
 def _retyped(statements: Sequence[Stmt], struct: Struct) -> list[Stmt]:
     change = lambda node: node._replace(type=struct) if node.type == _SURFACE else node  # noqa: E731
     return list(rewrite_block(tuple(statements), change))
-
-
-def constant(type_: Type, values: tuple[float, ...], span: Span) -> Expr:
-    """A constant float or vector."""
-    literals = tuple(Literal(FLOAT, value, span) for value in values)
-    if len(literals) == 1:
-        return literals[0]
-    return Construct(type_, literals[:1] if len(set(values)) == 1 else literals, span)
 
 
 def _missing(name: str, param: Param, stage: ChainFunction) -> str:

@@ -13,12 +13,13 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Mapping
 
+from sssgen.ir.constant_expressions import literal
 from sssgen.ir.nodes import Call, Declare, Expr, Function, Global, Literal, Local, Member, Module, Param, Return, Stmt
 from sssgen.ir.transform import Transformer, rewrite_module
 from sssgen.ir.types import BOOL, Struct
 from sssgen.ir.walk import all_expressions
 from sssgen.lang.loader import load_file
-from sssgen.material.chain_assembly import DEFAULTS, INPUTS, Entry, constant
+from sssgen.material.chain_assembly import DEFAULTS, INPUTS, Entry
 from sssgen.passes.fold import fold
 from sssgen.passes.struct_types import Retyper
 from sssgen.support.paths import PACKAGE
@@ -63,7 +64,7 @@ def _decided(shell: Module, facts: Mapping[str, bool], fields: set[str]) -> Modu
         if type(expr) is Global and expr.type == BOOL:
             return Literal(BOOL, facts.get(expr.name, False), expr.span)
         if type(expr) is Member and expr.field not in fields:
-            return constant(*DEFAULTS[expr.field], expr.span)
+            return literal(*DEFAULTS[expr.field], expr.span)
         return expr
 
     *others, function = fold(rewrite_module(shell, change)).functions

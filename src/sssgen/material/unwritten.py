@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 
+from sssgen.ir.constant_expressions import literal
 from sssgen.ir.nodes import Assign, Call, Declare, Expr, Function, Local, Module
 from sssgen.ir.surface_fields import OPTIONAL
 from sssgen.ir.transform import rewrite_function
 from sssgen.ir.walk import all_expressions, statements, written_root
-from sssgen.material.chain_assembly import DEFAULTS, constant
+from sssgen.material.chain_assembly import DEFAULTS
 
 
 def unwritten(functions: Sequence[Function]) -> frozenset[str]:
@@ -32,7 +33,7 @@ def with_constants(function: Function, module: Module, names: Collection[str]) -
 
     def change(expr: Expr) -> Expr:
         if type(expr) is Local and expr.name in given:
-            return constant(*DEFAULTS[expr.name], expr.span)
+            return literal(*DEFAULTS[expr.name], expr.span)
         return expr
 
     rest = tuple(param for param in function.params if param.name not in given)

@@ -16,6 +16,7 @@ from sssgen.passes.link import LinkError
 from sssgen.passes.stage.stage_interface import entry_of
 from sssgen.passes.unsupported import Unsupported
 from sssgen.pipeline import steps
+from sssgen.pipeline.frame_functions import add_frame_functions
 from sssgen.pipeline.state import State
 from sssgen.pipeline.trace import Trace
 from sssgen.support.diagnostics import Diagnostic, SssgenError
@@ -54,6 +55,7 @@ _NO_VERTEX_LEVELS = Condition(
     "it is a vertex or compute shader and the target has no implicit levels there",
     lambda state: state.form in ("vertex", "compute") and not state.target.capabilities.implicit_levels,
 )
+_MATERIAL = Condition("it is a whole material", lambda state: state.material is not None and state.form == "shader")
 _SHELL = Condition("the target has no engine", lambda state: state.has_shell)
 _CALLED = Condition("the called functions are given", lambda state: state.called is not None)
 _NO_LEVELS = Condition(
@@ -101,8 +103,8 @@ MATERIAL: tuple[Pass, ...] = (
     _GUARDS,
     Pass("cost", steps.count_cost, "count the operations of the program that all targets get"),
 )
-"""A material. Of the target they depend on its lighting and shell, on whether the engine encodes colours, and on its precision:
-their result is cached for all targets that agree in these."""
+"""A material. Of the target they depend on its lighting and shell, on whether the engine encodes colours, and on its
+precision: their result is cached for all targets that agree in these."""
 
 _SHADER_INPUT: tuple[Pass, ...] = (
     Pass("uniform_structs", steps.split_uniform_structs, "split uniforms of structs; no other pass knows these"),
@@ -136,6 +138,7 @@ KEPT: tuple[Pass, ...] = (
 """The same, where the text stays as its author wrote it."""
 
 TARGET: tuple[Pass, ...] = (
+    Pass("frame_functions", add_frame_functions, "add the functions that the target's frame calls", _MATERIAL),
     Pass(
         "computed_variables",
         steps.compute_variables_in_functions,

@@ -46,7 +46,7 @@ def make(
     check_shell(material, target)
     check_values(material, target)
     state = _material_program(material, structure if trace is None else "", target, form, guards, trace)
-    return finish_program(replace(state, chosen=target), trace)
+    return finish_program(replace(state, chosen=target, frame_functions={}), trace)
 
 
 def make_library(
@@ -192,6 +192,7 @@ def finish_program(state: State, trace: Trace | None = None) -> Program:
         {kind: cost._asdict() for kind, cost in state.costs.items()}, warnings, state.settings,
         report(state.guarded.sites, state.guarded.guarded) if state.guarded else {}, state.stage,
         reached=reached, shell=shell,
+        frame_functions=state.frame_names,
     )  # fmt: skip
 
 

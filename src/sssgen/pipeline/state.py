@@ -62,6 +62,10 @@ class State:
     """The struct of the chain's surface."""
     shell: Entry | None = None
     """The shell with the values that the target supplies; None where the target's engine has it."""
+    frame_functions: dict[str, Function] = field(default_factory=dict)
+    """The functions that the target's frame calls, by their names there."""
+    frame_names: Mapping[str, str] = field(default_factory=dict)
+    """Their names there → their names in the text."""
     notes: list[Note] = field(default_factory=list)
     guarded: Guarded | None = None
     costs: Mapping[str, Cost] = field(default_factory=dict)

@@ -288,6 +288,9 @@ def make_names_legal(state: State) -> Module:
         state.form not in target.parameters,
         state.form == "shader" and bool(target.ports),
     )
+    functions = zip(module.functions, state.module.functions, strict=True)
+    final = {old.key: new.name for new, old in functions}
+    state.frame_names = {name: final[function.key] for name, function in state.frame_functions.items()}
     names = zip(module.uniforms, state.module.uniforms, strict=True)
     state.source_names = {new.name: old.name for new, old in names}
     variables = zip(module.variables, state.module.variables, strict=True)

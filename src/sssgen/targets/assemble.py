@@ -8,26 +8,25 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from sssgen.ir.baked_textures import is_baked
+from sssgen.ir.constant_expressions import literal
 from sssgen.ir.drawn import DRAWN
-from sssgen.ir.nodes import Function, Local, Module, Param, Span, Uniform
+from sssgen.ir.nodes import NOWHERE, Function, Local, Module, Param, Span, Uniform
+from sssgen.ir.surface_fields import FIELDS
 from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.targets.descriptor import Target
-from sssgen.targets.frame import LIGHT, used_parts
 from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text
 from sssgen.targets.printers.printer import Comments, Printer
 from sssgen.targets.templates import render
 from sssgen.targets.uniform_layout import Member, padding, place
+from sssgen.targets.used_frame import PER_LIGHT, used_frame, with_names
 
 _MARK = re.compile(r"\x02(\d{1,9})\x03", re.ASCII)
-
-PER_LIGHT = ("translucency", "lighting")
-"""The kinds of the entries that a shell calls once per light."""
 
 _DEFAULTS = {"default_white": "white", "default_black": "black", "default_gray": "gray", "default_bump": "bump"}
 
@@ -82,6 +81,8 @@ class Program(NamedTuple):
     """The same material in the other languages of the target's files."""
     shell: tuple[Function, tuple[str, ...]] | None = None
     """The function around the chain of a target without an engine, and the values that the target supplies to it."""
+    frame_functions: Mapping[str, str] = {}
+    """A function of `shells/` that the target's frame names → its name in the text."""
     reached: Mapping[str, frozenset[str]] = {}
     """Entry kind → the names of the functions that it calls, where a file of the target leaves an entry out."""
 
@@ -241,16 +242,19 @@ def _text(parts: Sequence[Sequence[Line]], marks: list[Span]) -> str:
 def _context(target: Target, program: Program, printer: Printer, form: str, code: dict[str, str]) -> dict[str, Any]:
     """The variables of a template; docs/templates.md documents them."""
     entries = {
-        kind: _entry(target, printer, kind, function, inputs) for kind, (function, inputs) in program.entries.items()
+        kind: _entry(target, printer, kind, function, inputs, program.frame_functions)
+        for kind, (function, inputs) in program.entries.items()
     }
     inputs = {name for _, entry_inputs in program.entries.values() for name in entry_inputs}
     _check_properties(target, program)
     surface = program.surface
     fields = {field.name for field in surface.fields} if surface is not None else set()
-    sinks = {place: [text for name, text in rows.items() if name in fields] for place, rows in target.surface.items()}
+    inputs_of = {kind: entry_inputs for kind, (_, entry_inputs) in program.entries.items()}
+    used = used_frame(target, inputs_of, program.shell[1] if program.shell else None, fields)
+    texts_of_names = {**program.frame_functions} | _surface_values(target, printer, fields)
     return {
-        "frame": _frame(target, program, sinks),
-        "surface": {place: "\n".join(texts) for place, texts in sinks.items()},
+        "frame": {place: with_names(text, texts_of_names) for place, text in used.frame.items()},
+        "surface": {place: with_names(text, texts_of_names) for place, text in used.surface.items()},
         "material": program.about._asdict(),
         "facts": program.about.facts,
         "target": target,
@@ -273,19 +277,15 @@ def _context(target: Target, program: Program, printer: Printer, form: str, code
     }
 
 
-def _frame(target: Target, program: Program, sinks: Mapping[str, Sequence[str]]) -> dict[str, str]:
-    """The used parts of the target's frame by place, and what gives the surface to the engine."""
-    if program.shell is not None:
-        _, inputs = program.shell
-        texts, light_texts = [target.inputs.get(name, name) for name in inputs], []
-    else:
-        per_light = [name for kind in PER_LIGHT if kind in program.entries for name in program.entries[kind][1]]
-        others = [name for kind, (_, names) in program.entries.items() if kind not in PER_LIGHT for name in names]
-        texts = [target.inputs.get(name, name) for name in others]
-        light_texts = [{**target.inputs, **target.light_inputs}.get(name, name) for name in per_light]
-    texts += [text for place, rows in sinks.items() if place != LIGHT for text in rows]
-    light_texts += sinks.get(LIGHT, ())
-    return used_parts(target.frame, target.reads, texts, light_texts)
+def _surface_values(target: Target, printer: Printer, fields: Collection[str]) -> dict[str, str]:
+    """Each value of the surface as an expression: a member, or the default where no technique writes it."""
+    surface = target.inputs.get("surface", "surface")
+    return {
+        field.name: f"{surface}.{field.name}"
+        if field.name in fields
+        else printer.expr(literal(field.type, field.default, NOWHERE))
+        for field in FIELDS
+    }
 
 
 def _header(target: Target, program: Program) -> list[str]:
@@ -315,7 +315,14 @@ def _supplied(target: Target, program: Program, uniform: Uniform) -> str:
     return f"{name}: {DRAWN[views[0]]}." if views else f"{name}: bake it from the body (sssgen bake)."
 
 
-def _entry(target: Target, printer: Printer, kind: str, function: Function, inputs: tuple[str, ...]) -> dict[str, Any]:
+def _entry(
+    target: Target,
+    printer: Printer,
+    kind: str,
+    function: Function,
+    inputs: tuple[str, ...],
+    functions: Mapping[str, str],
+) -> dict[str, Any]:  # fmt: skip
     """An entry with the text of its call: the shell's expressions for its inputs, then the uniforms."""
     expressions = {**target.inputs, **(target.light_inputs if kind in PER_LIGHT else {})}
     leading = ["surface"] if len(function.params) > 0 and isinstance(function.params[0].type, Struct) else []
@@ -324,7 +331,7 @@ def _entry(target: Target, printer: Printer, kind: str, function: Function, inpu
     for index, param in enumerate(function.params):
         name = names[index] if index < len(names) else ""
         uniform = "" if name else param.passes
-        text = expressions.get(name, name) if name else _passed(printer, param, uniform)
+        text = with_names(expressions.get(name, name), functions) if name else _passed(printer, param, uniform)
         described = {"name": param.name, "type": printer.type(param.type), "base": spell(param.type)}
         params.append({**described, "input": name, "uniform": uniform, "expression": text})
     listed = ", ".join([param["expression"] for param in params])

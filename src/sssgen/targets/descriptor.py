@@ -158,6 +158,12 @@ class Embedded(NamedTuple):
     """Chain input → the expression for it where these functions are called."""
     light_inputs: Mapping[str, str] = {}
     """The same, where it differs inside the loop over the lights."""
+    frame: Mapping[str, Mapping[str, str]] = {}
+    surface: Mapping[str, Mapping[str, str]] = {}
+    absent: Mapping[str, Mapping[str, str]] = {}
+    reads: tuple[str, ...] = ()
+    variants: Mapping[str, Variant] = {}
+    """As in a target."""
 
 
 class Properties(NamedTuple):
@@ -189,10 +195,13 @@ class Target(NamedTuple):
     """Chain input → the shell's expression for it."""
     light_inputs: Mapping[str, str] = {}
     """The same, where it differs inside the loop over the lights."""
-    frame: Parts = {}
+    frame: Mapping[str, Mapping[str, str]] = {}
     """Place in the templates → name → text: what the shell declares and computes where a text mentions the name."""
-    surface: Parts = {}
-    """Place in the templates → value of the surface → the text that gives it to the engine."""
+    surface: Mapping[str, Mapping[str, str]] = {}
+    """Place in the templates → value of the surface → the text that gives it to the engine. In all these texts
+    `{NAME}` is the function of `shells/` of that name, or a value of the surface, which may be a constant."""
+    absent: Mapping[str, Mapping[str, str]] = {}
+    """The same for the values that no technique writes, where the engine needs a text all the same."""
     reads: tuple[str, ...] = ()
     """Names of parts of the frame that the templates themselves mention."""
     variants: Mapping[str, Variant] = {}
@@ -260,13 +269,8 @@ class Target(NamedTuple):
 
     def for_material(self, facts: Collection[str]) -> Target:
         """The target with its variants for a material of these properties."""
-        variants = [self.variants[fact] for fact in FACTS if fact in facts and fact in self.variants]
-        if not variants:
-            return self
-        own = Variant(self.inputs, self.light_inputs, self.frame, self.surface, self.reads)
-        for variant in variants:
-            own = own.with_variant(variant)
-        return self._replace(**own._asdict())
+        embedded = {name: _for_material(inner, facts) for name, inner in self.embedded.items()}
+        return _for_material(self, facts)._replace(embedded=embedded)
 
     def declares(self, form: str) -> bool:
         """Whether the text of a form declares the uniforms and textures."""
@@ -278,8 +282,21 @@ class Target(NamedTuple):
         return output.name.format(material=material, module=f"{material}_" if taken else material)
 
 
-_NESTED = ("files", "ports", "embedded", "frame", "surface", "variants")
-"""The sections of sections."""
+_Framed = TypeVar("_Framed", Target, Embedded)
+
+
+def _for_material(record: _Framed, facts: Collection[str]) -> _Framed:
+    """A target, or an embedded text, with its variants for a material of these properties."""
+    own = Variant(record.inputs, record.light_inputs, record.frame, record.surface, record.absent, record.reads)
+    for fact in FACTS:
+        if fact in facts and fact in record.variants:
+            own = own.with_variant(record.variants[fact])
+    return record._replace(**own._asdict())
+
+
+_FRAME = ("frame", "surface", "absent", "variants")
+_NESTED = ("files", "ports", "embedded", *_FRAME)
+"""The sections of sections; `_FRAME` are those of a frame."""
 _REQUIRED = ("title", "language", "types", "files")
 FACTS = ("lit", "unlit", "two_sided", "mesh", "screen", "picture", "opaque", "mask", "blend")
 """The properties of a material for which a descriptor may have variants; the later ones win. `screen` is a material
@@ -337,18 +354,14 @@ class _Reader:
             for form, entries in self.is_a(dict, table["files"], "files").items()
         }
         embedded = {
-            name: self.record(Embedded(), entry, f"embedded.{name}")
+            name: self.with_frames(Embedded(), entry, f"embedded.{name}")
             for name, entry in self.is_a(dict, table.get("embedded", {}), "embedded").items()
         }
-        variants = self.is_a(dict, table.get("variants", {}), "variants")
-        self.check_keys(variants, FACTS, "variants")
         self.check_keys(ports := self.is_a(dict, table.get("ports", {}), "ports"), _KEYS["ports"], "ports")
         return target._replace(
             files=files,
             embedded=embedded,
-            frame=self.parts(table.get("frame", {}), "frame"),
-            surface=self.parts(table.get("surface", {}), "surface", NAMES),
-            variants={fact: self.variant(entry, f"variants.{fact}") for fact, entry in variants.items()},
+            **self.frames(table, ""),
             ports={name: self.record(Port(), port, f"ports.{name}") for name, port in ports.items()},
         )
 
@@ -363,14 +376,26 @@ class _Reader:
                 self.is_a(str, text, name, f"{section}.{place}")
         return cast(Parts, places)
 
-    def variant(self, table: object, section: str) -> Variant:
-        """What differs for some materials."""
+    def frames(self, table: Mapping[str, Any], section: str) -> dict[str, Any]:
+        """The sections of a frame that a table has."""
+        names = {"frame": (), "surface": NAMES, "absent": NAMES}
+        found: dict[str, Any] = {
+            key: self.parts(table[key], section + key, names[key]) for key in names if key in table
+        }
+        if "variants" in table:
+            variants = self.is_a(dict, table["variants"], f"{section}variants")
+            self.check_keys(variants, FACTS, f"{section}variants")
+            found["variants"] = {
+                fact: self.with_frames(Variant(), entry, f"{section}variants.{fact}")
+                for fact, entry in variants.items()
+            }
+        return found
+
+    def with_frames(self, defaults: _Record, table: object, section: str) -> _Record:
+        """A record with the values of a table, the sections of a frame among them."""
         entry = self.is_a(dict, table, section)
-        simple = {key: value for key, value in entry.items() if key not in ("frame", "surface")}
-        return self.record(Variant(), simple, section)._replace(
-            frame=self.parts(entry.get("frame", {}), f"{section}.frame"),
-            surface=self.parts(entry.get("surface", {}), f"{section}.surface", NAMES),
-        )
+        simple = {key: value for key, value in entry.items() if key not in _FRAME}
+        return self.record(defaults, simple, section)._replace(**self.frames(entry, f"{section}."))
 
     def record(self, defaults: _Record, table: object, section: str) -> _Record:
         """The record with the values of a table."""

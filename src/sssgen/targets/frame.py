@@ -41,8 +41,9 @@ class Variant(NamedTuple):
 
     inputs: Mapping[str, str] = {}
     light_inputs: Mapping[str, str] = {}
-    frame: Parts = {}
-    surface: Parts = {}
+    frame: Mapping[str, Mapping[str, str]] = {}
+    surface: Mapping[str, Mapping[str, str]] = {}
+    absent: Mapping[str, Mapping[str, str]] = {}
     reads: tuple[str, ...] = ()
     """Names of parts that the template itself mentions."""
 
@@ -53,6 +54,7 @@ class Variant(NamedTuple):
             {**self.light_inputs, **other.light_inputs},
             _merged(self.frame, other.frame),
             _merged(self.surface, other.surface),
+            _merged(self.absent, other.absent),
             self.reads + other.reads,
         )
 

@@ -1,0 +1,49 @@
+"""The functions that a target's frame calls: those of `shells/`, and `safe_normalize`, the guard of `normalize`."""
+
+from __future__ import annotations
+
+import os
+
+from sssgen.ir.formats import Format
+from sssgen.ir.intrinsics import BUILTINS
+from sssgen.ir.nodes import Module
+from sssgen.ir.surface_fields import NAMES
+from sssgen.ir.types import VEC3
+from sssgen.lang.loader import load_file
+from sssgen.lang.polyfills import guard as guard_source
+from sssgen.lang.polyfills import polyfill
+from sssgen.material.shell_assembly import SHELLS
+from sssgen.passes.guards import guard
+from sssgen.pipeline.state import State
+from sssgen.targets.used_frame import named, used_frame
+
+_NORMALIZE = "safe_normalize"
+
+
+def add_frame_functions(state: State) -> Module:
+    """The module with the functions that the target's frame names, where it does not have them already."""
+    fields = [field.name for field in state.surface.fields] if state.surface is not None else []
+    inputs = {kind: entry.inputs for kind, entry in state.entries.items()}
+    used = used_frame(state.target, inputs, state.shell.inputs if state.shell else None, fields)
+    module = state.module
+    for name in dict.fromkeys(named(used)):
+        if name not in NAMES and (name == _NORMALIZE or os.path.isfile(_path(name))):
+            added = _function(name, state.format, state.guards)
+            keys = {function.key for function in module.functions}
+            new = tuple(function for function in added.functions if function.key not in keys)
+            module = module._replace(functions=(*new, *module.functions))
+            state.frame_functions[name] = added.functions[-1]
+    return module
+
+
+def _path(name: str) -> str:
+    return os.path.join(SHELLS, f"{name}.sss")
+
+
+def _function(name: str, format: Format, guards: str) -> Module:
+    """The module whose last function is the one of this name, with its guards."""
+    if name == _NORMALIZE:
+        row = BUILTINS["normalize"].guards[0]
+        return guard_source(row, name, (VEC3,), VEC3, format, (0.0, 0.0))[0]
+    module = load_file(_path(name), f"shells/{name}.sss", (SHELLS,))
+    return guard(module, [module.functions[-1].key], guards, guard_source, polyfill, format).module
