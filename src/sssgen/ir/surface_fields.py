@@ -35,6 +35,8 @@ FIELDS: tuple[SurfaceField, ...] = (
     SurfaceField("specular", FLOAT, (0.04,), "the reflectance of a dielectric at its normal", optional=True),
     SurfaceField("clearcoat", FLOAT, (0.0,), "the weight of a clear coat", optional=True),
     SurfaceField("clearcoat_roughness", FLOAT, (0.0,), "the perceptual roughness of the clear coat", optional=True),
+    SurfaceField("sheen_color", VEC3, (0.0, 0.0, 0.0), "the reflectance of fibres at grazing angles", optional=True),
+    SurfaceField("sheen_roughness", FLOAT, (0.0,), "the perceptual roughness of the sheen", optional=True),
 )
 
 NAMES: tuple[str, ...] = tuple(field.name for field in FIELDS)

@@ -18,6 +18,9 @@ from sssgen.support.paths import place, posix
 if TYPE_CHECKING:
     from jinja2 import Environment
 
+_REMOVED = ("common/needs.j2", "common/unit_vector.j2")
+"""Templates of earlier versions, which a user's own template may import."""
+
 _environments: dict[tuple[str | None, str], Environment] = {}
 
 _user_files: dict[str, dict[str, FileState]] = {}
@@ -41,7 +44,8 @@ def render(template: str, context: dict[str, Any], templates: str | None, folder
     try:
         return environment.get_template(template).render(context)
     except TemplateNotFound as error:
-        raise _failure(f"there is no template '{error.name}'", "", _place(error) or (template, 0)) from None
+        hint = "the target's frame replaces it: see docs/templates.md" if error.name in _REMOVED else ""
+        raise _failure(f"there is no template '{error.name}'", hint, _place(error) or (template, 0)) from None
     except TemplateSyntaxError as error:
         raise _failure(str(error.message), "", (error.filename or template, error.lineno)) from None
     except Exception as error:  # a template's expressions may fail in any way
