@@ -6,6 +6,7 @@ import os
 import shutil
 import sys
 import sysconfig
+import tomllib
 import venv
 from collections.abc import Callable
 from pathlib import Path
@@ -19,7 +20,8 @@ from sssgen import SssgenError
 from sssgen.lang.check.shader_interface import BUILTIN_VARIABLES
 from sssgen.material.chain_assembly import INPUTS, OPTIONAL
 from sssgen.passes.capabilities import Capabilities
-from sssgen.targets import descriptor, registry
+from sssgen.targets import descriptor, plugins, registry
+from sssgen.targets.descriptor_table import table_of
 
 CONTRIBUTING = ROOT / "CONTRIBUTING.md"
 COPIED = ("src", "targets", "templates", "examples", "tests", "docs", "pyproject.toml", "README.md", "LICENSE")
@@ -117,9 +119,8 @@ def plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, st
 
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.delitem(sys.modules, "toy_target", raising=False)
-    for cached in (registry.names, registry._plugins, registry.load):
-        cached.cache_clear()
-        monkeypatch.setattr(registry, cached.__name__, cached.__wrapped__)
+    for module_, name in ((registry, "names"), (registry, "load"), (plugins, "entries")):
+        monkeypatch.setattr(module_, name, getattr(module_, name).__wrapped__)
     return install
 
 
@@ -173,13 +174,13 @@ def changed(old: str, new: str, tmp_path: Path) -> str:
 @pytest.mark.parametrize(
     ("old", "new", "section", "nearest"),
     [
-        ("ternary =", "ternery =", " in [capabilities]", "ternary"),
+        ("uniform_values =", "uniform_value =", " in [capabilities]", "uniform_values"),
         ("color_space =", "colour_space =", " in [conventions]", "color_space"),
-        ("lighting =", "lightning =", "", "lighting"),
+        ("layout =", "lay_out =", "", "layout"),
         ("[conventions]", "[convention]", "", "conventions"),
         ("reserved =", "reserve =", " in [names]", "reserved"),
-        ("ray_origin =", "rayorigin =", " in [inputs]", "ray_origin"),
-        ("samplerCube =", "samplercube =", " in [types]", "samplerCube"),
+        ("screen_uv =", "screenuv =", " in [inputs]", "screen_uv"),
+        ("[inputs]", "[types]\nsamplercube = ''\n[inputs]", " in [types]", "samplerCube"),
         ('template = "vulkan', 'templates = "vulkan', " in [files.shader]", "template"),
         ("[inputs]", "[limits]\nsampler = 16\n[inputs]", " in [limits]", "samplers"),
         ("[inputs]", "[textures]\nparameters = ''\n[inputs]", " in [textures]", "parameter"),
@@ -195,19 +196,97 @@ def test_a_misspelt_key_is_named(tmp_path: Path, old: str, new: str, section: st
 @pytest.mark.parametrize(
     ("old", "new", "wrong"),
     [
-        ("ternary = true", "ternary = 1", "needs true or false for 'ternary' in [capabilities]"),
+        ("uniform_values = false", "uniform_values = 1", "needs true or false for 'uniform_values' in [capabilities]"),
         ("clip_z = [0.0, 1.0]", "clip_z = 0.0", "needs a list for 'clip_z' in [conventions]"),
-        ('uv = "v_uv"', "uv = 1", "needs a text for 'uv' in [inputs]"),
+        ('vertex_color = ""', "vertex_color = 1", "needs a text for 'vertex_color' in [inputs]"),
     ],
 )
 def test_a_value_of_the_wrong_type_is_named(tmp_path: Path, old: str, new: str, wrong: str) -> None:
     assert wrong in changed(old, new, tmp_path)
 
 
+def write(folder: Path, **texts: str) -> Path:
+    """Descriptors called after the keywords in a folder; the path of the first."""
+    for name, text in texts.items():
+        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    return folder / f"{next(iter(texts))}.toml"
+
+
+FILES = "[[files.functions]]\nname = '{material}.toy'\n"
+
+
+def test_a_descriptor_inherits(tmp_path: Path) -> None:
+    (tmp_path / "words.txt").write_text("# the toy's\n[names.reserved]\nplay # a word\nblock\n", encoding="utf-8")
+    path = write(
+        tmp_path,
+        toy=f"title = 'Toy'\nextends = 'middle'\nwords = 'words.txt'\n{FILES}[types]\nvec2 = ''\nvec3 = 'three'\n",
+        middle="extends = 'glsl-330'\nalso = ['block']\n[capabilities]\nternary = false\n[names]\nshell = 'lamp'\n",
+    )
+    toy, base = descriptor.read(path), registry.load("glsl-330")
+    assert (toy.name, toy.title, toy.also, toy.language, toy.version) == ("toy", "Toy", (), base.language, base.version)
+    assert toy.types == {**{name: text for name, text in base.types.items() if name != "vec2"}, "vec3": "three"}
+    assert list(toy.files) == ["functions"] and toy.inputs == base.inputs
+    assert toy.capabilities == base.capabilities._replace(ternary=False)
+    assert toy.names == base.names._replace(reserved=frozenset({"play", "block"}), shell=frozenset({"lamp"}))
+
+
+@pytest.mark.parametrize(
+    ("texts", "message", "hint"),
+    [
+        ({"toy": "extends = 'glsl-333'"}, "extends 'glsl-333', which is unknown", "did you mean 'glsl-330'?"),
+        ({"toy": "extends = 'nothing_like_it'"}, "extends 'nothing_like_it', which is unknown", "targets: babylonjs, "),
+        ({"toy": "extends = 'toy'"}, "extends itself: toy → toy", "extend another target"),
+        ({"toy": "extends = 'a'", "a": "extends = 'b'", "b": "extends = 'a'"}, "itself: a → b → a", "extend another"),
+        ({"toy": "extends = 1"}, "needs a text for 'extends'", ""),
+        ({"toy": "words = 'words.txt'"}, "words before the first list", "[names.reserved]"),
+        ({"toy": "words = 'none.txt'"}, "cannot read the target descriptor", ""),
+        ({"toy": "extend = 'wgsl'"}, "key 'extend'", "'extends'?"),
+    ],
+)
+def test_a_faulty_base_is_named(tmp_path: Path, texts: dict[str, str], message: str, hint: str) -> None:
+    (tmp_path / "words.txt").write_text("play\n", encoding="utf-8")
+    with pytest.raises(SssgenError) as error:
+        descriptor.read(write(tmp_path, **texts))
+    shown = error.value.diagnostics[0].render()
+    assert message in shown and hint in shown and ".t" in shown.splitlines()[1]
+
+
+def test_a_descriptor_inherits_from_a_plugin(plugin: Callable[[str, str], None], tmp_path: Path) -> None:
+    folder = tmp_path / "elsewhere"
+    folder.mkdir()
+    base = write(folder, toy=f"title = 'Toy'\nextends = 'wgsl'\nversion = '7'\n{FILES}")
+    plugin("toy = toy_target:path", f"path = {str(base)!r}")
+    target = descriptor.read(write(tmp_path, smaller=f"title = 'Smaller'\nextends = 'toy'\n{FILES}"))
+    assert (target.language, target.version) == ("wgsl", "7")
+
+
+def test_bases_and_variants_are_no_targets() -> None:
+    assert {"shared", "half", "base", "unity", "wgsl-f16"}.isdisjoint(registry.names())
+    assert registry.load("wgsl-f16").half_of == "wgsl"
+
+
+def repeated(table: dict[str, Any], base: dict[str, Any], place: str) -> list[str]:
+    """The keys whose values are those of the base."""
+    keys = []
+    for key, value in table.items():
+        if isinstance(value, dict) and key != "stage_builtins" and isinstance(base.get(key), dict):
+            keys += repeated(value, base[key], f"{place} {key}")
+        elif key in base and base[key] == value:
+            keys.append(f"{place} {key}")
+    return keys
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "targets").rglob("*.toml")), ids=lambda path: path.stem)
+def test_no_descriptor_repeats_its_base(path: Path) -> None:
+    own = tomllib.loads(path.read_text(encoding="utf-8"))
+    if "extends" in own:
+        assert not repeated(own, table_of(str(ROOT / "targets" / f"{own['extends']}.toml")), path.stem)
+
+
 def test_own_descriptors_declare_every_capability() -> None:
     for name in registry.names():
         path = ROOT / "targets" / f"{name}.toml"
-        assert list(descriptor.table_of(str(path))["capabilities"]) == list(Capabilities._fields), name
+        assert list(table_of(str(path))["capabilities"]) == list(Capabilities._fields), name
     assert not any(Capabilities())
 
 

@@ -88,7 +88,7 @@ def write_shell(state: State) -> Module:
     masked = material.alpha_mode == "mask" and target.discards
     facts = {"two_sided": material.two_sided, "masked": masked}
     module, shell = add_shell(
-        state.module, state.entries, state.surface, facts, target.fragment_shell, target.inputs.keys()
+        state.module, state.entries, state.surface, facts, target.fragment_shell, target.given_inputs
     )
     state.roots.append(shell.key)
     return module

@@ -15,6 +15,7 @@ from sssgen.passes.capabilities import Capabilities
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.paths import stem
 from sssgen.targets.chain_inputs import CHAIN_INPUTS, SHELL_INPUTS
+from sssgen.targets.descriptor_table import table_of
 from sssgen.targets.frame import Parts, Variant
 
 _Record = TypeVar("_Record", bound=NamedTuple)
@@ -155,9 +156,9 @@ class Embedded(NamedTuple):
     target: str = ""
     """The target whose functions are embedded; the engine's lighting and conventions are those of the outer target."""
     inputs: Mapping[str, str] = {}
-    """Chain input → the expression for it where these functions are called."""
+    """Chain input → the expression for it where these functions are called, where it is not that of the target."""
     light_inputs: Mapping[str, str] = {}
-    """The same, where it differs inside the loop over the lights."""
+    """The same inside the loop over the lights."""
     frame: Mapping[str, Mapping[str, str]] = {}
     surface: Mapping[str, Mapping[str, str]] = {}
     absent: Mapping[str, Mapping[str, str]] = {}
@@ -176,7 +177,8 @@ class Properties(NamedTuple):
 
 
 class Target(NamedTuple):
-    """One target. All fields but the last two are keys and sections of the descriptor; templates see them all."""
+    """One target. All fields but the last are keys and sections of the descriptor; templates see them all. A descriptor
+    has two more keys, `extends` and `words` (descriptor_table.py)."""
 
     name: str = ""
     title: str = ""
@@ -188,7 +190,8 @@ class Target(NamedTuple):
     """The intrinsic table's language: glsl, glsl-330, glsl-godot, hlsl, hlsl-dx9, hlsl-macros, hlsl-unreal, wgsl,
     wgsl-metal, wgsl-wesl, python."""
     types: Mapping[str, str] = {}
-    """Type as sssgen spells it → as the target does."""
+    """Type as sssgen spells it → as the target does. In a descriptor '' takes away a type of the base; so it does in
+    `inputs` and `light_inputs`."""
     files: Mapping[str, tuple[OutputFile, ...]] = {}
     """Form (shader, functions, vertex, fragment) → the files it writes."""
     inputs: Mapping[str, str] = {}
@@ -262,15 +265,20 @@ class Target(NamedTuple):
     """The engine's own names for textures; a material's textures get them in order, and there are no more of them."""
     integer_property: str = ""
     """Unity: the type of an integer property."""
-    folder: str = ""
-    """Where the descriptor is; a plug-in keeps its `templates` there."""
     half_of: str = ""
     """The target of which this one is the variant in half precision; '' for every other."""
+    folder: str = ""
+    """Where the descriptor is; a plug-in keeps its `templates` there."""
 
     def for_material(self, facts: Collection[str]) -> Target:
         """The target with its variants for a material of these properties."""
         embedded = {name: _for_material(inner, facts) for name, inner in self.embedded.items()}
         return _for_material(self, facts)._replace(embedded=embedded)
+
+    @property
+    def given_inputs(self) -> tuple[str, ...]:
+        """The values with an expression of the target's own: a shell does not compute them."""
+        return tuple([name for name, text in self.inputs.items() if text != name])
 
     def declares(self, form: str) -> bool:
         """Whether the text of a form declares the uniforms and textures."""
@@ -303,7 +311,7 @@ FACTS = ("lit", "unlit", "two_sided", "mesh", "screen", "picture", "opaque", "ma
 that makes its own picture, without a mesh, and `picture` one of these that reads no ray of the eye; the last three
 are alpha modes."""
 _KEYS: dict[str, Collection[str]] = {
-    "": Target._fields[:-2],
+    "": ("extends", "words", *Target._fields[:-1]),
     "types": (*BY_NAME, "sampler", "samplerShadow"),
     "inputs": {**CHAIN_INPUTS, **SHELL_INPUTS},
     "light_inputs": CHAIN_INPUTS,
@@ -321,17 +329,6 @@ def read(path: str | os.PathLike[str]) -> Target:
     return target_of(table_of(path), path)
 
 
-def table_of(path: str) -> dict[str, Any]:
-    """The contents of a descriptor file. Raises SssgenError where it is no TOML."""
-    import tomllib
-
-    try:
-        with open(path, encoding="utf-8") as file:
-            return tomllib.loads(file.read())
-    except (OSError, ValueError) as error:
-        raise failure(f"cannot read the target descriptor: {error}", file=os.path.basename(path)) from None
-
-
 def target_of(table: Mapping[str, Any], path: str) -> Target:
     """The target that the contents of the descriptor at `path` describe. Raises SssgenError where they are faulty."""
     return _Reader(os.path.basename(path)).target(table)._replace(folder=os.path.dirname(path))
@@ -344,6 +341,7 @@ class _Reader:
         self.file = file
 
     def target(self, table: Mapping[str, Any]) -> Target:
+        self.check_keys(table, _KEYS[""], "")
         missing = [key for key in _REQUIRED if key not in table]
         if missing:
             raise self.wrong(f"is incomplete: it has no {' and no '.join(missing)}")
@@ -359,8 +357,11 @@ class _Reader:
         }
         self.check_keys(ports := self.is_a(dict, table.get("ports", {}), "ports"), _KEYS["ports"], "ports")
         return target._replace(
+            embedded={name: _completed(inner, target) for name, inner in embedded.items()},
+            types=_present(target.types),
+            inputs=_present(target.inputs),
+            light_inputs=_present(target.light_inputs),
             files=files,
-            embedded=embedded,
             **self.frames(table, ""),
             ports={name: self.record(Port(), port, f"ports.{name}") for name, port in ports.items()},
         )
@@ -436,6 +437,18 @@ class _Reader:
 
 
 _KINDS = {bool: "true or false", int: "an integer", str: "a text", list: "a list", dict: "a table"}
+
+
+def _present(texts: Mapping[str, str]) -> Mapping[str, str]:
+    """The texts without those that an empty text takes away from the base."""
+    return {name: text for name, text in texts.items() if text}
+
+
+def _completed(inner: Embedded, outer: Target) -> Embedded:
+    """An embedded language with the inputs that it has in common with the target."""
+    return inner._replace(
+        inputs={**outer.inputs, **inner.inputs}, light_inputs={**outer.light_inputs, **inner.light_inputs}
+    )
 
 
 def _listed(keys: Collection[str]) -> str:

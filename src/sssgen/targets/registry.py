@@ -1,4 +1,5 @@
-"""All targets by their names: the project's own, those of plug-ins, and those that only the harness runs.
+"""All targets by their names: the project's own, those of plug-ins, and those that only the harness runs, in
+`targets/half`.
 
 A plug-in brings a target through the entry-point group `sssgen.targets`: an entry with the target's name that gives a
 `Target`, or the path of a descriptor file with its templates in the same folder.
@@ -8,40 +9,37 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import importlib
 import os
-import sys
 from typing import Any
 
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.paths import place, stem
-from sssgen.targets.descriptor import Names, Target, read, table_of, target_of
-
-HALF_PRECISION = {"wgsl-f16": "sssgen.targets.printers.wgsl_half", "numpy-f16": "sssgen.targets.printers.numpy_half"}
-"""Targets for the harness only, which are not in `names`: the module whose `target()` makes each."""
+from sssgen.targets import plugins
+from sssgen.targets.descriptor import Names, Target, read, target_of
+from sssgen.targets.descriptor_table import table_of
 
 
 @functools.cache
 def names() -> tuple[str, ...]:
     """The names of all targets for users, the project's own first."""
     own = _own_names()
-    return own + tuple(sorted(name for name in _plugins() if name not in own))
+    return own + tuple(sorted(name for name in plugins.entries() if name not in own))
 
 
 @functools.cache
 def load(name: str) -> Target:
     """A target by name. Raises SssgenError for an unknown one."""
-    path = os.path.join(place("targets"), f"{name}.toml")
+    folder = place("targets")
+    path = os.path.join(folder, f"{name}.toml")
     table = _tables().get(name)
     if table is not None:
         return target_of(table, path)
     if os.path.isfile(path):
         return read(path)
-    if name in _plugins():
+    if name in plugins.entries():
         return _from_plugin(name)
-    if name in HALF_PRECISION:
-        target: Target = importlib.import_module(HALF_PRECISION[name]).target()
-        return target
+    if os.path.isfile(variant := os.path.join(folder, "half", f"{name}.toml")):
+        return read(variant)._replace(folder=folder)
     raise failure(
         f"unknown target '{name}'", found_under(name) or did_you_mean(name, names()) or f"targets: {', '.join(names())}"
     )
@@ -55,7 +53,7 @@ def found_under(name: str) -> str:
 
 def has_plugins() -> bool:
     """Whether other packages bring targets."""
-    return bool(_plugins())
+    return bool(plugins.entries())
 
 
 class ReservedNames:
@@ -104,43 +102,12 @@ def _tables() -> dict[str, dict[str, Any]]:
     return tables
 
 
-@functools.cache
-def _plugins() -> dict[str, Any]:
-    """The plug-ins' entry points. `importlib.metadata` takes longer to import than a shader takes to emit, so it is
-    used only where some installed package mentions the group."""
-    if not any(_mentions_targets(root or ".") for root in sys.path):
-        return {}
-    from importlib.metadata import entry_points
-
-    return {entry.name: entry for entry in entry_points(group="sssgen.targets")}
-
-
-def _mentions_targets(root: str) -> bool:
-    """Whether a package installed in this folder has an entry point of the group."""
-    try:
-        folders = [entry.path for entry in os.scandir(root) if entry.name.endswith("-info")]
-    except OSError:
-        return False
-    for folder in folders:
-        with contextlib.suppress(OSError), open(f"{folder}/entry_points.txt", "rb") as file:
-            if b"[sssgen.targets]" in file.read():
-                return True
-    return False
-
-
 def _from_plugin(name: str) -> Target:
     """The target that an entry point gives. Raises SssgenError for whatever goes wrong in the plug-in."""
-    entry = _plugins()[name]
-    try:
-        loaded = entry.load()
-        loaded = loaded() if callable(loaded) else loaded
-        target = loaded if isinstance(loaded, Target) else read(loaded)
-    except SssgenError:
-        raise
-    except Exception as error:  # the plug-in's code may fail in any way
-        message = f"the plug-in of target '{name}' cannot be loaded: {type(error).__name__}: {error}"
-        raise failure(message, f"its entry point is {entry.value}") from None
-    if target.name != name:
-        message = f"the plug-in of target '{name}' gives a target called '{target.name}'"
+    loaded = plugins.load(name)
+    target = read(loaded) if isinstance(loaded, str) else loaded
+    if not isinstance(target, Target) or target.name != name:
+        called = getattr(target, "name", type(target).__name__)
+        message = f"the plug-in of target '{name}' gives a target called '{called}'"
         raise failure(message, "give the entry point and the descriptor the same name")
     return target

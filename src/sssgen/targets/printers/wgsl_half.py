@@ -1,4 +1,5 @@
-"""WGSL with an f16 for every float: not a target for users; the harness runs it to test half precision.
+"""WGSL with an f16 for every float: not a target for users; the harness runs it to test half precision. It has only the
+functions form: uniform blocks hold float32.
 
 Builtins that WGSL has for float32 alone (texture reads, derivatives, bits of numbers) are computed in it and rounded.
 """
@@ -10,32 +11,14 @@ import math
 from sssgen.ir import nodes as ir
 from sssgen.ir.formats import FLOAT16
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.types import FLOAT, Matrix, Sampler, kind_of, spell
+from sssgen.ir.types import FLOAT, Sampler, kind_of
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
-from sssgen.targets.descriptor import OutputFile, Target
+from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.printed_lines import Line
 from sssgen.targets.printers.printer import PRIMARY, shortest
 from sssgen.targets.printers.wgsl import WgslPrinter
 from sssgen.targets.registry import load
 from sssgen.targets.uniform_layout import Member
-
-
-def target() -> Target:
-    """The target `wgsl` in half precision. It has only the functions form: uniform blocks hold float32."""
-    base = load("wgsl")
-    sizes = (2, 3, 4)
-    halves = {f"vec{size}": f"vec{size}h" for size in sizes} | {
-        spell(Matrix(columns, rows)): f"mat{columns}x{rows}h" for columns in sizes for rows in sizes
-    }
-    library = OutputFile("{material}.functions.wgsl", "wgsl/functions_half.wgsl.j2", {"library": ""})
-    return base._replace(
-        name="wgsl-f16",
-        title="WGSL in half precision",
-        language=f"{__name__}:{WgslHalfPrinter.__name__}",
-        types={**base.types, "float": "f16", **halves},
-        files={"functions": (library,)},
-        half_of=base.name,
-    )
 
 
 class WgslHalfPrinter(WgslPrinter):

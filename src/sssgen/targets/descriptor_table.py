@@ -1,0 +1,109 @@
+"""The contents of descriptor files, as tables: the TOML, its word lists, and what it inherits.
+
+`extends = "NAME"` names the base: a descriptor in the same folder, one of the project's (`targets/NAME.toml`), or that
+of a plug-in's target. Sections are merged key by key; the extending file's keys win, and a list replaces that of the
+base.
+`words = "FILE"` names a file of word lists beside the descriptor: `[names.reserved]` begins the list of that key, `#` a
+comment.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Mapping
+from typing import Any
+
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.paths import place, stem
+from sssgen.targets import plugins
+
+OWN_KEYS = ("name", "title", "also")
+"""What no descriptor inherits."""
+WHOLE_SECTIONS = ("files", "stage_builtins", "frame", "surface", "absent", "variants")
+"""Sections that replace those of the base as a whole."""
+
+
+def table_of(path: str) -> dict[str, Any]:
+    """The contents of a descriptor, with those that it inherits. Raises SssgenError where a file cannot be read, for an
+    unknown base, and for a cycle of bases."""
+    own = _contents(path)
+    chain = {os.path.abspath(path): own}
+    base = _base(path, own)
+    while base:
+        if base in chain:
+            names = " → ".join(map(stem, (*list(chain)[list(chain).index(base) :], base)))
+            message = f"the target descriptor extends itself: {names}"
+            raise failure(message, "extend another target in one of these files", os.path.basename(path))
+        chain[base] = _inherited_contents(base)
+        base = _base(base, chain[base])
+    result: dict[str, Any] = {}
+    for table in reversed(chain.values()):
+        result = _merged({key: value for key, value in result.items() if key not in OWN_KEYS}, table)
+    result.pop("extends", None)
+    return result
+
+
+def _base(path: str, table: Mapping[str, Any]) -> str:
+    """The absolute path of the descriptor that this one extends, or ''."""
+    name = table.get("extends", "")
+    file = os.path.basename(path)
+    if not isinstance(name, str):
+        raise failure("the target descriptor needs a text for 'extends'", file=file)
+    if not name:
+        return ""
+    for folder in (os.path.dirname(path), place("targets")):
+        candidate = os.path.abspath(os.path.join(folder, f"{name}.toml"))
+        if os.path.isfile(candidate):
+            return candidate
+    if name in plugins.entries() and isinstance(loaded := plugins.load(name), str):
+        return os.path.abspath(loaded)
+    own = [stem(entry) for entry in os.listdir(place("targets")) if entry.endswith(".toml")]
+    bases = sorted({*own, *plugins.entries()})
+    hint = did_you_mean(name, bases) or f"a descriptor in its folder, or one of these targets: {', '.join(bases)}"
+    raise failure(f"the target descriptor extends '{name}', which is unknown", hint, file)
+
+
+def _merged(base: Mapping[str, Any], table: Mapping[str, Any]) -> dict[str, Any]:
+    """The base with the keys of the table, section by section."""
+    both = [key for key, value in table.items() if isinstance(value, dict) and isinstance(base.get(key), dict)]
+    sections = {key: _merged(base[key], table[key]) for key in both if key not in WHOLE_SECTIONS}
+    return {**base, **table, **sections}
+
+
+def _contents(path: str) -> dict[str, Any]:
+    """What one descriptor file and its word lists contain."""
+    import tomllib
+
+    file = os.path.basename(path)
+    try:
+        with open(path, encoding="utf-8") as opened:
+            table = tomllib.loads(opened.read())
+        words = table.pop("words", "")
+        if not isinstance(words, str):
+            raise failure("the target descriptor needs a text for 'words'", file=file)
+        return _merged(_word_lists(os.path.join(os.path.dirname(path), words)), table) if words else table
+    except (OSError, ValueError) as error:
+        raise failure(f"cannot read the target descriptor: {error}", file=file) from None
+
+
+_inherited_contents = functools.cache(_contents)
+"""The same of a base, which several descriptors extend."""
+
+
+def _word_lists(path: str) -> dict[str, dict[str, list[str]]]:
+    """The lists of a file of words, by section and key. Raises OSError, and SssgenError for a word before all lists."""
+    lists: dict[str, dict[str, list[str]]] = {}
+    words = None
+    with open(path, encoding="utf-8") as file:
+        for number, line in enumerate(file, 1):
+            text = line.partition("#")[0].strip()
+            if text.startswith("["):
+                section, _, key = text.strip("[]").partition(".")
+                words = lists.setdefault(section, {}).setdefault(key, [])
+            elif text and words is None:
+                message = f"line {number} has words before the first list"
+                raise failure(message, "begin it with a line such as [names.reserved]", os.path.basename(path))
+            elif words is not None:
+                words.extend(text.split())
+    return lists
