@@ -21,16 +21,16 @@ from sssgen.harness.scenes.scene_loading import load
 from sssgen.ir.types import FLOAT
 
 WRONG = [
-    ("rsqrt(max(dot(x, x), 1.0e-30))", "inversesqrt(max(dot(x, x), 1.0e-30))", "'inversesqrt' was not declared"),
+    ("rsqrt(dot(x, x))", "inversesqrt(dot(x, x))", "'inversesqrt' was not declared"),
     ("albedo = texel.xyz", "albedo = texel.xy", "no match for 'operator='"),
-    ("N = unit_vector(T * surface", "N = unit_vector(input.uv * surface", "no match for 'operator+'"),
+    ("across = T * surface", "across = input.uv * surface", "no match for 'operator+'"),
     ("material.distortion", "material.subsurface_color", "cannot convert"),
     ("thread float3& albedo", "float3& albedo", "the reference 'albedo' has no address space"),
     ("constant float JITTER", "const float JITTER", "'JITTER' has no address space"),
     ("constant Material& material", "Material& material", "the reference 'material' has no address space"),
     ("discard_fragment();", "discard;", "'discard' was not declared"),
     (".sample(base_color_texture_sampler, uv)", ".sample(uv)", "no matching function"),
-    ("max(dot(to_light, to_light), 1e-4)", "max(to_light, 1e-4)", "no matching function"),
+    ("max(dot(to_light, to_light), 0.0001)", "max(to_light, 0.0001)", "no matching function"),
     ("fragment float4 fragment_main", "fragment float4 main_2", "there is no fragment function fragment_main"),
     ("float3 color = lights.ambient", "lights.count = 2;\n    float3 color = lights.ambient", "read-only"),
 ]  # fmt: skip

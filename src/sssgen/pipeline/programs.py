@@ -149,7 +149,7 @@ def _material_program(
 ) -> State:
     """The state after the passes of a material; cached for the other targets of the same kind."""
     new = State(Module(), form, guards, target, material=material)
-    shell = (target.fragment_shell, str(target.discards), *target.given_inputs) if new.has_shell else ()
+    shell = (target.fragment_shell, str(target.own_body), *target.given_inputs) if new.has_shell else ()
     key = (structure, target.lighting, shell, target.engine_encodes, form, guards, new.format.name)
     state = _material_programs.get(key) if structure else None
     if state is None:

@@ -85,8 +85,8 @@ def write_shell(state: State) -> Module:
     material = state.material
     assert material is not None
     target = state.target
-    masked = material.alpha_mode == "mask" and target.discards
-    facts = {"two_sided": material.two_sided, "masked": masked}
+    mesh = not target.own_body
+    facts = {"two_sided": material.two_sided and mesh, "masked": material.alpha_mode == "mask" and mesh}
     module, shell = add_shell(
         state.module, state.entries, state.surface, facts, target.fragment_shell, target.given_inputs
     )

@@ -236,8 +236,8 @@ class Target(NamedTuple):
     """The function of `shells/` that draws a fragment, where the target has no engine."""
     fragment_result: str = ""
     """What the shell's body does with its result, `{}`; '' where the shell is printed as a function."""
-    discards: bool = True
-    """Whether the shell discards the fragments of a masked material with a low alpha."""
+    own_body: bool = False
+    """Whether the templates show a body of their own: without back faces, and with a background behind holes."""
     shell: tuple[str, ...] = ()
     """Which of the roles that add to a plain shell (shadow, environment, tone_mapping) its own can carry; an engine has
     its own instead."""
