@@ -48,9 +48,9 @@ export const parameters = {
   /** Velocity of the blue layer. */
   blueSpeed: { type: 'vec2', default: [0.0, -0.025], unit: '1/s', name: 'sss_blue_speed' },
   /** Colour of the light in the red and green layers, where both are bright. */
-  veinColor: { type: 'vec3', default: [0.3, 0.8, 1.0], name: 'sss_vein_color' },
+  veinColor: { type: 'vec3', default: [0.3, 0.8, 1.0], color: true, name: 'sss_vein_color' },
   /** Colour of the light in the blue layer. */
-  sparkColor: { type: 'vec3', default: [0.6, 0.9, 1.0], name: 'sss_spark_color' },
+  sparkColor: { type: 'vec3', default: [0.6, 0.9, 1.0], color: true, name: 'sss_spark_color' },
   /** The length, in texture coordinates, over which slopes are measured: about one texel. */
   texelSize: { type: 'float', default: 0.002, range: [0.0001, 0.1], unit: '1', name: 'sss_texel_size' },
   /** Width of the soft edge, in the texture's values. */
@@ -62,7 +62,7 @@ export const parameters = {
   /** How far the normal bends the light's direction inside the body: 0 ignores the shape. */
   distortion: { type: 'float', default: 0.2, range: [0.0, 1.0], unit: '1', name: 'sss_distortion' },
   /** Colour of the transmitted light. */
-  subsurfaceColor: { type: 'vec3', default: [0.55, 0.85, 1.0], name: 'sss_subsurface_color' },
+  subsurfaceColor: { type: 'vec3', default: [0.55, 0.85, 1.0], color: true, name: 'sss_subsurface_color' },
   /** Factor on the whole result. */
   attenuation: { type: 'float', default: 0.8, range: [0.0, 1.0], unit: '1', name: 'sss_attenuation' },
   /** Strength of the glow towards the light. */

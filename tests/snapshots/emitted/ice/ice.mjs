@@ -21,11 +21,11 @@ export const parameters = {
   /** Width of the slope next to an edge, in cells. */
   bevel: { type: 'float', default: 0.35, range: [0.05, 1.0], unit: '1', name: 'sss_bevel' },
   /** The length after which 1/e (37 %) of the light remains; 0 = opaque. */
-  attenuationDistance_: { type: 'float', default: 0.25, range: [0.0, 10.0], unit: 'm', name: 'sss_attenuation_distance' },
+  sssAttenuationDistance: { type: 'float', default: 0.25, range: [0.0, 10.0], unit: 'm', name: 'sss_attenuation_distance' },
   /** Multiplies the texture. */
   tint: { type: 'vec4', default: [0.75, 0.9, 1.0, 1.0], name: 'sss_tint' },
   /** 0 = not a metal, 1 = metal. */
-  metalness_: { type: 'float', default: 0.0, range: [0.0, 1.0], unit: '1', name: 'sss_metalness' },
+  sssMetalness: { type: 'float', default: 0.0, range: [0.0, 1.0], unit: '1', name: 'sss_metalness' },
   /** 0 = smooth as a mirror, 1 = rough as chalk. */
   surfaceRoughness: { type: 'float', default: 0.12, range: [0.0, 1.0], unit: '1', name: 'sss_surface_roughness' },
   /** Height of the thickest cells above their edges. */
@@ -41,9 +41,9 @@ export const parameters = {
   /** Velocity of the blue layer. */
   blueSpeed: { type: 'vec2', default: [0.0, -0.025], unit: '1/s', name: 'sss_blue_speed' },
   /** Colour of the light in the red and green layers, where both are bright. */
-  veinColor: { type: 'vec3', default: [0.3, 0.8, 1.0], name: 'sss_vein_color' },
+  veinColor: { type: 'vec3', default: [0.3, 0.8, 1.0], color: true, name: 'sss_vein_color' },
   /** Colour of the light in the blue layer. */
-  sparkColor: { type: 'vec3', default: [0.6, 0.9, 1.0], name: 'sss_spark_color' },
+  sparkColor: { type: 'vec3', default: [0.6, 0.9, 1.0], color: true, name: 'sss_spark_color' },
   /** The length, in texture coordinates, over which slopes are measured: about one texel. */
   texelSize: { type: 'float', default: 0.002, range: [0.0001, 0.1], unit: '1', name: 'sss_texel_size' },
   /** Width of the soft edge, in the texture's values. */
@@ -55,13 +55,13 @@ export const parameters = {
   /** How far the normal bends the light's direction inside the body: 0 ignores the shape. */
   distortion: { type: 'float', default: 0.2, range: [0.0, 1.0], unit: '1', name: 'sss_distortion' },
   /** Colour of the transmitted light. */
-  subsurfaceColor: { type: 'vec3', default: [0.55, 0.85, 1.0], name: 'sss_subsurface_color' },
+  subsurfaceColor: { type: 'vec3', default: [0.55, 0.85, 1.0], color: true, name: 'sss_subsurface_color' },
   /** Factor on the whole result. */
-  attenuation_: { type: 'float', default: 0.8, range: [0.0, 1.0], unit: '1', name: 'sss_attenuation' },
+  sssAttenuation: { type: 'float', default: 0.8, range: [0.0, 1.0], unit: '1', name: 'sss_attenuation' },
   /** Strength of the glow towards the light. */
   scale: { type: 'float', default: 2.0, range: [0.0, 20.0], unit: '1', name: 'sss_scale' },
   /** Glow that does not depend on the direction. */
-  ambient_: { type: 'float', default: 0.12, range: [0.0, 1.0], unit: '1', name: 'sss_ambient' },
+  sssAmbient: { type: 'float', default: 0.12, range: [0.0, 1.0], unit: '1', name: 'sss_ambient' },
   /** How narrow the glow around the light is: the larger, the smaller the spot. */
   power: { type: 'float', default: 6.0, range: [1.0, 32.0], unit: '1', name: 'sss_power' },
 };
