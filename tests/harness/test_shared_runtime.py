@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import re
 from collections.abc import Iterator
 from functools import partial
@@ -13,16 +14,17 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import mesh_of
+from engine_cases import HEAD, mesh_of
 from skips import or_skip
 from sssgen.cli.main import main
 from sssgen.harness.backends import Array
+from sssgen.harness.backends.babylon_page import BABYLON
 from sssgen.harness.backends.engine_page import Engine, EnginePage
+from sssgen.harness.backends.playcanvas_page import PLAYCANVAS
 from sssgen.harness.backends.three_page import THREE
 from sssgen.harness.render import page_values
 from sssgen.pipeline.compiler import Compiled
 from sssgen.support.diagnostics import SssgenError
-from sssgen.targets import registry
 
 
 class Case(NamedTuple):
@@ -34,6 +36,8 @@ class Case(NamedTuple):
 
 
 CASES = [
+    Case(BABYLON, "webgl", "sssgen-babylon.js", "{}.babylon.js"),
+    Case(PLAYCANVAS, "webgl2", "sssgen-playcanvas.mjs", "{}.mjs"),
     Case(THREE, "webgl", "sssgen-three.js", "{}.js"),
 ]
 NAMES = ("ice", "paper_lantern")
@@ -123,24 +127,38 @@ def test_a_material_of_another_version_is_refused(case: Case, page: EnginePage, 
         drawn(page, "ice", module.name, tmp_path, case.runtime)
 
 
-def test_a_former_name_is_another_name(case: Case, page: EnginePage) -> None:
-    """`sssAmbient` was `ambient_`, where the engine has an `ambient` of its own."""
-    mesh = mesh_of("ice")
-    compiled = sssgen.compile("ice", case.engine.target)
-    taken = registry.load(case.engine.target).properties.taken
-    values = {"metalness": 0.75} if "metalness" in taken else {"ambient": 0.75}
-    (name, value), *_ = values.items()
-    assert name in taken
-    pictures = []
-    for prefixed in (f"sss{name.capitalize()}", f"{name}_"):
-        files = {
-            file: text.replace(f'"property": "sss{name.capitalize()}"', f'"property": "{prefixed}"')
-            for file, text in compiled.files.items()
-        }
-        shell = dataclasses.replace(mesh.shell, parameters={**mesh.shell.parameters, name: np.array([value])})
-        pictures.append(page_values.shade(Compiled(files, []), shell, page, mesh.size, mesh.points))
-    plain = page_values.shade(compiled, mesh.shell, page, mesh.size, mesh.points)
-    assert (pictures[0] == pictures[1]).all() and np.abs(pictures[0] - plain).max() > 0.02
+def unlit(folder: Path, declarations: str, body: str, target: str) -> Compiled:
+    """An unlit material that shows an expression of its parameters and the normal."""
+    technique = f"{declarations}{HEAD.format('lighting')}vec3 made(world_direction N) {{ return {body}; }}\n"
+    (folder / "made.sss").write_text(technique, encoding="utf-8")
+    text = '[material]\nname = "m"\nshading = "unlit"\n[lighting]\ntechnique = "./made.sss"\n'
+    (folder / "m.toml").write_text(text, encoding="utf-8")
+    return sssgen.compile(str(folder / "m.toml"), target)
+
+
+def shown(page: EnginePage, compiled: Compiled, **parameters: float) -> Array:
+    """The colours that an unlit material without textures gives a mesh."""
+    reflection = {**compiled.reflection, "textures": []}
+    bare = Compiled({**compiled.files, "m.reflection.json": json.dumps(reflection)}, [])
+    mesh = mesh_of("wax_mouse")
+    given = {name: np.array([value]) for name, value in parameters.items()}
+    shell = dataclasses.replace(mesh.shell, parameters=given, ambient=(0.0, 0.0, 0.0))
+    colors: Array = page_values.shade(bare, shell, page, mesh.size, mesh.points)[..., :3][mesh.hit]
+    return colors
+
+
+def test_a_name_of_the_engine_has_a_prefix(case: Case, page: EnginePage, tmp_path: Path) -> None:
+    """All engines have a `sheen`. The name before, `sheen_`, still works."""
+    uniform = "/// A.\nuniform float sheen = 0.25;\n"
+    compiled = unlit(tmp_path, uniform, "vec3(sheen) + 0.0 * vec3(N)", case.engine.target)
+    (described,) = compiled.reflection["uniforms"]
+    assert described["property"] == "sssSheen"
+    former = {
+        file: text.replace('"property": "sssSheen"', '"property": "sheen_"') for file, text in compiled.files.items()
+    }
+    assert np.abs(shown(page, compiled) - 0.25).max() < 1e-6
+    for one in (compiled, Compiled(former, [])):
+        assert np.abs(shown(page, one, sheen=0.75) - 0.75).max() < 1e-6
 
 
 def test_check_reads_the_modules_of_a_folder(case: Case, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -149,3 +167,42 @@ def test_check_reads_the_modules_of_a_folder(case: Case, tmp_path: Path, capsys:
     capsys.readouterr()
     assert main(["check", str(tmp_path), "-v"]) == 0
     assert case.runtime not in capsys.readouterr().out
+
+
+CLONES = {
+    "babylonjs": "new Own(values, scene).clone('own')",
+    "playcanvas": "new Own(device, values).clone()",
+    "threejs": "new Own(values).clone()",
+}
+
+
+def test_a_class_derived_from_a_material_is_cloned(case: Case, page: EnginePage) -> None:
+    """The copy has the class, the parameters and the textures, and draws the same."""
+    mesh, compiled = mesh_of("ice"), sssgen.compile("ice", case.engine.target)
+    module = case.module.format("ice")
+    head, _, body = compiled.files[module].partition("export function createMaterial(")
+    own = f"""{head}export function createMaterial({body.partition(") {")[0]}) {{
+  class Own extends IceMaterial {{ get answer() {{ return 42; }} }}
+  const copy = {CLONES[case.engine.target]};
+  const names = [IceMaterial.name, copy.constructor.name].join();
+  if (names !== 'IceMaterial,Own' || copy.answer !== 42) throw new Error(names);
+  return copy;
+}}
+"""
+    derived = Compiled({**compiled.files, module: own}, [])
+    pictures = [page_values.shade(one, mesh.shell, page, mesh.size, mesh.points) for one in (compiled, derived)]
+    assert (pictures[0] == pictures[1]).all() and pictures[0].std() > 0.02
+
+
+KINDS = {"samplerCube": "vec3(N)", "sampler3D": "vec3(0.5)", "sampler2DArray": "vec3(0.5)", "sampler2D": "vec2(0.5)"}
+TEXELS = {"white": (1.0, 1.0, 1.0), "black": (0.0, 0.0, 0.0), "gray": (0.5, 0.5, 0.5), "bump": (0.5, 0.5, 1.0)}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_texture_that_is_not_set_is_one_texel(case: Case, page: EnginePage, kind: str, tmp_path: Path) -> None:
+    uniforms = "".join(f"/// A.\nuniform {kind} {name} : default_{name};\n" for name in TEXELS)
+    weights = {"white": 0.1, "black": 0.2, "gray": 0.3, "bump": 0.05}
+    total = " + ".join(f"{weight} * texture({name}, {KINDS[kind]}).rgb" for name, weight in weights.items())
+    colors = shown(page, unlit(tmp_path, uniforms, f"{total} + 0.0 * vec3(N)", case.engine.target))
+    expected = sum(weight * np.array(TEXELS[name]) for name, weight in weights.items())
+    assert np.abs(colors - expected).max() < 1e-3

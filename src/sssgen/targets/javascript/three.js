@@ -53,7 +53,10 @@ function patch(shader, { name, parameters, textures, patches, glsl }, uniforms) 
 
 // The class of materials.
 
-/** The first value of a parameter, as a user gets it. */
+/**
+ * The first value of a parameter, as a user gets it.
+ * @param {import('./values.js').Parameter} declared
+ */
 function startOf({ type, default: start, color }) {
   if (!Array.isArray(start)) return start;
   if (color) return new THREE.Color().fromArray(start);
@@ -97,10 +100,9 @@ function uniformsOf({ parameters, textures }, moves, takesLight) {
 export function materialClass(description) {
   const { name, lit, parameters, textures, calls, fields = [] } = description;
   const base = lit ? 'MeshPhysicalMaterial' : 'MeshBasicMaterial';
-  const properties = new Properties(description, base);
   const inputs = Object.values(calls).flatMap((call) => call.inputs);
-  const moves = inputs.includes('time');
-  const takesLight = !lit && ['L', 'L_object', 'light_color', 'light_nearness'].some((input) => inputs.includes(input));
+  const properties = new Properties({ ...description, inputs }, base);
+  const { moves, takesLight } = properties;
   const texts = { glsl: TSL.glsl(description.glsl), wgsl: TSL.wgsl(description.wgsl) };
   // three keeps one program per key
   const key = `sssgen ${name} ${hashOf(JSON.stringify([description.glsl, description.patches]))}`;
@@ -216,6 +218,8 @@ export function materialClass(description) {
     copy(source) {
       super.copy(source);
       for (const property of properties.names) this[property] = source[property];
+      if (moves) this.time = source.time;
+      if (takesLight) this.light = source.light;
       return this;
     }
   };

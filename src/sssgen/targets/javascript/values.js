@@ -27,6 +27,9 @@ const VERSION = 1;
 /** The texel of a texture that is not set. */
 export const TEXELS = { white: [1, 1, 1, 1], black: [0, 0, 0, 1], gray: [0.5, 0.5, 0.5, 1], bump: [0.5, 0.5, 1, 1] };
 
+/** Values of a light that an unlit material may read. */
+const LIGHT_INPUTS = ['L', 'L_object', 'light_color', 'light_nearness'];
+
 /** A number that is different for different texts. */
 export function hashOf(text) {
   return [...text].reduce((hash, letter) => (hash * 31 + letter.charCodeAt(0)) >>> 0, 7);
@@ -41,16 +44,26 @@ function shown(value) {
 /** The properties that a material adds to the engine's class. */
 export class Properties {
   /**
-   * @param {{ name: string, version: number, parameters: Record<string, Parameter>, textures: Record<string, TextureParameter> }} material
+   * @param {object} material as its module describes it
+   * @param {string} material.name
+   * @param {number} material.version
+   * @param {boolean} [material.lit]
+   * @param {string[]} material.inputs
+   * @param {Record<string, Parameter>} material.parameters
+   * @param {Record<string, TextureParameter>} material.textures
    * @param {string} engineClass the name of the engine's class
    */
-  constructor({ name, version, parameters, textures }, engineClass) {
+  constructor({ name, version, lit, inputs, parameters, textures }, engineClass) {
     if (version !== VERSION) throw new Error(`${name} was written by another version of sssgen than its runtime: emit it again`);
     this.material = name;
     this.parameters = parameters;
     this.textures = textures;
     this.names = [...Object.keys(parameters), ...Object.keys(textures)];
     this.engineClass = engineClass;
+    /** Whether the material has the property `time`. */
+    this.moves = inputs.includes('time');
+    /** Whether it has the property `light`: it is unlit, and reads a light. */
+    this.takesLight = !lit && LIGHT_INPUTS.some((input) => inputs.includes(input));
   }
 
   /** Defines a property with its accessors, and its name in older modules (`metalness_` for `sssMetalness`). */
