@@ -10,6 +10,8 @@ import functools
 import os
 import re
 
+from sssgen.support.diagnostics import failure
+
 _FOLDER = os.path.join(os.path.dirname(__file__), "javascript")
 _IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
 _TYPE = re.compile(r"import\('\./[^']*'\)\.")
@@ -21,6 +23,7 @@ def runtime_text(sources: tuple[str, ...], folder: str) -> str:
     """The module of these files. A file is in `folder`, or else in the project's own; the exports are the first one's.
 
     Imports of packages are written once, at the top; those of other files of the runtime and their types are left out.
+    Raises SssgenError for a file that there is not.
     """
     first, *others = [_read(name, folder) for name in sources]
     imports = [line for text in (first, *others) for line in _IMPORT.findall(text) if "'./" not in line]
@@ -31,11 +34,14 @@ def runtime_text(sources: tuple[str, ...], folder: str) -> str:
 
 
 def inlined_text(sources: tuple[str, ...], folder: str) -> str:
-    """The same without exports, to stand in another module."""
-    return _EXPORT.sub("", runtime_text(sources, folder)).rstrip()
+    """The same without exports and without the comment at its head, to stand in another module."""
+    return _EXPORT.sub("", runtime_text(sources, folder)).partition("\n\n")[2].rstrip()
 
 
 def _read(name: str, folder: str) -> str:
     own = os.path.join(folder, name)
-    with open(own if os.path.isfile(own) else os.path.join(_FOLDER, name), encoding="utf-8") as file:
-        return file.read()
+    try:
+        with open(own if os.path.isfile(own) else os.path.join(_FOLDER, name), encoding="utf-8") as file:
+            return file.read()
+    except (OSError, ValueError) as error:
+        raise failure(f"cannot read '{name}', a source of a target's descriptor: {error}") from None
