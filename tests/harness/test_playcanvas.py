@@ -327,4 +327,4 @@ def test_parameters_are_properties() -> None:
     assert f"  cellCount: {{ {described} }},\n" in compiled.files["ice.mjs"]
     assert "set veinColor(value: number[] | pc.Color | string | pc.Vec3);" in compiled.files["ice.d.mts"]
     names = {uniform["source_name"]: uniform["property"] for uniform in compiled.reflection["uniforms"]}
-    assert (names["cell_count"], names["metalness"]) == ("cellCount", "metalness_")  # PlayCanvas has a metalness
+    assert (names["cell_count"], names["metalness"]) == ("cellCount", "sssMetalness")  # PlayCanvas has a metalness

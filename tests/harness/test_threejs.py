@@ -157,7 +157,7 @@ def test_parameters_are_properties() -> None:
     assert f"  cellCount: {{ {described} }},\n" in compiled.files["ice.js"]
     assert "set veinColor(value: THREE.Color | THREE.ColorRepresentation | number[]);" in compiled.files["ice.d.ts"]
     names = {uniform["source_name"]: uniform["property"] for uniform in compiled.reflection["uniforms"]}
-    assert (names["cell_count"], names["metalness"]) == ("cellCount", "metalness_")  # three has a metalness
+    assert (names["cell_count"], names["metalness"]) == ("cellCount", "sssMetalness")  # three has a metalness
 
 
 def test_the_head_names_properties() -> None:

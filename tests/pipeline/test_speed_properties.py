@@ -205,26 +205,23 @@ def test_a_command_is_recalled_until_something_changes(tmp_path: Path, monkeypat
     source, technique = Path("plain.toml"), Path("plain.sss")
     source.write_text(MATERIAL, encoding="utf-8")
     technique.write_text('#include "common/uv_scale.sss"\n' + ALONE, encoding="utf-8")
-    command = (["plain.toml"], "wgsl", "shader", "auto", "", ())
-    assert emitted_cache.load(*command) is None
+    command = ["wgsl", "shader", "auto", "", "", "False", "plain.toml"]
+    assert emitted_cache.load(command) is None
     assert cli.main(["emit", "plain.toml", "-t", "wgsl", "-o", "out"]) == 0
-    result = emitted_cache.load(*command)
+    result = emitted_cache.load(command)
     assert result is not None
     assert result.files == {path.name: path.read_text(encoding="utf-8") for path in Path("out").iterdir()}
-    assert emitted_cache.load(["plain.toml"], "wgsl", "functions", "auto", "", ()) is None
-    assert emitted_cache.load(["plain.toml"], "wgsl", "functions", "auto", "wax_", ()) is None
-    assert emitted_cache.load(["plain.toml"], "all", "shader", "auto", "", ()) is None
-    assert emitted_cache.load(["plain.toml"], "wgsl", "shader", "none", "", ()) is None
-    assert emitted_cache.load(*command[:-1], ["tone_mapping=agx"]) is None
+    for position, other in enumerate(["all", "functions", "none", "wax_", "tone_mapping=agx", "True", "ice"]):
+        assert emitted_cache.load([*command[:position], other, *command[position + 1 :]]) is None
     for path in (source, technique):
         text = path.read_text(encoding="utf-8")
         path.write_text(text + "\n", encoding="utf-8")
-        assert emitted_cache.load(*command) is None
+        assert emitted_cache.load(command) is None
         path.write_text(text, encoding="utf-8")
-        assert emitted_cache.load(*command) is not None
+        assert emitted_cache.load(command) is not None
     Path("common").mkdir()  # a file with priority over the library's file
     Path("common/uv_scale.sss").write_text("", encoding="utf-8")
-    assert emitted_cache.load(*command) is None
+    assert emitted_cache.load(command) is None
 
 
 def test_a_damaged_entry_is_recomputed(tmp_path: Path) -> None:

@@ -44,13 +44,13 @@ def stone(tmp_path: Path) -> Path:
 def test_comments_and_order_stay(stone: Path) -> None:
     shown = ShownPicture(str(stone))
     shown.save(
-        {"thicknessFactor": [0.4], "tint": [0.1, 0.25, 0.3, 1.0], "surfaceRoughness": [0.7], "metalness_": [1.0]}
+        {"thicknessFactor": [0.4], "tint": [0.1, 0.25, 0.3, 1.0], "surfaceRoughness": [0.7], "sssMetalness": [1.0]}
     )
     expected = TEXT.replace("= 0.25", "= 0.4").replace("0.2, 0.3", "0.25, 0.3").replace("value = 0.5", "value = 0.7")
     assert stone.read_text(encoding="utf-8") == f"{expected}metalness = 1.0\n"
     shown.renew()
     values = {control["property"]: control["value"] for control in shown.picture.head["controls"]}
-    assert (values["thicknessFactor"], values["metalness_"], values["surfaceRoughness"]) == ([0.4], [1.0], [0.7])
+    assert (values["thicknessFactor"], values["sssMetalness"], values["surfaceRoughness"]) == ([0.4], [1.0], [0.7])
 
 
 def test_numbers_are_the_shortest_of_float32(stone: Path) -> None:

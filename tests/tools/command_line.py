@@ -58,6 +58,7 @@ class FakeCompiler(types.ModuleType):
         guards: str,
         trace: object = None,
         prefix: str = "",
+        standalone: bool = False,
     ) -> Compiled:
         self.calls.append((material.name, target, form, templates))
         if target in self.failing:

@@ -122,9 +122,9 @@ def chain_case(name: str, front: bool, light: str, folder: Path) -> ChainCase:
 
 def check_refusals(page: EnginePage, target: str, engine_class: str, colors: str, texture: str) -> None:
     """A value that a property does not take, or a name that there is not, is one error that says what there is."""
-    (module, *_) = sssgen.compile("ice", target).files.values()
+    modules = page_values.modules_of(sssgen.compile("ice", target))
     drawing = EngineDrawing(
-        module, (4, 3), np.zeros((3, VERTEX_SIZE)), [[0, 1, 2]], np.eye(4), (0.0, 0.0, 3.0), np.eye(4)
+        modules, (4, 3), np.zeros((3, VERTEX_SIZE)), [[0, 1, 2]], np.eye(4), (0.0, 0.0, 3.0), np.eye(4)
     )
     refused: dict[str, tuple[Any, str]] = {
         "cellCount": ("six", "a number, not 'six'"),

@@ -67,7 +67,7 @@ def _of_material(asked: dict[str, Any]) -> dict[str, Any]:
     if asked["part"] == "text":
         return _texts(compile(material, asked["target"], asked["form"]), [])
     flat = material.makes_rays
-    compiled = compile(material, flat_head.TARGET if flat else TARGET)
+    compiled = compile(material, flat_head.TARGET if flat else TARGET, standalone=True)
     head = (flat_head.raymarched_head if flat else emitted_head)(material, compiled, asked["values"], asked["in_scene"])
     return {"head": {**head, "texture_files": texture_files(material, compiled)}}
 

@@ -33,7 +33,7 @@ stone.update();
 add('floor', { render: { type: 'plane', material: stone } }).setLocalScale(30, 1, 30);
 
 const material = createMaterial(device, {
-  erosion: 0.05, cellCount: 6, uvPerUnit: [0.45, 0.45], relief: 0.03, tint: [0.1, 0.16, 0.2, 1], ambient_: 0.05,
+  erosion: 0.05, cellCount: 6, uvPerUnit: [0.45, 0.45], relief: 0.03, tint: [0.1, 0.16, 0.2, 1], sssAmbient: 0.05,
 });
 const ice = add('ice', { render: { type: 'box', material } }, [0, 1.25, 0]);
 ice.setLocalScale(2.2, 2.2, 0.15);

@@ -70,6 +70,11 @@ def add_emission_options(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--prefix", type=given, metavar="NAME", help="begin every global name with NAME, to fit in your own shader"
     )
+    parser.add_argument(
+        "--standalone",
+        action="store_true",
+        help="one file per module for three.js, Babylon.js and PlayCanvas, without the runtime that materials share",
+    )
     parser.add_argument("--templates", metavar="DIR", help="a folder of templates that replace those of sssgen")
 
 
@@ -149,15 +154,15 @@ def _cached_or_compiled(arguments: Namespace, traces: list[Trace]) -> EmittedFil
     """The cached result of the same command; with own templates or a trace it is compiled again."""
     if arguments.templates is not None or arguments.trace:
         return compile_all(arguments, traces if arguments.trace else None)
-    options = (arguments.form, arguments.guards, arguments.prefix or "", arguments.shell)
-    command = (arguments.MATERIAL, arguments.target, *options)
-    cached = emitted_cache.load(*command)
+    options = (arguments.form, arguments.guards, arguments.prefix or "", ",".join(arguments.shell))
+    command = [arguments.target, *options, str(arguments.standalone), *arguments.MATERIAL]
+    cached = emitted_cache.load(command)
     if cached is not None:
         return cached
     with noted_files() as files:
         emitted = compile_all(arguments)
     if not changed_files(files):
-        emitted_cache.store(*command, emitted, files)
+        emitted_cache.store(command, emitted, files)
     return emitted
 
 
@@ -192,8 +197,9 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
                 traces.append(trace)
             try:
                 compiled = compile(
-                    material, name, arguments.form, templates, arguments.guards, trace, arguments.prefix or ""
-                )
+                    material, name, arguments.form, templates, arguments.guards, trace, arguments.prefix or "",
+                    arguments.standalone,
+                )  # fmt: skip
             except SssgenError as error:
                 if every and isinstance(error, UnsupportedError):
                     warnings += _left_out(error, material, name)
@@ -268,8 +274,10 @@ def _collect(
     sources: dict[str, tuple[str, str]],
     wrong: list[Diagnostic],
 ) -> None:
-    """Adds the files of one compilation; two sources of one file are an error."""
+    """Adds the files of one compilation. The materials of a target may share a file; else two sources are an error."""
     for name, text in compiled.files.items():
+        if files.get(name) == text and sources[name][1] == source[1]:
+            continue
         if name in files:
             message = f"'{name}' comes from {' for '.join(sources[name])} and from {' for '.join(source)}"
             wrong += failure(message, "give the target's files other names").diagnostics

@@ -53,7 +53,7 @@ class Compiled(NamedTuple):
         return reflection
 
 
-_compiled: dict[tuple[int, str, str, str, str], tuple[Material, Compiled]] = {}
+_compiled: dict[tuple[int, str, str, str, str, bool], tuple[Material, Compiled]] = {}
 _programs: dict[tuple[str, str, str, str, str], Program] = {}
 _CACHE_SIZE = 128
 
@@ -71,6 +71,7 @@ def compile(
     guards: str = "auto",
     trace: Trace | None = None,
     prefix: str = "",
+    standalone: bool = False,
 ) -> Compiled:
     """Compiles a material for a target.
 
@@ -78,7 +79,8 @@ def compile(
     complete shader) or `functions` (a library to paste); `templates` is a folder whose templates replace those of the
     same name; `guards` are added where they are needed (`auto`), everywhere (`all`), or nowhere (`none`).
     `trace` records the IR after each pass; then no cache is used. `prefix` begins every global name of the text, to fit
-    in other people's shaders; whole shaders have one only where the target declares it.
+    in other people's shaders; whole shaders have one only where the target declares it. A module for the web imports
+    the runtime of its engine from a file that all materials share; a `standalone` module contains it.
     Raises SssgenError for anything wrong with the input.
 
     >>> import sssgen
@@ -97,7 +99,7 @@ def compile(
     _check_guards(guards)
     facts = facts_of(material)
     chosen = _prefixed(registry.load(target).for_material(facts), prefix, form, material.name)
-    key = (id(material), target, form, guards, prefix)
+    key = (id(material), target, form, guards, prefix, standalone)
     cached = _compiled.get(key) if templates is None and trace is None else None
     if cached is not None and cached[0] is material:
         return _copy(cached[1])
@@ -106,7 +108,7 @@ def compile(
         inner = {name: _inner(chosen, embedded) for name, embedded in chosen.embedded.items()}
         others = {name: (one, _program_of(material, one, form, guards, None)) for name, one in inner.items()}
         program = program._replace(embedded=others)
-    compiled = finish(program, chosen, form, os.fspath(templates) if templates else None)
+    compiled = finish(program, chosen, form, os.fspath(templates) if templates else None, standalone)
     if templates is None:
         if len(_compiled) >= _CACHE_SIZE:
             _compiled.clear()
@@ -271,9 +273,11 @@ def _about(material: Material) -> About:
     )
 
 
-def finish(program: Program, target: Target, form: str, templates: str | None = None) -> Compiled:
+def finish(
+    program: Program, target: Target, form: str, templates: str | None = None, standalone: bool = False
+) -> Compiled:
     """The files of a program."""
-    emitted = emit(target, program, form, templates)
+    emitted = emit(target, program, form, templates, standalone)
     files = dict(emitted.files)
     suffix = "reflection" if form == "shader" else f"{form}.reflection"
     files[f"{program.about.name}.{target.name}.{suffix}.json"] = as_text(reflect(target, program, emitted, form))

@@ -27,27 +27,16 @@ class EmittedFiles(NamedTuple):
     """Material → what it requires besides its parameters, in words."""
 
 
-def load(
-    materials: Sequence[str], target: str, form: str, guards: str, prefix: str, shell: Sequence[str]
-) -> EmittedFiles | None:
-    """The files of the command, if nothing that they depend on has changed."""
-    entry = cache.unpickled(cache.read(_entry_name(materials, target, form, guards, prefix, shell)))
+def load(command: Sequence[str]) -> EmittedFiles | None:
+    """The files of the command (its materials, targets and options), if nothing that they depend on has changed."""
+    entry = cache.unpickled(cache.read(_entry_name(command)))
     if not isinstance(entry, tuple) or entry[0] != installation():
         return None
     _, digests, emitted = entry
     return EmittedFiles(*emitted) if _digests(digests) == digests else None
 
 
-def store(
-    materials: Sequence[str],
-    target: str,
-    form: str,
-    guards: str,
-    prefix: str,
-    shell: Sequence[str],
-    emitted: EmittedFiles,
-    read: Iterable[str],
-) -> None:
+def store(command: Sequence[str], emitted: EmittedFiles, read: Iterable[str]) -> None:
     """Writes the files of a command to the cache; `read` are the paths that were read for them.
 
     Nothing is stored while plug-ins are installed: it is unknown which files their text depends on.
@@ -57,7 +46,7 @@ def store(
     if registry.has_plugins():
         return
     entry = (installation(), _digests(read), tuple(emitted))
-    cache.write(_entry_name(materials, target, form, guards, prefix, shell), cache.pickled(entry))
+    cache.write(_entry_name(command), cache.pickled(entry))
 
 
 def _digests(paths: Iterable[str]) -> dict[str, str]:
@@ -72,11 +61,8 @@ def _digests(paths: Iterable[str]) -> dict[str, str]:
     return digests
 
 
-def _entry_name(
-    materials: Sequence[str], target: str, form: str, guards: str, prefix: str, shell: Sequence[str]
-) -> str:
-    command = [os.getcwd(), target, form, guards, prefix, ",".join(shell), *materials]
-    return "emitted-" + cache.digest("\0".join(command))
+def _entry_name(command: Sequence[str]) -> str:
+    return "emitted-" + cache.digest("\0".join([os.getcwd(), *command]))
 
 
 @functools.cache

@@ -65,7 +65,7 @@ class Chosen(NamedTuple):
 
 def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
     """The picture of a material in a scene. Raises SssgenError."""
-    compiled = compile(material, TARGET, guards=chosen.guards)
+    compiled = compile(material, TARGET, guards=chosen.guards, standalone=True)
     if scene.geometry is None:
         raise failure(f"{material.name} makes its own rays: it is a flat picture, not a material of a body")
     scene = _on_shape(scene, chosen)

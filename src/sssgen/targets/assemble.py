@@ -19,7 +19,8 @@ from sssgen.ir.surface_fields import FIELDS
 from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import Diagnostic, failure
-from sssgen.targets.descriptor import Target
+from sssgen.targets.descriptor import OutputFile, Target
+from sssgen.targets.javascript_runtime import inlined_text, runtime_text
 from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text
 from sssgen.targets.printers.printer import Comments, Printer
 from sssgen.targets.templates import render
@@ -161,22 +162,41 @@ def print_parts(
     }
 
 
-def emit(target: Target, program: Program, form: str, templates: str | None = None) -> Emitted:
-    """Prints the uniforms and renders every file of a form. Raises SssgenError for a faulty template."""
+def emit(
+    target: Target, program: Program, form: str, templates: str | None = None, standalone: bool = False
+) -> Emitted:
+    """Prints the uniforms and renders every file of a form. Raises SssgenError for a faulty template.
+
+    `standalone`: the runtime of modules for the web is inside of the module, in place of a file beside it.
+    """
     marks: list[Span] = []
     context, members, size, bindings = _printed(target, program, form, marks)
     embedded = {name: _printed(*inner, form, marks)[0] for name, inner in program.embedded.items()}
     context["embedded"] = embedded
     files: dict[str, str] = {}
     lines: dict[str, dict[int, Span]] = {}
-    for output in target.files.get(form, ()):
+    outputs = target.files.get(form, ())
+    context["runtime"] = _runtime(target, outputs, standalone)
+    for output in outputs:
         name = target.file_name(output, program.about.name)
+        if output.sources:
+            if not standalone:
+                files[name] = runtime_text(output.sources, target.folder)
+            continue
         own = context if not output.without else _without(output.without, context, program, marks)
         text = render(output.template, own, templates, target.folder)
         if text.strip():  # a template may have nothing to say about a material
             files[name], lines[name] = _finish(text, marks)
     embedded_calls = {name: _calls(inner) for name, inner in embedded.items()}
     return Emitted(files, lines, members, size, bindings, _calls(context), embedded_calls)
+
+
+def _runtime(target: Target, outputs: Sequence[OutputFile], standalone: bool) -> dict[str, str]:
+    """The file that a module imports, and its text where the module contains it; empty where there is none."""
+    for output in outputs:
+        if output.sources:
+            return {"file": output.name, "text": inlined_text(output.sources, target.folder) if standalone else ""}
+    return {}
 
 
 def _calls(context: Mapping[str, Any]) -> dict[str, list[dict[str, Any]]]:
@@ -394,10 +414,16 @@ def _check_properties(target: Target, program: Program) -> None:
 
 def property_name(target: Target, name: str) -> str:
     """The name of a parameter as a property of the engine's object."""
-    if target.properties.style == "camel":
-        first, *others = name.split("_")
-        name = first + "".join([word[:1].upper() + word[1:] for word in others])
-    return f"{name}_" if name in target.properties.taken else name
+    if target.properties.style == "plain":
+        return f"sss_{name}" if name in target.properties.taken else name
+    name = _camel(name)
+    return _camel(f"sss_{name}") if name in target.properties.taken else name
+
+
+def _camel(name: str) -> str:
+    """`cellCount` for `cell_count`."""
+    first, *others = name.split("_")
+    return first + "".join([word[:1].upper() + word[1:] for word in others])
 
 
 def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:

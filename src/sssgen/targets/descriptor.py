@@ -43,6 +43,9 @@ class OutputFile(NamedTuple):
     """A constant of a module for the web → the target whose functions are its text, for `sssgen check`."""
     without: tuple[str, ...] = ()
     """Kinds of entries that this file does not call: functions that only these need are left out."""
+    sources: tuple[str, ...] = ()
+    """In place of a template: the JavaScript of which the file consists (`javascript_runtime`), the same for every
+    material: the runtime of their modules."""
 
 
 class Names(NamedTuple):
@@ -173,7 +176,7 @@ class Properties(NamedTuple):
     style: str = "plain"
     """plain keeps `cell_count`; camel makes `cellCount`."""
     taken: frozenset[str] = frozenset()
-    """The names that the object already has; a parameter of such a name gets `_` at its end."""
+    """The names that the object already has; a parameter of such a name begins with `sss`: `sssColor`."""
 
 
 class Target(NamedTuple):

@@ -40,7 +40,7 @@ async function draw(plan, piece) {
   scene.imageProcessingConfiguration.applyByPostProcess = true; // linear light
   const camera = new GivenCamera(plan, scene);
   plan.lights.forEach((light) => lightOf(light, scene));
-  const { createMaterial } = await imported(plan.module);
+  const { createMaterial } = await imported(plan.modules);
   const textures = Object.fromEntries(Object.entries(plan.textures).map(([name, one]) => [name, textureOf(one, piece, scene)]));
   const material = createMaterial({ ambientColor: Color3.White(), ...plan.values, ...textures }, scene);
   for (const [path, value] of Object.entries(plan.properties)) {

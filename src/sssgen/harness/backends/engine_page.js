@@ -36,8 +36,17 @@ async function drawn(plan, piece) {
   return [{ stride: pixels.byteLength / plan.height, drew, complaints: [...complaints] }, pixels.slice().buffer];
 }
 
-async function imported(text) {
-  const url = URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
+const urlOf = (text) => URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
+const runtimes = new Map(); // text → URL: all materials import the same one
+
+// The first of some modules (file name → text), which imports the others.
+async function imported(modules) {
+  let [text] = Object.values(modules);
+  for (const [name, runtime] of Object.entries(modules).slice(1)) {
+    if (!runtimes.has(runtime)) runtimes.set(runtime, urlOf(runtime));
+    text = text.replace(`'./${name}'`, `'${runtimes.get(runtime)}'`);
+  }
+  const url = urlOf(text);
   const module = await import(url);
   URL.revokeObjectURL(url);
   return module;

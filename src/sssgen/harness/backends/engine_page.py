@@ -55,7 +55,8 @@ class Engine(NamedTuple):
 class EngineDrawing(NamedTuple):
     """What to draw: an emitted module, and the values of its material's properties."""
 
-    module: str
+    modules: Mapping[str, str]
+    """File name → text: the module of the material, and those that it imports."""
     size: tuple[int, int]
     vertices: Array
     """(n, `VERTEX_SIZE`), as in `Drawing`, in object space."""
@@ -155,7 +156,7 @@ def _packed(drawing: EngineDrawing, name: str, renderer: Renderer) -> tuple[str,
     if renderer.gpu:
         projection = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0.5, 0.5], [0, 0, 0, 1]]) @ projection
     plan = {
-        "module": drawing.module, "renderer": name, "width": drawing.size[0], "height": drawing.size[1],
+        "modules": dict(drawing.modules), "renderer": name, "width": drawing.size[0], "height": drawing.size[1],
         "vertices": piece(drawing.vertices, np.float32), "vertexSize": VERTEX_SIZE, "attributes": ATTRIBUTES,
         "triangles": piece(np.asarray(drawing.triangles), np.uint32),
         "view": view.T.ravel().tolist(), "projection": projection.T.ravel().tolist(), "eye": list(drawing.eye),

@@ -48,7 +48,7 @@ async function draw(plan, piece) {
   const { clustered = true, shadows = false, ...properties } = plan.properties;
   const app = await appFor(plan.renderer, clustered);
   const { scene, graphicsDevice: device } = app;
-  const { createMaterial } = await imported(plan.module);
+  const { createMaterial } = await imported(plan.modules);
   const textures = Object.fromEntries(Object.entries(plan.textures).map(([name, one]) => [name, textureOf(device, one, piece)]));
   const material = createMaterial(device, { ...plan.values, ...textures });
   for (const [name, value] of Object.entries(properties)) {

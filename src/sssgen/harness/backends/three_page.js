@@ -21,7 +21,7 @@ async function rendererFor(kind) {
 async function draw(plan, piece) {
   const renderer = await rendererFor(plan.renderer);
   const gpu = plan.renderer === 'webgpu';
-  const { createMaterial } = await imported(plan.module);
+  const { createMaterial } = await imported(plan.modules);
   const textures = Object.fromEntries(Object.entries(plan.textures).map(([name, one]) => [name, textureOf(one, piece)]));
   const material = createMaterial({ ...plan.values, ...textures });
   for (const [name, value] of Object.entries(plan.properties)) {

@@ -54,7 +54,7 @@ def outputs(name: str) -> list[tuple[descriptor.Target, str, descriptor.OutputFi
     seen: set[tuple[str, str]] = set()
     base = name.rpartition("/")[2]
     for target in map(registry.load, registry.names()):
-        for output in (entry for entries in target.files.values() for entry in entries):
+        for output in (entry for entries in target.files.values() for entry in entries if not entry.sources):
             pattern = re.sub(r"\\{(?:material|module)\\}", r"(\\w+)", re.escape(output.name))
             match = re.fullmatch(pattern, base)
             if match and (target.name, output.name) not in seen:

@@ -43,14 +43,18 @@ def shade(
         values["time"] = shell.time
     top_first = page.renderer.top_first
     textures = {texture["property"]: bound_texture(texture, shell, top_first) for texture in reflection["textures"]}
-    module = next(text for name, text in compiled.files.items() if name.endswith((".js", ".mjs")))
     return page.draw(
         EngineDrawing(
-            module, size, vertices, triangles, shell.view_projection,
+            modules_of(compiled), size, vertices, triangles, shell.view_projection,
             shell.camera_position, shell.model, shell.light_positions, shell.light_colors, shell.ambient, values,
             textures, properties or {}, tangents,
         )
     )  # fmt: skip
+
+
+def modules_of(compiled: Compiled) -> dict[str, str]:
+    """The material's module, and the runtime that it imports."""
+    return {name: text for name, text in compiled.files.items() if name.endswith((".js", ".mjs"))}
 
 
 def _value(numbers: Any) -> Any:

@@ -13,7 +13,7 @@ export function valueOf(control, numbers) {
 /** What must stay the same for a material to be kept: the module without comments and the lines of the parameters' defaults. */
 export function programOf({ module, controls, textures, two_sided }) {
   const names = new Set(controls.map((control) => control.property));
-  const own = (line) => /^\s*\/\//.test(line) || names.has(/^\s+(\w+): (?:TSL\.uniform\(|\{ type: ')/.exec(line)?.[1]);
+  const own = (line) => /^\s*\/\//.test(line) || names.has(/^\s+(\w+): \{ type: '/.exec(line)?.[1]);
   const lines = module.split('\n').filter((line) => !own(line));
   const slots = textures.map((row) => [row.property, row.drawn, row.texels?.dim]);
   return JSON.stringify([lines, controls.map((control) => [control.property, control.type]), slots, two_sided]);

@@ -77,6 +77,7 @@ export interface IceMaterialValues {
 export interface Parameter {
   type: string;
   default: number | number[];
+  color?: boolean;
   range?: number[];
   unit?: string;
   name: string;

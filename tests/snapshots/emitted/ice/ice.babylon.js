@@ -8,14 +8,7 @@
 // A PBRMaterial with a plug-in, for WebGL 2 and WebGPU.
 // Lights, shadows, fog and the environment are Babylon's.
 
-import { EngineStore } from '@babylonjs/core/Engines/engineStore.js';
-import { SerializationHelper } from '@babylonjs/core/Misc/decorators.serialization.js';
-import { MaterialPluginBase } from '@babylonjs/core/Materials/materialPluginBase.js';
-import { PBRMaterial } from '@babylonjs/core/Materials/PBR/pbrMaterial.js';
-import { Color3 } from '@babylonjs/core/Maths/math.color.js';
-import { Vector2, Vector3, Vector4 } from '@babylonjs/core/Maths/math.vector.js';
-import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
-import { RawTexture } from '@babylonjs/core/Materials/Textures/rawTexture.js';
+import { materialClass } from './sssgen-babylon.js';
 
 /** The parameters: type, default, range, unit, and the name in the shaders. */
 export const parameters = {
@@ -48,9 +41,9 @@ export const parameters = {
   /** Velocity of the blue layer. */
   blueSpeed: { type: 'vec2', default: [0.0, -0.025], unit: '1/s', name: 'sss_blue_speed' },
   /** Colour of the light in the red and green layers, where both are bright. */
-  veinColor: { type: 'vec3', default: [0.3, 0.8, 1.0], name: 'sss_vein_color' },
+  veinColor: { type: 'vec3', default: [0.3, 0.8, 1.0], color: true, name: 'sss_vein_color' },
   /** Colour of the light in the blue layer. */
-  sparkColor: { type: 'vec3', default: [0.6, 0.9, 1.0], name: 'sss_spark_color' },
+  sparkColor: { type: 'vec3', default: [0.6, 0.9, 1.0], color: true, name: 'sss_spark_color' },
   /** The length, in texture coordinates, over which slopes are measured: about one texel. */
   texelSize: { type: 'float', default: 0.002, range: [0.0001, 0.1], unit: '1', name: 'sss_texel_size' },
   /** Width of the soft edge, in the texture's values. */
@@ -62,7 +55,7 @@ export const parameters = {
   /** How far the normal bends the light's direction inside the body: 0 ignores the shape. */
   distortion: { type: 'float', default: 0.2, range: [0.0, 1.0], unit: '1', name: 'sss_distortion' },
   /** Colour of the transmitted light. */
-  subsurfaceColor: { type: 'vec3', default: [0.55, 0.85, 1.0], name: 'sss_subsurface_color' },
+  subsurfaceColor: { type: 'vec3', default: [0.55, 0.85, 1.0], color: true, name: 'sss_subsurface_color' },
   /** Factor on the whole result. */
   attenuation: { type: 'float', default: 0.8, range: [0.0, 1.0], unit: '1', name: 'sss_attenuation' },
   /** Strength of the glow towards the light. */
@@ -556,9 +549,6 @@ fn sss_evaluate_translucency(surface: sss_Surface, V: vec3f, N: vec3f, L: vec3f,
 }
 `;
 
-/** Babylon takes shaders apart at semicolons, also in comments. */
-const withoutComments = (text) => text.replace(/\/\/.*$/gm, '');
-
 /** What goes into Babylon's shaders, at which of their places: [GLSL, WGSL]. */
 const VERTEX = [{
   CUSTOM_VERTEX_DEFINITIONS: `
@@ -593,16 +583,12 @@ const FRAGMENT = [{
   CUSTOM_FRAGMENT_DEFINITIONS: `
 varying vec2 sss_uv;
 varying vec4 sss_tangent;
-uniform highp sampler2D sss_base_color_texture;
-uniform highp sampler2D sss_cover_texture;
-uniform highp sampler2D sss_packed_texture;
-uniform highp sampler2D sss_erosion_texture;
 vec3 sss_N;
 vec3 sss_V;
 vec3 sss_T;
 vec3 sss_B;
 float sss_side;
-${withoutComments(GLSL)}
+${GLSL}
 sss_Surface sss_surface;
 vec3 sss_unit(vec3 v) {
   return v * inversesqrt(max(dot(v, v), 1e-30));
@@ -689,20 +675,12 @@ finalEmissive += sss_surface.emission * vLightingIntensity.y;
   CUSTOM_FRAGMENT_DEFINITIONS: `
 varying sss_uv: vec2f;
 varying sss_tangent: vec4f;
-var sss_base_color_textureSampler: sampler;
-var sss_base_color_texture: texture_2d<f32>;
-var sss_cover_textureSampler: sampler;
-var sss_cover_texture: texture_2d<f32>;
-var sss_packed_textureSampler: sampler;
-var sss_packed_texture: texture_2d<f32>;
-var sss_erosion_textureSampler: sampler;
-var sss_erosion_texture: texture_2d<f32>;
 var<private> sss_N: vec3f;
 var<private> sss_V: vec3f;
 var<private> sss_T: vec3f;
 var<private> sss_B: vec3f;
 var<private> sss_side: f32;
-${withoutComments(WGSL)}
+${WGSL}
 var<private> sss_surface: sss_Surface;
 fn sss_unit(v: vec3f) -> vec3f {
   return v * inverseSqrt(max(dot(v, v), 1e-30));
@@ -787,232 +765,13 @@ finalEmissive += sss_surface.emission * uniforms.vLightingIntensity.y;
 `,
 }];
 
-/** Different for each text: Babylon keeps one program for each name of a plug-in. */
-const KEY = `SssgenIceMaterial${[...GLSL].reduce((hash, letter) => (hash * 31 + letter.charCodeAt(0)) >>> 0, 7)}`;
-
-/** The uniform of a type: its number of floats, and its type in the block. */
-const UNIFORMS = { float: [1, 'float'], vec2: [2, 'vec2'], vec3: [3, 'vec3'], vec4: [4, 'vec4'], mat4: [16, 'mat4'] };
-const kindOf = (type) => (type.startsWith('mat') ? 'mat4' : /\d/.test(type) ? `vec${type.at(-1)}` : 'float');
-
-/** The numbers of a value: a number, a boolean, an array, or one of Babylon's vectors, colours and matrices. */
-const numbersOf = (value) => (typeof value === 'object' ? [...(value.asArray?.() ?? value)].map(Number) : [Number(value)]);
-
-class Plugin extends MaterialPluginBase {
-  constructor(material) {
-    super(material, KEY, 200, undefined, true, true);
-    this.doNotSerialize = true;
-  }
-
-  getClassName() {
-    return KEY;
-  }
-
-  isCompatible() {
-    return true;
-  }
-
-  getUniforms() {
-    const ubo = Object.values(parameters).map(({ name, type }) => [name, kindOf(type)]);
-    ubo.push(['sss_time', 'float']);
-    return {
-      ubo: ubo.map(([name, kind]) => ({ name, size: UNIFORMS[kind][0], type: kind })),
-      fragment: ubo.map(([name, kind]) => `uniform ${kind} ${name};`).join('\n'),
-    };
-  }
-
-  getSamplers(samplers) {
-    samplers.push(...Object.values(textures).map(({ name }) => name));
-  }
-
-  getCustomCode(stage, language) {
-    return (stage === 'vertex' ? VERTEX : FRAGMENT)[language];
-  }
-
-  prepareDefinesBeforeAttributes(defines) {
-    defines._needNormals = true;
-    defines._needUVs = true;
-  }
-
-  getActiveTextures(active) {
-    active.push(...this.used());
-  }
-
-  hasTexture(texture) {
-    return this.used().includes(texture);
-  }
-
-  isReadyForSubMesh() {
-    return this.used().every((texture) => texture.isReadyOrNotBlocking());
-  }
-
-  dispose(forceDisposeTextures) {
-    if (forceDisposeTextures) this.used().forEach((texture) => texture.dispose());
-  }
-
-  used() {
-    return Object.keys(textures).map((name) => this._material[name]);
-  }
-
-  bindForSubMesh(buffer) {
-    const material = this._material;
-    const write = (name, type, numbers) => {
-      const [size] = UNIFORMS[kindOf(type)];
-      if (size === 16) buffer.updateMatrices(name, Float32Array.from(numbers));
-      else buffer[`updateFloat${size === 1 ? '' : size}`](name, ...numbers);
-    };
-    for (const [property, { name, type }] of Object.entries(parameters)) write(name, type, numbersOf(material[property]));
-    for (const [property, { name }] of Object.entries(textures)) buffer.setTexture(name, material[property]);
-    write('sss_time', 'float', [material.time ?? performance.now() / 1000]);
-  }
-}
-
-const TEXELS = { white: [1, 1, 1, 1], black: [0, 0, 0, 1], gray: [0.5, 0.5, 0.5, 1], bump: [0.5, 0.5, 1, 1] };
-const HALVES = { 0: 0, 0.5: 0x3800, 1: 0x3c00 };
-const RGBA = 5, LINEAR = 2, HALF_FLOAT = 2;
-
-/** A texture of one texel, in half floats, which every device filters. */
-function texel({ type, default: name }, scene) {
-  const data = new Uint16Array(TEXELS[name].map((value) => HALVES[value]));
-  return new RawTexture(data, 1, 1, RGBA, scene, false, false, LINEAR, HALF_FLOAT);
-}
-
-/** A value as an error shows it. */
-function shown(value) {
-  if (typeof value === 'string') return `'${value}'`;
-  return Array.isArray(value) ? `[${value.join(', ')}]` : (typeof value === 'object' && value?.constructor?.name) || String(value);
-}
-
-/** Throws an error about a value that a property does not take. */
-function refuse(name, taken, value) {
-  throw new TypeError(`ice: '${name}' takes ${taken}, not ${shown(value)}`);
-}
-
-/** Throws an error about a texture of another kind than the shader reads. */
-function checkKind(name, { cube, volume, layers }) {
-  const [read, given] = [textures[name].type.replace('sampler', ''), cube ? 'Cube' : volume ? '3D' : layers ? '2DArray' : '2D'];
-  if (read !== given) throw new TypeError(`ice: '${name}' takes a ${read} texture, not a ${given} texture`);
-}
-
-/** Throws an error if there is a name that neither this module nor PBRMaterial has. */
-function checkNames(material, values) {
-  const unknown = Object.keys(values ?? {}).filter((name) => !(name in material));
-  if (!unknown.length) return;
-  const own = [...Object.keys(parameters), ...Object.keys(textures)].join(', ') || 'none';
-  throw new TypeError(`ice has no property ${unknown.map(shown).join(', ')}. Its own: ${own}; the others are those of PBRMaterial`);
-}
-
-/** The numbers of a parameter's value: a number, an array, a vector, a colour or a matrix; undefined: its default. */
-function checkedNumbers(name, value, colors = '') {
-  const { type, default: start } = parameters[name];
-  const count = start.length ?? 1;
-  const given = value === undefined ? start : value;
-  const listed = typeof given === 'object' && given ? Array.from(given.asArray?.() ?? given.toArray?.() ?? given.data ?? given) : [given];
-  const fits = listed.length === count && listed.every((one) => typeof one === 'boolean' || Number.isFinite(one));
-  if (!fits) refuse(name, (count > 1 ? `${count} numbers` : type === 'bool' ? 'true or false' : 'a number') + colors, value);
-  return listed.map(Number);
-}
-
 /** Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes that melt into it. */
-export class IceMaterial extends PBRMaterial {
-  #values = {
-    variation: 0.6,
-    cellCount: 10.0,
-    thicknessFactor: 0.3,
-    bevel: 0.35,
-    attenuationDistance: 0.25,
-    tint: Vector4.FromArray([0.75, 0.9, 1.0, 1.0]),
-    metalness: 0.0,
-    surfaceRoughness: 0.12,
-    relief: 0.01,
-    uvPerUnit: Vector2.FromArray([1.0, 1.0]),
-    cover: 1.0,
-    redSpeed: Vector2.FromArray([0.02, 0.0]),
-    greenSpeed: Vector2.FromArray([-0.01, 0.015]),
-    blueSpeed: Vector2.FromArray([0.0, -0.025]),
-    veinColor: Color3.FromArray([0.3, 0.8, 1.0]),
-    sparkColor: Color3.FromArray([0.6, 0.9, 1.0]),
-    texelSize: 0.002,
-    edge: 0.15,
-    erosion: 0.2,
-    edgeHeight: 0.02,
-    distortion: 0.2,
-    subsurfaceColor: Color3.FromArray([0.55, 0.85, 1.0]),
-    attenuation: 0.8,
-    scale: 2.0,
-    ambient: 0.12,
-    power: 6.0,
-  };
-  #given = {};
-  #texels = {};
-
-  constructor(values = {}, scene = EngineStore.LastCreatedScene) {
-    if (!scene) throw new TypeError('ice: there is no scene: create one first, or give it as the second argument');
-    super('ice', scene);
-    this.metallic = 0;
-    this.roughness = 1;
-    this.transparencyMode = PBRMaterial.PBRMATERIAL_ALPHATEST;
-    this.alphaCutOff = 0.5;
-    /** In seconds; null: the page's clock. */
-    this.time = null;
-    new Plugin(this);
-    checkNames(this, values);
-    Object.assign(this, values);
-  }
-
-  static {
-    for (const name of Object.keys(parameters)) {
-      Object.defineProperty(this.prototype, name, {
-        get() { return this.#values[name]; },
-        set(value) {
-          const old = this.#values[name];
-          const isColor = old instanceof Color3;
-          const color = isColor && /^#[0-9a-f]{6}$/i.test(value) && Color3.FromHexString(value).toLinearSpace();
-          const numbers = checkedNumbers(name, color || value, isColor ? ", a Color3, or a colour such as '#3070ff'" : '');
-          if (typeof old !== 'object') this.#values[name] = typeof old === 'boolean' ? Boolean(numbers[0]) : numbers[0];
-          else old.fromArray(numbers);
-        },
-      });
-    }
-    for (const [name, declared] of Object.entries(textures)) {
-      Object.defineProperty(this.prototype, name, {
-        get() { return this.#given[name] ?? (this.#texels[name] ??= texel(declared, this.getScene())); },
-        set(value) {
-          if (!(value == null || typeof value === 'string' || value.getInternalTexture)) refuse(name, 'a texture, the URL of one, or null', value);
-          if (typeof value === 'string') value = new Texture(value, this.getScene(), { useSRGBBuffer: declared.color });
-          if (value?.isCube || value?.getInternalTexture()) checkKind(name, { cube: value.isCube, volume: value.is3D, layers: value.is2DArray });
-          if (declared.color && value?.gammaSpace && value.textureType === 0) {
-            console.warn(`ice: ${name} has colours in sRGB: create it with { useSRGBBuffer: true }, or set its URL`);
-          }
-          this.#given[name] = value;
-          this.markAsDirty(PBRMaterial.TextureDirtyFlag);
-        },
-      });
-    }
-  }
-
-  needAlphaTesting() {
-    return super.needAlphaTesting() || this.transparencyMode === PBRMaterial.PBRMATERIAL_ALPHATEST;
-  }
-
-  needAlphaBlending() {
-    return super.needAlphaBlending() || this.transparencyMode === PBRMaterial.PBRMATERIAL_ALPHABLEND;
-  }
-
-  clone(name, cloneTexturesOnlyOnce = true, rootUrl = '') {
-    const options = { cloneTexturesOnlyOnce };
-    const copy = SerializationHelper.Clone(() => new IceMaterial({}, this.getScene()), this, options);
-    Object.assign(copy, { id: name, name });
-    this.stencil.copyTo(copy.stencil);
-    this._clonePlugins(copy, rootUrl);
-    Object.assign(copy, this.#values, this.#given, { time: this.time });
-    return copy;
-  }
-
-  dispose(forceDisposeEffect, forceDisposeTextures, notBoundToMesh) {
-    super.dispose(forceDisposeEffect, forceDisposeTextures, notBoundToMesh);
-    Object.values(this.#texels).forEach((texture) => texture.dispose());
-  }
-}
+export class IceMaterial extends materialClass({
+  name: 'ice', version: 1, lit: true, alphaMode: 'mask',
+  fields: ['albedo', 'alpha', 'normal', 'metallic', 'roughness', 'emission', 'transmittance'],
+  inputs: ['L', 'N', 'time', 'uv', 'V'],
+  parameters, textures, vertex: VERTEX, fragment: FRAGMENT,
+}) {}
 
 /** The material. `values` are its parameters, its textures, and the properties of PBRMaterial; `scene`: else the last one. */
 export function createMaterial(values = {}, scene) {

@@ -15,11 +15,11 @@ export interface IceMaterialValues {
   /** Width of the slope next to an edge, in cells. Default 0.35. Range 0.05 to 1.0. */
   bevel?: number;
   /** The length after which 1/e (37 %) of the light remains; 0 = opaque. Default 0.25. Range 0.0 to 10.0. Unit m. */
-  attenuationDistance_?: number;
+  sssAttenuationDistance?: number;
   /** Multiplies the texture. Default 0.75, 0.9, 1.0, 1.0. */
   tint?: number[] | pc.Color | string | pc.Vec4;
   /** 0 = not a metal, 1 = metal. Default 0.0. Range 0.0 to 1.0. */
-  metalness_?: number;
+  sssMetalness?: number;
   /** 0 = smooth as a mirror, 1 = rough as chalk. Default 0.12. Range 0.0 to 1.0. */
   surfaceRoughness?: number;
   /** Height of the thickest cells above their edges. Default 0.01. Range 0.0 to 1.0. Unit m. */
@@ -51,11 +51,11 @@ export interface IceMaterialValues {
   /** Colour of the transmitted light. Default 0.55, 0.85, 1.0. */
   subsurfaceColor?: number[] | pc.Color | string | pc.Vec3;
   /** Factor on the whole result. Default 0.8. Range 0.0 to 1.0. */
-  attenuation_?: number;
+  sssAttenuation?: number;
   /** Strength of the glow towards the light. Default 2.0. Range 0.0 to 20.0. */
   scale?: number;
   /** Glow that does not depend on the direction. Default 0.12. Range 0.0 to 1.0. */
-  ambient_?: number;
+  sssAmbient?: number;
   /** How narrow the glow around the light is: the larger, the smaller the spot. Default 6.0. Range 1.0 to 32.0. */
   power?: number;
   /** Colour of the surface (an sRGB texture), with its opacity in alpha. */
@@ -75,6 +75,7 @@ export interface IceMaterialValues {
 export interface Parameter {
   type: string;
   default: number | number[];
+  color?: boolean;
   range?: number[];
   unit?: string;
   name: string;
@@ -87,7 +88,7 @@ export interface TextureParameter {
   name: string;
 }
 
-export const parameters: Record<"variation" | "cellCount" | "thicknessFactor" | "bevel" | "attenuationDistance_" | "tint" | "metalness_" | "surfaceRoughness" | "relief" | "uvPerUnit" | "cover" | "redSpeed" | "greenSpeed" | "blueSpeed" | "veinColor" | "sparkColor" | "texelSize" | "edge" | "erosion" | "edgeHeight" | "distortion" | "subsurfaceColor" | "attenuation_" | "scale" | "ambient_" | "power", Parameter>;
+export const parameters: Record<"variation" | "cellCount" | "thicknessFactor" | "bevel" | "sssAttenuationDistance" | "tint" | "sssMetalness" | "surfaceRoughness" | "relief" | "uvPerUnit" | "cover" | "redSpeed" | "greenSpeed" | "blueSpeed" | "veinColor" | "sparkColor" | "texelSize" | "edge" | "erosion" | "edgeHeight" | "distortion" | "subsurfaceColor" | "sssAttenuation" | "scale" | "sssAmbient" | "power", Parameter>;
 export const textures: Record<"baseColorTexture" | "coverTexture" | "packedTexture" | "erosionTexture", TextureParameter>;
 
 /** Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes that melt into it. */
@@ -106,14 +107,14 @@ export class IceMaterial extends pc.StandardMaterial {
   get bevel(): number;
   set bevel(value: number);
   /** The length after which 1/e (37 %) of the light remains; 0 = opaque. Default 0.25. Range 0.0 to 10.0. Unit m. */
-  get attenuationDistance_(): number;
-  set attenuationDistance_(value: number);
+  get sssAttenuationDistance(): number;
+  set sssAttenuationDistance(value: number);
   /** Multiplies the texture. Default 0.75, 0.9, 1.0, 1.0. */
   get tint(): number[];
   set tint(value: number[] | pc.Color | string | pc.Vec4);
   /** 0 = not a metal, 1 = metal. Default 0.0. Range 0.0 to 1.0. */
-  get metalness_(): number;
-  set metalness_(value: number);
+  get sssMetalness(): number;
+  set sssMetalness(value: number);
   /** 0 = smooth as a mirror, 1 = rough as chalk. Default 0.12. Range 0.0 to 1.0. */
   get surfaceRoughness(): number;
   set surfaceRoughness(value: number);
@@ -160,14 +161,14 @@ export class IceMaterial extends pc.StandardMaterial {
   get subsurfaceColor(): number[];
   set subsurfaceColor(value: number[] | pc.Color | string | pc.Vec3);
   /** Factor on the whole result. Default 0.8. Range 0.0 to 1.0. */
-  get attenuation_(): number;
-  set attenuation_(value: number);
+  get sssAttenuation(): number;
+  set sssAttenuation(value: number);
   /** Strength of the glow towards the light. Default 2.0. Range 0.0 to 20.0. */
   get scale(): number;
   set scale(value: number);
   /** Glow that does not depend on the direction. Default 0.12. Range 0.0 to 1.0. */
-  get ambient_(): number;
-  set ambient_(value: number);
+  get sssAmbient(): number;
+  set sssAmbient(value: number);
   /** How narrow the glow around the light is: the larger, the smaller the spot. Default 6.0. Range 1.0 to 32.0. */
   get power(): number;
   set power(value: number);

@@ -15,11 +15,11 @@ export interface IceMaterialValues {
   /** Width of the slope next to an edge, in cells. Default 0.35. Range 0.05 to 1.0. */
   bevel?: number;
   /** The length after which 1/e (37 %) of the light remains; 0 = opaque. Default 0.25. Range 0.0 to 10.0. Unit m. */
-  attenuationDistance_?: number;
+  sssAttenuationDistance?: number;
   /** Multiplies the texture. Default 0.75, 0.9, 1.0, 1.0. */
   tint?: THREE.Vector4 | number[];
   /** 0 = not a metal, 1 = metal. Default 0.0. Range 0.0 to 1.0. */
-  metalness_?: number;
+  sssMetalness?: number;
   /** 0 = smooth as a mirror, 1 = rough as chalk. Default 0.12. Range 0.0 to 1.0. */
   surfaceRoughness?: number;
   /** Height of the thickest cells above their edges. Default 0.01. Range 0.0 to 1.0. Unit m. */
@@ -73,6 +73,7 @@ export interface IceMaterialValues {
 export interface Parameter {
   type: string;
   default: number | number[];
+  color?: boolean;
   range?: number[];
   unit?: string;
   name: string;
@@ -85,7 +86,7 @@ export interface TextureParameter {
   name: string;
 }
 
-export const parameters: Record<"variation" | "cellCount" | "thicknessFactor" | "bevel" | "attenuationDistance_" | "tint" | "metalness_" | "surfaceRoughness" | "relief" | "uvPerUnit" | "cover" | "redSpeed" | "greenSpeed" | "blueSpeed" | "veinColor" | "sparkColor" | "texelSize" | "edge" | "erosion" | "edgeHeight" | "distortion" | "subsurfaceColor" | "attenuation" | "scale" | "ambient" | "power", Parameter>;
+export const parameters: Record<"variation" | "cellCount" | "thicknessFactor" | "bevel" | "sssAttenuationDistance" | "tint" | "sssMetalness" | "surfaceRoughness" | "relief" | "uvPerUnit" | "cover" | "redSpeed" | "greenSpeed" | "blueSpeed" | "veinColor" | "sparkColor" | "texelSize" | "edge" | "erosion" | "edgeHeight" | "distortion" | "subsurfaceColor" | "attenuation" | "scale" | "ambient" | "power", Parameter>;
 export const textures: Record<"baseColorTexture" | "coverTexture" | "packedTexture" | "erosionTexture", TextureParameter>;
 
 /** Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes that melt into it. */
@@ -104,14 +105,14 @@ export class IceMaterial extends THREE.MeshPhysicalMaterial {
   get bevel(): number;
   set bevel(value: number);
   /** The length after which 1/e (37 %) of the light remains; 0 = opaque. Default 0.25. Range 0.0 to 10.0. Unit m. */
-  get attenuationDistance_(): number;
-  set attenuationDistance_(value: number);
+  get sssAttenuationDistance(): number;
+  set sssAttenuationDistance(value: number);
   /** Multiplies the texture. Default 0.75, 0.9, 1.0, 1.0. */
   get tint(): THREE.Vector4;
   set tint(value: THREE.Vector4 | number[]);
   /** 0 = not a metal, 1 = metal. Default 0.0. Range 0.0 to 1.0. */
-  get metalness_(): number;
-  set metalness_(value: number);
+  get sssMetalness(): number;
+  set sssMetalness(value: number);
   /** 0 = smooth as a mirror, 1 = rough as chalk. Default 0.12. Range 0.0 to 1.0. */
   get surfaceRoughness(): number;
   set surfaceRoughness(value: number);

@@ -8,8 +8,7 @@
 // One material for WebGPURenderer (WebGPU and its WebGL 2 fallback) and WebGLRenderer.
 // Lights, shadows, fog and the environment are three's.
 
-import * as THREE from 'three/webgpu';
-import * as TSL from 'three/tsl';
+import { materialClass } from './sssgen-three.js';
 
 /** The parameters: type, default, range, unit, and the name in GLSL. */
 export const parameters = {
@@ -22,11 +21,11 @@ export const parameters = {
   /** Width of the slope next to an edge, in cells. */
   bevel: { type: 'float', default: 0.35, range: [0.05, 1.0], unit: '1', name: 'sss_bevel' },
   /** The length after which 1/e (37 %) of the light remains; 0 = opaque. */
-  attenuationDistance_: { type: 'float', default: 0.25, range: [0.0, 10.0], unit: 'm', name: 'sss_attenuation_distance' },
+  sssAttenuationDistance: { type: 'float', default: 0.25, range: [0.0, 10.0], unit: 'm', name: 'sss_attenuation_distance' },
   /** Multiplies the texture. */
   tint: { type: 'vec4', default: [0.75, 0.9, 1.0, 1.0], name: 'sss_tint' },
   /** 0 = not a metal, 1 = metal. */
-  metalness_: { type: 'float', default: 0.0, range: [0.0, 1.0], unit: '1', name: 'sss_metalness' },
+  sssMetalness: { type: 'float', default: 0.0, range: [0.0, 1.0], unit: '1', name: 'sss_metalness' },
   /** 0 = smooth as a mirror, 1 = rough as chalk. */
   surfaceRoughness: { type: 'float', default: 0.12, range: [0.0, 1.0], unit: '1', name: 'sss_surface_roughness' },
   /** Height of the thickest cells above their edges. */
@@ -42,9 +41,9 @@ export const parameters = {
   /** Velocity of the blue layer. */
   blueSpeed: { type: 'vec2', default: [0.0, -0.025], unit: '1/s', name: 'sss_blue_speed' },
   /** Colour of the light in the red and green layers, where both are bright. */
-  veinColor: { type: 'vec3', default: [0.3, 0.8, 1.0], name: 'sss_vein_color' },
+  veinColor: { type: 'vec3', default: [0.3, 0.8, 1.0], color: true, name: 'sss_vein_color' },
   /** Colour of the light in the blue layer. */
-  sparkColor: { type: 'vec3', default: [0.6, 0.9, 1.0], name: 'sss_spark_color' },
+  sparkColor: { type: 'vec3', default: [0.6, 0.9, 1.0], color: true, name: 'sss_spark_color' },
   /** The length, in texture coordinates, over which slopes are measured: about one texel. */
   texelSize: { type: 'float', default: 0.002, range: [0.0001, 0.1], unit: '1', name: 'sss_texel_size' },
   /** Width of the soft edge, in the texture's values. */
@@ -56,7 +55,7 @@ export const parameters = {
   /** How far the normal bends the light's direction inside the body: 0 ignores the shape. */
   distortion: { type: 'float', default: 0.2, range: [0.0, 1.0], unit: '1', name: 'sss_distortion' },
   /** Colour of the transmitted light. */
-  subsurfaceColor: { type: 'vec3', default: [0.55, 0.85, 1.0], name: 'sss_subsurface_color' },
+  subsurfaceColor: { type: 'vec3', default: [0.55, 0.85, 1.0], color: true, name: 'sss_subsurface_color' },
   /** Factor on the whole result. */
   attenuation: { type: 'float', default: 0.8, range: [0.0, 1.0], unit: '1', name: 'sss_attenuation' },
   /** Strength of the glow towards the light. */
@@ -70,13 +69,13 @@ export const parameters = {
 /** The textures: type, the one texel of the default, colour space, and the name in GLSL. */
 export const textures = {
   /** Colour of the surface (an sRGB texture), with its opacity in alpha. */
-  baseColorTexture: { type: 'sampler2D', default: 'white', colorSpace: THREE.SRGBColorSpace, name: 'sss_base_color_texture' },
+  baseColorTexture: { type: 'sampler2D', default: 'white', colorSpace: 'srgb', name: 'sss_base_color_texture' },
   /** Cover on the ice (snow, rock): black = bare ice, white = covered. */
-  coverTexture: { type: 'sampler2D', default: 'black', colorSpace: THREE.NoColorSpace, name: 'sss_cover_texture' },
+  coverTexture: { type: 'sampler2D', default: 'black', colorSpace: '', name: 'sss_cover_texture' },
   /** Three pictures in one texture: red, green and blue each hold a layer. */
-  packedTexture: { type: 'sampler2D', default: 'black', colorSpace: THREE.NoColorSpace, name: 'sss_packed_texture' },
+  packedTexture: { type: 'sampler2D', default: 'black', colorSpace: '', name: 'sss_packed_texture' },
   /** Mask of the erosion: dark parts disappear first. */
-  erosionTexture: { type: 'sampler2D', default: 'white', colorSpace: THREE.NoColorSpace, name: 'sss_erosion_texture' },
+  erosionTexture: { type: 'sampler2D', default: 'white', colorSpace: '', name: 'sss_erosion_texture' },
 };
 
 const GLSL = /* glsl */ `
@@ -554,178 +553,18 @@ fn sss_evaluate_translucency(surface: sss_Surface, V: vec3f, N: vec3f, L: vec3f,
 var<private> sss_surface: sss_Surface;
 `;
 
-/** Different for each text: three keeps one program per key. */
-const KEY = `sssgen ice ${[...GLSL].reduce((hash, letter) => (hash * 31 + letter.charCodeAt(0)) | 0, 7)}`;
-
-// Nodes for WebGPURenderer: calls of the functions above, with three's own nodes as arguments.
-
-/** A call of a function of the text; its arguments are nodes with their types, and null for the surface. */
-class Call extends THREE.Node {
-  constructor(type, name, args, surface = null) {
-    super(type);
-    this.name = name;
-    this.args = args.map((arg) => arg && arg[0]);
-    this.types = args.map((arg) => arg && arg[1]);
-    this.surface = surface;
-  }
-
-  generate(builder) {
-    const gpu = builder.renderer.backend.isWebGPUBackend;
-    (gpu ? WGSL_NODE : GLSL_NODE).build(builder);
-    this.surface?.build(builder);
-    const args = this.args.flatMap((arg, index) => {
-      if (!arg) return 'sss_surface';
-      if (!this.types[index].startsWith('sampler')) return arg.build(builder, this.types[index]);
-      return gpu ? [arg.build(builder, 'texture'), arg.build(builder, 'sampler')] : arg.build(builder, 'texture');
-    });
-    return `${this.name}(${args.join(', ')})`;
-  }
-}
-
-const GLSL_NODE = TSL.glsl(GLSL);
-const WGSL_NODE = TSL.wgsl(WGSL);
-
-/** The call that stores the surface, once per fragment. */
-class Surface extends Call {
-  generate(builder) {
-    const data = builder.getDataFromNode(this);
-    if (!data.stored) {
-      data.stored = true;
-      builder.addLineFlowCode(`sss_surface = ${super.generate(builder)}`, this);
-    }
-    return '';
-  }
-}
-
-/** A member of the surface. */
-class Field extends THREE.Node {
-  constructor(type, name, surface) {
-    super(type);
-    this.name = name;
-    this.surface = surface;
-  }
-
-  generate(builder) {
-    this.surface.build(builder, 'void');
-    return `sss_surface.${this.name}`;
-  }
-}
-
-/** v / |v|; 0 stays 0, of which normalize makes NaN. */
-const unit = (v) => v.mul(v.dot(v).max(1e-30).inverseSqrt());
-/** A direction in another space. */
-const turned = (matrix, v) => unit(matrix.mul(TSL.vec4(v, 0)).xyz);
-const viewDirection = turned(TSL.cameraWorldMatrix, TSL.positionViewDirection);
-/** -1 on a back face, whose normal is reversed. */
-const side = TSL.Fn((_, { material }) => (material.side === THREE.DoubleSide ? TSL.faceDirection : TSL.float(1)), 'float')();
-const geometryNormal = turned(TSL.cameraWorldMatrix, TSL.negateOnBackSide(TSL.normalViewGeometry));
-
-/** The tangent and the bitangent: those of the geometry, else from the derivatives of uv. */
-const tangentFrame = (bitangent) => TSL.Fn((_, builder) => {
-  const N = geometryNormal;
-  if (builder.geometry.hasAttribute('tangent')) {
-    const T = unit(TSL.varying(TSL.modelWorldMatrix.mul(TSL.vec4(TSL.tangentGeometry.xyz, 0)).xyz));
-    const handedness = TSL.tangentGeometry.w.mul(TSL.modelWorldMatrix.determinant().sign());
-    return bitangent ? N.mul(side).cross(T).mul(handedness) : T;
-  }
-  const across = TSL.positionWorld.dFdx(), up = TSL.positionWorld.dFdy();
-  const a = TSL.uv().dFdx(), b = TSL.uv().dFdy();
-  const first = up.cross(N), second = N.cross(across);
-  const T = first.mul(a.x).add(second.mul(b.x)), B = first.mul(a.y).add(second.mul(b.y));
-  const longest = T.dot(T).max(B.dot(B)).max(1e-30).inverseSqrt();
-  return (bitangent ? B : T).mul(longest);
-}, 'vec3')();
-const frame = { T: tangentFrame(false), B: tangentFrame(true) };
-
-/** The nodes of the material; WebGPURenderer takes them over as it makes a node material of a classic one. */
-function nodesOf(nodes) {
-  const { time } = nodes;
-  const surface = new Surface('void', 'sss_evaluate_surface', [
-      [TSL.uv(), 'vec2'],
-      [time, 'float'],
-      [nodes.variation, 'float'],
-      [nodes.cellCount, 'float'],
-      [nodes.thicknessFactor, 'float'],
-      [nodes.bevel, 'float'],
-      [nodes.attenuationDistance_, 'float'],
-      [nodes.tint, 'vec4'],
-      [nodes.baseColorTexture, 'sampler2D'],
-      [nodes.metalness_, 'float'],
-      [nodes.surfaceRoughness, 'float'],
-      [nodes.relief, 'float'],
-      [nodes.uvPerUnit, 'vec2'],
-      [nodes.cover, 'float'],
-      [nodes.coverTexture, 'sampler2D'],
-      [nodes.packedTexture, 'sampler2D'],
-      [nodes.redSpeed, 'vec2'],
-      [nodes.greenSpeed, 'vec2'],
-      [nodes.blueSpeed, 'vec2'],
-      [nodes.veinColor, 'vec3'],
-      [nodes.sparkColor, 'vec3'],
-      [nodes.texelSize, 'float'],
-      [nodes.edge, 'float'],
-      [nodes.erosion, 'float'],
-      [nodes.erosionTexture, 'sampler2D'],
-      [nodes.edgeHeight, 'float'],
-  ]);
-  const albedo = new Field('vec3', 'albedo', surface);
-  const alpha = new Field('float', 'alpha', surface);
-  const normal = new Field('vec3', 'normal', surface);
-  const metallic = new Field('float', 'metallic', surface);
-  const roughness = new Field('float', 'roughness', surface);
-  const emission = new Field('vec3', 'emission', surface);
-  return {
-    colorNode: TSL.materialColor.mul(TSL.vec4(albedo, alpha)),
-    metalnessNode: metallic,
-    roughnessNode: roughness,
-    emissiveNode: emission,
-    normalNode: turned(TSL.cameraViewMatrix, frame.T.mul(normal.x).add(frame.B.mul(normal.y)).mul(side).add(geometryNormal.mul(normal.z))),
-    setupLightingModel(builder) {
-      const model = THREE.MeshPhysicalNodeMaterial.prototype.setupLightingModel.call(this, builder);
-      const { direct } = model;
-      model.direct = function (data, builder) {
-        direct.call(this, data, builder);
-        const { lightDirection, lightNode, reflectedLight } = data;
-        const L = turned(TSL.cameraWorldMatrix, lightDirection);
-        const lightColor = unshadowed(lightNode, builder) ?? data.lightColor;
-        const through = new Call('vec3', 'sss_evaluate_translucency', [
-          null,
-          [viewDirection, 'vec3'],
-          [TSL.normalWorld, 'vec3'],
-          [L, 'vec3'],
-          [nodes.distortion, 'float'],
-          [nodes.subsurfaceColor, 'vec3'],
-          [nodes.attenuation, 'float'],
-          [nodes.scale, 'float'],
-          [nodes.ambient, 'float'],
-          [nodes.power, 'float'],
-        ], surface);
-        reflectedLight.directDiffuse.addAssign(through.mul(lightColor).mul(1 / Math.PI));
-      };
-      return model;
-    },
-  };
-}
-
-/** The light's colour where it arrives, without shadow: light that comes through entered on the far side. */
-function unshadowed(lightNode, builder) {
-  const { colorNode, baseColorNode } = lightNode;
-  if (!baseColorNode) return null;
-  lightNode.colorNode = baseColorNode;
-  const { lightColor } = lightNode.setupDirect(builder);
-  lightNode.colorNode = colorNode;
-  return lightColor;
-}
-
-// WebGLRenderer: the functions go into three's own shader, at its includes.
-
-const VERTEX_DECLARATIONS = /* glsl */ `
+/** WebGLRenderer: what goes into three's shaders, behind which of their includes. */
+const PATCHES = {
+  vertexShader: {
+    common: /* glsl */ `
 varying vec3 sss_view_position;
 varying vec2 sss_uv;
 varying vec4 sss_tangent;
-`;
-
-const VERTEX = /* glsl */ `
+#ifndef USE_TANGENT
+attribute vec4 tangent;
+#endif
+`,
+    project_vertex: /* glsl */ `
 sss_view_position = mvPosition.xyz;
 sss_uv = uv;
 #ifdef USE_SKINNING
@@ -733,40 +572,13 @@ sss_tangent = vec4(0.0);
 #else
 sss_tangent = vec4((modelMatrix * vec4(tangent.xyz, 0.0)).xyz, tangent.w * sign(determinant(mat3(modelMatrix))));
 #endif
-`;
-
-const FRAGMENT_DECLARATIONS = /* glsl */ `
-uniform float sss_variation;
-uniform float sss_cell_count;
-uniform float sss_thickness_factor;
-uniform float sss_bevel;
-uniform float sss_attenuation_distance;
-uniform vec4 sss_tint;
-uniform float sss_metalness;
-uniform float sss_surface_roughness;
-uniform float sss_relief;
-uniform vec2 sss_uv_per_unit;
-uniform float sss_cover;
-uniform vec2 sss_red_speed;
-uniform vec2 sss_green_speed;
-uniform vec2 sss_blue_speed;
-uniform vec3 sss_vein_color;
-uniform vec3 sss_spark_color;
-uniform float sss_texel_size;
-uniform float sss_edge;
-uniform float sss_erosion;
-uniform float sss_edge_height;
-uniform float sss_distortion;
-uniform vec3 sss_subsurface_color;
-uniform float sss_attenuation;
-uniform float sss_scale;
-uniform float sss_ambient;
-uniform float sss_power;
-uniform sampler2D sss_base_color_texture;
-uniform sampler2D sss_cover_texture;
-uniform sampler2D sss_packed_texture;
-uniform sampler2D sss_erosion_texture;
-uniform float sss_time;
+`,
+  },
+  fragmentShader: {
+    common: /* glsl */ `
+varying vec3 sss_view_position;
+varying vec2 sss_uv;
+varying vec4 sss_tangent;
 vec3 sss_P, sss_N, sss_V, sss_T, sss_B;
 float sss_side = 1.0;
 
@@ -794,9 +606,8 @@ void sss_frame() {
     sss_B = cross(sss_N * sss_side, sss_T) * sss_tangent.w;
   }
 }
-`;
-
-const BEGIN = /* glsl */ `
+`,
+    map_fragment: /* glsl */ `
 #if defined(FLAT_SHADED)
 sss_N = cross(dFdx(sss_view_position), dFdy(sss_view_position));
 #else
@@ -813,11 +624,14 @@ sss_frame();
 sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count, sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint, sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief, sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture, sss_red_speed, sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color, sss_texel_size, sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height);
 diffuseColor.rgb *= sss_surface.albedo;
 diffuseColor.a *= sss_surface.alpha;
-`;
-
-// What three calls for each light: its own reflection, then the light that comes through. The macros remember the
-// light's colour before its shadow: light that comes through entered on the far side.
-const LIGHT = /* glsl */ `
+`,
+    roughnessmap_fragment: 'roughnessFactor = sss_surface.roughness;',
+    metalnessmap_fragment: 'metalnessFactor = sss_surface.metallic;',
+    normal_fragment_maps: 'normal = sss_unit((viewMatrix * vec4(mat3(sss_T * sss_side, sss_B * sss_side, sss_N) * sss_surface.normal, 0.0)).xyz);',
+    emissivemap_fragment: 'totalEmissiveRadiance += sss_surface.emission;',
+    // What three calls for each light: its own reflection, then the light that comes through. The macros remember the
+    // light's colour before its shadow: light that comes through entered on the far side.
+    lights_physical_pars_fragment: /* glsl */ `
 vec3 sss_light_color;
 float sss_light_nearness;
 #define SSS_LIGHT(direct, nearness) sss_light_color = direct.color; sss_light_nearness = nearness
@@ -834,193 +648,35 @@ void sss_direct(const in IncidentLight directLight, const in vec3 geometryPositi
 }
 #undef RE_Direct
 #define RE_Direct sss_direct
-`;
-
-/** What goes into three's shaders, behind which of their includes. */
-const PATCHES = {
-  vertexShader: [['common', VERTEX_DECLARATIONS + '#ifndef USE_TANGENT\nattribute vec4 tangent;\n#endif\n'], ['project_vertex', VERTEX]],
-  fragmentShader: [
-    ['common', VERTEX_DECLARATIONS + FRAGMENT_DECLARATIONS + GLSL],
-    ['map_fragment', BEGIN],
-    ['roughnessmap_fragment', 'roughnessFactor = sss_surface.roughness;'],
-    ['metalnessmap_fragment', 'metalnessFactor = sss_surface.metallic;'],
-    ['normal_fragment_maps', 'normal = sss_unit((viewMatrix * vec4(mat3(sss_T * sss_side, sss_B * sss_side, sss_N) * sss_surface.normal, 0.0)).xyz);'],
-    ['emissivemap_fragment', 'totalEmissiveRadiance += sss_surface.emission;'],
-    ['lights_physical_pars_fragment', LIGHT],
-  ],
+`,
+  },
 };
 
-function patch(shader, nodes) {
-  for (const [stage, patches] of Object.entries(PATCHES)) {
-    for (const [name, text] of patches) {
-      const include = `#include <${name}>`;
-      if (!shader[stage].includes(include)) throw new Error(`ice: this version of three.js has no ${include}`);
-      shader[stage] = shader[stage].replace(include, () => `${include}\n${text}`);
-    }
-  }
-  for (const [property, { name }] of Object.entries({ ...parameters, ...textures })) shader.uniforms[name] = nodes[property];
-  shader.uniforms.sss_time = nodes.time;
-}
-
-const TEXELS = { white: [1, 1, 1, 1], black: [0, 0, 0, 1], gray: [0.5, 0.5, 0.5, 1], bump: [0.5, 0.5, 1, 1] };
-
-/** A texture of one texel, in half floats, which every device filters. */
-function texel({ type, default: name }) {
-  const data = new Uint16Array(TEXELS[name].map((value) => THREE.DataUtils.toHalfFloat(value)));
-  const settings = {
-    format: THREE.RGBAFormat, type: THREE.HalfFloatType, wrapS: THREE.RepeatWrapping, wrapT: THREE.RepeatWrapping,
-    magFilter: THREE.LinearFilter, minFilter: THREE.LinearFilter, needsUpdate: true,
-  };
-  return Object.assign(type === 'sampler2D' ? new THREE.DataTexture(data, 1, 1) : new THREE.Data3DTexture(data, 1, 1, 1), settings);
-}
-
-/** A value as an error shows it. */
-function shown(value) {
-  if (typeof value === 'string') return `'${value}'`;
-  return Array.isArray(value) ? `[${value.join(', ')}]` : (typeof value === 'object' && value?.constructor?.name) || String(value);
-}
-
-/** Throws an error about a value that a property does not take. */
-function refuse(name, taken, value) {
-  throw new TypeError(`ice: '${name}' takes ${taken}, not ${shown(value)}`);
-}
-
-/** Throws an error about a texture of another kind than the shader reads. */
-function checkKind(name, { cube, volume, layers }) {
-  const [read, given] = [textures[name].type.replace('sampler', ''), cube ? 'Cube' : volume ? '3D' : layers ? '2DArray' : '2D'];
-  if (read !== given) throw new TypeError(`ice: '${name}' takes a ${read} texture, not a ${given} texture`);
-}
-
-/** Throws an error if there is a name that neither this module nor MeshPhysicalMaterial has. */
-function checkNames(material, values) {
-  const unknown = Object.keys(values ?? {}).filter((name) => !(name in material));
-  if (!unknown.length) return;
-  const own = [...Object.keys(parameters), ...Object.keys(textures)].join(', ') || 'none';
-  throw new TypeError(`ice has no property ${unknown.map(shown).join(', ')}. Its own: ${own}; the others are those of MeshPhysicalMaterial`);
-}
-
-/** The numbers of a parameter's value: a number, an array, a vector, a colour or a matrix; undefined: its default. */
-function checkedNumbers(name, value, colors = '') {
-  const { type, default: start } = parameters[name];
-  const count = start.length ?? 1;
-  const given = value === undefined ? start : value;
-  const listed = typeof given === 'object' && given ? Array.from(given.asArray?.() ?? given.toArray?.() ?? given.data ?? given) : [given];
-  const fits = listed.length === count && listed.every((one) => typeof one === 'boolean' || Number.isFinite(one));
-  if (!fits) refuse(name, (count > 1 ? `${count} numbers` : type === 'bool' ? 'true or false' : 'a number') + colors, value);
-  return listed.map(Number);
-}
-
 /** Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes that melt into it. */
-export class IceMaterial extends THREE.MeshPhysicalMaterial {
-  #nodes;
-
-  constructor(values = {}) {
-    super();
-    this.name = 'ice';
-    this.roughness = 1;
-    this.alphaTest = 0.5;
-    const nodes = this.#nodes = {
-      variation: TSL.uniform(0.6),
-      cellCount: TSL.uniform(10.0),
-      thicknessFactor: TSL.uniform(0.3),
-      bevel: TSL.uniform(0.35),
-      attenuationDistance_: TSL.uniform(0.25),
-      tint: TSL.uniform(new THREE.Vector4().fromArray([0.75, 0.9, 1.0, 1.0])),
-      metalness_: TSL.uniform(0.0),
-      surfaceRoughness: TSL.uniform(0.12),
-      relief: TSL.uniform(0.01),
-      uvPerUnit: TSL.uniform(new THREE.Vector2().fromArray([1.0, 1.0])),
-      cover: TSL.uniform(1.0),
-      redSpeed: TSL.uniform(new THREE.Vector2().fromArray([0.02, 0.0])),
-      greenSpeed: TSL.uniform(new THREE.Vector2().fromArray([-0.01, 0.015])),
-      blueSpeed: TSL.uniform(new THREE.Vector2().fromArray([0.0, -0.025])),
-      veinColor: TSL.uniform(new THREE.Color().setRGB(0.3, 0.8, 1.0)),
-      sparkColor: TSL.uniform(new THREE.Color().setRGB(0.6, 0.9, 1.0)),
-      texelSize: TSL.uniform(0.002),
-      edge: TSL.uniform(0.15),
-      erosion: TSL.uniform(0.2),
-      edgeHeight: TSL.uniform(0.02),
-      distortion: TSL.uniform(0.2),
-      subsurfaceColor: TSL.uniform(new THREE.Color().setRGB(0.55, 0.85, 1.0)),
-      attenuation: TSL.uniform(0.8),
-      scale: TSL.uniform(2.0),
-      ambient: TSL.uniform(0.12),
-      power: TSL.uniform(6.0),
-      baseColorTexture: TSL.texture(texel(textures.baseColorTexture)),
-      coverTexture: TSL.texture(texel(textures.coverTexture)),
-      packedTexture: TSL.texture(texel(textures.packedTexture)),
-      erosionTexture: TSL.texture(texel(textures.erosionTexture)),
-      time: TSL.uniform(0),
-    };
-    /** In seconds; null: the page's clock. */
-    this.time = null;
-    nodes.time.onRenderUpdate(() => this.#seconds());
-    Object.assign(this, nodesOf(nodes));
-    this.setValues(values);
-  }
-
-  static {
-    for (const name of Object.keys(parameters)) {
-      Object.defineProperty(this.prototype, name, {
-        get() { return this.#nodes[name].value; },
-        set(value) {
-          const node = this.#nodes[name];
-          const isColor = node.value.isColor && (typeof value === 'string' || typeof value === 'number');
-          const color = isColor && new THREE.Color(NaN, NaN, NaN).set(value); // which a string that it does not know leaves
-          const numbers = checkedNumbers(name, color && Number.isFinite(color.r) ? color : value, node.value.isColor ? ', or a colour as THREE.Color takes it' : '');
-          if (typeof node.value === 'object') node.value.fromArray(numbers);
-          else node.value = parameters[name].type === 'bool' ? Boolean(numbers[0]) : numbers[0];
-        },
-      });
-    }
-    for (const [name, declared] of Object.entries(textures)) {
-      Object.defineProperty(this.prototype, name, {
-        get() { return this.#nodes[name].value; },
-        set(value) {
-          if (!(value?.isTexture ?? value == null)) refuse(name, 'a THREE.Texture, or null', value);
-          if (value) checkKind(name, { cube: value.isCubeTexture, volume: value.isData3DTexture || value.is3DTexture, layers: value.isDataArrayTexture || value.isArrayTexture });
-          const decoded = value?.type === THREE.HalfFloatType || value?.type === THREE.FloatType;
-          if (value?.colorSpace === THREE.NoColorSpace && !decoded) value.colorSpace = declared.colorSpace;
-          this.#nodes[name].value = value ?? texel(declared);
-          this.needsUpdate = true;
-        },
-      });
-    }
-  }
-
-  setValues(values) {
-    checkNames(this, values);
-    const others = {};
-    for (const [name, value] of Object.entries(values ?? {})) {
-      if (name in parameters || name in textures) this[name] = value;
-      else others[name] = value;
-    }
-    super.setValues(others);
-  }
-
-  #seconds() {
-    return this.time ?? performance.now() / 1000;
-  }
-
-  onBeforeRender() {
-    this.#nodes.time.value = this.#seconds();
-    this.uniformsNeedUpdate = true;
-  }
-
-  onBeforeCompile(shader) {
-    patch(shader, this.#nodes);
-  }
-
-  customProgramCacheKey() {
-    return [KEY, ...Object.keys(textures).map((name) => this[name].type)].join(' ');
-  }
-
-  copy(source) {
-    super.copy(source);
-    for (const name of [...Object.keys(parameters), ...Object.keys(textures)]) this[name] = source[name];
-    return this;
-  }
-}
+export class IceMaterial extends materialClass({
+  name: 'ice', version: 1, lit: true, alphaMode: 'mask',
+  fields: ['albedo', 'alpha', 'normal', 'metallic', 'roughness', 'emission', 'transmittance'],
+  parameters, textures, glsl: GLSL, wgsl: WGSL, patches: PATCHES,
+  calls: {
+    surface: {
+      name: 'sss_evaluate_surface',
+      inputs: ['uv', 'time'],
+      values: [
+        'variation', 'cellCount', 'thicknessFactor', 'bevel', 'sssAttenuationDistance', 'tint', 'baseColorTexture',
+        'sssMetalness', 'surfaceRoughness', 'relief', 'uvPerUnit', 'cover', 'coverTexture', 'packedTexture',
+        'redSpeed', 'greenSpeed', 'blueSpeed', 'veinColor', 'sparkColor', 'texelSize', 'edge', 'erosion',
+        'erosionTexture', 'edgeHeight',
+      ],
+    },
+    translucency: {
+      name: 'sss_evaluate_translucency',
+      inputs: ['surface', 'V', 'N', 'L'],
+      values: [
+        'distortion', 'subsurfaceColor', 'attenuation', 'scale', 'ambient', 'power',
+      ],
+    },
+  },
+}) {}
 
 /** The material. `values` are its parameters, its textures, and the properties of MeshPhysicalMaterial. */
 export function createMaterial(values = {}) {

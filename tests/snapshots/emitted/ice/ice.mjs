@@ -8,7 +8,7 @@
 // A StandardMaterial for WebGL 2 and WebGPU.
 // Lights, shadows, fog and the environment are PlayCanvas's.
 
-import * as pc from 'playcanvas';
+import { materialClass } from './sssgen-playcanvas.mjs';
 
 /** The parameters: type, default, range, unit, and the name in the shader. */
 export const parameters = {
@@ -21,11 +21,11 @@ export const parameters = {
   /** Width of the slope next to an edge, in cells. */
   bevel: { type: 'float', default: 0.35, range: [0.05, 1.0], unit: '1', name: 'sss_bevel' },
   /** The length after which 1/e (37 %) of the light remains; 0 = opaque. */
-  attenuationDistance_: { type: 'float', default: 0.25, range: [0.0, 10.0], unit: 'm', name: 'sss_attenuation_distance' },
+  sssAttenuationDistance: { type: 'float', default: 0.25, range: [0.0, 10.0], unit: 'm', name: 'sss_attenuation_distance' },
   /** Multiplies the texture. */
   tint: { type: 'vec4', default: [0.75, 0.9, 1.0, 1.0], name: 'sss_tint' },
   /** 0 = not a metal, 1 = metal. */
-  metalness_: { type: 'float', default: 0.0, range: [0.0, 1.0], unit: '1', name: 'sss_metalness' },
+  sssMetalness: { type: 'float', default: 0.0, range: [0.0, 1.0], unit: '1', name: 'sss_metalness' },
   /** 0 = smooth as a mirror, 1 = rough as chalk. */
   surfaceRoughness: { type: 'float', default: 0.12, range: [0.0, 1.0], unit: '1', name: 'sss_surface_roughness' },
   /** Height of the thickest cells above their edges. */
@@ -41,9 +41,9 @@ export const parameters = {
   /** Velocity of the blue layer. */
   blueSpeed: { type: 'vec2', default: [0.0, -0.025], unit: '1/s', name: 'sss_blue_speed' },
   /** Colour of the light in the red and green layers, where both are bright. */
-  veinColor: { type: 'vec3', default: [0.3, 0.8, 1.0], name: 'sss_vein_color' },
+  veinColor: { type: 'vec3', default: [0.3, 0.8, 1.0], color: true, name: 'sss_vein_color' },
   /** Colour of the light in the blue layer. */
-  sparkColor: { type: 'vec3', default: [0.6, 0.9, 1.0], name: 'sss_spark_color' },
+  sparkColor: { type: 'vec3', default: [0.6, 0.9, 1.0], color: true, name: 'sss_spark_color' },
   /** The length, in texture coordinates, over which slopes are measured: about one texel. */
   texelSize: { type: 'float', default: 0.002, range: [0.0001, 0.1], unit: '1', name: 'sss_texel_size' },
   /** Width of the soft edge, in the texture's values. */
@@ -55,13 +55,13 @@ export const parameters = {
   /** How far the normal bends the light's direction inside the body: 0 ignores the shape. */
   distortion: { type: 'float', default: 0.2, range: [0.0, 1.0], unit: '1', name: 'sss_distortion' },
   /** Colour of the transmitted light. */
-  subsurfaceColor: { type: 'vec3', default: [0.55, 0.85, 1.0], name: 'sss_subsurface_color' },
+  subsurfaceColor: { type: 'vec3', default: [0.55, 0.85, 1.0], color: true, name: 'sss_subsurface_color' },
   /** Factor on the whole result. */
-  attenuation_: { type: 'float', default: 0.8, range: [0.0, 1.0], unit: '1', name: 'sss_attenuation' },
+  sssAttenuation: { type: 'float', default: 0.8, range: [0.0, 1.0], unit: '1', name: 'sss_attenuation' },
   /** Strength of the glow towards the light. */
   scale: { type: 'float', default: 2.0, range: [0.0, 20.0], unit: '1', name: 'sss_scale' },
   /** Glow that does not depend on the direction. */
-  ambient_: { type: 'float', default: 0.12, range: [0.0, 1.0], unit: '1', name: 'sss_ambient' },
+  sssAmbient: { type: 'float', default: 0.12, range: [0.0, 1.0], unit: '1', name: 'sss_ambient' },
   /** How narrow the glow around the light is: the larger, the smaller the spot. */
   power: { type: 'float', default: 6.0, range: [1.0, 32.0], unit: '1', name: 'sss_power' },
 };
@@ -602,6 +602,7 @@ fn sss_evaluate_lighting(surface: sss_Surface, N: vec3f, V: vec3f, L: vec3f, lig
 }
 `;
 
+/** What goes into PlayCanvas's chunks. */
 const GLSL_CHUNKS = {
   litUserDeclarationVS: `
 varying vec2 sss_uv;
@@ -631,40 +632,8 @@ float sss_axes_volume = dot(cross(sss_axis_x, sss_axis_y), sss_axis_z);
 sss_tangent = vec4((dModelMatrix * vec4(sss_tangent.xyz, 0.0)).xyz, sss_tangent.w * sign(sss_axes_volume));
 `,
   litUserDeclarationPS: `
-precision highp sampler2D;
 varying vec2 sss_uv;
 varying vec4 sss_tangent;
-uniform float sss_variation;
-uniform float sss_cell_count;
-uniform float sss_thickness_factor;
-uniform float sss_bevel;
-uniform float sss_attenuation_distance;
-uniform vec4 sss_tint;
-uniform float sss_metalness;
-uniform float sss_surface_roughness;
-uniform float sss_relief;
-uniform vec2 sss_uv_per_unit;
-uniform float sss_cover;
-uniform vec2 sss_red_speed;
-uniform vec2 sss_green_speed;
-uniform vec2 sss_blue_speed;
-uniform vec3 sss_vein_color;
-uniform vec3 sss_spark_color;
-uniform float sss_texel_size;
-uniform float sss_edge;
-uniform float sss_erosion;
-uniform float sss_edge_height;
-uniform float sss_distortion;
-uniform vec3 sss_subsurface_color;
-uniform float sss_attenuation;
-uniform float sss_scale;
-uniform float sss_ambient;
-uniform float sss_power;
-uniform highp sampler2D sss_base_color_texture;
-uniform highp sampler2D sss_cover_texture;
-uniform highp sampler2D sss_packed_texture;
-uniform highp sampler2D sss_erosion_texture;
-uniform float sss_time;
 ${GLSL}
 vec3 sss_N;
 vec3 sss_V;
@@ -820,41 +789,6 @@ output.sss_tangent = vec4f((dModelMatrix * vec4f(output.sss_tangent.xyz, 0.0)).x
   litUserDeclarationPS: `
 varying sss_uv: vec2f;
 varying sss_tangent: vec4f;
-uniform sss_variation: f32;
-uniform sss_cell_count: f32;
-uniform sss_thickness_factor: f32;
-uniform sss_bevel: f32;
-uniform sss_attenuation_distance: f32;
-uniform sss_tint: vec4f;
-uniform sss_metalness: f32;
-uniform sss_surface_roughness: f32;
-uniform sss_relief: f32;
-uniform sss_uv_per_unit: vec2f;
-uniform sss_cover: f32;
-uniform sss_red_speed: vec2f;
-uniform sss_green_speed: vec2f;
-uniform sss_blue_speed: vec2f;
-uniform sss_vein_color: vec3f;
-uniform sss_spark_color: vec3f;
-uniform sss_texel_size: f32;
-uniform sss_edge: f32;
-uniform sss_erosion: f32;
-uniform sss_edge_height: f32;
-uniform sss_distortion: f32;
-uniform sss_subsurface_color: vec3f;
-uniform sss_attenuation: f32;
-uniform sss_scale: f32;
-uniform sss_ambient: f32;
-uniform sss_power: f32;
-var sss_base_color_texture: texture_2d<f32>;
-var sss_base_color_texture_sampler: sampler;
-var sss_cover_texture: texture_2d<f32>;
-var sss_cover_texture_sampler: sampler;
-var sss_packed_texture: texture_2d<f32>;
-var sss_packed_texture_sampler: sampler;
-var sss_erosion_texture: texture_2d<f32>;
-var sss_erosion_texture_sampler: sampler;
-uniform sss_time: f32;
 ${WGSL}
 var<private> sss_N: vec3f;
 var<private> sss_V: vec3f;
@@ -976,188 +910,13 @@ sss_light_through(-lightDirNormW, light.color * sss_arriving, 1.0 / max(length(l
 `,
 };
 
-/** A chunk of the engine, what is sought in it, and what it becomes: the engine's own text stays. */
-const CHANGES = (own) => [
-  ['stdFrontEndPS', /evaluateFrontend/, 'sss_engine_front', own.front],
-  ['opacityPS', /getOpacity/, 'sss_engine_opacity', own.opacity],
-  ['combinePS', /combineColor/, 'sss_engine_combine', own.combine],
-  ['lightDiffuseLambertPS', /getLightDiffuse/, 'sss_engine_lambert', own.lambert],
-  ['lightFunctionLightPS', /(?=dAtten\b[^;\n]*getLightDiffuse)/, `
-#if LIGHT{i}TYPE == DIRECTIONAL
-sss_light_through(-dLightDirNormW, lightColor * dAtten, 0.0);
-#else
-sss_light_through(-dLightDirNormW, lightColor * dAtten, 1.0 / max(length(lightDirW), 0.01));
-#endif
-`, ''],
-  ['lightFunctionLightPS', /(?=#ifdef LIGHT\{i\}AFFECT_SPECULARITY)/, `
-#if defined(SSS_OWN_LIGHT) && LIGHT{i}SHAPE == PUNCTUAL
-sss_light_reflected(lightColor * dAtten);
-#endif
-`, ''],
-  ['clusteredLightPS', /(?=falloffAttenuation\b[^;\n]*getLightDiffuse)/, own.clustered, ''],
-  ['clusteredLightPS', /(?=dAtten = falloffAttenuation;)/, `
-#ifdef SSS_OWN_LIGHT
-if (light.shape == {LIGHTSHAPE_PUNCTUAL}) { sss_light_reflected(light.color * cookieAttenuation * falloffAttenuation); }
-#endif
-`, ''],
-];
-
-const TEXELS = { white: [1, 1, 1, 1], black: [0, 0, 0, 1], gray: [0.5, 0.5, 0.5, 1], bump: [0.5, 0.5, 1, 1] };
-
-/** A texture of one texel, in half floats, which every device filters. */
-function texel(device, { type, default: name }) {
-  const data = new Uint16Array(TEXELS[name].map((value) => pc.FloatPacking.float2Half(value)));
-  const [cube, volume, layers] = ['samplerCube', 'sampler3D', 'sampler2DArray'].map((one) => one === type);
-  return new pc.Texture(device, {
-    name: `ice ${name}`, width: 1, height: 1, format: pc.PIXELFORMAT_RGBA16F, mipmaps: false,
-    cubemap: cube, volume, depth: 1, arrayLength: layers ? 1 : 0, minFilter: pc.FILTER_LINEAR, magFilter: pc.FILTER_LINEAR,
-    levels: [cube ? Array(6).fill(data) : layers ? [data] : data],
-  });
-}
-
-/** A value as the shader takes it; a pc.Color is converted to linear light. */
-function numbers(value, type) {
-  if (value instanceof pc.Color) {
-    const { r, g, b, a } = new pc.Color().linear(value);
-    return [r, g, b, a].slice(0, type === 'vec3' ? 3 : 4);
-  }
-  if (Array.isArray(value)) return [...value];
-  if (typeof value === 'boolean') return Number(value);
-  return value?.data ? Array.from(value.data) : value?.toArray ? value.toArray([]) : value;
-}
-
-/** A value as an error shows it. */
-function shown(value) {
-  if (typeof value === 'string') return `'${value}'`;
-  return Array.isArray(value) ? `[${value.join(', ')}]` : (typeof value === 'object' && value?.constructor?.name) || String(value);
-}
-
-/** Throws an error about a value that a property does not take. */
-function refuse(name, taken, value) {
-  throw new TypeError(`ice: '${name}' takes ${taken}, not ${shown(value)}`);
-}
-
-/** Throws an error about a texture of another kind than the shader reads. */
-function checkKind(name, { cube, volume, layers }) {
-  const [read, given] = [textures[name].type.replace('sampler', ''), cube ? 'Cube' : volume ? '3D' : layers ? '2DArray' : '2D'];
-  if (read !== given) throw new TypeError(`ice: '${name}' takes a ${read} texture, not a ${given} texture`);
-}
-
-/** Throws an error if there is a name that neither this module nor StandardMaterial has. */
-function checkNames(material, values) {
-  const unknown = Object.keys(values ?? {}).filter((name) => !(name in material));
-  if (!unknown.length) return;
-  const own = [...Object.keys(parameters), ...Object.keys(textures)].join(', ') || 'none';
-  throw new TypeError(`ice has no property ${unknown.map(shown).join(', ')}. Its own: ${own}; the others are those of StandardMaterial`);
-}
-
-/** The numbers of a parameter's value: a number, an array, a vector, a colour or a matrix; undefined: its default. */
-function checkedNumbers(name, value, colors = '') {
-  const { type, default: start } = parameters[name];
-  const count = start.length ?? 1;
-  const given = value === undefined ? start : value;
-  const listed = typeof given === 'object' && given ? Array.from(given.asArray?.() ?? given.toArray?.() ?? given.data ?? given) : [given];
-  const fits = listed.length === count && listed.every((one) => typeof one === 'boolean' || Number.isFinite(one));
-  if (!fits) refuse(name, (count > 1 ? `${count} numbers` : type === 'bool' ? 'true or false' : 'a number') + colors, value);
-  return listed.map(Number);
-}
-
 /** Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes that melt into it. */
-export class IceMaterial extends pc.StandardMaterial {
-  #device;
-  /** In seconds; null: the page's clock. */
-  time = null;
-
-  constructor(device, values = {}) {
-    if (typeof device?.isWebGPU !== 'boolean') refuse('createMaterial', 'a graphics device first, such as app.graphicsDevice', device);
-    super();
-    this.#device = device;
-    this.name = 'ice';
-    this.useMetalness = true;
-    this.metalness = 0;
-    this.gloss = 0;
-    this.enableGGXSpecular = true; // which the surface's roughness is meant for
-    this.alphaTest = 0.5;
-    const language = device.isWebGPU ? pc.SHADERLANGUAGE_WGSL : pc.SHADERLANGUAGE_GLSL;
-    const own = device.isWebGPU ? WGSL_CHUNKS : GLSL_CHUNKS;
-    const engine = pc.ShaderChunks.get(device, language);
-    const chunks = this.getShaderChunks(language);
-    for (const name of ['litUserDeclarationVS', 'litUserMainEndVS', 'litUserDeclarationPS']) {
-      chunks.set(name, (engine.get(name) ?? '') + own[name]);
-    }
-    for (const [name, sought, instead, added] of CHANGES(own)) {
-      const text = chunks.get(name) ?? engine.get(name) ?? '';
-      if (!sought.test(text)) throw new Error(`ice: this version of PlayCanvas has no ${sought.source} in its chunk ${name}`);
-      chunks.set(name, text.replace(sought, () => instead) + added);
-    }
-    for (const [name, one] of Object.entries(parameters)) this[name] = one.default;
-    for (const name of Object.keys(textures)) this[name] = null;
-    this.set(values);
-    this.update();
-  }
-
-  static {
-    for (const [name, { name: uniform, type }] of Object.entries(parameters)) {
-      Object.defineProperty(this.prototype, name, {
-        get() { return this.getParameter(uniform).data; },
-        set(value) {
-          const mayBeColor = type === 'vec3' || type === 'vec4';
-          const color = mayBeColor && /^#([0-9a-f]{2}){3,4}$/i.test(value) ? new pc.Color().fromString(value) : value;
-          const given = checkedNumbers(name, mayBeColor ? numbers(color, type) : color, mayBeColor ? ", a pc.Color, or a colour such as '#3070ff'" : '');
-          this.setParameter(uniform, given.length > 1 ? given : given[0]);
-        },
-      });
-    }
-    for (const [name, declared] of Object.entries(textures)) {
-      Object.defineProperty(this.prototype, name, {
-        get() { return this.getParameter(declared.name).data; },
-        set(value) {
-          if (!(value == null || value instanceof pc.Texture)) refuse(name, 'a pc.Texture, or null', value);
-          if (value) checkKind(name, { cube: value.cubemap, volume: value.volume, layers: value.array });
-          this.setParameter(declared.name, value ?? texel(this.#device, declared));
-        },
-      });
-    }
-  }
-
-  /** Whether the reflected light is that of the targets without an engine, the same picture everywhere. */
-  get ownLight() {
-    return this.getDefine('SSS_OWN_LIGHT');
-  }
-
-  set ownLight(value) {
-    this.setDefine('SSS_OWN_LIGHT', value ? '' : undefined);
-  }
-
-  /** Sets many properties: those of the material, and those of StandardMaterial. */
-  set(values) {
-    checkNames(this, values);
-    Object.assign(this, values);
-    return this;
-  }
-
-  /** PlayCanvas calls this for each format of vertices: the shader reads the attributes that the mesh has. */
-  getShaderVariant(params) {
-    const { defines } = this;
-    this.defines = new Map(defines);
-    for (const { name } of params.vertexFormat?.elements ?? []) this.defines.set(`SSS_${name}`, '');
-    try {
-      return super.getShaderVariant(params);
-    } finally {
-      this.defines = defines;
-    }
-  }
-
-  /** PlayCanvas calls this before it draws. */
-  setParameters(...args) {
-    this.setParameter('sss_time', this.time ?? performance.now() / 1000);
-    super.setParameters(...args);
-  }
-
-  clone() {
-    return new this.constructor(this.#device).copy(this).set({ time: this.time });
-  }
-}
+export class IceMaterial extends materialClass({
+  name: 'ice', version: 1, lit: true, alphaMode: 'mask',
+  fields: ['albedo', 'alpha', 'normal', 'metallic', 'roughness', 'emission', 'transmittance'],
+  inputs: ['L', 'light_color', 'N', 'time', 'uv', 'V'],
+  parameters, textures, glsl: GLSL_CHUNKS, wgsl: WGSL_CHUNKS,
+}) {}
 
 /** The material. `values` are its parameters, its textures, and the properties of StandardMaterial. */
 export function createMaterial(device, values = {}) {

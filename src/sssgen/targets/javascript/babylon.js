@@ -1,0 +1,292 @@
+// What materials by sssgen for Babylon.js share: their class, and the plug-in that takes their text into Babylon's shaders. sssgen
+// writes this file beside the materials; it is the same for all of them.
+
+import { EngineStore } from '@babylonjs/core/Engines/engineStore.js';
+import { ShaderStore } from '@babylonjs/core/Engines/shaderStore.js';
+import { MaterialPluginBase } from '@babylonjs/core/Materials/materialPluginBase.js';
+import { PBRMaterial } from '@babylonjs/core/Materials/PBR/pbrMaterial.js';
+import { RawCubeTexture } from '@babylonjs/core/Materials/Textures/rawCubeTexture.js';
+import { RawTexture } from '@babylonjs/core/Materials/Textures/rawTexture.js';
+import { RawTexture2DArray } from '@babylonjs/core/Materials/Textures/rawTexture2DArray.js';
+import { RawTexture3D } from '@babylonjs/core/Materials/Textures/rawTexture3D.js';
+import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
+import { Color3 } from '@babylonjs/core/Maths/math.color.js';
+import { Matrix, Vector2, Vector3, Vector4 } from '@babylonjs/core/Maths/math.vector.js';
+import { SerializationHelper } from '@babylonjs/core/Misc/decorators.serialization.js';
+import { hashOf, Properties, TEXELS } from './values.js';
+
+/**
+ * A material, as its module describes it.
+ * @typedef {object} Description
+ * @property {string} name
+ * @property {number} version
+ * @property {boolean} [lit] whether Babylon lights it
+ * @property {boolean} [twoSided]
+ * @property {'mask' | 'blend'} [alphaMode] opaque, if it has none
+ * @property {string[]} [fields] the members of its surface
+ * @property {string[]} inputs the values that its functions read
+ * @property {Record<string, import('./values.js').Parameter>} parameters
+ * @property {Record<string, import('./values.js').TextureParameter>} textures
+ * @property {Record<string, string>[]} vertex place in Babylon's vertex shader → text, in GLSL and in WGSL
+ * @property {Record<string, string>[]} fragment the same of its fragment shader
+ */
+
+/** The uniforms in Babylon's block: type → number of floats. */
+const SIZES = { float: 1, vec2: 2, vec3: 3, vec4: 4, mat4: 16 };
+const uniformType = (type) => (type.startsWith('mat') ? 'mat4' : /\d/.test(type) ? `vec${type.at(-1)}` : 'float');
+
+/** The declaration of a texture, in GLSL and in WGSL. */
+const DECLARATIONS = [
+  ({ type, name }) => `uniform highp ${type} ${name};`,
+  ({ type, name }) => `var ${name}Sampler: sampler;\nvar ${name}: texture_${TEXTURE_TYPES[type]}<f32>;`,
+];
+const TEXTURE_TYPES = { sampler2D: '2d', sampler3D: '3d', samplerCube: 'cube', sampler2DArray: '2d_array' };
+
+/** Places with their texts. Babylon takes shaders apart at semicolons, also in comments. */
+const withoutComments = (places) => Object.fromEntries(
+  Object.entries(places).map(([place, text]) => [place, text.replace(/\/\/.*$/gm, '')]),
+);
+
+/** The plug-in of a material. */
+function pluginClass({ name: materialName, parameters, textures, vertex, fragment }, { moves, takesLight }) {
+  // Babylon keeps one program for each name of a plug-in
+  const key = `Sssgen_${materialName}_${hashOf(JSON.stringify([vertex, fragment]))}`;
+  const uniforms = Object.values(parameters).map(({ name, type }) => [name, uniformType(type)]);
+  if (moves) uniforms.push(['sss_time', 'float']);
+  if (takesLight) uniforms.push(['sss_light_place', 'vec4'], ['sss_light_radiance', 'vec3']);
+  const declarations = DECLARATIONS.map((declaration) => Object.values(textures).map(declaration).join('\n'));
+  const code = {
+    vertex: vertex.map(withoutComments),
+    fragment: fragment.map(({ CUSTOM_FRAGMENT_DEFINITIONS: definitions, ...others }, language) => withoutComments({
+      CUSTOM_FRAGMENT_DEFINITIONS: `${declarations[language]}\n${definitions}`, ...others,
+    })),
+  };
+
+  return class extends MaterialPluginBase {
+    constructor(material) {
+      super(material, key, 200, undefined, true, true);
+      this.doNotSerialize = true;
+    }
+
+    getClassName() {
+      return key;
+    }
+
+    isCompatible() {
+      return true;
+    }
+
+    getUniforms() {
+      return {
+        ubo: uniforms.map(([name, type]) => ({ name, size: SIZES[type], type })),
+        fragment: uniforms.map(([name, type]) => `uniform ${type} ${name};`).join('\n'),
+      };
+    }
+
+    getSamplers(samplers) {
+      samplers.push(...Object.values(textures).map(({ name }) => name));
+    }
+
+    getCustomCode(stage, language) {
+      const places = code[stage][language];
+      const whole = ShaderStore.GetShadersStore(language).pbrPixelShader ?? '';
+      for (const place of Object.keys(places)) { // those without a name in Babylon
+        const absent = whole && /^![^#]/.test(place) && !new RegExp(place.slice(1)).test(whole);
+        if (absent) throw new Error(`${materialName}: this version of Babylon.js has no ${place}`);
+      }
+      return places;
+    }
+
+    prepareDefinesBeforeAttributes(defines) {
+      defines._needNormals = true;
+      defines._needUVs = true;
+    }
+
+    getActiveTextures(active) {
+      active.push(...this.#used());
+    }
+
+    hasTexture(texture) {
+      return this.#used().includes(texture);
+    }
+
+    isReadyForSubMesh() {
+      return this.#used().every((texture) => texture.isReadyOrNotBlocking());
+    }
+
+    dispose(forceDisposeTextures) {
+      if (forceDisposeTextures) this.#used().forEach((texture) => texture.dispose());
+    }
+
+    #used() {
+      return Object.keys(textures).map((property) => this._material[property]).filter((texture) => texture);
+    }
+
+    bindForSubMesh(buffer) {
+      const material = /** @type {any} */ (this._material);
+      const write = (name, type, numbers) => {
+        const size = SIZES[uniformType(type)];
+        if (size === 16) buffer.updateMatrices(name, Float32Array.from(numbers));
+        else buffer[`updateFloat${size === 1 ? '' : size}`](name, ...numbers);
+      };
+      for (const [property, { name, type }] of Object.entries(parameters)) write(name, type, numbersOf(material[property]));
+      for (const [property, { name }] of Object.entries(textures)) buffer.setTexture(name, material[property]);
+      if (moves) write('sss_time', 'float', [material.time ?? performance.now() / 1000]);
+      if (takesLight) {
+        const [place, radiance] = lightOf(material.light);
+        write('sss_light_place', 'vec4', place);
+        write('sss_light_radiance', 'vec3', radiance);
+      }
+    }
+  };
+}
+
+/** The numbers of a property: a number, a boolean, or one of Babylon's vectors, colours and matrices. */
+const numbersOf = (value) => (typeof value === 'object' ? [...value.asArray()].map(Number) : [Number(value)]);
+
+/** The position of a light, or the direction towards it, as a homogeneous vector; and its radiance. */
+function lightOf(light) {
+  if (!light) return [[0, 1, 0, 0], [0, 0, 0]];
+  const directional = light.getTypeID() === 1;
+  const place = directional
+    ? (light.computeTransformedInformation() ? light.transformedDirection : light.direction).scale(-1)
+    : light.getAbsolutePosition();
+  return [[...place.asArray(), directional ? 0 : 1], light.diffuse.scale(light.getScaledIntensity() / Math.PI).asArray()];
+}
+
+/**
+ * The first value of a parameter, as a user gets it.
+ * @param {import('./values.js').Parameter} declared
+ */
+function startOf({ type, default: start, color }) {
+  if (!Array.isArray(start)) return start;
+  if (type.startsWith('mat')) return matrix(start);
+  return (color ? Color3 : { 2: Vector2, 3: Vector3, 4: Vector4 }[start.length]).FromArray(start);
+}
+
+/** A matrix of 2, 3 or 4 columns as one of Babylon. */
+function matrix(numbers) {
+  const side = Math.sqrt(numbers.length);
+  return Matrix.FromArray(Array.from({ length: 16 }, (_, i) => (i % 4 < side && i >> 2 < side ? numbers[(i >> 2) * side + (i % 4)] : +(i % 5 === 0))));
+}
+
+const HALVES = { 0: 0, 0.5: 0x3800, 1: 0x3c00 };
+const RGBA = 5, LINEAR = 2, HALF_FLOAT = 2;
+
+/** A texture of one texel, in half floats, which every device filters. */
+function texel({ type, default: name }, scene) {
+  const data = new Uint16Array(TEXELS[name].map((value) => HALVES[value]));
+  if (type === 'samplerCube') return new RawCubeTexture(scene, Array(6).fill(data), 1, RGBA, HALF_FLOAT, false, false, LINEAR);
+  if (type === 'sampler2D') return new RawTexture(data, 1, 1, RGBA, scene, false, false, LINEAR, HALF_FLOAT);
+  const Layered = type === 'sampler3D' ? RawTexture3D : RawTexture2DArray;
+  return new Layered(data, 1, 1, 1, RGBA, scene, false, false, LINEAR, HALF_FLOAT);
+}
+
+/**
+ * The class of a material: PBRMaterial with the material's properties and its plug-in.
+ * @param {Description} description
+ */
+export function materialClass(description) {
+  const { name: materialName, lit, twoSided, alphaMode, fields = [], parameters, textures } = description;
+  const properties = new Properties(description, 'PBRMaterial');
+  const { moves, takesLight } = properties;
+  const Plugin = pluginClass(description, properties);
+
+  return class extends PBRMaterial {
+    #values = Object.fromEntries(Object.entries(parameters).map(([property, declared]) => [property, startOf(declared)]));
+    #given = {};
+    #texels = {};
+
+    constructor(values = {}, scene = EngineStore.LastCreatedScene) {
+      if (!scene) throw new TypeError(`${materialName}: there is no scene: create one first, or give it as the second argument`);
+      super(materialName, scene);
+      this.metallic = 0;
+      this.roughness = 1;
+      if (!lit) this.unlit = true;
+      if (fields.includes('clearcoat')) this.clearCoat.isEnabled = true; // the surface has its weight
+      if (twoSided) this.backFaceCulling = false;
+      if (twoSided) this.twoSidedLighting = true;
+      if (alphaMode === 'mask') this.transparencyMode = PBRMaterial.PBRMATERIAL_ALPHATEST;
+      if (alphaMode === 'mask') this.alphaCutOff = 0.5;
+      if (alphaMode === 'blend') this.transparencyMode = PBRMaterial.PBRMATERIAL_ALPHABLEND;
+      /** In seconds; null: the page's clock. */
+      if (moves) this.time = null;
+      /** One of Babylon's lights, which lights this unlit material; null: none. */
+      if (takesLight) this.light = null;
+      new Plugin(this);
+      properties.checkNames(this, values);
+      Object.assign(this, values);
+    }
+
+    static {
+      for (const property of Object.keys(parameters)) {
+        properties.define(this.prototype, property, {
+          get() { return this.#values[property]; },
+          set(value) { this.#setParameter(property, value); },
+        });
+      }
+      for (const property of Object.keys(textures)) {
+        properties.define(this.prototype, property, {
+          get() { return this.#given[property] ?? this.#texel(property); },
+          set(value) { this.#setTexture(property, value); },
+        });
+      }
+    }
+
+    #setParameter(property, value) {
+      const old = this.#values[property];
+      const isColor = old instanceof Color3;
+      const color = isColor && /^#[0-9a-f]{6}$/i.test(value) && Color3.FromHexString(value).toLinearSpace();
+      const numbers = properties.numbers(property, color || value, isColor ? ", a Color3, or a colour such as '#3070ff'" : '');
+      if (typeof old !== 'object') this.#values[property] = typeof old === 'boolean' ? Boolean(numbers[0]) : numbers[0];
+      else if (old instanceof Matrix) this.#values[property] = matrix(numbers);
+      else old.fromArray(numbers);
+    }
+
+    #setTexture(property, value) {
+      const { color } = textures[property];
+      const taken = value == null || typeof value === 'string' || value.getInternalTexture;
+      if (!taken) properties.refuse(property, 'a texture, the URL of one, or null', value);
+      if (typeof value === 'string') value = new Texture(value, this.getScene(), { useSRGBBuffer: color });
+      if (value?.isCube || value?.getInternalTexture()) {
+        properties.checkKind(property, { cube: value.isCube, volume: value.is3D, layers: value.is2DArray });
+      }
+      if (color && value?.gammaSpace && value.textureType === 0) {
+        console.warn(`${materialName}: ${property} has colours in sRGB: create it with { useSRGBBuffer: true }, or set its URL`);
+      }
+      this.#given[property] = value;
+      this.markAsDirty(PBRMaterial.TextureDirtyFlag);
+    }
+
+    #texel(property) {
+      if (!(property in this.#texels)) {
+        this.#texels[property] = null; // Babylon asks for all textures while one is created
+        this.#texels[property] = texel(textures[property], this.getScene());
+      }
+      return this.#texels[property];
+    }
+
+    needAlphaTesting() {
+      return super.needAlphaTesting() || this.transparencyMode === PBRMaterial.PBRMATERIAL_ALPHATEST;
+    }
+
+    needAlphaBlending() {
+      return super.needAlphaBlending() || this.transparencyMode === PBRMaterial.PBRMATERIAL_ALPHABLEND;
+    }
+
+    clone(name, cloneTexturesOnlyOnce = true, rootUrl = '') {
+      const Own = /** @type {any} */ (this.constructor);
+      const copy = SerializationHelper.Clone(() => new Own({}, this.getScene()), this, { cloneTexturesOnlyOnce });
+      Object.assign(copy, { id: name, name });
+      this.stencil.copyTo(copy.stencil);
+      this._clonePlugins(copy, rootUrl);
+      Object.assign(copy, this.#values, this.#given, moves && { time: this.time }, takesLight && { light: this.light });
+      return copy;
+    }
+
+    dispose(forceDisposeEffect, forceDisposeTextures) {
+      super.dispose(forceDisposeEffect, forceDisposeTextures);
+      Object.values(this.#texels).forEach((texture) => texture.dispose());
+    }
+  };
+}

@@ -1,0 +1,226 @@
+// What materials by sssgen for three.js share: their class, their nodes for WebGPURenderer, and the way of their text into the
+// shaders of WebGLRenderer. sssgen writes this file beside the materials; it is the same for all of them.
+
+import * as THREE from 'three/webgpu';
+import * as TSL from 'three/tsl';
+import { nodesOf } from './three_nodes.js';
+import { hashOf, Properties, TEXELS } from './values.js';
+
+/**
+ * A material, as its module describes it.
+ * @typedef {object} Description
+ * @property {string} name
+ * @property {number} version
+ * @property {boolean} [lit] whether three lights it
+ * @property {boolean} [raymarched] whether its position is that of the camera
+ * @property {boolean} [twoSided]
+ * @property {'mask' | 'blend'} [alphaMode] opaque, if it has none
+ * @property {string[]} [fields] the members of its surface
+ * @property {Record<string, import('./values.js').Parameter>} parameters
+ * @property {Record<string, import('./values.js').TextureParameter>} textures
+ * @property {string} glsl functions
+ * @property {string} wgsl the same
+ * @property {Record<string, import('./three_nodes.js').Call>} calls `color` of an unlit material; `surface` and `translucency` of a lit one
+ * @property {{ vertexShader: Record<string, string>, fragmentShader: Record<string, string> }} patches
+ */
+
+// WebGLRenderer: the functions go into three's own shader, at its includes.
+
+/** The uniforms beside parameters and textures. */
+const OWN_UNIFORMS = {
+  time: { type: 'float', name: 'sss_time' },
+  lightPlace: { type: 'vec4', name: 'sss_light_place' },
+  lightRadiance: { type: 'vec3', name: 'sss_light_radiance' },
+};
+
+/** Adds a material's text to a shader of three. */
+function patch(shader, { name, parameters, textures, patches, glsl }, uniforms) {
+  const declarations = [];
+  for (const [property, declared] of Object.entries({ ...parameters, ...textures, ...OWN_UNIFORMS })) {
+    if (!uniforms[property]) continue;
+    declarations.push(`uniform ${declared.type} ${declared.name};`);
+    shader.uniforms[declared.name] = uniforms[property];
+  }
+  for (const stage of ['vertexShader', 'fragmentShader']) {
+    for (const [file, text] of Object.entries(patches[stage])) {
+      const include = `#include <${file}>`;
+      if (!shader[stage].includes(include)) throw new Error(`${name}: this version of three.js has no ${include}`);
+      const whole = stage === 'fragmentShader' && file === 'common' ? `${declarations.join('\n')}${text}${glsl}` : text;
+      shader[stage] = shader[stage].replace(include, () => `${include}\n${whole}`);
+    }
+  }
+}
+
+// The class of materials.
+
+/**
+ * The first value of a parameter, as a user gets it.
+ * @param {import('./values.js').Parameter} declared
+ */
+function startOf({ type, default: start, color }) {
+  if (!Array.isArray(start)) return start;
+  if (color) return new THREE.Color().fromArray(start);
+  return new THREE[`${type.startsWith('mat') ? 'Matrix' : 'Vector'}${type.at(-1)}`]().fromArray(start);
+}
+
+/** A texture of one texel, in half floats, which every device filters. */
+function texel({ type, default: name }) {
+  const data = new Uint16Array(TEXELS[name].map((value) => THREE.DataUtils.toHalfFloat(value)));
+  const settings = {
+    format: THREE.RGBAFormat, type: THREE.HalfFloatType, wrapS: THREE.RepeatWrapping, wrapT: THREE.RepeatWrapping,
+    magFilter: THREE.LinearFilter, minFilter: THREE.LinearFilter, needsUpdate: true,
+  };
+  const flat = () => Object.assign(new THREE.DataTexture(data, 1, 1), settings);
+  if (type === 'sampler2D') return flat();
+  if (type === 'samplerCube') return Object.assign(new THREE.CubeTexture(Array.from({ length: 6 }, flat)), settings);
+  return Object.assign(new THREE[type === 'sampler3D' ? 'Data3DTexture' : 'DataArrayTexture'](data, 1, 1, 1), settings);
+}
+
+const TEXTURE_NODES = { sampler3D: TSL.texture3D, samplerCube: TSL.cubeTexture };
+
+/** The uniforms of a material, as nodes that both renderers read. */
+function uniformsOf({ parameters, textures }, moves, takesLight) {
+  const uniforms = {};
+  for (const [name, declared] of Object.entries(parameters)) {
+    uniforms[name] = ['int', 'uint'].includes(declared.type) ? TSL.uniform(startOf(declared), declared.type) : TSL.uniform(startOf(declared));
+  }
+  for (const [name, declared] of Object.entries(textures)) {
+    uniforms[name] = (TEXTURE_NODES[declared.type] ?? TSL.texture)(texel(declared));
+  }
+  if (moves) uniforms.time = TSL.uniform(0);
+  if (takesLight) uniforms.lightPlace = TSL.uniform(new THREE.Vector4(0, 1, 0, 0));
+  if (takesLight) uniforms.lightRadiance = TSL.uniform(new THREE.Color(0, 0, 0));
+  return uniforms;
+}
+
+/**
+ * The class of a material: MeshPhysicalMaterial, or MeshBasicMaterial for an unlit one, with the material's properties.
+ * @param {Description} description
+ */
+export function materialClass(description) {
+  const { name, lit, parameters, textures, calls, fields = [] } = description;
+  const base = lit ? 'MeshPhysicalMaterial' : 'MeshBasicMaterial';
+  const inputs = Object.values(calls).flatMap((call) => call.inputs);
+  const properties = new Properties({ ...description, inputs }, base);
+  const { moves, takesLight } = properties;
+  const texts = { glsl: TSL.glsl(description.glsl), wgsl: TSL.wgsl(description.wgsl) };
+  // three keeps one program per key
+  const key = `sssgen ${name} ${hashOf(JSON.stringify([description.glsl, description.patches]))}`;
+
+  return class extends THREE[base] {
+    #uniforms = uniformsOf(description, moves, takesLight);
+
+    constructor(values = {}) {
+      super();
+      this.name = name;
+      if (lit) this.roughness = 1;
+      if (fields.includes('clearcoat')) this.clearcoat = 1; // three has none at 0; the surface has its weight
+      if (description.twoSided) this.side = THREE.DoubleSide;
+      if (description.alphaMode === 'mask') this.alphaTest = 0.5;
+      if (description.alphaMode === 'blend') this.transparent = true;
+      if (inputs.includes('vertex_color')) this.defaultAttributeValues = { color: [1, 1, 1, 1] }; // in WebGLRenderer
+      if (moves) {
+        /** In seconds; null: the page's clock. */
+        this.time = null;
+        this.#uniforms.time.onRenderUpdate(() => this.#seconds());
+      }
+      if (takesLight) {
+        /** One of three's lights, which lights this unlit material; null: none. */
+        this.light = null;
+        this.#uniforms.lightPlace.onRenderUpdate(() => this.#placeLight());
+      }
+      Object.assign(this, nodesOf(description, texts, this.#uniforms));
+      this.setValues(values);
+    }
+
+    static {
+      for (const property of Object.keys(parameters)) {
+        properties.define(this.prototype, property, {
+          get() { return this.#uniforms[property].value; },
+          set(value) { this.#setParameter(property, value); },
+        });
+      }
+      for (const property of Object.keys(textures)) {
+        properties.define(this.prototype, property, {
+          get() { return this.#uniforms[property].value; },
+          set(value) { this.#setTexture(property, value); },
+        });
+      }
+    }
+
+    #setParameter(property, value) {
+      const node = this.#uniforms[property];
+      const isColor = node.value.isColor && (typeof value === 'string' || typeof value === 'number');
+      const color = isColor && new THREE.Color(NaN, NaN, NaN).set(value); // which a string that it does not know leaves
+      const given = color && Number.isFinite(color.r) ? color : value;
+      const numbers = properties.numbers(property, given, node.value.isColor ? ', or a colour as THREE.Color takes it' : '');
+      if (typeof node.value === 'object') node.value.fromArray(numbers);
+      else node.value = parameters[property].type === 'bool' ? Boolean(numbers[0]) : numbers[0];
+    }
+
+    #setTexture(property, value) {
+      const declared = textures[property];
+      if (!(value?.isTexture ?? value == null)) properties.refuse(property, 'a THREE.Texture, or null', value);
+      if (value) {
+        const volume = value.isData3DTexture || value.is3DTexture, layers = value.isDataArrayTexture || value.isArrayTexture;
+        properties.checkKind(property, { cube: value.isCubeTexture, volume, layers });
+      }
+      const decoded = value?.type === THREE.HalfFloatType || value?.type === THREE.FloatType;
+      if (value?.colorSpace === THREE.NoColorSpace && !decoded) value.colorSpace = declared.colorSpace;
+      this.#uniforms[property].value = value ?? texel(declared);
+      this.needsUpdate = true;
+    }
+
+    setValues(values) {
+      properties.checkNames(this, values);
+      const others = {};
+      for (const [property, value] of Object.entries(values ?? {})) {
+        if (properties.names.includes(property)) this[property] = value;
+        else others[property] = value;
+      }
+      super.setValues(others);
+    }
+
+    #seconds() {
+      return this.time ?? performance.now() / 1000;
+    }
+
+    #placeLight() {
+      const { light } = this, { lightPlace, lightRadiance } = this.#uniforms;
+      if (!light) {
+        lightRadiance.value.setScalar(0);
+        return lightPlace.value;
+      }
+      light.updateWorldMatrix(true, false);
+      const place = new THREE.Vector3().setFromMatrixPosition(light.matrixWorld);
+      if (light.isDirectionalLight) {
+        light.target.updateWorldMatrix(true, false);
+        place.sub(new THREE.Vector3().setFromMatrixPosition(light.target.matrixWorld));
+      }
+      lightRadiance.value.copy(light.color).multiplyScalar(light.intensity / Math.PI);
+      return lightPlace.value.set(place.x, place.y, place.z, light.isDirectionalLight ? 0 : 1);
+    }
+
+    onBeforeRender() {
+      if (moves) this.#uniforms.time.value = this.#seconds();
+      if (takesLight) this.#placeLight();
+      if (moves || takesLight) this.uniformsNeedUpdate = true;
+    }
+
+    onBeforeCompile(shader) {
+      patch(shader, description, this.#uniforms);
+    }
+
+    customProgramCacheKey() {
+      return [key, ...Object.keys(textures).map((property) => this[property].type)].join(' ');
+    }
+
+    copy(source) {
+      super.copy(source);
+      for (const property of properties.names) this[property] = source[property];
+      if (moves) this.time = source.time;
+      if (takesLight) this.light = source.light;
+      return this;
+    }
+  };
+}

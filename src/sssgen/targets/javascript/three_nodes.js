@@ -1,0 +1,206 @@
+// Nodes for WebGPURenderer: calls of a material's functions, with three's own nodes as arguments.
+
+import * as THREE from 'three/webgpu';
+import * as TSL from 'three/tsl';
+
+/**
+ * A function of the texts, and its arguments in order.
+ * @typedef {object} Call
+ * @property {string} name
+ * @property {string[]} inputs the keys of INPUTS and of `lightInputs`; `surface`: the variable with the surface
+ * @property {string[]} values parameters and textures
+ */
+
+/** The variable of the texts that has the surface. */
+const SURFACE = 'sss_surface';
+
+/** v / |v|; 0 stays 0, of which normalize makes NaN. */
+const unit = (v) => v.mul(v.dot(v).max(1e-30).inverseSqrt());
+/** A direction in another space. */
+const turned = (matrix, v) => unit(matrix.mul(TSL.vec4(v, 0)).xyz);
+const viewDirection = turned(TSL.cameraWorldMatrix, TSL.positionViewDirection);
+/** -1 on a back face, whose normal is reversed. */
+const side = TSL.Fn((_, { material }) => (material.side === THREE.DoubleSide ? TSL.faceDirection : TSL.float(1)), 'float')();
+const geometryNormal = turned(TSL.cameraWorldMatrix, TSL.negateOnBackSide(TSL.normalViewGeometry));
+
+/** The position on the screen in the texture coordinates of a render target: v counts as its rows do. */
+const textureScreenUV = TSL.Fn((_, builder) => {
+  const screen = TSL.screenUV;
+  return builder.renderer.backend.isWebGPUBackend ? screen : TSL.vec2(screen.x, screen.y.oneMinus());
+});
+
+/** The tangent or the bitangent: that of the geometry, else from the derivatives of uv. */
+const tangentFrame = (bitangent) => TSL.Fn((_, builder) => {
+  const N = geometryNormal;
+  if (builder.geometry.hasAttribute('tangent')) {
+    const T = unit(TSL.varying(TSL.modelWorldMatrix.mul(TSL.vec4(TSL.tangentGeometry.xyz, 0)).xyz));
+    const handedness = TSL.tangentGeometry.w.mul(TSL.modelWorldMatrix.determinant().sign());
+    return bitangent ? N.mul(side).cross(T).mul(handedness) : T;
+  }
+  const across = TSL.positionWorld.dFdx(), up = TSL.positionWorld.dFdy();
+  const a = TSL.uv().dFdx(), b = TSL.uv().dFdy();
+  const first = up.cross(N), second = N.cross(across);
+  const T = first.mul(a.x).add(second.mul(b.x)), B = first.mul(a.y).add(second.mul(b.y));
+  const longest = T.dot(T).max(B.dot(B)).max(1e-30).inverseSqrt();
+  return (bitangent ? B : T).mul(longest);
+}, 'vec3')();
+const tangent = tangentFrame(false), bitangent = tangentFrame(true);
+
+/** The values at a point of the surface, with their types. */
+const INPUTS = {
+  uv: [TSL.uv(), 'vec2'],
+  uv2: [TSL.uv(1), 'vec2'],
+  vertex_color: [TSL.vertexColor(), 'vec4'],
+  P: [TSL.positionWorld, 'vec3'],
+  N: [geometryNormal, 'vec3'],
+  V: [viewDirection, 'vec3'],
+  T: [tangent, 'vec3'],
+  B: [bitangent, 'vec3'],
+  P_object: [TSL.positionGeometry, 'vec3'],
+  N_object: [unit(TSL.normalGeometry).mul(side), 'vec3'],
+  V_object: [turned(TSL.modelWorldMatrixInverse, viewDirection), 'vec3'],
+  screen_uv: [textureScreenUV(), 'vec2'],
+  eye_distance: [TSL.positionView.length(), 'float'],
+  ray_origin: [TSL.cameraPosition, 'vec3'],
+  ray_direction: [viewDirection.negate(), 'vec3'],
+};
+
+/** The values of a light. */
+const lightInputs = (L, color, nearness) => ({
+  L: [L, 'vec3'],
+  L_object: [turned(TSL.modelWorldMatrixInverse, L), 'vec3'],
+  light_color: [color, 'vec3'],
+  light_nearness: [nearness, 'float'],
+});
+
+/** The light of an unlit material. */
+function ownLight(lightPlace, lightRadiance, onScreen) {
+  const toLight = lightPlace.xyz.sub((onScreen ? TSL.cameraPosition : TSL.positionWorld).mul(lightPlace.w));
+  const nearness = toLight.dot(toLight).max(1e-4).inverseSqrt();
+  const color = lightRadiance.mul(TSL.mix(1, nearness.mul(nearness), lightPlace.w));
+  return lightInputs(toLight.mul(nearness), color, nearness.mul(lightPlace.w));
+}
+
+/** One of three's lights. Its colour is without shadow: light that comes through entered on the far side. */
+function engineLight({ lightDirection, lightNode, lightColor }, builder) {
+  const near = lightNode.light.isPointLight || lightNode.light.isSpotLight;
+  const nearness = near ? lightNode.getLightVector(builder).length().max(0.01).reciprocal() : TSL.float(0);
+  const color = unshadowed(lightNode, builder) ?? lightColor;
+  return { ...lightInputs(turned(TSL.cameraWorldMatrix, lightDirection), color, nearness), N: [TSL.normalWorld, 'vec3'] };
+}
+
+/** The light's colour where it arrives, without shadow. */
+function unshadowed(lightNode, builder) {
+  const { colorNode, baseColorNode } = lightNode;
+  if (!baseColorNode) return null;
+  lightNode.colorNode = baseColorNode;
+  const { lightColor } = lightNode.setupDirect(builder);
+  lightNode.colorNode = colorNode;
+  return lightColor;
+}
+
+/** A call of a function; its arguments are nodes with their types, and undefined for the surface. */
+class CallNode extends THREE.Node {
+  constructor(type, name, texts, args, surface = null) {
+    super(type);
+    this.name = name;
+    this.texts = texts;
+    this.args = args.map((arg) => arg?.[0]); // three finds nodes in lists
+    this.types = args.map((arg) => arg?.[1]);
+    this.surface = surface;
+  }
+
+  generate(builder) {
+    const gpu = builder.renderer.backend.isWebGPUBackend;
+    this.texts[gpu ? 'wgsl' : 'glsl'].build(builder);
+    this.surface?.build(builder);
+    const args = this.args.flatMap((arg, index) => {
+      if (!arg) return SURFACE;
+      if (!this.types[index].startsWith('sampler')) return arg.build(builder, this.types[index]);
+      return gpu ? [arg.build(builder, 'texture'), arg.build(builder, 'sampler')] : arg.build(builder, 'texture');
+    });
+    return `${this.name}(${args.join(', ')})`;
+  }
+}
+
+/** The call that stores the surface, once per fragment. */
+class SurfaceNode extends CallNode {
+  generate(builder) {
+    const data = builder.getDataFromNode(this);
+    if (!data.stored) {
+      data.stored = true;
+      builder.addLineFlowCode(`${SURFACE} = ${super.generate(builder)}`, this);
+    }
+    return '';
+  }
+}
+
+/** A member of the surface. */
+class FieldNode extends THREE.Node {
+  constructor(type, name, surface) {
+    super(type);
+    this.name = name;
+    this.surface = surface;
+  }
+
+  generate(builder) {
+    this.surface.build(builder, 'void');
+    return `${SURFACE}.${this.name}`;
+  }
+}
+
+/**
+ * The members of the surface that three reads: type, property of its node material, and the property's value.
+ * @type {Record<string, [string, string, ((node: any) => any)?]>}
+ */
+const FIELDS = {
+  metallic: ['float', 'metalnessNode'],
+  roughness: ['float', 'roughnessNode'],
+  occlusion: ['float', 'aoNode'],
+  emission: ['vec3', 'emissiveNode'],
+  specular: ['float', 'specularColorNode', (specular) => TSL.materialSpecularColor.mul(specular.mul(25))],
+  clearcoat: ['float', 'clearcoatNode', (clearcoat) => TSL.materialClearcoat.mul(clearcoat)],
+  clearcoat_roughness: ['float', 'clearcoatRoughnessNode'],
+  normal: ['vec3', 'normalNode', ({ x, y, z }) => turned(
+    TSL.cameraViewMatrix, tangent.mul(x).add(bitangent.mul(y)).mul(side).add(geometryNormal.mul(z)),
+  )],
+};
+
+/**
+ * The nodes of a material; WebGPURenderer takes them over as it makes a node material of a classic one.
+ * @param {import('./three.js').Description} description
+ * @param {{ glsl: THREE.Node, wgsl: THREE.Node }} texts nodes of the functions
+ * @param {Record<string, any>} uniforms nodes by their properties
+ */
+export function nodesOf({ calls, parameters, textures, fields = [], raymarched }, texts, uniforms) {
+  const argumentsOf = ({ inputs, values }, given) => [
+    ...inputs.map((name) => given[name]), ...values.map((name) => [uniforms[name], (parameters[name] ?? textures[name]).type]),
+  ];
+  const point = { ...INPUTS, time: [uniforms.time, 'float'] };
+  if (calls.color) {
+    const onScreen = raymarched || calls.color.inputs.some((name) => name.startsWith('ray_'));
+    const given = uniforms.lightPlace ? { ...point, ...ownLight(uniforms.lightPlace, uniforms.lightRadiance, onScreen) } : point;
+    return { colorNode: new CallNode('vec4', calls.color.name, texts, argumentsOf(calls.color, given)) };
+  }
+  const surface = new SurfaceNode('void', calls.surface.name, texts, argumentsOf(calls.surface, point));
+  const field = (type, name, absent) => (fields.includes(name) ? new FieldNode(type, name, surface) : absent);
+  const nodes = { colorNode: TSL.materialColor.mul(TSL.vec4(field('vec3', 'albedo', TSL.vec3(1)), field('float', 'alpha', 1))) };
+  for (const [name, [type, property, valueOf = (node) => node]] of Object.entries(FIELDS)) {
+    if (fields.includes(name)) nodes[property] = valueOf(field(type, name));
+  }
+  if (calls.translucency) {
+    nodes.setupLightingModel = function (builder) {
+      const model = THREE.MeshPhysicalNodeMaterial.prototype.setupLightingModel.call(this, builder);
+      const { direct } = model;
+      model.direct = function (data, builder) {
+        direct.call(this, data, builder);
+        const given = { ...point, ...engineLight(data, builder) };
+        /** @type {any} */
+        const through = new CallNode('vec3', calls.translucency.name, texts, argumentsOf(calls.translucency, given), surface);
+        data.reflectedLight.directDiffuse.addAssign(through.mul(given.light_color[0]).mul(1 / Math.PI));
+      };
+      return model;
+    };
+  }
+  return nodes;
+}

@@ -1,0 +1,47 @@
+"""The runtime of modules for the web: what the materials of an engine share, as one module beside them.
+
+Its sources are plain ES modules in `javascript/`, which import each other. They are joined into one text, which is the
+same for every material.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import re
+
+from sssgen.support.diagnostics import failure
+
+_FOLDER = os.path.join(os.path.dirname(__file__), "javascript")
+_IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
+_TYPE = re.compile(r"import\('\./[^']*'\)\.")
+_EXPORT = re.compile(r"^export (?!default|\{|\*)", re.MULTILINE)
+
+
+@functools.cache
+def runtime_text(sources: tuple[str, ...], folder: str) -> str:
+    """The module of these files. A file is in `folder`, or else in the project's own; the exports are the first one's.
+
+    Imports of packages are written once, at the top; those of other files of the runtime and their types are left out.
+    Raises SssgenError for a file that there is not.
+    """
+    first, *others = [_read(name, folder) for name in sources]
+    imports = [line for text in (first, *others) for line in _IMPORT.findall(text) if "'./" not in line]
+    head, _, body = _IMPORT.sub("", first).partition("\n\n")
+    parts = [body, *(_EXPORT.sub("", _IMPORT.sub("", text)) for text in others)]
+    text = "\n\n".join([head, "".join(dict.fromkeys(imports)).rstrip(), *map(str.strip, parts)])
+    return _TYPE.sub("", text) + "\n"
+
+
+def inlined_text(sources: tuple[str, ...], folder: str) -> str:
+    """The same without exports and without the comment at its head, to stand in another module."""
+    return _EXPORT.sub("", runtime_text(sources, folder)).partition("\n\n")[2].rstrip()
+
+
+def _read(name: str, folder: str) -> str:
+    own = os.path.join(folder, name)
+    try:
+        with open(own if os.path.isfile(own) else os.path.join(_FOLDER, name), encoding="utf-8") as file:
+            return file.read()
+    except (OSError, ValueError) as error:
+        raise failure(f"cannot read '{name}', a source of a target's descriptor: {error}") from None
