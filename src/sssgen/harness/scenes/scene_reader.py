@@ -26,11 +26,16 @@ from sssgen.harness.scenes.scene_keys import (
 )  # fmt: skip
 from sssgen.harness.scenes.toml_table import ANY, Table, text
 from sssgen.material.library import OF_SHELLS
-from sssgen.material.material_loading import examples
+from sssgen.material.material_loading import examples, is_example
+from sssgen.material.roles import SECTIONS
 from sssgen.material.shell_stages import choices
 from sssgen.support.diagnostics import SssgenError, did_you_mean
+from sssgen.support.file_memo import note
 from sssgen.support.paths import posix
-from sssgen.support.toml_source import Document, Path
+from sssgen.support.text_files import read_text
+from sssgen.support.toml_source import Document, Path, parse
+
+_ONLY_IN_MATERIALS = set(SECTIONS) - set(KEYS)
 
 MAX_COUNT = 2**24
 """The largest number of samples of a picture: each takes a few hundred bytes."""
@@ -42,6 +47,27 @@ def read_scene(document: Document, folder: str) -> Scene:
     scene = reader.scene()
     document.reporter.check()
     return scene
+
+
+def material_beside(name: str, folder: str) -> str:
+    """The path of the material NAME.toml in a scene's folder, which comes before the example of that name.
+
+    Without such a file it is "", and so it is in the example's own folder: there the name means the same file.
+    """
+    path = os.path.join(folder, f"{name}.toml")
+    note(path)
+    if not os.path.isfile(path) or is_example(path, name):
+        return ""
+    try:
+        return path if is_material(path) else ""
+    except SssgenError:
+        return path  # whoever loads it reports its errors
+
+
+def is_material(path: str) -> bool:
+    """Whether a TOML file describes a material, and no scene. Raises SssgenError for a text that is no TOML."""
+    data = parse(read_text(path, posix(path)), posix(path)).data
+    return isinstance(data.get("material"), dict) or not _ONLY_IN_MATERIALS.isdisjoint(data)
 
 
 class _Reader:
@@ -83,12 +109,14 @@ class _Reader:
             self.document.error(self.document.place().key, "the scene has no material", 'add: material = "…"')
             return ""
         name = top.text("material", "")
-        if not name.endswith(".toml"):
-            if name not in examples():
-                hint = did_you_mean(name, examples()) or f"a path that ends in .toml, or: {', '.join(examples())}"
-                top.error("material", f"unknown material '{name}'", hint)
-            return name
-        return self.file(("material",), name)
+        if name.endswith(".toml"):
+            return self.file(("material",), name)
+        beside = material_beside(name, self.folder)
+        if name not in examples():
+            file_hint = f"did you mean '{name}.toml'?" if beside else ""
+            hint = did_you_mean(name, examples()) or f"a path that ends in .toml, or: {', '.join(examples())}"
+            top.error("material", f"unknown material '{name}'", file_hint or hint)
+        return beside or name
 
     def background(self, top: Table) -> Any:
         raw = top.content.get("background", [0.0, 0.0, 0.0])
