@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from sssgen.harness.scenes.bake_advice import is_scene
 from sssgen.harness.scenes.scene import Scene
 from sssgen.material.model import Material
 from sssgen.support.diagnostics import failure
@@ -34,7 +35,7 @@ def saves_where(scene: Scene, material: Material) -> dict[str, str]:
         files = f"{scene_file}; {material_file} comes with sssgen and stays as it is"
     elif is_installed(material.file):
         reason, files = f"{material_file} comes with sssgen and is not changed: {copy_hint(material.file)}.", "nothing"
-    elif scene_file != material_file and (scene.parameters or scene.textures):
+    elif is_scene(scene, material) and (scene.parameters or scene.textures):
         files = f"{material_file}, and {scene_file} for what the scene sets"
     else:
         files = material_file

@@ -80,11 +80,11 @@ class ShownPicture:
         return f"{title}, without guards" if self.chosen.guards == "none" else title
 
     def message(self) -> dict[str, Any]:
-        """What a page gets: the picture, and the errors or ''."""
+        """What a page gets: the picture, and the errors or ''. A picture whose textures are missing is not drawn."""
         return {
             "kind": "picture",
             "version": self.version,
-            "error": self.error,
+            "error": self.error or self.picture.head.get("missing", ""),
             "label": self.label,
             "picture": self.picture.head,
         }

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 from typing import Any
 
 from sssgen.harness.pictures import images
 from sssgen.harness.scenes import mesh_files
+from sssgen.harness.scenes.bake_advice import advice
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.harness.scenes.scene import DistanceTexture, Light, Picture, Scene
@@ -26,7 +28,8 @@ from sssgen.harness.scenes.scene_keys import (
 )  # fmt: skip
 from sssgen.harness.scenes.toml_table import ANY, Table, text
 from sssgen.material.library import OF_SHELLS
-from sssgen.material.material_loading import examples, is_example
+from sssgen.material.material_loading import examples, is_example, load_material
+from sssgen.material.requirements import baked_functions
 from sssgen.material.roles import SECTIONS
 from sssgen.material.shell_stages import choices
 from sssgen.support.diagnostics import SssgenError, did_you_mean
@@ -41,10 +44,15 @@ MAX_COUNT = 2**24
 """The largest number of samples of a picture: each takes a few hundred bytes."""
 
 
-def read_scene(document: Document, folder: str) -> Scene:
-    """The scene of a document; files are relative to `folder`. Raises SssgenError with all errors."""
+def read_scene(document: Document, folder: str, draws: bool = True) -> Scene:
+    """The scene of a document; files are relative to `folder`.
+
+    Raises SssgenError with all errors; a missing picture is one unless nothing `draws` the scene.
+    """
     reader = _Reader(document, folder)
     scene = reader.scene()
+    if draws:
+        reader.check_pictures(scene)
     document.reporter.check()
     return scene
 
@@ -73,6 +81,8 @@ def is_material(path: str) -> bool:
 class _Reader:
     def __init__(self, document: Document, folder: str) -> None:
         self.document, self.folder = document, folder
+        self.pictures: dict[str, tuple[Path, str]] = {}
+        """Texture → where the scene names its file, and that name"""
 
     def scene(self) -> Scene:
         top = Table(self.document, (), self.document.data, KEYS)
@@ -330,16 +340,37 @@ class _Reader:
         except SssgenError as error:
             self.add_errors(error, path)
             return name
-        return self.file(path, name)
+        self.pictures[str(path[1])] = path, name
+        return os.path.join(self.folder, name)
+
+    def check_pictures(self, scene: Scene) -> None:
+        """Reports the textures whose files are missing; of a baked one, with the command that bakes it."""
+        missing = {key: name for key, (_, name) in self.pictures.items() if not self.has_file(name)}
+        hints: dict[str, str] = {}
+        if missing and scene.material:
+            with contextlib.suppress(SssgenError):  # whoever loads the material reports its errors
+                material = load_material(scene.material)
+                for function in baked_functions(material.stages):
+                    given = {one.name: missing[one.name] for one in function.textures if one.name in missing}
+                    if given:
+                        hints |= dict.fromkeys(given, advice(function, material, scene, given, in_scene=True))
+        for key, name in missing.items():
+            self.missing_file(self.pictures[key][0], name, hints.get(key, ""))
 
     def file(self, path: Path, name: str) -> str:
         """The path of a file that the scene names."""
+        if not self.has_file(name):
+            self.missing_file(path, name)
+        return os.path.join(self.folder, name)
+
+    def has_file(self, name: str) -> bool:
         full_path = os.path.join(self.folder, name)
-        if "\0" in full_path or not os.path.isfile(full_path):
-            span = self.document.place(*path).value
-            hint = f"it is searched for next to the scene, in {posix(self.folder or '.')}"
-            self.document.error(span, f"cannot find the file '{name}'", hint)
-        return full_path
+        note(full_path)
+        return "\0" not in full_path and os.path.isfile(full_path)
+
+    def missing_file(self, path: Path, name: str, hint: str = "") -> None:
+        place = f"it is searched for next to the scene, in {posix(self.folder or '.')}"
+        self.document.error(self.document.place(*path).value, f"cannot find the file '{name}'", hint or place)
 
     def add_errors(self, error: SssgenError, path: Path) -> None:
         """Reports the errors of a file that the scene names: at their own positions, else at the path in the scene."""
