@@ -30,9 +30,8 @@ SCENE = 'material = "jade_ring"\n[geometry]\nkind = "ball"\n'
 
 
 @pytest.fixture(autouse=True)
-def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """The current folder is empty; afterwards the example is as it was."""
-    monkeypatch.chdir(tmp_path)
+def installed(in_folder: Path) -> Iterator[None]:
+    """Afterwards the example is as it was."""
     before = {path: path.read_bytes() for path in JADE.parent.rglob("*") if path.is_file()}
     yield
     assert {path: path.read_bytes() for path in JADE.parent.rglob("*") if path.is_file()} == before

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import types
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from sssgen.ir.nodes import Module
 from sssgen.material.model import Material
@@ -79,6 +80,12 @@ class CommandResult(NamedTuple):
     status: int
     out: str
     err: str
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """What `--json` prints."""
+        report: dict[str, Any] = json.loads(self.out)
+        return report
 
 
 Run = Callable[..., CommandResult]
