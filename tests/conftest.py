@@ -12,7 +12,9 @@ import pytest
 from hypothesis import settings
 
 from amounts import COUNTED
+from command_line import CommandResult, Run
 from skips import compiler_or_skip, or_skip
+from sssgen.cli import main as cli
 from sssgen.harness import backends, compilers
 from sssgen.harness.backends import Backend
 from sssgen.harness.compilers import Compiler, Source, errors
@@ -33,6 +35,30 @@ def compiler() -> Callable[[str], Compiler]:
 def backend() -> Callable[[str], Backend]:
     """`backend("gl")`: that back end, or a skip (in CI: a failure) with what to install."""
     return lambda name: or_skip(backends.get, name)
+
+
+@pytest.fixture
+def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty folder; it is the current one."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def outside_ci(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Missing tools are no failures."""
+    monkeypatch.delenv("CI", raising=False)
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
+    """`run("emit", "ice")`: the exit status of the command, and what it prints."""
+
+    def call(*arguments: str) -> CommandResult:
+        status = cli.main(arguments)
+        return CommandResult(status, *capsys.readouterr())
+
+    return call
 
 
 @pytest.fixture(scope="session")

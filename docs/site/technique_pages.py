@@ -32,7 +32,7 @@ TITLES = {
     "source": "Source",
 }
 """The sections of a doc comment with a heading of their own, in the order of the page; the others follow."""
-OMITTED = ("suggested", "legend", "shape", "sets", "deviation_bounds")
+OMITTED = ("suggested", "legend", "shape", "sets", "bake", "deviation_bounds")
 """The sections for programs."""
 
 

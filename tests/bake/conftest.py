@@ -10,8 +10,7 @@ import bake_meshes as meshes
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(in_folder: Path) -> Path:
     """An empty folder, but for a box."""
-    monkeypatch.chdir(tmp_path)
     meshes.write(Path("box.obj"), meshes.box((1.0, 0.6, 0.4)))
-    return tmp_path
+    return in_folder

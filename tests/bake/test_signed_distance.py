@@ -27,10 +27,7 @@ from sssgen.harness.scenes.mesh_distance import INSIDE, MeshDistance
 from sssgen.lab.reference.inside_lengths import thickness
 from sssgen.targets.runtime.numpy_textures import Texture
 
-
-@pytest.fixture(autouse=True)
-def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("in_folder")
 
 
 def decode(texels: npt.NDArray[Any], reach: float, name: str) -> Array:

@@ -30,10 +30,7 @@ from sssgen.harness.scenes.mesh import Mesh
 from sssgen.lab.jobs.executor import Failure, run
 from sssgen.targets.runtime.numpy_textures import Texture
 
-
-@pytest.fixture(autouse=True)
-def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("in_folder")
 
 
 def rng(seed: int = 5) -> np.random.Generator:

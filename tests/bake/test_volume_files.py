@@ -29,9 +29,7 @@ DXGI = {"uint8": 61, "uint16": 56, "float16": 54, "float32": 41}
 VULKAN = {"uint8": 9, "uint16": 70, "float16": 76, "float32": 100}
 
 
-@pytest.fixture(autouse=True)
-def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("in_folder")
 
 
 def volume(size: tuple[int, int, int], dtype: str) -> npt.NDArray[Any]:

@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from command_line import WAX, CommandResult, FakeCompiler, Run
+from command_line import WAX, FakeCompiler
 from sssgen.cli import listing, transpile
-from sssgen.cli import main as cli
 from sssgen.cli.shown import shown_material  # noqa: F401 - before the fake compiler, which it would keep
 from sssgen.harness.scenes import scene_loading  # noqa: F401 - the same
 from sssgen.pipeline import emitted_cache
@@ -27,17 +26,7 @@ def compiler(monkeypatch: pytest.MonkeyPatch) -> FakeCompiler:
 
 
 @pytest.fixture(autouse=True)
-def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
+def with_wax(in_folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.delenv("SSSGEN_DEBUG", raising=False)
     Path("wax.toml").write_text(WAX, encoding="utf-8")
-    return tmp_path
-
-
-@pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    def call(*arguments: str) -> CommandResult:
-        status = cli.main(arguments)
-        return CommandResult(status, *capsys.readouterr())
-
-    return call
+    return in_folder

@@ -255,7 +255,7 @@ def test_all_errors_of_all_materials_and_targets(run: Run, compiler: FakeCompile
     Path("bad.toml").write_text('[material]\nname = "bad"\n[surfac]\n', encoding="utf-8")
     compiler.failing = {"wgsl": failure("no such thing"), "glsl-330": failure("no such thing")}
     ran = run("emit", "bad.toml", "wax.toml", "-t", "all", "-o", "out")
-    assert ran.status == 2
+    assert ran.status == 1
     assert ran.err.count("no such thing") == 1
     assert "unknown section 'surfac'" in ran.err
     assert ran.err.endswith("3 errors\n")
@@ -263,10 +263,35 @@ def test_all_errors_of_all_materials_and_targets(run: Run, compiler: FakeCompile
 
 
 def test_two_materials_of_one_name(run: Run, compiler: FakeCompiler) -> None:
+    """Both files are named and neither is written; the other materials are."""
     Path("other.toml").write_text(WAX, encoding="utf-8")
-    ran = run("emit", "wax.toml", "other.toml", "-t", "wgsl", "-o", "out")
-    assert ran.status == 2
-    assert "two materials are called 'wax'" in ran.err
+    Path("ice.toml").write_text(WAX.replace('"wax"', '"ice"'), encoding="utf-8")
+    ran = run("emit", "wax.toml", "ice.toml", "other.toml", "-t", "wgsl", "-o", "out")
+    assert ran.status == 1
+    assert "2 materials are called 'wax', in wax.toml and other.toml" in ran.err
+    assert sorted(path.name for path in Path("out").iterdir()) == ["ice.wgsl.reflection.json", "ice.wgsl.txt"]
+    report = json.loads(run("emit", "wax.toml", "other.toml", "ice.toml", "-t", "wgsl", "-o", "out", "--json").out)
+    assert report["ok"] is False and report["requires"].keys() == {"ice"} and len(report["files"]) == 2
+    assert "wax.toml and other.toml" in report["diagnostics"][0]["message"]
+    assert run("emit", "wax.toml", "other.toml", "-t", "wgsl", "-o", "none").status == 1 and not Path("none").exists()
+
+
+def test_one_file_named_twice_is_one_material(run: Run, compiler: FakeCompiler) -> None:
+    ran = run("emit", "wax.toml", str(Path("wax.toml").absolute()), "./wax.toml", "-t", "wgsl", "-o", "out")
+    assert ran.status == 0 and len(compiler.calls) == 1
+
+
+@pytest.mark.parametrize("output", ["out", "-"])
+def test_a_faulty_material_does_not_stop_the_others(output: str, run: Run, compiler: FakeCompiler) -> None:
+    """Whether it cannot be read or cannot be compiled for one target: then none of its files are written."""
+    Path("bad.toml").write_text('[material]\nname = "bad"\n[surfac]\n', encoding="utf-8")
+    Path("ice.toml").write_text(WAX.replace('"wax"', '"ice"'), encoding="utf-8")
+    compiler.refused = {("ice", "wgsl")}
+    ran = run("emit", "bad.toml", "ice.toml", "wax.toml", "missing.toml", "-t", "all", "-o", output)
+    assert ran.status == 1 and ran.err.endswith("4 errors\n") and "Traceback" not in ran.err
+    assert "unknown section 'surfac'" in ran.err and "ice is refused" in ran.err and "missing.toml" in ran.err
+    written = ran.out if output == "-" else " ".join(path.name for path in Path(output).iterdir())
+    assert "wax.wgsl.txt" in written and "wax.glsl-330.txt" in written and "ice" not in written
 
 
 def test_two_sources_of_one_file(run: Run, compiler: FakeCompiler) -> None:

@@ -90,6 +90,15 @@ def test_json_is_a_line_for_each_emission(run: Run, steps: list[Callable[[], obj
     assert reports[1]["diagnostics"][0]["line"] == 5
 
 
+def test_a_faulty_material_does_not_stop_the_others(run: Run, steps: list[Callable[[], object]]) -> None:
+    Path("other.toml").write_text(Path("resin.toml").read_text("utf-8").replace('"resin"', '"other"'), "utf-8")
+    steps += [lambda: save("=")]
+    ran = run("watch", "resin.toml", "other.toml", "-t", "wgsl", "--json")
+    first, second = (json.loads(line) for line in ran.out.splitlines())
+    assert first["ok"] and len(first["files"]) == 4
+    assert not second["ok"] and {row["material"] for row in second["files"]} == {"other"} and second["diagnostics"]
+
+
 def test_own_templates_are_files_that_the_emission_reads(run: Run, steps: list[Callable[[], object]]) -> None:
     """Also one that is new beside them, in place of a template of sssgen."""
     Path("mine/wgsl").mkdir(parents=True)

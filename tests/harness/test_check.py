@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import stat
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
 
 import pytest
 
+from command_line import Run
 from folders import UNITY_SAMPLES
 from sssgen.cli import check as check_command
-from sssgen.cli import main as cli
 from sssgen.harness import installed
 from sssgen.harness.backend_registry import BACKENDS, ENGINES
 from sssgen.harness.check import compile_check as check
@@ -40,33 +38,7 @@ float4 shade(Varyings input) : SV_Target { return tint(input.uv); }
 WGSL = "@fragment fn shade() -> @location(0) vec4<f32> {\n    return vec4<f32>(1.0);\n}\n"
 
 
-class CommandResult(NamedTuple):
-    status: int
-    out: str
-    err: str
-
-    @property
-    def data(self) -> dict[str, Any]:
-        report: dict[str, Any] = json.loads(self.out)
-        return report
-
-
-Run = Callable[..., CommandResult]
-
-
-@pytest.fixture(autouse=True)
-def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv("CI", raising=False)
-
-
-@pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    def call(*arguments: str) -> CommandResult:
-        status = cli.main(["check", *arguments])
-        return CommandResult(status, *capsys.readouterr())
-
-    return call
+pytestmark = pytest.mark.usefixtures("in_folder", "outside_ci")
 
 
 def write(files: dict[str, str]) -> None:
@@ -94,7 +66,7 @@ def test_handwritten_files_in_every_language(run: Run, compiler: Callable[[str],
     for name in ("gl", "glslang", "dxc", "naga", "tint"):
         compiler(name)
     write({"a.frag": FRAGMENT, "a.hlsl": HLSL, "a.wgsl": WGSL, "f.glsl": "float f(float x) { return x; }\n"})
-    ran = run("a.frag", "a.hlsl", "a.wgsl", "f.glsl", "--json")
+    ran = run("check", "a.frag", "a.hlsl", "a.wgsl", "f.glsl", "--json")
     assert ran.status == 0, ran.out
     assert ran.data["missing"] == []
     rows = {(row["file"], row["stage"], row["compiler"]) for row in ran.data["results"]}
@@ -109,7 +81,7 @@ def test_handwritten_files_in_every_language(run: Run, compiler: Callable[[str],
 
 def test_a_material_in_both_forms(run: Run, compiler: Callable[[str], Compiler]) -> None:
     compiler("glslang")
-    ran = run("ice", "--target", "glsl-330", "-t", "hlsl", "--compiler", "glslang", "--json")
+    ran = run("check", "ice", "--target", "glsl-330", "-t", "hlsl", "--compiler", "glslang", "--json")
     assert ran.status == 0
     assert set(ran.data) == {"compilers", "missing", "engines", "results", "not_compiled"}
     assert ran.data["compilers"][0]["name"] == "glslang"
@@ -126,7 +98,7 @@ def test_a_material_is_checked_for_every_target_with_a_compiler() -> None:
 
 def test_a_folder_selects_its_shaders(run: Run) -> None:
     write({**emitted("numpy"), "sub/b.py": "x = \n", "sub/README.md": "# no shader\n", ".hidden/c.frag": "no"})
-    ran = run(".")
+    ran = run("check", ".")
     assert ran.status == 0
     assert "ok   ice.py  python" in ran.out
     assert "1 files, 1 compilations, 0 failed" in ran.out
@@ -177,7 +149,7 @@ def test_an_error_at_its_line_and_column(
         compiler(needed)
     assert right in text
     write({name: text.replace(right, wrong)})
-    ran = run(name, "--json")
+    ran = run("check", name, "--json")
     assert ran.status == 1
     rows = [row for row in ran.data["results"] if row["compiler"] in places]
     assert {row["compiler"] for row in rows} == set(places)
@@ -206,12 +178,12 @@ def test_an_error_in_an_edited_file_leads_to_the_technique(
     number = next(number for number, line in enumerate(lines, 1) if "return exp(-min(" in line)
     files[name] = files[name].replace("return exp(-min(", "return nowhere(-min(")
     write({f"out/{file}": text for file, text in files.items()})
-    ran = run("out", "--compiler", compiler_name, "--json")
+    ran = run("check", "out", "--compiler", compiler_name, "--json")
     assert ran.status == 1
     message = next(m for row in ran.data["results"] for m in row["messages"])
     assert message["line"] == number
     assert message["source"].startswith("conversion/beer_lambert.sss:")
-    output = run(f"out/{name}", "--compiler", compiler_name).out
+    output = run("check", f"out/{name}", "--compiler", compiler_name).out
     assert f"--> out/{name}:{number}" in output
     assert f"from {message['source']}" in output
     assert "return transmittance(exp(" in output
@@ -233,7 +205,7 @@ def test_an_error_in_the_other_stage_names_that_stage(run: Run, compiler: Callab
     files = emitted("glsl-330")
     files["ice.glsl-330.vert"] = files["ice.glsl-330.vert"].replace("gl_Position =", "gl_Nowhere =")
     write(files)
-    ran = run(".", "--compiler", "gl", "--json")
+    ran = run("check", ".", "--compiler", "gl", "--json")
     assert {row["file"]: row["ok"] for row in ran.data["results"]} == {
         "ice.glsl-330.frag": True,
         "ice.glsl-330.vert": False,
@@ -255,15 +227,15 @@ def test_an_error_outside_of_the_file_has_no_line(compiler: Callable[[str], Comp
 def test_a_missing_compiler_is_reported(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     write({"a.wgsl": WGSL})
     monkeypatch.setenv("SSSGEN_NODE_MODULES", "nowhere")
-    ran = run("a.wgsl", "--json")
+    ran = run("check", "a.wgsl", "--json")
     assert [row["name"] for row in ran.data["missing"]][-1] == "tint"
     assert "webgpu" in ran.data["missing"][-1]["how"] or "node" in ran.data["missing"][-1]["how"]
-    result_without = run("a.wgsl")
+    result_without = run("check", "a.wgsl")
     assert "tint     not found: " in result_without.out
     assert result_without.status == ran.status
     monkeypatch.setenv("CI", "true")
-    assert run("a.wgsl").status == 1
-    named = run("a.wgsl", "--compiler", "tint")
+    assert run("check", "a.wgsl").status == 1
+    named = run("check", "a.wgsl", "--compiler", "tint")
     assert (named.status, named.out) == (2, "")
     assert "error: tint is not available\n  help: " in named.err
 
@@ -277,7 +249,7 @@ def test_engines_are_named_and_none_is_started(run: Run, monkeypatch: pytest.Mon
     for variable in ("SSSGEN_NODE_MODULES", "SSSGEN_CHROMIUM", "SSSGEN_FIREFOX", "SSSGEN_GODOT", "PATH"):
         monkeypatch.setenv(variable, "nowhere")
     monkeypatch.setattr(installed, "folder", Path)
-    rows = {row["name"]: row for row in run("a.py", "--json").data["engines"]}
+    rows = {row["name"]: row for row in run("check", "a.py", "--json").data["engines"]}
     assert [*rows] == [*ENGINES]
     assert not any(row["found"] for name, row in rows.items())
     needs = {
@@ -288,7 +260,7 @@ def test_engines_are_named_and_none_is_started(run: Run, monkeypatch: pytest.Mon
     for name, row in rows.items():
         assert re.search(needs[name.partition("-")[0]], row["how"]), row
     for text in ("threejs, threejs-webgl, threejs-webgl2: not found: ", "metal: not found: g++ (Debian: g++)\n"):
-        assert text in run("a.py").out
+        assert text in run("check", "a.py").out
 
 
 @pytest.mark.skipif(os.name != "posix", reason="the programs are shell scripts")
@@ -298,9 +270,9 @@ def test_an_engine_is_found_by_its_files_alone(run: Run, monkeypatch: pytest.Mon
     for browser in ("chromium", "firefox"):
         monkeypatch.setenv(f"SSSGEN_{browser.upper()}", program(browser, f"touch {Path.cwd()}/started"))
     monkeypatch.setenv("SSSGEN_NODE_MODULES", "packages")
-    rows = {row["name"]: row["found"] for row in run("a.py", "--json").data["engines"]}
+    rows = {row["name"]: row["found"] for row in run("check", "a.py", "--json").data["engines"]}
     assert (rows["threejs"], rows["threejs-webgl"], rows["firefox"], rows["playcanvas"]) == (True, True, True, False)
-    assert "firefox" in run("a.py").out.partition(": found")[0].splitlines()[-1]
+    assert "firefox" in run("check", "a.py").out.partition(": found")[0].splitlines()[-1]
     assert not Path("started").exists()
 
 
@@ -329,13 +301,13 @@ def test_a_check_without_a_compilation_fails(run: Run, monkeypatch: pytest.Monke
     write({"a.hlsl": HLSL, "a.shader": 'Shader "A/B" { }\n'})
     monkeypatch.setenv("PATH", "nowhere")
     monkeypatch.setenv("SSSGEN_GLSLANG", "nowhere")
-    ran = run("a.shader")
+    ran = run("check", "a.shader")
     assert ran.status == 1
     assert "not compiled: unity not found" in ran.out
     summary = ran.out.partition("\n\n1 files, ")[2].split("\n")
     assert summary[:2] == ["0 compilations, 0 failed, 1 not compiled", "  1 file: unity not found"]
     assert summary[2].startswith("  to get unity: ") and summary[3:] == [""]
-    assert run("a.shader", "--json").data["not_compiled"] == {"a.shader": "unity not found"}
+    assert run("check", "a.shader", "--json").data["not_compiled"] == {"a.shader": "unity not found"}
 
 
 def test_many_files_are_counted_and_only_failures_are_listed(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -343,16 +315,16 @@ def test_many_files_are_counted_and_only_failures_are_listed(run: Run, monkeypat
     monkeypatch.setenv("SSSGEN_GODOT", "nowhere")
     names = ["m0.py", "m1.py", "m2.py"]
     write(dict.fromkeys(names, "x = 1\n"))
-    few = run(*names).out
+    few = run("check", *names).out
     assert few.count("\nok   ") == 3 and "--verbose" not in few
     write({"bad.py": "x = \n", "a.gdshader": "shader_type spatial;\n"})
     names += ["bad.py", "a.gdshader"]
-    many = run(*names).out
+    many = run("check", *names).out
     assert "\nok   " not in many and "\n--   " not in many
     assert "\nFAIL bad.py" in many and "\n3 of 4 are ok; --verbose lists them\n" in many
     assert "\n5 files, 4 compilations, 1 failed, 1 not compiled\n  1 file: godot not found\n  to get godot: " in many
     for option in ("-v", "--verbose"):
-        listed = run(*names, option).out
+        listed = run("check", *names, option).out
         assert listed.count("\nok   ") == 3 and "not compiled: godot not found" in listed and "lists them" not in listed
 
 
@@ -377,7 +349,7 @@ def test_a_text_too_deep_for_a_compiler(run: Run, compiler: Callable[[str], Comp
     for name in ("gl", "glslang"):
         compiler(name)
     write({"a.frag": FRAGMENT.replace("v_uv,", f"{'(' * 50000}v_uv{')' * 50000},"), "b.frag": FRAGMENT})
-    ran = run("a.frag", "b.frag", "--json")
+    ran = run("check", "a.frag", "b.frag", "--json")
     assert ran.status in (0, 1)
     assert all(row["ok"] for row in ran.data["results"] if row["file"] == "b.frag")
 
@@ -417,10 +389,10 @@ def test_wrong_input(arguments: list[str], message: str, run: Run) -> None:
     Path("zero.frag").write_bytes(b"void\0")
     Path("latin.frag").write_bytes(b"//\xff")
     Path("bare").mkdir()
-    ran = run(*arguments)
+    ran = run("check", *arguments)
     assert (ran.status, ran.out) == (2, "")
     assert message in ran.err
-    as_json = run(*arguments, "--json")
+    as_json = run("check", *arguments, "--json")
     assert (as_json.status, as_json.err) == (2, "")
     assert as_json.data["ok"] is False
 
@@ -428,19 +400,19 @@ def test_wrong_input(arguments: list[str], message: str, run: Run) -> None:
 @pytest.mark.skipif(os.name != "posix", reason="there are no pipes with names")
 def test_a_pipe_is_refused(run: Run) -> None:
     os.mkfifo("pipe.frag")
-    assert "this is not a file" in run("pipe.frag").err
+    assert "this is not a file" in run("check", "pipe.frag").err
 
 
 def test_the_headers_of_unity_are_reported(run: Run, compiler: Callable[[str], Compiler]) -> None:
     compiler("unity")
     text = (UNITY_SAMPLES / "surface.shader").read_text(encoding="utf-8")
     write({"a.shader": text})
-    assert "the project's stand-in headers" in run("a.shader").out
+    assert "the project's stand-in headers" in run("check", "a.shader").out
     own = Path("headers")
     own.mkdir()
     for part in ("CGIncludes", "Packages"):
         (own / part).symlink_to(STANDIN / part)
-    ran = run("a.shader", "--unity-includes", "headers")
+    ran = run("check", "a.shader", "--unity-includes", "headers")
     assert ran.status == 0
     assert f"Unity's own headers in {own.resolve()}" in ran.out
 

@@ -27,10 +27,7 @@ LANGUAGES = {
 }  # fmt: skip
 
 
-@pytest.fixture(autouse=True)
-def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv("CI", raising=False)
+pytestmark = pytest.mark.usefixtures("in_folder", "outside_ci")
 
 
 def transpiled(name: str, text: str, target: str, output: str) -> None:

@@ -27,10 +27,7 @@ SCENE = 'material = "lamp.toml"\nsize = [24, 18]\n[geometry]\nkind = "ball"\n'
 HALF = {"technique": "beer_lambert", "inputs": {"d": [0.0, 0.5], "attenuation_distance": 0.5}}
 
 
-@pytest.fixture(autouse=True)
-def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv("CI", raising=False)
+pytestmark = pytest.mark.usefixtures("in_folder", "outside_ci")
 
 
 def test_cases_are_collected_from_folders() -> None:

@@ -23,9 +23,7 @@ pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install -e '.[ren
 RAMP = np.linspace(0.0, 1.0, 5 * 7 * 4).reshape(5, 7, 4)
 
 
-@pytest.fixture(autouse=True)
-def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("in_folder")
 
 
 def png(

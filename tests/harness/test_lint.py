@@ -499,3 +499,18 @@ def test_compute_shaders(tmp_path: Path) -> None:
     )
     lines = [entry.span.line for entry in lint(str(path)).findings if entry.verdict != PROVEN]
     assert sorted(lines) == [10, 12, 16, 16, 17, 19]
+
+
+def test_a_file_with_errors_does_not_stop_the_others(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """They are linted, and the status is that of the errors; a report that would lack findings is not written."""
+    good, bad, log = tmp_path / "good.glsl", tmp_path / "bad.glsl", tmp_path / "log.sarif"
+    good.write_text("float f(float x) { return 1.0 / x; }\n", encoding="utf-8")
+    bad.write_text("float f(float x) { return y; }\n", encoding="utf-8")
+    arguments = ["lint", str(bad), str(good), "--no-examples"]
+    assert main(arguments) == 2
+    printed = capsys.readouterr()
+    assert "good.glsl: 1 operation with a domain" in printed.out and "unknown name 'y'" in printed.err
+    assert main([*arguments, "--json"]) == 2
+    report = json.loads(capsys.readouterr().out)
+    assert not report["ok"] and len(report["results"]) == 1 and "'y'" in report["diagnostics"][0]["message"]
+    assert main([*arguments, "--sarif", str(log)]) == 2 and not log.exists()

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lamp_scene import BALL, LAMP, SIZE, largest_difference
+from lamp_scene import BALL, LAMP, RIBS, SIZE, largest_difference
 from sssgen.cli.main import main
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
@@ -117,7 +117,8 @@ def test_examples_equal_numpy(
     name: str, material: str, backend: Callable[[str], Backend], scene: Callable[..., str]
 ) -> None:
     surface = "" if material == "jelly_cubes" else BALL
-    described = load(scene(f'material = "{material}"\nsamples = 1\n{surface}{LAMP}'))
+    textures = RIBS if material == "paper_lantern" else ""
+    described = load(scene(f'material = "{material}"\nsamples = 1\n{surface}{LAMP}{textures}'))
     oracle = render(described, backends.get("numpy"), SIZE)
     assert largest_difference(render(described, backend(name), SIZE), oracle) < 0.5
     assert oracle.encoded.std() > 0.05
@@ -144,7 +145,8 @@ def test_transmitted_light_is_a_factor_on_each_lights_color(
     head = '[material]\nname = "shade"\nshading = "lit"\n[[surface]]\ntechnique = "base_color"\ntint = [0, 0, 0, 1]\n'
     parts = '[[surface]]\ntechnique = "pbr_constants"\nsurface_roughness = 1.0\n[thickness]\n'
     through = 'technique = "constant_thickness"\n[[translucency]]\ntechnique = "absorption_tint"\nweight = 0.5\n'
-    sky = 'technique = "thinness_map"\n[[translucency]]\ntechnique = "sky_glow"\n'
+    images.write_png(str(tmp_path / "thin.png"), np.ones((1, 1, 3)))
+    sky = 'technique = "thinness_map"\nthinness_texture = "thin.png"\n[[translucency]]\ntechnique = "sky_glow"\n'
 
     def middle(name: str, chain: str, lights: list[tuple[float, float, float]]) -> Any:
         (tmp_path / "shade.toml").write_text(head + parts + chain, encoding="utf-8")
@@ -170,7 +172,7 @@ def test_background_exposure_and_averaging(scene: Callable[..., str]) -> None:
 
 def test_samples_are_averaged_in_linear_light(scene: Callable[..., str], tmp_path: Path) -> None:
     """A pixel of N × N samples is the mean of the linear pixels of a picture of N times the size; edges are, too."""
-    path = scene(f'material = "paper_lantern"\nsamples = 1\nbackground = [0.2, 0.5, 0.1]\n{BALL}{LAMP}')
+    path = scene(f'material = "paper_lantern"\nsamples = 1\nbackground = [0.2, 0.5, 0.1]\n{BALL}{LAMP}{RIBS}')
     numpy = backends.get("numpy")
     large = render(load(path), numpy, (36, 27)).linear
     small = render(with_samples(load(path), 3), numpy, (12, 9))
@@ -186,7 +188,7 @@ def test_a_scene_chooses_parts_of_the_shell(
 ) -> None:
     """Tone mapping, surroundings and shadows of [shell] are drawn, the same on two back ends."""
     bright = LAMP.replace("color = [", "color = [9.0, 9.0, 9.0] # [")
-    text = f'material = "paper_lantern"\n{BALL}{bright}[environment]\ncolor = [0.2, 0.3, 0.4]\n'
+    text = f'material = "paper_lantern"\n{BALL}{bright}{RIBS}[environment]\ncolor = [0.2, 0.3, 0.4]\n'
     chosen = '[shell]\ntone_mapping = "agx"\nenvironment = "prefiltered_environment"\nshadow = "shadow_map"\n'
     plain, mapped = (render(load(scene(text + part)), backends.get("numpy"), SIZE) for part in ("", chosen))
     assert plain.linear.max() > 1.5 and mapped.linear.max() <= 1.0
@@ -220,7 +222,7 @@ def test_render_and_compare(
     capsys: pytest.CaptureFixture[str], scene: Callable[..., str], tmp_path: Path, backend: Callable[[str], Backend]
 ) -> None:
     backend("gl"), backend("webgpu")
-    path = scene(f'material = "paper_lantern"\n{BALL}{LAMP}')
+    path = scene(f'material = "paper_lantern"\n{BALL}{LAMP}{RIBS}')
     a, b, c, exr = (str(tmp_path / name) for name in ("a.png", "b.png", "c.png", "d.exr"))
     assert main(["render", path, "-o", a, "--size", "64x48", "--json"]) == 0
     report = json.loads(capsys.readouterr().out)

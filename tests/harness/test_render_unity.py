@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from folders import EXAMPLES
-from lamp_scene import BALL, LAMP, SIZE, largest_difference
+from lamp_scene import BALL, LAMP, RIBS, SIZE, largest_difference
 from sssgen.cli.main import main
 from sssgen.harness import backends
 from sssgen.harness.backends import Array, Backend, Text
@@ -151,7 +151,7 @@ def test_transmitted_light_is_equal_in_glsl(unity: UnityHLSL, lights: str) -> No
     """The translucency lobe of each kind of light counts once, with any lighting."""
     ball = '[geometry]\nkind = "ball"\nrotation = [20, 30, 40]\nscale = 0.9\n'
     values = "[parameters]\npower = 2.0\nscale = 1.5\ndistortion = 0.4\n"
-    described = scene(f'material = "paper_lantern"\nsamples = 1\n{ball}{lights}{values}')
+    described = scene(f'material = "paper_lantern"\nsamples = 1\n{ball}{lights}{values}{RIBS}')
     gl = picture_of(described, backends.get("gl"))
     assert gl.linear.max() > 0.1
     assert largest_difference(picture_of(described, unity), gl) < 0.3
@@ -159,7 +159,7 @@ def test_transmitted_light_is_equal_in_glsl(unity: UnityHLSL, lights: str) -> No
 
 def test_ambient_light(unity: UnityHLSL) -> None:
     """Unity subtracts the 4 % that a dielectric surface reflects."""
-    described = scene(f'material = "paper_lantern"\nsamples = 1\nambient = [0.2, 0.4, 0.6]\n{BALL}')
+    described = scene(f'material = "paper_lantern"\nsamples = 1\nambient = [0.2, 0.4, 0.6]\n{BALL}{RIBS}')
     result, gl = picture_of(described, unity), picture_of(described, backends.get("gl"))
     on = gl.covered > 0.99
     expected = 0.96 if unity.unity.real else 1.0
@@ -219,7 +219,7 @@ def test_shadows_on_transmitted_light(backend: Callable[[str], Backend], monkeyp
     if machine.unity.real:
         pytest.skip("Unity's shadow map is a texture")
     ball, light = '[geometry]\nkind = "ball"\n', "[[light]]\ndirection = [0.0, 0.0, -1.0]\ncolor = [0.9, 0.8, 0.7]\n"
-    described = scene(f'material = "paper_lantern"\nsamples = 1\n{ball}{light}')
+    described = scene(f'material = "paper_lantern"\nsamples = 1\n{ball}{light}{RIBS}')
     engine = unity_values._engine
 
     def brightest(plane: float, offset: float) -> float:
@@ -246,7 +246,7 @@ def test_shadows_on_transmitted_light(backend: Callable[[str], Backend], monkeyp
 def test_the_command(name: str, backend: Callable[[str], Backend], tmp_path: Path) -> None:
     backend(name)
     path, out = tmp_path / "scene.toml", str(tmp_path / "x.png")
-    path.write_text(f'material = "paper_lantern"\n{BALL}{LAMP}', encoding="utf-8")
+    path.write_text(f'material = "paper_lantern"\n{BALL}{LAMP}{RIBS}', encoding="utf-8")
     assert main(["render", str(path), "-o", out, "--size", "24x18", "--backend", name]) == 0
     assert images.read(out).std() > 0.01
 

@@ -18,8 +18,7 @@ HEAD = 'material = "paper_lantern"\n'
 
 
 @pytest.fixture(autouse=True)
-def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def with_map(in_folder: Path) -> None:
     np.save("map.npy", np.zeros((2, 2)))
 
 

@@ -18,7 +18,7 @@ from sssgen.harness.backends import Array, Backend, Bound, Drawing, DrawingBacke
 from sssgen.harness.compilers import Source
 from sssgen.harness.compilers.shadertoy_page import program
 from sssgen.harness.evaluate.evaluation import default_texture
-from sssgen.harness.pictures.images import decode_srgb, encode_srgb
+from sssgen.harness.pictures.images import decode_srgb, encode_srgb, write_png
 from sssgen.harness.render.scene_render import render
 from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.scenes.scene import Scene
@@ -102,6 +102,9 @@ def test_a_ball_is_that_of_numpy(
     names = [texture["source_name"] for texture in compiled.reflection["textures"]]
     files = {texture: EXAMPLES / name / "textures" / texture.replace("_texture", ".png") for texture in names}
     maps = "".join([f'{texture} = "{path}"\n' for texture, path in files.items() if textured and path.is_file()])
+    if "thickness_texture" in names and not textured:  # without the map nothing is drawn
+        write_png(str(tmp_path / "black.png"), np.zeros((1, 1, 3)))
+        maps = 'thickness_texture = "black.png"\n'
     text = f"{SCENE.format(material=name, camera=camera(mouse))}[textures]\n{maps}"
     scene = parse_scene(text, tmp_path / "scene.toml")
     shown = picture(backend("gl"), compiled.files[f"{name}.shadertoy.glsl"], channels(compiled, scene), 2.5, mouse)

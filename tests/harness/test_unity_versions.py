@@ -16,7 +16,7 @@ import pytest
 
 import sssgen
 from folders import EXAMPLES
-from lamp_scene import SIZE
+from lamp_scene import RIBS, SIZE
 from sssgen.harness.backends import Array, Backend
 from sssgen.harness.backends.unity_backend import UnityHLSL
 from sssgen.harness.compilers import shaderlab
@@ -199,7 +199,8 @@ def drawn(backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) ->
         pytest.skip("SSSGEN_UNITY_INCLUDES is set: only the stand-in headers let a test choose the engine's values")
     forward, engine = machine.forward, unity_values._engine
     described = parse_scene(
-        f'material = "paper_lantern"\nsamples = 1\n[geometry]\nkind = "ball"\n{SUNS_AND_LAMP}', EXAMPLES / "scene.toml"
+        f'material = "paper_lantern"\nsamples = 1\n[geometry]\nkind = "ball"\n{SUNS_AND_LAMP}{RIBS}',
+        EXAMPLES / "scene.toml",
     )
 
     def draw(version: int, keywords: tuple[str, ...] = (), **values: float | list[float]) -> Array:

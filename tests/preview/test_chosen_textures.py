@@ -78,7 +78,7 @@ def test_a_picture_is_saved_beside_the_material(folder: Path) -> None:
     talk = PageMessages(ShownPicture(str(folder / "stone.toml")))
     choose(talk, "red.png", RED)
     said = talk.answer({"kind": "save", "values": {}})
-    assert said == "red.png is written, and stone.toml names it."
+    assert said == f"red.png is written, and {folder / 'stone.toml'} names it."
     assert (folder / "stone.toml").read_text(encoding="utf-8") == f'{MATERIAL}base_color_texture = "red.png"\n'
     assert (folder / "red.png").read_bytes() == RED
     assert slot(talk)["chosen"] == "" and texel(talk) == [1.0, 0.0, 0.0, 1.0]

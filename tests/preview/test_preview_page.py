@@ -65,6 +65,7 @@ def test_a_save_shows_the_new_picture_and_an_error_keeps_it(shown: Shown, stone:
 
 def test_a_control_changes_the_picture_and_save_writes_the_file(shown: Shown, stone: Path) -> None:
     before = color(shown.picture())
+    assert shown.page.inner_text("#saved-in") == f"Save writes {stone}."
     shown.page.evaluate(
         "const field = document.querySelector('[data-property=tint] input[type=color]');"
         "field.value = '#2020ff'; field.dispatchEvent(new Event('input'))"
@@ -75,7 +76,7 @@ def test_a_control_changes_the_picture_and_save_writes_the_file(shown: Shown, st
     shown.page.click("#save")
     shown.until(lambda: "tint = [0.8" not in stone.read_text(encoding="utf-8"))
     shown.until(lambda: shown.page.is_disabled("#save"))
-    shown.until(lambda: "Saved: tint in stone.toml." in shown.page.inner_text("body"))
+    shown.until(lambda: f"Saved: tint in {stone}." in shown.page.inner_text("body"))
     assert stone.read_text(encoding="utf-8").startswith("# a stone\n[material]\n")
     assert color(shown.picture()) == pytest.approx(after, abs=2.0)
 

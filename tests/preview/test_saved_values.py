@@ -64,7 +64,9 @@ def test_a_value_of_the_scene_is_saved_in_the_scene(stone: Path) -> None:
         'material = "stone.toml"\n[geometry]\nkind = "ball"\n[parameters]\n# dull\nsurface_roughness = 0.7\n',
         encoding="utf-8",
     )
-    assert ShownPicture(str(scene)).save({"surfaceRoughness": [0.9]}) == "Saved: surface_roughness in scene.toml."
+    shown = ShownPicture(str(scene))
+    assert shown.picture.head["saved_in"] == f"Save writes {stone}, and {scene} for what the scene sets."
+    assert shown.save({"surfaceRoughness": [0.9]}) == f"Saved: surface_roughness in {scene}."
     assert scene.read_text(encoding="utf-8").endswith("# dull\nsurface_roughness = 0.9\n")
     assert stone.read_text(encoding="utf-8") == TEXT
 

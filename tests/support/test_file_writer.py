@@ -11,10 +11,7 @@ from snapshot import check_snapshot
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.file_writer import check_names, write_files
 
-
-@pytest.fixture(autouse=True)
-def in_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("in_folder")
 
 
 def test_names_that_leave_the_folder_are_refused() -> None:

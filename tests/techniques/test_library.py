@@ -45,6 +45,7 @@ STRUCTURED = {
     "shape",
     "sets",
     "requires",
+    "bake",
     "deviation_bounds",
 }
 """Sections that need no sentence."""

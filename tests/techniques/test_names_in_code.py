@@ -19,7 +19,7 @@ PERMITTED = {
     "cli/ci.py": (EXAMPLE, {"lobe_gdc2011"}),
     "cli/new.py": (
         "the material to start from, which the user edits",
-        {"base_color", "beer_lambert", "lobe_normalized", "parallax_refracted", "pbr_constants", "thickness_map"},
+        {"base_color", "beer_lambert", "constant_thickness", "lobe_normalized", "parallax_refracted", "pbr_constants"},
     ),
     "harness/evaluate/evaluation.py": (EXAMPLE, {"lobe_gdc2011"}),
     "harness/lint/lint_findings.py": (EXAMPLE, {"lobe_gdc2011"}),

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import types
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from sssgen.ir.nodes import Module
 from sssgen.material.model import Material
-from sssgen.support.diagnostics import Diagnostic
+from sssgen.support.diagnostics import Diagnostic, failure
 
 WAX = """\
 [material]
@@ -44,6 +45,8 @@ class FakeCompiler(types.ModuleType):
         self.text = "text 1"
         self.name = "{}.{}.txt"
         self.failing: dict[str, Exception] = {}
+        self.refused: set[tuple[str, str]] = set()
+        """Material and target"""
         self.warnings: list[Diagnostic] = []
 
     def all_targets(self) -> dict[str, Target]:
@@ -63,6 +66,8 @@ class FakeCompiler(types.ModuleType):
         self.calls.append((material.name, target, form, templates))
         if target in self.failing:
             raise self.failing[target]
+        if (material.name, target) in self.refused:
+            raise failure(f"{material.name} is refused")
         name = self.name.format(material.name, target)
         files = {name: f"{self.text}\n", f"{material.name}.{target}.reflection.json": "{}\n"}
         return Compiled(files, self.warnings)
@@ -76,6 +81,12 @@ class CommandResult(NamedTuple):
     status: int
     out: str
     err: str
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """What `--json` prints."""
+        report: dict[str, Any] = json.loads(self.out)
+        return report
 
 
 Run = Callable[..., CommandResult]

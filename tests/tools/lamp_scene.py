@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from folders import EXAMPLES
 from sssgen.harness.render.scene_render import Rendered
 
 LAMP = """
@@ -15,6 +16,8 @@ direction = [1, 2, 2]
 color = [1, 1, 1]
 """
 BALL = '[geometry]\nkind = "ball"\nrotation = [20, 30, 40]\nposition = [0.1, 0, 0]\nscale = 0.9\n'
+RIBS = f'[textures]\nthickness_texture = "{(EXAMPLES / "paper_lantern/textures/thickness.png").as_posix()}"\n'
+"""The map without which the paper lantern is not drawn."""
 SIZE = (48, 36)
 
 

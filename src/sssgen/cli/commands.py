@@ -35,7 +35,7 @@ class Command(NamedTuple):
 
 
 COMMANDS = {
-    "new": Command("new", "make", "write a commented material to start from"),
+    "new": Command("new", "make", "write a commented material to start from, or copy an example"),
     "emit": Command("emit", "make", "write the shaders of materials"),
     "watch": Command("watch", "make", "write the shaders of materials after every change", "preview"),
     "bake": Command("bake", "make", "bake textures: distances, thickness, depth, light, cells, normals", "bake"),

@@ -8,7 +8,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from sssgen.cli.options import DEFAULT_TARGET, add_guards, add_optional_targets, given
-from sssgen.cli.output import OK, print_json, print_warnings
+from sssgen.cli.output import CHECK_FAILED, OK, print_errors, print_json, print_warnings
 from sssgen.pipeline import emitted_cache
 from sssgen.pipeline.emitted_cache import EmittedFiles
 from sssgen.support.diagnostics import Diagnostic, SssgenError, UnsupportedError, did_you_mean, failure
@@ -79,7 +79,10 @@ def add_emission_options(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Compiles everything, then writes or prints everything: if one text fails, none is written."""
+    """Compiles everything, then writes or prints it; of a material with an error nothing is written.
+
+    Where several materials are named, the others are written, and the status is 1.
+    """
     take_default_target(arguments)
     printed = arguments.output == STANDARD_OUTPUT
     if printed and arguments.trace:
@@ -90,23 +93,25 @@ def run(arguments: Namespace) -> int:
     finally:
         for trace in traces:
             trace.write(arguments.output)
+    if emitted.errors and len(arguments.MATERIAL) == 1:
+        raise SssgenError(emitted.errors)
+    written = [] if printed else write_files(arguments.output, emitted.files)
     if arguments.json:
-        written = [] if printed else write_files(arguments.output, emitted.files)
         rows = _printed_rows(emitted) if printed else written_rows(emitted, written)
-        print_json({"ok": True, "form": arguments.form, **report(rows, emitted)})
-        return OK
-    if printed:
+        print_json({"ok": not emitted.errors, "form": arguments.form, **report(rows, emitted)})
+    else:
         print_warnings(emitted.warnings)
-        _print_texts(emitted.files)
-        return OK
-    written = write_files(arguments.output, emitted.files)
-    print_warnings(emitted.warnings)
-    for file in written:
-        print(f"{'wrote' if file.changed else 'kept '} {posix(file.path)}")
-    for material, requires in emitted.requires.items():
-        if requires:
-            print(f"{material} requires {', '.join(requires)}")
-    return OK
+        if printed:
+            _print_texts(emitted.files)
+        for file in written:
+            print(f"{'wrote' if file.changed else 'kept '} {posix(file.path)}")
+        for material, requires in emitted.requires.items() if not printed else ():
+            if requires:
+                print(f"{material} requires {', '.join(requires)}")
+        if emitted.errors:
+            sys.stdout.flush()
+            print_errors(emitted.errors)
+    return CHECK_FAILED if emitted.errors else OK
 
 
 def take_default_target(arguments: Namespace) -> None:
@@ -120,7 +125,7 @@ def take_default_target(arguments: Namespace) -> None:
 
 def report(rows: list[dict[str, Any]], emitted: EmittedFiles) -> dict[str, Any]:
     """The JSON report of an emission."""
-    diagnostics = [warning.as_json() for warning in emitted.warnings]
+    diagnostics = [entry.as_json() for entry in (*emitted.errors, *emitted.warnings)]
     return {"files": rows, "requires": emitted.requires, "diagnostics": diagnostics}
 
 
@@ -161,23 +166,28 @@ def _cached_or_compiled(arguments: Namespace, traces: list[Trace]) -> EmittedFil
         return cached
     with noted_files() as files:
         emitted = compile_all(arguments)
-    if not changed_files(files):
+    if not emitted.errors and not changed_files(files):
         emitted_cache.store(command, emitted, files)
     return emitted
 
 
 def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> EmittedFiles:
-    """Compiles every material for every target; `traces` gets their traces. Raises SssgenError with all errors."""
+    """Compiles every material for every target; `traces` gets their traces.
+
+    A material with an error has no files in the result. Raises SssgenError for faulty options, with all errors.
+    """
     from sssgen.material.requirements import described
     from sssgen.pipeline.compiler import compile
     from sssgen.pipeline.trace import Trace
     from sssgen.support.progress import ProgressBar
 
     wrong: list[Diagnostic] = []
+    errors: list[Diagnostic] = []
+    failed: set[str] = set()
     names = chosen_targets(arguments.target, wrong)
     every = "all" in arguments.target.split(",")
     templates = _templates(arguments.templates, wrong)
-    materials = _materials(arguments.MATERIAL, arguments.shell, wrong)
+    materials = _materials(arguments.MATERIAL, arguments.shell, errors)
     files: dict[str, str] = {}
     sources: dict[str, tuple[str, str]] = {}
     warnings: list[Diagnostic] = []
@@ -204,14 +214,17 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
                 if every and isinstance(error, UnsupportedError):
                     warnings += _left_out(error, material, name)
                 else:
-                    wrong += error.diagnostics
+                    errors += error.diagnostics
+                    failed.add(material.name)
             else:
-                _collect(compiled, (material.name, name), files, sources, wrong)
+                failed |= _collect(compiled, (material.name, name), files, sources, errors)
                 warnings += compiled.warnings
     if wrong:
-        raise SssgenError(dict.fromkeys(wrong))
-    required = {material.name: described(material.stages) for material in materials}
-    return EmittedFiles(files, sources, list(dict.fromkeys(warnings)), required)
+        raise SssgenError(dict.fromkeys([*wrong, *errors]))
+    sources = {file: source for file, source in sources.items() if source[0] not in failed}
+    required = {material.name: described(material.stages) for material in materials if material.name not in failed}
+    texts = {file: files[file] for file in sources}
+    return EmittedFiles(texts, sources, list(dict.fromkeys(warnings)), required, list(dict.fromkeys(errors)))
 
 
 def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:
@@ -242,23 +255,26 @@ def _templates(folder: str | None, wrong: list[Diagnostic]) -> str | None:
     return folder
 
 
-def _materials(arguments: list[str], shell: list[str], wrong: list[Diagnostic]) -> list[Material]:
+def _materials(arguments: list[str], shell: list[str], errors: list[Diagnostic]) -> list[Material]:
+    """The materials; those that cannot be read, and those of one name in several files, are added to `errors`."""
     from sssgen.material.material_loading import load_material
     from sssgen.material.shell_stages import with_shell
 
-    materials: dict[str, Material] = {}
+    named: dict[str, dict[str, Material]] = {}
     for argument in arguments:
         try:
             material = load_material(argument)
             material = with_shell(material, shell) if shell else material
         except SssgenError as error:
-            wrong += error.diagnostics
-            continue
-        other = materials.setdefault(material.name, material)
-        if other is not material:
-            message = f"two materials are called '{material.name}': their files would have the same names"
-            wrong += failure(message, f"the other one is {posix(other.file)}", posix(material.file)).diagnostics
-    return list(materials.values())
+            errors += error.diagnostics
+        else:
+            named.setdefault(material.name, {}).setdefault(os.path.realpath(material.file), material)
+    for name, of_one_name in named.items():
+        if len(of_one_name) > 1:
+            files = " and ".join(posix(material.file) for material in of_one_name.values())
+            message = f"{len(of_one_name)} materials are called '{name}', in {files}: their shaders would have one name"
+            errors += failure(message, "give each another name in [material]; none of them is written").diagnostics
+    return [next(iter(of_one_name.values())) for of_one_name in named.values() if len(of_one_name) == 1]
 
 
 def _left_out(error: UnsupportedError, material: Material, target: str) -> list[Diagnostic]:
@@ -272,13 +288,19 @@ def _collect(
     source: tuple[str, str],
     files: dict[str, str],
     sources: dict[str, tuple[str, str]],
-    wrong: list[Diagnostic],
-) -> None:
-    """Adds the files of one compilation. The materials of a target may share a file; else two sources are an error."""
+    errors: list[Diagnostic],
+) -> set[str]:
+    """Adds the files of one compilation. The materials of a target may share a file.
+
+    Returns the materials with a file that has two sources, which is an error.
+    """
+    failed = set()
     for name, text in compiled.files.items():
         if files.get(name) == text and sources[name][1] == source[1]:
             continue
         if name in files:
             message = f"'{name}' comes from {' for '.join(sources[name])} and from {' for '.join(source)}"
-            wrong += failure(message, "give the target's files other names").diagnostics
+            errors += failure(message, "give the target's files other names").diagnostics
+            failed |= {sources[name][0], source[0]}
         files[name], sources[name] = text, source
+    return failed

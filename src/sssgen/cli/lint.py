@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from argparse import ArgumentParser, Namespace
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from sssgen.cli.output import CHECK_FAILED, OK, print_json, print_warnings
+from sssgen.cli.output import CHECK_FAILED, OK, WRONG_INPUT, print_errors, print_json, print_warnings
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
 from sssgen.support.progress import ProgressBar
 
@@ -48,7 +49,10 @@ def add_options(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Prints the operations that are not proven safe; returns 1 if one of them has no guard."""
+    """Prints the operations that are not proven safe; returns 1 if one of them has no guard.
+
+    A file with errors does not stop the others, unless a report is written: it would lack findings.
+    """
     from sssgen.harness.lint.finding_baseline import baseline_text, load_baseline, new_findings
     from sssgen.harness.lint.lint_findings import PROVEN, lint
 
@@ -66,7 +70,7 @@ def run(arguments: Namespace) -> int:
                 reports.append(lint(name, not arguments.no_examples, kinds, arguments.assume))
             except SssgenError as error:
                 wrong += error.diagnostics
-    if wrong:
+    if wrong and (not reports or arguments.write_baseline or arguments.sarif):
         raise SssgenError(wrong)
     warnings = _warnings(reports)
     unproven = [finding for report in reports for finding in report.unproven()]
@@ -93,8 +97,10 @@ def run(arguments: Namespace) -> int:
             }
             for report in reports
         ]
-        print_json({"ok": not unguarded, "results": listed, "warnings": [warning.as_json() for warning in warnings]})
-        return CHECK_FAILED if unguarded else OK
+        others = {"warnings": [warning.as_json() for warning in warnings]}
+        others |= {"diagnostics": [error.as_json() for error in wrong]} if wrong else {}
+        print_json({"ok": not unguarded and not wrong, "results": listed, **others})
+        return WRONG_INPUT if wrong else CHECK_FAILED if unguarded else OK
     print_warnings(warnings)
     for report in reports:
         for finding in report.findings:
@@ -107,7 +113,10 @@ def run(arguments: Namespace) -> int:
         count = len(unproven) - len(new)
         written = " now" if arguments.write_baseline else ""
         print(f"{arguments.baseline}{written} accepts {count} finding{'s' * (count != 1)}; {len(new)} new")
-    return CHECK_FAILED if unguarded else OK
+    if wrong:
+        sys.stdout.flush()
+        print_errors(wrong)
+    return WRONG_INPUT if wrong else CHECK_FAILED if unguarded else OK
 
 
 def _write(path: str, text: str) -> None:

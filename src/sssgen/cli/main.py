@@ -12,7 +12,7 @@ import time
 from collections.abc import Sequence
 
 from sssgen.cli.commands import COMMANDS, Overview, command_module, command_parser
-from sssgen.cli.output import BROKEN_PIPE, INTERNAL_ERROR, INTERRUPTED, WRONG_INPUT, failed, print_errors, print_json
+from sssgen.cli.output import BROKEN_PIPE, INTERNAL_ERROR, INTERRUPTED, WRONG_INPUT, report_errors
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.extras import missing_package
 
@@ -85,10 +85,7 @@ def _print_time(seconds: float) -> None:
 def _report(error: SssgenError, as_json: bool, status: int) -> int:
     """Prints an error and returns the exit status; the reader may have closed the output."""
     try:
-        if as_json:
-            print_json(failed(error.diagnostics))
-        else:
-            print_errors(error.diagnostics)
+        report_errors(error.diagnostics, as_json)
         sys.stdout.flush()
     except BrokenPipeError:
         return _pipe_closed()

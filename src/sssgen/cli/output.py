@@ -32,6 +32,14 @@ def print_errors(errors: Sequence[Diagnostic]) -> None:
         print(f"\n{len(errors)} errors", file=sys.stderr)
 
 
+def report_errors(errors: Sequence[Diagnostic], as_json: bool) -> None:
+    """Prints errors, for people or as a command's result for programs."""
+    if as_json:
+        print_json(failed(errors))
+    else:
+        print_errors(errors)
+
+
 def print_warnings(warnings: Iterable[Diagnostic]) -> None:
     """Prints warnings to the standard error stream, so that they are not part of the result."""
     for warning in warnings:

@@ -8,7 +8,7 @@ from argparse import ArgumentParser, Namespace
 from time import perf_counter
 
 from sssgen.cli.options import add_guards, given
-from sssgen.cli.output import OK, print_json
+from sssgen.cli.output import CHECK_FAILED, OK, print_json, report_errors
 from sssgen.harness.backend_registry import PREFERRED, SCENES
 from sssgen.support.diagnostics import failure
 from sssgen.support.progress import ProgressBar
@@ -51,6 +51,7 @@ def run(arguments: Namespace) -> int:
 def _render(arguments: Namespace) -> int:
     from sssgen.harness import backends
     from sssgen.harness.pictures import images
+    from sssgen.harness.render.missing_textures import MissingTextures
     from sssgen.harness.render.scene_render import render, with_samples
     from sssgen.harness.scenes.preview_scene import scene_of
     from sssgen.harness.scenes.scene_keys import MAX_SAMPLES
@@ -70,8 +71,12 @@ def _render(arguments: Namespace) -> int:
         raise failure("a picture is written as .png or .exr", "", output)
     backend = backends.needed(name)
     start = perf_counter()
-    with ProgressBar() as progress:
-        picture = render(scene, backend, size, arguments.time, arguments.guards, progress)
+    try:
+        with ProgressBar() as progress:
+            picture = render(scene, backend, size, arguments.time, arguments.guards, progress)
+    except MissingTextures as error:
+        report_errors(error.diagnostics, arguments.json)
+        return CHECK_FAILED
     seconds = perf_counter() - start
     write = {
         ".png": lambda: images.write_png(output, picture.encoded),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from sssgen.cli.emit import add_emission_options, chosen_targets, compile_all, report, take_default_target, written_rows
@@ -71,6 +72,8 @@ class Watch:
         try:
             with noted_files() as self.files:
                 emitted = compile_all(self.arguments)
+            if emitted.errors and not emitted.files:
+                raise SssgenError(emitted.errors)
             self._write(emitted)
         except SssgenError as error:
             self._print_errors(error.diagnostics)
@@ -81,7 +84,7 @@ class Watch:
         written = write_files(self.arguments.output, emitted.files)
         if self.arguments.json:
             rows = written_rows(emitted, written)
-            _print_line({"ok": True, "form": self.arguments.form, **report(rows, emitted)})
+            _print_line({"ok": not emitted.errors, "form": self.arguments.form, **report(rows, emitted)})
             return
         if emitted.warnings != self._warnings:
             print_warnings(emitted.warnings)
@@ -92,8 +95,10 @@ class Watch:
         if not any(file.changed for file in written):
             print(f"the {len(written)} files in {posix(self.arguments.output)} are the same")
         sys.stdout.flush()
+        if emitted.errors:
+            self._print_errors(emitted.errors)
 
-    def _print_errors(self, errors: list[Diagnostic]) -> None:
+    def _print_errors(self, errors: Sequence[Diagnostic]) -> None:
         if self.arguments.json:
             _print_line(failed(errors))
         else:

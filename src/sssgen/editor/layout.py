@@ -39,6 +39,6 @@ def lay_out_file(path: str, write: bool = True) -> bool:
             crlf = b"\r\n" in file.read()
         mode = stat.S_IMODE(os.stat(target).st_mode)
         data = result.replace("\n", "\r\n") if crlf else result
-        write_files(os.path.dirname(target), {os.path.basename(target): data.encode("utf-8")})
+        write_files(os.path.dirname(target), {os.path.basename(target): data.encode("utf-8")}, installed=True)
         os.chmod(target, mode)
     return True

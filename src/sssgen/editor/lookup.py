@@ -10,6 +10,7 @@ from sssgen.editor.analysis import Analysis
 from sssgen.editor.documents import MATERIAL, SCENE, TECHNIQUE, Document, Word
 from sssgen.editor.scene_parameters import uniforms_of
 from sssgen.editor.source_files import path_of
+from sssgen.harness.scenes.scene_reader import material_beside
 from sssgen.ir.nodes import Declare, Function, Module, Uniform
 from sssgen.ir.walk import all_expressions, statements
 from sssgen.lang.check.quantities import QUANTITIES
@@ -172,7 +173,8 @@ def _of_text(
     if place.key == "bind":
         return _bound(document, place.technique, key, word)
     if key == "material" and not place.section:
-        path = examples().get(word.text, os.path.join(document.folder, word.text))
+        beside = material_beside(word.text, document.folder)
+        path = beside or examples().get(word.text, os.path.join(document.folder, word.text))
         known = analysis.material if analysis.material and analysis.scene else None
         return Meaning("material", known, word, path) if os.path.isfile(path) else None
     path = os.path.join(document.folder, word.text)

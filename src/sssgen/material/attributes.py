@@ -27,7 +27,8 @@ TEXTS = (
 )
 """Attributes of free text; `role` is checked by the library."""
 
-ATTRIBUTES = (*TEXTS, "superseded_by", "suggested", "shape", "sets", "requires", "deviation", "deviation_bounds")
+_VALUES = ("superseded_by", "suggested", "shape", "sets", "requires", "bake", "deviation", "deviation_bounds")
+ATTRIBUTES = (*TEXTS, *_VALUES)
 
 SHAPES = ("box", "sphere", "torus", "texture")
 """The values of `shape`, the body that a distance function describes."""
@@ -43,9 +44,19 @@ OMISSIONS = REQUIREMENTS[:4]
 BOUNDS = ("largest", "share", "bound_share")
 """What `deviation_bounds` can bound."""
 
+_FILE = re.compile(r" -o (\{name\}\.\w+)$")
 _CONVERSION = re.compile(r"(\w+) to (\w+)")
 _SETTING = re.compile(r"(\w+) by (\w+)")
 _BOUND = re.compile(r"(\w+) ([0-9.e+-]+)")
+
+
+class Bake(NamedTuple):
+    """How `sssgen bake` makes the textures of a technique."""
+
+    arguments: str
+    """Behind `sssgen bake`, with `{mesh}`, `{scene}`, `{light}`, `{name}` and parameters in braces"""
+    files: tuple[str, ...]
+    """Of each texture, in the order of their declarations, as `{name}_table.exr`"""
 
 
 class Attributes(NamedTuple):
@@ -71,6 +82,8 @@ class Attributes(NamedTuple):
     """Value of the surface → the uniform that is its value, as long as textures have their defaults."""
     requires: tuple[str, ...] = ()
     """What the engine has to provide, where declarations do not show it: of `REQUIREMENTS`."""
+    bake: Bake | None = None
+    """What makes its textures; None for textures that no bake makes"""
     deviation: str = ""
     """Why back ends may deviate from the reference by more than the goal."""
     deviation_bounds: Mapping[str, Mapping[str, float]] = {}
@@ -117,6 +130,7 @@ def read(texts: Mapping[str, str], shown: str) -> Attributes:
         shape=shape,
         sets=_settings(texts["sets"], shown) if "sets" in texts else {},
         requires=_requirements(texts["requires"], shown) if "requires" in texts else (),
+        bake=_bake(texts["bake"], shown) if "bake" in texts else None,
         deviation=texts.get("deviation", ""),
         deviation_bounds=bounds,
     )
@@ -151,6 +165,16 @@ def _requirements(text: str, shown: str) -> tuple[str, ...]:
         if name not in REQUIREMENTS:
             raise _wrong(f"unknown requirement '{name}'", name, REQUIREMENTS, "requirements", shown)
     return names
+
+
+def _bake(text: str, shown: str) -> Bake:
+    """`thickness {mesh} -o {name}.png`, or `… -o {name}.png; {name}_1.png, {name}_2.png` for several files."""
+    arguments, _, files = (part.strip() for part in text.partition(";"))
+    output = _FILE.search(arguments)
+    if output is None:
+        hint = "write, for example, `bake: thickness {mesh} -o {name}.png`"
+        raise failure(f"'{text}' are not the arguments of sssgen bake", hint, shown)
+    return Bake(arguments, tuple(file.strip() for file in files.split(",")) if files else (output[1],))
 
 
 def _bounds(text: str, shown: str) -> dict[str, dict[str, float]]:

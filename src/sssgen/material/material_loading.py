@@ -19,6 +19,12 @@ def examples() -> dict[str, str]:
     return {name: path for name, path in paths.items() if os.path.isfile(path)}
 
 
+def is_example(path: str, name: str) -> bool:
+    """Whether a file is the example material of that name."""
+    example = os.path.join(place("examples"), name, f"{name}.toml")
+    return os.path.isfile(example) and os.path.samefile(path, example)
+
+
 _materials: dict[str, CachedResult] = {}
 
 

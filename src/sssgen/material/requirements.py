@@ -8,13 +8,14 @@ draws. A technique states the rest: `requires: fixed-light`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 from sssgen.ir.baked_textures import is_baked, is_volume
 from sssgen.ir.drawn import BACK_FACES, CUBES, DISTANT, LAYERS, LIGHT, SHADOW
 from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import attributes
-from sssgen.material.attributes import REQUIREMENTS
+from sssgen.material.attributes import REQUIREMENTS, Attributes, Bake
 from sssgen.material.model import TechniqueUse
 from sssgen.material.slots import needs
 from sssgen.support.diagnostics import SssgenError
@@ -42,7 +43,7 @@ def requirements(uses: Iterable[TechniqueUse]) -> tuple[str, ...]:
     required: set[str] = set()
     for use in uses:
         for module, function in _functions(use):
-            required.update(_declared(function))
+            required.update(_attributes(function).requires)
             textures = [uniform for uniform in _read(module, function) if isinstance(uniform.type, Sampler)]
             volume = any(is_volume(uniform) for uniform in textures)
             slots = needs(module, function)[1]
@@ -82,6 +83,26 @@ def baked_textures(uses: Iterable[TechniqueUse]) -> list[Uniform]:
     return list({uniform.name: uniform for uniform in read if is_baked(uniform)}.values())
 
 
+class BakedFunction(NamedTuple):
+    """A function of a stage that reads baked textures."""
+
+    stage: TechniqueUse
+    name: str
+    textures: tuple[Uniform, ...]
+    bake: Bake | None
+    """What makes the textures"""
+
+
+def baked_functions(uses: Iterable[TechniqueUse]) -> list[BakedFunction]:
+    """The functions of the stages that read baked textures, those bound to slots among them."""
+    return [
+        BakedFunction(use, function.name, textures, _attributes(function).bake)
+        for use in uses
+        for module, function in _functions(use)
+        if (textures := tuple(filter(is_baked, _read(module, function))))
+    ]
+
+
 def read_uniforms(use: TechniqueUse) -> Iterator[Uniform]:
     """The parameters and textures that a technique reads, itself and in the functions that are bound to its slots."""
     for module, function in _functions(use):
@@ -109,9 +130,9 @@ def _read(module: Module, function: Function) -> Iterator[Uniform]:
     return (uniform for uniform in module.uniforms if uniform.name in names)
 
 
-def _declared(function: Function) -> tuple[str, ...]:
-    """The attribute `requires` of a function; a user's distance function needs no attributes at all."""
+def _attributes(function: Function) -> Attributes:
+    """The attributes of a function; a user's distance function needs none at all."""
     try:
-        return attributes.read(attributes.sections(function.doc), "").requires
+        return attributes.read(attributes.sections(function.doc), "")
     except SssgenError:
-        return ()
+        return Attributes()

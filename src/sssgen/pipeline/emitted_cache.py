@@ -25,6 +25,8 @@ class EmittedFiles(NamedTuple):
     warnings: list[Diagnostic]
     requires: dict[str, list[str]]
     """Material → what it requires besides its parameters, in words."""
+    errors: Sequence[Diagnostic] = ()
+    """Of the materials that have no files here; such a result is not kept."""
 
 
 def load(command: Sequence[str]) -> EmittedFiles | None:

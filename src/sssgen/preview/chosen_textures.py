@@ -14,7 +14,7 @@ from typing import Any
 
 from sssgen.harness.pictures import images
 from sssgen.harness.scenes.scene import Picture, Scene
-from sssgen.preview.saved_values import save_to_material, save_to_scene
+from sssgen.preview.saved_values import is_saved_in_scene, save_to_material, save_to_scene
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.extras import need
 from sssgen.support.file_writer import write_files
@@ -65,10 +65,10 @@ class ChosenTextures:
 def saved(row: Mapping[str, Any], file: str, scene: Scene, material: Any) -> str:
     """Copies a chosen picture beside the file that names the texture, and writes its name there; says what it did.
 
-    The scene names it where it did before, else the material. Raises SssgenError where a file cannot be written.
+    `saved_values` says which file names it. Raises SssgenError where a file cannot be written.
     """
     name = str(row["source_name"])
-    in_scene = name in scene.textures
+    in_scene = is_saved_in_scene(scene, material, name)
     toml = scene.document.reporter.file if in_scene else material.file
     before = scene.textures.get(name)
     folder = os.path.dirname(os.path.abspath(toml))
@@ -83,7 +83,7 @@ def saved(row: Mapping[str, Any], file: str, scene: Scene, material: Any) -> str
         save_to_scene(toml, {name: relative}, "textures")
     else:
         save_to_material(material, {(str(row["technique"]), str(row["name"])): relative})
-    return f"{relative} is written, and {os.path.basename(toml)} names it."
+    return f"{relative} is written, and {posix(toml)} names it."
 
 
 def _free(path: str, data: bytes) -> str:

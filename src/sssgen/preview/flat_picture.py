@@ -15,7 +15,7 @@ from sssgen.harness.scenes.scene import Scene
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile
 from sssgen.preview.flat_head import TARGET, plain_head, raymarched_head
-from sssgen.preview.picture import Chosen, Picture, Pieces, texels_of
+from sssgen.preview.picture import Chosen, Picture, Pieces, missing_text, texels_of
 from sssgen.targets.runtime.numpy_textures import Texture
 
 
@@ -39,6 +39,7 @@ def raymarched_picture(scene: Scene, material: Material, chosen: Chosen) -> Pict
         if row["source_name"] in shell.textures
     ]
     head["flat"] |= {"start": scene.time, "plays": False}
+    head["missing"] = missing_text(scene, material, compiled.reflection, shell)
     head |= {"background": [list(color) for color in scene.background], "exposure": scene.exposure}
     return Picture(head, pieces.data, material, shell.parameters)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -13,7 +12,7 @@ from sssgen.lab.chart.record import measures
 from sssgen.lab.measure.candidates import ROLES, is_path
 from sssgen.lab.scene import measured_scene
 from sssgen.material.model import Material
-from sssgen.support.paths import posix
+from sssgen.support.paths import shell_word
 
 _MEASURED = (*ROLES, "conversion")
 """The roles whose techniques a chart compares."""
@@ -28,7 +27,7 @@ def measured_error(scene: Scene, material: Material) -> str:
     file = scene.document.reporter.file
     record = cached(measured_scene.load(file), Settings())
     if record is None:
-        return f"Error: no chart of this scene is in the cache. It takes minutes: sssgen chart {_quoted(file)}"
+        return f"Error: no chart of this scene is in the cache. It takes minutes: sssgen chart {shell_word(file)}"
     names = _names(material)
     point = nearest(record["points"], names)
     if point is None:
@@ -65,8 +64,3 @@ def _names(material: Material) -> frozenset[str]:
         if is_path(slot) and slot.name in stage.bindings
     ]
     return frozenset((*(stage.technique.name for stage in stages), *paths))
-
-
-def _quoted(file: str) -> str:
-    shown = posix(os.path.relpath(file)) if not os.path.relpath(file).startswith(os.pardir) else posix(file)
-    return f'"{shown}"' if " " in shown else shown

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sssgen.harness.render.missing_textures import missing_textures
 from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.render.shell_values import Shell
 from sssgen.harness.scenes.geometry import Mesh
@@ -74,7 +75,9 @@ def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
         named[name]: _with_file(scene, named[name], file) for name, file in chosen.textures.items() if name in named
     }
     own = {**scene.textures, **given}
-    shell = shell_of(dataclasses.replace(scene, textures=own), material, _without_views(compiled.reflection))
+    drawn = dataclasses.replace(scene, textures=own)
+    reflection = _without_views(compiled.reflection)
+    shell = shell_of(drawn, material, reflection)
     pieces = Pieces()
     assert scene.geometry is not None  # `_on_shape` keeps one
     head = emitted_head(material, compiled, shell.parameters, scene.parameters)
@@ -83,6 +86,7 @@ def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
         "shapes": ["", *SHAPES, *([OWN_MESH] if chosen.mesh is not None else [])],
         "saves": "",
         "note": _note(material, chosen.shape),
+        "missing": missing_text(drawn, material, reflection, shell),
         "mesh": os.path.basename(chosen.mesh.path) if chosen.mesh is not None else "",
         "body": pieces.add(packed(scene.geometry)),
         "model": scene.geometry.to_world().T.ravel().tolist(),
@@ -99,6 +103,12 @@ def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
         "camera": _camera(scene, chosen.shape),
     }
     return Picture(head, pieces.data, material, shell.parameters)
+
+
+def missing_text(scene: Scene, material: Material, reflection: Mapping[str, Any], shell: Shell) -> str:
+    """What a person must do for the textures that are missing, in place of a picture; '' where there are all."""
+    errors = missing_textures(scene, material, reflection, shell.textures)
+    return "\n\n".join(error.render() for error in errors)
 
 
 def _note(material: Material, shape: str) -> str:

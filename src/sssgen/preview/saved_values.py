@@ -1,4 +1,8 @@
-"""Writes changed parameters back to a material's or a scene's TOML file; comments and order are kept."""
+"""Writes changed parameters back to a material's or a scene's TOML file; comments and order are kept.
+
+What the scene sets is saved in the scene, and all else in the material. A material that comes with sssgen is not
+changed: where the scene is a person's own, the scene gets its changes.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +12,38 @@ from typing import Any
 
 import numpy as np
 
+from sssgen.harness.scenes.bake_advice import is_scene
+from sssgen.harness.scenes.scene import Scene
 from sssgen.material.model import Material
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
 from sssgen.support.file_writer import write_files
+from sssgen.support.installed_files import copy_hint, is_installed
 from sssgen.support.paths import posix
 from sssgen.support.text_files import read_text
+
+
+def is_saved_in_scene(scene: Scene, material: Material, name: str) -> bool:
+    """Whether a parameter or texture, by its name in the scene, is saved in the scene's file."""
+    return name in scene.parameters or name in scene.textures or _scene_gets_all(scene, material)
+
+
+def saves_where(scene: Scene, material: Material) -> dict[str, str]:
+    """What a page says about Save: `saves` is why nothing can be saved, or ''; `saved_in` names the files."""
+    scene_file, material_file, reason = posix(scene.document.reporter.file), posix(material.file), ""
+    if _scene_gets_all(scene, material):
+        files = f"{scene_file}; {material_file} comes with sssgen and stays as it is"
+    elif is_installed(material.file):
+        reason, files = f"{material_file} comes with sssgen and is not changed: {copy_hint(material.file)}.", "nothing"
+    elif is_scene(scene, material) and (scene.parameters or scene.textures):
+        files = f"{material_file}, and {scene_file} for what the scene sets"
+    else:
+        files = material_file
+    return {"saves": reason, "saved_in": f"Save writes {files}."}
+
+
+def _scene_gets_all(scene: Scene, material: Material) -> bool:
+    return is_installed(material.file) and not is_installed(scene.document.reporter.file)
 
 
 def save_to_material(material: Material, changes: Mapping[tuple[str, str], Sequence[float] | str]) -> None:

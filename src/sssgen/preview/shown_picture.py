@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -17,10 +16,11 @@ from sssgen.preview.chosen_textures import ChosenTextures, saved
 from sssgen.preview.flat_head import is_plain, plain_text
 from sssgen.preview.flat_picture import plain_picture, raymarched_picture
 from sssgen.preview.picture import Chosen, Picture, picture_of
-from sssgen.preview.saved_values import save_to_material, save_to_scene
+from sssgen.preview.saved_values import is_saved_in_scene, save_to_material, save_to_scene, saves_where
 from sssgen.preview.technique_scene import SAVES, is_technique, scene_of_technique
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.file_memo import FileState, noted_files
+from sssgen.support.paths import posix
 
 
 class ShownPicture:
@@ -80,11 +80,11 @@ class ShownPicture:
         return f"{title}, without guards" if self.chosen.guards == "none" else title
 
     def message(self) -> dict[str, Any]:
-        """What a page gets: the picture, and the errors or ''."""
+        """What a page gets: the picture, and the errors or ''. A picture whose textures are missing is not drawn."""
         return {
             "kind": "picture",
             "version": self.version,
-            "error": self.error,
+            "error": self.error or self.picture.head.get("missing", ""),
             "label": self.label,
             "picture": self.picture.head,
         }
@@ -127,26 +127,27 @@ class ShownPicture:
         return self.scene, self.picture.material
 
     def save(self, values: Mapping[str, Sequence[float]]) -> str:
-        """Writes parameters, by the names of their properties, to the scene where it sets them, else to the material.
+        """Writes parameters, by the names of their properties, to the scene or to the material (see `saved_values`).
 
-        Returns what was written, for a person. Raises SssgenError for a property that the material does not have.
+        Returns what was written and where, for a person. Raises SssgenError for a property that the material does not
+        have.
         """
         controls = {control["property"]: control for control in self.picture.head["controls"]}
         scene, material = self._written()
         for name, numbers in values.items():
             if name not in controls or len(numbers) != len(controls[name]["default"]):
                 raise failure(f"{material.name} has no parameter '{name}' of {len(numbers)} numbers")
-        in_scene = [name for name in values if controls[name]["in_scene"]]
+        in_scene = [name for name in values if is_saved_in_scene(scene, material, str(controls[name]["label"]))]
         written = []
         if in_scene:
             own = {str(controls[name]["label"]): values[name] for name in in_scene}
             save_to_scene(scene.document.reporter.file, own)
-            written.append(f"{', '.join(own)} in {os.path.basename(scene.document.reporter.file)}")
+            written.append(f"{', '.join(own)} in {posix(scene.document.reporter.file)}")
         if others := {name: values[name] for name in values if name not in in_scene}:
             changes = {(controls[name]["technique"], controls[name]["name"]): value for name, value in others.items()}
             save_to_material(material, changes)
             labels = [str(controls[name]["label"]) for name in others]
-            written.append(f"{', '.join(labels)} in {os.path.basename(material.file)}")
+            written.append(f"{', '.join(labels)} in {posix(material.file)}")
         return f"Saved: {'; '.join(written)}." if written else ""
 
 
@@ -182,6 +183,5 @@ def _picture(name: str, chosen: Chosen) -> tuple[Scene | None, Picture]:
         return scene, picture._replace(head={**picture.head, "saves": SAVES})
     scene = scene_of(name)
     material = load_material(scene.material)
-    if material.makes_rays:
-        return scene, raymarched_picture(scene, material, chosen)
-    return scene, picture_of(scene, material, chosen)
+    picture = (raymarched_picture if material.makes_rays else picture_of)(scene, material, chosen)
+    return scene, picture._replace(head={**picture.head, **saves_where(scene, material)})

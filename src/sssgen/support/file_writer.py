@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from sssgen.ir.spans import NOWHERE
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
+from sssgen.support.installed_files import is_installed, refusal
 from sssgen.support.paths import posix
 
 
@@ -55,12 +56,15 @@ def _fault(name: str) -> str:
     return ""
 
 
-def write_files(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]) -> list[Written]:
+def write_files(
+    folder: str | os.PathLike[str], files: Mapping[str, str | bytes], installed: bool = False
+) -> list[Written]:
     """Writes texts (as UTF-8) and bytes to a folder, which is created if missing; names may have sub-folders.
 
     All are written to temporary files before the first old file is replaced, each atomically: after an interruption
-    every file has its complete old or new content. A link is replaced, not followed. Raises SssgenError where a name
-    leaves the folder or is a device, or the system refuses.
+    every file has its complete old or new content. A link is replaced, not followed. `installed` allows changes of
+    files that come with sssgen, for its authors. Raises SssgenError for such a file without it, where a name leaves
+    the folder or is a device, and where the system refuses.
     """
     folder = os.fspath(folder)
     check_names(files)
@@ -76,6 +80,8 @@ def write_files(folder: str | os.PathLike[str], files: Mapping[str, str | bytes]
             if has_content(path, data):
                 written.append(Written(path, False))
                 continue
+            if not installed and is_installed(path):
+                raise refusal(path)
             parent, base = os.path.split(path)
             os.makedirs(parent or ".", exist_ok=True)
             if os.path.isdir(path):

@@ -36,6 +36,16 @@ def posix(path: str | os.PathLike[str]) -> str:
     return "/" * text.startswith("/") + "/".join(parts) or "."
 
 
+def shell_word(path: str) -> str:
+    """A path in a command to copy: from the current folder where it is below it, in double quotes if it has blanks."""
+    try:
+        relative = os.path.relpath(path)
+    except (OSError, ValueError):  # the current folder is gone, or on another drive
+        relative = os.pardir
+    shown = posix(path if relative.startswith(os.pardir) else relative)
+    return f'"{shown}"' if " " in shown else shown
+
+
 def stem(path: str) -> str:
     """A file's name without its folder and its last suffix."""
     return os.path.splitext(os.path.basename(path))[0]

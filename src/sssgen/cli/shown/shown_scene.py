@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from sssgen.cli.layout import wrapped
 from sssgen.harness.scenes.example_scenes import all_scenes, summary
+from sssgen.material.material_loading import examples
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
 from sssgen.support.text_files import refuse_folder
@@ -37,6 +38,7 @@ def describe(name: str) -> dict[str, Any]:
         "title": scene.title,
         "summary": summary(path),
         "material": scene.material,
+        "material_file": posix(examples().get(scene.material, scene.material)) if scene.material else "",
         "size": list(scene.size),
         "samples": scene.samples,
         "time": scene.time,
@@ -74,7 +76,7 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     camera = facts["camera"]
     text = [f"{facts['name']} (scene)" + (f": {facts['title']}" if facts["title"] else "")]
     text += [*wrapped(facts["summary"], width, "  ", "  "), ""]
-    text.append(f"material: {facts['material'] or 'none: the scene describes what is measured'}")
+    text.append(f"material: {facts['material_file'] or 'none: the scene describes what is measured'}")
     geometry = facts["geometry"]
     text += wrapped(f"geometry: {_table(geometry) if geometry else 'none: the material marches rays'}", width, "", "  ")
     for key in ("medium", "inlay", "environment"):

@@ -21,6 +21,7 @@ from sssgen.harness.backends import Array, Backend
 from sssgen.harness.evaluate.evaluation import half
 from sssgen.harness.pictures.images import decode_srgb, encode_srgb
 from sssgen.harness.render import pixel_mesh
+from sssgen.harness.render.missing_textures import MissingTextures, missing_textures
 from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.render.shade import shade
 from sssgen.harness.render.shell_values import Shell
@@ -68,8 +69,8 @@ def render(
 ) -> Rendered:
     """The picture of a scene. `size` and `time` override the scene's; `guards` as in `compile`.
 
-    Raises SssgenError for a scene that does not fit its material, a picture that is too large, and a back end that
-    draws no scenes or refuses this one.
+    Raises MissingTextures where a baked texture or a named file is missing, and SssgenError for a scene that does not
+    fit its material, a picture that is too large, and a back end that draws no scenes or refuses this one.
     """
     check_draws(backend.name)
     if not scene.material:
@@ -93,6 +94,8 @@ def render(
             f"{material.name} needs a surface to be on", "add [geometry] to the scene", scene.document.reporter.file
         )
     shell = shell_of(scene, material, reflection)
+    if missing := missing_textures(scene, material, reflection, shell.textures):
+        raise MissingTextures(missing)
     if raymarched:
         progress(2, STEPS, f"drawing on {backend.name}")
         shell = dataclasses.replace(shell, view_projection=_matrix(scene, backend.target, width / height))

@@ -27,7 +27,7 @@ from sssgen.material.baked import Baked
 from sssgen.material.model import Material
 from sssgen.material.values import WrongValue, read_value
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
-from sssgen.support.file_memo import CachedResult, remembered
+from sssgen.support.file_memo import CachedResult, note, remembered
 from sssgen.support.paths import posix
 from sssgen.targets.runtime.numpy_textures import Texture
 
@@ -242,7 +242,10 @@ def _textures(
     reflection: Mapping[str, Any],
     maps: Mapping[str, Texture],
 ) -> dict[str, Texture]:
-    """The scene's textures; for the others those that the material suggests, or that the program draws."""
+    """The scene's textures; for the others those that the material suggests, or that the program draws.
+
+    A file that is not there is left out: `missing_textures` reports it.
+    """
     entries = {texture["source_name"]: texture for texture in reflection["textures"]}
     document, textures = scene.document, {}
     for name in scene.textures:
@@ -259,6 +262,8 @@ def _textures(
         elif not (file := _file(scene, material, texture)):
             if texture["drawn"] in maps:
                 textures[name] = maps[texture["drawn"]]
+        elif not os.path.isfile(file):
+            note(file)
         else:
             wrap = getattr(chosen, "wrap", "") or str(texture["import"]["wrap"])
             textures[name] = _picture(file, wrap, texture)

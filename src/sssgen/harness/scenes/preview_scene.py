@@ -8,16 +8,10 @@ import os
 
 from sssgen.harness.scenes.mesh import Mesh
 from sssgen.harness.scenes.scene import Scene
-from sssgen.harness.scenes.scene_keys import KEYS
 from sssgen.harness.scenes.scene_loading import load, parse_scene
+from sssgen.harness.scenes.scene_reader import is_material
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
-from sssgen.material.roles import SECTIONS
-from sssgen.support.paths import posix
-from sssgen.support.text_files import read_text
-from sssgen.support.toml_source import parse
-
-_ONLY_IN_MATERIALS = set(SECTIONS) - set(KEYS)
 
 _PLAIN_SCENE = """material = {material}
 background = [[0.10, 0.11, 0.13], [0.20, 0.22, 0.26]]
@@ -42,15 +36,10 @@ def scene_of(name: str) -> Scene:
 
     Raises SssgenError.
     """
-    if not (name.endswith(".toml") and os.path.isfile(name) and _is_material(name)):
+    if not (name.endswith(".toml") and os.path.isfile(name) and is_material(name)):
         return load(name)  # its errors name what there is
     material = load_material(name)
     return _scene_beside(material, name) or _plain_scene(material)
-
-
-def _is_material(path: str) -> bool:
-    data = parse(read_text(path, posix(path)), posix(path)).data
-    return isinstance(data.get("material"), dict) or not _ONLY_IN_MATERIALS.isdisjoint(data)
 
 
 def _scene_beside(material: Material, path: str) -> Scene | None:

@@ -13,8 +13,11 @@ from sssgen.support.text_files import read_text, refuse_folder
 from sssgen.support.toml_source import parse
 
 
-def load(path: str | os.PathLike[str]) -> Scene:
-    """The scene of a TOML file, or of an example by its name. Raises SssgenError with all errors."""
+def load(path: str | os.PathLike[str], draws: bool = True) -> Scene:
+    """The scene of a TOML file, or of an example by its name.
+
+    A missing picture is an error unless nothing `draws` the scene. Raises SssgenError with all errors.
+    """
     text = os.fspath(path)
     if not text.endswith(".toml") and "/" not in text and "\\" not in text and not os.path.isfile(text):
         names = examples()
@@ -23,9 +26,9 @@ def load(path: str | os.PathLike[str]) -> Scene:
             hint = did_you_mean(text, names) or f"give a path that ends in .toml, or one of: {', '.join(names)}"
             raise failure(f"unknown scene '{text}'", hint)
         path = os.path.join(os.path.dirname(names[text]), "scene.toml")
-    return parse_scene(read_text(os.fspath(path), posix(path)), path)
+    return parse_scene(read_text(os.fspath(path), posix(path)), path, draws)
 
 
-def parse_scene(text: str, path: str | os.PathLike[str]) -> Scene:
+def parse_scene(text: str, path: str | os.PathLike[str], draws: bool = True) -> Scene:
     """The scene that a TOML text describes; files that it names are searched for next to `path`. Raises SssgenError."""
-    return read_scene(parse(text, posix(path)), os.path.dirname(os.fspath(path)))
+    return read_scene(parse(text, posix(path)), os.path.dirname(os.fspath(path)), draws)

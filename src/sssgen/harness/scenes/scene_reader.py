@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 from typing import Any
 
 from sssgen.harness.pictures import images
 from sssgen.harness.scenes import mesh_files
+from sssgen.harness.scenes.bake_advice import advice
 from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.harness.scenes.scene import DistanceTexture, Light, Picture, Scene
@@ -26,27 +28,61 @@ from sssgen.harness.scenes.scene_keys import (
 )  # fmt: skip
 from sssgen.harness.scenes.toml_table import ANY, Table, text
 from sssgen.material.library import OF_SHELLS
-from sssgen.material.material_loading import examples
+from sssgen.material.material_loading import examples, is_example, load_material
+from sssgen.material.requirements import baked_functions
+from sssgen.material.roles import SECTIONS
 from sssgen.material.shell_stages import choices
 from sssgen.support.diagnostics import SssgenError, did_you_mean
+from sssgen.support.file_memo import note
 from sssgen.support.paths import posix
-from sssgen.support.toml_source import Document, Path
+from sssgen.support.text_files import read_text
+from sssgen.support.toml_source import Document, Path, parse
+
+_ONLY_IN_MATERIALS = set(SECTIONS) - set(KEYS)
 
 MAX_COUNT = 2**24
 """The largest number of samples of a picture: each takes a few hundred bytes."""
 
 
-def read_scene(document: Document, folder: str) -> Scene:
-    """The scene of a document; files are relative to `folder`. Raises SssgenError with all errors."""
+def read_scene(document: Document, folder: str, draws: bool = True) -> Scene:
+    """The scene of a document; files are relative to `folder`.
+
+    Raises SssgenError with all errors; a missing picture is one unless nothing `draws` the scene.
+    """
     reader = _Reader(document, folder)
     scene = reader.scene()
+    if draws:
+        reader.check_pictures(scene)
     document.reporter.check()
     return scene
+
+
+def material_beside(name: str, folder: str) -> str:
+    """The path of the material NAME.toml in a scene's folder, which comes before the example of that name.
+
+    Without such a file it is "", and so it is in the example's own folder: there the name means the same file.
+    """
+    path = os.path.join(folder, f"{name}.toml")
+    note(path)
+    if not os.path.isfile(path) or is_example(path, name):
+        return ""
+    try:
+        return path if is_material(path) else ""
+    except SssgenError:
+        return path  # whoever loads it reports its errors
+
+
+def is_material(path: str) -> bool:
+    """Whether a TOML file describes a material, and no scene. Raises SssgenError for a text that is no TOML."""
+    data = parse(read_text(path, posix(path)), posix(path)).data
+    return isinstance(data.get("material"), dict) or not _ONLY_IN_MATERIALS.isdisjoint(data)
 
 
 class _Reader:
     def __init__(self, document: Document, folder: str) -> None:
         self.document, self.folder = document, folder
+        self.pictures: dict[str, tuple[Path, str]] = {}
+        """Texture → where the scene names its file, and that name"""
 
     def scene(self) -> Scene:
         top = Table(self.document, (), self.document.data, KEYS)
@@ -83,12 +119,14 @@ class _Reader:
             self.document.error(self.document.place().key, "the scene has no material", 'add: material = "…"')
             return ""
         name = top.text("material", "")
-        if not name.endswith(".toml"):
-            if name not in examples():
-                hint = did_you_mean(name, examples()) or f"a path that ends in .toml, or: {', '.join(examples())}"
-                top.error("material", f"unknown material '{name}'", hint)
-            return name
-        return self.file(("material",), name)
+        if name.endswith(".toml"):
+            return self.file(("material",), name)
+        beside = material_beside(name, self.folder)
+        if name not in examples():
+            file_hint = f"did you mean '{name}.toml'?" if beside else ""
+            hint = did_you_mean(name, examples()) or f"a path that ends in .toml, or: {', '.join(examples())}"
+            top.error("material", f"unknown material '{name}'", file_hint or hint)
+        return beside or name
 
     def background(self, top: Table) -> Any:
         raw = top.content.get("background", [0.0, 0.0, 0.0])
@@ -302,16 +340,37 @@ class _Reader:
         except SssgenError as error:
             self.add_errors(error, path)
             return name
-        return self.file(path, name)
+        self.pictures[str(path[1])] = path, name
+        return os.path.join(self.folder, name)
+
+    def check_pictures(self, scene: Scene) -> None:
+        """Reports the textures whose files are missing; of a baked one, with the command that bakes it."""
+        missing = {key: name for key, (_, name) in self.pictures.items() if not self.has_file(name)}
+        hints: dict[str, str] = {}
+        if missing and scene.material:
+            with contextlib.suppress(SssgenError):  # whoever loads the material reports its errors
+                material = load_material(scene.material)
+                for function in baked_functions(material.stages):
+                    given = {one.name: missing[one.name] for one in function.textures if one.name in missing}
+                    if given:
+                        hints |= dict.fromkeys(given, advice(function, material, scene, given, in_scene=True))
+        for key, name in missing.items():
+            self.missing_file(self.pictures[key][0], name, hints.get(key, ""))
 
     def file(self, path: Path, name: str) -> str:
         """The path of a file that the scene names."""
+        if not self.has_file(name):
+            self.missing_file(path, name)
+        return os.path.join(self.folder, name)
+
+    def has_file(self, name: str) -> bool:
         full_path = os.path.join(self.folder, name)
-        if "\0" in full_path or not os.path.isfile(full_path):
-            span = self.document.place(*path).value
-            hint = f"it is searched for next to the scene, in {posix(self.folder or '.')}"
-            self.document.error(span, f"cannot find the file '{name}'", hint)
-        return full_path
+        note(full_path)
+        return "\0" not in full_path and os.path.isfile(full_path)
+
+    def missing_file(self, path: Path, name: str, hint: str = "") -> None:
+        place = f"it is searched for next to the scene, in {posix(self.folder or '.')}"
+        self.document.error(self.document.place(*path).value, f"cannot find the file '{name}'", hint or place)
 
     def add_errors(self, error: SssgenError, path: Path) -> None:
         """Reports the errors of a file that the scene names: at their own positions, else at the path in the scene."""

@@ -119,7 +119,7 @@ def load(name: str) -> MeasuredScene:
             hint = did_you_mean(name, scenes) or listed
             raise failure(f"unknown scene '{name}'", hint)
         name = scenes[name]
-    return of_scene(load_scene(name), name)
+    return of_scene(load_scene(name, draws=False), name)
 
 
 def of_scene(scene: Scene, path: str) -> MeasuredScene:

@@ -43,6 +43,7 @@ export class Pane {
     this.last = message;
     if (same && message.error) return '';  // the last good picture stays as it is
     this.caption.textContent = message.label;
+    this.place.hidden = Boolean(picture.missing);
     this.panel.show(picture.controls);
     this.slots.show(picture.textures, message.limit);
     try {

@@ -49,7 +49,8 @@ function buttons() {
   const pane = shownPane();
   const reason = pane?.picture?.saves ?? '';
   element('save').disabled = !pane?.changed || Boolean(reason);
-  element('save').title = reason;
+  element('saved-in').textContent = reason || (pane?.picture?.saved_in ?? '');
+  element('saved-in').hidden = !element('saved-in').textContent;
   element('reset').disabled = !pane?.changed;
 }
 

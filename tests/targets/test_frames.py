@@ -1,0 +1,128 @@
+"""The frames of targets: what a program uses of them, and that templates decide nothing about inputs and values."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import sssgen
+from sssgen.ir.surface_fields import NAMES, OPTIONAL
+from sssgen.material.chain_assembly import TAKEN
+from sssgen.material.shell_assembly import SHELLS
+from sssgen.pipeline.compiler import all_targets
+from sssgen.support.diagnostics import SssgenError
+from sssgen.support.paths import folder
+from sssgen.targets.frame import Variant, used_parts
+from sssgen.targets.used_frame import with_names
+
+CONDITION = re.compile(r"\{%-?\s*(?:if|elif|for|set)\b[^%]*")
+"""A control line of a template."""
+OF_VALUES = re.compile(r"\b(?:inputs|fields|surface_fields|surface_reads|light_reads|reads|needs)\b")
+"""What a condition on the use of an input or of a value of the surface mentions."""
+
+SHEEN = """
+[material]
+name = "velvet"
+
+[[surface]]
+technique = "base_color"
+
+[[surface]]
+technique = "sheen_constants"
+sheen_tint = [0.9, 0.4, 0.5]
+"""
+
+
+@pytest.mark.parametrize(
+    "path", sorted(folder("templates").rglob("*.j2")), ids=lambda path: f"{path.parent.name}/{path.name}"
+)
+def test_no_template_asks_which_values_a_program_reads(path: Path) -> None:
+    lines = path.read_text("utf-8").splitlines()
+    conditions = [line for line in lines for part in CONDITION.findall(line) if OF_VALUES.search(part)]
+    inline = [line for line in lines if re.search(r"\{\{[^}]*\bif\b[^}]*\b(?:inputs|fields|surface_fields)\b", line)]
+    assert conditions + inline == []
+
+
+def test_a_part_pulls_in_what_it_mentions() -> None:
+    parts = {
+        "varyings": {"input.normal": "float3 normal : NORMAL;", "input.uv": "float2 uv : UV;"},
+        "fragment": {"N": "float3 N = input.normal;", "V": "float3 V = eye - P;"},
+        "vertex_attributes": {"mesh.normal": "float3 normal;"},
+        "vertex": {"input.normal": "output.normal = mesh.normal;", "input.uv": "output.uv = mesh.uv;"},
+    }
+    used = used_parts(parts, [], ["turned(N)"], [])
+    assert used == {
+        "varyings": "float3 normal : NORMAL;",
+        "fragment": "float3 N = input.normal;",
+        "vertex_attributes": "float3 normal;",
+        "vertex": "output.normal = mesh.normal;",
+    }
+
+
+def test_the_loop_over_the_lights_sees_its_own_parts_first() -> None:
+    parts = {"fragment": {"N": "vec3 N = a;"}, "light": {"N": "vec3 N = b;", "L": "vec3 L = l;"}}
+    assert used_parts(parts, [], ["N"], []) == {"fragment": "vec3 N = a;", "light": ""}
+    assert used_parts(parts, [], [], ["f(N, L)"]) == {"fragment": "", "light": "vec3 N = b;\nvec3 L = l;"}
+    assert used_parts(parts, [], ["L"], []) == {"fragment": "", "light": ""}
+
+
+def test_a_part_of_several_names_is_declared_once_and_parts_that_mention_each_other_end() -> None:
+    parts = {"blocks": {"time eye": "cbuffer { time; eye; }", "a": "b", "b": "a"}}
+    assert used_parts(parts, ["a"], ["eye + time"], []) == {"blocks": "cbuffer { time; eye; }\nb\na"}
+
+
+def test_a_member_of_another_variable_is_another_name() -> None:
+    parts = {"varyings": {"input.position": "position"}, "blocks": {"camera": "camera"}}
+    assert used_parts(parts, [], ["camera.position"], []) == {"varyings": "", "blocks": "camera"}
+
+
+def test_variants_replace_parts_by_their_names() -> None:
+    base = Variant(inputs={"P": "p", "uv": "u"}, frame={"vertex": {"a": "1", "b": "2"}}, reads=("a",))
+    both = base.with_variant(
+        Variant(inputs={"P": "q"}, frame={"vertex": {"b": "3"}, "image": {"c": "4"}}, reads=("c",))
+    )
+    assert both.inputs == {"P": "q", "uv": "u"} and both.reads == ("a", "c")
+    assert both.frame == {"vertex": {"a": "1", "b": "3"}, "image": {"c": "4"}}
+
+
+def test_names_in_braces_are_replaced_and_other_braces_stay() -> None:
+    assert (
+        with_names("{f}({metallic}) { x; } {other}", {"f": "sss_f", "metallic": "0.0"}) == "sss_f(0.0) { x; } {other}"
+    )
+
+
+def test_functions_of_shells_have_names_that_no_technique_takes() -> None:
+    names = {path.stem for path in Path(SHELLS).glob("*.sss")} - {"chain", "fragment"}
+    assert names <= TAKEN
+
+
+@pytest.mark.parametrize("target", sorted(all_targets()))
+def test_every_optional_value_has_a_row_in_each_engine(target: str) -> None:
+    """A value that a technique may write reaches the engine, or is an error that says what to do."""
+    described = all_targets()[target]
+    if described.fragment_shell or not described.surface:
+        return
+    texts = [text for rows in described.surface.values() for text in rows.items()]
+    texts += [text for inner in described.embedded.values() for rows in inner.surface.values() for text in rows.items()]
+    for name in OPTIONAL:
+        has_row = any(row == name or f"{{{name}}}" in text for row, text in texts)
+        assert has_row != (name in described.lacks), name
+    for row, _ in texts:
+        assert row in NAMES
+
+
+@pytest.mark.parametrize("target", sorted(all_targets()))
+def test_a_sheen_is_emitted_or_an_error_that_names_it(target: str, tmp_path: Path) -> None:
+    path = tmp_path / "velvet.toml"
+    path.write_text(SHEEN, encoding="utf-8")
+    try:
+        compiled = sssgen.compile(path, target)
+    except SssgenError as error:
+        assert "'sheen_color', which 'sheen_constants' gives" in error.diagnostics[0].message
+        assert error.diagnostics[0].hint
+    else:
+        text = "\n".join(text for file, text in compiled.files.items() if not file.endswith((".json", ".d.ts")))
+        written = re.sub(r"(?m)^.*\bsheen_(?:constants|tint|spread)\b.*$", "", text)
+        assert written.count("sheen_roughness") + written.count("sheenRoughness") > 3
