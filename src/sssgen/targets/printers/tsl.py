@@ -10,7 +10,21 @@ from __future__ import annotations
 import re
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import FLOAT, INT, UINT, VOID, Array, Matrix, Sampler, Struct, Type, Vector, kind_of, spell
+from sssgen.ir.types import (
+    FLOAT,
+    INT,
+    UINT,
+    VOID,
+    Array,
+    Matrix,
+    Sampler,
+    Struct,
+    Type,
+    Vector,
+    kind_of,
+    spell,
+    unnested,
+)
 from sssgen.passes.scopes import assigned
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.targets.descriptor import Target
@@ -157,25 +171,25 @@ class TslPrinter(Printer):
     def print_function(self, function: ir.Function) -> list[Line]:
         self.assigned = assigned(function, {})
         lines = self.calling(super().print_function(function))[:-1]
-        types = [self.spelled(type_, function.span) for type_ in (function.result, *(p.type for p in function.params))]
+        types = [function.result, *[param.type for param in function.params]]
+        result, *names = [self.spelled(unnested(type_)[0], function.span) for type_ in types]
         if function.result == VOID:  # it discards
             return [*lines, Line("}, 'void');")]
-        if any(isinstance(type_, Sampler | Array) for type_ in (function.result, *(p.type for p in function.params))):
+        if any(isinstance(type_, Sampler | Array) for type_ in types):
             return [*lines, Line("});")]
-        inputs = [f"{{ name: '{p.name}', type: '{name}' }}" for p, name in zip(function.params, types[1:], strict=True)]
-        head = f"}}).setLayout({{ name: '{function.name}', type: '{types[0]}', inputs: ["
+        inputs = [f"{{ name: '{p.name}', type: '{type_}' }}" for p, type_ in zip(function.params, names, strict=True)]
+        head = f"}}).setLayout({{ name: '{function.name}', type: '{result}', inputs: ["
         if len(head) + len(", ".join(inputs)) < WIDTH - 5:
             return [*lines, Line(f"{head}{', '.join(inputs)}] }});", function.span)]
         return [*lines, Line(head), *[Line(f"    {one},") for one in inputs], Line("] });")]
 
     def spelled(self, type_: Type, span: ir.Span) -> str:
         """A type in the layout of a function or a struct. Raises SssgenError with its place."""
-        inner = type_.element if isinstance(type_, Array) else type_
-        if isinstance(inner, Struct) or spell(inner) in self.target.types:
-            return spell(inner)
-        hint = "compute with its columns, or pass the values that are read of it"
-        problem = f"{self.target.title} has no {spell(inner)}"
-        raise SssgenError([Diagnostic("error", problem, span, hint, self.source(span))])
+        if isinstance(type_, Struct) or (not isinstance(type_, Array) and spell(type_) in self.target.types):
+            return spell(type_)
+        what = "arrays in structs" if isinstance(type_, Array) else spell(type_)
+        hint = "use variables for its elements or columns, or pass the values that are read of it"
+        raise SssgenError([Diagnostic("error", f"{self.target.title} has no {what}", span, hint, self.source(span))])
 
     def signature(self, function: ir.Function) -> str:
         params = ", ".join([param.name for param in function.params])
@@ -184,10 +198,6 @@ class TslPrinter(Printer):
     def print_struct(self, struct: ir.StructDecl) -> list[Line]:
         assert isinstance(struct.type, Struct)
         name, fields = struct.type.name, struct.type.fields
-        if any(isinstance(field.type, Array) for field in fields):
-            hint = "use a variable for each element, or a variable for the array"
-            problem = f"{self.target.title} has no arrays in structs"
-            raise SssgenError([Diagnostic("error", problem, struct.span, hint, self.source(struct.span))])
         members = ", ".join([f"{field.name}: '{self.spelled(field.type, struct.span)}'" for field in fields])
         text = f"export const {name} = /*@__PURE__*/ struct({{ {members} }}, '{name}');"
         return self.calling(wrap(text, struct.span))
