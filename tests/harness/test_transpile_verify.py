@@ -341,7 +341,7 @@ def test_the_report_lists_every_row() -> None:
             comparisons={"glsl": Comparison(None, 100), "hlsl": Comparison(None, error="no such thing")},
         ),
     ]
-    report = Report(rows, {"webgpu": "pip install wgpu"})
+    report = Report(rows, dict.fromkeys(("webgpu", "tsl", "tsl-webgl2"), "pip install it"))
     lines = list(report.lines())
     assert lines == [
         "largest deviation     glsl     hlsl   oracle   of lanes (goal: 1e-05)",
@@ -353,7 +353,9 @@ def test_the_report_lists_every_row() -> None:
         "    never taken: line 12 (else)",
         "h(float)                 –   failed            100 but for 100 ill-conditioned in glsl",
         "    hlsl does not run: no such thing",
-        "webgpu is missing: pip install wgpu",
+        "webgpu is missing: pip install it",
+        "tsl is missing: pip install it",
+        "tsl-webgl2 is missing: pip install it",
     ]
     result = json.loads(json.dumps(report.as_json(), allow_nan=False))
     assert [row["ok"] for row in result["functions"]] == [False] * 4 and not report.ok

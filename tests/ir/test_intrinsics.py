@@ -36,7 +36,18 @@ dFdyCoarse fwidthCoarse textureOffset textureLodOffset textureGradOffset texelFe
 textureGatherOffset textureQueryLevels textureQueryLod
 """.split()  # noqa: SIM905 (a hundred names)
 )
-LANGUAGES = ("glsl", "glsl-330", "glsl-godot", "hlsl", "hlsl-dx9", "hlsl-macros", "hlsl-unreal", "wgsl", "wgsl-metal")
+LANGUAGES = (
+    "glsl",
+    "glsl-330",
+    "glsl-godot",
+    "hlsl",
+    "hlsl-dx9",
+    "hlsl-macros",
+    "hlsl-unreal",
+    "wgsl",
+    "wgsl-metal",
+    "tsl",
+)
 OWN = {
     *("saturate", "fmod", "unpackNormal", "textureLayer", "textureLayerLod", "textureLayerGrad", "texelFetchLayer"),
     *("textureCompare", "textureCompareLod", "textureLayerOffset", "textureLayerLodOffset", "textureLayerGradOffset"),
@@ -47,6 +58,8 @@ REFUSED = {
     ("textureQueryLevels", "glsl"), ("textureQueryLevels", "hlsl"),
     ("textureQueryLod", "glsl"), ("textureQueryLod", "wgsl"), ("textureQueryLod", "hlsl-dx9"),
     ("textureOffset", "hlsl-dx9"), ("textureLodOffset", "hlsl-dx9"), ("textureGradOffset", "hlsl-dx9"),
+    ("textureSize", "tsl"), ("textureQueryLevels", "tsl"), ("textureQueryLod", "tsl"), ("textureCompare", "tsl"),
+    ("textureCompareLod", "tsl"), ("textureCompareOffset", "tsl"), ("textureCompareLodOffset", "tsl"),
 }  # fmt: skip
 PLACES = ("texture", "sampler", "bare_texture", "bare_sampler", "dim", "channel", "type")
 VECTORS = [(row, *vector) for row in BUILTINS.values() for vector in row.vectors]

@@ -34,7 +34,7 @@ def test_names_are_used_once() -> None:
     assert len({function.name for _, function in functions}) == len(functions)
 
 
-@pytest.mark.parametrize("target", [*TARGETS, "metal", "unity-shadergraph", "unreal", "bevy"])
+@pytest.mark.parametrize("target", [*TARGETS, "metal", "unity-shadergraph", "unreal", "bevy", "tsl"])
 def test_every_case_compiles(target: str, assert_compiles: Callable[[Source], None]) -> None:
     """All cases in one library, in every compiler that reads the target."""
     name = TARGETS.get(target, target)
@@ -54,7 +54,7 @@ def test_conventions_are_reported(target: str) -> None:
     """The direction of y, rows and columns, the encoding of colors: the text does not show them."""
     conventions = sssgen.compile("ice", target).reflection["conventions"]
     assert {"matrices", "framebuffer_y", "uv_origin", "color_space"} <= set(conventions)
-    in_a_shell = target not in ("numpy", "shadertoy", "unity-shadergraph", "unreal")
+    in_a_shell = target not in ("numpy", "shadertoy", "tsl", "unity-shadergraph", "unreal")
     assert {"clip_y", "clip_z"} <= set(conventions) or not in_a_shell
 
 

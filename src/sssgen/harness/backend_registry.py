@@ -143,6 +143,16 @@ _RECORDS = (
         "": ("WebGPURenderer", "webgpu"), "-webgl": ("WebGLRenderer", "webgl"),
         "-webgl2": ("WebGPURenderer on WebGL 2", "webgl2"),
     }),
+    *(
+        BackendRecord(
+            f"tsl{suffix}", f"TSL: three.js, {title}, in a headless Chromium", "tsl", "tsl_backend:TslBackend",
+            f"`{install_hint('browser')}`, Chromium or Chrome (Debian: `chromium`), the npm package `three`",
+            {"renderer": renderer}, functions_only=True, parts=("pip browser", "chromium", "npm three"), engine=True,
+        )
+        for suffix, title, renderer in (
+            ("", "WebGPURenderer", "webgpu"), ("-webgl2", "WebGPURenderer on WebGL 2", "webgl2"),
+        )
+    ),
     *_page("babylonjs", "Babylon.js", "@babylonjs/core", "babylon bundle", {
         "": ("WebGPU", "webgpu"), "-webgl": ("WebGL 2", "webgl"),
     }),

@@ -72,6 +72,11 @@ _RECORDS = (
         "`g++` (Debian: `g++`)",
         parts=("g++",),
     ),
+    CompilerRecord(
+        "tsl", "three's own builders in node, then Tint and glslang", frozenset({"tsl"}), "tsl_compiler",
+        "`tint`, `glslang` and the npm package `three`",
+        parts=("node", "npm webgpu", "npm three", "glslang"),
+    ),
     CompilerRecord("python", "Python itself", frozenset({"numpy"}), "python_syntax", "nothing"),
 )  # fmt: skip
 

@@ -22,6 +22,8 @@ class Capabilities(NamedTuple):
     """A choice between constant vectors that are made of vectors is computed; if not, its value is written."""
     dynamic_stores: bool = False
     """A component of a vector or a column of a matrix may be assigned through an index that is not constant."""
+    early_returns: bool = False
+    """`return` may be anywhere in a function; if not, a function returns once, at its end."""
     float_array_uniforms: bool = False
     """Array elements in a uniform block may be smaller than 16 bytes; if not, each is a vector of four."""
     hiding: bool = False
@@ -33,6 +35,9 @@ class Capabilities(NamedTuple):
     """Integer `/`, `%`, `<<` and `>>` are defined for a divisor of 0, negative operands and shifts by 32 or more."""
     lane_control_flow: bool = False
     """Each lane branches for itself; if not, control flow becomes masks."""
+    loop_heads: bool = False
+    """A loop's head may hold any expressions, which each round evaluates; if not, a loop counts to a plain value, or
+    tests one."""
     loop_scope: bool = False
     """A variable of a loop's head can be declared again behind the loop."""
     mat2_uniforms: bool = False
@@ -69,6 +74,8 @@ class Capabilities(NamedTuple):
     """Functions of one name may differ in their parameters' types."""
     plain_atomics: bool = False
     """Atomics work on any int or uint in memory; if not, their memory has a type of its own, which is not copied."""
+    pointers: bool = False
+    """Pointers stand for `out_parameters`; without both a function returns a struct of its results."""
     std140_buffers: bool = False
     """A storage buffer may have the layout std140 where that is not std430."""
     struct_choices: bool = False

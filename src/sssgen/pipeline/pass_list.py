@@ -80,6 +80,17 @@ _FLAT_ARRAYS = Condition(
     "the target has no arrays of arrays", lambda state: not state.target.capabilities.nested_arrays
 )
 
+_NO_REFERENCES = Condition(
+    "the target has neither out parameters nor pointers",
+    lambda state: not (state.target.capabilities.out_parameters or state.target.capabilities.pointers),
+)
+_PLAIN_LOOPS = Condition(
+    "the target evaluates a loop's head once", lambda state: not state.target.capabilities.loop_heads
+)
+_ONE_EXIT = Condition(
+    "the target returns at a function's end", lambda state: not state.target.capabilities.early_returns
+)
+
 _FOLD = Pass("fold", steps.fold_constants, "compute constants; before prune, which removes the dead branches' uses")
 _UNDEFINED = Pass(
     "undefined", steps.refuse_undefined_constants, "refuse constants without a value; fold has left exactly these"
@@ -159,6 +170,9 @@ TARGET: tuple[Pass, ...] = (
     Pass("uniform_parameters", steps.pass_uniforms, "pass uniforms as parameters", _PARAMETERS),
     Pass("nested_arrays", steps.wrap_nested_arrays, "put the arrays in arrays into structs", _FLAT_ARRAYS),
     Pass("legalise", steps.legalise_nodes, "rewrite what the target cannot express; printing is then a table"),
+    Pass("result_structs", steps.return_structs, "return what a function writes", _NO_REFERENCES),
+    Pass("plain_loops", steps.simplify_loops, "make loops that count or test a plain value", _PLAIN_LOOPS),
+    Pass("single_exits", steps.return_at_end, "return once; after the passes that add returns and loops", _ONE_EXIT),
     Pass("masks", steps.convert_to_masks, "replace control flow by masks; no other pass expects these", _MASKS),
     Pass("names", steps.make_names_legal, "make names legal; every pass before may bring new ones"),
     Pass("interface", steps.find_interface, "place inputs and outputs, under their final names", _SHADER),

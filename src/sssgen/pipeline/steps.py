@@ -18,6 +18,9 @@ from sssgen.passes.guards import guard
 from sssgen.passes.hoist import hoist
 from sssgen.passes.legal.legalise import legalise
 from sssgen.passes.legal.nested_arrays import nested_arrays
+from sssgen.passes.legal.plain_loops import plain_loops
+from sssgen.passes.legal.result_structs import result_structs
+from sssgen.passes.legal.single_exit import single_exits
 from sssgen.passes.link import link
 from sssgen.passes.names import rename
 from sssgen.passes.numpy.predicate import predicate
@@ -264,6 +267,18 @@ def legalise_nodes(state: State) -> Module:
     if state.keep:  # kept operators have the meaning of GLSL, in which some results are undefined
         capabilities = capabilities._replace(integer_division=True)
     return legalise(state.module, state.target.dialect, capabilities, polyfill)
+
+
+def return_structs(state: State) -> Module:
+    return result_structs(state.module)
+
+
+def simplify_loops(state: State) -> Module:
+    return plain_loops(state.module)
+
+
+def return_at_end(state: State) -> Module:
+    return single_exits(state.module)
 
 
 def convert_to_masks(state: State) -> Module:

@@ -110,6 +110,7 @@ _PRINTERS = {
     "wgsl": "sssgen.targets.printers.wgsl:WgslPrinter",
     "metal": "sssgen.targets.printers.metal:MetalPrinter",
     "python": "sssgen.targets.printers.numpy_printer:NumpyPrinter",
+    "tsl": "sssgen.targets.printers.tsl:TslPrinter",
 }
 
 
@@ -159,6 +160,7 @@ def print_parts(
         "functions": [printer.print_function(function) for function in module.functions if function is not inlined],
         "shell": [printer.print_body(inlined, _texts(target, printer, inlined, shell[1]))] if inlined and shell else [],
         "entry": [printer.print_entry(entry)] if stage is not None else [],
+        "imports": [printer.print_imports()],
     }
 
 
@@ -226,6 +228,7 @@ def _printed(
         "functions": _text(program.parts["functions"], marks),
         "entry": _text(program.parts["entry"], marks),
         "shell": _text(program.parts["shell"], marks),
+        "imports": _text(program.parts["imports"], marks),
     }
     bindings = [printer.binding(index) for index in range(len(textures))] if declares else []
     context = _context(target, program, printer, form, code) | {"padding": padding(members)}

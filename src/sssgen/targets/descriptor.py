@@ -53,6 +53,8 @@ class Names(NamedTuple):
 
     reserved: frozenset[str] = frozenset()
     """The language's own."""
+    also: tuple[str, ...] = ()
+    """The targets whose reserved names this one avoids, too, as its text becomes theirs."""
     shell: frozenset[str] = frozenset()
     """Those of the templates."""
     macros: frozenset[str] = frozenset()

@@ -29,6 +29,16 @@ def names() -> tuple[str, ...]:
 @functools.cache
 def load(name: str) -> Target:
     """A target by name. Raises SssgenError for an unknown one."""
+    target = _load(name)
+    others = [load(other).names for other in target.names.also]
+    if not others:
+        return target
+    reserved = target.names.reserved.union(*(names.reserved for names in others))
+    prefixes = tuple(sorted({*target.names.prefixes, *(prefix for names in others for prefix in names.prefixes)}))
+    return target._replace(names=target.names._replace(reserved=reserved, prefixes=prefixes))
+
+
+def _load(name: str) -> Target:
     folder = place("targets")
     path = os.path.join(folder, f"{name}.toml")
     table = _tables().get(name)

@@ -194,7 +194,7 @@ class _Writer:
                 continue
             statements.append(self._declare(type_, name, self._read(type_, len(self.data) * self.grid.rows)))
             args.append(name)
-            self.data += _rows(type_, self._rounded(np.asarray(arg)), self.grid)
+            self.data += rows_of(type_, self._rounded(np.asarray(arg)), self.grid)
         result = f"sssgen_r{number}"
         statements.append(self._declare(call.result, result, f"{call.function}({', '.join(args)})"))
         columns = call.result.columns if isinstance(call.result, Matrix) else 1
@@ -256,10 +256,10 @@ def _declared(target: Target, name: str, bound: Bound) -> str:
     return pattern.format(name=name, sampler=f"{name}_sampler", type=type_, sampler_type=sampler_type, **places)
 
 
-def _rows(type_: Type, value: Array, grid: Grid) -> list[Array]:
+def rows_of(type_: Type, value: Array, grid: Grid) -> list[Array]:
     """An argument as rows of four 32-bit components for each lane."""
     if isinstance(type_, Matrix):
-        return [row for column in value for row in _rows(Vector("float", type_.rows), column, grid)]
+        return [row for column in value for row in rows_of(Vector("float", type_.rows), column, grid)]
     words = np.zeros((grid.rows * grid.width, 4), np.uint32)
     with np.errstate(over="ignore", invalid="ignore"):
         converted = value.reshape(components(type_), -1).astype(DTYPES[kind_of(type_)])

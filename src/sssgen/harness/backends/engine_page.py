@@ -111,6 +111,13 @@ class EnginePage:
     def draw(self, drawing: EngineDrawing) -> Array:
         """The picture in linear light, (height, width, 4) float32, row 0 at the bottom. Raises SssgenError."""
         head, data = _packed(drawing, self.name, self.renderer)
+        return self.ask(head, data, drawing.size)
+
+    def ask(self, head: str, data: bytes, size: tuple[int, int], dtype: Any = np.float32) -> Array:
+        """The picture for a plan, (height, width, 4), row 0 at the bottom; `size` is width and height.
+
+        Raises SssgenError.
+        """
         try:
             self.page.send(head, data, self.seconds)
             answer, picture = self.page.receive(self.seconds)
@@ -121,22 +128,34 @@ class EnginePage:
             if answer["complaints"]:
                 self.restart()
             raise backend_failure(self.engine.target, said)
-        width, height = drawing.size
-        rows = np.frombuffer(bytearray(picture), np.float32).reshape(height, answer["stride"] // 4)
+        width, height = size
+        rows = np.frombuffer(bytearray(picture), dtype).reshape(height, answer["stride"] // 4)
         result = rows[:, : width * 4].reshape(height, width, 4)
         return result[::-1] if self.renderer.top_first else result
 
 
+class Bytes:
+    """The bytes that follow a plan; the plan has `{at, size}` in place of each piece."""
+
+    def __init__(self) -> None:
+        self.pieces: list[bytes] = []
+
+    def piece(self, values: Array, dtype: Any) -> dict[str, int]:
+        """Adds numbers; each piece begins at a multiple of 8 bytes."""
+        data = np.ascontiguousarray(values, dtype).tobytes()
+        start, size = sum(map(len, self.pieces)), len(data)
+        self.pieces.append(data + bytes(-size % 8))
+        return {"at": start, "size": size}
+
+    def data(self) -> bytes:
+        """All pieces."""
+        return b"".join(self.pieces)
+
+
 def _packed(drawing: EngineDrawing, name: str, renderer: Renderer) -> tuple[str, bytes]:
     """The drawing as JSON, with `{at, size}` in place of each piece of the bytes, and the bytes."""
-    pieces: list[bytes] = []
-
-    def piece(values: Array, dtype: Any) -> dict[str, int]:
-        data = np.ascontiguousarray(values, dtype).tobytes()
-        data += bytes(-len(data) % 8)
-        pieces.append(data)
-        return {"at": sum(map(len, pieces)) - len(data), "size": values.size * np.dtype(dtype).itemsize}
-
+    bytes_ = Bytes()
+    piece = bytes_.piece
     textures = {
         name: {
             "dim": texture.dim, "size": texture.size(), "filter": texture.filter, "wrap": texture.wrap,
@@ -164,7 +183,7 @@ def _packed(drawing: EngineDrawing, name: str, renderer: Renderer) -> tuple[str,
         "values": dict(drawing.values), "properties": dict(drawing.properties), "textures": textures,
         "withoutTangents": not drawing.tangents,
     }  # fmt: skip
-    return json.dumps(plan), b"".join(pieces)
+    return json.dumps(plan), bytes_.data()
 
 
 def _view(eye: Sequence[float]) -> Array:

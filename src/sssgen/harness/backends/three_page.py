@@ -19,7 +19,10 @@ def _modules(packages: Path) -> Mapping[str, Path]:
     return modules | {file.name: file for file in build.glob("three.*.js") if file not in modules.values()}
 
 
+_RENDERERS = {"webgpu": Renderer(WEBGPU, gpu=True, top_first=True), "webgl2": Renderer(WEBGL)}
+_INSTALL = f"npm package three: {npm_hint('three')}"
+
 THREE = Engine(
-    "threejs", "three.js", f"npm package three: {npm_hint('three')}", _modules, "three_page.js",
-    {"webgl": Renderer(WEBGL), "webgpu": Renderer(WEBGPU, gpu=True, top_first=True), "webgl2": Renderer(WEBGL)},
+    "threejs", "three.js", _INSTALL, _modules, "three_page.js", {"webgl": Renderer(WEBGL), **_RENDERERS}
 )  # fmt: skip
+TSL = Engine("tsl", "three.js", _INSTALL, _modules, "tsl_page.js", _RENDERERS)

@@ -5,15 +5,12 @@ Nothing of Bevy is needed: `bevy_standin` declares the modules, names and types 
 
 from __future__ import annotations
 
-import atexit
-import contextlib
 import json
-import subprocess
 from pathlib import Path
-from typing import Any
 
 from sssgen.harness.compilers import naga, tint
 from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Source
+from sssgen.harness.compilers.node_process import NodeProcess
 from sssgen.support.installation import npm_hint
 
 STANDIN = Path(__file__).with_name("bevy_standin")
@@ -61,15 +58,7 @@ class Bevy(Compiler):
         self._tint = tint.find()
         self._modules = modules
         command = [node, "--input-type=module", "-e", _SERVER, str(modules / "wesl" / "dist" / "core.js")]
-        started: Any = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8"
-        )
-        self._process = started
-        try:
-            self._answer()
-        except EOFError:
-            raise CompilerMissing(f"npm wesl does not load: {self._process.stderr.read().strip()}") from None
-        atexit.register(self.close)
+        self._process = NodeProcess(command, "wesl")
 
     def version(self) -> str:
         standin = "the project's stand-in for Bevy's modules"
@@ -99,26 +88,10 @@ class Bevy(Compiler):
     def linked(self, text: str, conditions: tuple[str, ...]) -> str:
         """The WGSL of a WESL file with the stand-ins. Raises ValueError with the linker's message."""
         chosen = dict.fromkeys(conditions, True)
-        self._process.stdin.write(json.dumps({"text": text, "modules": modules(), "conditions": chosen}) + "\n")
-        self._process.stdin.flush()
-        answer = self._answer()
+        answer = self._process.ask({"text": text, "modules": modules(), "conditions": chosen})
         if "error" in answer:
             raise ValueError(answer["error"])
         return str(answer["text"])
-
-    def close(self) -> None:
-        """End the process."""
-        with contextlib.suppress(OSError):
-            self._process.stdin.close()
-        self._process.wait(timeout=10)
-        self._process.stdout.close()
-        self._process.stderr.close()
-
-    def _answer(self) -> Any:
-        for line in self._process.stdout:
-            if line.startswith("@@"):
-                return json.loads(line[2:])
-        raise EOFError
 
 
 def modules() -> dict[str, str]:

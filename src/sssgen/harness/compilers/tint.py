@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import atexit
-import contextlib
 import json
-import subprocess
 from pathlib import Path
-from typing import Any
 
 from sssgen.harness import installed
 from sssgen.harness.compilers.calling_entry import wgsl_entry
 from sssgen.harness.compilers.compiler_interface import Compiler, CompilerMissing, Message, Source
+from sssgen.harness.compilers.node_process import NodeProcess
 from sssgen.support.installation import npm_hint
 
-# One process answers for all checks. Dawn prints warnings there as well, so a reply begins with "@@".
+# One process answers for all checks. Dawn prints warnings there as well.
 _SERVER = """
 import { createInterface } from 'node:readline';
 import { createRequire } from 'node:module';
@@ -41,16 +38,14 @@ process.exit(gpu ? 0 : 1);
 
 
 class Tint(Compiler):
-    """Talks to one node process, kept alive, in lines of JSON; a check takes about two milliseconds."""
+    """Talks to one node process, kept alive; a check takes about two milliseconds."""
 
     name = "tint"
 
     def __init__(self, node: str, modules: Path) -> None:
         self._command = [node, "--input-type=module", "-e", _SERVER, str(modules.parent)]
         self._modules = modules
-        self._process: Any = None
-        self._start()
-        atexit.register(self.close)
+        self._process = NodeProcess(self._command, "webgpu")
 
     def version(self) -> str:
         package = json.loads((self._modules / "webgpu" / "package.json").read_text(encoding="utf-8"))
@@ -58,43 +53,15 @@ class Tint(Compiler):
 
     def check(self, source: Source) -> list[Message]:
         text = wgsl_entry(source.text) if source.stage == "library" else source.text
-        if self._process.poll() is not None:  # the shader that crashed it was reported at that time
-            self._start()
         try:
-            self._process.stdin.write(json.dumps(text) + "\n")
-            self._process.stdin.flush()
-            answer = self._answer()
+            answer = self._process.ask(text)
         except (EOFError, OSError):
             return [Message("error", 0, 0, "Tint crashed on this shader")]
         return [Message(kind, line, column, message) for kind, line, column, message in answer]
 
     def close(self) -> None:
         """End the process."""
-        with contextlib.suppress(OSError):
-            self._process.stdin.close()
-        self._process.wait(timeout=10)
-        self._process.stdout.close()
-        self._process.stderr.close()
-
-    def _start(self) -> None:
-        self._process = subprocess.Popen(
-            self._command,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            encoding="utf-8",
-        )
-        try:
-            self._answer()
-        except EOFError:
-            raise CompilerMissing(f"npm webgpu does not load: {self._process.stderr.read().strip()}") from None
-
-    def _answer(self) -> Any:
-        for line in self._process.stdout:
-            if line.startswith("@@"):
-                return json.loads(line[2:])
-        raise EOFError
+        self._process.close()
 
 
 def node_modules() -> tuple[str, Path]:

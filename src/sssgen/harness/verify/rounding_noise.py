@@ -3,7 +3,7 @@
 The function is run in float64, and many times with a random error of each operation (`rounded_floats`), and with random
 numbers in variables that were not written, which have any number in a driver. No input moves: all drivers get the same
 numbers. The errors of builtins are a few units in the last place, or, for another language or driver, those that the
-table of builtins grants.
+table of builtins grants; derivatives of another driver may be those of one row or column of a quad.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from sssgen.harness.backends import Array
+from sssgen.harness.backends.call_program import grid
 from sssgen.harness.evaluate.deviation import GOAL, MARGIN, errors
 from sssgen.harness.verify.lane_interpreter import DTYPES, Program, Run, Value, filled
 from sssgen.harness.verify.plain_inputs import select_lanes
@@ -82,6 +83,26 @@ class GrantedRun(RoundedRun):
     """A run with the errors that other drivers may make."""
 
     granted = True
+
+    def inexact(self, row: Any, args: list[Value], result: Value) -> Value:
+        if row.kind != "derivative" or np.shape(result)[-1:] != (self.lanes,):
+            return super().inexact(row, args, result)
+        if row.axis:
+            return rounded(self.of_a_quad(np.asarray(result), row.axis))
+        along = zip((rt.dFdx, rt.dFdy), "xy", strict=True)
+        return rounded(sum(np.abs(self.of_a_quad(np.asarray(change(args[0])), axis)) for change, axis in along))
+
+    def of_a_quad(self, derivatives: Array, axis: str) -> Array:
+        """Derivatives as another device may have them: of one row (column) of a quad of pixels in both."""
+        draw = float(drawn(()))
+        if draw < -0.5:
+            return derivatives
+        shape = grid(self.lanes)
+        image = derivatives.reshape(*derivatives.shape[:-1], shape.rows, shape.width)
+        across = {"x": -2, "y": -1}[axis]
+        count = image.shape[across]
+        places = np.minimum(np.arange(count) // 2 * 2 + int(draw > 0.25), count - 1)
+        return np.take(image, places, across).reshape(derivatives.shape)
 
 
 def explained(error: Array, limit: Array) -> Array:

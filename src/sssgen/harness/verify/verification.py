@@ -127,8 +127,8 @@ class Machines(NamedTuple):
 
 
 @contextmanager
-def start_machines() -> Iterator[Machines]:
-    """The back ends of `verify`; they end with the block. Raises SssgenError without OpenGL."""
+def start_machines(names: Sequence[str] = tuple(BACKENDS.values())) -> Iterator[Machines]:
+    """The back ends of `verify`, or some of them; they end with the block. Raises SssgenError without OpenGL."""
     machines: dict[str, Isolated] = {}
     missing: dict[str, str] = {}
 
@@ -138,7 +138,6 @@ def start_machines() -> Iterator[Machines]:
         except CompilerMissing as reason:
             missing[name] = str(reason)
 
-    names = tuple(BACKENDS.values())
     try:
         with ThreadPoolExecutor(len(names)) as pool:
             list(pool.map(start, names))
@@ -425,16 +424,20 @@ class Case:
         """The texts for a target, cached."""
         if target not in self.texts:
             probes = self.case.probes
-            separate = bool(self.module.variables) and target == "numpy"
+            separate = self.passes_variables(target)
             groups = [[probe] for probe in probes] if separate else [probes]
             self.texts[target] = [self.translation(target, group) for group in groups]
         return self.texts[target]
 
+    def passes_variables(self, target: str) -> bool:
+        """Whether module variables become parameters of the target's functions."""
+        return bool(self.module.variables) and not registry.load(target).capabilities.module_variables
+
     def translation(self, target: str, probes: Sequence[Probe]) -> _Emitted:
-        """One text with these probes. With module variables NumPy takes one probe only: they become its parameters."""
+        """One text with these probes; only one, where module variables become its parameters."""
         keys = [self.keys[probe.name] for probe in probes]
         module = only(self.module, keys)
-        if target == "numpy" and module.variables:
+        if self.passes_variables(target):
             module = variables_to_parameters(module, keys[0]).module
         compiled = transpile(module, target, "verified", "none", keys, keep=True)
         text = "\n".join([text for name, text in compiled.files.items() if not name.endswith(".json")])

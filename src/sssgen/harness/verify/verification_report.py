@@ -9,7 +9,7 @@ import numpy as np
 
 from sssgen.harness.evaluate.deviation import GOAL
 
-BACKENDS = {"glsl": "gl", "hlsl": "hlsl", "wgsl": "webgpu", "oracle": "numpy"}
+BACKENDS = {"glsl": "gl", "hlsl": "hlsl", "wgsl": "webgpu", "tsl": "tsl", "tsl-gl2": "tsl-webgl2", "oracle": "numpy"}
 """The translations that are compared with the author's text, and the back end that runs each."""
 
 

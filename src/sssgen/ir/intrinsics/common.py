@@ -114,7 +114,15 @@ ROWS = (
     ),
     Builtin("roundEven", F1, "Nearest integer; of two, the even one.",
         not_constant=("hlsl",), fold=round, range=lambda F, x: rising(round, x),
-        texts={"hlsl": "round", "wgsl": "round", "wgsl-metal": "rint"},
+        texts={"hlsl": "round", "wgsl": "round", "wgsl-metal": "rint", "tsl": ""},
+        polyfill="""
+genF roundEven(genF x) {
+    genF low = floor(x);
+    genF part = x - low;
+    genF odd = low - 2.0 * floor(0.5 * low);
+    return low + mix(1.0 - step(part, genF(0.5)), step(0.5, part), odd);
+}
+""",
         ulp=0.0, vectors=(((1.25,), 1.0), ((0.5,), 0.0), ((1.5,), 2.0), ((-2.5,), -2.0)),
     ),
     Builtin("fract", F1, "x - floor(x), in [0, 1); may round to 1 for a tiny negative x.",
@@ -143,7 +151,7 @@ vecF mod(vecF x, float y) { return x - y * floor(x / y); }
         guards=(_REMAINDER,),
         inside=_off_integer_quotients, size=lambda rt, x, y: rt.max(abs(x), abs(y)),
         domain="y != 0; where x/y is within rounding of an integer the result may wrap", texts={
-            "glsl": "", "hlsl": "", "wgsl": "op:%", "wgsl-metal": "fmod", "wgsl-metal/genF,float": "fmod({0}, {type}({1}))",
+            "glsl": "", "hlsl": "", "tsl": "", "wgsl": "op:%", "wgsl-metal": "fmod", "wgsl-metal/genF,float": "fmod({0}, {type}({1}))",
         },
         polyfill="""
 genF fmod(genF x, genF y) { return x - y * trunc(x / y); }
@@ -199,6 +207,7 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
             "hlsl": "lerp", **{f"glsl/gen{k},gen{k},genB": "" for k in "IUB"}, "glsl-godot/genF,genF,genB": "",
             "wgsl-metal/genF,genF,float": "mix({0}, {1}, {type}({2}))", "wgsl-metal/genB,genB,genB": "",
             **{f"hlsl/gen{k},gen{k},genB": "" for k in "FIUB"}, **{f"wgsl/gen{k},gen{k},genB": "select" for k in "FIUB"},
+            **{f"tsl/gen{k},gen{k},genB": "select({2}, {1}, {0})" for k in "FIUB"},
         },
         polyfill="\n".join(map(_choice, ("float", "int", "uint", "bool"), ("vec", "ivec", "uvec", "bvec"))),
         splat=(), explicit_type=("wgsl",), cost=2,
@@ -227,7 +236,7 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
     Builtin("isnan", ("genB(genF)",),
         "Whether x is not a number, from its bits, as compilers may assume that there is no NaN.",
         not_constant=("wgsl",), samples=Samples(special=True), range=within(0.0, 1.0),
-        texts={"glsl": "", "hlsl": "", "wgsl": ""},
+        texts={"glsl": "", "hlsl": "", "wgsl": "", "tsl": ""},
         polyfill="""
 bool isnan(float x) { return (floatBitsToUint(x) & 0x7fffffffu) > 0x7f800000u; }
 vecB isnan(vecF x) { return greaterThan(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0x7f800000u)); }
@@ -236,7 +245,7 @@ vecB isnan(vecF x) { return greaterThan(floatBitsToUint(x) & vecU(0x7fffffffu), 
     ),
     Builtin("isinf", ("genB(genF)",), "Whether x is infinite, from its bits, as isnan.",
         not_constant=("wgsl",), samples=Samples(special=True), range=within(0.0, 1.0),
-        texts={"glsl": "", "hlsl": "", "wgsl": ""},
+        texts={"glsl": "", "hlsl": "", "wgsl": "", "tsl": ""},
         polyfill="""
 bool isinf(float x) { return (floatBitsToUint(x) & 0x7fffffffu) == 0x7f800000u; }
 vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0x7f800000u)); }
@@ -273,7 +282,7 @@ vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0
     Builtin("fma", ("genF(genF, genF, genF)",), "x·y + z, rounded once or twice.",
         fold=lambda x, y, z: x * y + z, range=fused_product_sum,
         inside=lambda rt, x, y, z: abs(x * y) + abs(z) < 1e38, size=lambda rt, x, y, z: rt.max(abs(x * y), abs(z)),
-        texts={"glsl": "", "hlsl": ""},  # DXC crashes on mad() in code that is never reached
+        texts={"glsl": "", "hlsl": "", "tsl": ""},  # DXC crashes on mad() in code that is never reached
         polyfill="genF fma(genF x, genF y, genF z) { return x * y + z; }", cost=2,
         vectors=(
             ((2.0, 3.0, -1.0), 5.0), ((0.0, 4.0, 0.5), 0.5), (((1.5, -2.0), (2.0, 0.25), (1.0, 0.5)), (4.0, 0.0)),
@@ -287,7 +296,7 @@ vecB isinf(vecF x) { return equal(floatBitsToUint(x) & vecU(0x7fffffffu), vecU(0
         ),
         defined=lambda rt, x, y: (y >= -126) & (y <= 127),
         inside=lambda rt, x, y: (y >= -126) & (y <= 127) & (abs(rt.ldexp(x, y)) < 1e38) & ((x == 0.0) | (abs(rt.ldexp(x, y)) > 1e-37)),
-        domain="-126 <= y <= 127, and the result is 0 or a normal number", texts={"glsl": "", "hlsl": ""},
+        domain="-126 <= y <= 127, and the result is 0 or a normal number", texts={"glsl": "", "hlsl": "", "tsl": ""},
         polyfill="""
 genF ldexp(genF x, genI y) {
     genI whole = clamp(y, -252, 254);

@@ -25,7 +25,7 @@ ROWS = (
     *(
         Builtin(f"dFd{axis}{variant}", F1, f"dFd{axis}, {how}; in languages without this choice, dFd{axis}.",
             range=lambda F, x: x - x, uniform_flow=True, axis=axis, kind="derivative",
-            texts={"glsl": f"dFd{axis}", "hlsl": f"dd{axis}_{variant.lower()}", "hlsl-dx9": f"dd{axis}", "wgsl": f"dpd{axis}{variant}",
+            texts={"glsl": f"dFd{axis}", "tsl": f"dFd{axis}", "hlsl": f"dd{axis}_{variant.lower()}", "hlsl-dx9": f"dd{axis}", "wgsl": f"dpd{axis}{variant}",
                 "wgsl-metal": f"dfd{axis}"},
         )
         for axis in "xy" for variant, how in _VARIANTS.items()
@@ -33,7 +33,7 @@ ROWS = (
     *(
         Builtin(f"fwidth{variant}", F1, f"abs(dFdx{variant}(x)) + abs(dFdy{variant}(x)).",
             range=lambda F, x: absolute(x - x) * 2.0, uniform_flow=True, kind="derivative", cost=3,
-            texts={"glsl": "fwidth", "hlsl": "", "hlsl-dx9": "fwidth", "wgsl-metal": "fwidth"},
+            texts={"glsl": "fwidth", "tsl": "fwidth", "hlsl": "", "hlsl-dx9": "fwidth", "wgsl-metal": "fwidth"},
             polyfill=f"genF fwidth{variant}(genF x) {{ return abs(dFdx{variant}(x)) + abs(dFdy{variant}(x)); }}",
         )
         for variant in _VARIANTS

@@ -87,7 +87,7 @@ ROWS = (
         range=lambda F, x: falling(lambda v: v**-0.5, maximum(x, F.tiny)),
         guards=(Guard(lambda F, x: x.low > 0.0, "nan", "the inverse square root of 0 or less", "max(x, TINY)", "x"),),
         inside=lambda rt, x: x > 0.0,
-        domain="x > 0", texts={"hlsl": "rsqrt", "wgsl": "inverseSqrt", "wgsl-metal": "rsqrt"}, kind="transcendental", cost=4,
+        domain="x > 0", texts={"hlsl": "rsqrt", "wgsl": "inverseSqrt", "wgsl-metal": "rsqrt", "tsl": "inverseSqrt"}, kind="transcendental", cost=4,
         vectors=(((2.0,), 0.7071067811865476), ((1.0,), 1.0), ((0.0625,), 4.0)),
     ),
 )

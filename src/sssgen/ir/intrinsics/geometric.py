@@ -77,7 +77,7 @@ ROWS = (
         fold=lambda x, y: [_dot(x, y)], overflow_is_nan=True, relation="squares",
         componentwise=False, range=vector_ranges.dot,
         inside=lambda rt, x, y: rt.dot(abs(x), abs(y)) < 1e38, size=lambda rt, x, y: rt.dot(abs(x), abs(y)),
-        texts={"hlsl/float,float": "op:*", "wgsl/float,float": "op:*"}, cost=2,
+        texts={"hlsl/float,float": "op:*", "wgsl/float,float": "op:*", "tsl/float,float": "op:*"}, cost=2,
         vectors=(
             (((1.0, 2.0, 3.0), (4.0, -5.0, 6.0)), 12.0), (((0.0, 1.0), (1.0, 0.0)), 0.0), ((2.0, -3.0), -6.0),
         ),
@@ -103,7 +103,7 @@ ROWS = (
                 succeeds=lambda F, x: x.met(Range(0.0, 0.99 * F.largest**0.5))),
         ),
         inside=_directed, defined=_directed,
-        domain="dot(x, x) > 0 and does not overflow", texts={"hlsl/float": "", "wgsl/float": ""},
+        domain="dot(x, x) > 0 and does not overflow", texts={"hlsl/float": "", "wgsl/float": "", "tsl/float": ""},
         polyfill="float normalize(float x) { return sign(x); }", kind="transcendental", cost=3, once=4, ulp=8.0,
         clause="WGSL, Vulkan: that of x / length(x)",
         vectors=(
@@ -116,7 +116,7 @@ ROWS = (
         "x where dot(z, y) < 0, else -x: the normal x turned against the direction of incidence y.",
         not_constant=("wgsl",), fold=lambda x, y, z: [a if _dot(z, y) < 0.0 else -a for a in x], quantity="direction", componentwise=False, range=vector_ranges.faceforward,
         inside=_signed_dot,
-        texts={"hlsl/float,float,float": "", "wgsl": "faceForward", "wgsl/float,float,float": "",
+        texts={"hlsl/float,float,float": "", "wgsl": "faceForward", "wgsl/float,float,float": "", "tsl": "faceForward", "tsl/float,float,float": "",
             "wgsl-metal/vecF,vecF,vecF": "faceforward"},
         polyfill="float faceforward(float x, float y, float z) { return z * y < 0.0 ? x : -x; }", cost=4,
         ulp=0.0, vectors=(
@@ -130,7 +130,7 @@ ROWS = (
         not_constant=("wgsl",), fold=lambda x, y: [a - 2.0 * _dot(y, x) * b for a, b in zip(x, y)], samples=Samples(unit=(1,)), overflow_is_nan=True, quantity="direction",
         componentwise=False, range=vector_ranges.reflect,
         inside=lambda rt, x, y, rounding=1e-6: (abs(rt.dot(y, y) - 1.0) < rounding) & (abs(x) < 1e38), size=lambda rt, x, y: rt.max(abs(x), 2.0 * rt.dot(abs(x), abs(y)) * abs(y)),
-        domain="dot(y, y) = 1", texts={"hlsl/float,float": "", "wgsl/float,float": ""},
+        domain="dot(y, y) = 1", texts={"hlsl/float,float": "", "wgsl/float,float": "", "tsl/float,float": ""},
         polyfill="float reflect(float x, float y) { return x - 2.0 * y * x * y; }", cost=4, ulp=8.0,
         clause=_SUM,
         vectors=(
@@ -144,7 +144,7 @@ ROWS = (
         quantity="direction", componentwise=False, range=vector_ranges.refract,
         inside=_away_from_total_reflection, size=lambda rt, x, y, z: rt.max(z * z, 1.0),
         domain="dot(x, x) = dot(y, y) = 1 and z > 0",
-        texts={"hlsl/float,float,float": "", "wgsl/float,float,float": ""},
+        texts={"hlsl/float,float,float": "", "wgsl/float,float,float": "", "tsl/float,float,float": ""},
         polyfill="""
 float refract(float x, float y, float z) {
     float c = y * x;

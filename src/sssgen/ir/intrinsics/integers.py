@@ -40,7 +40,7 @@ ROWS = (
     Builtin("bitCount", _BOTH, "How many bits are 1.",
         fold=lambda x: (x & _MOST).bit_count(), range=within(0.0, 32.0),
         texts={
-            "glsl": "", "hlsl": "{type}(countbits(asuint({0})))", "hlsl/genU": "{type}(countbits({0}))", "hlsl-dx9": "",
+            "glsl": "", "tsl": "", "hlsl": "{type}(countbits(asuint({0})))", "hlsl/genU": "{type}(countbits({0}))", "hlsl-dx9": "",
             "wgsl": "countOneBits", "wgsl/genU": "{type}(countOneBits({0}))",
             "wgsl-metal": "popcount", "wgsl-metal/genU": "{type}(popcount({0}))",
         },
@@ -58,7 +58,7 @@ genI bitCount(FROM x) {
     Builtin("findLSB", _BOTH, "The number of the lowest bit that is 1; of 0, -1.",
         fold=lambda x: (x & -x).bit_length() - 1, range=within(-1.0, 31.0),
         texts={
-            "glsl": "", "hlsl": "{type}(firstbitlow({0}))", "hlsl-dx9": "",
+            "glsl": "", "tsl": "", "hlsl": "{type}(firstbitlow({0}))", "hlsl-dx9": "",
             "wgsl": "firstTrailingBit", "wgsl/genU": "{type}(firstTrailingBit({0}))", "wgsl-metal": "",
         },
         polyfill=_of_both("""
@@ -74,7 +74,7 @@ genI findLSB(FROM x) {
         "The number of the highest bit that is 1, of a negative int that is 0; where there is none, -1.",
         fold=lambda x: (x if x >= 0 else ~x).bit_length() - 1, range=within(-1.0, 31.0),
         texts={
-            "glsl": "", "hlsl": "", "hlsl/genU": "{type}(firstbithigh({0}))", "hlsl-dx9": "",  # DXC takes an int for a uint
+            "glsl": "", "tsl": "", "hlsl": "", "hlsl/genU": "{type}(firstbithigh({0}))", "hlsl-dx9": "",  # DXC takes an int for a uint
             "wgsl": "firstLeadingBit", "wgsl/genU": "{type}(firstLeadingBit({0}))", "wgsl-metal": "",
         },
         polyfill=_of_both("""
@@ -93,7 +93,7 @@ genI findMSB(FROM x) {
     Builtin("bitfieldReverse", ("genI(genI)", "genU(genU)"), "The bits in the opposite order.",
         fold=lambda x: int(f"{x & _MOST:032b}"[::-1], 2), range=any_number,
         texts={
-            "glsl": "", "hlsl": "asint(reversebits(asuint({0})))", "hlsl/genU": "reversebits", "hlsl-dx9": "",
+            "glsl": "", "tsl": "", "hlsl": "asint(reversebits(asuint({0})))", "hlsl/genU": "reversebits", "hlsl-dx9": "",
             "wgsl": "reverseBits", "wgsl-metal": "reverse_bits",
         },
         polyfill="".join(f"""
@@ -114,7 +114,7 @@ gen{kind} bitfieldReverse(gen{kind} x) {{
         fold=_extracted_sign, fold_uint=_extracted,
         not_constant=("wgsl",), samples=Samples(integers={1: (0, 32), 2: (0, 32)}), range=any_number,
         defined=lambda rt, x, y, z: (y >= 0) & (z >= 0) & (y <= 32) & (z <= 32) & (y + z <= 32), domain=_FIELD,
-        texts={"glsl": "", "hlsl": "", "wgsl": "extractBits({0}, u32({1}), u32({2}))", "wgsl-metal": ""},
+        texts={"glsl": "", "tsl": "", "hlsl": "", "wgsl": "extractBits({0}, u32({1}), u32({2}))", "wgsl-metal": ""},
         polyfill="""
 genI bitfieldExtract(genI x, int y, int z) {
     return z == 0 ? genI(0) : (x << uint(32 - y - z)) >> uint(32 - z);
@@ -133,7 +133,7 @@ genU bitfieldExtract(genU x, int y, int z) {
         not_constant=("wgsl",), fold=_inserted,
         samples=Samples(integers={2: (0, 32), 3: (0, 32)}), range=any_number,
         defined=lambda rt, x, y, z, w: (z >= 0) & (w >= 0) & (z <= 32) & (w <= 32) & (z + w <= 32), domain="z >= 0, w >= 0, and z + w <= 32",
-        texts={"glsl": "", "hlsl": "", "wgsl": "insertBits({0}, {1}, u32({2}), u32({3}))", "wgsl-metal": ""},
+        texts={"glsl": "", "tsl": "", "hlsl": "", "wgsl": "insertBits({0}, {1}, u32({2}), u32({3}))", "wgsl-metal": ""},
         polyfill="".join(f"""
 gen{kind} bitfieldInsert(gen{kind} x, gen{kind} y, int z, int w) {{
     gen{kind} mask = gen{kind}((w > 31 ? 0xffffffffu : (1u << uint(w)) - 1u) << uint(z));

@@ -29,7 +29,7 @@ ROWS = (
     Builtin("matrixCompMult", ("matCR(matCR, matCR)",), "Componentwise product.",
         range=lambda F, x, y: x * y,
         inside=lambda rt, x, y: abs(x * y) < 1e38,
-        texts={"hlsl": "", "wgsl": ""},
+        texts={"hlsl": "", "wgsl": "", "tsl": ""},
         polyfill="""
 mat2R matrixCompMult(mat2R x, mat2R y) { return mat2R(x[0] * y[0], x[1] * y[1]); }
 mat3R matrixCompMult(mat3R x, mat3R y) { return mat3R(x[0] * y[0], x[1] * y[1], x[2] * y[2]); }
@@ -44,7 +44,7 @@ mat4R matrixCompMult(mat4R x, mat4R y) { return mat4R(x[0] * y[0], x[1] * y[1], 
     Builtin("outerProduct", ("matCR(vecR, vecC)",), "The matrix whose column i is x·y[i].",
         componentwise=False, range=vector_ranges.outer_product,
         inside=lambda rt, x, y: rt.length(x) * rt.length(y) < 1e38,
-        texts={"hlsl": "", "wgsl": ""},
+        texts={"hlsl": "", "wgsl": "", "tsl": ""},
         polyfill="""
 mat2R outerProduct(vecR x, vec2 y) { return mat2R(x * y.x, x * y.y); }
 mat3R outerProduct(vecR x, vec3 y) { return mat3R(x * y.x, x * y.y, x * y.z); }

@@ -25,7 +25,7 @@ def _relation(name: str, op: str, fold: Callable[..., bool], below: bool, same: 
         fold=fold,
         not_constant=("hlsl",) if op not in ("==", "!=") else (),
         range=within(0.0, 1.0),
-        texts={"hlsl": f"op:{op}", "wgsl": f"op:{op}"},
+        texts={"hlsl": f"op:{op}", "wgsl": f"op:{op}", "tsl": f"op:{op}"},
         vectors=vectors,
     )
 
@@ -49,7 +49,7 @@ ROWS = (
     ),
     Builtin("not", ("vecB(vecB)",), "Componentwise negation.",
         fold=operator.not_, range=within(0.0, 1.0),
-        texts={"hlsl": "op:!", "wgsl": "op:!"},
+        texts={"hlsl": "op:!", "wgsl": "op:!", "tsl": "op:!"},
         vectors=(
             (((False, True),), (True, False)), (((True, True, True),), (False, False, False)),
             (((False, False),), (True, True)),

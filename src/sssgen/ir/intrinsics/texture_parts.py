@@ -16,6 +16,7 @@ ROWS = (
         "As texture, of layer z, with w added to the level.",
         with_level=Level("textureLayerLod", 3), componentwise=False, range=texels, uniform_flow=True,
         texts={
+            "tsl": "{texture}.sample({1}).depth({2})", "tsl/sampler2DArray,vec2,int,float": "{texture}.sample({1}).depth({2}).bias({3})",
             "wgsl-metal": "{texture}.sample({sampler}, {1}, uint(max({2}, 0)))",
             **{f"wgsl-metal/{params(read)},float": "{texture}.sample({sampler}, {1}, uint(max({2}, 0)), metal::bias({3}))" for read in _OWN_LAYER},
             "glsl/sampler2DArray,vec2,int": "texture({texture}, vec3({1}, float({2})))",
@@ -34,6 +35,7 @@ ROWS = (
     Builtin("textureLayerLod", tuple(f"{read}, float)" for read in _OWN_LAYER), "As textureLod at level w, of layer z.",
         componentwise=False, range=texels,
         texts={
+            "tsl": "{texture}.sample({1}).depth({2}).level({3})",
             "wgsl-metal": "{texture}.sample({sampler}, {1}, uint(max({2}, 0)), metal::level({3}))",
             "glsl/sampler2DArray,vec2,int,float": "textureLod({texture}, vec3({1}, float({2})), {3})",
             "glsl/samplerCubeArray,vec3,int,float": "textureLod({texture}, vec4({1}, float({2})), {3})",
@@ -47,6 +49,7 @@ ROWS = (
         "As textureGrad, of layer z.",
         componentwise=False, range=texels,
         texts={
+            "tsl": "{texture}.sample({1}).depth({2}).grad({3}, {4})",
             "wgsl-metal": "{texture}.sample({sampler}, {1}, uint(max({2}, 0)), gradient2d({3}, {4}))",
             "wgsl-metal/samplerCubeArray,vec3,int,vec3,vec3": "{texture}.sample({sampler}, {1}, uint(max({2}, 0)), gradientcube({3}, {4}))",
             "glsl/sampler2DArray,vec2,int,vec2,vec2": "textureGrad({texture}, vec3({1}, float({2})), {3}, {4})",
@@ -61,6 +64,7 @@ ROWS = (
         "As texelFetch at level w, of layer z.",
         componentwise=False, range=texels, domain="the texel, the layer and the level exist",
         texts={
+            "tsl": "{texture}.load({1}).depth({2}).level({3})",
             "wgsl-metal": "{texture}.read(uint2({1}), uint({2}), uint({3}))",
             "glsl": "texelFetch({texture}, ivec3({1}, {2}), {3})", "hlsl": "{texture}.Load(int4({1}, {2}, {3}))",
             "wgsl": "textureLoad({texture}, {1}, {2}, {3})",
@@ -73,6 +77,7 @@ ROWS = (
         with_level=Level("textureCompareLod", 4, explicit=False),
         componentwise=False, range=all_within(0.0, 1.0), uniform_flow=True,
         texts={
+            "tsl": "",
             "wgsl-metal": "{texture}.sample_compare({sampler}, {1}, {2})",
             "wgsl-metal/sampler2DArrayShadow,vec2,int,float": "{texture}.sample_compare({sampler}, {1}, uint(max({2}, 0)), {3})",
             "glsl/sampler2DShadow,vec2,float": "texture({texture}, vec3({1}, {2}))",
@@ -90,6 +95,7 @@ ROWS = (
         "As textureCompare, at level 0.",
         componentwise=False, range=all_within(0.0, 1.0),
         texts={
+            "tsl": "",
             "wgsl-metal": "{texture}.sample_compare({sampler}, {1}, {2}, metal::level(0.0))",
             "wgsl-metal/sampler2DArrayShadow,vec2,int,float": "{texture}.sample_compare({sampler}, {1}, uint(max({2}, 0)), {3}, metal::level(0.0))",
             "glsl": "textureLod({texture}, vec3({1}, {2}), 0.0)", "hlsl": "{texture}.SampleCmpLevelZero({sampler}, {1}, {2})",
@@ -106,6 +112,8 @@ ROWS = (
         "As textureOffset, of layer z, with the last argument added to the level.",
         with_level=Level("textureLayerLodOffset", 3), componentwise=False, range=texels, constant=(offset_at(3),), uniform_flow=True,
         texts={
+            "tsl": "{texture}.sample({1}).depth({2}).offset({3})",
+            "tsl/sampler2DArray,vec2,int,ivec2,float": "{texture}.sample({1}).depth({2}).offset({3}).bias({4})",
             "wgsl-metal": "{texture}.sample({sampler}, {1}, uint(max({2}, 0)), {3})",
             "wgsl-metal/sampler2DArray,vec2,int,ivec2,float": "{texture}.sample({sampler}, {1}, uint(max({2}, 0)), metal::bias({4}), {3})",
             "glsl": "textureOffset({texture}, vec3({1}, float({2})), {3})",
@@ -121,6 +129,7 @@ ROWS = (
         "As textureLodOffset at level w, of layer z.",
         componentwise=False, range=texels, constant=(offset_at(4),),
         texts={
+            "tsl": "{texture}.sample({1}).depth({2}).level({3}).offset({4})",
             "wgsl-metal": "{texture}.sample({sampler}, {1}, uint(max({2}, 0)), metal::level({3}), {4})",
             "glsl": "textureLodOffset({texture}, vec3({1}, float({2})), {3}, {4})",
             "hlsl": "{texture}.SampleLevel({sampler}, float3({1}, float({2})), {3}, {4})",
@@ -131,6 +140,7 @@ ROWS = (
     Builtin("textureLayerGradOffset", ("vec4(sampler2DArray, vec2, int, vec2, vec2, ivec2)",), "As textureGradOffset, of layer z.",
         componentwise=False, range=texels, constant=(offset_at(5),),
         texts={
+            "tsl": "{texture}.sample({1}).depth({2}).grad({3}, {4}).offset({5})",
             "wgsl-metal": "{texture}.sample({sampler}, {1}, uint(max({2}, 0)), gradient2d({3}, {4}), {5})",
             "glsl": "textureGradOffset({texture}, vec3({1}, float({2})), {3}, {4}, {5})",
             "hlsl": "{texture}.SampleGrad({sampler}, float3({1}, float({2})), {3}, {4}, {5})",
@@ -143,6 +153,7 @@ ROWS = (
         with_level=Level("textureCompareLodOffset", 5, explicit=False),
         componentwise=False, range=all_within(0.0, 1.0), constant=(offset_at(3), offset_at(4)), uniform_flow=True,
         texts={
+            "tsl": "",
             "wgsl-metal": "{texture}.sample_compare({sampler}, {1}, {2}, {3})",
             "wgsl-metal/sampler2DArrayShadow,vec2,int,float,ivec2": "{texture}.sample_compare({sampler}, {1}, uint(max({2}, 0)), {3}, {4})",
             "glsl": "textureOffset({texture}, vec3({1}, {2}), {3})",
@@ -160,6 +171,7 @@ ROWS = (
         "As textureCompareOffset, at level 0.",
         componentwise=False, range=all_within(0.0, 1.0), constant=(offset_at(3), offset_at(4)),
         texts={
+            "tsl": "",
             "wgsl-metal": "{texture}.sample_compare({sampler}, {1}, {2}, metal::level(0.0), {3})",
             "wgsl-metal/sampler2DArrayShadow,vec2,int,float,ivec2": "{texture}.sample_compare({sampler}, {1}, uint(max({2}, 0)), {3}, metal::level(0.0), {4})",
             "glsl": "textureLodOffset({texture}, vec3({1}, {2}), 0.0, {3})",
@@ -180,6 +192,7 @@ ROWS = (
         "As textureGather, of layer z; the channel or the reference is w.",
         componentwise=False, range=texels, constant=(channel_at(3),),
         texts={
+            "tsl": "",
             "wgsl-metal": "",
             "glsl": "",
             "hlsl/sampler2DArray,vec2,int": "{texture}.GatherRed({sampler}, float3({1}, float({2})))",
@@ -206,6 +219,7 @@ vec4 textureGatherLayer(sampler2DArrayShadow map, vec2 P, int layer, float refer
         "As textureGatherOffset, of layer z.",
         componentwise=False, range=texels, constant=(offset_at(3), offset_at(4), channel_at(4)),
         texts={
+            "tsl": "",
             "wgsl-metal": "",
             "glsl": "",
             "hlsl/sampler2DArray,vec2,int,ivec2": "{texture}.GatherRed({sampler}, float3({1}, float({2})), {3})",

@@ -102,7 +102,7 @@ ROWS = (
         "The tangent-space normal of a normal map's texel, y up. Unity may pack it when it imports the map.",
         samples=Samples(floats=((0.0, 1.0),)), componentwise=False, range=vector_ranges.normal_of_texel,
         size=lambda rt, x: rt.max(2.0 * abs(x[:3]), 1.0),
-        texts={"glsl": "", "hlsl": "", "wgsl": "", "hlsl-dx9": "UnpackNormal", "hlsl-macros": "UnpackNormal",
+        texts={"glsl": "", "hlsl": "", "wgsl": "", "tsl": "", "hlsl-dx9": "UnpackNormal", "hlsl-macros": "UnpackNormal",
             "glsl-godot": "unpack_normal", "hlsl-unreal": "(UnpackNormalMap({0}).xyz * float3(1.0, -1.0, 1.0))"},
         polyfill="vec3 unpackNormal(vec4 texel) { return texel.xyz * 2.0 - 1.0; }", cost=2,
         vectors=(
@@ -125,6 +125,7 @@ ROWS = (
                 f"wgsl-metal/{sampler},int": "{type}({texture}.get_width(uint({1})), {texture}.get_height(uint({1})), {texture}.get_array_size())"
                 for sampler in ("sampler2DArray", "isampler2DArray", "usampler2DArray", "samplerCubeArray", "sampler2DArrayShadow")
             },
+            "tsl": "", "tsl/sampler2D,int": "{type}({texture}.size({1}))", "tsl/samplerCube,int": "{type}({texture}.size({1}))",
             "hlsl": "texture_size({bare_texture}, {1})", "hlsl-dx9": "", "wgsl": "{type}(textureDimensions({texture}, {1}))",
             **{
                 f"wgsl/{sampler},int": "{type}(vec3u(textureDimensions({texture}, {1}), textureNumLayers({texture})))"
@@ -138,14 +139,14 @@ ROWS = (
         size_query=True,
         texts={
             "wgsl-metal": "{type}({texture}.get_num_mip_levels())",
-            "glsl": "", "hlsl": "", "wgsl": "{type}(textureNumLevels({texture}))"}, kind="fetch",
+            "glsl": "", "tsl": "", "hlsl": "", "wgsl": "{type}(textureNumLevels({texture}))"}, kind="fetch",
     ),
     Builtin("textureQueryLod", ("vec2(sampler2D, vec2)", "vec2(sampler3D, vec3)"),
         "The level that a read would take at y, and the one that derivatives give. Only HLSL has it.",
         componentwise=False, range=any_numbers,
         uniform_flow=True, kind="fetch", absolute=0.01, clause="D3D, GLSL: no bound",
         texts={
-            "glsl": "", "wgsl": "", "hlsl-dx9": "",
+            "glsl": "", "tsl": "", "wgsl": "", "hlsl-dx9": "",
             "hlsl": "float2({bare_texture}.CalculateLevelOfDetail({bare_sampler}, {1}), {bare_texture}.CalculateLevelOfDetailUnclamped({bare_sampler}, {1}))",
         },
         splat=(),
@@ -165,6 +166,10 @@ ROWS = (
             **{f"wgsl-metal/{params(read)},float": "{texture}.sample({sampler}, {1}, metal::bias({2}))" for read in _SAMPLE},
             **{f"wgsl-metal/{params(read)}{bias}": "" for read in _LAYERS for bias in ("", ",float")},
             **{f"wgsl-metal/{shadow}": "" for shadow in _SHADOWS},
+            "tsl": "{texture}.sample({1})",
+            **{f"tsl/{params(read)},float": "{texture}.sample({1}).bias({2})" for read in _SAMPLE},
+            **{f"tsl/{params(read)}{bias}": "" for read in _LAYERS for bias in ("", ",float")},
+            **{f"tsl/{shadow}": "" for shadow in _SHADOWS},
             "hlsl": "{texture}.Sample({sampler}, {1})",
             **{f"hlsl/{params(read)},float": "{texture}.SampleBias({sampler}, {1}, {2})" for read in (*_SAMPLE, *_LAYERS)},
             "hlsl-dx9": "tex{dim}({texture}, {1})",
@@ -198,6 +203,8 @@ float texture(sampler2DArrayShadow map, vec4 P) { return textureCompare(map, P.x
         texts={
             "wgsl-metal": "{texture}.sample({sampler}, {1}, metal::level({2}))", "wgsl-metal/sampler2DShadow,vec3,float": "",
             **{f"wgsl-metal/{params(read)},float": "" for read in _LAYERS},
+            "tsl": "{texture}.sample({1}).level({2})", "tsl/sampler2DShadow,vec3,float": "",
+            **{f"tsl/{params(read)},float": "" for read in _LAYERS},
             "hlsl": "{texture}.SampleLevel({sampler}, {1}, {2})", "hlsl/sampler2DShadow,vec3,float": "",
             "hlsl-dx9": "tex{dim}lod({texture}, float4({1}, {2}))",
             "hlsl-dx9/sampler2D,vec2,float": "tex2Dlod({texture}, float4({1}, 0.0, {2}))",
@@ -228,6 +235,7 @@ float textureLod(sampler2DShadow map, vec3 P, float level) { return textureCompa
             "wgsl-metal/sampler2D,vec2,vec2,vec2": "{texture}.sample({sampler}, {1}, gradient2d({2}, {3}))",
             "wgsl-metal/sampler3D,vec3,vec3,vec3": "{texture}.sample({sampler}, {1}, gradient3d({2}, {3}))",
             "wgsl-metal/samplerCube,vec3,vec3,vec3": "{texture}.sample({sampler}, {1}, gradientcube({2}, {3}))",
+            "tsl": "", "tsl/sampler2D,vec2,vec2,vec2": "{texture}.sample({1}).grad({2}, {3})",
             "hlsl": "{texture}.SampleGrad({sampler}, {1}, {2}, {3})",
             "hlsl-dx9": "tex{dim}grad({texture}, {1}, {2}, {3})",
             "hlsl-macros": "{bare_texture}.SampleGrad({bare_sampler}, {1}, {2}, {3})",
@@ -256,6 +264,10 @@ float textureGrad(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy) { return t
             **{f"wgsl-metal/{params(one)[:-1]}": "{texture}.sample({sampler}, {1}, {2})" for one in _offsets()[:2]},
             **{f"wgsl-metal/{params(one)[:-1]},float": "{texture}.sample({sampler}, {1}, metal::bias({3}), {2})" for one in _offsets()[:2]},
             "glsl/sampler2DArrayShadow,vec4,ivec2": "",
+            "tsl": "{texture}.sample({1}).offset({2})",
+            **{f"tsl/{params(one)[:-1]},float": "{texture}.sample({1}).offset({2}).bias({3})" for one in _offsets()[:2]},
+            "tsl/sampler2DArray,vec3,ivec2": "", "tsl/sampler2DArray,vec3,ivec2,float": "",
+            **{f"tsl/{params(shadow)[:-1]}": "" for shadow in _SHADOW_OFFSETS},
             "hlsl": "{bare_texture}.Sample({bare_sampler}, {1}, {2})",
             **{f"hlsl/{params(one)[:-1]},float": "{bare_texture}.SampleBias({bare_sampler}, {1}, {3}, {2})" for one in _offsets()},
             "hlsl-dx9": "",
@@ -278,6 +290,8 @@ float textureOffset(sampler2DArrayShadow map, vec4 P, ivec2 offset) { return tex
         texts={
             "wgsl-metal": "",
             **{f"wgsl-metal/{params(one)[:-1]}": "{texture}.sample({sampler}, {1}, metal::level({2}), {3})" for one in _offsets(", float")[:2]},
+            "tsl": "{texture}.sample({1}).level({2}).offset({3})", "tsl/sampler2DArray,vec3,float,ivec2": "",
+            "tsl/sampler2DShadow,vec3,float,ivec2": "",
             "hlsl": "{bare_texture}.SampleLevel({bare_sampler}, {1}, {2}, {3})", "hlsl-dx9": "",
             "wgsl": "textureSampleLevel({texture}, {sampler}, {1}, {2}, {3})", "wgsl/sampler2DArray,vec3,float,ivec2": "",
             "hlsl/sampler2DShadow,vec3,float,ivec2": "", "wgsl/sampler2DShadow,vec3,float,ivec2": "",
@@ -299,6 +313,7 @@ float textureLodOffset(sampler2DShadow map, vec3 P, float level, ivec2 offset) {
             "wgsl-metal": "",
             "wgsl-metal/sampler2D,vec2,vec2,vec2,ivec2": "{texture}.sample({sampler}, {1}, gradient2d({2}, {3}), {4})",
             "wgsl-metal/sampler3D,vec3,vec3,vec3,ivec3": "{texture}.sample({sampler}, {1}, gradient3d({2}, {3}), {4})",
+            "tsl": "", "tsl/sampler2D,vec2,vec2,vec2,ivec2": "{texture}.sample({1}).grad({2}, {3}).offset({4})",
             "hlsl": "{bare_texture}.SampleGrad({bare_sampler}, {1}, {2}, {3}, {4})", "hlsl-dx9": "",
             "wgsl": "textureSampleGrad({texture}, {sampler}, {1}, {2}, {3}, {4})",
             "wgsl/sampler2DArray,vec3,vec2,vec2,ivec2": "",
@@ -321,6 +336,7 @@ float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec
             "wgsl-metal": "",
             **{f"wgsl-metal/{kind}sampler2D,ivec2,int": "{texture}.read(uint2({1}), uint({2}))" for kind in _KINDS},
             **{f"wgsl-metal/{kind}sampler3D,ivec3,int": "{texture}.read(uint3({1}), uint({2}))" for kind in _KINDS},
+            "tsl": "{texture}.load({1}).level({2})", **{f"tsl/{kind}sampler2DArray,ivec3,int": "" for kind in _KINDS},
             "hlsl": "{texture}.Load(int3({1}, {2}))", "hlsl-dx9": "",
             **{f"hlsl/{kind}sampler{dim},ivec3,int": "{texture}.Load(int4({1}, {2}))" for kind in _KINDS for dim in ("3D", "2DArray")},
             "hlsl-macros": "LOAD_TEXTURE{dim}_LOD({texture}, {1}, {2})",
@@ -340,7 +356,7 @@ float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec
         ),
         "As texelFetch, at y + w.",
         componentwise=False, range=texels, constant=(offset_at(3),), defined=_exists, domain="the texel and the level exist",
-        texts={"hlsl": "", "wgsl": ""},
+        texts={"hlsl": "", "wgsl": "", "tsl": ""},
         polyfill="\n".join(
             f"{kind}vec4 texelFetchOffset({kind}sampler{place} P, int level, ivec{size} offset) {{ return {read}, level); }}"
             for kind in _KINDS
@@ -361,7 +377,7 @@ float textureGradOffset(sampler2DArrayShadow map, vec4 P, vec2 dx, vec2 dy, ivec
         componentwise=False, range=texels, constant=(channel_at(2),),
         texts={
             "wgsl-metal": "",
-            "glsl": "",
+            "glsl": "", "tsl": "",
             "hlsl": "{bare_texture}.Gather{channel}({bare_sampler}, {1})", "hlsl-dx9": "",
             "wgsl": "textureGather(0, {texture}, {sampler}, {1})",
             **{f"wgsl/{read.replace(', ', ',')},int": "textureGather({2}, {texture}, {sampler}, {1})" for read in _GATHERED[:2]},
@@ -394,7 +410,7 @@ vec4 textureGather(sampler2DArrayShadow map, vec3 P, float reference) { return t
         componentwise=False, range=texels, constant=(offset_at(2), offset_at(3), channel_at(3)),
         texts={
             "wgsl-metal": "",
-            "glsl": "",
+            "glsl": "", "tsl": "",
             "hlsl": "{bare_texture}.Gather{channel}({bare_sampler}, {1}, {2})", "hlsl-dx9": "",
             "hlsl/sampler2DShadow,vec2,float,ivec2": "{texture}.GatherCmp({sampler}, {1}, {2}, {3})",
             "hlsl/sampler2DArrayShadow,vec3,float,ivec2": "{texture}.GatherCmp({sampler}, {1}, {2}, {3})",

@@ -126,7 +126,7 @@ ROWS = (
         fold=math.asinh, range=lambda F, x: rising(math.asinh, x),
         guards=(Guard(lambda F, x: x.size < 0.5 * F.largest**0.5, "overflow", "the argument's square overflows", "clamp(x, -0.5 * ROOT, 0.5 * ROOT)", "x"),),
         inside=lambda rt, x: abs(x) < 1e19,
-        domain="|x| < 1e19", texts={"glsl": "", "hlsl": "", "wgsl": ""},  # NVIDIA and SwiftShader lose large negative x
+        domain="|x| < 1e19", texts={"glsl": "", "hlsl": "", "wgsl": "", "tsl": ""},  # NVIDIA and SwiftShader lose large negative x
         polyfill="genF asinh(genF x) { return sign(x) * log(abs(x) + sqrt(x * x + 1.0)); }",
         kind="transcendental", cost=14, absolute=2.0**-20, clause=_BY_LOG,
         vectors=(((1.0,), 0.881373587019543), ((0.0,), 0.0), ((-2.0,), -1.4436354751788103)),

@@ -189,10 +189,16 @@ class LegalExpressions(Transformer):
 
     def binary(self, binary: ir.Binary) -> ir.Expr:
         if is_integer_division(binary) and not self.capabilities.integer_division and self.current is not None:
-            result = with_result(binary, self.keep_expensive, self.counters)
-            # `equal` in it may have another form in the language
-            return rewrite(result, lambda part: self.intrinsic(part) if isinstance(part, ir.Intrinsic) else part)
+            return rewrite(with_result(binary, self.keep_expensive, self.counters), self.part_of_division)
         return legal_operator(binary, self.capabilities, self.keep_expensive)
+
+    def part_of_division(self, part: ir.Expr) -> ir.Expr:
+        """A part of what stands for an integer division or a shift: `equal` or a shift may have another form."""
+        if isinstance(part, ir.Intrinsic):
+            return self.intrinsic(part)
+        if isinstance(part, ir.Binary) and part.op in ("<<", ">>", "&"):
+            return legal_operator(part, self.capabilities, self.keep_expensive)
+        return part
 
     # Builtins
 

@@ -412,6 +412,10 @@ class Printer:
         fields = [Line(f"    {self.variable(field.type, field.name)};", struct.span) for field in struct.type.fields]
         return [Line(f"struct {struct.type.name} {{", struct.span), *fields, Line("};")]
 
+    def print_imports(self) -> list[Line]:
+        """What the text imports; after everything else is printed."""
+        return []
+
     def print_layout(self) -> list[Line]:
         """What a whole shader states before its variables."""
         return []

@@ -1,0 +1,207 @@
+"""Prints TSL, three.js's node language: JavaScript whose calls build the shader.
+
+An operator is a method of its left operand, a variable is `.toVar()`, or `.toConst()` if nothing assigns to it, and a
+block is a function. JavaScript's numbers are floats; other numbers, and what has a method, are nodes: `int(2)`. A
+function with a layout becomes one of the shader; one with textures or arrays has none: its calls are expanded.
+"""
+
+from __future__ import annotations
+
+import re
+
+from sssgen.ir import nodes as ir
+from sssgen.ir.types import (
+    FLOAT,
+    INT,
+    UINT,
+    VOID,
+    Array,
+    Matrix,
+    Sampler,
+    Struct,
+    Type,
+    Vector,
+    kind_of,
+    spell,
+    unnested,
+)
+from sssgen.passes.scopes import assigned
+from sssgen.support.diagnostics import Diagnostic, SssgenError
+from sssgen.targets.descriptor import Target
+from sssgen.targets.printers.printed_lines import WIDTH, Line, wrap
+from sssgen.targets.printers.printer import PRIMARY, Printer
+
+_METHODS = {
+    "+": "add", "-": "sub", "*": "mul", "/": "div", "%": "mod", "&&": "and", "||": "or", "<": "lessThan",
+    ">": "greaterThan", "<=": "lessThanEqual", ">=": "greaterThanEqual", "==": "equal", "!=": "notEqual",
+    "&": "bitAnd", "|": "bitOr", "^": "bitXor", "<<": "shiftLeft", ">>": "shiftRight",
+}  # fmt: skip
+_UNARY = {"-": "negate", "!": "not", "~": "bitNot"}
+_CALLED = re.compile(r"(?<![.\w])[A-Za-z]\w*(?=\()")
+
+
+class TslPrinter(Printer):
+    def __init__(self, target: Target, module: ir.Module) -> None:
+        super().__init__(target, module)
+        self.assigned: set[str] = set()
+        """The variables that the current function assigns to after their declaration."""
+        self.called: set[str] = set()
+        """The functions that the text calls."""
+
+    # Expressions
+
+    def node(self, expr: ir.Expr) -> str:
+        """An expression that has methods: a number is not one."""
+        is_plain = isinstance(expr, ir.Literal) and kind_of(expr.type) in ("float", "bool")
+        return f"{self.type(expr.type)}({self.expr(expr)})" if is_plain else self.expr(expr)
+
+    def literal(self, literal: ir.Literal) -> str:
+        kind = kind_of(literal.type)
+        return super().literal(literal) if kind in ("float", "bool") else f"{kind}({self.number(kind, literal)})"
+
+    def number(self, kind: str, literal: ir.Literal) -> str:
+        """A number of a literal converted to a kind, as JavaScript writes it."""
+        if kind == "float":
+            return super().literal(literal._replace(type=FLOAT, value=float(literal.value)))
+        value = int(literal.value)
+        return str(value) if kind == "int" else super().literal(ir.Literal(UINT, value & 0xFFFFFFFF, literal.span))[:-1]
+
+    def bound(self, expr: ir.Expr) -> tuple[str, int]:
+        if isinstance(expr, ir.Member):
+            return f"{self.node(expr.value)}.get('{expr.field}')", PRIMARY
+        if isinstance(expr, ir.Unary):
+            return f"{self.node(expr.operand)}.{_UNARY[expr.op]}()", PRIMARY
+        if isinstance(expr, ir.Index):
+            return f"{self.node(expr.value)}.element({self.part(INT, expr.index)})", PRIMARY
+        return super().bound(expr)
+
+    def binary(self, binary: ir.Binary) -> tuple[str, int]:
+        return f"{self.node(binary.left)}.{_METHODS[binary.op]}({self.expr(binary.right)})", PRIMARY
+
+    def select(self, select: ir.Select) -> tuple[str, int]:
+        return f"select({self.arguments((select.condition, select.yes, select.no))})", PRIMARY
+
+    def construct(self, construct: ir.Construct) -> tuple[str, int]:
+        type_, args, span = construct.type, construct.args, construct.span
+        if isinstance(type_, Array):
+            return f"array([{', '.join(map(self.node, args))}])", PRIMARY
+        if isinstance(type_, Struct):
+            return super().construct(construct)
+        if isinstance(type_, Matrix) and len(args) > type_.columns:  # numbers alone would be its rows
+            rows, starts = type_.rows, range(0, len(args), type_.rows)
+            args = tuple([ir.Construct(Vector("float", rows), args[start : start + rows], span) for start in starts])
+        return f"{self.type(type_)}({', '.join([self.part(type_, arg) for arg in args])})", PRIMARY
+
+    def part(self, type_: Type, arg: ir.Expr) -> str:
+        """An argument that becomes a part of a type: of a literal, a plain number of its kind."""
+        if isinstance(arg, ir.Unary) and arg.op == "-" and isinstance(arg.operand, ir.Literal):
+            arg = arg.operand._replace(value=-arg.operand.value)
+        plain = isinstance(arg, ir.Literal) and "bool" not in (kind_of(arg.type), kind_of(type_))
+        return self.number(kind_of(type_), arg) if plain and isinstance(arg, ir.Literal) else self.expr(arg)
+
+    # Statements
+
+    def statement(self, stmt: ir.Stmt, indent: int) -> list[Line]:
+        pad = "    " * indent
+        if isinstance(stmt, ir.If):
+            lines = wrap(f"{pad}If({self.expr(stmt.condition)}, () => {{", stmt.span)
+            lines += self.block(stmt.then, indent + 1)
+            while len(stmt.otherwise) == 1 and isinstance(stmt.otherwise[0], ir.If):
+                stmt = stmt.otherwise[0]
+                lines += wrap(f"{pad}}}).ElseIf({self.expr(stmt.condition)}, () => {{", stmt.span)
+                lines += self.block(stmt.then, indent + 1)
+            if stmt.otherwise:
+                lines += [Line(f"{pad}}}).Else(() => {{"), *self.block(stmt.otherwise, indent + 1)]
+            return [*lines, Line(f"{pad}}});")]
+        if isinstance(stmt, ir.For | ir.While):
+            head = self.loop_header(stmt) if isinstance(stmt, ir.For) else f"{self.expr(stmt.condition)}, () => {{"
+            return [*wrap(f"{pad}Loop({head}", stmt.span), *self.block(stmt.body, indent + 1), Line(f"{pad}}});")]
+        return super().statement(stmt, indent)
+
+    def loop_header(self, loop: ir.For) -> str:
+        """A loop that counts."""
+        init, condition, step = loop.init, loop.condition, loop.step
+        assert isinstance(init, ir.Declare) and isinstance(condition, ir.Binary) and isinstance(step, ir.Assign)
+        assert init.value is not None and isinstance(step.value, ir.Literal)
+        by_one = step.value.value == 1 and (step.op == "+") == (condition.op[0] == "<") and init.type != FLOAT
+        fields = [
+            f"start: {self.part(init.type, init.value)}", f"end: {self.part(init.type, condition.right)}",
+            f"type: '{self.type(init.type)}'", f"condition: '{condition.op}'", f"name: '{init.name}'",
+            *([] if by_one else [f"update: '{step.op}= {super().literal(step.value)}'"]),
+        ]  # fmt: skip
+        return f"{{ {', '.join(fields)} }}, ({{ {init.name} }}) => {{"
+
+    def simple(self, stmt: ir.Stmt) -> str:
+        if isinstance(stmt, ir.Assign):
+            method = f"{_METHODS[stmt.op]}Assign" if stmt.op else "assign"
+            return f"{self.node(stmt.target)}.{method}({self.expr(stmt.value)})"
+        if isinstance(stmt, ir.Return):
+            return f"return {self.node(stmt.value)}" if stmt.value is not None else "return"
+        jumps = isinstance(stmt, ir.Break | ir.Continue | ir.Discard)
+        return f"{type(stmt).__name__}()" if jumps else super().simple(stmt)
+
+    def declare(self, declare: ir.Declare) -> str:
+        value = declare.value
+        if value is None or declare.name in self.assigned:
+            return f"const {declare.name} = {self.zero(declare.type) if value is None else self.node(value)}.toVar()"
+        numbers = isinstance(value, ir.Construct) and all(isinstance(arg, ir.Literal) for arg in value.args)
+        is_number = isinstance(value, ir.Literal) or (numbers and isinstance(value.type, Vector))
+        return f"const {declare.name} = {self.node(value)}{'' if is_number else '.toConst()'}"
+
+    def zero(self, type_: Type) -> str:
+        """The value of a variable without one."""
+        if isinstance(type_, Array) and isinstance(type_.element, Struct):
+            return f"array([{', '.join([self.zero(type_.element)] * type_.length)}])"
+        if isinstance(type_, Array):
+            return f"array('{self.type(type_.element)}', {type_.length})"
+        fields = type_.fields if isinstance(type_, Struct) else ()
+        return f"{self.type(type_)}({', '.join([self.zero(field.type) for field in fields])})"
+
+    # Declarations
+
+    def calling(self, lines: list[Line]) -> list[Line]:
+        """The lines; what they call is imported."""
+        self.called.update(name for line in lines for name in _CALLED.findall(line.text.partition("//")[0]))
+        return lines
+
+    def print_imports(self) -> list[Line]:
+        own = self.module_names | {spell(struct.type) for struct in self.module.structs}
+        return wrap(f"import {{ {', '.join(sorted(self.called - own))} }} from 'three/tsl';", ir.NOWHERE)
+
+    def print_function(self, function: ir.Function) -> list[Line]:
+        self.assigned = assigned(function, {})
+        lines = self.calling(super().print_function(function))[:-1]
+        types = [function.result, *[param.type for param in function.params]]
+        result, *names = [self.spelled(unnested(type_)[0], function.span) for type_ in types]
+        if function.result == VOID:  # it discards
+            return [*lines, Line("}, 'void');")]
+        if any(isinstance(type_, Sampler | Array) for type_ in types):
+            return [*lines, Line("});")]
+        inputs = [f"{{ name: '{p.name}', type: '{type_}' }}" for p, type_ in zip(function.params, names, strict=True)]
+        head = f"}}).setLayout({{ name: '{function.name}', type: '{result}', inputs: ["
+        if len(head) + len(", ".join(inputs)) < WIDTH - 5:
+            return [*lines, Line(f"{head}{', '.join(inputs)}] }});", function.span)]
+        return [*lines, Line(head), *[Line(f"    {one},") for one in inputs], Line("] });")]
+
+    def spelled(self, type_: Type, span: ir.Span) -> str:
+        """A type in the layout of a function or a struct. Raises SssgenError with its place."""
+        if isinstance(type_, Struct) or (not isinstance(type_, Array) and spell(type_) in self.target.types):
+            return spell(type_)
+        what = "arrays in structs" if isinstance(type_, Array) else spell(type_)
+        hint = "use variables for its elements or columns, or pass the values that are read of it"
+        raise SssgenError([Diagnostic("error", f"{self.target.title} has no {what}", span, hint, self.source(span))])
+
+    def signature(self, function: ir.Function) -> str:
+        params = ", ".join([param.name for param in function.params])
+        return f"export const {function.name} = /*@__PURE__*/ Fn(({f'[{params}]' if params else ''}) =>"
+
+    def print_struct(self, struct: ir.StructDecl) -> list[Line]:
+        assert isinstance(struct.type, Struct)
+        name, fields = struct.type.name, struct.type.fields
+        members = ", ".join([f"{field.name}: '{self.spelled(field.type, struct.span)}'" for field in fields])
+        text = f"export const {name} = /*@__PURE__*/ struct({{ {members} }}, '{name}');"
+        return self.calling(wrap(text, struct.span))
+
+    def print_constant(self, constant: ir.Constant) -> list[Line]:
+        text = f"const {constant.name} = /*@__PURE__*/ {self.node(constant.value)};"
+        return self.calling(wrap(text, constant.span))
