@@ -24,9 +24,14 @@ def add_frame_functions(state: State) -> Module:
     """The module with the functions that the target's frame names, where it does not have them already."""
     fields = [field.name for field in state.surface.fields] if state.surface is not None else []
     inputs = {kind: entry.inputs for kind, entry in state.entries.items()}
-    used = used_frame(state.target, inputs, state.shell.inputs if state.shell else None, fields)
+    shell = state.shell.inputs if state.shell else None
+    left_out = dict.fromkeys(file.without for file in state.target.files[state.form])
+    frames = [
+        used_frame(state.target, {kind: names for kind, names in inputs.items() if kind not in kinds}, shell, fields)
+        for kinds in left_out
+    ]
     module = state.module
-    for name in dict.fromkeys(named(used)):
+    for name in dict.fromkeys(name for used in frames for name in named(used)):
         if name not in NAMES and (name == _NORMALIZE or os.path.isfile(_path(name))):
             added = _function(name, state.format, state.guards)
             keys = {function.key for function in module.functions}

@@ -197,12 +197,11 @@ def finish_program(state: State, trace: Trace | None = None) -> Program:
 
 
 def _reached(state: State, module: Module) -> dict[str, frozenset[str]]:
-    """Entry kind → the names of the functions that it calls, its own among them."""
+    """Entry kind, or function of the frame → the names of the functions that it calls, its own among them."""
     keys = {function.name: function.key for function in module.functions}
+    entries = {kind: entry.function.name for kind, entry in state.entries.items()}
+    names = {kind: state.renames.get(name, name) for kind, name in entries.items()} | state.frame_names
     return {
-        kind: frozenset(
-            function.name
-            for function in only(module, [keys[state.renames.get(entry.function.name, entry.function.name)]]).functions
-        )
-        for kind, entry in state.entries.items()
+        root: frozenset(function.name for function in only(module, [keys[name]]).functions)
+        for root, name in names.items()
     }

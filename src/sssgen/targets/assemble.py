@@ -25,7 +25,7 @@ from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text
 from sssgen.targets.printers.printer import Comments, Printer
 from sssgen.targets.templates import render
 from sssgen.targets.uniform_layout import Member, padding, place
-from sssgen.targets.used_frame import PER_LIGHT, used_frame, with_names
+from sssgen.targets.used_frame import PER_LIGHT, UsedFrame, named, used_frame, with_names
 
 _MARK = re.compile(r"\x02(\d{1,9})\x03", re.ASCII)
 
@@ -85,7 +85,8 @@ class Program(NamedTuple):
     frame_functions: Mapping[str, str] = {}
     """A function of `shells/` that the target's frame names → its name in the text."""
     reached: Mapping[str, frozenset[str]] = {}
-    """Entry kind → the names of the functions that it calls, where a file of the target leaves an entry out."""
+    """Entry kind, or function of the frame → the names of the functions that it calls, where a file of the target
+    leaves an entry out."""
 
 
 class Emitted(NamedTuple):
@@ -185,7 +186,9 @@ def emit(
             if not standalone:
                 files[name] = runtime_text(output.sources, target.folder)
             continue
-        own = context if not output.without else _without(output.without, context, program, marks)
+        own = context
+        if output.without:
+            own = _printed(target, program, form, marks, output.without)[0]
         text = render(output.template, own, templates, target.folder)
         if text.strip():  # a template may have nothing to say about a material
             files[name], lines[name] = _finish(text, marks)
@@ -206,10 +209,13 @@ def _calls(context: Mapping[str, Any]) -> dict[str, list[dict[str, Any]]]:
 
 
 def _printed(
-    target: Target, program: Program, form: str, marks: list[Span]
+    target: Target, program: Program, form: str, marks: list[Span], without: Collection[str] = ()
 ) -> tuple[dict[str, Any], list[Member], int, list[dict[str, int | str]]]:
-    """A template's variables, and where its uniforms and textures are."""
+    """A template's variables without some entries, and where its uniforms and textures are."""
     module = program.module
+    inputs = {kind: names for kind, (_, names) in program.entries.items() if kind not in without}
+    fields = {field.name for field in program.surface.fields} if program.surface is not None else set()
+    used = used_frame(target, inputs, program.shell[1] if program.shell else None, fields)
     printer = printer_for(target, module)
     owners = {uniform.name: program.source_names.get(uniform.name, uniform.name) for uniform in module.uniforms}
     printer.groups = {name: program.owners[source][0] for name, source in owners.items() if source in program.owners}
@@ -225,25 +231,25 @@ def _printed(
         "textures": _text([texture_lines], marks),
         "declarations": _text([uniform_lines, texture_lines], marks),
         "variables": _text(program.parts["variables"], marks),
-        "functions": _text(program.parts["functions"], marks),
+        "functions": _text(_functions(program, {*inputs, *named(used)}), marks),
         "entry": _text(program.parts["entry"], marks),
         "shell": _text(program.parts["shell"], marks),
         "imports": _text(program.parts["imports"], marks),
     }
     bindings = [printer.binding(index) for index in range(len(textures))] if declares else []
-    context = _context(target, program, printer, form, code) | {"padding": padding(members)}
+    context = _context(used, fields, inputs, program, printer, form, code) | {"padding": padding(members)}
     return context, members, size, [place for place in bindings if place]
 
 
-def _without(kinds: Sequence[str], context: dict[str, Any], program: Program, marks: list[Span]) -> dict[str, Any]:
-    """The variables of a template without some entries and the functions that only these need."""
+def _functions(program: Program, called: Collection[str]) -> list[list[Line]]:
+    """The printed functions without those that only other entries, or functions of the frame, call."""
     reached = program.reached
-    left = frozenset().union(*(names for kind, names in reached.items() if kind not in kinds))
-    out = frozenset().union(*(names for kind, names in reached.items() if kind in kinds)) - left
+    left = frozenset[str]().union(*(names for root, names in reached.items() if root in called))
+    out = frozenset[str]().union(*(names for root, names in reached.items() if root not in called)) - left
+    if not out:
+        return list(program.parts["functions"])
     functions = zip(program.module.functions, program.parts["functions"], strict=True)
-    text = _text([lines for function, lines in functions if function.name not in out], marks)
-    entries = {kind: entry for kind, entry in context["entries"].items() if kind not in kinds}
-    return {**context, "code": {**context["code"], "functions": text}, "entries": entries}
+    return [lines for function, lines in functions if function.name not in out]
 
 
 def _text(parts: Sequence[Sequence[Line]], marks: list[Span]) -> str:
@@ -262,24 +268,23 @@ def _text(parts: Sequence[Sequence[Line]], marks: list[Span]) -> str:
     return "\n\n".join(blocks)
 
 
-def _context(target: Target, program: Program, printer: Printer, form: str, code: dict[str, str]) -> dict[str, Any]:
-    """The variables of a template; docs/templates.md documents them."""
+def _context(
+    used: UsedFrame, fields: Collection[str], kinds: Collection[str], program: Program, printer: Printer, form: str,
+    code: dict[str, str],
+) -> dict[str, Any]:  # fmt: skip
+    """The variables of a template, with the entries of these kinds; docs/templates.md documents them."""
+    target, surface = used.target, program.surface
     entries = {
-        kind: _entry(target, printer, kind, function, inputs, program.frame_functions)
-        for kind, (function, inputs) in program.entries.items()
+        kind: _entry(target, printer, kind, *program.entries[kind], program.frame_functions) for kind in kinds
     }
-    inputs = {name for _, entry_inputs in program.entries.values() for name in entry_inputs}
+    inputs = {name for kind in kinds for name in program.entries[kind][1]}
     _check_properties(target, program)
-    surface = program.surface
-    fields = {field.name for field in surface.fields} if surface is not None else set()
-    inputs_of = {kind: entry_inputs for kind, (_, entry_inputs) in program.entries.items()}
-    used = used_frame(target, inputs_of, program.shell[1] if program.shell else None, fields)
     texts_of_names = {**program.frame_functions} | _surface_values(target, printer, fields)
     return {
         "frame": {place: with_names(text, texts_of_names) for place, text in used.frame.items()},
         "surface": {place: with_names(text, texts_of_names) for place, text in used.surface.items()},
         "material": program.about._asdict(),
-        "facts": program.about.facts,
+        "facts": program.about.facts | used.facts,
         "target": target,
         "form": form,
         "header": _header(target, program),

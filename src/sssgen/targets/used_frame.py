@@ -12,6 +12,8 @@ from sssgen.targets.frame import LIGHT, stage_of, used_parts
 
 PER_LIGHT = ("translucency", "lighting")
 """The kinds of the entries that a shell calls once per light."""
+OF_A_LIGHT = frozenset({"L", "L_object", "light_color", "light_nearness"})
+"""The inputs that differ from light to light."""
 
 _NAMED = re.compile(r"\{(\w+)\}", re.ASCII)
 
@@ -19,6 +21,10 @@ _NAMED = re.compile(r"\{(\w+)\}", re.ASCII)
 class UsedFrame(NamedTuple):
     """The texts by place in the templates."""
 
+    target: Target
+    """The target with its variants for the material's chain."""
+    facts: Collection[str]
+    """The properties of this chain."""
     frame: Mapping[str, str]
     """The used parts of the frame."""
     surface: Mapping[str, str]
@@ -35,6 +41,8 @@ def used_frame(
     `entries` are the inputs of the chain's functions by kind, `shell` the values that the shell of a target without an
     engine reads, `fields` the values of the surface.
     """
+    facts = _chain_facts(entries, fields)
+    target = target.for_material(facts)
     in_light = {**target.inputs, **target.light_inputs}
     if shell is not None:
         texts, light_texts = [target.inputs.get(name, name) for name in shell], []
@@ -47,7 +55,15 @@ def used_frame(
     for place, rows in sinks.items():
         (light_texts if stage_of(place) == LIGHT else texts).extend(rows)
     frame = used_parts(target.frame, target.reads, texts, light_texts)
-    return UsedFrame(frame, {place: "\n".join(rows) for place, rows in sinks.items()}, expressions)
+    return UsedFrame(target, facts, frame, {place: "\n".join(rows) for place, rows in sinks.items()}, expressions)
+
+
+def _chain_facts(entries: Mapping[str, Sequence[str]], fields: Collection[str]) -> set[str]:
+    """Those of the descriptor's `FACTS` that a chain has."""
+    facts = {kind for kind in PER_LIGHT if kind in entries}
+    if "translucency" in entries:
+        facts.add("subsurface" if OF_A_LIGHT.isdisjoint(entries["translucency"]) else "per_light")
+    return facts | ({"normal_mapped"} if "normal" in fields else set())
 
 
 def _rows(target: Target, place: str, fields: Collection[str]) -> list[str]:
