@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
@@ -163,6 +164,7 @@ def finish_program(state: State, trace: Trace | None = None) -> Program:
     """Runs the passes for the target, and prints the result."""
     pass_list.run(pass_list.TARGET, state, trace)
     module, target, material = state.module, state.target, state.material
+    folder = os.path.dirname(os.path.realpath(material.file)) if material is not None else ""
     check_uniforms(target, state.form, module.uniforms, state.source_names, source_line)
     parts = print_parts(
         target, module, comments_before, state.stage, state.entry_name, state.keep, comment_behind, source_line
@@ -185,8 +187,8 @@ def finish_program(state: State, trace: Trace | None = None) -> Program:
     return Program(
         module, entries, surface, state.source_names, About("", ""), encoded, parts, state.owners, state.renames,
         {kind: cost._asdict() for kind, cost in state.costs.items()}, warnings, state.settings,
-        report(state.guarded.sites, state.guarded.guarded) if state.guarded else {}, state.stage,
-        reached=reached,
+        report(state.guarded.sites, state.guarded.guarded, folder) if state.guarded else {}, state.stage,
+        reached=reached, folder=folder,
     )  # fmt: skip
 
 

@@ -76,6 +76,8 @@ class Program(NamedTuple):
     """The same material in the other languages of the target's files."""
     reached: Mapping[str, frozenset[str]] = {}
     """Entry kind → the names of the functions that it calls, where a file of the target leaves an entry out."""
+    folder: str = ""
+    """The material's folder: the reflection names files relative to it. '' is the working folder."""
 
 
 class Emitted(NamedTuple):

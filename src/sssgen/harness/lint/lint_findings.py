@@ -33,6 +33,7 @@ from sssgen.passes.stage.stage_interface import stage_kind
 from sssgen.pipeline.compiler import guarded_sites
 from sssgen.pipeline.programs import traced_sites
 from sssgen.support.diagnostics import Diagnostic, did_you_mean, failure
+from sssgen.support.paths import display_name
 from sssgen.support.text_files import refuse_folder
 from sssgen.targets import registry
 
@@ -149,7 +150,7 @@ class Finding(NamedTuple):
             "because": [
                 {
                     "text": explanation(step),
-                    "file": step.span.file,
+                    "file": display_name(step.span.file),
                     "line": step.span.line,
                     "column": step.span.column,
                     "low": step.range.low,
