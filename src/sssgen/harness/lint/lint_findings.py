@@ -249,7 +249,7 @@ def _plain(path: str, with_examples: bool, kinds: Collection[Kind], assumed: Seq
     sites, origins = traced_sites(module, assumed=assumptions.of if rules else None, unguarded=True)
     facts = [*assumptions.applied.values(), *_stated(module)]
     specimens = []
-    if with_examples and not any(map(endless, module.functions)):
+    if with_examples and not endless(module):
         names = {name.split(".")[0] for name, _ in assumptions.applied}
         specimens = [
             _technique(f"{path}:{function.name}")
