@@ -47,7 +47,7 @@ def main() -> None:
         growth = f"{seconds / before[1]:8.1f}x{levels / before[0]:10.1f}x" if before else ""
         print(f"{f'{levels} levels':16}{seconds:9.3f}{count:17}{growth}")
         before = levels, seconds
-    seconds, count = measured(load_file(NOISE, NOISE.name))
+    seconds, count = measured(load_file(NOISE))
     print(f"{'noise library':16}{seconds:9.3f}{count:17}")
 
 

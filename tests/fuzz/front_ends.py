@@ -66,7 +66,7 @@ class FrontEnd(NamedTuple):
 
 
 def _source(path: Path) -> None:
-    module = load_file(path, path.name, (TECHNIQUES,))
+    module = load_file(path, (TECHNIQUES,))
     for target in ("wgsl", "numpy"):  # those two are rewritten the most
         transpile(module, target, "fuzzed")
 

@@ -52,7 +52,7 @@ def included(path: Path) -> str:
     """The error of loading a file, or ''."""
     with bounded():
         try:
-            load_file(path, path.name)
+            load_file(path)
         except SssgenError as error:
             assert error.diagnostics[0].span.line
             return str(error)

@@ -128,7 +128,7 @@ def test_uniforms_have_the_offsets_of_the_reflection(gpu: Backend, tmp_path: Pat
     (actual,) = results([call], layout, gpu.draw(filled))
 
     names: dict[str, Any] = {}
-    exec(transpiled(load_file(tmp_path / "layout_probe.sss", "probe"), "numpy"), names)
+    exec(transpiled(load_file(tmp_path / "layout_probe.sss"), "numpy"), names)
     expected = names["layout_probe"](uv, **{
         name: in_layout(BY_NAME[type_.partition("[")[0]], "[" in type_, values[name])
         for name, type_ in ((uniform["name"], uniform["type"]) for uniform in compiled.reflection["uniforms"])

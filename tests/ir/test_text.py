@@ -173,7 +173,7 @@ def test_library_is_valid() -> None:
     paths = sorted(LIBRARY.rglob("*.sss"))
     assert paths
     for path in paths:
-        module = load_file(path, path.relative_to(LIBRARY).as_posix(), [LIBRARY])
+        module = load_file(path, [LIBRARY])
         assert verify(module) == [], path
         assert exact(read_module(print_module(module))) == exact(ir.Module(*module)), path
 

@@ -304,6 +304,19 @@ LOOPS_REFUSED = [
     "for (int n = 0; n < zeroing_nothing(); n++) { }",
     "for (int n = 0; n != 3; n += 2) { }",
     "for (int n = 0; n <= 2147483647; n++) { }",
+    "for (int n = 0; n < 2147483647; n += 2) { }",
+    "for (int n = 0; n <= i; n++) { }",
+    "for (int n = 0; n < i; n += 2) { }",
+    "for (int n = 0; n >= i; n--) { }",
+    "for (int n = 0; i > n; n += 2) { }",
+    "for (int n = 0; n <= LAST; n++) { }",
+    "for (int n = 0; n <= LAST + 1; n++) { }",
+    "for (int n = 0; n <= max(i, 3); n++) { }",
+    "for (int n = 0; n <= free_count; n++) { }",
+    "for (int n = 0; n <= count + LAST; n++) { }",
+    "for (uint n = 0u; n < 4294967295u; n += 2u) { }",
+    "for (uint n = 9u; n > 1u; n -= 3u) { }",
+    "int n = 0; while (n <= i) { n++; }",
     "for (uint n = 3u; n >= 0u; n--) { }",
     "for (uint n = 3u; n > 0u; n -= 2u) { }",
     "for (float t = 0.0; t < 1.0; t += 0.1) { }",
@@ -325,8 +338,38 @@ def test_loops_that_may_not_end(loop: str) -> None:
 void set_to_zero(out int x) {{ x = 0; }}
 float zeroing(inout int x) {{ x = 0; return 1.0; }}
 int zeroing_nothing() {{ return 3; }}
+const int LAST = 2147483647;
+uniform int count : hint_range(1, 64) = 8;
+uniform int free_count = 8;
 void f(float a, int i, int j) {{ {loop} }}
 """
     with pytest.raises(SssgenError) as raised:
         checked(source)
     assert [error.message for error in raised.value.diagnostics] == ["this loop cannot be proven to end"]
+
+
+@pytest.mark.parametrize(
+    "loop",
+    [
+        "for (int n = 0; n < i; n++) { }",
+        "for (int n = 0; n <= 2147483646; n++) { }",
+        "for (int n = 0; n < 2147483646; n += 2) { }",
+        "for (int n = 0; n <= min(i, 64); n += 3) { }",
+        "for (int n = 0; n < clamp(i, 1, 64); n += 3) { }",
+        "for (int n = 0; n <= count + MOST; n++) { }",
+        "for (int n = 0; n <= count - 1; n += 2) { }",
+        "for (int n = 9; n >= MOST; n -= 3) { }",
+        "for (int n = 9; n > i; n--) { }",
+        "for (int n = 9; n > max(i, -9); n -= 4) { }",
+        "for (uint n = 9u; n > 0u; n--) { }",
+        "for (uint n = 9u; n > 2u; n -= 3u) { }",
+        "for (uint n = 0u; n < 4294967294u; n += 2u) { }",
+        "int n = 0; while (n <= count && a > 0.0) { n++; }",
+    ],
+)
+def test_loops_that_end(loop: str) -> None:
+    checked(f"""
+const int MOST = 64;
+uniform int count : hint_range(1, 64) = 8;
+void f(float a, int i) {{ {loop} }}
+""")

@@ -91,7 +91,7 @@ def test_edits_give_the_texts_and_errors_of_the_edited_files(answers: Answers) -
     found = answers(asked)["answers"]
     for text, answer in zip(edits, found, strict=False):
         try:
-            expected = compile(parse_material(text, examples()["skin_ear"], "examples/skin_ear/skin_ear.toml"), "wgsl")
+            expected = compile(parse_material(text, examples()["skin_ear"]), "wgsl")
             assert (answer["texts"], answer["errors"]) == (expected.files, "")
         except SssgenError as error:
             assert answer["errors"] == str(error)

@@ -28,6 +28,7 @@ from sssgen.material.slots import candidates
 from sssgen.pipeline.compiler import FORMS, Compiled
 from sssgen.pipeline.compiler import compile as compile_material
 from sssgen.support.diagnostics import SssgenError, UnsupportedError
+from sssgen.support.paths import source_name
 from sssgen.targets import registry
 
 NAMES = sorted(library.index())
@@ -158,8 +159,7 @@ def uniforms() -> dict[str, Uniform]:
     """Every uniform of the library, by FILE:NAME."""
     results = {}
     for path in sorted(Path(library.TECHNIQUES).glob("*/*.sss")):
-        file = path.relative_to(library.TECHNIQUES).as_posix()
-        for uniform in load_file(path, file, (library.TECHNIQUES,)).uniforms:
+        for uniform in load_file(path, (library.TECHNIQUES,)).uniforms:
             results[f"{uniform.span.file}:{uniform.name}"] = uniform
     return results
 
@@ -297,7 +297,7 @@ def test_every_technique_makes_a_material(name: str) -> None:
     """The output has lines of the technique."""
     maps = compiled(name, "glsl-330", "shader").reflection["source_map"]
     places = {place for file in maps.values() for place in file.values()}
-    assert any(place.startswith(library.shown_name(library.index()[name])) for place in places), places
+    assert any(place.startswith(source_name(library.index()[name])) for place in places), places
 
 
 @pytest.mark.slow

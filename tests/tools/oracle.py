@@ -130,7 +130,7 @@ def _function(name: str) -> tuple[Module, Function]:
     if not colon:
         loaded = library.load(name)
         return loaded.module, loaded.function
-    module = load_file(Path(TECHNIQUES) / file, file, (TECHNIQUES,))
+    module = load_file(Path(TECHNIQUES) / file, (TECHNIQUES,))
     return module, next(function for function in module.functions if function.name == inner)
 
 

@@ -15,7 +15,7 @@ from sssgen.material.material_loading import examples, load_material
 from sssgen.material.requirements import requirements
 from sssgen.pipeline.compiler import all_targets
 from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.support.paths import posix
+from sssgen.support.paths import display_name, posix, source_name
 
 LISTS = ("techniques", "targets", "materials", "scenes", "media", "builtins", "backends")
 
@@ -70,7 +70,7 @@ def _techniques() -> list[dict[str, Any]]:
             "role": technique.role,
             "summary": technique.doc.get("summary", ""),
             "baseline": technique.baseline,
-            "file": library.shown_name(technique.path),
+            "file": display_name(source_name(technique.path)),
         }
         for technique in techniques
     ]

@@ -19,7 +19,7 @@ from sssgen.pipeline.compiler import transpile
 from sssgen.pipeline.trace import Trace
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_writer import write_files
-from sssgen.support.paths import posix
+from sssgen.support.paths import posix, source_name
 from sssgen.support.progress import ProgressBar
 from sssgen.support.text_files import read_code
 from sssgen.targets.program_reflection import ROWS
@@ -119,7 +119,7 @@ def run(arguments: Namespace) -> int:
     module, loaded, partner = None, None, None
     try:
         if path.suffix == ".sss":
-            module = load_file(path, path.as_posix(), (TECHNIQUES,))
+            module = load_file(path, (TECHNIQUES,))
         else:
             loaded = load_glsl(path, path.as_posix(), arguments.include, macros(arguments.define), arguments.entry)
             module = loaded.module
@@ -175,7 +175,8 @@ def _translate(
 ) -> int:
     called = None
     if arguments.prune:
-        called = [function.key for function in module.functions if function.span.file == path.as_posix()]
+        own = path.as_posix() if loaded is not None else source_name(path)
+        called = [function.key for function in module.functions if function.span.file == own]
         called = [key for key in called if key == "main()"] or called
     options: dict[str, Any] = {"called": called} if called else {}
     if loaded is not None:  # the text of a technique is simplified, that of plain GLSL is kept

@@ -15,12 +15,12 @@ from sssgen.lang.assumption_comments import AssumedInput
 from sssgen.lang.loader import load_file
 from sssgen.lang.plain_glsl import load_glsl
 from sssgen.material import library
-from sssgen.material.library import ROLES, Technique, folder_of, load_path, shown_name
+from sssgen.material.library import ROLES, Technique, folder_of, load_path
 from sssgen.material.material_loading import parse_material
 from sssgen.material.model import Material
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.support.file_memo import noted_files
-from sssgen.support.paths import stem
+from sssgen.support.paths import source_name, stem
 from sssgen.support.text_files import read_text
 
 _ROLE = re.compile(r"^[\s/*]*role[ \t]*:", re.MULTILINE)
@@ -65,11 +65,11 @@ def analyse(document: Document, before: Analysis | None = None) -> Analysis:
 
 def own_names(document: Document) -> tuple[str, ...]:
     """The names that messages may have for a document."""
-    return (document.shown, shown_name(document.path), os.path.basename(document.path))
+    return (document.shown, source_name(document.path), os.path.basename(document.path))
 
 
 def _technique(document: Document) -> Analysis:
-    module = load_file(document.path, shown_name(document.path), (library.TECHNIQUES,))
+    module = load_file(document.path, (library.TECHNIQUES,))
     name = stem(document.path)
     has_function = any(function.name == name and function.body is not None for function in module.functions)
     if _ROLE.search(document.text) or (folder_of(document.path) in ROLES and has_function):
@@ -86,7 +86,7 @@ def _glsl(document: Document) -> Analysis:
 
 def _material(document: Document) -> Analysis:
     text = read_text(document.path, document.shown)
-    return Analysis(material=parse_material(text, document.path, document.shown))
+    return Analysis(material=parse_material(text, document.path))
 
 
 def _scene(document: Document) -> Analysis:

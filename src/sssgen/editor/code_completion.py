@@ -24,7 +24,7 @@ from sssgen.material.attributes import ATTRIBUTES, REQUIREMENTS, SHAPES
 from sssgen.material.library import ROLES
 from sssgen.material.slots import signature
 from sssgen.material.technique_facts import uniform_facts, uniform_text
-from sssgen.support.paths import posix
+from sssgen.support.paths import posix, source_name
 
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"[^"]*$')
 _ATTRIBUTE = re.compile(r"^[\s/*]*(?P<word>[a-z_]*)$")
@@ -98,7 +98,7 @@ def _declared(analysis: Analysis) -> list[Item]:
 
 def _locals(document: Document, analysis: Analysis, line: int) -> list[Item]:
     """The parameters and variables of the function around a line, as it was when the text was last right."""
-    own = (document.shown, library.shown_name(document.path))
+    own = (document.shown, source_name(document.path))
     functions = [
         function
         for function in (analysis.module.functions if analysis.module else ())

@@ -11,6 +11,7 @@ from sssgen.lang.check.quantities import QUANTITIES, words
 from sssgen.material.library import Technique
 from sssgen.material.slots import signature
 from sssgen.material.technique_facts import facts_of, uniform_facts, uniform_text
+from sssgen.support.paths import display_name
 from sssgen.targets import builtin_facts
 
 _SHOWN_ATTRIBUTES = ("formula", "units", "limits", "source", "corrects")
@@ -40,7 +41,7 @@ def of_uniform(uniform: Uniform, value: str = "") -> str:
     """A parameter or texture: type, default, range, unit, what it means, the file that declares it."""
     facts = uniform_facts(uniform)
     head = f"**{facts['name']}**: {uniform_text(facts)}"
-    parts = [head, facts["doc"], f"here: {value}" if value else "", f"*declared in* {uniform.span.file}"]
+    parts = [head, facts["doc"], f"here: {value}" if value else "", f"*declared in* {display_name(uniform.span.file)}"]
     return "\n\n".join(part for part in parts if part)
 
 

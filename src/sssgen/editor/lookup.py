@@ -18,6 +18,7 @@ from sssgen.material import library, slots
 from sssgen.material.library import Technique
 from sssgen.material.material_loading import examples
 from sssgen.support.diagnostics import SssgenError
+from sssgen.support.paths import source_name
 from sssgen.targets import builtin_facts
 
 
@@ -104,7 +105,7 @@ def _called(document: Document, module: Module, word: Word, named: list[Function
 
 
 def _own_functions(document: Document, module: Module) -> list[Function]:
-    own = (document.shown, library.shown_name(document.path))
+    own = (document.shown, source_name(document.path))
     return [function for function in module.functions if function.span.file in own]
 
 

@@ -11,7 +11,7 @@ from sssgen.editor.documents import Document
 from sssgen.editor.source_files import path_of
 from sssgen.ir.spans import Span
 from sssgen.support.diagnostics import Diagnostic
-from sssgen.support.paths import posix
+from sssgen.support.paths import display_name
 
 _SUGGESTED = re.compile(r"'([^']+)'")
 _WRONG = re.compile(r"'([^']+)'")
@@ -64,7 +64,7 @@ def _problem(document: Document, analysis: Analysis, own: tuple[str, ...], diagn
     severity, message, span, hint, _ = diagnostic
     if not span.file or span.file in own:
         return Problem(_within(document, range_of(span)), severity, message, hint)
-    shown = span.file.removeprefix(f"{posix(document.folder)}/")
+    shown = display_name(span.file, os.path.realpath(document.folder))
     place = f"{shown}:{span.line}:{span.column}: " if span.line else f"{shown}: "
     path = path_of(span.file, document, analysis.files)
     return Problem(_naming(document, span.file), severity, place + message, hint, path, range_of(span), message)

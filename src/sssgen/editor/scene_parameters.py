@@ -12,6 +12,7 @@ from sssgen.material.requirements import read_uniforms
 from sssgen.material.shell_stages import NONE
 from sssgen.material.values import WrongValue, read_value
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean
+from sssgen.support.paths import display_name
 from sssgen.targets import registry
 
 
@@ -27,7 +28,7 @@ def material_of(scene: Scene) -> Material | None:
     except SssgenError as error:
         span = scene.document.place("material").value
         first = error.diagnostics[0]
-        place = f"{first.span.file}:{first.span.line}: " if first.span.line else ""
+        place = f"{display_name(first.span.file)}:{first.span.line}: " if first.span.line else ""
         raise SssgenError([Diagnostic("error", f"{place}{first.message}", span, first.hint)]) from None
 
 

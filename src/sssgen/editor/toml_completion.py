@@ -19,6 +19,7 @@ from sssgen.material.material_reader import CHOICES, MATERIAL_KEYS, STAGE_KEYS
 from sssgen.material.model import UV_SETS
 from sssgen.material.shell_stages import choices
 from sssgen.material.technique_facts import uniform_facts, uniform_text
+from sssgen.support.paths import source_name
 
 _LISTS = ("light",)
 """The sections of a scene that are written in double brackets."""
@@ -173,5 +174,5 @@ def _scene_value(document: Document, place: TomlPlace) -> list[Item]:
         return _quoted(SHAPES, place)
     if place.section.startswith("geometry") and place.key == "technique":
         paths = {name: path for name, path in library.index().items() if library.folder_of(path) == "distance"}
-        return _quoted([f"{library.shown_name(path)}:{name}" for name, path in paths.items()], place, "technique")
+        return _quoted([f"{source_name(path)}:{name}" for name, path in paths.items()], place, "technique")
     return []

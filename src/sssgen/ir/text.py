@@ -64,6 +64,14 @@ from sssgen.ir.types import BOOL, FLOAT, UINT, Struct, spell
 __all__ = ["TextError", "print_module", "read_module"]
 
 
+def print_meaning(declaration: Function | Constant) -> str:
+    """A declaration without its documentation and places: what two files declare alike has one text."""
+    printer = _Printer(spans=False)
+    if isinstance(declaration, Constant):
+        return printer.constant(declaration)
+    return printer.function(declaration._replace(doc=""))
+
+
 def print_module(module: Module, spans: bool = True) -> str:
     """The text of a valid module. Raises ValueError for a number that is not finite."""
     return _Printer(spans).module(module)

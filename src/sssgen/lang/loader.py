@@ -16,7 +16,7 @@ from sssgen.lang.source_lines import keep_lines, source_line
 from sssgen.support import cache, unsaved
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.support.file_memo import note
-from sssgen.support.paths import PACKAGE
+from sssgen.support.paths import PACKAGE, display_name, source_name
 from sssgen.support.text_files import read_text
 
 MAX_INCLUDED = 50
@@ -38,22 +38,24 @@ class LoadedModule(Module):
     key: str = ""
 
 
-Loaded = dict[tuple[str, tuple[str, ...]], LoadedModule]
-"""The files included so far, by path and roots: a file is read once per load."""
+Loaded = dict[str, LoadedModule]
+"""The files included so far, by their names: a file is read once per load."""
 
 
-def load_file(path: str | os.PathLike[str], shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Module:
+def load_file(path: str | os.PathLike[str], roots: Sequence[str | os.PathLike[str]] = ()) -> Module:
     """The checked module of a file and of all that it includes.
 
-    `shown` is the file's name in messages; `roots` are the folders in which `#include "x"` is looked for,
-    after the file's own. Raises SssgenError for a missing, unreadable, too large or faulty file.
+    `roots` are the folders in which `#include "x"` is looked for, after that of the file with the line. So the module
+    of a file does not depend on the files that include it. Raises SssgenError for a missing, unreadable, too large or
+    faulty file.
     """
-    return load_text(read_text(path, shown), shown, (os.path.dirname(path), *roots))
+    name = source_name(path)
+    return _load(read_text(path, name), name, os.path.dirname(os.path.realpath(path)), _folders(roots), (), {})
 
 
-def load_text(text: str, shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Module:
-    """The checked module of a source text; see `load_file`."""
-    return _load(text, shown, tuple([os.fspath(root) for root in roots]), (), {})
+def load_text(text: str, name: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Module:
+    """The checked module of a source text with this name, which is in no folder; see `load_file`."""
+    return _load(text, name, "", _folders(roots), (), {})
 
 
 def key_of(module: Module) -> str:
@@ -71,30 +73,36 @@ def _union(first: tuple[Any, ...], second: tuple[Any, ...]) -> tuple[Any, ...]:
     return first + tuple(declaration for declaration in second if declaration.span not in spans)
 
 
-def _load(text: str, shown: str, roots: tuple[str, ...], within: tuple[str, ...], loaded: Loaded) -> LoadedModule:
-    """The module of a text. `within` are the files that include it."""
-    keep_lines({shown: text})
-    included, parts = Module(), [_stamp(), shown, text]
-    for name, span in _includes(text, shown).items():
-        part = _include(name, span, roots, (*within, shown), loaded)
+def _folders(roots: Sequence[str | os.PathLike[str]]) -> tuple[str, ...]:
+    return tuple([os.fspath(root) for root in roots])
+
+
+def _load(
+    text: str, name: str, folder: str, roots: tuple[str, ...], within: tuple[str, ...], loaded: Loaded
+) -> LoadedModule:
+    """The module of a text in a folder ('' for none). `within` are the files that include it."""
+    keep_lines({name: text})
+    included, parts = Module(), [_stamp(), name, text]
+    for included_name, span in _includes(text, name).items():
+        part = _include(included_name, span, folder, roots, (*within, name), loaded)
         included = merge(included, part)
         parts.append(part.key)
     key = cache.digest("\0".join(parts))
-    module = _modules.pop(key, None) or _loaded(text, shown, included, key)
+    module = _modules.pop(key, None) or _loaded(text, name, included, key)
     _modules[key] = module
     if len(_modules) > MAX_MODULES:
         _modules.pop(next(iter(_modules)))
     return module
 
 
-def _loaded(text: str, shown: str, included: Module, key: str) -> LoadedModule:
+def _loaded(text: str, name: str, included: Module, key: str) -> LoadedModule:
     """The module with this key, from the cache folder or from its text."""
     module = cache.unpickled(cache.read(f"{key}.ir"))
     if not isinstance(module, Module):
         from sssgen.lang.check.module_checker import check
         from sssgen.lang.syntax.parser import parse
 
-        module = check(parse(text, shown), text, included)
+        module = check(parse(text, name), text, included)
         if not unsaved.any_kept():
             cache.write(f"{key}.ir", cache.pickled(module))
     loaded = LoadedModule(*module)
@@ -102,36 +110,39 @@ def _loaded(text: str, shown: str, included: Module, key: str) -> LoadedModule:
     return loaded
 
 
-def _includes(text: str, shown: str) -> dict[str, Span]:
+def _includes(text: str, file: str) -> dict[str, Span]:
     """The names that a text includes, each with its first place."""
     names: dict[str, Span] = {}
     for match in _INCLUDE.finditer(text):
         if match.group(1) not in names:
             line = text.count("\n", 0, match.start()) + 1
             column = match.start(1) - text.rfind("\n", 0, match.start(1))
-            names[match.group(1)] = Span(shown, line, column, line, column + len(match.group(1)))
+            names[match.group(1)] = Span(file, line, column, line, column + len(match.group(1)))
     return names
 
 
-def _include(name: str, span: Span, roots: tuple[str, ...], within: tuple[str, ...], loaded: Loaded) -> LoadedModule:
-    """The module of an included file."""
+def _include(
+    included: str, span: Span, folder: str, roots: tuple[str, ...], within: tuple[str, ...], loaded: Loaded
+) -> LoadedModule:
+    """The module of a file that one in this folder includes."""
     line = source_line(span)
-    for root in roots:
-        path = os.path.join(root, name)
+    for root in (folder, *roots) if folder else roots:
+        path = os.path.join(root, included)
         note(path)
         if os.path.isfile(path):
+            name = source_name(path)
             if name in within:
-                message = f"'{name}' includes itself: {' → '.join((*within, name))}"
+                message = f"'{included}' includes itself: {' → '.join(map(display_name, (*within, name)))}"
                 raise SssgenError([Diagnostic("error", message, span, "", line)])
             if len(within) > MAX_INCLUDED:
                 message = f"files include files more than {MAX_INCLUDED} deep"
                 raise SssgenError([Diagnostic("error", message, span, "include what is needed itself", line)])
-            if (path, roots) not in loaded:
-                inner_roots = tuple(dict.fromkeys((os.path.dirname(path), *roots)))
-                loaded[path, roots] = _load(read_text(path, name), name, inner_roots, within, loaded)
-            return loaded[path, roots]
+            if name not in loaded:
+                inner = os.path.dirname(os.path.realpath(path))
+                loaded[name] = _load(read_text(path, name), name, inner, roots, within, loaded)
+            return loaded[name]
     hint = "it is looked for beside the file and in the technique library"
-    raise SssgenError([Diagnostic("error", f"cannot find '{name}' to include", span, hint, line)])
+    raise SssgenError([Diagnostic("error", f"cannot find '{included}' to include", span, hint, line)])
 
 
 def _stamp() -> str:

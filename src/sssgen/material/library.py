@@ -15,10 +15,9 @@ from sssgen.material import attributes
 from sssgen.material.attributes import Attributes
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.file_memo import CachedResult, remembered
-from sssgen.support.paths import PACKAGE, place, posix, stem
+from sssgen.support.paths import TECHNIQUES as TECHNIQUES
+from sssgen.support.paths import source_name, stem
 from sssgen.support.text_files import refuse_folder
-
-TECHNIQUES = os.path.join(PACKAGE, "techniques")
 
 ROLES = (
     "geometry",
@@ -86,14 +85,6 @@ def folder_of(path: str) -> str:
     return os.path.basename(os.path.dirname(path))
 
 
-def shown_name(path: str) -> str:
-    """A file's name in messages and reflection: files of the library and of the examples by their place there."""
-    examples = place("examples")
-    if path.startswith(examples + os.sep):
-        return posix(f"examples{path.removeprefix(examples)}")
-    return posix(path.removeprefix(TECHNIQUES + os.sep))
-
-
 def file_meant(name: str, folder: str = "") -> str:
     """The hint for a name that the library does not have, but a file of the folder; '' where it has no such file."""
     files = [file for file in (f"{name}.sss", f"{name}.glsl") if os.path.isfile(os.path.join(folder, file))]
@@ -124,8 +115,8 @@ def load_path(path: str) -> Technique:
 
 
 def _read_technique(path: str) -> Technique:
-    shown, name = shown_name(path), stem(path)
-    module = load_file(path, shown, (TECHNIQUES,))
+    shown, name = source_name(path), stem(path)
+    module = load_file(path, (TECHNIQUES,))
     function = next((f for f in reversed(module.functions) if f.name == name and f.body is not None), None)
     if function is None:
         raise failure(f"the file has no function '{name}'", "a technique has the name of its file", shown)

@@ -8,7 +8,7 @@ from sssgen.material.material_reader import read_material
 from sssgen.material.model import Material
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.file_memo import CachedResult, note, remembered
-from sssgen.support.paths import place, posix
+from sssgen.support.paths import place, posix, source_name
 from sssgen.support.text_files import read_text, refuse_folder
 
 
@@ -44,19 +44,14 @@ def load_material(path_or_name: str | os.PathLike[str]) -> Material:
             file_hint = f"did you mean '{text}.toml'?" if os.path.isfile(f"{text}.toml") else ""
             hint = f"give a path that ends in .toml, or one of: {', '.join(names)}"
             raise failure(f"unknown material '{text}'", file_hint or did_you_mean(text, names) or hint)
-        return _remembered(path, f"examples/{text}/{text}.toml")
-    return _remembered(text, posix(text))
+        text = path
+    key = f"{os.path.abspath(text)}\0{text}"
+    return remembered(_materials, key, lambda: parse_material(read_text(text, posix(text)), text))
 
 
-def _remembered(path: str, shown: str) -> Material:
-    key = f"{os.path.abspath(path)}\0{shown}"
-    return remembered(_materials, key, lambda: parse_material(read_text(path, shown), path, shown))
-
-
-def parse_material(text: str, path: str | os.PathLike[str], shown: str = "") -> Material:
+def parse_material(text: str, path: str | os.PathLike[str]) -> Material:
     """The material that a TOML text describes.
 
-    File names in it are relative to the folder of `path`; `shown` is its name in messages. Raises SssgenError with all
-    errors of the material.
+    File names in it are relative to the folder of `path`. Raises SssgenError with all errors of the material.
     """
-    return read_material(text, os.fspath(path), shown or posix(path))
+    return read_material(text, os.fspath(path), source_name(path))

@@ -13,6 +13,7 @@ from sssgen.material.library import Technique
 from sssgen.material.model import ALPHA_MODES, SHADINGS, UV_SETS, Binding, Material, TechniqueUse, wrong_name
 from sssgen.material.values import WrongValue, read_texture, read_value
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean
+from sssgen.support.paths import display_name
 from sssgen.support.toml_source import Document, parse
 
 _TEXTS = ("name", "title", "doc", "shading", "alpha_mode")
@@ -33,9 +34,9 @@ class _Shared(NamedTuple):
     line: int
 
 
-def read_material(text: str, path: str, shown: str) -> Material:
-    """The material that a TOML text describes; see `material.parse_material`."""
-    reader = _Reader(parse(text, shown), path)
+def read_material(text: str, path: str, name: str) -> Material:
+    """The material that a TOML text of this name describes; see `material_loading.parse_material`."""
+    reader = _Reader(parse(text, name), path)
     material = reader.material()
     own = sorted(reader.document.reporter.diagnostics, key=lambda diagnostic: diagnostic.span[1:3])
     if own or reader.foreign:
@@ -341,7 +342,8 @@ class _Reader:
         earlier = self.shared.setdefault(uniform.span, _Shared(value, stage.technique.name, span.line))
         if earlier.value != value:
             message = f"'{uniform.name}' has another value in '{earlier.technique}', line {earlier.line}"
-            self.document.error(span, message, f"both stages share it (it is in {uniform.span.file}): give it once")
+            file = display_name(uniform.span.file)
+            self.document.error(span, message, f"both stages share it (it is in {file}): give it once")
 
     # Slots
 

@@ -40,7 +40,7 @@ def add_shell(
     `entries` are the functions of the chain by kind, `surface` its struct; `facts` are the constants `two_sided` and
     `masked` of the shell, and `given` the variables of the shell that its target supplies instead.
     """
-    shell = load_file(os.path.join(SHELLS, f"{name}.sss"), f"shells/{name}.sss", (SHELLS,))
+    shell = load_file(os.path.join(SHELLS, f"{name}.sss"), (SHELLS,))
     fields = {field.name for field in surface.fields} if surface is not None else set[str]()
     present = dict(facts) | dict.fromkeys([f"has_{name}" for name in (*entries, *fields)], True)
     function = _decided(shell, present, fields).functions[-1]

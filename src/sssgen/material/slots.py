@@ -12,7 +12,7 @@ from sssgen.lang.loader import load_file
 from sssgen.material import library
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.file_memo import note
-from sssgen.support.paths import stem
+from sssgen.support.paths import source_name, stem
 
 Needs = tuple[frozenset[str], tuple[Function, ...]]
 
@@ -98,7 +98,7 @@ def find(text: str, slot: Function, folder: str) -> tuple[Module, Function]:
         path = next((path for path in paths if os.path.isfile(path)), None)
         if path is None:
             raise failure(f"cannot find the file '{source}'", "the path is relative to the material")
-        module = load_file(path, library.shown_name(path), (library.TECHNIQUES,))
+        module = load_file(path, (library.TECHNIQUES,))
         name = name or stem(path)
     else:
         if source not in library.index():
@@ -136,7 +136,7 @@ def candidates(slot: Function) -> list[str]:
             own = [
                 function
                 for function in module.functions
-                if function.span.file == library.shown_name(path) and fits(slot, function)
+                if function.span.file == source_name(path) and fits(slot, function)
             ]
             function_names = [
                 function.name
@@ -153,11 +153,7 @@ def body(shape: str, place: str) -> str:
     '' where there is none: `body("box", "object_position")` is `box:box_object`.
     """
     for technique in library.load_all():
-        own = [
-            function
-            for function in technique.module.functions
-            if function.span.file == library.shown_name(technique.path)
-        ]
+        own = [function for function in technique.module.functions if function.span.file == source_name(technique.path)]
         for function in own if technique.attributes.shape == shape else ():
             if [param.quantity for param in function.params] == [place]:
                 return technique.name if function.name == technique.name else f"{technique.name}:{function.name}"

@@ -7,8 +7,9 @@ from typing import Any
 
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, kind_of, spell
-from sssgen.material import library, slots
+from sssgen.material import slots
 from sssgen.material.library import Technique
+from sssgen.support.paths import display_name, source_name
 
 _OTHERWISE_SHOWN = ("hint_range", "unit", "alias", "holds", "sample_range", "bound_range")
 """Hints that are shown elsewhere, and those of tests."""
@@ -37,7 +38,7 @@ def facts_of(technique: Technique) -> dict[str, Any]:
         ],
         "doc": {key: text for key, text in doc.items() if key != "role"},
         "baseline": technique.baseline,
-        "file": library.shown_name(technique.path),
+        "file": display_name(source_name(technique.path)),
     }
 
 

@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.formats import FLOAT32, Format
-from sssgen.ir.intrinsics import Guard, by_column, with_constants
+from sssgen.ir.intrinsics import BUILTINS, Guard, by_column, with_constants
 from sssgen.ir.transform import Transformer, rewrite_function
 from sssgen.ir.types import BOOL, FLOAT, UINT, Matrix, Type, components, kind_of, spell, vector_of
 from sssgen.ir.walk import operands, subexpressions, with_operands
 from sssgen.passes.ranges.range_pass import Findings, analyse
-from sssgen.passes.ranges.sites import BOUNDS, DIVISION, ELEMENT, WHOLE_DIVISION, Site
+from sssgen.passes.ranges.sites import DIVISION, ELEMENT, WHOLE_DIVISION, Site
 from sssgen.passes.substitute import inlined, with_larger_bound
 
 Source = Callable[[Guard, str, Sequence[Type], Type, Format, tuple[float, float]], tuple[ir.Module, str]]
@@ -111,13 +111,13 @@ class _Guarder(Transformer):
 
     def guarded(self, node: ir.Expr, sites: list[Site]) -> ir.Expr:
         """A node with its guards: those of its arguments, then those of its result."""
-        for site in sorted(sites, key=lambda site: guard_of(site).replaces == "result"):
+        for site in sorted(sites, key=lambda site: site.guard.replaces == "result"):
             safe = self.apply(node, site)
-            node = poisoned(node, safe, guard_of(site)) if id(site) in self.poisoned else safe
+            node = poisoned(node, safe, site.guard) if id(site) in self.poisoned else safe
         return node
 
     def apply(self, node: ir.Expr, site: Site) -> ir.Expr:
-        guard = guard_of(site)
+        guard = guard_of(site, self.format)
         if not guard.text:
             return self.with_safe_divisions(node)
         args = operands(node)
@@ -168,7 +168,7 @@ class _Guarder(Transformer):
         return ir.Call(safe.result, safe.key, node.args, node.span)
 
 
-def guard_of(site: Site) -> Guard:
+def guard_of(site: Site, format: Format) -> Guard:
     """The guard of a site: the weakest one that its ranges require."""
     guard = site.guard
     if guard is DIVISION and site.args:
@@ -177,17 +177,35 @@ def guard_of(site: Site) -> Guard:
             return guard._replace(text="max(y, DIVISOR)")
         if divisor.high <= 0.0:
             return guard._replace(text="min(y, -DIVISOR)")
-    if guard is BOUNDS:
-        low, high = site.limits
-        if site.args[0].high <= high:
-            return guard._replace(text="max(x, LOW)")
-        if site.args[0].low >= low:
-            return guard._replace(text="min(x, HIGH)")
     if guard is WHOLE_DIVISION and kind_of(operands(site.node)[1].type) == "uint":
         return guard._replace(text="max(y, 1u)")
     if guard is ELEMENT and operands(site.node)[1].type == UINT:
         return guard._replace(text="min(y, uint(LAST))")
-    return guard
+    return guard._replace(text=_one_sided(guard, site, format))
+
+
+def _one_sided(guard: Guard, site: Site, format: Format) -> str:
+    """The text of a guard that is a `clamp`: `min` or `max` where the range of what it replaces needs no more."""
+    clamp = _CLAMP.fullmatch(guard.text)
+    if clamp is None or not site.args:
+        return guard.text
+    is_builtin = isinstance(site.node, ir.Intrinsic) and site.operation == site.node.name
+    if is_builtin and (guard.replaces == "result" or not BUILTINS[site.operation].componentwise):
+        return guard.text  # the ranges are those of the arguments, or of their lengths
+    range_ = site.args[min("xyz".index(clamp[1]), len(site.args) - 1)]  # of an index or a result there is only one
+    low, high = [_number(with_constants(bound, format, site.limits)) for bound in clamp.groups()[1:]]
+    if (range_.low >= low) == (range_.high <= high):
+        return guard.text
+    return f"min({clamp[1]}, {clamp[3]})" if range_.low >= low else f"max({clamp[1]}, {clamp[2]})"
+
+
+_CLAMP = re.compile(r"clamp\(([xyz]), ([^(),]+), ([^(),]+)\)")
+
+
+def _number(text: str) -> float:
+    """The value of a number, or of a difference of two."""
+    first, *others = map(float, text.split(" - "))
+    return first - sum(others)
 
 
 def _of_whole_call(guard: Guard, node: ir.Intrinsic) -> Guard:
@@ -203,7 +221,7 @@ def _of_whole_call(guard: Guard, node: ir.Intrinsic) -> Guard:
 
 def remedy(site: Site, format: Format, guard: Guard | None = None) -> str:
     """What replaces the argument, the result or the call, for people; `guard` is that of one of the failures."""
-    guard = guard_of(site if guard is None else site._replace(guard=guard))
+    guard = guard_of(site if guard is None else site._replace(guard=guard), format)
     if guard.advice is not None:
         return with_constants(guard.advice(*site.args), format, site.limits, "{:g}".format)
     text = guard.text or guard.doc

@@ -1,8 +1,8 @@
 """Links the techniques of a material into one module: slots are bound, uniforms get one name each, without duplicates.
 
 First of all passes: everything after it sees one closed module without slots. A function that two stages use alike
-appears once; one that they use differently (for example with another distance function bound to its slot) appears once
-for each.
+appears once, also where it is in a file of each; one that they use differently (for example with another distance
+function bound to its slot) appears once for each. A constant of equal name and value appears once, too.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from sssgen.ir.nodes import Call, Constant, Expr, Function, Global, Module, Span, StructDecl, Uniform
+from sssgen.ir.text import print_meaning
 from sssgen.ir.transform import rewrite, rewrite_function
 from sssgen.ir.types import Struct, spell
 from sssgen.ir.walk import all_expressions, subexpressions
@@ -84,7 +85,11 @@ class _Linker:
         self.owners: dict[str, tuple[str, str]] = {}
         self.settings: dict[str, list[tuple[int, str]]] = {}
         self.instances: dict[object, Function] = {}
+        """By what makes them: the place in the source, the functions called and the names read."""
+        self.same: dict[str, Function] = {}
+        """The same by their meaning, under their own names."""
         self.global_names: dict[object, str] = {}
+        """The linked name of each uniform and constant, by its place, and of each constant by its meaning, too."""
         self.modules: dict[int, tuple[Module, Module]] = {}
         """By its id: a module with structs of taken names, and the same without."""
 
@@ -117,12 +122,16 @@ class _Linker:
             return self.instances[identity]
         for struct in module.structs:
             self.struct(struct)
-        name, count = function.name, 2
-        while name in self.taken or function._replace(name=name).key in self.functions:
-            name, count = f"{function.name}_{count}", count + 1
-        linked = rewrite_function(function._replace(name=name), _renaming(calls, names))
-        self.instances[identity] = self.functions[linked.key] = linked
-        return linked
+        linked = rewrite_function(function, _renaming(calls, names))
+        text = print_meaning(linked)
+        if text not in self.same:
+            name, count = function.name, 2
+            while name in self.taken or function._replace(name=name).key in self.functions:
+                name, count = f"{function.name}_{count}", count + 1
+            linked = linked._replace(name=name)
+            self.same[text] = self.functions[linked.key] = linked
+        self.instances[identity] = self.same[text]
+        return self.same[text]
 
     def with_free_structs(self, module: Module) -> Module:
         """A module without structs of taken names; the same for each stage that has it."""
@@ -156,9 +165,11 @@ class _Linker:
             }
             if any(old != new for old, new in inner.items()):
                 value = rewrite(value, _renaming({}, inner))
-            linked_name = self.free_name(name, stage.technique)
-            self.global_names[constant.span] = linked_name
-            self.constants[linked_name] = constant._replace(name=linked_name, value=value)
+            text = print_meaning(constant._replace(value=value))
+            if text not in self.global_names:
+                linked_name = self.global_names[text] = self.free_name(name, stage.technique)
+                self.constants[linked_name] = constant._replace(name=linked_name, value=value)
+            self.global_names[constant.span] = self.global_names[text]
         return self.global_names[constant.span]
 
     def uniform(self, uniform: Uniform, index: int, stage: LinkInput) -> str:

@@ -50,18 +50,19 @@ def inlined(module: ir.Module, args: Sequence[ir.Expr], span: ir.Span, may_repea
 
 
 def with_larger_bound(module: ir.Module, args: Sequence[ir.Expr]) -> ir.Expr | None:
-    """`max(x, bound)` of an argument that is itself a `max` or `clamp`: that with the larger bound; otherwise None."""
+    """`max(x, bound)` of a `max` or `clamp`: that with the larger bound; of a `min`: a `clamp`; otherwise None."""
     body = module.functions[-1].body or ()
     value = body[0].value if len(body) == 1 and isinstance(body[0], ir.Return) else None
     if not isinstance(value, ir.Intrinsic) or value.name != "max" or not isinstance(value.args[1], ir.Literal):
         return None
     (inner,) = args
-    if not isinstance(inner, ir.Intrinsic) or inner.name not in ("max", "clamp"):
+    if not isinstance(inner, ir.Intrinsic) or inner.name not in ("min", "max", "clamp"):
         return None
-    old, new = inner.args[1], value.args[1]
-    if not isinstance(old, ir.Literal) or old.value > new.value:
+    new, bounds = value.args[1], inner.args[1:]
+    lower, upper = (new, *bounds) if inner.name == "min" else (*bounds, new)[:2]
+    if not isinstance(lower, ir.Literal) or lower.value > new.value:
         return None
-    upper = inner.args[2] if inner.name == "clamp" else new
     if not isinstance(upper, ir.Literal) or upper.value < new.value:  # it would undo the larger bound
         return None
-    return inner._replace(args=(inner.args[0], new._replace(span=old.span), *inner.args[2:]))
+    args = inner.args[0], new._replace(span=inner.args[1].span), *(bounds[-1:] if inner.name != "max" else ())
+    return inner._replace(name="max" if inner.name == "max" else "clamp", args=args)

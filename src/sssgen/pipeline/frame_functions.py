@@ -50,5 +50,5 @@ def _function(name: str, format: Format, guards: str) -> Module:
     if name == _NORMALIZE:
         row = BUILTINS["normalize"].guards[0]
         return guard_source(row, name, (VEC3,), VEC3, format, (0.0, 0.0))[0]
-    module = load_file(_path(name), f"shells/{name}.sss", (SHELLS,))
+    module = load_file(_path(name), (SHELLS,))
     return guard(module, [module.functions[-1].key], guards, guard_source, polyfill, format).module

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
@@ -165,6 +166,7 @@ def finish_program(state: State, trace: Trace | None = None) -> Program:
     """Runs the passes for the target, and prints the result."""
     pass_list.run(pass_list.TARGET, state, trace)
     module, target, material = state.module, state.target, state.material
+    folder = os.path.dirname(os.path.realpath(material.file)) if material is not None else ""
 
     def final(entry: Entry) -> tuple[Function, tuple[str, ...]]:
         """An assembled function as the target has it, with its inputs."""
@@ -190,9 +192,8 @@ def finish_program(state: State, trace: Trace | None = None) -> Program:
     return Program(
         module, entries, surface, state.source_names, About("", ""), encoded, parts, state.owners, state.renames,
         {kind: cost._asdict() for kind, cost in state.costs.items()}, warnings, state.settings,
-        report(state.guarded.sites, state.guarded.guarded) if state.guarded else {}, state.stage,
-        reached=reached, shell=shell,
-        frame_functions=state.frame_names,
+        report(state.guarded.sites, state.guarded.guarded, folder) if state.guarded else {}, state.stage,
+        reached=reached, shell=shell, frame_functions=state.frame_names, folder=folder,
     )  # fmt: skip
 
 
@@ -200,7 +201,7 @@ def _reached(state: State, module: Module) -> dict[str, frozenset[str]]:
     """Entry kind, or function of the frame → the names of the functions that it calls, its own among them."""
     keys = {function.name: function.key for function in module.functions}
     entries = {kind: entry.function.name for kind, entry in state.entries.items()}
-    names = {kind: state.renames.get(name, name) for kind, name in entries.items()} | state.frame_names
+    names = {**{kind: state.renames.get(name, name) for kind, name in entries.items()}, **state.frame_names}
     return {
         root: frozenset(function.name for function in only(module, [keys[name]]).functions)
         for root, name in names.items()

@@ -9,7 +9,7 @@ from typing import Any
 from sssgen.material import library
 from sssgen.pipeline.compiler import FORMS, Compiled
 from sssgen.support.diagnostics import SssgenError, failure
-from sssgen.support.paths import place, posix
+from sssgen.support.paths import posix
 from sssgen.support.text_files import read_text
 from sssgen.targets import registry
 
@@ -45,8 +45,8 @@ def text_of(emitted: Callable[[str, str], Compiled], target: str, form: str) -> 
     return message
 
 
-def source_of(name: str, read: Collection[str]) -> dict[str, Any]:
-    """The message with the text of a file that lines come from. Raises SssgenError.
+def source_of(name: str, folder: str, read: Collection[str]) -> dict[str, Any]:
+    """The message with the text of a file that lines come from, named relative to a folder. Raises SssgenError.
 
     It is one of the library, or one of those that were `read` for the picture; no other file is read.
     """
@@ -54,20 +54,17 @@ def source_of(name: str, read: Collection[str]) -> dict[str, Any]:
         builtin = name.removeprefix(_GUARDS)
         note = f"The guard of the builtin {builtin}, where its operands are not proven safe: sssgen show {builtin}"
         return {"kind": "source", "name": name, "text": "", "note": note}
-    path = _path(name, read)
+    path = _path(name, folder, read)
     if not path:
         raise failure(f"'{name}' is no file that this picture depends on", "it may have been renamed: save it again")
     return {"kind": "source", "name": name, "text": read_text(path, posix(path)), "note": ""}
 
 
-def _path(name: str, read: Collection[str]) -> str:
-    """The path of a file as places name it: whole, or below the library or the examples; '' for others."""
-    whole = os.path.abspath(name)
-    if whole in read:
-        return whole
-    example = os.path.join(os.path.dirname(place("examples")), name)
-    if os.path.abspath(example) in read:
-        return example
+def _path(name: str, folder: str, read: Collection[str]) -> str:
+    """The path of a file as places name it: relative to the folder, or below the library; '' for others."""
+    own = os.path.realpath(os.path.join(folder, name))
+    if own in map(os.path.realpath, read):
+        return own
     known = os.path.normpath(os.path.join(library.TECHNIQUES, name))
     below = known.startswith(os.path.join(os.path.normpath(library.TECHNIQUES), ""))
     return known if below and known.endswith(".sss") and os.path.isfile(known) else ""

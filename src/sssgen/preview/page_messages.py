@@ -13,6 +13,7 @@ question, which has its kind.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -123,7 +124,9 @@ class PageMessages:
         return text_of(pane.emitted, str(message["target"]), str(message["form"]))
 
     def _source(self, message: dict[str, Any]) -> dict[str, Any]:
-        return source_of(str(message["name"]), self.files)
+        material = self._pane(message).picture.material
+        folder = os.path.dirname(material.file) if material is not None else ""
+        return source_of(str(message["name"]), folder, self.files)
 
     def _measured(self, message: dict[str, Any]) -> dict[str, Any]:
         pane = self._pane(message)

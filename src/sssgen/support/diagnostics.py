@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from sssgen.ir.spans import NOWHERE, Span
+from sssgen.support.paths import display_name
 
 MAX_ERRORS = 100
 """The largest number of errors collected for one file."""
@@ -39,7 +40,8 @@ class Diagnostic(NamedTuple):
         lines = [f"{self.severity}: {visible(self.message)}"]
         span = self.span
         if span.file:
-            place = f"{span.file}:{span.line}:{span.column}" if span.line else span.file
+            file = display_name(span.file)
+            place = f"{file}:{span.line}:{span.column}" if span.line else file
             lines.append(f"  --> {visible(place)}")
         if self.source_line.strip():
             text, column, end = _window(self.source_line, span)
@@ -56,7 +58,7 @@ class Diagnostic(NamedTuple):
         return {
             "severity": self.severity,
             "message": self.message,
-            "file": span.file,
+            "file": display_name(span.file),
             "line": span.line,
             "column": span.column,
             "end_line": span.end_line,

@@ -16,6 +16,10 @@ PACKAGE = os.path.dirname(os.path.dirname(__file__))
 """The folder of the package itself."""
 
 
+TECHNIQUES = os.path.join(PACKAGE, "techniques")
+"""The folder of the technique library."""
+
+
 def place(name: str) -> str:
     """The path of the folder called `name`, in a checkout or an installed package."""
     packaged = os.path.join(PACKAGE, "_data", name)
@@ -44,6 +48,28 @@ def shell_word(path: str) -> str:
         relative = os.pardir
     shown = posix(path if relative.startswith(os.pardir) else relative)
     return f'"{shown}"' if " " in shown else shown
+
+
+def source_name(path: str | os.PathLike[str]) -> str:
+    """The one name of a source file, however its path is spelled: its place in the library, or its real path.
+
+    Spans have this name, so two declarations of equal spans are the same. People see `display_name`.
+    """
+    real = os.path.realpath(path)
+    for library in (TECHNIQUES, PACKAGE):
+        real = real.removeprefix(os.path.realpath(library) + os.sep)
+    return posix(real)
+
+
+def display_name(name: str, folder: str = "") -> str:
+    """A source's name for people: its real path relative to a real `folder`, or to the working folder if shorter."""
+    if not os.path.isabs(name):
+        return name
+    try:
+        relative = posix(os.path.relpath(name, folder or None))
+    except ValueError:  # it is on another drive
+        return name
+    return relative if folder else min(relative, name, key=len)
 
 
 def stem(path: str) -> str:

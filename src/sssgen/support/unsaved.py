@@ -12,23 +12,24 @@ def keep(path: str | os.PathLike[str], text: str) -> None:
     """Reads the text, from now on, wherever the file is read."""
     global _changes
     _changes += 1
-    _texts[os.path.abspath(path)] = (_changes, text)
+    _texts[os.path.realpath(path)] = (_changes, text)
 
 
 def drop(path: str | os.PathLike[str]) -> None:
     """Reads the file itself again."""
-    _texts.pop(os.path.abspath(path), None)
+    _texts.pop(os.path.realpath(path), None)
 
 
 def text_of(path: str | os.PathLike[str]) -> str | None:
     """The text that is kept for a file."""
-    kept = _texts.get(os.path.abspath(path)) if _texts else None
+    kept = _texts.get(os.path.realpath(path)) if _texts else None
     return kept[1] if kept else None
 
 
 def change_of(path: str) -> int:
-    """A number that differs for each text kept for an absolute path; 0 where the file itself is read."""
-    return _texts[path][0] if path in _texts else 0
+    """A number that differs for each text kept for a file; 0 where the file itself is read."""
+    kept = _texts.get(os.path.realpath(path)) if _texts else None
+    return kept[0] if kept else 0
 
 
 def any_kept() -> bool:

@@ -87,6 +87,8 @@ class Program(NamedTuple):
     reached: Mapping[str, frozenset[str]] = {}
     """Entry kind, or function of the frame → the names of the functions that it calls, where a file of the target
     leaves an entry out."""
+    folder: str = ""
+    """The material's folder: the reflection names files relative to it. '' is the working folder."""
 
 
 class Emitted(NamedTuple):
@@ -274,9 +276,7 @@ def _context(
 ) -> dict[str, Any]:  # fmt: skip
     """The variables of a template, with the entries of these kinds; docs/templates.md documents them."""
     target, surface = used.target, program.surface
-    entries = {
-        kind: _entry(target, printer, kind, *program.entries[kind], program.frame_functions) for kind in kinds
-    }
+    entries = {kind: _entry(target, printer, kind, *program.entries[kind], program.frame_functions) for kind in kinds}
     inputs = {name for kind in kinds for name in program.entries[kind][1]}
     _check_properties(target, program)
     texts_of_names = {**program.frame_functions} | _surface_values(target, printer, fields)
@@ -284,7 +284,7 @@ def _context(
         "frame": {place: with_names(text, texts_of_names) for place, text in used.frame.items()},
         "surface": {place: with_names(text, texts_of_names) for place, text in used.surface.items()},
         "material": program.about._asdict(),
-        "facts": program.about.facts | used.facts,
+        "facts": {*program.about.facts, *used.facts},
         "target": target,
         "form": form,
         "header": _header(target, program),

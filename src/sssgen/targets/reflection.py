@@ -7,6 +7,7 @@ from typing import Any
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.passes.stage.storage_layout import extent, offsets
+from sssgen.support.paths import display_name
 from sssgen.targets.assemble import Emitted, Program, printer_for, property_name
 from sssgen.targets.chain_inputs import CHAIN_INPUTS
 from sssgen.targets.descriptor import Target
@@ -47,6 +48,8 @@ def reflect(
             if blocked:
                 entry |= {"offset": offsets[uniform.name].offset, "size": offsets[uniform.name].size}
             uniforms.append(entry)
+    sources = {span.file for lines in emitted.lines.values() for span in lines.values()}
+    names = {source: display_name(source, program.folder) for source in sources}
     return {
         "format": VERSION,
         "material": program.about.name,
@@ -83,7 +86,7 @@ def reflect(
         "renames": dict(program.renames),
         "conventions": _conventions(target),
         "source_map": {
-            name: {str(line): f"{span.file}:{span.line}:{span.column}" for line, span in lines.items()}
+            name: {str(line): f"{names[span.file]}:{span.line}:{span.column}" for line, span in lines.items()}
             for name, lines in emitted.lines.items()
         },
         "warnings": [warning.message for warning in program.warnings],

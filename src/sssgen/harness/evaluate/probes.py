@@ -100,10 +100,7 @@ def _technique(name: str) -> tuple[Module, Function, str]:
     if not _is_function(name):
         technique = library.load(name)
         return technique.module, technique.function, technique.role
-    if file.endswith(".sss"):
-        module = load_file(file, library.shown_name(file), (library.TECHNIQUES,))
-    else:
-        module = load_glsl(file, library.shown_name(file)).module
+    module = load_file(file, (library.TECHNIQUES,)) if file.endswith(".sss") else load_glsl(file).module
     named = {function.name: function for function in module.functions if function.body is not None}
     if inner not in named:
         raise failure(f"{file} has no function '{inner}'", did_you_mean(inner, named) or f"it has: {', '.join(named)}")

@@ -15,6 +15,7 @@ from sssgen.harness.lint.lint_findings import Finding
 from sssgen.lang.source_lines import source_text
 from sssgen.support.diagnostics import failure
 from sssgen.support.json_source import parse
+from sssgen.support.paths import display_name
 from sssgen.support.text_files import read_text
 
 VERSION = 1
@@ -36,7 +37,8 @@ def identity(finding: Finding) -> Identity:
     """The identity of a finding."""
     site = finding.site
     text = " ".join(source_text(site.node.span).split())
-    return Identity(site.node.span.file.replace("\\", "/"), site.function, finding.kind, site.operation, text)
+    file = display_name(site.node.span.file).replace("\\", "/")
+    return Identity(file, site.function, finding.kind, site.operation, text)
 
 
 def baseline_text(findings: Iterable[Finding]) -> str:

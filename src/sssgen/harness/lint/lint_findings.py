@@ -33,6 +33,7 @@ from sssgen.passes.stage.stage_interface import stage_kind
 from sssgen.pipeline.compiler import guarded_sites
 from sssgen.pipeline.programs import traced_sites
 from sssgen.support.diagnostics import Diagnostic, did_you_mean, failure
+from sssgen.support.paths import display_name
 from sssgen.support.text_files import refuse_folder
 from sssgen.targets import registry
 
@@ -149,7 +150,7 @@ class Finding(NamedTuple):
             "because": [
                 {
                     "text": explanation(step),
-                    "file": step.span.file,
+                    "file": display_name(step.span.file),
                     "line": step.span.line,
                     "column": step.span.column,
                     "low": step.range.low,
@@ -248,7 +249,7 @@ def _plain(path: str, with_examples: bool, kinds: Collection[Kind], assumed: Seq
     sites, origins = traced_sites(module, assumed=assumptions.of if rules else None, unguarded=True)
     facts = [*assumptions.applied.values(), *_stated(module)]
     specimens = []
-    if with_examples and not any(map(endless, module.functions)):
+    if with_examples and not endless(module):
         names = {name.split(".")[0] for name, _ in assumptions.applied}
         specimens = [
             _technique(f"{path}:{function.name}")

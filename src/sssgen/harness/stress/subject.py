@@ -13,6 +13,7 @@ from sssgen.material.material_loading import examples, load_material
 from sssgen.material.model import Material
 from sssgen.passes.link import LinkInput
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+from sssgen.support.paths import display_name
 from sssgen.support.text_files import refuse_folder
 
 
@@ -127,4 +128,4 @@ def _shown(file: str, function: str) -> str:
     stem = os.path.splitext(os.path.basename(file))[0]
     if stem in library.index():
         return stem if stem == function else f"{stem}:{function}"
-    return f"{file}:{function}"
+    return f"{display_name(file)}:{function}"

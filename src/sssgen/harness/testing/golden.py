@@ -19,7 +19,7 @@ from sssgen.harness.pictures.picture_difference import compare
 from sssgen.harness.testing.outcome import Outcome
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.file_writer import check_names
-from sssgen.support.paths import posix
+from sssgen.support.paths import display_name, posix
 
 FLIP = 0.005
 """The largest mean of FLIP that passes by default.
@@ -119,7 +119,7 @@ def _written(pictures: dict[str, Array]) -> str:
             _write(path, picture)
     except SssgenError as error:
         diagnostic = error.diagnostics[0]
-        return f"{diagnostic.message}: {diagnostic.span.file}"
+        return f"{diagnostic.message}: {display_name(diagnostic.span.file)}"
     names = [os.path.basename(path) for path in pictures]
     return f"see {' and '.join(names)} in {posix(os.path.dirname(next(iter(pictures))))}"
 

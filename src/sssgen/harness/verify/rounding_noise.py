@@ -90,7 +90,8 @@ class GrantedRun(RoundedRun):
         if row.axis:
             return rounded(self.of_a_quad(np.asarray(result), row.axis))
         along = zip((rt.dFdx, rt.dFdy), "xy", strict=True)
-        return rounded(sum(np.abs(self.of_a_quad(np.asarray(change(args[0])), axis)) for change, axis in along))
+        changes = [np.abs(self.of_a_quad(np.asarray(change(args[0])), axis)) for change, axis in along]
+        return rounded(changes[0] + changes[1])
 
     def of_a_quad(self, derivatives: Array, axis: str) -> Array:
         """Derivatives as another device may have them: of one row (column) of a quad of pixels in both."""
@@ -102,7 +103,8 @@ class GrantedRun(RoundedRun):
         across = {"x": -2, "y": -1}[axis]
         count = image.shape[across]
         places = np.minimum(np.arange(count) // 2 * 2 + int(draw > 0.25), count - 1)
-        return np.take(image, places, across).reshape(derivatives.shape)
+        taken: Array = np.take(image, places, across).reshape(derivatives.shape)
+        return taken
 
 
 def explained(error: Array, limit: Array) -> Array:

@@ -124,6 +124,12 @@ class CheckContext:
             hint = "it is a uniform of Shadertoy: add --entry shadertoy"
         return self.fail(span, f"unknown {kind} '{name}'", hint)
 
+    def extent(self, name: str) -> tuple[float, float]:
+        """The least and the largest value of a global integer."""
+        declared = self.globals[name]
+        number = declared.value[0] if declared.value else None
+        return (number, number) if isinstance(number, int) else declared.extent
+
     def out_arguments(self, call: ir.Call) -> list[ir.Expr]:
         """The arguments that a call writes to."""
         overloads = self.functions[call.function.split("(")[0]]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.contracts import of_uniform
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import VOID, Array, Matrix, Sampler, Struct, Type, components, kind_of, unnested
 from sssgen.ir.walk import subexpressions
@@ -77,8 +78,9 @@ class GlobalChecker:
         default = self.default(declarator, type_)
         hints, texel_quantity = check_hints(context, declarator, type_, default)
         quantity = quantity or texel_quantity
-        context.globals[name.text] = GlobalValue(type_, quantity)
-        self.uniforms.append(ir.Uniform(name.text, type_, default, hints, quantity, doc, name.span, path))
+        uniform = ir.Uniform(name.text, type_, default, hints, quantity, doc, name.span, path)
+        context.globals[name.text] = GlobalValue(type_, quantity, extent=of_uniform(uniform)[:2])
+        self.uniforms.append(uniform)
 
     def default(self, declarator: s.Declarator, type_: Type) -> tuple[float, ...]:
         """The components of a uniform's default value; () for a texture."""

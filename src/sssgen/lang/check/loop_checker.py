@@ -12,7 +12,10 @@ from sssgen.lang.check.statement_checker import StatementChecker
 from sssgen.lang.check.termination import ends, skips
 from sssgen.lang.syntax import tree as s
 
-_LOOP_HINT = "write for (int i = 0; i < N; i++) with a body that changes neither i nor N"
+_LOOP_HINT = (
+    "write for (int i = 0; i < N; i++) with a body that changes neither i nor N; with i <= N or a larger step, N needs "
+    "a limit, such as min(N, 64): behind the last integer i begins again at the first"
+)
 
 
 class LoopChecker:
@@ -51,8 +54,11 @@ class LoopChecker:
         if tested:
             assert condition is not None
             body, condition = (*tested, _break_unless(condition), *body), None
-        bounded = condition is not None and step is not None and ends(condition, (step,), body, context.out_arguments)
-        if not context.plain and not bounded:
+        if not context.plain and (
+            condition is None
+            or step is None
+            or not ends(condition, (step,), body, context.out_arguments, context.extent)
+        ):
             raise context.fail(span, "this loop cannot be proven to end", _LOOP_HINT)
         return [*before, ir.For(init, condition, step, body, span)]
 
@@ -68,7 +74,7 @@ class LoopChecker:
             return []
         if tested:
             body, condition = (*tested, _break_unless(condition), *body), ir.Literal(BOOL, True, span)
-        if not context.plain and (skips(body) or not ends(condition, body, (), context.out_arguments)):
+        if not context.plain and (skips(body) or not ends(condition, body, (), context.out_arguments, context.extent)):
             raise context.fail(span, "this loop cannot be proven to end", _LOOP_HINT)
         return [ir.While(condition, body, span)]
 

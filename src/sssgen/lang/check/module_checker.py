@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.contracts import of_uniform
 from sssgen.ir.types import Struct
 from sssgen.lang.check.access_checker import AccessChecker
 from sssgen.lang.check.assignment_checker import AssignmentChecker
@@ -83,7 +84,7 @@ class ModuleChecker:
                 constant.type, "", constant_value(context, constant.value), True
             )
         for uniform in module.uniforms:
-            context.globals[uniform.name] = GlobalValue(uniform.type, uniform.quantity)
+            context.globals[uniform.name] = GlobalValue(uniform.type, uniform.quantity, extent=of_uniform(uniform)[:2])
         for function in module.functions:
             self.function_checker.include(function)
             self.functions[function.key] = function

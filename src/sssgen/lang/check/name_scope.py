@@ -30,6 +30,8 @@ class GlobalValue(NamedTuple):
     value: tuple[object, ...] | None = None
     constant: bool = False
     writable: bool = False
+    extent: tuple[float, float] = (float("-inf"), float("inf"))
+    """The least and the largest component of a uniform."""
 
 
 class Signature(NamedTuple):

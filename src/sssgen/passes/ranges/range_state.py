@@ -16,7 +16,7 @@ from sssgen.ir.vector_ranges import Contract, Value, length_of
 from sssgen.ir.walk import written_root
 from sssgen.passes.ranges.facts import Facts, Numbers
 from sssgen.passes.ranges.polynomials import Polynomial
-from sssgen.passes.ranges.scalar_parts import innermost, scalar_kinds, scalars
+from sssgen.passes.ranges.scalar_parts import hull_of, innermost, scalar_kinds, scalars
 from sssgen.passes.ranges.sites import OVERFLOW, Site
 from sssgen.passes.variable_effects import effects
 
@@ -240,10 +240,9 @@ class AnalysisState:
             return self.value(tuple(bounded), tuple(numbers))
         bounded = [rounded(part, self.format) for part in parts]
         largest = self.format.largest
-        over = [part for part in bounded if part.low < -largest or part.high > largest]
-        if over:
+        if any(part.low < -largest or part.high > largest for part in bounded):
             guard = SUMS if _is_sum(node) else OVERFLOW
-            self.note(node, "overflow", (guard,), guard, tuple(over[:1]))
+            self.note(node, "overflow", (guard,), guard, (hull_of(tuple(bounded)),))
             bounded = [clip(part, -largest, largest) for part in bounded]
         return self.value(tuple(bounded), tuple(numbers), length)
 

@@ -10,6 +10,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.intervals import Range
 from sssgen.ir.intrinsics import NONZERO, Guard
 from sssgen.ir.walk import operands
+from sssgen.support.paths import display_name
 
 OVERFLOW = Guard(
     None, "overflow", "a number too large for its format", "clamp(x, -LARGEST, LARGEST)", "result", function="bounded"
@@ -86,8 +87,12 @@ class Site(NamedTuple):
     @property
     def place(self) -> str:
         """Its position, as `file:line:column`."""
+        return self.place_in("")
+
+    def place_in(self, folder: str) -> str:
+        """The same, relative to a folder."""
         span = self.node.span
-        return f"{span.file}:{span.line}:{span.column}"
+        return f"{display_name(span.file, folder)}:{span.line}:{span.column}"
 
     @property
     def range_text(self) -> str:
@@ -112,10 +117,15 @@ def _number(value: float) -> str:
     return f"{value:.7g}" if text in ("1", "-1") else text  # what is a little beyond 1 is not 1
 
 
-def report(sites: Sequence[Site], guarded: Sequence[Site]) -> dict[str, Any]:
-    """For the reflection: how many sites are proven safe, and each site that has a guard."""
+def report(sites: Sequence[Site], guarded: Sequence[Site], folder: str) -> dict[str, Any]:
+    """For the reflection: how many sites are proven safe, and each site that has a guard, relative to a folder."""
     rows = [
-        {"at": site.place, "operation": site.operation, "reason": site.guard.problem, "found": site.range_text}
+        {
+            "at": site.place_in(folder),
+            "operation": site.operation,
+            "reason": site.guard.problem,
+            "found": site.range_text,
+        }
         for site in guarded
     ]
     return {"proven": sum(site.proven for site in sites), "guarded": rows}

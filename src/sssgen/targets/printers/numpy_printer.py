@@ -15,7 +15,7 @@ from sssgen.ir.walk import all_expressions, subexpressions
 from sssgen.passes.numpy.uniformity import count
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.numpy_expressions import PYTHON_PRECEDENCE, NumpyExpressions
-from sssgen.targets.printers.printed_lines import Line, summary
+from sssgen.targets.printers.printed_lines import Line, first_sentence, summary
 from sssgen.targets.printers.printer import POSTFIX
 from sssgen.targets.printers.python_text import texture_text, value_text, wrap
 from sssgen.targets.registry import load
@@ -142,9 +142,10 @@ class NumpyPrinter(NumpyExpressions):
         self.numbers.enter(function)
         params = ", ".join([param.name for param in function.params if param.direction != "out"])
         lines = [Line(""), *wrap(f"def {function.name}({params}):", function.span)]
-        lines += [
-            Line('    """' + text.replace("\\", "\\\\").replace('"', "'") + '"""') for text in summary(function.doc)
-        ]
+        if texts := [text.replace("\\", "\\\\").replace('"', "'") for text in summary(function.doc)]:
+            texts[0] = f'"""{texts[0]}'
+            texts[-1] += '"""'
+            lines += [Line(f"    {text}") for text in texts]
         for name in self.local_constants(function):
             constant = self.constants[name]
             lines += wrap(f"    {name} = {self.typed(constant.value)[0]}", constant.span)
@@ -199,9 +200,9 @@ class NumpyPrinter(NumpyExpressions):
         """Each uniform with its default, which the caller may replace."""
         lines = []
         for uniform in (member.uniform for member in members):
-            doc = summary(uniform.doc)
+            words = first_sentence(uniform.doc)
             text = f"{uniform.name} = {value_text(uniform.type, uniform.default)}"
-            lines.append(Line(f"{text}  # {doc[0]}" if doc else text, uniform.span))
+            lines.append(Line(f"{text}  # {words}" if words else text, uniform.span))
         return lines
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:

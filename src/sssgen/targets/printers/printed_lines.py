@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import textwrap
 from typing import NamedTuple
 
 from sssgen.ir import nodes as ir
@@ -53,14 +55,31 @@ def comment_text(text: str) -> str:
     return text.rstrip("\\ ")
 
 
+_ATTRIBUTE = re.compile(r"[a-z]\w*:")
+_SENTENCE_END = re.compile(r"[.!?][)'\"`]*(?= +[^a-z ]|$)")
+
+
 def summary(doc: str) -> list[str]:
-    """The first sentence or line of a doc comment."""
-    first = doc.strip().split("\n", 1)[0].strip()
-    return [comment_text(first)] if first else []
+    """The sentences that begin on the first line of a doc comment, whole, in lines that fit behind `// `."""
+    lines: list[str] = []
+    for line in doc.strip().split("\n"):
+        if not line.strip() or (lines and _ATTRIBUTE.match(line)):
+            break
+        lines.append(line.strip())
+    text = " ".join(lines)
+    end = next((end.end() for end in _SENTENCE_END.finditer(text) if end.end() >= len(lines[0])), None)
+    return [comment_text(line) for line in textwrap.wrap(text[:end], WIDTH - 3)]
+
+
+def first_sentence(doc: str) -> str:
+    """The first sentence of a doc comment, without the dot at its end."""
+    text = " ".join(doc.split())
+    end = _SENTENCE_END.search(text)
+    return comment_text(text[: end.end() if end else None].rstrip("."))
 
 
 def documented(text: str, uniform: ir.Uniform) -> Line:
     """A uniform's declaration with the first sentence of its documentation, where that fits on the line."""
-    words = comment_text(" ".join(uniform.doc.split()).split(". ")[0].rstrip("."))
+    words = first_sentence(uniform.doc)
     full = f"{text}  // {words}"
     return Line(full if words and len(full) <= WIDTH else text, uniform.span)

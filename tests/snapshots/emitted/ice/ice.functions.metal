@@ -208,7 +208,8 @@ float3 lobe_normalized(float3 V, float3 N, float3 L, float through, float distor
         ambient);
 }
 
-// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one light.
+// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
+// light.
 float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, float roughness,
     float3 light_color) {
     float3 H = safe_normalize(V + L);

@@ -200,7 +200,8 @@ vec3 sss_lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion
         scale, ambient);
 }
 
-// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one light.
+// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
+// light.
 vec3 sss_standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
     vec3 H = sss_safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
@@ -467,7 +468,8 @@ fn sss_lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32, distortion: f
         scale, ambient);
 }
 
-// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one light.
+// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
+// light.
 fn sss_standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
     light_color: vec3f) -> vec3f {
     let H = sss_safe_normalize_vec3(V + L);

@@ -206,7 +206,8 @@ fn lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32, distortion: f32, 
         ambient);
 }
 
-// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one light.
+// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
+// light.
 fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
     light_color: vec3f) -> vec3f {
     let H = safe_normalize_vec3(V + L);

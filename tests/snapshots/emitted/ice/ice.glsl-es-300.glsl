@@ -199,7 +199,8 @@ vec3 lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion, ve
         ambient);
 }
 
-// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one light.
+// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
+// light.
 vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
     vec3 H = safe_normalize(V + L);
     float NoL = max(dot(N, L), 0.0);

@@ -13,32 +13,32 @@ OPAQUE_DISTANCE = 1e-06
 ENDLESS = 10000.0
 OPAQUE_DEPTH = 80.0
 
-variation = 0.6  # How much the levels of the cells differ: 0 = all are equal.
-cell_count = 10.0  # Number of cells along one unit of texture coordinate.
-thickness_factor = 0.3  # Thickness of a cell of level 1.
-bevel = 0.35  # Width of the slope next to an edge, in cells.
-attenuation_distance = 0.25  # The length after which 1/e (37 %) of the light remains; 0 = opaque.
-tint = vec(0.75, 0.9, 1.0, 1.0)  # Multiplies the texture.
-metalness = 0.0  # 0 = not a metal, 1 = metal.
-surface_roughness = 0.12  # 0 = smooth as a mirror, 1 = rough as chalk.
-relief = 0.01  # Height of the thickest cells above their edges.
-uv_per_unit = vec(1.0, 1.0)  # Change of the texture coordinates per world unit along T and along B.
-cover = 1.0  # Multiplies the texture.
-red_speed = vec(0.02, 0.0)  # Velocity of the red layer.
-green_speed = vec(-0.01, 0.015)  # Velocity of the green layer.
-blue_speed = vec(0.0, -0.025)  # Velocity of the blue layer.
-vein_color = vec(0.3, 0.8, 1.0)  # Colour of the light in the red and green layers, where both are bright.
-spark_color = vec(0.6, 0.9, 1.0)  # Colour of the light in the blue layer.
-texel_size = 0.002  # The length, in texture coordinates, over which slopes are measured: about one texel.
-edge = 0.15  # Width of the soft edge, in the texture's values.
-erosion = 0.2  # How much is eroded: 0 = nothing, 1 = everything.
-edge_height = 0.02  # Height of the step in the surface at the edge.
-distortion = 0.2  # How far the normal bends the light's direction inside the body: 0 ignores the shape.
-subsurface_color = vec(0.55, 0.85, 1.0)  # Colour of the transmitted light.
-attenuation = 0.8  # Factor on the whole result.
-scale = 2.0  # Strength of the glow towards the light.
-ambient = 0.12  # Glow that does not depend on the direction.
-power = 6.0  # How narrow the glow around the light is: the larger, the smaller the spot.
+variation = 0.6  # How much the levels of the cells differ: 0 = all are equal
+cell_count = 10.0  # Number of cells along one unit of texture coordinate
+thickness_factor = 0.3  # Thickness of a cell of level 1
+bevel = 0.35  # Width of the slope next to an edge, in cells
+attenuation_distance = 0.25  # The length after which 1/e (37 %) of the light remains; 0 = opaque
+tint = vec(0.75, 0.9, 1.0, 1.0)  # Multiplies the texture
+metalness = 0.0  # 0 = not a metal, 1 = metal
+surface_roughness = 0.12  # 0 = smooth as a mirror, 1 = rough as chalk
+relief = 0.01  # Height of the thickest cells above their edges
+uv_per_unit = vec(1.0, 1.0)  # Change of the texture coordinates per world unit along T and along B
+cover = 1.0  # Multiplies the texture
+red_speed = vec(0.02, 0.0)  # Velocity of the red layer
+green_speed = vec(-0.01, 0.015)  # Velocity of the green layer
+blue_speed = vec(0.0, -0.025)  # Velocity of the blue layer
+vein_color = vec(0.3, 0.8, 1.0)  # Colour of the light in the red and green layers, where both are bright
+spark_color = vec(0.6, 0.9, 1.0)  # Colour of the light in the blue layer
+texel_size = 0.002  # The length, in texture coordinates, over which slopes are measured: about one texel
+edge = 0.15  # Width of the soft edge, in the texture's values
+erosion = 0.2  # How much is eroded: 0 = nothing, 1 = everything
+edge_height = 0.02  # Height of the step in the surface at the edge
+distortion = 0.2  # How far the normal bends the light's direction inside the body: 0 ignores the shape
+subsurface_color = vec(0.55, 0.85, 1.0)  # Colour of the transmitted light
+attenuation = 0.8  # Factor on the whole result
+scale = 2.0  # Strength of the glow towards the light
+ambient = 0.12  # Glow that does not depend on the direction
+power = 6.0  # How narrow the glow around the light is: the larger, the smaller the spot
 
 base_color_texture = Texture([[[1.0, 1.0, 1.0, 1.0]]])
 cover_texture = Texture([[[0.0, 0.0, 0.0, 1.0]]])
@@ -192,7 +192,8 @@ def lobe_normalized(V, N, L, through):
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through)
 
 def standard(N, V, L, albedo, metallic, roughness, light_color):
-    """The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one light."""
+    """The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
+    light."""
     H = safe_normalize_vec3(V + L)
     NoL = max(dot(N, L), 0.0)
     NoV = max(dot(N, V), 0.0001)

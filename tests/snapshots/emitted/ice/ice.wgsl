@@ -232,7 +232,8 @@ fn lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32) -> vec3f {
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), material.power), through);
 }
 
-// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one light.
+// The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
+// light.
 fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
     light_color: vec3f) -> vec3f {
     let H = safe_normalize_vec3(V + L);
