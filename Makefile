@@ -1,6 +1,6 @@
 # make preview  a page that shows skin_ear, or MATERIAL=file.toml, while its files change
 # make demo   emit every example for every target into out/demo and compile all of it
-# make test   the tests, but the slow ones (make test-long)      make lint   ruff, mypy, import contracts
+# make test   the tests, but the slow ones (make test-long)      make lint   ruff, mypy, import contracts, tsc, eslint
 # make gallery  the example scenes' pictures, and docs/gallery.md
 # make stability  what fails in the published techniques and holds in ours: docs/stability.md
 # make bake   bakes two meshes, and docs/bake.md with pictures beside the exact reference
@@ -22,6 +22,10 @@ NODE_PACKAGES := webgpu@0.6.2 playcanvas@2.23.3 wesl@0.7.31 @babylonjs/core@9.34
 BABYLON_BUNDLE := src/sssgen/harness/backends/babylon_bundle.js
 # What the preview's page imports, as one file: the wheel has it.
 PREVIEW_BUNDLE := src/sssgen/preview/library_bundle.js
+# What checks the JavaScript; editors/vscode/package.json has the last two, too.
+LINT_PACKAGES := typescript@7.0.2 eslint@10.15.0 @eslint/js@10.0.1 globals@17.14.0 @types/node@24.19.2 @types/three@0.187.0 \
+	@types/vscode@1.91.0 vscode-languageclient@11.0.0 @vscode/vsce@4.1.0
+JSLINT := build/jslint/node_modules/.bin
 # The index has its source only: built here once, for two minutes, and kept apart from .venv.
 BUILT_PACKAGES := compushady==0.17.5
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
@@ -81,11 +85,18 @@ FUZZ_MINUTES ?= 10
 fuzz: setup
 	$(BIN)/python tests/fuzz/long.py --minutes $(FUZZ_MINUTES)
 
-lint: setup
+lint: setup build/jslint/done
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy --strict src qualification
 	$(BIN)/lint-imports
+	rm -rf build/jslint/emitted
+	$(BIN)/sssgen emit $(MATERIALS) --target threejs,babylonjs,playcanvas -o build/jslint/emitted >/dev/null
+	$(BIN)/sssgen emit $(MATERIALS) --target threejs,babylonjs,playcanvas --form functions -o build/jslint/emitted >/dev/null
+	$(JSLINT)/tsc -p tools/javascript
+	@# The emitted declarations, too: there the engines' own, which contradict each other, have errors.
+	! $(JSLINT)/tsc -p tools/javascript --skipLibCheck false | grep '^build/jslint/emitted/'
+	$(JSLINT)/eslint -c tools/javascript/eslint.config.mjs .
 
 bench: setup
 	for file in $(wildcard benchmarks/bench_*.py); do $(BIN)/python $$file || exit 1; done
@@ -168,6 +179,10 @@ build/node/done: Makefile $(BABYLON_BUNDLE) | build/system
 	npm install --prefix build/node --no-audit --no-fund --loglevel=error $(NODE_PACKAGES)
 	NODE_PATH=build/node/node_modules build/node/node_modules/.bin/esbuild $(BABYLON_BUNDLE) --bundle --format=esm \
 		--outfile=build/node/babylon.js --log-level=error
+	@touch $@
+
+build/jslint/done: Makefile | build/system
+	npm install --prefix build/jslint --ignore-scripts --no-audit --no-fund --loglevel=error $(LINT_PACKAGES)
 	@touch $@
 
 # Apart from build/node, as whoever only looks at a material needs no more than this.

@@ -1,7 +1,8 @@
 """Draws docs/accuracy/ and writes docs/accuracy.md: python docs/accuracy.py [--scheduler ADDRESS] [--processes N]
 
 It measures every figure of the page except those of the GPU, which benchmarks/gpu.py and `--gpu` write into
-docs/accuracy/*.json on a machine with a GPU. An interrupted run continues where it stopped.
+docs/accuracy/*.json on a machine with a GPU. An interrupted run continues where it stopped. The whole records of the
+charts are in build/accuracy/: in docs/accuracy/ is what pages quote.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from typing import Any
 
 import accuracy_goals
 import accuracy_pictures
+import accuracy_points
 import pick_trial
 
 from sssgen.lab.chart import charting as chart
@@ -34,6 +36,8 @@ from sssgen.support.progress import ProgressBar
 
 DOCS = Path(__file__).parent
 FOLDER = DOCS / "accuracy"
+RECORDS = DOCS.parent / "build" / "accuracy"
+"""The records of the charts, and what they were drawn from on a GPU: megabytes."""
 PAGE = DOCS / "accuracy.md"
 GPU_CHART = "gpu_chart.json"
 BY_HAND = "gpu_jelly_cubes.json"
@@ -61,7 +65,7 @@ Point = Mapping[str, Any]
 def main() -> int:
     """Measures, draws the charts and writes the page; with --gpu, times the chains of the stored chart instead."""
     options = argparse.ArgumentParser(description=__doc__)
-    options.add_argument("--gpu", action="store_true", help="time the chains of docs/accuracy/chart.json on this GPU")
+    options.add_argument("--gpu", action="store_true", help="time the chains of build/accuracy/chart.json on this GPU")
     options.add_argument("--scheduler", default="")
     options.add_argument("--processes", type=int)
     options.add_argument(
@@ -110,14 +114,12 @@ def page(
 ) -> None:
     """Writes the pictures and the page; `bent` has the bodies with a refracting boundary. What is None is not shown."""
     chart_files = drawing.chart_files(record)
-    files = {name: data for name, data in chart_files.items() if name.endswith((".png", ".csv", ".json"))}
-    if (FOLDER / GPU_CHART).is_file():
-        gpu_record = chart_gpu.by_gpu(json.loads((FOLDER / GPU_CHART).read_text(encoding="utf-8")))
-        files |= {
-            name: data for name, data in drawing.chart_files(gpu_record, "gpu").items() if name.endswith("material.png")
-        }
+    records = {name: data for name, data in chart_files.items() if name.endswith((".csv", ".json"))}
     if bent is not None:
-        files[BENT] = to_json(checked(bent))
+        records[BENT] = to_json(checked(bent))
+    write_files(str(RECORDS), records)
+    files = {name: data for name, data in chart_files.items() if name.endswith(".png")}
+    files["points.json"] = accuracy_points.quoted([record, *([bent] if bent is not None else [])])
     write_files(str(FOLDER), files | {"pictures.png": accuracy_pictures.drawn(pictures)})
     text = (FOLDER / "page.md.in").read_text(encoding="utf-8")
     parts: dict[str, Callable[[], str]] = {
@@ -141,7 +143,11 @@ def page(
 
 def timed() -> int:
     """Times the chains on the fronts of the stored chart, and the baselines, on the local GPU."""
-    record = json.loads((FOLDER / "chart.json").read_text(encoding="utf-8"))
+    stored = RECORDS / "chart.json"
+    if not stored.is_file():
+        print(f"{stored} is missing: python docs/accuracy.py --charts-only measures it", file=sys.stderr)
+        return 1
+    record = json.loads(stored.read_text(encoding="utf-8"))
     points = [point for point in record["points"] if point["front"] or point["baseline"] or point["role"] != "material"]
     names = [scene["name"] for scene in record["scenes"] if scene["name"] in TIMED]
     shortened = {**record, "points": [point for point in points if point["scene"] in names]}
@@ -150,9 +156,22 @@ def timed() -> int:
         print(f"{completed} of {total}: {name}", file=sys.stderr, flush=True)
 
     timed_record = chart_gpu.with_gpu_cost(shortened, [measured_scene.load(name) for name in names], progress=progress)
-    write_files(str(FOLDER), {GPU_CHART: to_json(timed_record)})
+    charts = drawing.chart_files(chart_gpu.by_gpu(timed_record), "gpu")
+    write_files(str(FOLDER), {"gpu_material.png": charts["gpu_material.png"], GPU_CHART: gpu_summary(timed_record)})
+    write_files(str(RECORDS), {GPU_CHART: to_json(timed_record)})
     print(timed_record["record"]["device"], timed_record["record"]["rank_correlation"])
     return 0
+
+
+def gpu_summary(record: Record) -> str:
+    """JSON with what the page quotes of a record with times: what was measured how, and the cube's chains."""
+    chosen = {}
+    for point in record["points"]:
+        if point["scene"] == "cube" and point["cost"].get("gpu_ms") is not None and not point["failed"]:
+            kept = {name: point["cost"][name] for name in ("value", "gpu_ms", "gpu_ms_low", "gpu_ms_high")}
+            chosen[point["role"], point["label"]] = {"label": point["label"], **kept}
+    chains = ",\n".join(map(json.dumps, chosen.values()))
+    return f'{{"record": {json.dumps(record["record"])}, "chains": [\n{chains}\n]}}\n'
 
 
 def scene_table(record: Record) -> str:
@@ -307,15 +326,10 @@ def gpu() -> str:
         "", "<details>", "<summary>The cube's chains</summary>", "",
         "| technique | static cost | ms (10th to 90th percentile) |", "|---|---:|---|",
     ]  # fmt: skip
-    chosen = {}
-    for point in record["points"]:
-        if point["scene"] == "cube" and point["cost"].get("gpu_ms") is not None and not point["failed"]:
-            chosen[point["role"], point["label"]] = point
-    for (_, label), point in chosen.items():
-        cost = point["cost"]
-        if math.isfinite(cost["gpu_ms"]):
-            low, high = cost["gpu_ms_low"], cost["gpu_ms_high"]
-            rows.append(f"| {label} | {cost['value']:.0f} | {cost['gpu_ms']:.4f} ({low:.4f}–{high:.4f}) |")
+    for chain in record["chains"]:
+        if math.isfinite(chain["gpu_ms"]):
+            low, high = chain["gpu_ms_low"], chain["gpu_ms_high"]
+            rows.append(f"| {chain['label']} | {chain['value']:.0f} | {chain['gpu_ms']:.4f} ({low:.4f}–{high:.4f}) |")
     return "\n".join([*rows, "", "</details>"])
 
 

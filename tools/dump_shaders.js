@@ -150,7 +150,7 @@
     for (const name of Context ? ['drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced', 'drawRangeElements'] : []) {
       const own = Context.prototype[name];
       if (!own) continue; // WebGL 1
-      Context.prototype[name] = function (...given) {
+      Context.prototype[name] = function (/** @type {[number, ...number[]]} */ ...given) {
         try {
           const program = this.getParameter(this.CURRENT_PROGRAM), record = program && seen.get(program);
           if (record && !record.draw) record.draw = described(this, program, name, given);

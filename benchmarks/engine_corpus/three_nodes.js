@@ -37,7 +37,7 @@ steps.push(['physical all', () => draw(Object.assign(new THREE.MeshPhysicalNodeM
 const NOISES = ['mx_noise_float', 'mx_noise_vec3', 'mx_worley_noise_float', 'mx_worley_noise_vec3', 'mx_cell_noise_float', 'mx_fractal_noise_float', 'mx_fractal_noise_vec3'];
 for (const name of NOISES) {
   steps.push([`node ${name}`, () => {
-    const { uv, vec3, float, positionLocal, time } = TSL;
+    const { uv, vec3, float, positionLocal } = TSL;
     const node = name.startsWith('mx_cell') ? TSL[name](positionLocal)
       : /hue|sat/.test(name) ? TSL[name](positionLocal, 0.5)
       : /UV/.test(name) ? vec3(TSL[name](uv(), float(0.5), uv()), 0) : TSL[name](positionLocal.mul(3));

@@ -15,7 +15,7 @@ const LINE_LOOP = 2;
 /** The picture of the canvas, RGBA8, its bottom row first. */
 export async function replay(device, { commands }, translated) {
   const programs = translated.map(({ description, vertex, fragment }) => new Program(device, description, { vertex, fragment }));
-  const textures = new Map(), samplers = new Map(), buffers = new Map();
+  const textures = new Map(), samplers = new Map();
   const { COPY_DST, COPY_SRC, RENDER_ATTACHMENT, TEXTURE_BINDING } = GPUTextureUsage;
   const textureOf = ({ id, format, size, levels, samples = 1, target = '2d' }) => {
     if (!textures.has(id)) {

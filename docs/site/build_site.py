@@ -19,13 +19,14 @@ import playground_links
 from chart_pictures import beside_path_tracing
 from menu import ROOT, documents, problems
 from picture import Picture
+from records import best_point
 from sssgen.harness import backends
 from sssgen.harness.backends import Backend
 from sssgen.material import library
 from sssgen.material.library import Technique
 from staging import Staging
 from technique_curves import curves_at_the_ends
-from technique_pictures import ball_at_the_ends, best_point, draw, why_none
+from technique_pictures import ball_at_the_ends, draw, why_none
 
 
 def main(folder: Path, pictures: bool) -> int:

@@ -1,4 +1,4 @@
-"""The records of the charts that docs/accuracy.py has made."""
+"""What the site quotes of the charts' records, as docs/accuracy_points.py has written it."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from menu import ROOT
 
 Point = Mapping[str, Any]
 
-CHARTS = ("chart.json", "chart_refracting.json")
-
 
 @functools.cache
-def points() -> tuple[Point, ...]:
-    """The points of all charts; of two charts with the same scene and chain, those of the first."""
-    unique: dict[tuple[object, ...], Point] = {}
-    for file in CHARTS:
-        for point in json.loads((ROOT / "docs" / "accuracy" / file).read_text(encoding="utf-8"))["points"]:
-            unique.setdefault((point["role"], point["scene"], point["label"]), point)
-    return tuple(unique.values())
+def _quoted() -> Mapping[str, Any]:
+    quoted: Mapping[str, Any] = json.loads((ROOT / "docs" / "accuracy" / "points.json").read_text(encoding="utf-8"))
+    return quoted
 
 
 def points_of(technique: str) -> list[Point]:
-    """The points that measure a technique by itself."""
-    return [point for point in points() if point["name"] == technique and point["role"] != "material"]
+    """The points that measure a technique by itself: on each scene, with each of its settings."""
+    return [point for point in _quoted()["alone"] if point["name"] == technique]
+
+
+def best_point(technique: str) -> Point | None:
+    """The most accurate chain with the technique, on one scene, that needs no baked texture."""
+    point: Point | None = _quoted()["best"].get(technique)
+    return point

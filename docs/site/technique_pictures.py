@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from picture import Picture
-from records import Point, points
+from records import Point, best_point
 from sssgen.harness.backends import Array, Backend
 from sssgen.harness.pictures.images import encode_srgb
 from sssgen.harness.render.scene_render import Rendered, render
@@ -42,7 +42,6 @@ from technique_curves import default_curve
 
 SIZE = 200, 150
 SAMPLES = 2
-MEASURED = "cube"
 """The scene of the chart."""
 BACKGROUND = 0.05
 BRIGHT = 0.7
@@ -112,26 +111,8 @@ def why_none(technique: Technique) -> str:
     return "It has no picture here: on a ball with the defaults of all other techniques it changes nothing."
 
 
-def best_point(name: str) -> Point | None:
-    """The most accurate whole chain on the scene that has the technique and that needs no baked texture."""
-    found = [
-        point
-        for point in points()
-        if point["scene"] == MEASURED
-        and point["role"] == "material"
-        and not point["failed"]
-        and name in (*point["chain"], point.get("path", ""))
-        and not any(map(_is_baked, (*point["chain"], *filter(None, [point.get("path", "")]))))
-    ]
-    return min(found, key=lambda point: float(point["error"]["value"]), default=None)
-
-
-def _is_baked(name: str) -> bool:
-    return any(not is_drawn(uniform) for uniform in textures_of(library.load(name.partition(":")[0])))
-
-
 def _measured(point: Point, backend: Backend) -> Picture:
-    scene = measured_scene.load(MEASURED)
+    scene = measured_scene.load(point["scene"])
     body = scene_body.body(scene.geometry)
     albedo, color = library.setter("albedo")
     matte = MaterialSection("surface", albedo, ((color, [*point["matte"], 1.0]),))
@@ -141,7 +122,7 @@ def _measured(point: Point, backend: Backend) -> Picture:
         for file, text in {"material.toml": material_text("material", stages), **body.files}.items():
             Path(folder, file).write_text(text, encoding="utf-8")
         drawn = dataclasses.replace(
-            scene_loading.load(measured_scenes()[MEASURED]),
+            scene_loading.load(measured_scenes()[point["scene"]]),
             material=str(Path(folder, "material.toml")), background=((0.0,) * 3,) * 2, ambient=(0.0,) * 3,
             size=SIZE, samples=SAMPLES,
         )  # fmt: skip

@@ -16,10 +16,12 @@
  *   array_stride: number, matrix_stride: number, block?: BlockPlace }} Uniform */
 /** @typedef {{ name: string, offset: number, strides: number[], matrix_stride: number, row_major: boolean }} BlockPlace
  *   Where a uniform is in a uniform buffer of WebGL. */
+/** @typedef {{ uniform: string, type: string, count: number, offset: number, array_stride: number, matrix_stride: number,
+ *   block?: BlockPlace & { stride: number } }} Place  Where the numbers of a name are; `uniform` is the whole that it belongs to. */
 /** @typedef {{ name: string, stages: string[], dimension: GPUTextureViewDimension, sample_type: GPUTextureSampleType,
- *   filterable: boolean, sampler: string, binding: { group: number, texture: number, sampler: number } }} Texture */
+ *   filterable: boolean, sampler: GPUSamplerBindingType | '', binding: { group: number, texture: number, sampler: number } }} Texture */
 /** @typedef {{ name: string, type: string, location: number, locations: number, format: GPUVertexFormat }} Attribute */
-/** @typedef {{ program: string, rows: string, stages: Record<string, { file: string, entry: string }>,
+/** @typedef {{ format: number, program: string, rows: string, stages: Record<string, { file: string, entry: string }>,
  *   attributes: Attribute[], varyings: { name: string, interpolation: string }[], uniform_block: { size: number, group: number, binding: number } | null,
  *   uniforms: Uniform[], textures: Texture[] }} Description */
 /** @typedef {{ buffer?: GPUBuffer, format?: GPUVertexFormat, stride?: number, offset?: number, perInstance?: boolean,
@@ -54,7 +56,8 @@ export class Program {
    *   be filtered on this device, such as rgba32float, by its name in the shader */
   constructor(device, description, texts, sampleTypes = {}) {
     if (description.format !== 1) throw new Error(`this loader does not read format ${description.format}`);
-    Object.assign(this, { device, description });
+    this.device = device;
+    this.description = description;
     const { vertex, fragment } = description.stages;
     this.stages = {
       vertex: { module: device.createShaderModule({ code: texts.vertex, label: vertex.file }), entryPoint: vertex.entry },
@@ -65,20 +68,23 @@ export class Program {
       const most = device.limits.maxSampledTexturesPerShaderStage;
       if (count > most) throw new Error(`${description.program}: ${count} textures in the ${stage} shader, but the device grants ${most}: request more, or let the engine use fewer`);
     }
-    const visible = (stages) => (stages.includes('vertex') ? 1 : 0) | (stages.includes('fragment') ? 2 : 0);
+    const visible = (/** @type {string[]} */ stages) => (stages.includes('vertex') ? 1 : 0) | (stages.includes('fragment') ? 2 : 0);
     const block = description.uniform_block;
+    /** @type {GPUBindGroupLayoutEntry[]} */
     const entries = block ? [{ binding: block.binding, visibility: 3, buffer: {} }] : [];
     for (const texture of description.textures) {
       const { binding, dimension, sampler } = texture, visibility = visible(texture.stages);
       const sampleType = sampleTypes[texture.name] ?? (texture.filterable || texture.sample_type !== 'float' ? texture.sample_type : 'unfilterable-float');
       entries.push({ binding: binding.texture, visibility, texture: { sampleType, viewDimension: dimension } });
       const type = sampler === 'filtering' && sampleType !== 'float' ? 'non-filtering' : sampler;
-      if (sampler) entries.push({ binding: binding.sampler, visibility, sampler: { type } });
+      if (type) entries.push({ binding: binding.sampler, visibility, sampler: { type } });
     }
     this.group = device.createBindGroupLayout({ entries, label: description.program });
     this.layout = device.createPipelineLayout({ bindGroupLayouts: [this.group] });
+    /** @type {Map<string, Place>} */
     this.places = new Map();
     for (const uniform of description.uniforms) for (const [name, place] of placesOf(uniform)) this.places.set(name, place);
+    /** @type {Map<string, GPURenderPipeline>} */
     this.pipelines = new Map();
     /** Whether a value is not interpolated: WebGL takes that of a triangle's last vertex, WebGPU that of its first. Then
      * give the indices to `lastVertexFirst`. */
@@ -100,10 +106,12 @@ export class Program {
   pipeline({ vertices, targets, depth, topology = 'triangle-list', indexFormat, cull = 'none', frontFace = 'ccw', samples = 1 }) {
     const isTurned = this.description.rows === 'bottom-first'; // then triangles turn the other way, too
     const strip = topology.endsWith('strip') && indexFormat ? { stripIndexFormat: indexFormat } : {};
+    const colors = targets.map((target) => (typeof target === 'string' ? { format: target } : target));
+    /** @type {GPURenderPipelineDescriptor} */
     const descriptor = {
       layout: this.layout,
       vertex: { ...this.stages.vertex, buffers: vertices.layouts },
-      fragment: { ...this.stages.fragment, targets: targets.map((target) => (typeof target === 'string' ? { format: target } : target)) },
+      fragment: { ...this.stages.fragment, targets: colors },
       primitive: { topology, cullMode: cull, frontFace: (frontFace === 'ccw') === isTurned ? 'cw' : 'ccw', ...strip },
       multisample: { count: samples },
     };
@@ -116,9 +124,10 @@ export class Program {
       };
     }
     const { layout, vertex, fragment, ...rest } = descriptor;
-    const key = JSON.stringify([vertex.buffers, fragment.targets, rest]);
-    if (!this.pipelines.has(key)) this.pipelines.set(key, this.device.createRenderPipeline(descriptor));
-    return this.pipelines.get(key);
+    const key = JSON.stringify([vertices.layouts, colors, rest]);
+    const pipeline = this.pipelines.get(key) ?? this.device.createRenderPipeline(descriptor);
+    this.pipelines.set(key, pipeline);
+    return pipeline;
   }
 }
 
@@ -172,7 +181,8 @@ export class Values {
     this.data = new ArrayBuffer(description.uniform_block?.size ?? 0);
     this.floats = new Float32Array(this.data);
     this.integers = new Int32Array(this.data);
-    this.buffer = description.uniform_block && device.createBuffer({ size: this.data.byteLength, usage: GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST });
+    this.buffer = description.uniform_block ? device.createBuffer({ size: this.data.byteLength, usage: GPUBufferUsage.UNIFORM | GPUBufferUsage.COPY_DST }) : undefined;
+    /** @type {Map<string, { view: GPUTextureView, sampler?: GPUSampler }>} */
     this.resources = new Map();
     this.given = new Set();
     this.isChanged = true;
@@ -215,6 +225,7 @@ export class Values {
     const places = [...this.program.places.values()].filter(({ block }) => block?.name === name), view = ArrayBuffer.isView(data) ? data : new Uint8Array(data);
     const bytes = new DataView(view.buffer, view.byteOffset, view.byteLength), words = [];
     for (const { type, count, offset, array_stride, matrix_stride, block } of places) {
+      if (!block) continue;
       const { columns, rows } = shapeOf(type);
       for (let index = 0; index < count * columns * rows; index++) {
         const element = Math.floor(index / (columns * rows)), column = Math.floor(index / rows) % columns, row = index % rows;
@@ -247,11 +258,12 @@ export class Values {
   /** Sends what changed to the GPU, and binds it. The GPU sees the last values before `queue.submit`.
    * @param {GPURenderPassEncoder} pass */
   bind(pass) {
-    const { device, description, group } = this.program, block = description.uniform_block;
-    if (this.isChanged && block) device.queue.writeBuffer(this.buffer, 0, this.data);
+    const { device, description, group } = this.program, block = description.uniform_block, buffer = this.buffer;
+    if (this.isChanged && buffer) device.queue.writeBuffer(buffer, 0, this.data);
     this.isChanged = false;
     if (!this.bindGroup) {
-      const entries = block ? [{ binding: block.binding, resource: { buffer: this.buffer } }] : [];
+      /** @type {GPUBindGroupEntry[]} */
+      const entries = block && buffer ? [{ binding: block.binding, resource: { buffer } }] : [];
       for (const { name, dimension, sample_type, sampler, binding } of description.textures) {
         const given = this.resources.get(name);
         entries.push({ binding: binding.texture, resource: given?.view ?? blackTexture(device, sample_type, dimension === '3d' ? '3d' : '2d').createView({ dimension }) });
@@ -264,9 +276,11 @@ export class Values {
   }
 }
 
-/** Each name of a uniform, with its place: `lights[].color` with 2 lights has two. */
+/** Each name of a uniform, with its place: `lights[].color` with 2 lights has two.
+ * @param {Uniform} uniform @returns {[string, Place][]} */
 function placesOf({ name, type, lengths, offset, array_stride, matrix_stride, block }) {
   const parts = name.split('[]'), outer = parts.length - 1, count = lengths.slice(outer).reduce((a, b) => a * b, 1);
+  /** @type {[string, number][]} */
   let places = [[parts[0], block?.offset ?? 0]];
   for (const [index, part] of parts.slice(1).entries())
     places = places.flatMap(([head, start]) =>
@@ -277,6 +291,7 @@ function placesOf({ name, type, lengths, offset, array_stride, matrix_stride, bl
   }]);
 }
 
+/** @param {Map<string, Place>} places @param {string} name @returns {Place | undefined} */
 function find(places, name) {
   const place = places.get(name), [, array, index] = /^(.*)\[(\d+)\]$/.exec(name) ?? [];
   if (place || array === undefined) return place;
@@ -285,7 +300,8 @@ function find(places, name) {
   return { ...whole, count: whole.count - element, offset: whole.offset + element * whole.array_stride };
 }
 
-/** The kind of a type's numbers, its columns, and the rows of each. */
+/** The kind of a type's numbers, its columns, and the rows of each.
+ * @param {string} type */
 function shapeOf(type) {
   const matrix = /^mat(\d)(?:x(\d))?$/.exec(type), vector = /^([biu]?)vec(\d)$/.exec(type);
   if (matrix) return { kind: 'float', columns: Number(matrix[1]), rows: Number(matrix[2] ?? matrix[1]) };
@@ -293,13 +309,15 @@ function shapeOf(type) {
   return { kind, columns: 1, rows: vector ? Number(vector[2]) : 1 };
 }
 
-/** The bytes of a vertex format. */
+/** The bytes of a vertex format.
+ * @param {string} format */
 function bytesOf(format) {
   if (/10-10-10-2|unorm8x4-bgra/.test(format)) return 4;
-  const [, bits, count = '1'] = /^[a-z]+(\d+)(?:x(\d))?$/.exec(format);
+  const [, bits, count = '1'] = /^[a-z]+(\d+)(?:x(\d))?$/.exec(format) ?? [];
   return (Number(bits) / 8) * Number(count);
 }
 
+/** @param {GPUDevice} device @param {GPUVertexFormat} format @param {number} locations @param {number[]} numbers */
 function constantBuffer(device, format, locations, numbers) {
   const count = bytesOf(format) / 4, list = Array.from({ length: count * locations }, (_, index) => numbers[index] ?? (index % count === 3 ? 1 : 0));
   const data = format.startsWith('float') ? new Float32Array(list) : new Int32Array(list);
@@ -310,7 +328,8 @@ function constantBuffer(device, format, locations, numbers) {
 
 const black = new WeakMap();
 
-/** What WebGL reads of a texture that is not set: black and opaque. It has 6 layers, so that any view fits. */
+/** What WebGL reads of a texture that is not set: black and opaque. It has 6 layers, so that any view fits.
+ * @param {GPUDevice} device @param {GPUTextureSampleType} sampleType @param {GPUTextureDimension} dimension */
 function blackTexture(device, sampleType, dimension = '2d') {
   const textures = black.get(device) ?? black.set(device, {}).get(device), key = `${sampleType} ${dimension}`;
   if (textures[key]) return textures[key];
@@ -349,7 +368,9 @@ override TURNED: bool;
 `;
 const copies = new WeakMap();
 
-/** Draws one texture into another. */
+/** Draws one texture into another.
+ * @param {GPUDevice} device @param {GPUCommandEncoder} encoder @param {GPUTextureView} from @param {GPUTextureView} to
+ * @param {GPUTextureFormat} format @param {boolean} isTurned @param {GPUFilterMode} filter */
 function copy(device, encoder, from, to, format, isTurned, filter) {
   const made = copies.get(device) ?? copies.set(device, {}).get(device), key = `${format} ${isTurned}`;
   if (!made[key]) {

@@ -193,12 +193,8 @@ def test_a_material_that_makes_its_own_rays_is_drawn_without_a_body(browser: Any
         assert shown.page.locator("#controls .row").count() > 3 and not shown.page.is_visible("#shape")
         assert max(shown.color()) > 20.0
         shown.page.select_option("#start", "new_material")
-        shown.until(
-            lambda: (
-                shown.page.locator("#stage canvas").count()
-                and shown.page.evaluate("playground.picture.stage?.drawn ?? 0")
-            )
-        )
+        body = "(({ stage }) => stage && stage.kind !== 'flat' && stage.drawn > 0)(playground.picture)"
+        shown.until(lambda: shown.page.evaluate(body))  # not the stage before it
         assert shown.color()[0] > 30.0
         assert not shown.faults
     finally:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import chart_pictures
+import records
 import stability_pictures
 import technique_curves
 import technique_pages
@@ -78,7 +79,7 @@ def test_a_ball_is_shown_at_the_ends_of_a_range(backend: Callable[[str], Backend
 @pytest.mark.slow
 def test_a_charted_chain_is_shown_beside_path_tracing() -> None:
     """Both halves are the body in the same scale: alike, but not equal."""
-    point = technique_pictures.best_point("lobe_gdc2011")
+    point = records.best_point("lobe_gdc2011")
     assert point is not None
     picture = chart_pictures.beside_path_tracing(point)
     left, right = picture.colors[:, : chart_pictures.SIDE * 2], picture.colors[:, -chart_pictures.SIDE * 2 :]

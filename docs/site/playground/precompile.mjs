@@ -8,7 +8,7 @@ import path from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 const [pyodide, stage, out] = process.argv.slice(2).map((argument) => path.resolve(argument));
-const { loadPyodide } = await import(pathToFileURL(path.join(pyodide, 'pyodide.mjs')));
+const { loadPyodide } = await import(pathToFileURL(path.join(pyodide, 'pyodide.mjs')).href);
 try {
   const python = await loadPyodide({ indexURL: pyodide });
   for (const [name, root] of Object.entries({ stage, out })) {

@@ -17,7 +17,7 @@ import { CreateGround } from '@babylonjs/core/Meshes/Builders/groundBuilder.js';
 import { Scene } from '@babylonjs/core/scene.js';
 import { createMaterial } from './ice.babylon.js';
 
-const canvas = document.querySelector('canvas');
+const [canvas] = document.getElementsByTagName('canvas');
 const kind = new URLSearchParams(location.search).get('engine') ?? 'webgpu';
 const hasWebGPU = kind === 'webgpu' && await WebGPUEngine.IsSupportedAsync;
 const engine = hasWebGPU ? await WebGPUEngine.CreateAsync(canvas, { antialias: true }) : new Engine(canvas, true);
@@ -34,9 +34,10 @@ const ice = CreateBox('ice', { width: 2.2, height: 2.2, depth: 0.15 });
 ice.position.y = 1.25;
 ice.material = createMaterial({ erosion: 0.05, cellCount: 6, uvPerUnit: [0.45, 0.45], relief: 0.03, tint: [0.1, 0.16, 0.2, 1], ambient: 0.05 });
 const floor = CreateGround('floor', { width: 24, height: 24 });
-floor.material = new PBRMaterial('floor');
-floor.material.albedoColor = Color3.FromHexString('#3a4450').toLinearSpace();
-floor.material.metallic = 0;
+const stone = new PBRMaterial('stone');
+stone.albedoColor = Color3.FromHexString('#3a4450').toLinearSpace();
+stone.metallic = 0;
+floor.material = stone;
 floor.receiveShadows = ice.receiveShadows = true;
 
 const sun = new DirectionalLight('sun', new Vector3(2, -2.2, -4));

@@ -3,7 +3,7 @@
 import * as pc from 'playcanvas';
 import { createMaterial } from './ice.mjs';
 
-const canvas = document.querySelector('canvas');
+const [canvas] = document.getElementsByTagName('canvas');
 const kind = new URLSearchParams(location.search).get('device') ?? 'webgpu';
 const device = await pc.createGraphicsDevice(canvas, { deviceTypes: [kind, pc.DEVICETYPE_WEBGL2], antialias: true });
 const options = new pc.AppOptions();
@@ -18,11 +18,11 @@ app.scene.ambientLight = new pc.Color(0.25, 0.28, 0.35);
 const [fogColor, clearColor] = ['#26323d', '#1b2838'].map((text) => new pc.Color().fromString(text));
 Object.assign(app.scene.fog, { type: pc.FOG_LINEAR, color: fogColor, start: 6, end: 16 });
 
-function add(name, components, place = [0, 0, 0], turn = [0, 0, 0]) {
+function add(name, components, [x, y, z] = [0, 0, 0], [pitch, yaw, roll] = [0, 0, 0]) {
   const entity = new pc.Entity(name);
   for (const [component, values] of Object.entries(components)) entity.addComponent(component, values);
-  entity.setPosition(...place);
-  entity.setEulerAngles(...turn);
+  entity.setPosition(x, y, z);
+  entity.setEulerAngles(pitch, yaw, roll);
   app.root.addChild(entity);
   return entity;
 }

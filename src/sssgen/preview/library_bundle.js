@@ -3,5 +3,8 @@
 export * from 'three';
 export * from 'three/webgpu';
 export * from 'three/tsl';
-export { log } from 'three/tsl';  // three has a function of this name, too
+// what two of them have under one name
+export { PMREMGenerator } from 'three';
+export { AtomicFunctionNode, WebGLCapabilities } from 'three/webgpu';
+export { log } from 'three/tsl';
 export { OrbitControls } from 'three/addons/controls/OrbitControls.js';

@@ -1,17 +1,24 @@
 // The files: tabs, and a text field over a coloured copy of its text, so that typing, undo and selection are the browser's.
 
 import { colored } from './highlight.js';
+import { make } from './preview/elements.js';
 
-const make = (tag, properties = {}, ...children) => {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-};
+/** @typedef {Record<string, string>} Files  Name → text. */
+/** @typedef {{ file: string, line: number, column: number, end_line: number, end_column: number }} Diagnostic */
 
 export class Editor {
-  /** `changed()` is called for each edit. */
+  /** `changed()` is called for each edit.
+   * @param {HTMLElement} tabs @param {HTMLElement} root @param {() => void} changed */
   constructor(tabs, root, changed) {
-    Object.assign(this, { tabs, changed, files: {}, first: {}, open: '', faults: [] });
+    this.tabs = tabs;
+    this.changed = changed;
+    /** @type {Files} */
+    this.files = {};
+    /** @type {Files} */
+    this.first = {};
+    this.open = '';
+    /** @type {(Diagnostic & { name: string })[]} */
+    this.faults = [];
     this.field = make('textarea', { spellcheck: false, autocomplete: 'off', wrap: 'off' });
     this.field.setAttribute('aria-label', 'The text of the file');
     this.copy = make('pre', { ariaHidden: 'true' });
@@ -22,12 +29,14 @@ export class Editor {
     this.field.addEventListener('keydown', (event) => this.key(event));
   }
 
-  /** Shows files (name → text); `first` are the texts that they began with. */
+  /** Shows files (name → text); `first` are the texts that they began with.
+   * @param {Files} files @param {Files} first @param {string} open */
   show(files, first, open) {
     Object.assign(this, { files: { ...files }, first, faults: [] });
     this.select(open in files ? open : Object.keys(files)[0]);
   }
 
+  /** @param {string} name */
   select(name) {
     this.open = name;
     this.field.value = this.files[name];
@@ -42,10 +51,11 @@ export class Editor {
     this.changed();
   }
 
-  /** The places of errors: diagnostics as the language server has them, with the path of the file. */
+  /** The places of errors: diagnostics as the language server has them, with the path of the file.
+   * @param {Diagnostic[]} diagnostics */
   mark(diagnostics) {
     const before = this.faults.length;
-    this.faults = diagnostics.filter((one) => one.line).map((one) => ({ ...one, name: one.file.split('/').pop() }));
+    this.faults = diagnostics.filter((one) => one.line).map((one) => ({ ...one, name: one.file.split('/').at(-1) ?? '' }));
     if (before || this.faults.length) this.draw();
   }
 
@@ -53,22 +63,23 @@ export class Editor {
     const text = this.files[this.open];
     const lines = text.split('\n');
     const starts = [0];
-    for (const line of lines) starts.push(starts.at(-1) + line.length + 1);
-    const at = (line, column) => Math.min((starts[line - 1] ?? text.length) + column - 1, text.length);
+    for (const line of lines) starts.push(starts[starts.length - 1] + line.length + 1);
+    const at = (/** @type {number} */ line, /** @type {number} */ column) => Math.min((starts[line - 1] ?? text.length) + column - 1, text.length);
     const places = this.faults.filter((fault) => fault.name === this.open)
       .map((fault) => { const from = at(fault.line, fault.column); return [from, Math.max(at(fault.end_line, fault.end_column), from + 1)]; });
     this.copy.innerHTML = `${colored(text, this.open, places)}\n`;
     this.numbers.textContent = lines.map((_, index) => index + 1).join('\n');
     this.tabs.replaceChildren(...Object.keys(this.files).map((name) => {
       const tab = make('button', { textContent: name, onclick: () => this.select(name) });
-      tab.setAttribute('aria-selected', name === this.open);
+      tab.setAttribute('aria-selected', String(name === this.open));
       tab.classList.toggle('faulty', this.faults.some((fault) => fault.name === name));
       tab.classList.toggle('changed', this.files[name] !== this.first[name]);
       return tab;
     }));
   }
 
-  /** Tab indents; Escape, then Tab, leaves the field. */
+  /** Tab indents; Escape, then Tab, leaves the field.
+   * @param {KeyboardEvent} event */
   key(event) {
     if (event.key === 'Escape') this.field.blur();
     if (event.key !== 'Tab' || event.shiftKey || event.ctrlKey || event.altKey) return;

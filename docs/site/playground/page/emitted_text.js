@@ -1,14 +1,26 @@
 // The emitted text of a target, its lines that an edit has changed marked.
 
 import { colored } from './highlight.js';
+import { make } from './preview/elements.js';
 import { changedLines } from './preview/emitted_text.js';
 
+/** @typedef {import('./editor.js').Files} Files */
+
 export class EmittedText {
+  /** @param {HTMLElement} parts @param {HTMLElement} root */
   constructor(parts, root) {
-    Object.assign(this, { parts, root, files: {}, before: {}, open: '' });
+    this.parts = parts;
+    this.root = root;
+    /** @type {Files} */
+    this.files = {};
+    /** @type {Files} */
+    this.before = {};
+    this.open = '';
+    this.refused = '';
   }
 
-  /** Shows files (name → text), or why there are none. With `compared`, lines that were not there are marked. */
+  /** Shows files (name → text), or why there are none. With `compared`, lines that were not there are marked.
+   * @param {Files} files @param {string} refused @param {boolean} compared */
   show(files, refused, compared) {
     if (Object.keys(files).length) {
       const same = JSON.stringify(files) === JSON.stringify(this.files);  // an edit of a comment keeps the marks
@@ -16,7 +28,7 @@ export class EmittedText {
       this.files = files;
     }
     const names = Object.keys(this.files);
-    const reflection = (name) => name.endsWith('.reflection.json');
+    const reflection = (/** @type {string} */ name) => name.endsWith('.reflection.json');
     if (!names.includes(this.open)) {
       const texts = names.filter((name) => !reflection(name));
       this.open = texts.sort((one, other) => this.files[other].length - this.files[one].length)[0] ?? '';  // the fragment shader
@@ -28,8 +40,8 @@ export class EmittedText {
   draw() {
     this.root.classList.toggle('refused', Boolean(this.refused));
     this.parts.replaceChildren(...(this.refused ? [] : Object.keys(this.files)).map((name) => {
-      const tab = Object.assign(document.createElement('button'), { textContent: name.endsWith('.reflection.json') ? 'reflection' : name });
-      tab.setAttribute('aria-selected', name === this.open);
+      const tab = make('button', { textContent: name.endsWith('.reflection.json') ? 'reflection' : name });
+      tab.setAttribute('aria-selected', String(name === this.open));
       tab.addEventListener('click', () => { this.open = name; this.draw(); });
       return tab;
     }));

@@ -10,14 +10,17 @@ const CODE = new RegExp([
   String.raw`(?<type>\b(?:float|int|uint|bool|half|[iub]?vec[234][fhui]?|mat[234](?:x[234])?f?|float[234](?:x[234])?|half[234]|sampler\w*|texture_\w+|f32|i32|u32|f16|world_(?:direction|position)|thickness|transmittance|normal|tangent_direction)\b)`,
 ].join('|'), 'gm');
 
-const escaped = (text) => text.replace(/[&<>]/g, (letter) => ({ '&': '&amp;', '<': '&lt;', '>': '&gt;' })[letter]);
+/** @type {Record<string, string>} */
+const ENTITIES = { '&': '&amp;', '<': '&lt;', '>': '&gt;' };
+const escaped = (/** @type {string} */ text) => text.replace(/[&<>]/g, (letter) => ENTITIES[letter]);
 
-/** A text as HTML. `name` is its file's; `faults` are places from and to, in characters. */
+/** A text as HTML. `name` is its file's; `faults` are places from and to, in characters.
+ * @param {string} text @param {string} name @param {number[][]} faults */
 export function colored(text, name, faults = []) {
   const marks = [];
   const pattern = /\.(toml|json)$/.test(name) ? TOML : CODE;
   for (const match of text.matchAll(pattern)) {
-    const kind = Object.keys(match.groups).find((one) => match.groups[one] !== undefined);
+    const kind = Object.entries(match.groups ?? {}).find(([, part]) => part !== undefined)?.[0];
     marks.push([match.index, match.index + match[0].length, kind]);
   }
   const cuts = new Set([0, text.length, ...marks.flatMap(([from, to]) => [from, to]), ...faults.flat()]);

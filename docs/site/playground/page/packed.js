@@ -1,6 +1,7 @@
 // Files that are kept as PATH.gz: small on every host, also on one that compresses nothing.
 
-/** The bytes of a packed file. */
+/** The bytes of a packed file.
+ * @param {string} path @returns {Promise<ArrayBuffer>} */
 export async function unpacked(path) {
   const response = await fetch(`${path}.gz`);
   if (!response.ok) throw new Error(`${path}.gz: ${response.status}`);

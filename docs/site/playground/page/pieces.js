@@ -4,7 +4,8 @@ import { unpacked } from './packed.js';
 
 const [POSITION, NORMAL, UV] = [2 ** 14 - 1, 2 ** 11 - 1, 2 ** 14 - 1];
 
-/** Whole numbers with signs: first all their low bytes, then the next ones. */
+/** Whole numbers with signs: first all their low bytes, then the next ones.
+ * @param {Uint8Array} bytes @param {number} start @param {number} count @param {number} size  of a number, in bytes */
 function planes(bytes, start, count, size) {
   const numbers = new Int32Array(count);
   for (let place = 0; place < size; place++) {
@@ -14,14 +15,16 @@ function planes(bytes, start, count, size) {
   return numbers;
 }
 
-/** The sums of differences. */
+/** The sums of differences.
+ * @param {Uint8Array} bytes @param {number} start @param {number} count */
 function column(bytes, start, count) {
   const numbers = planes(bytes, start, count, 2);
   for (let index = 1; index < count; index++) numbers[index] += numbers[index - 1];
   return numbers;
 }
 
-/** The triangles of a packed body: position, normal and uv of each corner as 8 float32. */
+/** The triangles of a packed body: position, normal and uv of each corner as 8 float32.
+ * @param {ArrayBuffer} buffer */
 export function bodyOf(buffer) {
   const header = new DataView(buffer);
   const [corners, triangles] = [header.getUint32(0, true), header.getUint32(4, true)];
@@ -53,17 +56,23 @@ export function bodyOf(buffer) {
 
 /** What the stage asks pieces of; a body is unpacked once. */
 export class Pieces {
-  constructor() { this.found = new Map(); this.bodies = new Set(); }
+  constructor() {
+    /** @type {Map<string, Promise<ArrayBuffer>>} */
+    this.fetched = new Map();
+    /** @type {Set<string>} */
+    this.bodies = new Set();
+  }
 
-  /** The piece of a name, as the preview's stage takes it. */
+  /** The piece of a name, as the preview's stage takes it.
+   * @type {import('../../../../src/sssgen/preview/page_messages.js').PieceOf} */
   get = (name) => {
-    if (!this.found.has(name)) {
-      const piece = unpacked(`pieces/${name}`);
-      this.found.set(name, this.bodies.has(name) ? piece.then(bodyOf) : piece);
-    }
-    return this.found.get(name);
+    const packed = this.fetched.get(name) ?? unpacked(`pieces/${name}`);
+    const piece = !this.fetched.has(name) && this.bodies.has(name) ? packed.then(bodyOf) : packed;
+    this.fetched.set(name, piece);
+    return piece;
   };
 
-  /** Says that a piece is a body, and begins to fetch it. */
+  /** Says that a piece is a body, and begins to fetch it.
+   * @param {string} name */
   body(name) { this.bodies.add(name); return this.get(name); }
 }

@@ -6,48 +6,60 @@ import { EmittedText } from './emitted_text.js';
 import { Pieces } from './pieces.js';
 import { unpacked } from './packed.js';
 import { Picture } from './picture.js';
+import { box, button, list } from './preview/elements.js';
 import { packedState, unpackedState } from './state_link.js';
 
-const element = (id) => document.getElementById(id);
-const say = (text) => { element('message').textContent = text; };
-const python = (text, failed = false) => {
-  element('python').textContent = text;
-  element('python').classList.toggle('failed', failed);
+/** @typedef {import('./picture.js').Start} Start */
+/** @typedef {{ start: string, files: import('./editor.js').Files, open: string, target: string, form: string, shape: string,
+ *   values: object }} State  What a link has. */
+/** @typedef {{ starts: { name: string, title: string }[], targets: { name: string, title: string }[], first: string }} Listed */
+
+const [target, form, starts] = [list('target'), list('form'), list('start')];
+const copyButton = button('copy');
+const say = (/** @type {string} */ text) => { box('message').textContent = text; };
+const python = (/** @type {string} */ text, failed = false) => {
+  box('python').textContent = text;
+  box('python').classList.toggle('failed', failed);
 };
 
 const compiler = new Compiler(globalThis.pythonWorker, (kind, text) => {
   if (kind === 'started') python('Python runs, sssgen is loading …');
   if (kind === 'failed') python(`Python does not start: ${text}`, true);
 });
-const pieces = new Pieces();
-const picture = new Picture(pieces, say);
-const editor = new Editor(element('files'), element('editor'), () => refresh(true));
-const emitted = new EmittedText(element('parts'), element('text'));
-let start = null;
+const picture = new Picture(new Pieces(), () => editor.files);
+const editor = new Editor(box('files'), box('editor'), () => refresh(true));
+const emitted = new EmittedText(box('parts'), box('text'));
+/** @type {Start} */
+let start;
 
+/** @param {string} name @returns {Promise<Start>} */
 async function startOf(name) {
   return JSON.parse(new TextDecoder().decode(await unpacked(`starts/${name}.json`)));
 }
 
-/** Begins with an example, or with the state of a link. */
+/** Begins with an example, or with the state of a link.
+ * @param {string} name @param {State | null} state */
 async function begin(name, state = null) {
   start = await startOf(name);
-  element('start').value = name;
+  starts.value = name;
   document.title = `${start.title} · sssgen playground`;
   picture.begin(start, state);
   editor.show(state?.files ?? start.files, start.files, state?.open ?? start.main);
-  for (const id of ['target', 'form']) if (state?.[id]) element(id).value = state[id];
+  if (state?.target) target.value = state.target;
+  if (state?.form) form.value = state.form;
   await refresh(false);
 }
 
-/** What Python is asked of the files as they are now. */
+/** What Python is asked of the files as they are now.
+ * @param {'picture' | 'text'} part */
 function request(part) {
   const { values = {}, in_scene = [] } = picture.scene() ?? {};
-  const form = start.main.endsWith('.toml') ? element('form').value : 'shader';
-  return { part, example: start.name, files: { ...editor.files }, main: start.main, target: element('target').value, form, values, in_scene };
+  const asked = { target: target.value, form: start.main.endsWith('.toml') ? form.value : 'shader' };
+  return { part, example: start.name, files: { ...editor.files }, main: start.main, ...asked, values, in_scene };
 }
 
-/** Asks Python for the picture of the files as they are now, and then for the text. */
+/** Asks Python for the picture of the files as they are now, and then for the text.
+ * @param {boolean} compared  whether changed lines of the text are marked */
 async function refresh(compared) {
   const [began, asked] = [performance.now(), start];
   try {
@@ -63,29 +75,32 @@ async function refresh(compared) {
     }
     const [all, version] = [performance.now() - began, Number(document.body.dataset.version ?? 0) + 1];
     python(version > 1 ? `Python ${computed.toFixed(0)} ms, picture ${(all - computed).toFixed(0)} ms` : `first picture after ${(performance.now() / 1000).toFixed(1)} s`);
-    Object.assign(document.body.dataset, { version, milliseconds: all });
+    Object.assign(document.body.dataset, { version: String(version), milliseconds: String(all) });
     await write(compared, drawn.errors);
   } catch (reason) {  // a fault of sssgen, not of the files
     complain(`sssgen failed on these files: ${reason.message.trim().split('\n').pop()}`);
   }
 }
 
-/** Shows the text for the target; `errors` are those of the picture, which come first. */
+/** Shows the text for the target; `errors` are those of the picture, which come first.
+ * @param {boolean} compared */
 async function write(compared, errors = '') {
   const asked = start;
   const written = await compiler.ask(request('text'));
   if (!written || asked !== start) return;
   emitted.show(written.texts ?? {}, written.errors === errors ? '' : written.errors, compared);  // one error is shown once
-  element('copy').disabled = Boolean(emitted.refused);
+  copyButton.disabled = Boolean(emitted.refused);
   if (!errors) complain('', written.warnings);
 }
 
+/** @param {string} errors */
 function complain(errors, warnings = '') {
-  element('errors').hidden = !errors && !warnings;
-  element('errors').classList.toggle('warning', !errors);
-  element('errors').textContent = errors || warnings;
+  box('errors').hidden = !errors && !warnings;
+  box('errors').classList.toggle('warning', !errors);
+  box('errors').textContent = errors || warnings;
 }
 
+/** @param {string} text @param {string} what */
 async function copy(text, what) {
   try {
     await navigator.clipboard.writeText(text);
@@ -96,14 +111,16 @@ async function copy(text, what) {
   setTimeout(() => say(''), 4000);
 }
 
-async function state() {
+/** @returns {State} */
+function state() {
   return {
-    start: start.name, files: editor.files, open: editor.open, target: element('target').value, form: element('form').value,
+    start: start.name, files: editor.files, open: editor.open, target: target.value, form: form.value,
     ...picture.state(),
   };
 }
 
-/** What the address says: `#NAME`, or `#s=STATE` for a whole state; the first example where it says nothing. */
+/** What the address says: `#NAME`, or `#s=STATE` for a whole state; the first example where it says nothing.
+ * @param {Listed} listed */
 async function fromAddress(listed) {
   const text = location.hash.slice(1);
   try {
@@ -120,20 +137,21 @@ async function fromAddress(listed) {
   return begin(listed.starts.some(({ name }) => name === text) ? text : listed.first);
 }
 
-const options = (rows) => rows.map(({ name, title }) => new Option(title, name));
+const options = (/** @type {Listed['starts']} */ rows) => rows.map(({ name, title }) => new Option(title, name));
+/** @type {Listed} */
 const listed = await (await fetch('starts.json')).json();
-element('start').append(...options(listed.starts));
-element('target').append(...options(listed.targets));
-element('target').value = 'wgsl';
-element('start').addEventListener('change', () => {
-  history.replaceState(null, '', `#${element('start').value}`);
-  begin(element('start').value);
+starts.append(...options(listed.starts));
+target.append(...options(listed.targets));
+target.value = 'wgsl';
+starts.addEventListener('change', () => {
+  history.replaceState(null, '', `#${starts.value}`);
+  begin(starts.value);
 });
-for (const id of ['target', 'form']) element(id).addEventListener('change', () => write(false));
-element('again').addEventListener('click', () => begin(start.name));
-element('copy').addEventListener('click', () => copy(emitted.text, emitted.open));
-element('link').addEventListener('click', async () => {
-  history.replaceState(null, '', `#s=${await packedState(await state())}`);
+for (const choice of [target, form]) choice.addEventListener('change', () => write(false));
+button('again').addEventListener('click', () => begin(start.name));
+copyButton.addEventListener('click', () => copy(emitted.text, emitted.open));
+button('link').addEventListener('click', async () => {
+  history.replaceState(null, '', `#s=${await packedState(state())}`);
   await copy(location.href, 'link');
 });
 addEventListener('hashchange', () => fromAddress(listed));

@@ -1,15 +1,30 @@
 // Babylon.js in a page: draws meshes with emitted modules, as plans say (engine_page.js).
 
-import {
-  Camera, Color3, Color4, DirectionalLight, Engine, Matrix, Mesh, PointLight, RawTexture, RawTexture3D, RenderTargetTexture, Scene,
-  Texture, Vector3, VertexData, WebGPUEngine,
-} from '@babylonjs/core/scene.js';
+import { Camera } from '@babylonjs/core/Cameras/camera.js';
+import { Engine } from '@babylonjs/core/Engines/engine.js';
+import { WebGPUEngine } from '@babylonjs/core/Engines/webgpuEngine.js';
+import { DirectionalLight } from '@babylonjs/core/Lights/directionalLight.js';
+import { PointLight } from '@babylonjs/core/Lights/pointLight.js';
+import { RawTexture } from '@babylonjs/core/Materials/Textures/rawTexture.js';
+import { RawTexture3D } from '@babylonjs/core/Materials/Textures/rawTexture3D.js';
+import { RenderTargetTexture } from '@babylonjs/core/Materials/Textures/renderTargetTexture.js';
+import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
+import { Color3, Color4 } from '@babylonjs/core/Maths/math.color.js';
+import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
+import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
+import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
+import { Scene } from '@babylonjs/core/scene.js';
+import { floats, halves, imported, indices, serve } from './engine_page.js';
 
-const VERSION = Engine.Version;
+/** @typedef {import('./engine_page.js').Plan} Plan */
+/** @typedef {import('./engine_page.js').PieceOf} PieceOf */
+
 const RGBA = 5, FLOAT = 1, HALF_FLOAT = 2, COUNTER_CLOCKWISE = 1;
 const WRAPS = { clamp: 0, repeat: 1, mirror: 2 };
+/** @type {Engine | WebGPUEngine} */
 let engine;
 
+/** @param {string} kind */
 async function engineFor(kind) {
   const canvas = document.createElement('canvas');
   if (kind === 'webgl') return new Engine(canvas, false);
@@ -19,6 +34,7 @@ async function engineFor(kind) {
 }
 
 class GivenCamera extends Camera {
+  /** @param {Plan} plan @param {Scene} scene */
   constructor(plan, scene) {
     super('given', Vector3.Zero(), scene);
     this.view = Matrix.FromArray(plan.view);
@@ -30,9 +46,11 @@ class GivenCamera extends Camera {
   }
 }
 
+/** @param {Plan} plan @param {PieceOf} piece */
 async function draw(plan, piece) {
   engine ??= await engineFor(plan.renderer);
-  engine._device?.pushErrorScope('validation');
+  const device = engine instanceof WebGPUEngine ? engine._device : null;
+  device?.pushErrorScope('validation');
   const scene = new Scene(engine);
   scene.useRightHandedSystem = true;
   scene.clearColor = new Color4(0, 0, 0, 0);
@@ -45,8 +63,8 @@ async function draw(plan, piece) {
   const material = createMaterial({ ambientColor: Color3.White(), ...plan.values, ...textures }, scene);
   for (const [path, value] of Object.entries(plan.properties)) {
     const names = path.split('.');
-    const last = names.pop();
-    const one = names.reduce((object, name) => object[name], material);
+    const last = names[names.length - 1];
+    const one = names.slice(0, -1).reduce((object, name) => object[name], material);
     one[last] = one[last] instanceof Color3 ? new Color3(value, value, value) : value;
   }
   if (material.light === null) material.light = scene.lights[0] ?? null;
@@ -75,15 +93,17 @@ async function draw(plan, piece) {
   scene.render();
   engine.endFrame();
   const pixels = await target.readPixels();
-  const refused = await engine._device?.popErrorScope();
+  const refused = await device?.popErrorScope();
   if (refused) throw new Error(refused.message);
   scene.dispose();
+  if (!pixels) throw new Error('Babylon.js reads no pixels');
   return new Float32Array(pixels.buffer, pixels.byteOffset, plan.width * plan.height * 4);
 }
 
+/** @param {Plan} plan @param {PieceOf} piece */
 function vertexDataOf(plan, piece) {
   const vertices = floats(piece(plan.vertices));
-  const part = (name) => {
+  const part = (/** @type {string} */ name) => {
     const [offset, size] = plan.attributes[name];
     const count = vertices.length / plan.vertexSize;
     return Float32Array.from({ length: count * size }, (_, i) => vertices[Math.floor(i / size) * plan.vertexSize + offset + (i % size)]);
@@ -94,6 +114,7 @@ function vertexDataOf(plan, piece) {
   });
 }
 
+/** @param {import('./engine_page.js').Light} light @param {Scene} scene */
 function lightOf({ position, color }, scene) {
   const [x, y, z, w] = position;
   const light = w ? new PointLight('point', new Vector3(x, y, z), scene) : new DirectionalLight('direction', new Vector3(-x, -y, -z), scene);
@@ -102,12 +123,15 @@ function lightOf({ position, color }, scene) {
   return light;
 }
 
+/** @param {import('./engine_page.js').Texels} texels @param {PieceOf} piece @param {Scene} scene */
 function textureOf({ dim, size, levels, filter, wrap }, piece, scene) {
   const texels = halves(piece(levels[0].data));
   const mode = filter === 'nearest' ? Texture.NEAREST_SAMPLINGMODE : levels.length > 1 ? Texture.TRILINEAR_SAMPLINGMODE : Texture.BILINEAR_SAMPLINGMODE;
   const mipmaps = levels.length > 1;
   const texture = dim === '3D'
-    ? new RawTexture3D(texels, ...size, RGBA, scene, false, false, mode, HALF_FLOAT)
-    : new RawTexture(texels, ...size, RGBA, scene, mipmaps, false, mode, HALF_FLOAT);
+    ? new RawTexture3D(texels, size[0], size[1], size[2], RGBA, scene, false, false, mode, HALF_FLOAT)
+    : new RawTexture(texels, size[0], size[1], RGBA, scene, mipmaps, false, mode, HALF_FLOAT);
   return Object.assign(texture, { wrapU: WRAPS[wrap], wrapV: WRAPS[wrap], wrapR: WRAPS[wrap], anisotropicFilteringLevel: 1 });
 }
+
+serve(Engine.Version, draw);

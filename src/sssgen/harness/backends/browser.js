@@ -3,12 +3,29 @@
 // A message pair each way: a text of JSON, then bytes. In a plan, `{at, size}` stands for a piece of its bytes. When the
 // connection ends, the page closes, and with it the browser.
 
+/** @typedef {{ at: number, size: number }} Piece */
+/** @typedef {(place: Piece) => Uint8Array} PieceOf */
+/** @typedef {<T extends { destroy(): void }>(resource: T) => T} Keep  Destroys it after the picture. */
+/** @typedef {{ group: number, binding: number, sampler: number, view: GPUTextureViewDimension, filter: GPUFilterMode, wrap: GPUAddressMode,
+ *   compare: GPUCompareFunction | '', format: GPUTextureFormat, dimension: GPUTextureDimension, bytes_per_texel: number,
+ *   levels: { size: number[], data: Piece }[] }} Texture */
+/** @typedef {{ code: string, vertex: string, fragment: string, format: GPUTextureFormat, groups: GPUBindGroupLayoutEntry[][],
+ *   attributes: GPUVertexAttribute[], vertexStride: number, width: number, height: number, vertices: Piece, triangles: Piece,
+ *   blocks: { group: number, binding: number, data: Piece }[], textures: Texture[] }} Plan  As webgpu_plan.py describes it. */
+/** @typedef {{ pipeline: GPURenderPipeline, layouts: GPUBindGroupLayout[] }} Pipeline */
+
 const KEPT = 64;
 const ROW = 256; // bytesPerRow of a copy into a buffer is a multiple of this
+/** @type {GPUErrorFilter[]} */
 const SCOPES = ["validation", "out-of-memory", "internal"];
+/** @type {(keyof GPUSupportedLimits)[]} */
 const LIMITS = ["maxTextureDimension2D", "maxTextureDimension3D", "maxBufferSize", "maxUniformBufferBindingSize"];
 
-let device, lost;
+/** @type {GPUDevice} */
+let device;
+/** @type {string | undefined} */
+let lost; // why the device is gone
+/** @type {Map<string, Pipeline>} */
 const pipelines = new Map(); // the oldest first
 
 async function start() {
@@ -23,16 +40,24 @@ async function start() {
 }
 
 async function browserVersion() {
-  const detail = await navigator.userAgentData?.getHighEntropyValues(["fullVersionList"]);
+  /** @type {any} */
+  const { userAgentData } = navigator; // Chromium's
+  const detail = await userAgentData?.getHighEntropyValues(["fullVersionList"]);
   const chromium = detail?.fullVersionList.find(({ brand }) => brand === "Chromium");
   return chromium?.version ?? navigator.userAgent.match(/Firefox\/(\S+)/)?.[1] ?? "";
 }
 
-// What a plan gives: `{stride}` and the picture, its rows `stride` bytes apart; `{messages}` where the text is refused;
-// `{error}` where a step is; `{lost}` where the device is gone.
+/** What a plan gives: `{stride}` and the picture, its rows `stride` bytes apart; `{messages}` where the text is refused;
+ * `{error}` where a step is; `{lost}` where the device is gone.
+ * @param {Plan} plan @param {Uint8Array} bytes @returns {Promise<[any, ArrayBuffer?]>} */
 async function carryOut(plan, bytes) {
+  /** @type {{ destroy(): void }[]} */
   const made = [];
-  const keep = (one) => (made.push(one), one);
+  /** @type {Keep} */
+  const keep = (one) => {
+    made.push(one);
+    return one;
+  };
   SCOPES.forEach((scope) => device.pushErrorScope(scope));
   let answer;
   try {
@@ -47,13 +72,16 @@ async function carryOut(plan, bytes) {
   return error && !answer[0].messages ? [{ error: error.message }] : answer;
 }
 
+/** @param {Plan} plan @param {PieceOf} piece @param {Keep} keep @returns {Promise<[any, ArrayBuffer?]>} */
 async function draw(plan, piece, keep) {
-  const { messages, pipeline, layouts } = await pipelineFor(plan);
-  if (messages) return [{ messages }];
+  const known = await pipelineFor(plan);
+  if (!known.pipeline) return [{ messages: known.messages }];
+  const { pipeline, layouts } = known;
   const size = [plan.width, plan.height];
   const usage = GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_SRC;
   const target = keep(device.createTexture({ size, format: plan.format, usage }));
   const encoder = device.createCommandEncoder();
+  /** @type {GPURenderPassColorAttachment} */
   const attachment = { view: target.createView(), loadOp: "clear", storeOp: "store" };
   const pass = encoder.beginRenderPass({ colorAttachments: [attachment] });
   pass.setPipeline(pipeline);
@@ -80,7 +108,9 @@ async function draw(plan, piece, keep) {
   return [{ stride, drew }, buffer.getMappedRange().slice()];
 }
 
-// The pipeline and the layouts of its groups, from the page's own if they are known; or what Tint says against it.
+/** The pipeline and the layouts of its groups, from the page's own if they are known; or what Tint says against it.
+ * @param {Plan} plan
+ * @returns {Promise<Pipeline | { messages: any[], pipeline?: undefined }>} */
 async function pipelineFor(plan) {
   const { code, vertex, fragment, format, groups, attributes, vertexStride } = plan;
   const drawn = plan.triangles.size > 0;
@@ -92,6 +122,7 @@ async function pipelineFor(plan) {
     const errors = messages.filter(({ type }) => type === "error");
     if (errors.length) return { messages: errors.map((one) => [one.lineNum, one.linePos, one.message]) };
     const layouts = groups.map((entries) => device.createBindGroupLayout({ entries }));
+    /** @type {GPUVertexBufferLayout[]} */
     const buffers = drawn ? [{ arrayStride: vertexStride, stepMode: "vertex", attributes }] : [];
     const pipeline = await device.createRenderPipelineAsync({
       layout: device.createPipelineLayout({ bindGroupLayouts: layouts }),
@@ -103,28 +134,32 @@ async function pipelineFor(plan) {
   }
   pipelines.delete(key);
   pipelines.set(key, found);
-  if (pipelines.size > KEPT) pipelines.delete(pipelines.keys().next().value);
+  for (const oldest of pipelines.keys()) if (pipelines.size > KEPT) pipelines.delete(oldest);
   return found;
 }
 
+/** @param {Plan} plan @param {GPUBindGroupEntry[][]} groups @param {PieceOf} piece @param {Keep} keep */
 function bindBlocks(plan, groups, piece, keep) {
   for (const { group, binding, data } of plan.blocks) {
     groups[group].push({ binding, resource: { buffer: keep(filled(piece(data), GPUBufferUsage.UNIFORM)) } });
   }
 }
 
+/** @param {Plan} plan @param {GPUBindGroupEntry[][]} groups @param {PieceOf} piece @param {Keep} keep */
 function bindTextures(plan, groups, piece, keep) {
   for (const texture of plan.textures) {
     const { group, binding, sampler, view, filter, wrap, compare } = texture;
     groups[group].push({ binding, resource: keep(uploaded(texture, piece)).createView({ dimension: view }) });
     if (sampler < 0) continue;
     const wraps = { addressModeU: wrap, addressModeV: wrap, addressModeW: wrap };
+    /** @type {GPUSamplerDescriptor} */
     const filters = { magFilter: filter, minFilter: filter, mipmapFilter: "linear" };
     const compares = compare ? { compare } : {};
     groups[group].push({ binding: sampler, resource: device.createSampler({ ...wraps, ...filters, ...compares }) });
   }
 }
 
+/** @param {Texture} texture @param {PieceOf} piece */
 function uploaded({ format, dimension, levels, bytes_per_texel: texel }, piece) {
   const usage = GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST;
   const texture = device.createTexture({ size: levels[0].size, format, dimension, usage, mipLevelCount: levels.length });
@@ -135,6 +170,7 @@ function uploaded({ format, dimension, levels, bytes_per_texel: texel }, piece) 
   return texture;
 }
 
+/** @param {Uint8Array} data @param {number} usage */
 function filled(data, usage) {
   const size = Math.ceil(data.length / 4) * 4;
   const buffer = device.createBuffer({ size, usage, mappedAtCreation: true });
@@ -147,11 +183,13 @@ const socket = new WebSocket(location.href.replace("http:", "ws:"));
 socket.binaryType = "arraybuffer";
 socket.onclose = () => window.close();
 
+/** @param {object} answer */
 function say(answer, bytes = new ArrayBuffer(0)) {
   socket.send(JSON.stringify(answer));
   socket.send(bytes);
 }
 
+/** @type {Plan} */
 let plan;
 socket.onmessage = async ({ data }) => {
   if (typeof data === "string") plan = JSON.parse(data);

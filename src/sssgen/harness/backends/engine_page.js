@@ -1,11 +1,23 @@
-// What the pages of all engines share: plans come through a WebSocket, and pictures go back. The engine's own script is in
-// front of this one; it has `VERSION` and `async function draw(plan, piece)`, which returns the floats.
+// What the pages of all engines share: plans come through a WebSocket, and pictures go back. The engine's own script
+// imports this one, and calls `serve`.
 //
 // A message pair each way: a text of JSON, then bytes. In a plan, `{at, size}` stands for a piece of its bytes. When the
 // connection ends, the page closes, and with it the browser.
 
+/** @typedef {{ at: number, size: number }} Piece */
+/** @typedef {{ dim: '2D' | '3D', size: number[], filter: 'linear' | 'nearest', wrap: 'repeat' | 'clamp' | 'mirror',
+ *   levels: { size: number[], data: Piece }[] }} Texels  Half floats with four channels. */
+/** @typedef {{ position: number[], color: number[] }} Light */
+/** @typedef {{ module: string, renderer: string, width: number, height: number, vertices: Piece, vertexSize: number,
+ *   attributes: Record<string, [number, number]>, triangles: Piece, view: number[], projection: number[], eye: number[], model: number[],
+ *   lights: Light[], ambient: number[], values: object, properties: Record<string, any>, textures: Record<string, Texels>,
+ *   withoutTangents: boolean }} Plan  Matrices are by columns; an attribute has its first float in a vertex, and its size. */
+/** @typedef {(place: Piece) => Uint8Array} PieceOf */
+/** @typedef {(plan: Plan, piece: PieceOf) => Promise<Float32Array>} Draw */
+
+/** @type {string[]} */
 const complaints = [];
-for (const level of ['error', 'warn']) {
+for (const level of /** @type {const} */ (['error', 'warn'])) {
   const print = console[level];
   console[level] = (...parts) => {
     complaints.push(parts.map(String).join(' '));
@@ -17,18 +29,27 @@ addEventListener('unhandledrejection', ({ reason }) => complaints.push(`${reason
 
 // Without a GPU, Chromium loses the device when a canvas with WebGPU is shown: a texture stands in for it.
 if (globalThis.GPUCanvasContext) {
-  GPUCanvasContext.prototype.configure = function (configuration) {
-    this.configuration = configuration;
+  /** @type {WeakMap<GPUCanvasContext, GPUCanvasConfiguration>} */
+  const configurations = new WeakMap();
+  /** @type {WeakMap<GPUCanvasContext, GPUTexture>} */
+  const textures = new WeakMap();
+  GPUCanvasContext.prototype.configure = function (/** @type {GPUCanvasConfiguration} */ configuration) {
+    configurations.set(this, configuration);
+    return undefined;
   };
   GPUCanvasContext.prototype.getCurrentTexture = function () {
-    const { device, format, usage = GPUTextureUsage.RENDER_ATTACHMENT } = this.configuration;
-    this.shown ??= device.createTexture({ size: [this.canvas.width, this.canvas.height], format, usage });
-    return this.shown;
+    const configuration = configurations.get(this);
+    if (!configuration) throw new Error('the canvas is not configured');
+    const { device, format, usage = GPUTextureUsage.RENDER_ATTACHMENT } = configuration;
+    const texture = textures.get(this) ?? device.createTexture({ size: [this.canvas.width, this.canvas.height], format, usage });
+    textures.set(this, texture);
+    return texture;
   };
 }
 
-// The picture of a plan: its rows are `stride` bytes apart.
-async function drawn(plan, piece) {
+/** The picture of a plan: its rows are `stride` bytes apart.
+ * @param {Draw} draw @param {Plan} plan @param {PieceOf} piece @returns {Promise<[object, ArrayBuffer]>} */
+async function drawn(draw, plan, piece) {
   complaints.length = 0;
   const start = performance.now();
   const pixels = await draw(plan, piece);
@@ -52,30 +73,35 @@ async function imported(modules) {
   return module;
 }
 
-const floats = (bytes) => new Float32Array(bytes.slice().buffer);
-const indices = (bytes) => new Uint32Array(bytes.slice().buffer);
-const halves = (bytes) => new Uint16Array(bytes.slice().buffer);
+const floats = (/** @type {Uint8Array} */ bytes) => new Float32Array(bytes.slice().buffer);
+const indices = (/** @type {Uint8Array} */ bytes) => new Uint32Array(bytes.slice().buffer);
+const halves = (/** @type {Uint8Array} */ bytes) => new Uint16Array(bytes.slice().buffer);
 
-const socket = new WebSocket(location.href.replace('http:', 'ws:'));
-socket.binaryType = 'arraybuffer';
-socket.onclose = () => window.close();
-
-function say(answer, bytes = new ArrayBuffer(0)) {
-  socket.send(JSON.stringify(answer));
-  socket.send(bytes);
+/** Answers the plans that come, with `draw` of the engine in that version.
+ * @param {string} version @param {Draw} draw */
+function serve(version, draw) {
+  const socket = new WebSocket(location.href.replace('http:', 'ws:'));
+  socket.binaryType = 'arraybuffer';
+  socket.onclose = () => window.close();
+  const say = (/** @type {object} */ answer, bytes = new ArrayBuffer(0)) => {
+    socket.send(JSON.stringify(answer));
+    socket.send(bytes);
+  };
+  /** @type {Plan} */
+  let plan;
+  socket.onmessage = async ({ data }) => {
+    if (typeof data === 'string') {
+      plan = JSON.parse(data);
+      return;
+    }
+    const bytes = new Uint8Array(data);
+    try {
+      say(...(await drawn(draw, plan, ({ at, size }) => bytes.subarray(at, at + size))));
+    } catch (error) {
+      say({ error: `${error.name}: ${error.message}`, complaints: [...complaints], stack: error.stack });
+    }
+  };
+  socket.onopen = () => say({ version });
 }
 
-let plan;
-socket.onmessage = async ({ data }) => {
-  if (typeof data === 'string') {
-    plan = JSON.parse(data);
-    return;
-  }
-  const bytes = new Uint8Array(data);
-  try {
-    say(...(await drawn(plan, ({ at, size }) => bytes.subarray(at, at + size))));
-  } catch (error) {
-    say({ error: `${error.name}: ${error.message}`, complaints: [...complaints], stack: error.stack });
-  }
-};
-socket.onopen = () => say({ version: VERSION });
+export { floats, halves, imported, indices, serve };

@@ -1,6 +1,6 @@
 """An engine of the web in a headless Chromium or Chrome: draws a mesh with an emitted ES module, lit by the engine.
 
-An engine is its package of npm, a script that draws (`engine_page.js` has what all share), and its renderers.
+An engine is its package of npm, a script that draws (it imports what all share, `engine_page.js`), and its renderers.
 $SSSGEN_CHROMIUM and $SSSGEN_BROWSER_ADAPTER are as in `browser`.
 """
 
@@ -94,9 +94,9 @@ class EnginePage:
 
     def _start(self) -> None:
         adapter = os.environ.get("SSSGEN_BROWSER_ADAPTER", "swiftshader")
-        scripts = [Path(__file__).with_name(name) for name in (self.engine.script, "engine_page.js")]
-        script = "\n".join(file.read_text(encoding="utf-8") for file in scripts)
-        self.page = Page(self.program, adapter, script, self.renderer.switches, self.modules)
+        script = Path(__file__).with_name(self.engine.script).read_text(encoding="utf-8")
+        modules = {**self.modules, "./engine_page.js": Path(__file__).with_name("engine_page.js")}
+        self.page = Page(self.program, adapter, script, self.renderer.switches, modules)
         facts, _ = self.page.receive(START)
         self.version = str(facts["version"])
 

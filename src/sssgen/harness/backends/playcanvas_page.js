@@ -1,38 +1,49 @@
 // PlayCanvas in a page: draws meshes with emitted modules, as plans say (engine_page.js).
 
 import * as pc from 'playcanvas';
+import { floats, halves, imported, indices, serve } from './engine_page.js';
 
-const VERSION = pc.version;
+/** @typedef {import('./engine_page.js').Plan} Plan */
+/** @typedef {import('./engine_page.js').PieceOf} PieceOf */
+
+/** @type {Map<string, pc.AppBase>} */
 const apps = new Map();
 
-// PlayCanvas cannot turn its clustered lighting on again: with and without it are two apps.
+/** An object with what PlayCanvas's types keep to the engine.
+ * @param {object} object @returns {any} */
+const internalsOf = (object) => object;
+
+/** PlayCanvas cannot turn its clustered lighting on again: with and without it are two apps.
+ * @param {string} renderer @param {boolean} clustered */
 async function appFor(renderer, clustered) {
   const kind = `${renderer} ${clustered}`;
-  if (!apps.has(kind)) {
-    const canvas = document.createElement('canvas');
-    const gpu = renderer === 'webgpu';
-    const device = await pc.createGraphicsDevice(canvas, { deviceTypes: [gpu ? pc.DEVICETYPE_WEBGPU : pc.DEVICETYPE_WEBGL2], antialias: false });
-    if (device.isWebGPU !== gpu) throw new Error(`PlayCanvas chose another device: ${device.deviceType}`);
-    if (gpu) {
-      device.wgpu.addEventListener('uncapturederror', ({ error }) => console.error(error.message));
-      // without a GPU, Chromium loses the device where a canvas is shown: the frame goes into a texture
-      device.gpuContext = null;
-      device.externalBackbuffer = new pc.Texture(device, { width: 4, height: 4, format: device.backBufferFormat, mipmaps: false });
-    }
-    const options = new pc.AppOptions();
-    options.graphicsDevice = device;
-    options.componentSystems = [pc.RenderComponentSystem, pc.CameraComponentSystem, pc.LightComponentSystem];
-    const app = new pc.AppBase(canvas);
-    app.init(options);
-    app.scene.clusteredLightingEnabled = clustered;
-    invertedSquares(device);
-    apps.set(kind, app);
+  const started = apps.get(kind);
+  if (started) return started;
+  const canvas = document.createElement('canvas');
+  const gpu = renderer === 'webgpu';
+  const device = await pc.createGraphicsDevice(canvas, { deviceTypes: [gpu ? pc.DEVICETYPE_WEBGPU : pc.DEVICETYPE_WEBGL2], antialias: false });
+  if (device.isWebGPU !== gpu) throw new Error(`PlayCanvas chose another device: ${device.deviceType}`);
+  if (gpu) {
+    const internals = internalsOf(device);
+    internals.wgpu.addEventListener('uncapturederror', ({ error }) => console.error(error.message));
+    // without a GPU, Chromium loses the device where a canvas is shown: the frame goes into a texture
+    internals.gpuContext = null;
+    internals.externalBackbuffer = new pc.Texture(device, { width: 4, height: 4, format: device.backBufferFormat, mipmaps: false });
   }
-  return apps.get(kind);
+  const options = new pc.AppOptions();
+  options.graphicsDevice = device;
+  options.componentSystems = [pc.RenderComponentSystem, pc.CameraComponentSystem, pc.LightComponentSystem];
+  const app = new pc.AppBase(canvas);
+  app.init(options);
+  app.scene.clusteredLightingEnabled = clustered;
+  invertedSquares(device);
+  apps.set(kind, app);
+  return app;
 }
 
-// PlayCanvas's light at the distance d is 16 / (d * d + 1) within a range. For numbers that can be compared with those of
-// other targets it is 1 / (d * d) here.
+/** PlayCanvas's light at the distance d is 16 / (d * d + 1) within a range. For numbers that can be compared with those of
+ * other targets it is 1 / (d * d) here.
+ * @param {pc.GraphicsDevice} device */
 function invertedSquares(device) {
   pc.ShaderChunks.get(device, pc.SHADERLANGUAGE_GLSL).set('falloffInvSquaredPS', `
 float getFalloffWindow(float radius, vec3 d) { return 1.0; }
@@ -44,6 +55,7 @@ fn getFalloffInvSquared(radius: f32, d: vec3f) -> f32 { return 1.0 / max(dot(d, 
 `);
 }
 
+/** @param {Plan} plan @param {PieceOf} piece */
 async function draw(plan, piece) {
   const { clustered = true, shadows = false, ...properties } = plan.properties;
   const app = await appFor(plan.renderer, clustered);
@@ -75,19 +87,21 @@ async function draw(plan, piece) {
   const all = [entity, camera, ...lights];
   all.forEach((one) => app.root.addChild(one));
   app.render();
-  const pixels = await colorBuffer.read(0, 0, plan.width, plan.height, { renderTarget, immediate: true });
-  await device.wgpu?.queue.onSubmittedWorkDone();
+  const pixels = /** @type {Float32Array} */ (await colorBuffer.read(0, 0, plan.width, plan.height, { renderTarget, immediate: true }));
+  await internalsOf(device).wgpu?.queue.onSubmittedWorkDone();
   all.forEach((one) => one.destroy());
   renderTarget.destroy();
   [colorBuffer, material, ...Object.values(textures)].forEach((one) => one.destroy());
   return pixels;
 }
 
+/** @type {Record<string, string>} */
 const SEMANTICS = {
   position: pc.SEMANTIC_POSITION, normal: pc.SEMANTIC_NORMAL, tangent: pc.SEMANTIC_TANGENT,
   uv: pc.SEMANTIC_TEXCOORD0, uv2: pc.SEMANTIC_TEXCOORD1, color: pc.SEMANTIC_COLOR,
 };
 
+/** @param {pc.GraphicsDevice} device @param {Plan} plan @param {PieceOf} piece */
 function meshOf(device, plan, piece) {
   const rows = floats(piece(plan.vertices));
   const count = rows.length / plan.vertexSize;
@@ -103,8 +117,9 @@ function meshOf(device, plan, piece) {
 }
 
 // PlayCanvas keeps colours encoded.
-const colorOf = (values) => new pc.Color(...values.map((value) => value ** (1 / 2.2)));
+const colorOf = (/** @type {number[]} */ values) => new pc.Color(values.map((value) => value ** (1 / 2.2)));
 
+/** @param {pc.AppBase} app @param {import('./engine_page.js').Light} light @param {boolean} castShadows */
 function lightOf(app, { position, color }, castShadows) {
   const [x, y, z, w] = position;
   const entity = new pc.Entity('', app);
@@ -114,20 +129,23 @@ function lightOf(app, { position, color }, castShadows) {
   return entity;
 }
 
-// A matrix that may stretch and mirror along any axes: not one of position, rotation and scale.
+/** Gives an entity a matrix that may stretch and mirror along any axes: not one of position, rotation and scale.
+ * @param {pc.Entity} entity @param {number[]} matrix */
 function placed(entity, matrix) {
   entity.getLocalTransform();
-  entity.localTransform.set(matrix);
+  internalsOf(entity).localTransform.set(matrix);
 }
 
+/** @param {pc.AppBase} app @param {Plan} plan @param {pc.RenderTarget} renderTarget */
 function cameraOf(app, plan, renderTarget) {
   const entity = new pc.Entity('', app);
   entity.addComponent('camera', { renderTarget, clearColor: new pc.Color(0, 0, 0, 0), toneMapping: pc.TONEMAP_NONE, gammaCorrection: pc.GAMMA_NONE, frustumCulling: false });
   const world = new pc.Mat4().set(plan.view).invert();
-  entity.setPosition(...plan.eye);
+  entity.setPosition(new pc.Vec3(plan.eye));
   const projection = new pc.Mat4().set(plan.projection);
   // PlayCanvas takes depths from -1 to 1 on both devices
   if (plan.renderer === 'webgpu') projection.mul2(new pc.Mat4().set([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2, 0, 0, 0, -1, 1]), projection.clone());
+  if (!entity.camera) throw new Error('the entity has no camera');
   entity.camera.calculateProjection = (result) => result.copy(projection);
   entity.camera.calculateTransform = (result) => result.copy(world);
   return entity;
@@ -135,6 +153,7 @@ function cameraOf(app, plan, renderTarget) {
 
 const WRAPS = { repeat: pc.ADDRESS_REPEAT, clamp: pc.ADDRESS_CLAMP_TO_EDGE, mirror: pc.ADDRESS_MIRRORED_REPEAT };
 
+/** @param {pc.GraphicsDevice} device @param {import('./engine_page.js').Texels} texels @param {PieceOf} piece */
 function textureOf(device, { dim, size, levels, filter, wrap }, piece) {
   const nearest = filter === 'nearest';
   return new pc.Texture(device, {
@@ -144,3 +163,5 @@ function textureOf(device, { dim, size, levels, filter, wrap }, piece) {
     magFilter: nearest ? pc.FILTER_NEAREST : pc.FILTER_LINEAR, addressU: WRAPS[wrap], addressV: WRAPS[wrap], addressW: WRAPS[wrap],
   });
 }
+
+serve(pc.version, draw);

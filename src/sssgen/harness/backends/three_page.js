@@ -2,22 +2,30 @@
 
 import * as THREE from 'three';
 import { WebGPURenderer, REVISION } from 'three/webgpu';
+import { floats, halves, imported, indices, serve } from './engine_page.js';
 
-const VERSION = REVISION;
+/** @typedef {import('./engine_page.js').Plan} Plan */
+/** @typedef {import('./engine_page.js').PieceOf} PieceOf */
+
+/** @type {Map<string, THREE.WebGLRenderer | WebGPURenderer>} */
 const renderers = new Map();
 
+/** @param {string} kind */
 async function rendererFor(kind) {
-  if (!renderers.has(kind)) {
-    const canvas = document.createElement('canvas');
-    const renderer = kind === 'webgl' ? new THREE.WebGLRenderer({ canvas }) : new WebGPURenderer({ canvas, forceWebGL: kind === 'webgl2' });
-    renderer.toneMapping = THREE.NoToneMapping;
-    if (renderer.init) await renderer.init();
-    if (kind === 'webgpu' && !renderer.backend.isWebGPUBackend) throw new Error('its WebGPU has no adapter');
-    renderers.set(kind, renderer);
+  const started = renderers.get(kind);
+  if (started) return started;
+  const canvas = document.createElement('canvas');
+  const renderer = kind === 'webgl' ? new THREE.WebGLRenderer({ canvas }) : new WebGPURenderer({ canvas, forceWebGL: kind === 'webgl2' });
+  renderer.toneMapping = THREE.NoToneMapping;
+  if (renderer instanceof WebGPURenderer) {
+    await renderer.init();
+    if (kind === 'webgpu' && !('device' in renderer.backend)) throw new Error('its WebGPU has no adapter');
   }
-  return renderers.get(kind);
+  renderers.set(kind, renderer);
+  return renderer;
 }
 
+/** @param {Plan} plan @param {PieceOf} piece */
 async function draw(plan, piece) {
   const renderer = await rendererFor(plan.renderer);
   const gpu = plan.renderer === 'webgpu';
@@ -47,34 +55,35 @@ async function draw(plan, piece) {
   const lights = plan.lights.map(lightOf);
   scene.add(mesh, ...lights);
   if (material.light === null) material.light = lights[0] ?? null;
-  if (plan.ambient) scene.add(new THREE.AmbientLight(new THREE.Color(...plan.ambient), Math.PI));
-  const target = new THREE.RenderTarget(plan.width, plan.height, { type: THREE.FloatType, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter });
-  const glTarget = new THREE.WebGLRenderTarget(plan.width, plan.height, { type: THREE.FloatType, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter });
-  const into = plan.renderer === 'webgl' ? glTarget : target;
+  if (plan.ambient.length) scene.add(new THREE.AmbientLight(new THREE.Color().fromArray(plan.ambient), Math.PI));
+  // WebGLRenderer draws into no other target, and WebGPURenderer takes it, too
+  const target = new THREE.WebGLRenderTarget(plan.width, plan.height, { type: THREE.FloatType, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter });
   renderer.setClearColor(0x000000, 0);
-  renderer.setRenderTarget(into);
+  renderer.setRenderTarget(target);
   renderer.clear();
   renderer.render(scene, cameraOf(plan, gpu));
   let pixels;
-  if (plan.renderer === 'webgl') {
+  if (renderer instanceof THREE.WebGLRenderer) {
     pixels = new Float32Array(plan.width * plan.height * 4);
-    renderer.readRenderTargetPixels(into, 0, 0, plan.width, plan.height, pixels);
+    renderer.readRenderTargetPixels(target, 0, 0, plan.width, plan.height, pixels);
   } else {
-    pixels = await renderer.readRenderTargetPixelsAsync(into, 0, 0, plan.width, plan.height);
+    pixels = await renderer.readRenderTargetPixelsAsync(target, 0, 0, plan.width, plan.height);
   }
   renderer.setRenderTarget(null);
-  [geometry, material, target, glTarget, ...Object.values(textures)].forEach((one) => one.dispose());
+  [geometry, material, target, ...Object.values(textures)].forEach((one) => one.dispose());
   return pixels;
 }
 
+/** @param {import('./engine_page.js').Light} light */
 function lightOf({ position, color }) {
   const [x, y, z, w] = position;
   // three's lights are irradiance, those of the other shells radiance: their ratio is pi
-  const light = new (w ? THREE.PointLight : THREE.DirectionalLight)(new THREE.Color(...color), Math.PI);
+  const light = new (w ? THREE.PointLight : THREE.DirectionalLight)(new THREE.Color().fromArray(color), Math.PI);
   light.position.set(x, y, z);
   return light;
 }
 
+/** @param {Plan} plan @param {boolean} gpu */
 function cameraOf(plan, gpu) {
   const camera = new THREE.PerspectiveCamera();
   camera.coordinateSystem = gpu ? THREE.WebGPUCoordinateSystem : THREE.WebGLCoordinateSystem;
@@ -90,6 +99,7 @@ function cameraOf(plan, gpu) {
 
 const WRAPS = { repeat: THREE.RepeatWrapping, clamp: THREE.ClampToEdgeWrapping, mirror: THREE.MirroredRepeatWrapping };
 
+/** @param {import('./engine_page.js').Texels} texels @param {PieceOf} piece */
 function textureOf({ dim, size, levels, filter, wrap }, piece) {
   const texels = levels.map((level) => halves(piece(level.data)));
   const Kind = dim === '3D' ? THREE.Data3DTexture : THREE.DataTexture;
@@ -104,3 +114,5 @@ function textureOf({ dim, size, levels, filter, wrap }, piece) {
     wrapS: WRAPS[wrap], wrapT: WRAPS[wrap], wrapR: WRAPS[wrap], unpackAlignment: 1, needsUpdate: true,
   });
 }
+
+serve(REVISION, draw);

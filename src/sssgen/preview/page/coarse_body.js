@@ -2,10 +2,14 @@
 
 import * as THREE from 'three';
 
+/** @typedef {THREE.BufferGeometry<Record<'position' | 'normal' | 'uv', THREE.InterleavedBufferAttribute>>
+ *   & { boundingBox: THREE.Box3, boundingSphere: THREE.Sphere }} Body */
+
 const CELLS = 128;
 const FLOATS = 8;
 
-/** Attributes of corners, each with position, normal and uv. */
+/** Attributes of corners, each with position, normal and uv.
+ * @param {Float32Array} numbers @returns {Body} */
 export function geometryOf(numbers) {
   const corners = new THREE.InterleavedBuffer(numbers, FLOATS);
   const geometry = new THREE.BufferGeometry();
@@ -14,12 +18,19 @@ export function geometryOf(numbers) {
   geometry.setAttribute('uv', new THREE.InterleavedBufferAttribute(corners, 2, 6));
   geometry.computeBoundingBox();
   geometry.computeBoundingSphere();
-  return geometry;
+  return /** @type {Body} */ (geometry);
 }
 
-/** The same body with coarser triangles; the body itself where that saves little. */
+/** The sphere around a body in world space.
+ * @param {THREE.Mesh<Body>} mesh */
+export function ballOf(mesh) {
+  return mesh.geometry.boundingSphere.clone().applyMatrix4(mesh.matrixWorld);
+}
+
+/** The same body with coarser triangles; the body itself where that saves little.
+ * @param {Body} geometry */
 export function coarseOf(geometry) {
-  const { array, count } = geometry.attributes.position.data;
+  const { array, count } = /** @type {{ array: Float32Array, count: number }} */ (geometry.attributes.position.data);
   const { min, max } = geometry.boundingBox;
   const cell = Math.max(max.x - min.x, max.y - min.y, max.z - min.z) / CELLS || 1;
   const places = new Map();  // cell → its number
@@ -48,7 +59,8 @@ export function coarseOf(geometry) {
   return geometryOf(numbers);
 }
 
-/** The mean position and the unit mean normal of the corners in each cell. */
+/** The mean position and the unit mean normal of the corners in each cell.
+ * @param {Float32Array} array @param {Uint32Array} standing @param {number} cells */
 function meansOf(array, standing, cells) {
   const means = new Float32Array(6 * cells);
   const counts = new Uint32Array(cells);

@@ -1,24 +1,22 @@
 // The box with what a material costs, and how far it is from the reference where that was measured.
 
+import { make } from './elements.js';
+
 const DELAY = 400;
 const UNITS = { operations: 'operations', transcendentals: 'transcendental functions', fetches: 'texture reads', distance_evaluations: 'distances' };
 
-const make = (tag, properties = {}, ...children) => {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-};
-
 /** The box; `ask` sends a question to Python. */
 export class CostBox {
+  /** @param {HTMLElement} root @param {(question: object) => void} ask */
   constructor(root, ask) {
-    Object.assign(this, { root, ask });
+    this.ask = ask;
     this.table = make('table');
     this.error = make('p', { id: 'measured' });
     root.append(make('h2', { textContent: 'static cost of one call' }), this.table, this.error);
   }
 
-  /** The cost of a picture; its error is asked for once no further picture follows. */
+  /** The cost of a picture; its error is asked for once no further picture follows.
+   * @param {import('../page_messages.js').Picture} picture */
   show({ cost }) {
     const used = Object.keys(UNITS).filter((unit) => Object.values(cost).some((one) => one[unit]));
     this.table.replaceChildren(
@@ -29,6 +27,7 @@ export class CostBox {
     this.later = setTimeout(() => this.ask({ kind: 'measured' }), DELAY);
   }
 
-  /** The answer of Python. */
+  /** The answer of Python.
+   * @param {{ text: string }} answer */
   heard({ text }) { this.error.textContent = text; }
 }

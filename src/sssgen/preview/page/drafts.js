@@ -1,13 +1,24 @@
 // Frames while something changes: at a resolution that this machine draws at once; at full resolution after a rest.
 
+import { deviceOf } from './renderer.js';
+
 const BUDGET = 40;
 const REST = 250;
 const SHARES = [1, 1 / 2, 1 / 4];
 
+/** @typedef {import('./stage.js').Stage} Stage */
+
 /** Decides when a stage draws, and at which share of its resolution. */
 export class Drafts {
+  /** @param {Stage} stage */
   constructor(stage) {
-    Object.assign(this, { stage, level: SHARES.length - 1, asked: 0, turn: 0, busy: false, again: false, sharp: false });
+    this.stage = stage;
+    this.level = SHARES.length - 1;  // of the next draft, in SHARES
+    this.asked = 0;  // the frame that was requested
+    this.turn = 0;
+    this.busy = false;
+    this.again = false;
+    this.sharp = false;  // whether the last picture has the full resolution
   }
 
   /** A draft with the next frame of the page. */
@@ -27,7 +38,8 @@ export class Drafts {
     return this.draw(this.level);
   }
 
-  /** Draws at a level; what is asked meanwhile follows when the picture is there, so that no frames pile up. */
+  /** Draws at a level; what is asked meanwhile follows when the picture is there, so that no frames pile up.
+   * @param {number} level */
   async draw(level) {
     const [start, turn] = [performance.now(), ++this.turn];
     if (!this.stage.mesh) return;
@@ -46,7 +58,8 @@ export class Drafts {
     else this.rest = setTimeout(() => this.draw(level - 1), REST);
   }
 
-  /** The level of the next drafts, by the milliseconds of the last one. */
+  /** The level of the next drafts, by the milliseconds of the last one.
+   * @param {number} level @param {number} took */
   adapt(level, took) {
     if (took > BUDGET) this.level = Math.min(Math.max(this.level, level + 1), SHARES.length - 1);
     else if (took < BUDGET / 3) this.level = Math.max(Math.min(this.level, level - 1), 0);
@@ -55,13 +68,14 @@ export class Drafts {
   /** Waits until the graphics processor has drawn what was asked of it. */
   async drawn() {
     const { renderer } = this.stage;
-    const device = renderer.backend?.device;
+    const device = deviceOf(renderer);
     if (device) { await device.queue.onSubmittedWorkDone(); return; }
-    const gl = renderer.getContext();
+    const gl = /** @type {WebGL2RenderingContext} */ (renderer.getContext());
     const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
     gl.flush();
-    while (fence && !gl.isContextLost() && gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED) {
-      await new Promise((done) => { setTimeout(done, 2); });
+    if (!fence) return;
+    while (!gl.isContextLost() && gl.clientWaitSync(fence, 0, 0) === gl.TIMEOUT_EXPIRED) {
+      await new Promise((done) => setTimeout(done, 2));
     }
     gl.deleteSync(fence);
   }

@@ -3,11 +3,16 @@
 import * as THREE from 'three';
 import { NodeMaterial } from 'three/webgpu';
 import * as TSL from 'three/tsl';
+import { ballOf } from './coarse_body.js';
+import { deviceOf } from './renderer.js';
+
+/** @typedef {import('./coarse_body.js').Body} Body */
 
 const FAR = 60000;
 const SIDE = 512;
 
-/** A material that writes the distance from the eye (or from the light's plane) of one side of the faces. */
+/** A material that writes the distance from the eye (or from the light's plane) of one side of the faces.
+ * @param {string} kind  of `rendererOf` @param {THREE.Side} side @param {boolean} fromPlane */
 function distanceMaterial(kind, side, fromPlane) {
   if (kind === 'webgl') {
     return new THREE.ShaderMaterial({
@@ -23,6 +28,8 @@ function distanceMaterial(kind, side, fromPlane) {
 
 /** The views of one material on one renderer. */
 export class DrawnViews {
+  /** @param {string} kind  of `rendererOf` @param {import('../page_messages.js').Slot[]} textures
+   * @param {import('../page_messages.js').Control[]} controls */
   constructor(kind, textures, controls) {
     this.kind = kind;
     this.rows = textures.filter((texture) => texture.drawn && !texture.texels).map((texture) => ({
@@ -36,12 +43,15 @@ export class DrawnViews {
   }
 
   target() {
-    const Target = this.kind === 'webgl' ? THREE.WebGLRenderTarget : THREE.RenderTarget;
     const filters = { minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter };
-    return new Target(SIDE, SIDE, { type: THREE.FloatType, format: THREE.RGBAFormat, ...filters });
+    const options = { type: THREE.FloatType, format: THREE.RGBAFormat, ...filters };
+    return this.kind === 'webgl' ? new THREE.WebGLRenderTarget(SIDE, SIDE, options) : new THREE.RenderTarget(SIDE, SIDE, options);
   }
 
-  /** Draws all views, and gives the material its textures and matrices. */
+  /** Draws all views, and gives the material its textures and matrices.
+   * @param {import('./renderer.js').Renderer} renderer @param {THREE.Mesh<Body>} mesh
+   * @param {import('./material.js').EmittedMaterial} material @param {THREE.Camera} camera @param {THREE.Light} light
+   * @param {THREE.Vector2} size  of the picture, in pixels */
   draw(renderer, mesh, material, camera, light, size) {
     for (const row of this.rows) {
       const back = row.drawn === 'back_faces';
@@ -54,6 +64,8 @@ export class DrawnViews {
     }
   }
 
+  /** @param {import('./renderer.js').Renderer} renderer @param {THREE.Mesh} mesh @param {DrawnViews['rows'][0]} row
+   * @param {THREE.Camera} eye @param {number} empty  what is written where nothing is */
   render(renderer, mesh, row, eye, empty) {
     const scene = new THREE.Scene();
     const own = mesh.material;
@@ -63,7 +75,7 @@ export class DrawnViews {
     scene.add(mesh);
     renderer.toneMapping = THREE.NoToneMapping;
     renderer.setClearColor(new THREE.Color(empty, empty, empty), 1);
-    renderer.setRenderTarget(row.target);
+    renderer.setRenderTarget(/** @type {THREE.WebGLRenderTarget} */ (row.target));
     renderer.clear();
     renderer.render(scene, eye);
     renderer.setRenderTarget(null);
@@ -73,9 +85,10 @@ export class DrawnViews {
     parent?.add(mesh);
   }
 
-  /** The camera of a light from afar, around the body. */
+  /** The camera of a light from afar, around the body.
+   * @param {THREE.Mesh<Body>} mesh @param {THREE.Light} light */
   lampFor(mesh, light) {
-    const ball = mesh.geometry.boundingSphere.clone().applyMatrix4(mesh.matrixWorld);
+    const ball = ballOf(mesh);
     const towards = light.position.clone().normalize();
     const radius = ball.radius * 1.02;
     Object.assign(this.lamp, { left: -radius, right: radius, top: radius, bottom: -radius, near: 0.5 * radius, far: 4 * radius });
@@ -88,10 +101,11 @@ export class DrawnViews {
     return this.lamp;
   }
 
-  /** World space to (u, v, distance from the light's plane, 1). WebGPU's render targets begin at the top. */
+  /** World space to (u, v, distance from the light's plane, 1). WebGPU's render targets begin at the top.
+   * @param {import('./renderer.js').Renderer} renderer */
   lampMatrix(renderer) {
     const { left, right, top, bottom, matrixWorldInverse } = this.lamp;
-    const up = renderer.backend?.isWebGPUBackend ? -1 : 1;
+    const up = deviceOf(renderer) ? -1 : 1;
     const place = new THREE.Matrix4().set(
       1 / (right - left), 0, 0, 0.5,
       0, up / (top - bottom), 0, 0.5,

@@ -1,12 +1,9 @@
 // The panel with the emitted text of a target: changed lines are marked, and each line has its source.
 
-const make = (tag, properties = {}, ...children) => {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-};
+import { make } from './elements.js';
 
-/** The numbers of the lines, from 0, that a text has and the one before it had not: those outside a common subsequence. */
+/** The numbers of the lines, from 0, that a text has and the one before it had not: those outside a common subsequence.
+ * @param {string[]} before @param {string[]} after */
 export function changedLines(before, after) {
   let from = 0;
   while (from < before.length && from < after.length && before[from] === after[from]) from += 1;
@@ -33,16 +30,27 @@ export function changedLines(before, after) {
   return changed;
 }
 
-/** `file:line:column` in parts. */
-const placeOf = (span) => {
-  const [, name, line] = /^(.*):(\d+):\d+$/.exec(span);
-  return { name, line: Number(line) };
+/** `file:line:column` in parts; null for ''. */
+const placeOf = (/** @type {string} */ span) => {
+  const parts = /^(.*):(\d+):\d+$/.exec(span);
+  return parts && { name: parts[1], line: Number(parts[2]) };
 };
 
 /** The panel; `ask` sends a question to Python. */
 export class EmittedText {
+  /** @type {import('../page_messages.js').TextMessage} */
+  message;  // the last one
+  /** @type {{ name: string, line: number } | null} */
+  goal = null;  // the source that was asked for
+
+  /** @param {HTMLElement} root @param {(question: object) => void} ask */
   constructor(root, ask) {
-    Object.assign(this, { root, ask, before: new Map(), changed: new Map(), message: null, goal: null });
+    this.root = root;
+    this.ask = ask;
+    /** @type {Map<string, string[]>} */
+    this.before = new Map();  // form and file → lines
+    /** @type {Map<string, Set<number>>} */
+    this.changed = new Map();  // form and file → numbers of lines, from 0
     this.target = make('select', { id: 'text-target', title: 'the target' });
     this.form = make('select', { id: 'text-form' }, new Option('whole shader', 'shader'), new Option('functions', 'functions'));
     this.file = make('select', { id: 'text-file', title: 'the file' });
@@ -57,6 +65,7 @@ export class EmittedText {
 
   get open() { return !this.root.hidden; }
 
+  /** @param {boolean} open */
   toggle(open) {
     this.root.hidden = !open;
     this.before.clear();
@@ -68,12 +77,14 @@ export class EmittedText {
     if (this.open) this.ask({ kind: 'text', target: this.target.value, form: this.form.value });
   }
 
-  /** An answer of Python. */
+  /** An answer of Python.
+   * @param {import('../page_messages.js').TextMessage | import('../page_messages.js').SourceMessage} message */
   heard(message) {
     if (message.kind === 'source') this.showSource(message);
     else this.show(message);
   }
 
+  /** @param {import('../page_messages.js').TextMessage} message */
   show(message) {
     this.message = message;
     this.target.replaceChildren(...message.targets.map((name) => new Option(name, name)));
@@ -102,11 +113,11 @@ export class EmittedText {
     const changed = this.changed.get(`${this.message.form} ${file.name}`);
     this.lines.replaceChildren(...file.text.replace(/\n$/, '').split('\n').map((text, index) => {
       const span = file.sources[index + 1] ?? '';
-      const place = span && placeOf(span);
+      const place = placeOf(span);
       const named = place ? `${place.name.split('/').pop()}:${place.line}` : '';
       const link = make('a', { className: 'from', textContent: named === last ? '' : named, title: span });
       if (named) last = named;
-      const row = make('div', { className: changed.has(index) ? 'line new' : 'line' }, make('span', { className: 'number', textContent: index + 1 }), make('code', { textContent: text }), link);
+      const row = make('div', { className: changed?.has(index) ? 'line new' : 'line' }, make('span', { className: 'number', textContent: index + 1 }), make('code', { textContent: text }), link);
       if (place) row.addEventListener('click', () => this.follow(row, place));
       row.classList.toggle('linked', Boolean(place));
       return row;
@@ -114,20 +125,23 @@ export class EmittedText {
     this.lines.querySelector('.new')?.scrollIntoView({ block: 'center' });
   }
 
-  /** Asks for the source of a line. */
+  /** Asks for the source of a line.
+   * @param {HTMLElement} row @param {{ name: string, line: number }} place */
   follow(row, place) {
-    if (getSelection().toString()) return;
+    if (getSelection()?.toString()) return;
     this.lines.querySelector('.chosen')?.classList.remove('chosen');
     row.classList.add('chosen');
     this.goal = place;
     this.ask({ kind: 'source', name: place.name });
   }
 
+  /** @param {import('../page_messages.js').SourceMessage} message */
   showSource({ name, text, note }) {
     if (name !== this.goal?.name) return;
-    const head = make('div', { className: 'row' }, make('strong', { textContent: note ? name : `${name}:${this.goal.line}` }),
+    const { line: number } = this.goal;
+    const head = make('div', { className: 'row' }, make('strong', { textContent: note ? name : `${name}:${number}` }),
       make('button', { textContent: '×', title: 'close', onclick: () => { this.source.hidden = true; } }));
-    const lines = note ? [make('pre', { className: 'note', textContent: note })] : text.replace(/\n$/, '').split('\n').map((line, index) => make('div', { className: index + 1 === this.goal.line ? 'line chosen' : 'line' },
+    const lines = note ? [make('pre', { className: 'note', textContent: note })] : text.replace(/\n$/, '').split('\n').map((line, index) => make('div', { className: index + 1 === number ? 'line chosen' : 'line' },
       make('span', { className: 'number', textContent: index + 1 }), make('code', { textContent: line })));
     this.source.replaceChildren(head, ...lines);
     this.source.hidden = false;
@@ -136,6 +150,7 @@ export class EmittedText {
 
   async copied() {
     const file = this.message.files.find(({ name }) => name === this.file.value);
+    if (!file) return;
     await navigator.clipboard.writeText(file.text);
     this.copy.textContent = 'Copied';
     setTimeout(() => { this.copy.textContent = 'Copy'; }, 1500);

@@ -1,36 +1,56 @@
 // A picture without a body: one triangle with a fragment shader, in WebGL 2. The time runs, or is set by hand.
 
-const LONGEST = 20;
+import { make } from './elements.js';
 
-const make = (tag, properties = {}, ...children) => {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-};
+const LONGEST = 20;
 
 /** One canvas with one program; it has the methods of `Stage`. */
 export class FlatStage {
-  constructor(root, pieceOf) {
-    Object.assign(this, { root, pieceOf, kind: 'flat', time: 0, frames: 0, drawn: 0, mouse: [0, 0, 0, 0], textures: [], drafts: { sharp: false } });
-  }
+  /** @type {WebGL2RenderingContext} */
+  gl;  // from start() on
+  /** @type {import('../page_messages.js').FlatPicture} */
+  picture;  // from show() on
+  /** @type {WebGLProgram | null} */
+  program = null;
 
-  async start() {
+  /** @param {HTMLElement} root @param {import('../page_messages.js').PieceOf} pieceOf */
+  constructor(root, pieceOf) {
+    this.root = root;
+    this.pieceOf = pieceOf;
+    this.kind = 'flat';
+    this.time = 0;
+    this.frames = 0;  // since the start
+    this.drawn = 0;
+    this.mouse = [0, 0, 0, 0];
+    this.last = 0;  // when the time was counted, in milliseconds
+    /** @type {import('../page_messages.js').Values} */
+    this.values = new Map();
+    /** @type {{ name: string, dim: string, texture: WebGLTexture }[]} */
+    this.textures = [];
+    this.drafts = { sharp: false };
+    /** @type {WeakMap<WebGLProgram, Map<string, number>>} */
+    this.types = new WeakMap();  // of the uniforms
     this.canvas = make('canvas');
-    this.gl = this.canvas.getContext('webgl2', { preserveDrawingBuffer: true });
-    if (!this.gl) throw new Error('this browser has no WebGL 2');
     this.play = make('button', { className: 'play', title: 'Let the time run, or stop it' });
     this.clock = make('input', { type: 'range', min: 0, max: LONGEST, step: 0.01, title: 'The time' });
     this.shownTime = make('span', { className: 'unit' });
     this.bar = make('div', { className: 'clock' }, this.play, this.clock, this.shownTime);
+    this.sizes = new ResizeObserver(() => this.ask());
+  }
+
+  async start() {
+    const gl = this.canvas.getContext('webgl2', { preserveDrawingBuffer: true });
+    if (!gl) throw new Error('this browser has no WebGL 2');
+    this.gl = gl;
     this.root.replaceChildren(this.canvas, this.bar);
     this.play.addEventListener('click', () => this.run(!this.plays));
     this.clock.addEventListener('input', () => { this.run(false); this.time = Number(this.clock.value); this.ask(); });
     this.canvas.addEventListener('pointermove', (event) => { if (event.buttons) this.point(event); });
     this.canvas.addEventListener('pointerdown', (event) => this.point(event, true));
-    this.sizes = new ResizeObserver(() => this.ask());
     this.sizes.observe(this.root);
   }
 
+  /** @param {PointerEvent} event @param {boolean} [first]  whether a button was just pressed */
   point(event, first) {
     const box = this.canvas.getBoundingClientRect();
     const scale = this.canvas.width / box.width;
@@ -39,14 +59,16 @@ export class FlatStage {
     this.ask();
   }
 
+  /** @param {import('../page_messages.js').FlatPicture} picture @param {import('../page_messages.js').Values} values */
   async show(picture, values) {
     const { gl } = this;
-    const texels = await Promise.all(picture.textures.map((row) => Promise.all(row.texels.levels.map((level) => this.pieceOf(level.data)))));
+    const filled = picture.textures.flatMap(({ property, texels }) => (texels ? [{ property, texels }] : []));
+    const pieces = await Promise.all(filled.map(({ texels }) => Promise.all(texels.levels.map((level) => this.pieceOf(level.data)))));
     const program = this.link(picture.flat);
     if (this.program) gl.deleteProgram(this.program);
     this.textures.forEach(({ texture }) => gl.deleteTexture(texture));
     this.program = program;
-    this.textures = picture.textures.map((row, index) => ({ name: row.property, dim: row.texels.dim, texture: this.upload(row.texels, texels[index]) }));
+    this.textures = filled.map(({ property, texels }, index) => ({ name: property, dim: texels.dim, texture: this.upload(texels, pieces[index]) }));
     this.controls = new Map(picture.controls.map((control) => [control.property, control]));
     this.values = new Map(picture.controls.map(({ property, value }) => [property, values.get(property) ?? value]));
     const first = this.picture?.name !== picture.name;
@@ -59,31 +81,34 @@ export class FlatStage {
     if (gl.isContextLost()) throw new Error('the graphics driver gave up: the shader takes too long');
   }
 
+  /** @param {import('../page_messages.js').Flat} flat */
   link({ vertex, fragment }) {
     const { gl } = this;
     const program = gl.createProgram();
-    for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+    for (const [kind, text] of /** @type {[number, string][]} */ ([[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]])) {
       const shader = gl.createShader(kind);
+      if (!shader) continue;  // the context is lost
       gl.shaderSource(shader, text);
       gl.compileShader(shader);
-      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) throw new Error(gl.getShaderInfoLog(shader));
+      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) throw new Error(gl.getShaderInfoLog(shader) ?? '');
       gl.attachShader(program, shader);
       gl.deleteShader(shader);
     }
     gl.linkProgram(program);
-    if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(gl.getProgramInfoLog(program));
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(gl.getProgramInfoLog(program) ?? '');
     return program;
   }
 
+  /** @param {import('../page_messages.js').Texels} texture @param {ArrayBuffer[]} texels  of its levels */
   upload({ dim, filter, wrap, levels }, texels) {
     const { gl } = this;
     const texture = gl.createTexture();
     const place = dim === '3D' ? gl.TEXTURE_3D : gl.TEXTURE_2D;
     gl.bindTexture(place, texture);
-    levels.forEach(({ size }, level) => {
+    levels.forEach(({ size: [width, height, depth] }, level) => {
       const data = new Uint16Array(texels[level]);
-      if (dim === '3D') gl.texImage3D(place, level, gl.RGBA16F, ...size, 0, gl.RGBA, gl.HALF_FLOAT, data);
-      else gl.texImage2D(place, level, gl.RGBA16F, ...size, 0, gl.RGBA, gl.HALF_FLOAT, data);
+      if (dim === '3D') gl.texImage3D(place, level, gl.RGBA16F, width, height, depth, 0, gl.RGBA, gl.HALF_FLOAT, data);
+      else gl.texImage2D(place, level, gl.RGBA16F, width, height, 0, gl.RGBA, gl.HALF_FLOAT, data);
     });
     const kept = { repeat: gl.REPEAT, clamp: gl.CLAMP_TO_EDGE, mirror: gl.MIRRORED_REPEAT }[wrap];
     const mag = filter === 'nearest' ? gl.NEAREST : gl.LINEAR;
@@ -94,13 +119,15 @@ export class FlatStage {
     return texture;
   }
 
+  /** @param {string} property @param {number[]} numbers */
   set(property, numbers) {
-    this.values?.set(property, numbers);
+    this.values.set(property, numbers);
     this.ask();
   }
 
   environment() {}
 
+  /** @param {boolean} on  whether the time runs */
   run(on) {
     this.plays = on;
     this.play.textContent = on ? '■' : '▶';
@@ -138,37 +165,42 @@ export class FlatStage {
       gl.uniform1i(gl.getUniformLocation(program, name), unit);
     });
     gl.drawArrays(gl.TRIANGLES, 0, 3);
-    this.clock.value = this.time % LONGEST;
+    this.clock.value = String(this.time % LONGEST);
     this.shownTime.textContent = `${this.time.toFixed(1)} s`;
     this.drawn += 1;
     this.drafts.sharp = true;
   }
 
-  /** Sets a uniform as its own type in the program asks: the first numbers, as whole ones for whole types. */
+  /** Sets a uniform as its own type in the program asks: the first numbers, as whole ones for whole types.
+   * @param {string} name @param {number[]} numbers */
   uniform(name, numbers) {
     const { gl, program } = this;
-    const place = gl.getUniformLocation(program, name);
+    const place = program && gl.getUniformLocation(program, name);
     if (!place) return;
-    this.types ??= new WeakMap();
-    if (!this.types.has(program)) {
+    let types = this.types.get(program);
+    if (!types) {
       const count = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS);
       const rows = Array.from({ length: count }, (_, index) => gl.getActiveUniform(program, index));
-      this.types.set(program, new Map(rows.map((row) => [row.name, row.type])));
+      types = new Map(rows.flatMap((row) => (row ? [[row.name, row.type]] : [])));
+      this.types.set(program, types);
     }
-    const type = this.types.get(program).get(name);
-    const floats = [gl.FLOAT, gl.FLOAT_VEC2, gl.FLOAT_VEC3, gl.FLOAT_VEC4].indexOf(type);
-    if (floats >= 0) { gl[`uniform${floats + 1}fv`](place, numbers.slice(0, floats + 1)); return; }
-    const whole = [[gl.INT, gl.INT_VEC2, gl.INT_VEC3, gl.INT_VEC4], [gl.BOOL, gl.BOOL_VEC2, gl.BOOL_VEC3, gl.BOOL_VEC4]]
-      .map((types) => types.indexOf(type)).find((index) => index >= 0);
-    if (whole !== undefined) { gl[`uniform${whole + 1}iv`](place, numbers.slice(0, whole + 1)); return; }
-    const unsigned = [gl.UNSIGNED_INT, gl.UNSIGNED_INT_VEC2, gl.UNSIGNED_INT_VEC3, gl.UNSIGNED_INT_VEC4].indexOf(type);
-    if (unsigned >= 0) gl[`uniform${unsigned + 1}uiv`](place, numbers.slice(0, unsigned + 1));
+    const type = types.get(name) ?? 0;
+    const families = /** @type {[string, number[]][]} */ ([
+      ['fv', [gl.FLOAT, gl.FLOAT_VEC2, gl.FLOAT_VEC3, gl.FLOAT_VEC4]],
+      ['iv', [gl.INT, gl.INT_VEC2, gl.INT_VEC3, gl.INT_VEC4]],
+      ['iv', [gl.BOOL, gl.BOOL_VEC2, gl.BOOL_VEC3, gl.BOOL_VEC4]],
+      ['uiv', [gl.UNSIGNED_INT, gl.UNSIGNED_INT_VEC2, gl.UNSIGNED_INT_VEC3, gl.UNSIGNED_INT_VEC4]],
+    ]);
+    for (const [suffix, sizes] of families) {
+      const size = sizes.indexOf(type) + 1;
+      if (size) gl[`uniform${size}${suffix}`](place, numbers.slice(0, size));
+    }
   }
 
   dispose() {
-    cancelAnimationFrame(this.asked);
+    if (this.asked) cancelAnimationFrame(this.asked);
     this.plays = false;
-    this.sizes?.disconnect();
+    this.sizes.disconnect();
     this.gl?.getExtension('WEBGL_lose_context')?.loseContext();
   }
 }

@@ -1,20 +1,32 @@
 // One picture of the page with its controls: what the server sends is drawn, changes by hand are kept.
 
+import { make } from './elements.js';
 import { FlatStage } from './flat_stage.js';
 import { Panel } from './panel.js';
 import { Stage } from './stage.js';
 import { TextureSlots } from './texture_slots.js';
 
-const make = (tag, properties = {}, ...children) => {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-};
+/** @typedef {import('../page_messages.js').Picture} Picture */
+/** @typedef {import('../page_messages.js').Slot} Slot */
+/** @typedef {{ pieceOf: import('../page_messages.js').PieceOf, say: (text: string) => void, looked: (pane: Pane) => void,
+ *   changed: (pane: Pane, property: string, numbers: number[]) => void, texture: (pane: Pane, row: Slot, file: File | null) => void,
+ *   settings: () => { renderer: string, environment: boolean }, fallback: (renderer: string) => void }} Page
+ *   What a pane asks of the page. */
+/** @typedef {{ kind: string, start(): Promise<void>, show(picture: Picture, values: import('../page_messages.js').Values): Promise<void>,
+ *   set(property: string, numbers: number[]): void, environment(on: boolean): void, ask(): void, dispose(): void,
+ *   orbit?: Stage['orbit'], camera?: Stage['camera'] }} AnyStage  What both kinds of stages have. */
 
-/** `page` has: pieceOf(digest), say(text), changed(pane, property, numbers), looked(pane), texture(pane, row, file), settings. */
+/** A picture, with its controls and its texture slots. */
 export class Pane {
+  /** @param {Page} page @param {number} number */
   constructor(page, number) {
-    Object.assign(this, { page, number, stage: null, last: null });
+    this.page = page;
+    this.number = number;
+    /** @type {AnyStage | null} */
+    this.stage = null;
+    /** @type {import('../page_messages.js').PictureMessage | null} */
+    this.last = null;
+    this.complaint = '';
     this.root = make('div', { className: 'pane' });
     this.caption = make('div', { className: 'caption' });
     this.place = make('div', { className: 'place' });
@@ -36,7 +48,8 @@ export class Pane {
     return [this.picture?.body, ...textures.flatMap((texture) => texture.texels?.levels.map((level) => level.data) ?? [])];
   }
 
-  /** Shows a message; returns why it cannot be drawn, or ''. */
+  /** Shows a message; returns why it cannot be drawn, or ''.
+   * @param {import('../page_messages.js').PictureMessage} message @param {import('../page_messages.js').Values} [values] */
   async show(message, values) {
     const { picture } = message;
     const same = this.stage && this.root.dataset.version === String(message.version) && this.last?.beside === message.beside;
@@ -51,7 +64,7 @@ export class Pane {
       this.stage ??= await this.stageFor(picture, this.page.settings().renderer);
       this.busy = true;
       await this.stage.show(picture, values ?? this.panel.values);
-      this.root.dataset.version = message.version;
+      this.root.dataset.version = String(message.version);
       return '';
     } catch (reason) {
       return reason.message;
@@ -60,9 +73,12 @@ export class Pane {
     }
   }
 
-  /** A stage with the chosen renderer; without WebGPU that of WebGL 2, which is said. */
+  /** A stage with the chosen renderer; without WebGPU that of WebGL 2, which is said.
+   * @param {Picture} picture @param {string} kind  of `rendererOf`
+   * @returns {Promise<AnyStage>} */
   async stageFor(picture, kind) {
     const { pieceOf, say, settings, fallback } = this.page;
+    /** @type {AnyStage} */
     const next = picture.flat ? new FlatStage(this.place, pieceOf) : new Stage(this.place, kind, pieceOf);
     try {
       await next.start();
@@ -78,13 +94,16 @@ export class Pane {
     }
   }
 
-  /** Looks as another pane does. */
-  follow({ camera, orbit }) {
-    if (!orbit || !this.stage?.orbit || this.stage.camera.position.equals(camera.position) && this.stage.orbit.target.equals(orbit.target)) return;
-    this.stage.camera.position.copy(camera.position);
-    this.stage.orbit.target.copy(orbit.target);
-    this.stage.orbit.update();
-    this.stage.ask();
+  /** Looks as another pane does.
+   * @param {AnyStage | null} [other] */
+  follow(other) {
+    const [own, seen] = [this.stage, other];
+    if (!own?.orbit || !own.camera || !seen?.orbit || !seen.camera) return;
+    if (own.camera.position.equals(seen.camera.position) && own.orbit.target.equals(seen.orbit.target)) return;
+    own.camera.position.copy(seen.camera.position);
+    own.orbit.target.copy(seen.orbit.target);
+    own.orbit.update();
+    own.ask();
   }
 
   stop() {

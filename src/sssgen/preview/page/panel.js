@@ -1,16 +1,15 @@
 // The controls of a material's parameters, grouped by technique.
 
 import * as THREE from 'three';
+import { make } from './elements.js';
 
-const make = (tag, properties = {}, ...children) => {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-};
+/** @typedef {import('../page_messages.js').Control} Control */
+/** @typedef {Control & { range: [number, number] }} Ranged */
 
-const shorter = (number) => String(Number(number.toPrecision(5)));
+const shorter = (/** @type {number} */ number) => String(Number(number.toPrecision(5)));
 
-/** The least value above 0 on the slider of a range over powers of ten, which is logarithmic; 0 on an even slider. */
+/** The least value above 0 on the slider of a range over powers of ten, which is logarithmic; 0 on an even slider.
+ * @param {Ranged} control */
 function leastOf({ range: [low, high] }) {
   if (low === 0 && high > 1) return 0.0001 * high;
   return low > 0 && high / low > 500 ? low : 0;
@@ -18,14 +17,18 @@ function leastOf({ range: [low, high] }) {
 
 /** The panel: `changed(property, numbers)` is called for each change by hand. */
 export class Panel {
+  /** @param {HTMLElement} root @param {(property: string, numbers: number[]) => void} changed */
   constructor(root, changed) {
     this.root = root;
     this.changed = changed;
+    /** @type {import('../page_messages.js').Values} */
     this.values = new Map();  // property → numbers that differ from the file's
+    /** @type {Control[]} */
     this.controls = [];
   }
 
-  /** Shows the controls of a picture. A change by hand stays while the file's value is the same. */
+  /** Shows the controls of a picture. A change by hand stays while the file's value is the same.
+   * @param {Control[]} controls */
   show(controls) {
     const before = new Map(this.controls.map((control) => [control.property, control.value.join()]));
     for (const { property, value } of controls) {
@@ -60,7 +63,7 @@ export class Panel {
     if (control.type === 'bool') box.append(make('input', { type: 'checkbox', className: 'number', oninput: read }));
     else if (control.color) {
       box.append(make('input', { type: 'color', oninput: () => this.picked(control, row) }));
-      for (let index = 3; index < control.value.length; index++) box.append(this.number(control, read, 'alpha'));
+      for (let index = 3; index < control.value.length; index++) box.append(this.number(control, read));
     } else if (control.value.length === 1 && control.range) {
       const slider = make('input', { type: 'range', min: 0, max: 1000, step: 1 });
       slider.addEventListener('input', () => {

@@ -1,20 +1,50 @@
 // The picture: a body with an emitted material, lamps that can be dragged, an eye that goes around.
 
 import * as THREE from 'three';
-import { WebGPURenderer } from 'three/webgpu';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { coarseOf, geometryOf } from './coarse_body.js';
+import { ballOf, coarseOf, geometryOf } from './coarse_body.js';
 import { Drafts } from './drafts.js';
 import { DrawnViews } from './drawn_views.js';
 import { materialOf, programOf, update, valueOf } from './material.js';
+import { rendererOf } from './renderer.js';
+
+/** @typedef {import('../page_messages.js').BodyPicture} BodyPicture */
+/** @typedef {import('./coarse_body.js').Body} Body */
+/** @typedef {import('./material.js').EmittedMaterial} EmittedMaterial */
+/** @typedef {THREE.PointLight | THREE.DirectionalLight} Lamp */
+/** @typedef {THREE.Mesh<THREE.SphereGeometry, THREE.MeshBasicMaterial> & { userData: { lamp: Lamp } }} Handle */
 
 const WRAPS = { repeat: THREE.RepeatWrapping, clamp: THREE.ClampToEdgeWrapping, mirror: THREE.MirroredRepeatWrapping };
 const HANDLE = 0.035;  // of half the picture's height
 
 /** One renderer on one canvas. Another renderer is another stage. */
 export class Stage {
+  /** @type {import('./renderer.js').Renderer} */
+  renderer;  // from start() on
+  /** @type {OrbitControls} */
+  orbit;
+  /** @type {THREE.Mesh<Body, EmittedMaterial>} */
+  mesh;  // from show() on
+  /** @type {Body[]} */
+  bodies;  // the body, and its draft
+  /** @type {DrawnViews} */
+  views;
+  /** @type {THREE.Sphere} */
+  ball;  // around the body
+
+  /** @param {HTMLElement} root @param {string} kind  of `rendererOf` @param {import('../page_messages.js').PieceOf} pieceOf */
   constructor(root, kind, pieceOf) {
-    Object.assign(this, { root, kind, pieceOf, textures: new Map(), lamps: [], handles: [] });
+    this.root = root;
+    this.kind = kind;
+    this.pieceOf = pieceOf;
+    /** @type {Map<string, THREE.DataTexture | THREE.Data3DTexture>} */
+    this.textures = new Map();  // by the digests of their levels
+    /** @type {Lamp[]} */
+    this.lamps = [];
+    /** @type {Handle[]} */
+    this.handles = [];
+    this.drawn = 0;  // frames
+    this.view = 35;  // the scene's field of view, in degrees
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera();
     this.drafts = new Drafts(this);
@@ -22,11 +52,7 @@ export class Stage {
 
   async start() {
     const canvas = document.createElement('canvas');
-    this.renderer = this.kind === 'webgl'
-      ? new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true })
-      : new WebGPURenderer({ canvas, antialias: true, alpha: true, forceWebGL: this.kind === 'webgl2' });
-    if (this.renderer.init) await this.renderer.init();
-    if (this.kind === 'webgpu' && !this.renderer.backend.isWebGPUBackend) throw new Error('this browser has no WebGPU adapter');
+    this.renderer = await rendererOf(this.kind, canvas);
     this.renderer.autoClear = true;
     this.renderer.setClearColor(0x000000, 0);
     this.renderer.shadowMap.enabled = true;
@@ -49,7 +75,8 @@ export class Stage {
     this.ask();
   }
 
-  /** Draws from now on at a share of the full resolution. */
+  /** Draws from now on at a share of the full resolution.
+   * @param {number} share */
   resolution(share) {
     if (share !== this.share) this.renderer.setPixelRatio(share * Math.min(devicePixelRatio, 2));
     this.share = share;
@@ -58,16 +85,18 @@ export class Stage {
 
   /** The scene's field of view; in a narrow picture that of its width, so that the body is not cut off. */
   widen() {
-    const half = Math.tan((this.view ?? 35) * Math.PI / 360);
+    const half = Math.tan(this.view * Math.PI / 360);
     this.camera.fov = Math.atan(half * Math.max(1, 1 / this.camera.aspect)) * 360 / Math.PI;
     this.camera.updateProjectionMatrix();
   }
 
-  /** Shows a picture; `values` are the numbers that differ from the file's. */
+  /** Shows a picture; `values` are the numbers that differ from the file's.
+   * @param {BodyPicture} picture @param {import('../page_messages.js').Values} values */
   async show(picture, values) {
     const body = await this.pieceOf(picture.body);
+    /** @type {Record<string, THREE.Texture>} */
     const textures = {};
-    for (const row of picture.textures.filter((one) => one.texels)) textures[row.property] = await this.textureOf(row.texels);
+    for (const { property, texels } of picture.textures) if (texels) textures[property] = await this.textureOf(texels);
     const program = programOf(picture);
     const kept = this.mesh && this.program === program;
     const material = kept ? this.mesh.material : await materialOf(picture, values, textures);
@@ -90,6 +119,7 @@ export class Stage {
     await this.drafts.now();
   }
 
+  /** @param {BodyPicture} picture @param {ArrayBuffer} body @param {EmittedMaterial} material */
   place(picture, body, material) {
     if (this.mesh?.userData.body !== picture.body) {
       const geometry = geometryOf(new Float32Array(body));
@@ -108,12 +138,14 @@ export class Stage {
     material.envMap = this.sky ?? null;
   }
 
-  /** Gives the body another material. */
+  /** Gives the body another material.
+   * @param {EmittedMaterial} material */
   exchange(material) {
     if (this.mesh.material !== material) this.mesh.material.dispose();
     this.mesh.material = material;
   }
 
+  /** @param {BodyPicture} picture */
   light(picture) {
     const key = JSON.stringify([picture.lights, picture.ambient, picture.shadows, picture.body]);
     if (key === this.lit) return;
@@ -130,25 +162,26 @@ export class Stage {
     this.handles = this.lamps.map((lamp) => {
       const color = lamp.color.clone().multiplyScalar(1 / Math.max(lamp.color.r, lamp.color.g, lamp.color.b, 1e-6));
       const handle = new THREE.Mesh(new THREE.SphereGeometry(1, 16, 12), new THREE.MeshBasicMaterial({ color, toneMapped: false }));
-      handle.userData.lamp = lamp;
-      return handle;
+      return Object.assign(handle, { userData: { lamp } });
     });
     this.scene.add(this.even, ...this.lamps, ...this.handles);
   }
 
-  /** Shadows of a lamp, in a map around the body. */
+  /** Shadows of a lamp, in a map around the body.
+   * @param {Lamp} lamp */
   shadow(lamp) {
-    const ball = this.mesh.geometry.boundingSphere.clone().applyMatrix4(this.mesh.matrixWorld);
+    const ball = ballOf(this.mesh);
     lamp.castShadow = true;
     lamp.shadow.mapSize.set(2048, 2048);
     lamp.shadow.normalBias = 0.01 * ball.radius;
-    if (lamp.isDirectionalLight) {
+    if (lamp instanceof THREE.DirectionalLight) {
       const reach = 1.1 * ball.radius;
       Object.assign(lamp.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0, far: 6 * reach });
       lamp.position.normalize().multiplyScalar(3 * reach);
     }
   }
 
+  /** @param {BodyPicture} picture */
   look(picture) {
     this.view = picture.camera.field_of_view;
     this.widen();
@@ -157,6 +190,7 @@ export class Stage {
     this.orbit.update();
   }
 
+  /** @param {string} property @param {number[]} numbers */
   set(property, numbers) {
     const control = this.picture?.controls.find((one) => one.property === property);
     if (!control || !this.mesh) return;
@@ -164,6 +198,7 @@ export class Stage {
     this.ask();
   }
 
+  /** @param {boolean} on */
   environment(on) {
     this.sky = on ? sky() : null;
     this.scene.environment = this.sky;
@@ -171,17 +206,20 @@ export class Stage {
     this.ask();
   }
 
-  /** Gives up the textures that no picture has any more. */
+  /** Gives up the textures that no picture has any more.
+   * @param {Set<THREE.Texture>} used */
   forget(used) {
     for (const [key, texture] of this.textures) if (!used.has(texture)) { texture.dispose(); this.textures.delete(key); }
   }
 
+  /** @param {import('../page_messages.js').Texels} texels */
   async textureOf({ dim, filter, wrap, levels }) {
     const key = levels.map((level) => level.data).join();
-    if (!this.textures.has(key)) {
+    let texture = this.textures.get(key);
+    if (!texture) {
       const texels = await Promise.all(levels.map(async (level) => new Uint16Array(await this.pieceOf(level.data))));
-      const Kind = dim === '3D' ? THREE.Data3DTexture : THREE.DataTexture;
-      const texture = new Kind(texels[0], ...levels[0].size);
+      const [width, height, depth] = levels[0].size;
+      texture = dim === '3D' ? new THREE.Data3DTexture(texels[0], width, height, depth) : new THREE.DataTexture(texels[0], width, height);
       const mag = filter === 'nearest' ? THREE.NearestFilter : THREE.LinearFilter;
       if (levels.length > 1) texture.mipmaps = levels.map((level, index) => ({ data: texels[index], width: level.size[0], height: level.size[1] }));
       Object.assign(texture, {
@@ -190,7 +228,7 @@ export class Stage {
       });
       this.textures.set(key, texture);
     }
-    return this.textures.get(key);
+    return texture;
   }
 
   ask() { this.drafts.ask(); }
@@ -201,35 +239,38 @@ export class Stage {
     const away = this.camera.position.distanceTo(this.ball.center);  // bodies are millimetres or kilometres large
     Object.assign(this.camera, { near: 0.005 * away, far: 50 * away }).updateProjectionMatrix();
     const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
-    const distant = this.lamps.find((lamp) => lamp.isDirectionalLight) ?? this.lamps[0];
+    const distant = this.lamps.find((lamp) => lamp instanceof THREE.DirectionalLight) ?? this.lamps[0];
     if (distant) this.views.draw(this.renderer, this.mesh, this.mesh.material, this.camera, distant, size);
     this.renderer.render(this.scene, this.camera);
-    this.drawn = (this.drawn ?? 0) + 1;
+    this.drawn += 1;
   }
 
   /** The lamps' handles: a point light's at its place, that of a light from afar beside the body. */
   hold() {
-    const ball = this.mesh.geometry.boundingSphere.clone().applyMatrix4(this.mesh.matrixWorld);
+    const ball = ballOf(this.mesh);
     for (const handle of this.handles) {
       const { lamp } = handle.userData;
       handle.position.copy(lamp.position);
-      if (lamp.isDirectionalLight) handle.position.normalize().multiplyScalar(1.35 * ball.radius).add(ball.center);
+      if (lamp instanceof THREE.DirectionalLight) handle.position.normalize().multiplyScalar(1.35 * ball.radius).add(ball.center);
       handle.scale.setScalar(HANDLE * handle.position.distanceTo(this.camera.position) * Math.tan(this.view * Math.PI / 360));
       lamp.updateMatrixWorld();
     }
     this.ball = ball;
   }
 
+  /** Lets the pointer move the lamps.
+   * @param {HTMLCanvasElement} canvas */
   follow(canvas) {
     const rays = new THREE.Raycaster();
+    /** @type {Handle | null} */
     let held = null;
-    const aim = (event) => {
+    const aim = (/** @type {PointerEvent} */ event) => {
       const box = canvas.getBoundingClientRect();
       rays.setFromCamera(new THREE.Vector2(2 * (event.clientX - box.left) / box.width - 1, 1 - 2 * (event.clientY - box.top) / box.height), this.camera);
     };
     canvas.addEventListener('pointerdown', (event) => {
       aim(event);
-      held = rays.intersectObjects(this.handles)[0]?.object ?? null;
+      held = /** @type {Handle | undefined} */ (rays.intersectObjects(this.handles)[0]?.object) ?? null;
       if (!held) return;
       this.orbit.enabled = false;
       canvas.setPointerCapture(event.pointerId);
@@ -238,7 +279,7 @@ export class Stage {
       if (!held) return;
       aim(event);
       const { lamp } = held.userData;
-      if (lamp.isDirectionalLight) {
+      if (lamp instanceof THREE.DirectionalLight) {
         const off = lamp.position.length();
         lamp.position.copy(this.onSphere(rays.ray, 1.35 * this.ball.radius, held.position)).sub(this.ball.center).setLength(off);
       }
@@ -250,7 +291,8 @@ export class Stage {
     canvas.addEventListener('pointercancel', release);
   }
 
-  /** The point of a sphere around the body on a ray, on the side where the handle is; beside it the nearest one. */
+  /** The point of a sphere around the body on a ray, on the side where the handle is; beside it the nearest one.
+   * @param {THREE.Ray} ray @param {number} radius @param {THREE.Vector3} before */
   onSphere(ray, radius, before) {
     const middle = ray.direction.dot(this.ball.center.clone().sub(ray.origin));
     const nearest = ray.at(middle, new THREE.Vector3());
@@ -273,8 +315,9 @@ export class Stage {
   }
 }
 
+/** @param {number[]} linear */
 function styleOf(linear) {
-  return `#${new THREE.Color(...linear.map((number) => Math.min(Math.max(number, 0), 1))).getHexString()}`;
+  return `#${new THREE.Color().fromArray(linear.map((number) => Math.min(Math.max(number, 0), 1))).getHexString()}`;
 }
 
 /** A studio as an environment: dark below, bright above, with a window. */

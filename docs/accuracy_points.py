@@ -1,0 +1,56 @@
+"""What the site quotes of the charts' records, which are too large for the repository: docs/accuracy/points.json."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from sssgen.lab.measure.technique_chain import is_drawn, textures_of
+from sssgen.material import library
+
+Point = Mapping[str, Any]
+
+DRAWN = "cube"
+"""The scene on which the site draws the most accurate chain with each technique."""
+CHAIN = (
+    "role", "name", "label", "settings", "chain", "baseline", "path", "path_settings", "parameters", "scale", "matte",
+    "training_error", "factor", "scene",
+)  # fmt: skip
+"""What a point needs to be drawn: `charting.candidate_of` and `fitted_of` read it."""
+
+
+def quoted(records: Sequence[Mapping[str, Any]]) -> str:
+    """JSON: `alone` has the error and cost of each technique by itself, `best` the most accurate chain with each.
+
+    Of two records with the same scene and chain, it quotes the first.
+    """
+    unique: dict[tuple[object, ...], Point] = {}
+    for point in (point for record in records for point in record["points"] if not point["failed"]):
+        unique.setdefault((point["role"], point["scene"], point["label"]), point)
+    alone = [_alone(point) for point in unique.values() if point["role"] != "material"]
+    chains = [point for point in unique.values() if point["role"] == "material" and point["scene"] == DRAWN]
+    best = [f"{json.dumps(name)}: {json.dumps(point)}" for name, point in sorted(_best(chains).items())]
+    rows, chain_rows = (",\n".join(lines) for lines in (map(json.dumps, alone), best))
+    return f'{{"alone": [\n{rows}\n], "best": {{\n{chain_rows}\n}}}}\n'
+
+
+def _alone(point: Point) -> dict[str, Any]:
+    kept = {key: point[key] for key in ("role", "name", "label", "scene")}
+    return kept | {key: {"value": round(point[key]["value"], 6)} for key in ("error", "cost")}
+
+
+def _best(chains: Iterable[Point]) -> dict[str, Point]:
+    """For each technique, the most accurate chain with it that needs no baked texture."""
+    best: dict[str, Point] = {}
+    for point in sorted(chains, key=lambda point: float(point["error"]["value"])):
+        names = [name for name in (*point["chain"], point.get("path", "")) if name]
+        if not any(map(_is_baked, names)):
+            kept = {key: point[key] for key in CHAIN if key in point} | {"error": {"value": point["error"]["value"]}}
+            for name in names:
+                best.setdefault(name, kept)
+    return best
+
+
+def _is_baked(name: str) -> bool:
+    return any(not is_drawn(uniform) for uniform in textures_of(library.load(name.partition(":")[0])))
