@@ -11,6 +11,7 @@ import re
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import VOID, Array, Matrix, Sampler, Struct, Type, Vector, kind_of, spell, unnested
+from sssgen.ir.walk import all_expressions
 from sssgen.passes.scopes import assigned
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.targets.descriptor import Target
@@ -155,9 +156,12 @@ class TslPrinter(Printer):
 
     def print_function(self, function: ir.Function) -> list[Line]:
         self.assigned = assigned(function, {})
+        for part in all_expressions(function.body or ()):
+            if isinstance(part.type, Matrix | Array):
+                self.spelled(part.type, part.span)
         lines = self.calling(super().print_function(function))[:-1]
         types = [function.result, *[param.type for param in function.params]]
-        result, *names = [self.spelled(unnested(type_)[0], function.span) for type_ in types]
+        result, *names = [self.spelled(type_, function.span) for type_ in types]
         if function.result == VOID or any(isinstance(type_, Sampler | Array) for type_ in types):
             return [*lines, Line("}, 'void');" if function.result == VOID else "});")]  # what returns nothing discards
         inputs = [f"{{ name: '{p.name}', type: '{type_}' }}" for p, type_ in zip(function.params, names, strict=True)]
@@ -166,11 +170,13 @@ class TslPrinter(Printer):
             return [*lines, Line(f"{head}{', '.join(inputs)}] }});", function.span)]
         return [*lines, Line(head), *[Line(f"    {one},") for one in inputs], Line("] });")]
 
-    def spelled(self, type_: Type, span: ir.Span) -> str:
-        """A type in the layout of a function or a struct. Raises SssgenError with its place."""
-        if isinstance(type_, Struct) or (not isinstance(type_, Array) and spell(type_) in self.target.types):
-            return spell(type_)
-        what = "arrays in structs" if isinstance(type_, Array) else spell(type_)
+    def spelled(self, type_: Type, span: ir.Span, is_part: bool = False) -> str:
+        """A type in the layout of a function, or of a part of a struct. Raises SssgenError with its place."""
+        name = spell(unnested(type_)[0])
+        is_nested = isinstance(type_, Array) and (is_part or isinstance(type_.element, Array))
+        if not is_nested and (name in self.target.types or isinstance(unnested(type_)[0], Struct)):
+            return name
+        what = "arrays in arrays and structs" if is_nested else name
         hint = "use variables for its elements or columns, or pass the values that are read of it"
         raise SssgenError([Diagnostic("error", f"{self.target.title} has no {what}", span, hint, self.source(span))])
 
@@ -181,7 +187,7 @@ class TslPrinter(Printer):
     def print_struct(self, struct: ir.StructDecl) -> list[Line]:
         assert isinstance(struct.type, Struct)
         name, fields = struct.type.name, struct.type.fields
-        members = ", ".join([f"{field.name}: '{self.spelled(field.type, struct.span)}'" for field in fields])
+        members = ", ".join([f"{field.name}: '{self.spelled(field.type, struct.span, True)}'" for field in fields])
         return self.calling(
             wrap(f"export const {name} = /*@__PURE__*/ struct({{ {members} }}, '{name}');", struct.span)
         )
