@@ -23,7 +23,7 @@ TOLERANCE = 1e-3
 One that is wrong is further off, in some lane."""
 STEADY = 1e-5
 """A lane where NumPy's float32 is further from float64 than this is excused: the formulas themselves lose too much."""
-LANGUAGES = ("glsl-330", "glsl-es-300", "hlsl", "wgsl")
+LANGUAGES = ("glsl-330", "glsl-es-300", "hlsl", "wgsl", "tsl")
 SHOWS = ("_result", "_floats", "_whole")
 
 

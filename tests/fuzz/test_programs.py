@@ -30,7 +30,7 @@ def test_programs_compile(assert_compiles: Callable[[Source], None], seed: int) 
     COUNTED["programs compiled"] += BATCH
 
 
-@pytest.mark.parametrize("name", ["gl", "webgpu", "hlsl"])
+@pytest.mark.parametrize("name", ["gl", "webgpu", "hlsl", "tsl"])
 @examples(6, 0.1, shrink=False)
 @given(seed=SEEDS)
 def test_programs_agree(backend: Callable[[str], Backend], name: str, seed: int) -> None:

@@ -105,11 +105,13 @@ function textureOf({ dim, kind, layers, compare, levels, filter, wrap, size }, p
   let one;
   if (compare) throw new Error(`no ${dim} texture that compares`);
   if (dim === 'Cube') {
-    const faces = Array.from({ length: 6 }, (_, face) => {
-      const count = width * width * 4;
-      return new THREE.DataTexture(texels[0].slice(face * count, (face + 1) * count), width, width, THREE.RGBAFormat, THREE.FloatType);
+    // three reads a cube at -x: the faces +x and -x change places, and every row of texels is turned round
+    const count = width * width * 4;
+    const faces = [1, 0, 2, 3, 4, 5].map((face) => {
+      const own = texels[0].slice(face * count, (face + 1) * count);
+      const turned = own.map((_, at) => own[at - (at % (4 * width)) + 4 * (width - 1 - Math.floor((at % (4 * width)) / 4)) + (at % 4)]);
+      return Object.assign(new THREE.DataTexture(turned, width, width, THREE.RGBAFormat, THREE.FloatType), { needsUpdate: true });
     });
-    for (const face of faces) face.needsUpdate = true;
     one = new THREE.CubeTexture(faces);
   } else if (layers) {
     one = new THREE.DataArrayTexture(texels[0], width, height, layers);

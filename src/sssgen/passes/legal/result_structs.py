@@ -85,7 +85,8 @@ class _Results(Transformer):
             begin.append(Declare(param.name, param.type, value, param.span))
         self.result = self.result_type(function)
         new = function._replace(params=tuple(params), result=self.result)
-        while new.key in self.old or any(other.key == new.key for other in self.new.values()):
+        others = {*self.old, *(other.key for other in self.new.values())} - {function.key}
+        while new.key in others:
             new = new._replace(name=f"{new.name}_")
         body = self.block(function.body or ())
         if function.result == VOID and not (body and isinstance(body[-1], Return)):

@@ -19,14 +19,15 @@ class Line(NamedTuple):
     span: ir.Span = ir.NOWHERE
 
 
-def wrap(text: str, span: ir.Span) -> list[Line]:
-    """Breaks a long line at the outermost commas and operators; the rest is indented once more."""
+def wrap(text: str, span: ir.Span, chains: bool = False) -> list[Line]:
+    """Breaks a long line at the outermost commas and operators, with `chains` also before the methods of a result; the
+    rest is indented once more."""
     if len(text) <= WIDTH:
         return [Line(text, span)]
     indent = len(text) - len(text.lstrip())
     lines = []
     while len(text) > WIDTH:
-        place = _break_place(text)
+        place = _break_place(text, chains)
         if place == 0:
             break
         lines.append(Line(text[:place].rstrip(), span))
@@ -37,13 +38,14 @@ def wrap(text: str, span: ir.Span) -> list[Line]:
 _BREAKS = (" + ", " - ", " * ", " ? ", " : ", " && ", " || ")
 
 
-def _break_place(text: str) -> int:
+def _break_place(text: str, chains: bool) -> int:
     """Where to break a line: inside as few parentheses as possible, then as late as possible; 0 for nowhere."""
     position, best_score, depth = 0, -1000.0, 0
     start = len(text) - len(text.lstrip()) + 8
     for index, char in enumerate(text[:WIDTH]):
         depth += (char in "([") - (char in ")]")
-        if index > start and (text[index - 1 : index + 1] == ", " or text.startswith(_BREAKS, index)):
+        ends = text[index - 1 : index + 1]
+        if index > start and (ends == ", " or (chains and ends == ").") or text.startswith(_BREAKS, index)):
             score = index / WIDTH - 2.0 * depth
             if score > best_score:
                 position, best_score = index, score

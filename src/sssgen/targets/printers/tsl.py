@@ -10,26 +10,13 @@ from __future__ import annotations
 import re
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.types import (
-    FLOAT,
-    INT,
-    UINT,
-    VOID,
-    Array,
-    Matrix,
-    Sampler,
-    Struct,
-    Type,
-    Vector,
-    kind_of,
-    spell,
-    unnested,
-)
+from sssgen.ir.types import VOID, Array, Matrix, Sampler, Struct, Type, Vector, kind_of, spell, unnested
+from sssgen.ir.walk import all_expressions
 from sssgen.passes.scopes import assigned
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.printed_lines import WIDTH, Line, wrap
-from sssgen.targets.printers.printer import PRIMARY, Printer
+from sssgen.targets.printers.printer import PRIMARY, Printer, float_text
 
 _METHODS = {
     "+": "add", "-": "sub", "*": "mul", "/": "div", "%": "mod", "&&": "and", "||": "or", "<": "lessThan",
@@ -62,9 +49,9 @@ class TslPrinter(Printer):
     def number(self, kind: str, literal: ir.Literal) -> str:
         """A number of a literal converted to a kind, as JavaScript writes it."""
         if kind == "float":
-            return super().literal(literal._replace(type=FLOAT, value=float(literal.value)))
-        value = int(literal.value)
-        return str(value) if kind == "int" else super().literal(ir.Literal(UINT, value & 0xFFFFFFFF, literal.span))[:-1]
+            return float_text(float(literal.value), self.kept)
+        value = int(literal.value) & (0xFFFFFFFF if kind == "uint" else -1)
+        return f"{value:#x}" if kind == "uint" and value >= 1 << 16 else str(value)
 
     def bound(self, expr: ir.Expr) -> tuple[str, int]:
         if isinstance(expr, ir.Member):
@@ -72,7 +59,7 @@ class TslPrinter(Printer):
         if isinstance(expr, ir.Unary):
             return f"{self.node(expr.operand)}.{_UNARY[expr.op]}()", PRIMARY
         if isinstance(expr, ir.Index):
-            return f"{self.node(expr.value)}.element({self.part(INT, expr.index)})", PRIMARY
+            return f"{self.node(expr.value)}.element({self.part('int', expr.index)})", PRIMARY
         return super().bound(expr)
 
     def binary(self, binary: ir.Binary) -> tuple[str, int]:
@@ -90,14 +77,14 @@ class TslPrinter(Printer):
         if isinstance(type_, Matrix) and len(args) > type_.columns:  # numbers alone would be its rows
             rows, starts = type_.rows, range(0, len(args), type_.rows)
             args = tuple([ir.Construct(Vector("float", rows), args[start : start + rows], span) for start in starts])
-        return f"{self.type(type_)}({', '.join([self.part(type_, arg) for arg in args])})", PRIMARY
+        return f"{self.type(type_)}({', '.join([self.part(kind_of(type_), arg) for arg in args])})", PRIMARY
 
-    def part(self, type_: Type, arg: ir.Expr) -> str:
-        """An argument that becomes a part of a type: of a literal, a plain number of its kind."""
+    def part(self, kind: str, arg: ir.Expr) -> str:
+        """An argument that becomes a number of a kind, or several: of a literal, a plain number."""
         if isinstance(arg, ir.Unary) and arg.op == "-" and isinstance(arg.operand, ir.Literal):
             arg = arg.operand._replace(value=-arg.operand.value)
-        plain = isinstance(arg, ir.Literal) and "bool" not in (kind_of(arg.type), kind_of(type_))
-        return self.number(kind_of(type_), arg) if plain and isinstance(arg, ir.Literal) else self.expr(arg)
+        is_number = isinstance(arg, ir.Literal) and "bool" not in (kind, kind_of(arg.type))
+        return self.number(kind, arg) if is_number else self.expr(arg)  # type: ignore[arg-type]  # a literal
 
     # Statements
 
@@ -116,27 +103,26 @@ class TslPrinter(Printer):
         if isinstance(stmt, ir.For | ir.While):
             head = self.loop_header(stmt) if isinstance(stmt, ir.For) else f"{self.expr(stmt.condition)}, () => {{"
             return [*wrap(f"{pad}Loop({head}", stmt.span), *self.block(stmt.body, indent + 1), Line(f"{pad}}});")]
-        return super().statement(stmt, indent)
+        return wrap(f"{pad}{self.simple(stmt)};", stmt.span, chains=True)
 
     def loop_header(self, loop: ir.For) -> str:
         """A loop that counts."""
         init, condition, step = loop.init, loop.condition, loop.step
         assert isinstance(init, ir.Declare) and isinstance(condition, ir.Binary) and isinstance(step, ir.Assign)
         assert init.value is not None and isinstance(step.value, ir.Literal)
-        by_one = step.value.value == 1 and (step.op == "+") == (condition.op[0] == "<") and init.type != FLOAT
-        fields = [
-            f"start: {self.part(init.type, init.value)}", f"end: {self.part(init.type, condition.right)}",
-            f"type: '{self.type(init.type)}'", f"condition: '{condition.op}'", f"name: '{init.name}'",
-            *([] if by_one else [f"update: '{step.op}= {super().literal(step.value)}'"]),
-        ]  # fmt: skip
-        return f"{{ {', '.join(fields)} }}, ({{ {init.name} }}) => {{"
+        kind, number = kind_of(init.type), step.value
+        by_one = number.value == 1 and (step.op == "+") == (condition.op[0] == "<") and kind != "float"
+        update = "" if by_one else f", update: '{step.op}= {super().literal(number)}'"
+        counted = f"start: {self.part(kind, init.value)}, end: {self.part(kind, condition.right)}, type: '{kind}'"
+        head = f"{counted}, condition: '{condition.op}', name: '{init.name}'{update}"
+        return f"{{ {head} }}, ({{ {init.name} }}) => {{"
 
     def simple(self, stmt: ir.Stmt) -> str:
         if isinstance(stmt, ir.Assign):
             method = f"{_METHODS[stmt.op]}Assign" if stmt.op else "assign"
             return f"{self.node(stmt.target)}.{method}({self.expr(stmt.value)})"
-        if isinstance(stmt, ir.Return):
-            return f"return {self.node(stmt.value)}" if stmt.value is not None else "return"
+        if isinstance(stmt, ir.Return) and stmt.value is not None:
+            return f"return {self.node(stmt.value)}"
         jumps = isinstance(stmt, ir.Break | ir.Continue | ir.Discard)
         return f"{type(stmt).__name__}()" if jumps else super().simple(stmt)
 
@@ -144,16 +130,16 @@ class TslPrinter(Printer):
         value = declare.value
         if value is None or declare.name in self.assigned:
             return f"const {declare.name} = {self.zero(declare.type) if value is None else self.node(value)}.toVar()"
-        numbers = isinstance(value, ir.Construct) and all(isinstance(arg, ir.Literal) for arg in value.args)
-        is_number = isinstance(value, ir.Literal) or (numbers and isinstance(value.type, Vector))
-        return f"const {declare.name} = {self.node(value)}{'' if is_number else '.toConst()'}"
+        parts = value.args if isinstance(value, ir.Construct) and isinstance(value.type, Vector) else (value,)
+        kept = "" if all(isinstance(part, ir.Literal) for part in parts) else ".toConst()"
+        return f"const {declare.name} = {self.node(value)}{kept}"
 
     def zero(self, type_: Type) -> str:
         """The value of a variable without one."""
-        if isinstance(type_, Array) and isinstance(type_.element, Struct):
-            return f"array([{', '.join([self.zero(type_.element)] * type_.length)}])"
         if isinstance(type_, Array):
-            return f"array('{self.type(type_.element)}', {type_.length})"
+            of_structs = f"[{', '.join([self.zero(type_.element)] * type_.length)}]"
+            numbers = f"'{self.type(type_.element)}', {type_.length}"
+            return f"array({of_structs if isinstance(type_.element, Struct) else numbers})"
         fields = type_.fields if isinstance(type_, Struct) else ()
         return f"{self.type(type_)}({', '.join([self.zero(field.type) for field in fields])})"
 
@@ -170,24 +156,27 @@ class TslPrinter(Printer):
 
     def print_function(self, function: ir.Function) -> list[Line]:
         self.assigned = assigned(function, {})
+        for part in all_expressions(function.body or ()):
+            if isinstance(part.type, Matrix | Array):
+                self.spelled(part.type, part.span)
         lines = self.calling(super().print_function(function))[:-1]
         types = [function.result, *[param.type for param in function.params]]
-        result, *names = [self.spelled(unnested(type_)[0], function.span) for type_ in types]
-        if function.result == VOID:  # it discards
-            return [*lines, Line("}, 'void');")]
-        if any(isinstance(type_, Sampler | Array) for type_ in types):
-            return [*lines, Line("});")]
+        result, *names = [self.spelled(type_, function.span) for type_ in types]
+        if function.result == VOID or any(isinstance(type_, Sampler | Array) for type_ in types):
+            return [*lines, Line("}, 'void');" if function.result == VOID else "});")]  # what returns nothing discards
         inputs = [f"{{ name: '{p.name}', type: '{type_}' }}" for p, type_ in zip(function.params, names, strict=True)]
         head = f"}}).setLayout({{ name: '{function.name}', type: '{result}', inputs: ["
         if len(head) + len(", ".join(inputs)) < WIDTH - 5:
             return [*lines, Line(f"{head}{', '.join(inputs)}] }});", function.span)]
         return [*lines, Line(head), *[Line(f"    {one},") for one in inputs], Line("] });")]
 
-    def spelled(self, type_: Type, span: ir.Span) -> str:
-        """A type in the layout of a function or a struct. Raises SssgenError with its place."""
-        if isinstance(type_, Struct) or (not isinstance(type_, Array) and spell(type_) in self.target.types):
-            return spell(type_)
-        what = "arrays in structs" if isinstance(type_, Array) else spell(type_)
+    def spelled(self, type_: Type, span: ir.Span, is_part: bool = False) -> str:
+        """A type in the layout of a function, or of a part of a struct. Raises SssgenError with its place."""
+        name = spell(unnested(type_)[0])
+        is_nested = isinstance(type_, Array) and (is_part or isinstance(type_.element, Array))
+        if not is_nested and (name in self.target.types or isinstance(unnested(type_)[0], Struct)):
+            return name
+        what = "arrays in arrays and structs" if is_nested else name
         hint = "use variables for its elements or columns, or pass the values that are read of it"
         raise SssgenError([Diagnostic("error", f"{self.target.title} has no {what}", span, hint, self.source(span))])
 
@@ -198,10 +187,10 @@ class TslPrinter(Printer):
     def print_struct(self, struct: ir.StructDecl) -> list[Line]:
         assert isinstance(struct.type, Struct)
         name, fields = struct.type.name, struct.type.fields
-        members = ", ".join([f"{field.name}: '{self.spelled(field.type, struct.span)}'" for field in fields])
-        text = f"export const {name} = /*@__PURE__*/ struct({{ {members} }}, '{name}');"
-        return self.calling(wrap(text, struct.span))
+        members = ", ".join([f"{field.name}: '{self.spelled(field.type, struct.span, True)}'" for field in fields])
+        return self.calling(
+            wrap(f"export const {name} = /*@__PURE__*/ struct({{ {members} }}, '{name}');", struct.span)
+        )
 
     def print_constant(self, constant: ir.Constant) -> list[Line]:
-        text = f"const {constant.name} = /*@__PURE__*/ {self.node(constant.value)};"
-        return self.calling(wrap(text, constant.span))
+        return self.calling(wrap(f"const {constant.name} = /*@__PURE__*/ {self.node(constant.value)};", constant.span))
