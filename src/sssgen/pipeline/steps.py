@@ -319,7 +319,7 @@ def _reserved(state: State, others: Names) -> ReservedNames:
     A shader whose entry is the author's `main` has that name, without a shell around it.
     """
     own = state.target.names
-    names, prefixes = others.exact | own.exact | own.macros, others.prefixes + own.prefixes
+    names, prefixes = others.exact | own.exact | own.private, others.prefixes + own.prefixes
     if state.entry_name == "main":
         return ReservedNames(names - own.shell - {"main"}, prefixes)
     return ReservedNames(names | {"main", state.entry_name}, prefixes)
