@@ -6,11 +6,17 @@ from collections.abc import Callable, Iterable
 
 from pass_cases import assert_is, module_of, text
 from sssgen.ir.verify import verify
-from sssgen.passes.names import rename
+from sssgen.passes.capabilities import Capabilities
+from sssgen.passes.names import Rules, rename
 
 
 def unity(name: str) -> str:
     return "_" + "".join(word.capitalize() for word in name.split("_"))
+
+
+def rules_of(reserved: Iterable[str] = (), overloads: bool = True) -> Rules:
+    able = Capabilities(matrix_overloads=True, loop_scope=True, member_types=True, hiding=True, overloads=overloads)
+    return Rules(frozenset(reserved), capabilities=able)
 
 
 def becomes(
@@ -22,14 +28,15 @@ def becomes(
     mangle: bool = False,
     folded: Iterable[str] = (),
 ) -> None:
-    module, names = rename(module_of(before), frozenset(reserved), style, mangle, frozenset(folded))
+    rules = rules_of(set(reserved), not mangle)._replace(reserved_folded=set(folded), uniform_name=style)
+    module, names = rename(module_of(before), rules)
     assert_is(module, after)
     assert names == renamed
 
 
 def test_a_pass_without_changes_keeps_every_node() -> None:
     module = module_of("uniform float a1 = 1.0; float f2(float x3) { float v_4 = x3 * a1; return v_4; }")
-    result, names = rename(module, frozenset(), str, True)
+    result, names = rename(module, rules_of(overloads=False))
     assert names == {} and all(one is other for one, other in zip(result.functions, module.functions, strict=True))
 
 
@@ -137,7 +144,7 @@ def test_a_variable_that_hides_a_used_declaration_is_renamed() -> None:
     body = (*(locals_.functions[0].body or ())[:1], *(module.functions[1].body or ()))
     joined = module._replace(functions=(module.functions[0], locals_.functions[0]._replace(body=body)))
     assert verify(joined) == []
-    result, names = rename(joined, frozenset(), str, False)
+    result, names = rename(joined, rules_of())
     assert names == {"f.h": "h_"}
     assert "h_" in text(result) and verify(result) == []
 
@@ -152,7 +159,7 @@ def test_a_variable_called_like_a_builtin_that_its_function_calls() -> None:
 
 def test_names_that_no_shading_language_allows() -> None:
     module = module_of("uniform float a = 1.0; float f(float x) { float y = x; return y * a; }")
-    odd = rename(module, {"a", "f", "x", "y"}, lambda name: "gl_a__b", False)[0]
+    odd = rename(module, rules_of("afxy")._replace(uniform_name=lambda name: "gl_a__b"))[0]
     assert [uniform.name for uniform in odd.uniforms] == ["a_b"]
     (function,) = odd.functions
     assert (function.name, function.params[0].name) == ("f_", "x_")
@@ -184,5 +191,5 @@ def test_structs_in_arrays_and_structs() -> None:
 def test_the_result_does_not_depend_on_the_order_of_sets() -> None:
     source = "float f(float aa, float bb, float cc) { float dd = aa; float ee = bb; return dd * ee * cc; }"
     words = ["aa", "bb", "cc", "dd", "ee"]
-    texts = {text(rename(module_of(source), set(order), str, False)[0]) for order in (words, words[::-1])}
+    texts = {text(rename(module_of(source), rules_of(order))[0]) for order in (words, words[::-1])}
     assert len(texts) == 1

@@ -18,7 +18,7 @@ from documents import Reader, blocks, programs, read, uncommented
 from folders import ROOT
 from sssgen import SssgenError
 from sssgen.lang.check.shader_interface import BUILTIN_VARIABLES
-from sssgen.material.chain_assembly import INPUTS, OPTIONAL
+from sssgen.material.chain_assembly import INPUTS
 from sssgen.passes.capabilities import Capabilities
 from sssgen.targets import descriptor, plugins, registry
 from sssgen.targets.descriptor_table import table_of
@@ -198,7 +198,7 @@ def test_a_misspelt_key_is_named(tmp_path: Path, old: str, new: str, section: st
     [
         ("uniform_values = false", "uniform_values = 1", "needs true or false for 'uniform_values' in [capabilities]"),
         ("clip_z = [0.0, 1.0]", "clip_z = 0.0", "needs a list for 'clip_z' in [conventions]"),
-        ('vertex_color = ""', "vertex_color = 1", "needs a text for 'vertex_color' in [inputs]"),
+        ('uv = "v_uv"', "uv = 1", "needs a text for 'uv' in [inputs]"),
     ],
 )
 def test_a_value_of_the_wrong_type_is_named(tmp_path: Path, old: str, new: str, wrong: str) -> None:
@@ -291,6 +291,5 @@ def test_own_descriptors_declare_every_capability() -> None:
 
 
 def test_the_keys_of_descriptors_equal_the_inputs_of_the_chain() -> None:
-    assert descriptor.OPTIONAL_VALUES == OPTIONAL
     assert set(descriptor.CHAIN_INPUTS) == {*INPUTS, "surface", "color"}
     assert set(descriptor.STAGE_BUILTINS) < set(BUILTIN_VARIABLES)

@@ -1,9 +1,9 @@
 """Operations on memory that invocations of a compute shader share: atomics, barriers, the length of a buffer.
 
 They are statements (`nodes.MemoryOperation`), as they write memory or wait; the table of builtins has functions of
-values alone. A text has `{0}` for the place, `{1}` and `{2}` for the values, `{result}` for the variable that takes the
-old value; `{result}=` begins the text of a language whose operation returns it. `{free}` is a name that the function
-does not have.
+values alone. A text has `{0}` for the place, `{1}` and `{2}` for the values, and `{result}` for the variable that takes
+the old value. Where it may be left out, `{into}` is `RESULT = ` and `{also}` is `, RESULT`, or nothing. `{free}` is a
+name that the function does not have.
 """
 
 from __future__ import annotations
@@ -43,10 +43,10 @@ def _atomic(
 ) -> MemoryRow:
     args = ", ".join([f"{{{index}}}" for index in range(1, values + 1)])
     texts = {
-        "glsl": f"{{result}}={name}({{0}}, {args})",
-        "wgsl": f"{{result}}={name}(&{{0}}, {args})",
-        "hlsl": f"{hlsl}({{0}}, {args}, {{result}})",
-        "metal": f"{{result}}={metal_name}(&{{0}}, {args}, memory_order_relaxed)",
+        "glsl": f"{{into}}{name}({{0}}, {args})",
+        "wgsl": f"{{into}}{name}(&{{0}}, {args})",
+        "hlsl": f"{hlsl}({{0}}, {args}{{also}})",
+        "metal": f"{{into}}{metal_name}(&{{0}}, {args}, memory_order_relaxed)",
     }
     return MemoryRow(name, doc, values, needs_result=needs_result, texts={**texts, **other})
 
@@ -93,7 +93,7 @@ ROWS = (
     ),
     MemoryRow(
         "arrayLength", "How many elements a buffer's last member has.",
-        texts={"glsl": "{result}={0}.length()", "wgsl": "{result}=i32(arrayLength(&{0}))"},
+        texts={"glsl": "{into}{0}.length()", "wgsl": "{into}i32(arrayLength(&{0}))"},
     ),
 )  # fmt: skip
 

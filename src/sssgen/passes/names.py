@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Container, Mapping
+from typing import NamedTuple
 
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import (
@@ -31,43 +32,39 @@ from sssgen.ir.nodes import (
 from sssgen.ir.transform import rewrite
 from sssgen.ir.types import VEC4, Array, Field, Matrix, Struct, Type, spell
 from sssgen.ir.walk import all_expressions, statements, subexpressions
+from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.scopes import Renamer, declared, rename_locals
 from sssgen.passes.struct_types import Retyper
 from sssgen.support.diagnostics import failure
 
 
-def rename(
-    module: Module,
-    reserved: Container[str],
-    uniform_name: Callable[[str], str],
-    mangle_overloads: bool,
-    reserved_folded: Container[str] = frozenset(),
-    matrix_overloads: bool = True,
-    loop_scope: bool = True,
-    reserved_at_file_scope: Container[str] = (),
-    member_types: bool = True,
-    prefix: str = "",
-    hiding: bool = True,
-    uniforms_declared: bool = True,
-    uniform_ports: bool = False,
-) -> tuple[Module, dict[str, str]]:
+class Rules(NamedTuple):
+    """Which names a target has."""
+
+    reserved: Container[str] = ()
+    reserved_folded: Container[str] = ()
+    """Names that are reserved in any case, in lower case."""
+    reserved_at_file_scope: Container[str] = ()
+    """Names that only local names may have."""
+    capabilities: Capabilities = Capabilities()
+    """`overloads`, `matrix_overloads`, `loop_scope`, `member_types` and `hiding` of the language."""
+    uniform_name: Callable[[str], str] = str
+    """Gives a uniform's name in the target's style."""
+    uniforms_declared: bool = True
+    """Whether the text declares the uniforms, so that they can be hidden."""
+    prefix: str = ""
+    """Begins the name of every declaration."""
+    uniform_ports: bool = False
+    """Whether uniforms are ports of a node, which have no prefix."""
+
+
+def rename(module: Module, rules: Rules) -> tuple[Module, dict[str, str]]:
     """The module with legal names, and what was renamed, as old → new.
 
-    `reserved` holds the target's reserved names, `reserved_folded` those reserved in any case, in lower case,
-    `reserved_at_file_scope` those that only local names may have.
-    `uniform_name` gives a uniform's name in the target's style. With `mangle_overloads` each function of an
-    overloaded name gets its parameters' types into its name; without `matrix_overloads` those of a name whose overloads
-    differ in a vec4 and a mat2 alone; `loop_scope` as in `rename_locals`; without `member_types` no
-    member has a struct's name, and without `hiding` no local variable that of a constant or of a uniform,
-    if `uniforms_declared`; `prefix` begins the name of every declaration, but of uniforms where these
-    are ports of a node, `uniform_ports`. In the result, overloads that got other
-    names are listed under their key (as in `box(vec3)`), local names under `function.name`, members under
-    `struct.name`.
+    Overloads that got other names are listed under their key (as in `box(vec3)`), local names under `function.name`,
+    members under `struct.name`.
     """
-    return _Namer(
-        module, reserved, uniform_name, mangle_overloads, reserved_folded, matrix_overloads, loop_scope,
-        reserved_at_file_scope, member_types, prefix, hiding, uniforms_declared, uniform_ports,
-    ).run()  # fmt: skip
+    return _Namer(module, rules).run()
 
 
 def checked_prefix(prefix: str, reserved: tuple[str, ...]) -> str:
@@ -81,29 +78,9 @@ def checked_prefix(prefix: str, reserved: tuple[str, ...]) -> str:
 
 
 class _Namer:
-    def __init__(
-        self,
-        module: Module,
-        reserved: Container[str],
-        uniform_name: Callable[[str], str],
-        mangle_overloads: bool,
-        reserved_folded: Container[str],
-        matrix_overloads: bool,
-        loop_scope: bool,
-        reserved_at_file_scope: Container[str],
-        member_types: bool,
-        prefix: str,
-        hiding: bool,
-        uniforms_declared: bool,
-        uniform_ports: bool,
-    ) -> None:
-        self.module = module
+    def __init__(self, module: Module, rules: Rules) -> None:
+        self.module, self.rules = module, rules
         self.keyed = [(function.key, function) for function in module.functions]
-        self.reserved, self.reserved_folded = reserved, reserved_folded
-        self.reserved_at_file_scope = reserved_at_file_scope
-        self.uniform_name, self.mangle_overloads, self.prefix = uniform_name, mangle_overloads, prefix
-        self.matrix_overloads, self.loop_scope, self.member_types = matrix_overloads, loop_scope, member_types
-        self.hiding, self.uniforms_declared, self.uniform_ports = hiding, uniforms_declared, uniform_ports
         self.values: set[str] = set()
         """The new names of uniforms, constants and variables, where no local variable may have them."""
         self.legality: dict[str, bool] = {}
@@ -147,11 +124,11 @@ class _Namer:
         cached = self.legality.get(name)
         if cached is None:
             cached = self.legality[name] = not (
-                name in self.reserved
+                name in self.rules.reserved
                 or "__" in name
                 or name == "_"
                 or name.startswith("gl_")
-                or name.lower() in self.reserved_folded
+                or name.lower() in self.rules.reserved_folded
             )
         return cached
 
@@ -184,7 +161,7 @@ class _Namer:
         module = self.module
         wanted = {("struct", spell(struct.type)): spell(struct.type) for struct in module.structs}
         wanted |= {("global", constant.name): constant.name for constant in module.constants}
-        wanted |= {("global", uniform.name): self.uniform_name(uniform.name) for uniform in module.uniforms}
+        wanted |= {("global", uniform.name): self.rules.uniform_name(uniform.name) for uniform in module.uniforms}
         wanted |= {("global", variable.name): variable.name for variable in module.variables}
         mangled = self.mangled()
         for key, function in self.keyed:
@@ -192,27 +169,27 @@ class _Namer:
                 wanted["key", key] = mangled[key]
             else:
                 wanted["function", function.name] = function.name
-        if self.prefix:
-            ports = {("global", uniform.name) for uniform in module.uniforms} if self.uniform_ports else set()
-            wanted = {old: name if old in ports else f"{self.prefix}{name}" for old, name in wanted.items()}
+        if self.rules.prefix:
+            ports = {("global", uniform.name) for uniform in module.uniforms} if self.rules.uniform_ports else set()
+            wanted = {old: name if old in ports else f"{self.rules.prefix}{name}" for old, name in wanted.items()}
         names: dict[tuple[str, str], str] = {}
         # another stage must choose the same names for the interface
         passed = [variable for variable in module.variables if variable.storage != "private" and not variable.builtin]
         for name in sorted([variable.name for variable in passed], key=lambda name: (not self.legal(name), name)):
-            names["global", name] = self.choose(name, self.reserved_at_file_scope)
+            names["global", name] = self.choose(name, self.rules.reserved_at_file_scope)
             self.taken.add(names["global", name])
         for old, name in wanted.items():
-            if old not in names and self.free(name, self.reserved_at_file_scope):
+            if old not in names and self.free(name, self.rules.reserved_at_file_scope):
                 names[old] = name
                 self.taken.add(name)
         for old, name in wanted.items():
             if old not in names:
-                names[old] = self.choose(name, self.reserved_at_file_scope)
+                names[old] = self.choose(name, self.rules.reserved_at_file_scope)
                 self.taken.add(names[old])
         self.renamed = {old[1]: new for old, new in names.items() if old[1] != new}
         self.globals = {old[1]: new for old, new in names.items() if old[0] == "global" and old[1] != new}
-        if not self.hiding:
-            undeclared = set() if self.uniforms_declared else {uniform.name for uniform in module.uniforms}
+        if not self.rules.capabilities.hiding:
+            undeclared = set() if self.rules.uniforms_declared else {uniform.name for uniform in module.uniforms}
             self.values = {new for (kind, old), new in names.items() if kind == "global" and old not in undeclared}
         self.name_structs(names)
         for key, function in self.keyed:
@@ -229,7 +206,9 @@ class _Namer:
             overloads.setdefault(function.name, []).append((key, function))
         result: dict[str, str] = {}
         for name, functions in overloads.items():
-            if len(functions) > 1 and (self.mangle_overloads or self.confused([function for _, function in functions])):
+            if len(functions) > 1 and (
+                not self.rules.capabilities.overloads or self.confused([function for _, function in functions])
+            ):
                 types = [[_word(param.type) for param in function.params] for _, function in functions]
                 for count in range(1, max(map(len, types)) + 1):
                     spelled = ["_".join([name, *words[:count]]) for words in types]
@@ -240,7 +219,7 @@ class _Namer:
 
     def confused(self, overloads: list[Function]) -> bool:
         """Whether the target cannot distinguish these: HLSL a vec4 from a mat2."""
-        if self.matrix_overloads:
+        if self.rules.capabilities.matrix_overloads:
             return False
         signatures = [
             [VEC4 if param.type == Matrix(2, 2) else param.type for param in function.params] for function in overloads
@@ -249,7 +228,11 @@ class _Namer:
 
     def name_structs(self, names: Mapping[tuple[str, str], str]) -> None:
         """Finds the structs that change: by name, by a member's name, or by a member's type."""
-        types = set() if self.member_types else {name for (kind, _), name in names.items() if kind == "struct"}
+        types = (
+            set()
+            if self.rules.capabilities.member_types
+            else {name for (kind, _), name in names.items() if kind == "struct"}
+        )
         for declaration in self.module.structs:
             struct = declaration.type
             assert isinstance(struct, Struct)
@@ -297,7 +280,9 @@ class _Namer:
         bad += self.hidden(function, names) | (names & self.values)
         if self.structs:
             function = self.retyper.function(function)
-        new, renamed = rename_locals(function, bad, self.choose, self.globals, self.keys, self.loop_scope)
+        new, renamed = rename_locals(
+            function, bad, self.choose, self.globals, self.keys, self.rules.capabilities.loop_scope
+        )
         for old, local in renamed.items():
             self.renamed[f"{function.name}.{old}"] = local
         if not self.globals.keys().isdisjoint([param.passes for param in new.params]):

@@ -22,7 +22,7 @@ from sssgen.passes.legal.plain_loops import plain_loops
 from sssgen.passes.legal.result_structs import result_structs
 from sssgen.passes.legal.single_exit import single_exits
 from sssgen.passes.link import link
-from sssgen.passes.names import rename
+from sssgen.passes.names import Rules, rename
 from sssgen.passes.numpy.predicate import predicate
 from sssgen.passes.prune import prune
 from sssgen.passes.reachable import only, used
@@ -288,21 +288,18 @@ def convert_to_masks(state: State) -> Module:
 def make_names_legal(state: State) -> Module:
     target = state.target
     others = registry.reserved_of(target.language) if state.keep else registry.reserved_everywhere()
-    module, state.renames = rename(
-        state.module,
-        _reserved(state, others),
-        _uniform_style(target.uniform_style),
-        not target.capabilities.overloads,
-        others.folded | target.names.folded,
-        target.capabilities.matrix_overloads,
-        target.capabilities.loop_scope,
-        target.names.local | BUILTINS.keys() if target.names.builtins else target.names.local,
-        target.capabilities.member_types,
-        target.prefix,
-        target.capabilities.hiding,
-        state.form not in target.parameters,
-        state.form == "shader" and bool(target.ports),
+    local = target.names.local | BUILTINS.keys() if target.names.builtins else target.names.local
+    rules = Rules(
+        reserved=_reserved(state, others),
+        reserved_folded=others.folded | target.names.folded,
+        reserved_at_file_scope=local,
+        capabilities=target.capabilities,
+        uniform_name=_uniform_style(target.uniform_style),
+        uniforms_declared=state.form not in target.parameters,
+        prefix=target.prefix,
+        uniform_ports=state.form == "shader" and bool(target.ports),
     )
+    module, state.renames = rename(state.module, rules)
     functions = zip(module.functions, state.module.functions, strict=True)
     final = {old.key: new.name for new, old in functions}
     state.frame_names = {name: final[function.key] for name, function in state.frame_functions.items()}
@@ -319,7 +316,7 @@ def _reserved(state: State, others: Names) -> ReservedNames:
     A shader whose entry is the author's `main` has that name, without a shell around it.
     """
     own = state.target.names
-    names, prefixes = others.exact | own.exact | own.macros, others.prefixes + own.prefixes
+    names, prefixes = others.exact | own.exact | own.private, others.prefixes + own.prefixes
     if state.entry_name == "main":
         return ReservedNames(names - own.shell - {"main"}, prefixes)
     return ReservedNames(names | {"main", state.entry_name}, prefixes)

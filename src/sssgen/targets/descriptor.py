@@ -57,8 +57,8 @@ class Names(NamedTuple):
     """The targets whose reserved names this one avoids, too, as its text becomes theirs."""
     shell: frozenset[str] = frozenset()
     """Those of the templates."""
-    macros: frozenset[str] = frozenset()
-    """The engine's macros, which this target alone avoids: they replace local names, too."""
+    private: frozenset[str] = frozenset()
+    """Reserved for this target alone: an engine's macros, which replace local names, too, and Python's words."""
     case_insensitive: frozenset[str] = frozenset()
     """Reserved in any case, as some of HLSL's words are."""
     prefixes: tuple[str, ...] = ()

@@ -3,8 +3,8 @@
 `extends = "NAME"` names the base: a descriptor in the same folder, one of the project's (`targets/NAME.toml`), or that
 of a plug-in's target. Sections are merged key by key; the extending file's keys win, and a list replaces that of the
 base.
-`words = "FILE"` names a file of word lists beside the descriptor: `[names.reserved]` begins the list of that key, `#` a
-comment.
+`words = "FILE"` names a file of word lists, beside the descriptor or in `targets`: a line `[names.reserved]` begins the
+list of that key, `#` a comment.
 """
 
 from __future__ import annotations
@@ -52,16 +52,21 @@ def _base(path: str, table: Mapping[str, Any]) -> str:
         raise failure("the target descriptor needs a text for 'extends'", file=file)
     if not name:
         return ""
-    for folder in (os.path.dirname(path), place("targets")):
-        candidate = os.path.abspath(os.path.join(folder, f"{name}.toml"))
-        if os.path.isfile(candidate):
-            return candidate
+    candidate = _beside(path, f"{name}.toml")
+    if os.path.isfile(candidate):
+        return candidate
     if name in plugins.entries() and isinstance(loaded := plugins.load(name), str):
         return os.path.abspath(loaded)
     own = [stem(entry) for entry in os.listdir(place("targets")) if entry.endswith(".toml")]
     bases = sorted({*own, *plugins.entries()})
     hint = did_you_mean(name, bases) or f"a descriptor in its folder, or one of these targets: {', '.join(bases)}"
     raise failure(f"the target descriptor extends '{name}', which is unknown", hint, file)
+
+
+def _beside(path: str, name: str) -> str:
+    """The absolute path of a file that a descriptor names: in its folder if it is there, else in `targets`."""
+    own = os.path.join(os.path.dirname(path), name)
+    return os.path.abspath(own if os.path.isfile(own) else os.path.join(place("targets"), name))
 
 
 def _merged(base: Mapping[str, Any], table: Mapping[str, Any]) -> dict[str, Any]:
@@ -82,7 +87,7 @@ def _contents(path: str) -> dict[str, Any]:
         words = table.pop("words", "")
         if not isinstance(words, str):
             raise failure("the target descriptor needs a text for 'words'", file=file)
-        return _merged(_word_lists(os.path.join(os.path.dirname(path), words)), table) if words else table
+        return _merged(_word_lists(_beside(path, words)), table) if words else table
     except (OSError, ValueError) as error:
         raise failure(f"cannot read the target descriptor: {error}", file=file) from None
 

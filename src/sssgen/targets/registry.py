@@ -79,7 +79,7 @@ class ReservedNames:
 @functools.cache
 def reserved_everywhere() -> Names:
     """The names that any of the project's own targets reserves. No emitted name is among them."""
-    return _reserved([target for target in map(load, _own_names()) if target.language != "python"])
+    return _reserved([load(name) for name in _own_names()])
 
 
 @functools.cache

@@ -6,7 +6,7 @@ Memory of atomics is read and written by functions, also where the source reads 
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.memory_operations import ROWS
+from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.types import Array, Scalar, Type
 from sssgen.passes.stage.atomic_places import Memory, atomic_places, memory_of, passed_variables
 from sssgen.targets.descriptor import Target
@@ -28,8 +28,6 @@ class AtomicPrinter(Printer):
         super().__init__(target, module)
         self.atomics = atomic_places(module)
         """The shared variables and the members of structs that hold atomics."""
-        texts = (row.texts.get(target.language) for row in ROWS if not row.has_place)
-        self.barriers = set(filter(None, texts))
         self.addressed = False
         """Whether a place is printed and not its value."""
         self.memory_names: dict[str, str] = {}
@@ -88,9 +86,15 @@ class AtomicPrinter(Printer):
 
     def block(self, block: ir.Block, indent: int) -> list[Line]:
         """A block; a barrier of memory beside one of control is the same barrier."""
-        barriers = {f"{'    ' * indent}{text};" for text in self.barriers}
-        lines: list[Line] = []
-        for line in super().block(block, indent):
-            if not (lines and line.text in barriers and lines[-1].text == line.text):
-                lines.append(line)
-        return lines
+        kept: list[ir.Stmt] = []
+        for stmt in block:
+            barrier = self.barrier(stmt)
+            repeated = barrier and kept and self.barrier(kept[-1]) == barrier
+            if not repeated or self.comments(stmt.span.file, stmt.span.line):
+                kept.append(stmt)
+        return super().block(tuple(kept), indent)
+
+    def barrier(self, stmt: ir.Stmt) -> str:
+        """The text of a barrier; '' for another statement."""
+        row = MEMORY[stmt.name] if isinstance(stmt, ir.MemoryOperation) else None
+        return row.texts[self.target.language] if row and not row.has_place else ""

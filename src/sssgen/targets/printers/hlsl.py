@@ -36,7 +36,7 @@ class HlslPrinter(Printer):
 
     def __init__(self, target: Target, module: ir.Module) -> None:
         super().__init__(target, module)
-        self.sized: set[str] = set()
+        self.sized: set[Sampler] = set()
         self.overloads = Counter([function.name for function in module.functions])
 
     @property

@@ -49,14 +49,18 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
     builtins = printer.target.stage_builtins
     entry_parameters = parameters(stage, taken)
 
-    def declared(slot: Slot, name: str, semantics: str) -> str:
+    def place_of(slot: Slot, semantics: str) -> str:
         if slot.link:
-            place = semantic(slot)
-        else:
-            place = f"{semantics}{slot.location}" if slot.location >= 0 else builtins[slot.variable.builtin]
+            return semantic(slot)
+        return f"{semantics}{slot.location}" if slot.location >= 0 else builtins[slot.variable.builtin]
+
+    def sampled(slot: Slot, semantics: str) -> str:
         word = interpolation(slot)
-        sampled = _INTERPOLATION[word] if semantics == "TEXCOORD" and slot.location >= 0 and word else ""
-        return f"{sampled}{printer.variable(parameter_type(slot), name)} : {place}"
+        return _INTERPOLATION[word] if semantics == "TEXCOORD" and slot.location >= 0 and word else ""
+
+    def declared(slot: Slot, name: str, semantics: str) -> str:
+        variable = printer.variable(parameter_type(slot), name)
+        return f"{sampled(slot, semantics)}{variable} : {place_of(slot, semantics)}"
 
     params = ", ".join([declared(slot, name, _INPUT_SEMANTICS[stage.kind]) for name, slot in entry_parameters])
     body = []
@@ -73,8 +77,9 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
     lines: list[Line] = []
     if len(stage.outputs) == 1:
         (slot,) = stage.outputs
-        head, _, place = declared(slot, "result", _OUTPUT_SEMANTICS[stage.kind]).partition(" result : ")
-        signature = f"{head} {name}({params}) : {place} {{"
+        semantics = _OUTPUT_SEMANTICS[stage.kind]
+        head = f"{sampled(slot, semantics)}{printer.type(parameter_type(slot))}"
+        signature = f"{head} {name}({params}) : {place_of(slot, semantics)} {{"
         body.append(f"return {place_text(slot)};")
     elif stage.outputs:
         struct, result = f"{stage.kind.capitalize()}Output", "made"

@@ -14,24 +14,23 @@ from sssgen.targets.printers.printed_lines import Line
 _NAME = "texture_size"
 
 
-def texture_types(function: ir.Function) -> list[str]:
-    """The types, in HLSL, of the textures whose size a function reads, without duplicates."""
-    types: dict[str, None] = {}
+def texture_types(function: ir.Function) -> list[Sampler]:
+    """The types of the textures whose size a function reads, without duplicates."""
+    types: dict[Sampler, None] = {}
     for expr in all_expressions(function.body or ()):
         if isinstance(expr, ir.Intrinsic) and _NAME in BUILTINS[expr.name].texts.get("hlsl", ""):
             texture = expr.args[0].type
             assert isinstance(texture, Sampler)
-            types[_spelled(texture)] = None
+            types[texture._replace(shadow=False)] = None  # HLSL compares with the sampler
     return list(types)
 
 
-def definition(texture: str) -> list[Line]:
+def definition(texture: Sampler) -> list[Line]:
     """The function for a type of texture."""
-    sizes = ["width", "height"]
-    sizes += ["depth"] * texture.startswith("Texture3D") + ["layers"] * ("Array" in texture)
+    sizes = ["width", "height", *["depth"] * (texture.dim == "3D"), *["layers"] * texture.array]
     outs = ", ".join(sizes)
     return [
-        Line(f"int{len(sizes)} {_NAME}({texture} map, int level) {{"),
+        Line(f"int{len(sizes)} {_NAME}({_spelled(texture)} map, int level) {{"),
         Line(f"    uint {outs}, levels;"),
         Line(f"    map.GetDimensions(level, {outs}, levels);"),
         Line(f"    return int{len(sizes)}({outs});"),

@@ -154,7 +154,8 @@ class NumpyExpressions(Printer):
         if components(args[0].type) == size:
             return part, PRIMARY
         if size == 1:
-            return f"{part if part.startswith('to_') else self.expr(args[0], POSTFIX)}[0]", POSTFIX
+            converts = part != self.expr(args[0])  # by a call, which needs no parentheses
+            return f"{part if converts else self.expr(args[0], POSTFIX)}[0]", POSTFIX
         return f'swizzle({part}, "{"xyzw"[:size]}")', PRIMARY
 
     def converted(self, kind: str, *args: ir.Expr) -> str:

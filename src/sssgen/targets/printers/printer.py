@@ -25,7 +25,6 @@ from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, summary, wrap
 from sssgen.targets.uniform_layout import Member
 
-_RETURNS = "{result}="
 _COLOR_LETTERS = str.maketrans("xyzw", "rgba")
 
 UNARY, POSTFIX, PRIMARY, TERNARY = 13, 14, 15, -1
@@ -299,13 +298,10 @@ class Printer:
         """An operation on shared memory, by its row's text for this language."""
         pattern = MEMORY[stmt.name].texts[self.target.language]
         result = self.expr(stmt.result) if stmt.result is not None else ""
-        if pattern.startswith(_RETURNS):
-            pattern = f"{'{result} = ' if result else ''}{pattern.removeprefix(_RETURNS)}"
-        elif not result:
-            pattern = pattern.replace(", {result}", "")
+        into, also = (f"{result} = ", f", {result}") if result else ("", "")
         free = self.free_name("swapped") if "{free}" in pattern else ""
         args = [*map(self.place, stmt.args[:1]), *map(self.expr, stmt.args[1:])]
-        text = pattern.format(*args, result=result, free=free)
+        text = pattern.format(*args, result=result, into=into, also=also, free=free)
         return text if text.endswith("}") else f"{text};"
 
     def place(self, expr: ir.Expr) -> str:
@@ -391,7 +387,7 @@ class Printer:
         *body, last = function.body or ()
         assert isinstance(last, ir.Return) and last.value is not None
         lines = self.block(tuple(body), 0)
-        lines += wrap(self.target.fragment_result.replace("{}", self.expr(last.value)), last.span)
+        lines += wrap(self.target.fragment_result.format(self.expr(last.value)), last.span)
         self.inlined = {}
         return lines
 

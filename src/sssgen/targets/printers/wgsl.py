@@ -61,22 +61,22 @@ class WgslPrinter(AtomicPrinter):
         return f"material.{value.name}" if in_block else value.name
 
     def intrinsic(self, call: ir.Intrinsic) -> tuple[str, int]:
-        text, binding = super().intrinsic(call)
         if "wgsl" in BUILTINS[call.name].explicit_type and not _has_type(call):
-            first = self.expr(call.args[0])
-            text = text.replace(first, f"{self.type(call.args[0].type)}({first})", 1)
-        return text, binding
+            first = call.args[0]
+            call = call._replace(args=(ir.Construct(first.type, (first,), first.span), *call.args[1:]))
+        return super().intrinsic(call)
 
     def select(self, select: ir.Select) -> tuple[str, int]:
         return f"select({self.arguments((select.no, select.yes, select.condition))})", PRIMARY
 
     def listed(self, texts: list[str]) -> str:
-        """The arguments; `(x < y)` is in parentheses, as `x < y, z > t` would be read as a template x<y, z>."""
-        first = [f"({text})" if _has_open_less(text) else text for text in texts[:-1]]
-        last = texts[-1:]
-        if self.target.dialect == "wgsl-wesl" and first != texts[:-1]:  # npm wesl reads `<y), z>` as a template, too
-            last = [f"({text})" for text in last]
-        return ", ".join([*first, *last])
+        """The arguments; `(x < y), (z > t)` are in parentheses, as `x < y, z > t` would be read as a template x<y, z>.
+
+        Both are, as npm wesl reads `<y), z>` as a template, too.
+        """
+        less = [*[_has_open(" < ", text) for text in texts[:-1]], False]
+        closed = [less[index] or (any(less[:index]) and _has_open(" >", text)) for index, text in enumerate(texts)]
+        return ", ".join([f"({text})" if close else text for text, close in zip(texts, closed, strict=True)])
 
     def argument(self, arg: ir.Expr, param: ir.Param) -> str:
         if param.direction == "in" or not isinstance(arg, ir.Local):
@@ -181,13 +181,13 @@ def _has_type(call: ir.Intrinsic) -> bool:
     return any(isinstance(part, _TYPED) for part in subexpressions(call))
 
 
-def _has_open_less(text: str) -> bool:
-    """Whether a `<` is outside of parentheses."""
-    if " < " not in text:
+def _has_open(operator: str, text: str) -> bool:
+    """Whether an operator is outside of parentheses."""
+    if operator not in text:
         return False
     depth = 0
     for index, char in enumerate(text):
         depth += (char in "([") - (char in ")]")
-        if depth == 0 and text.startswith(" < ", index):
+        if depth == 0 and text.startswith(operator, index):
             return True
     return False

@@ -27,12 +27,15 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
     builtins = printer.target.stage_builtins
     entry_parameters = parameters(stage, taken)
 
-    def declared(slot: Slot, name: str, varying: bool) -> str:
+    def attributes(slot: Slot, varying: bool) -> str:
         if slot.location < 0:
-            return f"@builtin({builtins[slot.variable.builtin]}) {printer.variable(parameter_type(slot), name)}"
+            return f"@builtin({builtins[slot.variable.builtin]})"
         word = interpolation(slot)
         sampled = f" @interpolate({_INTERPOLATION[word]})" if varying and word else ""
-        return f"@location({slot.location}){sampled} {printer.variable(slot.type, name)}"
+        return f"@location({slot.location}){sampled}"
+
+    def declared(slot: Slot, name: str, varying: bool) -> str:
+        return f"{attributes(slot, varying)} {printer.variable(parameter_type(slot), name)}"
 
     params = ", ".join([declared(slot, name, stage.kind == "fragment") for name, slot in entry_parameters])
     body = []
@@ -48,8 +51,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
     result = ""
     if len(stage.outputs) == 1:
         (slot,) = stage.outputs
-        attribute, _, type_ = declared(slot, "result", stage.kind == "vertex").partition("result: ")
-        result = f" -> {attribute}{type_}"
+        result = f" -> {attributes(slot, stage.kind == 'vertex')} {printer.type(parameter_type(slot))}"
         body.append(f"return {place_text(slot)};")
     elif stage.outputs:
         struct = f"{stage.kind.capitalize()}Output"
