@@ -122,7 +122,10 @@ class Chain(NamedTuple):
 
 
 def assemble(module: Module, stages: Sequence[ChainFunction], lit: bool, opaque: bool = False) -> Chain:
-    """Adds the entries; an opaque material has no alpha. Raises LinkError for a value that nothing supplies."""
+    """Adds the entries; an opaque material has no alpha.
+
+    Raises LinkError for a value that nothing supplies, and for one of the surface that depends on a light.
+    """
     if not lit:
         entry = _color_entry(stages, opaque)
         return Chain(module._replace(functions=(*module.functions, entry.function)), {"color": entry}, None)
@@ -132,12 +135,13 @@ def assemble(module: Module, stages: Sequence[ChainFunction], lit: bool, opaque:
     for stage, late in zip(chained, per_light, strict=True):
         if not late:
             surface.add(stage)
-    late_stages = [stage for stage, late in zip(chained, per_light, strict=True) if late]
     light = _Body("evaluate_translucency", surface, lit=True)
     if "translucency" in surface.values:  # the same for every light; each multiplies it by its colour
         light.take_over("translucency")
-    for stage in late_stages:
-        light.add(stage)
+    for stage, names in zip(chained, per_light, strict=True):
+        if names:
+            _check_late(stage, names)
+            light.add(stage)
     apart = {role: _Body(f"evaluate_{role}", surface) for role in ("lighting", "shadow", "environment")}
     for role in _LAST:
         apart[role] = _Body(f"evaluate_{role}")
@@ -165,17 +169,25 @@ def assemble(module: Module, stages: Sequence[ChainFunction], lit: bool, opaque:
     return Chain(module._replace(structs=(*module.structs, declared), functions=functions), entries, struct)
 
 
-def _per_light(stages: Sequence[ChainFunction]) -> list[bool]:
-    """Which stages depend on the light."""
+def _per_light(stages: Sequence[ChainFunction]) -> list[set[str]]:
+    """What each stage reads that depends on the light."""
     late: set[str] = set(PER_LIGHT)
     result = []
     for stage in stages:
         reads = {_value_name(param, stage) for param in stage.function.params if param.direction != "out"}
-        is_late = bool(reads & late)
         written = _written(stage)
-        late = late | written if is_late else late - (written - reads)
-        result.append(is_late)
+        result.append(reads & late)
+        late = late | written if reads & late else late - (written - reads)
     return result
+
+
+def _check_late(stage: ChainFunction, reads: set[str]) -> None:
+    """Raises LinkError if a stage that runs once per light writes what the surface has once for all lights."""
+    written = _written(stage) | ({"emission"} if stage.glows else set())
+    if lost := [name for name in NAMES if name in written]:
+        names, why = " and ".join(lost), " and ".join(sorted(reads))
+        message = f"'{stage.technique}' writes {names} once per light, as it reads {why}; all lights share the surface"
+        raise LinkError(message, stage.span, f"write {names} in a technique that does not read {why}")
 
 
 def _written(stage: ChainFunction) -> set[str]:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from sssgen.ir.nodes import Function, Span, Uniform
 from sssgen.ir.types import Sampler
+from sssgen.lang.source_lines import keep_lines
 from sssgen.material import baked, library, roles, slots
 from sssgen.material.library import Technique
 from sssgen.material.model import ALPHA_MODES, SHADINGS, UV_SETS, Binding, Material, TechniqueUse, wrong_name
@@ -36,6 +37,7 @@ class _Shared(NamedTuple):
 
 def read_material(text: str, path: str, name: str) -> Material:
     """The material that a TOML text of this name describes; see `material_loading.parse_material`."""
+    keep_lines({name: text})  # for errors of the passes
     reader = _Reader(parse(text, name), path)
     material = reader.material()
     own = sorted(reader.document.reporter.diagnostics, key=lambda diagnostic: diagnostic.span[1:3])

@@ -53,9 +53,9 @@ class Linked(NamedTuple):
 class LinkError(Exception):
     """The reason why techniques cannot be linked, with its place."""
 
-    def __init__(self, message: str, span: Span) -> None:
+    def __init__(self, message: str, span: Span, hint: str = "") -> None:
         super().__init__(message)
-        self.message, self.span = message, span
+        self.message, self.span, self.hint = message, span, hint
 
 
 def link(stages: Sequence[LinkInput], taken: Collection[str] = ()) -> Linked:

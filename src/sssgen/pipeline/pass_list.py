@@ -197,8 +197,7 @@ def run(passes: Sequence[Pass], state: State, trace: Trace | None = None) -> Sta
 
 
 def _error(message: str, error: LinkError | Unsupported) -> Diagnostic:
-    hint = error.hint if isinstance(error, Unsupported) else ""
-    return Diagnostic("error", message, error.span, hint, source_line(error.span))
+    return Diagnostic("error", message, error.span, error.hint, source_line(error.span))
 
 
 def describe(passes: Sequence[Pass]) -> str:
