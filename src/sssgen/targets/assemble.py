@@ -189,6 +189,8 @@ def emit(
         own = context
         if output.without:
             own = _printed(target, program, form, marks, output.without)[0]
+        if output.note:
+            own = {**own, "header": [*own["header"], output.note]}
         text = render(output.template, own, templates, target.folder)
         if text.strip():  # a template may have nothing to say about a material
             files[name], lines[name] = _finish(text, marks)

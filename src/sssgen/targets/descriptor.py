@@ -41,6 +41,8 @@ class OutputFile(NamedTuple):
     """The name of the file of the same form that this one includes."""
     holds: Mapping[str, str] = {}
     """A constant of a module for the web → the target whose functions are its text, for `sssgen check`."""
+    note: str = ""
+    """A sentence at the head of the file: how it is used."""
     without: tuple[str, ...] = ()
     """Kinds of entries that this file does not call: functions that only these need are left out."""
     sources: tuple[str, ...] = ()
