@@ -31,7 +31,8 @@ def add_frame_functions(state: State) -> Module:
         for kinds in left_out
     ]
     module = state.module
-    for name in dict.fromkeys(name for used in frames for name in named(used)):
+    whole = state.form == "shader"
+    for name in dict.fromkeys(name for used in frames for name in named(used, whole)):
         if name not in NAMES and (name == _NORMALIZE or os.path.isfile(_path(name))):
             added = _function(name, state.format, state.guards)
             keys = {function.key for function in module.functions}

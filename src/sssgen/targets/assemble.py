@@ -23,7 +23,7 @@ from sssgen.targets.descriptor import OutputFile, Target
 from sssgen.targets.javascript_runtime import inlined_text, runtime_text
 from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text
 from sssgen.targets.printers.printer import Comments, Printer
-from sssgen.targets.templates import render
+from sssgen.targets.templates import NO_LINES, render
 from sssgen.targets.uniform_layout import Member, padding, place
 from sssgen.targets.used_frame import PER_LIGHT, UsedFrame, named, used_frame, with_names
 
@@ -191,6 +191,8 @@ def emit(
         own = context
         if output.without:
             own = _printed(target, program, form, marks, output.without)[0]
+        if output.note:
+            own = {**own, "header": [*own["header"], output.note]}
         text = render(output.template, own, templates, target.folder)
         if text.strip():  # a template may have nothing to say about a material
             files[name], lines[name] = _finish(text, marks)
@@ -470,7 +472,7 @@ def _finish(text: str, marks: list[Span]) -> tuple[str, dict[int, Span]]:
     for line in text.split("\n"):
         mark = _MARK.search(line)
         line = _MARK.sub("", line).rstrip()
-        if not line and (not lines or not lines[-1] or lines[-1].endswith("{")):
+        if line.lstrip() == NO_LINES or (not line and (not lines or not lines[-1] or lines[-1].endswith("{"))):
             continue
         if lines and not lines[-1] and line.lstrip().startswith("}"):
             lines.pop()

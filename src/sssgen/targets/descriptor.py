@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Mapping
-from typing import Any, NamedTuple, TypeVar, cast
+from typing import Any, NamedTuple, TypeVar
 
 from sssgen.ir.surface_fields import NAMES, OPTIONAL
 from sssgen.ir.types import BY_NAME
@@ -41,6 +41,8 @@ class OutputFile(NamedTuple):
     """The name of the file of the same form that this one includes."""
     holds: Mapping[str, str] = {}
     """A constant of a module for the web → the target whose functions are its text, for `sssgen check`."""
+    note: str = ""
+    """A sentence at the head of the file: how it is used."""
     without: tuple[str, ...] = ()
     """Kinds of entries that this file does not call: functions that only these need are left out."""
     sources: tuple[str, ...] = ()
@@ -377,14 +379,16 @@ class _Reader:
 
     def parts(self, table: object, section: str, names: Collection[str] = ()) -> Parts:
         """Parts of a frame: place → name → text; only these `names`, where any are given."""
-        places = self.is_a(dict, table, section)
-        for place, texts in places.items():
-            self.is_a(dict, texts, place, section)
+        parts: dict[str, dict[str, str]] = {}
+        for places, texts in self.is_a(dict, table, section).items():
+            self.is_a(dict, texts, places, section)
             if names:
-                self.check_keys(texts, names, f"{section}.{place}")
+                self.check_keys(texts, names, f"{section}.{places}")
             for name, text in texts.items():
-                self.is_a(str, text, name, f"{section}.{place}")
-        return cast(Parts, places)
+                self.is_a(str, text, name, f"{section}.{places}")
+            for place in places.split():
+                parts.setdefault(place, {}).update(texts)
+        return parts
 
     def frames(self, table: Mapping[str, Any], section: str) -> dict[str, Any]:
         """The sections of a frame that a table has."""

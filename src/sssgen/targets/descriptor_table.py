@@ -20,8 +20,10 @@ from sssgen.targets import plugins
 
 OWN_KEYS = ("name", "title", "also")
 """What no descriptor inherits."""
-WHOLE_SECTIONS = ("files", "stage_builtins", "frame", "surface", "absent", "variants")
+WHOLE_SECTIONS = ("files", "stage_builtins", "variants")
 """Sections that replace those of the base as a whole."""
+SECTIONS_OF_PLACES = ("frame", "surface", "absent")
+"""Sections of which each place replaces that of the base as a whole."""
 
 
 def table_of(path: str) -> dict[str, Any]:
@@ -72,7 +74,11 @@ def _beside(path: str, name: str) -> str:
 def _merged(base: Mapping[str, Any], table: Mapping[str, Any]) -> dict[str, Any]:
     """The base with the keys of the table, section by section."""
     both = [key for key, value in table.items() if isinstance(value, dict) and isinstance(base.get(key), dict)]
-    sections = {key: _merged(base[key], table[key]) for key in both if key not in WHOLE_SECTIONS}
+    sections = {
+        key: {**base[key], **table[key]} if key in SECTIONS_OF_PLACES else _merged(base[key], table[key])
+        for key in both
+        if key not in WHOLE_SECTIONS
+    }
     return {**base, **table, **sections}
 
 

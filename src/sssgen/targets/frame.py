@@ -4,7 +4,7 @@ A descriptor has the frame as parts: a name and its text, grouped by the place o
 (`[frame.varyings]`, `[frame.vertex]`, …). A part is used if a used text mentions its name; the first texts are the
 expressions of the values that the program reads. So the order of a place's parts is that of the descriptor, and a
 template asks for a place, never for a value. What a varying needs in the vertex shader are parts of the same name in
-places of the stage `vertex`.
+places of the stage `vertex`. A section may list several places, which then have the same parts, each used by itself.
 
     [inputs]
     T = "T"
@@ -28,7 +28,9 @@ Parts: TypeAlias = Mapping[str, Mapping[str, str]]
 LIGHT = "light"
 """The stage inside the loop over the lights; its places begin with this word."""
 VERTEX = "vertex"
-"""The stage of the vertices, likewise. Texts of both stages see their own places first, then those outside."""
+"""The stage of the vertices, likewise. Texts of all three stages see their own places first, then those outside."""
+SURFACE = "surface"
+"""The stage of a function that computes the surface, where several passes of an engine call it."""
 VARYINGS = "varyings"
 """The place of what the vertex shader passes on: parts of the same names in its places compute it."""
 
@@ -64,16 +66,16 @@ def _merged(first: Parts, second: Parts) -> Parts:
 
 
 def stage_of(place: str) -> str:
-    """The stage of a place: `light` and `vertex` have those that begin with their name, the fragment the others."""
+    """The stage of a place: that with whose name it begins, else that of the fragment."""
     first = place.partition("_")[0]
-    return first if first in (LIGHT, VERTEX) else ""
+    return first if first in (LIGHT, VERTEX, SURFACE) else ""
 
 
-def used_parts(parts: Parts, reads: Iterable[str], texts: Iterable[str], light_texts: Iterable[str]) -> dict[str, str]:
+def used_parts(parts: Parts, reads: Iterable[str], texts: Iterable[tuple[str, str]]) -> dict[str, str]:
     """The texts of the used parts by place, in the order of the descriptor.
 
-    `reads` are names of parts in any place, `texts` the first texts that are used, `light_texts` those inside the loop
-    over the lights.
+    `reads` are names of parts that the template mentions, of the fragment or else of any stage; `texts` are the first
+    texts that are used, each with its stage.
     """
     named: dict[str, list[tuple[str, str]]] = {}
     """Name → the keys of the parts that have it."""
@@ -82,16 +84,15 @@ def used_parts(parts: Parts, reads: Iterable[str], texts: Iterable[str], light_t
             for name in names.split():
                 named.setdefault(name, []).append((place, names))
     used: set[tuple[str, str]] = set()
-    pending = [key for name in reads for key in named.get(name, ())]
-    pending += [key for text in texts for key in _mentioned(named, text, "")]
-    pending += [key for text in light_texts for key in _mentioned(named, text, LIGHT)]
+    pending = [key for name in reads for key in [*_mentioned(named, name, "")] or named.get(name, ())]
+    pending += [key for stage, text in texts for key in _mentioned(named, text, stage)]
     while pending:
         place, names = key = pending.pop()
         if key not in used:
             used.add(key)
             pending += _mentioned(named, parts[place][names], stage_of(place))
     return {
-        place: "\n".join([text for names, text in texts_of_place.items() if (place, names) in used])
+        place: "\n".join([text for names, text in texts_of_place.items() if text and (place, names) in used])
         for place, texts_of_place in parts.items()
     }
 
@@ -102,6 +103,7 @@ def _mentioned(named: Mapping[str, list[tuple[str, str]]], text: str, stage: str
         members = path.split(".")
         keys = [key for end in range(1, len(members) + 1) for key in named.get(".".join(members[:end]), ())]
         own = [key for key in keys if stage_of(key[0]) == stage]
-        outer = [key for key in keys if stage_of(key[0]) == ""]
-        passed = [key for key in keys if stage_of(key[0]) == VERTEX] if any(key[0] == VARYINGS for key in keys) else []
-        yield from (own or outer) if stage else [*own, *passed]
+        visible = own or [key for key in keys if stage_of(key[0]) == ""]
+        yield from visible
+        if stage != VERTEX and any(key[0] == VARYINGS for key in visible):
+            yield from [key for key in keys if stage_of(key[0]) == VERTEX]

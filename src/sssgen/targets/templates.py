@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 _REMOVED = ("common/needs.j2", "common/unit_vector.j2")
 """Templates of earlier versions, which a user's own template may import."""
 
+NO_LINES = "\x04"
+"""The mark of a line that is removed from the finished file."""
+
 _environments: dict[tuple[str | None, str], Environment] = {}
 
 _user_files: dict[str, dict[str, FileState]] = {}
@@ -111,8 +114,16 @@ def _environment(templates: str | None, folder: str) -> Environment:
             auto_reload=False,
         )
         environment.filters["digest"] = _digest
+        environment.filters["lines"] = _lines
         _environments[key] = environment
     return _environments[key]
+
+
+def _lines(text: str, width: int = 0) -> str:
+    """The lines of a place, indented. Without any, the line of the template that asks for them is removed."""
+    from textwrap import indent
+
+    return indent(text.strip("\n"), " " * width) or NO_LINES
 
 
 def _digest(text: str) -> str:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from sssgen.ir.surface_fields import NAMES
 from sssgen.targets.descriptor import Target
-from sssgen.targets.frame import LIGHT, stage_of, used_parts
+from sssgen.targets.frame import LIGHT, SURFACE, stage_of, used_parts
 
 PER_LIGHT = ("translucency", "lighting")
 """The kinds of the entries that a shell calls once per light."""
@@ -44,18 +44,17 @@ def used_frame(
     facts = _chain_facts(entries, fields)
     target = target.for_material(facts)
     in_light = {**target.inputs, **target.light_inputs}
-    if shell is not None:
-        texts, light_texts = [target.inputs.get(name, name) for name in shell], []
-    else:
-        others = [name for kind, names in entries.items() if kind not in PER_LIGHT for name in names]
-        texts = [target.inputs.get(name, name) for name in others]
-        light_texts = [in_light.get(name, name) for kind in PER_LIGHT for name in entries.get(kind, ())]
-    expressions = [*texts, *light_texts]
+    texts: list[tuple[str, str]] = []
+    """Each with its stage."""
+    for kind, names in entries.items() if shell is None else [("", shell)]:
+        stage = LIGHT if kind in PER_LIGHT else SURFACE if kind == SURFACE else ""
+        own = in_light if stage == LIGHT else target.inputs
+        texts += [(stage, own.get(name, name)) for name in names]
     sinks = {place: _rows(target, place, fields) for place in {**target.surface, **target.absent}}
-    for place, rows in sinks.items():
-        (light_texts if stage_of(place) == LIGHT else texts).extend(rows)
-    frame = used_parts(target.frame, target.reads, texts, light_texts)
-    return UsedFrame(target, facts, frame, {place: "\n".join(rows) for place, rows in sinks.items()}, expressions)
+    of_sinks = [(stage_of(place), row) for place, rows in sinks.items() for row in rows]
+    frame = used_parts(target.frame, target.reads, [*texts, *of_sinks])
+    surface = {place: "\n".join(rows) for place, rows in sinks.items()}
+    return UsedFrame(target, facts, frame, surface, [text for _, text in texts])
 
 
 def _chain_facts(entries: Mapping[str, Sequence[str]], fields: Collection[str]) -> set[str]:
@@ -65,7 +64,6 @@ def _chain_facts(entries: Mapping[str, Sequence[str]], fields: Collection[str]) 
         facts.add("subsurface" if OF_A_LIGHT.isdisjoint(entries["translucency"]) else "per_light")
     return facts | ({"normal_mapped"} if "normal" in fields else set())
 
-
 def _rows(target: Target, place: str, fields: Collection[str]) -> list[str]:
     """The texts of a place for the values of the surface, in the order of their table."""
     given, absent = target.surface.get(place, {}), target.absent.get(place, {})
@@ -73,9 +71,10 @@ def _rows(target: Target, place: str, fields: Collection[str]) -> list[str]:
     return [text for text in texts if text]
 
 
-def named(used: UsedFrame) -> Iterator[str]:
-    """The names in braces in all used texts."""
-    for text in (*used.frame.values(), *used.surface.values(), *used.expressions):
+def named(used: UsedFrame, whole: bool = True) -> Iterator[str]:
+    """The names in braces in all used texts; without the shell (`whole` is false), in what is passed to the chain."""
+    shell = (*used.frame.values(), *used.surface.values()) if whole else ()
+    for text in (*shell, *used.expressions):
         yield from _NAMED.findall(text)
 
 

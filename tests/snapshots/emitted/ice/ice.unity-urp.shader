@@ -36,11 +36,7 @@ Shader "sssgen/Ice (URP)" {
         _TransmissionShadowOffset ("Transmission shadow offset", Float) = 0
     }
     SubShader {
-        Tags {
-            "RenderPipeline" = "UniversalPipeline"
-            "RenderType" = "TransparentCutout"
-            "Queue" = "AlphaTest"
-        }
+        Tags { "RenderPipeline" = "UniversalPipeline" "RenderType" = "TransparentCutout" "Queue" = "AlphaTest" }
 
         // Every pass sees the same material block, which the SRP batcher asks for.
         HLSLINCLUDE
@@ -104,12 +100,12 @@ Shader "sssgen/Ice (URP)" {
 
         // The direction of `x`; of a zero vector, 0.
         float2 safe_normalize(float2 x) {
-            return x * rsqrt(max(dot(x, x), 1.0e-30));
+            return x * (dot(x, x) > 1.0e-30 ? rsqrt(dot(x, x)) : 0.0);
         }
 
         // The direction of `x`; of a zero vector, 0.
         float3 safe_normalize(float3 x) {
-            return x * rsqrt(max(dot(x, x), 1.0e-30));
+            return x * (dot(x, x) > 1.0e-30 ? rsqrt(dot(x, x)) : 0.0);
         }
 
         // Scrambles the bits of `x`; 0 stays 0.
@@ -296,17 +292,12 @@ Shader "sssgen/Ice (URP)" {
             return lobe_normalized(V, N, L, surface.transmittance);
         }
 
-        // v / |v|; 0 stays 0, of which normalize makes NaN.
-        float3 unit_vector(float3 v) {
-            float square = dot(v, v);
-            return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
-        }
-
         struct Attributes {
             float4 positionOS : POSITION;
             float3 normalOS : NORMAL;
             float4 tangentOS : TANGENT;
             float2 uv : TEXCOORD0;
+            float2 uv2 : TEXCOORD1;
             UNITY_VERTEX_INPUT_INSTANCE_ID
         };
 
@@ -330,22 +321,31 @@ Shader "sssgen/Ice (URP)" {
             output.positionCS = TransformWorldToHClip(output.positionWS);
             output.normalWS = TransformObjectToWorldNormal(input.normalOS);
             output.tangentWS = float4(TransformObjectToWorldDir(input.tangentOS.xyz), input.tangentOS.w * GetOddNegativeScale());
-            output.uv = input.uv;
             output.fogFactor = ComputeFogFactor(output.positionCS.z);
+            output.uv = input.uv;
             return output;
         }
 
-        void clip_surface(Varyings input) {
-            float3 V = unit_vector(GetWorldSpaceViewDir(input.positionWS));
-            float3 N = unit_vector(input.normalWS);
-            float3 T = unit_vector(input.tangentWS.xyz);
-            float3 B = cross(N, T) * input.tangentWS.w;
-            clip(evaluate_surface(input.uv, _Time.y).alpha - 0.5);
+        // The surface that a fragment shows.
+        Surface surface_at(Varyings input) {
+            return evaluate_surface(input.uv, _Time.y);
+        }
+
+        // The surface as URP's lighting takes it.
+        SurfaceData surface_data(Surface surface) {
+            SurfaceData data = (SurfaceData)0;
+            data.albedo = surface.albedo;
+            data.alpha = surface.alpha;
+            data.metallic = surface.metallic;
+            data.smoothness = 1.0 - surface.roughness;
+            data.occlusion = 1.0;
+            data.emission = surface.emission;
+            return data;
         }
         ENDHLSL
 
+        // Forward in the deferred renderer too: a G-buffer has no room for translucency.
         Pass {
-            // Forward in the deferred renderer too: a G-buffer has no room for translucency.
             Name "ForwardLit"
             Tags { "LightMode" = "UniversalForwardOnly" }
 
@@ -353,6 +353,7 @@ Shader "sssgen/Ice (URP)" {
             #pragma target 3.5
             #pragma vertex vert
             #pragma fragment frag
+            #pragma multi_compile_instancing
             #pragma multi_compile _ _MAIN_LIGHT_SHADOWS _MAIN_LIGHT_SHADOWS_CASCADE _MAIN_LIGHT_SHADOWS_SCREEN
             #pragma multi_compile _ _ADDITIONAL_LIGHTS
             #pragma multi_compile _ _LIGHT_LAYERS
@@ -377,9 +378,8 @@ Shader "sssgen/Ice (URP)" {
             #if UNITY_VERSION >= 60000000
             #pragma multi_compile _ PROBE_VOLUMES_L1 PROBE_VOLUMES_L2
             #endif
-            #pragma multi_compile_fog
-            #pragma multi_compile_instancing
             #pragma instancing_options renderinglayer
+            #pragma multi_compile_fog
 
             // 1 for a light of the object's rendering layers, else 0.
             float in_layers(uint light_layers) {
@@ -398,12 +398,13 @@ Shader "sssgen/Ice (URP)" {
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_INSTANCE_ID(input);
                 UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
-                float3 V = unit_vector(GetWorldSpaceViewDir(input.positionWS));
-                float3 N = unit_vector(input.normalWS);
-                float3 T = unit_vector(input.tangentWS.xyz);
+                Surface surface = surface_at(input);
+                clip(surface.alpha - 0.5);
+                float3 V = safe_normalize(GetWorldSpaceViewDir(input.positionWS));
+                float3 N = safe_normalize(input.normalWS);
+                float3 T = safe_normalize(input.tangentWS.xyz);
                 float3 B = cross(N, T) * input.tangentWS.w;
-                Surface surface = evaluate_surface(input.uv, _Time.y);
-                N = unit_vector(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
+                N = safe_normalize(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
 
                 InputData inputData = (InputData)0;
                 inputData.positionWS = input.positionWS;
@@ -422,20 +423,11 @@ Shader "sssgen/Ice (URP)" {
             #else
                 inputData.bakedGI = SampleSH(N);
             #endif
+                float4 color = UniversalFragmentPBR(inputData, surface_data(surface));
 
-                SurfaceData surfaceData = (SurfaceData)0;
-                surfaceData.albedo = surface.albedo;
-                surfaceData.metallic = surface.metallic;
-                surfaceData.smoothness = 1.0 - surface.roughness;
-                surfaceData.occlusion = 1.0;
-                surfaceData.alpha = surface.alpha;
-                surfaceData.emission = surface.emission;
-                float4 color = UniversalFragmentPBR(inputData, surfaceData);
-
-                // Without the object's own shadow: light that comes through entered on the far side. The shadow map is read
-                // beyond the object, where only the shadows of others are.
-                // With the light's cookie.
-                Light light = GetMainLight(inputData.shadowCoord, input.positionWS, inputData.shadowMask);
+                // Without the object's own shadow: light that comes through entered on the far side.
+                // The shadow map is read beyond the object, where only the shadows of others are.
+                Light light = GetMainLight(inputData.shadowCoord, input.positionWS, inputData.shadowMask);  // with its cookie
                 float3 light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
             #if !defined(_MAIN_LIGHT_SHADOWS_SCREEN)
                 if (_TransmissionShadowOffset > 0.0) {
@@ -465,7 +457,6 @@ Shader "sssgen/Ice (URP)" {
                     color.rgb += evaluate_translucency(surface, V, N, light.direction) * light_color;
                 LIGHT_LOOP_END
             #endif
-                clip(surface.alpha - 0.5);
                 color.rgb = MixFog(color.rgb, input.fogFactor);
                 return color;
             }
@@ -490,7 +481,7 @@ Shader "sssgen/Ice (URP)" {
             Varyings vert_shadow(Attributes input) {
                 Varyings output = vert(input);
             #if defined(_CASTING_PUNCTUAL_LIGHT_SHADOW)
-                float3 L = unit_vector(_LightPosition - output.positionWS);
+                float3 L = safe_normalize(_LightPosition - output.positionWS);
             #else
                 float3 L = _LightDirection;
             #endif
@@ -506,7 +497,9 @@ Shader "sssgen/Ice (URP)" {
 
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_INSTANCE_ID(input);
-                clip_surface(input);
+                UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
+                Surface surface = surface_at(input);
+                clip(surface.alpha - 0.5);
                 return 0.0;
             }
             ENDHLSL
@@ -524,16 +517,17 @@ Shader "sssgen/Ice (URP)" {
             #pragma multi_compile_instancing
 
             float4 frag(Varyings input) : SV_Target {
-                UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
                 UNITY_SETUP_INSTANCE_ID(input);
-                clip_surface(input);
+                UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
+                Surface surface = surface_at(input);
+                clip(surface.alpha - 0.5);
                 return 0.0;
             }
             ENDHLSL
         }
 
+        // The geometric normal, for screen-space occlusion.
         Pass {
-            // The geometric normal, for screen-space occlusion.
             Name "DepthNormals"
             Tags { "LightMode" = "DepthNormalsOnly" }
 
@@ -545,10 +539,11 @@ Shader "sssgen/Ice (URP)" {
             #pragma multi_compile_fragment _ _GBUFFER_NORMALS_OCT
 
             float4 frag(Varyings input) : SV_Target {
-                UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
                 UNITY_SETUP_INSTANCE_ID(input);
-                clip_surface(input);
-                float3 N = unit_vector(input.normalWS);
+                UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
+                Surface surface = surface_at(input);
+                clip(surface.alpha - 0.5);
+                float3 N = safe_normalize(input.normalWS);
             #if defined(_GBUFFER_NORMALS_OCT)
                 return float4(PackFloat2To888(saturate(0.5 * PackNormalOctQuadEncode(N) + 0.5)), 0.0);
             #else
@@ -558,8 +553,8 @@ Shader "sssgen/Ice (URP)" {
             ENDHLSL
         }
 
+        // What the lightmapper and probe volumes read: the light that the surface reflects and emits.
         Pass {
-            // What the lightmapper and probe volumes read: the light that the surface reflects and emits.
             Name "Meta"
             Tags { "LightMode" = "Meta" }
             Cull Off
@@ -568,27 +563,26 @@ Shader "sssgen/Ice (URP)" {
             #pragma target 3.5
             #pragma vertex vert_meta
             #pragma fragment frag
+            #pragma multi_compile_instancing
             #include "Packages/com.unity.render-pipelines.universal/ShaderLibrary/MetaInput.hlsl"
 
-            Varyings vert_meta(Attributes input, float2 lightmap_uv : TEXCOORD1, float2 dynamic_lightmap_uv : TEXCOORD2) {
+            Varyings vert_meta(Attributes input, float2 dynamic_lightmap_uv : TEXCOORD2) {
                 Varyings output = vert(input);
-                output.positionCS = UnityMetaVertexPosition(input.positionOS.xyz, lightmap_uv, dynamic_lightmap_uv);
+                output.positionCS = UnityMetaVertexPosition(input.positionOS.xyz, input.uv2, dynamic_lightmap_uv);
                 return output;
             }
 
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_INSTANCE_ID(input);
-                Surface surface = evaluate_surface(input.uv, _Time.y);
+                UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
+                Surface surface = surface_at(input);
                 clip(surface.alpha - 0.5);
-                float3 albedo = surface.albedo;
-                float metallic = surface.metallic;
-                float smoothness = 1.0 - surface.roughness;
-                half alpha = 1.0;
+                SurfaceData data = surface_data(surface);
                 BRDFData brdf;
-                InitializeBRDFData(albedo, metallic, 0.0, smoothness, alpha, brdf);
+                InitializeBRDFData(data.albedo, data.metallic, data.specular, data.smoothness, data.alpha, brdf);
                 UnityMetaInput light = (UnityMetaInput)0;
                 light.Albedo = brdf.diffuse + brdf.specular * brdf.roughness * 0.5;  // as URP's own materials
-                light.Emission = surface.emission;
+                light.Emission = data.emission;
                 return UnityMetaFragment(light);
             }
             ENDHLSL
