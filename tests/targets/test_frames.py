@@ -35,9 +35,12 @@ sheen_tint = [0.9, 0.4, 0.5]
 """
 
 
-@pytest.mark.parametrize(
-    "path", sorted(folder("templates").rglob("*.j2")), ids=lambda path: f"{path.parent.name}/{path.name}"
-)
+FRAMED = {name for name, target in all_targets().items() if target.frame}
+"""The targets whose shells are data: their own templates are in the folders of these names."""
+TEMPLATES = [path for path in sorted(folder("templates").rglob("*.j2")) if path.parent.name in FRAMED]
+
+
+@pytest.mark.parametrize("path", TEMPLATES, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_no_template_asks_which_values_a_program_reads(path: Path) -> None:
     lines = path.read_text("utf-8").splitlines()
     conditions = [line for line in lines for part in CONDITION.findall(line) if OF_VALUES.search(part)]
@@ -52,7 +55,7 @@ def test_a_part_pulls_in_what_it_mentions() -> None:
         "vertex_attributes": {"mesh.normal": "float3 normal;"},
         "vertex": {"input.normal": "output.normal = mesh.normal;", "input.uv": "output.uv = mesh.uv;"},
     }
-    used = used_parts(parts, [], ["turned(N)"], [])
+    used = used_parts(parts, [], [("", "turned(N)")])
     assert used == {
         "varyings": "float3 normal : NORMAL;",
         "fragment": "float3 N = input.normal;",
@@ -63,19 +66,19 @@ def test_a_part_pulls_in_what_it_mentions() -> None:
 
 def test_the_loop_over_the_lights_sees_its_own_parts_first() -> None:
     parts = {"fragment": {"N": "vec3 N = a;"}, "light": {"N": "vec3 N = b;", "L": "vec3 L = l;"}}
-    assert used_parts(parts, [], ["N"], []) == {"fragment": "vec3 N = a;", "light": ""}
-    assert used_parts(parts, [], [], ["f(N, L)"]) == {"fragment": "", "light": "vec3 N = b;\nvec3 L = l;"}
-    assert used_parts(parts, [], ["L"], []) == {"fragment": "", "light": ""}
+    assert used_parts(parts, [], [("", "N")]) == {"fragment": "vec3 N = a;", "light": ""}
+    assert used_parts(parts, [], [("light", "f(N, L)")]) == {"fragment": "", "light": "vec3 N = b;\nvec3 L = l;"}
+    assert used_parts(parts, [], [("", "L")]) == {"fragment": "", "light": ""}
 
 
 def test_a_part_of_several_names_is_declared_once_and_parts_that_mention_each_other_end() -> None:
     parts = {"blocks": {"time eye": "cbuffer { time; eye; }", "a": "b", "b": "a"}}
-    assert used_parts(parts, ["a"], ["eye + time"], []) == {"blocks": "cbuffer { time; eye; }\nb\na"}
+    assert used_parts(parts, ["a"], [("", "eye + time")]) == {"blocks": "cbuffer { time; eye; }\nb\na"}
 
 
 def test_a_member_of_another_variable_is_another_name() -> None:
     parts = {"varyings": {"input.position": "position"}, "blocks": {"camera": "camera"}}
-    assert used_parts(parts, [], ["camera.position"], []) == {"varyings": "", "blocks": "camera"}
+    assert used_parts(parts, [], [("", "camera.position")]) == {"varyings": "", "blocks": "camera"}
 
 
 def test_variants_replace_parts_by_their_names() -> None:

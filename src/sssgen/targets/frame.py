@@ -84,7 +84,7 @@ def used_parts(parts: Parts, reads: Iterable[str], texts: Iterable[tuple[str, st
             for name in names.split():
                 named.setdefault(name, []).append((place, names))
     used: set[tuple[str, str]] = set()
-    pending = [key for name in reads for key in [*_mentioned(named, name, "")] or named.get(name, ())]
+    pending = [key for name in reads for key in [*_mentioned(named, name, "")] or named.get(name, [])]
     pending += [key for stage, text in texts for key in _mentioned(named, text, stage)]
     while pending:
         place, names = key = pending.pop()
