@@ -60,6 +60,10 @@ interface AnyPicture {
   body?: string;
   /** Why its values cannot be saved, or ''. */
   saves: string;
+  /** Where its values are saved. */
+  saved_in?: string;
+  /** Files that are missing, with the command that makes them. */
+  missing?: string;
   controls: Control[];
   textures: Slot[];
   cost: Record<string, Record<string, number>>;

@@ -8,12 +8,12 @@
 /** @typedef {{ dim: '2D' | '3D', size: number[], filter: 'linear' | 'nearest', wrap: 'repeat' | 'clamp' | 'mirror',
  *   levels: { size: number[], data: Piece }[] }} Texels  Half floats with four channels. */
 /** @typedef {{ position: number[], color: number[] }} Light */
-/** @typedef {{ module: string, renderer: string, width: number, height: number, vertices: Piece, vertexSize: number,
+/** @typedef {{ modules: Record<string, string>, renderer: string, width: number, height: number, vertices: Piece, vertexSize: number,
  *   attributes: Record<string, [number, number]>, triangles: Piece, view: number[], projection: number[], eye: number[], model: number[],
  *   lights: Light[], ambient: number[], values: object, properties: Record<string, any>, textures: Record<string, Texels>,
  *   withoutTangents: boolean }} Plan  Matrices are by columns; an attribute has its first float in a vertex, and its size. */
 /** @typedef {(place: Piece) => Uint8Array} PieceOf */
-/** @typedef {(plan: Plan, piece: PieceOf) => Promise<Float32Array>} Draw */
+/** @typedef {(plan: any, piece: PieceOf) => Promise<Float32Array | Uint32Array>} Draw  Of a Plan, or what the engine's script takes. */
 
 /** @type {string[]} */
 const complaints = [];
@@ -48,19 +48,21 @@ if (globalThis.GPUCanvasContext) {
 }
 
 /** The picture of a plan: its rows are `stride` bytes apart.
- * @param {Draw} draw @param {Plan} plan @param {PieceOf} piece @returns {Promise<[object, ArrayBuffer]>} */
+ * @param {Draw} draw @param {{ height: number }} plan @param {PieceOf} piece @returns {Promise<[object, ArrayBuffer]>} */
 async function drawn(draw, plan, piece) {
   complaints.length = 0;
   const start = performance.now();
   const pixels = await draw(plan, piece);
   const drew = (performance.now() - start) / 1000;
-  return [{ stride: pixels.byteLength / plan.height, drew, complaints: [...complaints] }, pixels.slice().buffer];
+  return [{ stride: pixels.byteLength / plan.height, drew, complaints: [...complaints] }, /** @type {ArrayBuffer} */ (pixels.slice().buffer)];
 }
 
-const urlOf = (text) => URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
+const urlOf = (/** @type {string} */ text) => URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
+/** @type {Map<string, string>} */
 const runtimes = new Map(); // text → URL: all materials import the same one
 
-// The first of some modules (file name → text), which imports the others.
+/** The first of some modules (file name → text), which imports the others.
+ * @param {Record<string, string>} modules */
 async function imported(modules) {
   let [text] = Object.values(modules);
   for (const [name, runtime] of Object.entries(modules).slice(1)) {
@@ -87,7 +89,7 @@ function serve(version, draw) {
     socket.send(JSON.stringify(answer));
     socket.send(bytes);
   };
-  /** @type {Plan} */
+  /** @type {{ height: number }} */
   let plan;
   socket.onmessage = async ({ data }) => {
     if (typeof data === 'string') {

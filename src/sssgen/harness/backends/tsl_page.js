@@ -5,23 +5,35 @@
 
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
+import { floats, imported, indices, serve } from './engine_page.js';
 
-const VERSION = THREE.REVISION;
-const { If, bitcast, float, int, ivec2, positionGeometry, texture, uint, uvec4, vec4 } = TSL;
+/** @typedef {{ dim: string, kind: 'float' | 'int' | 'uint', layers: number, compare: string, levels: { size: number[], data: Piece }[],
+ *   filter: string, wrap: 'repeat' | 'clamp' | 'mirror', size: number[] }} Texels */
+/** @typedef {{ texture: string, type: string, size: number, kind: string, rows: number[] }} Argument  A row for each column. */
+/** @typedef {{ modules: Record<string, string>, renderer: string, width: number, height: number, rows: number, data: Piece,
+ *   textures: Record<string, Texels>,
+ *   calls: { function: string, slot: number, columns: number, size: number, kind: string, args: Argument[] }[] }} Plan */
+/** @typedef {import('./engine_page.js').Piece} Piece */
+/** @typedef {import('./engine_page.js').PieceOf} PieceOf */
+
+const { If, bitcast, int, ivec2, positionGeometry, texture, uint, uvec4, vec4 } = TSL;
+/** @type {THREE.WebGPURenderer} */
 let renderer;
 
+/** @param {string} kind */
 async function started(kind) {
   if (!renderer) {
     renderer = new THREE.WebGPURenderer({ canvas: document.createElement('canvas'), forceWebGL: kind === 'webgl2' });
     await renderer.init();
-    if (kind === 'webgpu' && !renderer.backend.isWebGPUBackend) throw new Error('its WebGPU has no adapter');
+    if (kind === 'webgpu' && !('device' in renderer.backend)) throw new Error('its WebGPU has no adapter');
   }
   return renderer;
 }
 
+/** @param {Plan} plan @param {PieceOf} piece */
 async function draw(plan, piece) {
   await started(plan.renderer);
-  const module = await imported(plan.module);
+  const module = await imported(plan.modules);
   const words = new Uint32Array(piece(plan.data).slice().buffer);
   const data = new THREE.DataTexture(words, plan.width, words.length / plan.width / 4, THREE.RGBAIntegerFormat, THREE.UnsignedIntType);
   data.needsUpdate = true;
@@ -69,13 +81,14 @@ async function draw(plan, piece) {
   renderer.autoClear = false;
   renderer.setRenderTarget(target);
   renderer.render(mesh, new THREE.OrthographicCamera());
-  const pixels = await renderer.readRenderTargetPixelsAsync(target, 0, 0, plan.width, plan.height);
+  const pixels = /** @type {Uint32Array} */ (await renderer.readRenderTargetPixelsAsync(target, 0, 0, plan.width, plan.height));
   renderer.setRenderTarget(null);
   [geometry, material, target, data, ...Object.values(textures)].forEach((one) => one.dispose());
   return pixels;
 }
 
-// The value whose bits are `words`: a uint or a vector of them.
+/** The value whose bits are `words`: a uint or a vector of them.
+ * @param {any} words @param {string} kind @param {number} size */
 function ofWords(words, kind, size) {
   if (kind === 'uint') return words;
   if (kind === 'bool') return size > 1 ? words.notEqual(TSL['uvec' + size](...Array(size).fill(0))) : words.notEqual(uint(0));
@@ -83,7 +96,8 @@ function ofWords(words, kind, size) {
   return bitcast(words, size > 1 ? prefix + size : kind);
 }
 
-// Its bits as four words.
+/** Its bits as four words.
+ * @param {any} value @param {string} kind @param {number} size */
 function toWords(value, kind, size) {
   const prefix = size > 1 ? 'uvec' + size : 'uint';
   const words = kind === 'uint' ? value : kind === 'bool' ? TSL[prefix](value) : bitcast(value, prefix);
@@ -91,6 +105,7 @@ function toWords(value, kind, size) {
   return zeros.length ? uvec4(words, ...zeros) : words;
 }
 
+/** @param {any} one  a texture of three */
 function nodeOf(one) {
   if (one.isCubeTexture) return TSL.cubeTexture(one);
   return one.isData3DTexture ? TSL.texture3D(one) : texture(one);
@@ -98,6 +113,7 @@ function nodeOf(one) {
 
 const WRAPS = { repeat: THREE.RepeatWrapping, clamp: THREE.ClampToEdgeWrapping, mirror: THREE.MirroredRepeatWrapping };
 
+/** @param {Texels} texels @param {PieceOf} piece */
 function textureOf({ dim, kind, layers, compare, levels, filter, wrap, size }, piece) {
   const array = { float: floats, int: (bytes) => new Int32Array(bytes.slice().buffer), uint: indices }[kind];
   const texels = levels.map((level) => array(piece(level.data)));
@@ -131,3 +147,5 @@ function textureOf({ dim, kind, layers, compare, levels, filter, wrap, size }, p
     wrapS: WRAPS[wrap], wrapT: WRAPS[wrap], wrapR: WRAPS[wrap], unpackAlignment: 1, needsUpdate: true,
   });
 }
+
+serve(THREE.REVISION, draw);

@@ -13,7 +13,7 @@ import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
 import { Color3 } from '@babylonjs/core/Maths/math.color.js';
 import { Matrix, Vector2, Vector3, Vector4 } from '@babylonjs/core/Maths/math.vector.js';
 import { SerializationHelper } from '@babylonjs/core/Misc/decorators.serialization.js';
-import { hashOf, Properties, TEXELS } from './values.js';
+import { Properties, TEXELS } from './values.js';
 
 /**
  * A material, as its module describes it.
@@ -50,7 +50,7 @@ const withoutComments = (places) => Object.fromEntries(
 /** The plug-in of a material. */
 function pluginClass({ name: materialName, parameters, textures, vertex, fragment }, { moves, takesLight }) {
   // Babylon keeps one program for each name of a plug-in
-  const key = `Sssgen_${materialName}_${hashOf(JSON.stringify([vertex, fragment]))}`;
+  const key = `Sssgen_${materialName}_${Properties.hashOf(JSON.stringify([vertex, fragment]))}`;
   const uniforms = Object.values(parameters).map(({ name, type }) => [name, uniformType(type)]);
   if (moves) uniforms.push(['sss_time', 'float']);
   if (takesLight) uniforms.push(['sss_light_place', 'vec4'], ['sss_light_radiance', 'vec3']);

@@ -4,7 +4,7 @@
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
 import { nodesOf } from './three_nodes.js';
-import { hashOf, Properties, TEXELS } from './values.js';
+import { Properties, TEXELS } from './values.js';
 
 /**
  * A material, as its module describes it.
@@ -105,7 +105,7 @@ export function materialClass(description) {
   const { moves, takesLight } = properties;
   const texts = { glsl: TSL.glsl(description.glsl), wgsl: TSL.wgsl(description.wgsl) };
   // three keeps one program per key
-  const key = `sssgen ${name} ${hashOf(JSON.stringify([description.glsl, description.patches]))}`;
+  const key = `sssgen ${name} ${Properties.hashOf(JSON.stringify([description.glsl, description.patches]))}`;
 
   return class extends THREE[base] {
     #uniforms = uniformsOf(description, moves, takesLight);

@@ -101,6 +101,7 @@ function unshadowed(lightNode, builder) {
 
 /** A call of a function; its arguments are nodes with their types, and undefined for the surface. */
 class CallNode extends THREE.Node {
+  /** @param {THREE.Node | null} surface */
   constructor(type, name, texts, args, surface = null) {
     super(type);
     this.name = name;
@@ -183,6 +184,7 @@ export function nodesOf({ calls, parameters, textures, fields = [], raymarched }
     return { colorNode: new CallNode('vec4', calls.color.name, texts, argumentsOf(calls.color, given)) };
   }
   const surface = new SurfaceNode('void', calls.surface.name, texts, argumentsOf(calls.surface, point));
+  /** @returns {any} */
   const field = (type, name, absent) => (fields.includes(name) ? new FieldNode(type, name, surface) : absent);
   const nodes = { colorNode: TSL.materialColor.mul(TSL.vec4(field('vec3', 'albedo', TSL.vec3(1)), field('float', 'alpha', 1))) };
   for (const [name, [type, property, valueOf = (node) => node]] of Object.entries(FIELDS)) {
@@ -190,7 +192,9 @@ export function nodesOf({ calls, parameters, textures, fields = [], raymarched }
   }
   if (calls.translucency) {
     nodes.setupLightingModel = function (builder) {
-      const model = THREE.MeshPhysicalNodeMaterial.prototype.setupLightingModel.call(this, builder);
+      /** @type {any} three's types have no parameter */
+      const { setupLightingModel } = THREE.MeshPhysicalNodeMaterial.prototype;
+      const model = setupLightingModel.call(this, builder);
       const { direct } = model;
       model.direct = function (data, builder) {
         direct.call(this, data, builder);

@@ -14,8 +14,8 @@
 /**
  * A texture in the table `textures` of a material.
  * @typedef {object} TextureParameter
- * @property {'sampler2D' | 'sampler3D' | 'samplerCube' | 'sampler2DArray'} type
- * @property {'white' | 'black' | 'gray' | 'bump'} default the texel that is read where there is no texture
+ * @property {string} type sampler2D, sampler3D, samplerCube or sampler2DArray
+ * @property {string} default the texel that is read where there is no texture: a key of TEXELS
  * @property {string} [colorSpace] the colour space of its texels
  * @property {boolean} [color] whether it has colours, in sRGB
  * @property {string} name the name in the shader
@@ -29,11 +29,6 @@ export const TEXELS = { white: [1, 1, 1, 1], black: [0, 0, 0, 1], gray: [0.5, 0.
 
 /** Values of a light that an unlit material may read. */
 const LIGHT_INPUTS = ['L', 'L_object', 'light_color', 'light_nearness'];
-
-/** A number that is different for different texts. */
-export function hashOf(text) {
-  return [...text].reduce((hash, letter) => (hash * 31 + letter.charCodeAt(0)) >>> 0, 7);
-}
 
 /** A value as an error shows it. */
 function shown(value) {
@@ -64,6 +59,11 @@ export class Properties {
     this.moves = inputs.includes('time');
     /** Whether it has the property `light`: it is unlit, and reads a light. */
     this.takesLight = !lit && LIGHT_INPUTS.some((input) => inputs.includes(input));
+  }
+
+  /** A number that is different for different texts. */
+  static hashOf(text) {
+    return [...text].reduce((hash, letter) => (hash * 31 + letter.charCodeAt(0)) >>> 0, 7);
   }
 
   /** Defines a property with its accessors, and its name in older modules (`metalness_` for `sssMetalness`). */
