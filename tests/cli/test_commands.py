@@ -69,7 +69,7 @@ def test_arguments_that_do_not_begin_with_a_command(words: list[str], run: Run) 
         ("option_as_a_command", ["version"]),
         ("no_number", ["pick", "cube", "--max-error", "abc"]),
         ("no_whole_number", ["chart", "cube", "--samples", "1.5"]),
-        ("verify_with_a_target", ["transpile", "twice.glsl", "--verify", "-t", "wgsl"]),
+        ("verify_with_a_target", ["transpile", "twice.glsl", "--verify", "-t", "metal"]),
         ("technique_with_a_target", ["transpile", "twice.glsl", "--as", "technique", "-t", "wgsl"]),
         ("new_with_a_bad_name", ["new", "my wax"]),
         ("new_over_an_old_one", ["new", "wax"]),

@@ -13,14 +13,21 @@ from hypothesis import strategies as st
 from ir_interpreter import BUILTINS, Discarded, Interpreter, componentwise, flat
 from pass_cases import key
 from shaded_programs import module_for
-from sssgen.ir.nodes import Module
+from sssgen.ir.nodes import Module, Return
 from sssgen.ir.verify import verify
+from sssgen.ir.walk import statements
+from sssgen.lang.polyfills import polyfill
 from sssgen.passes.conversions import drop_conversions
 from sssgen.passes.fold import fold
 from sssgen.passes.hoist import hoist
+from sssgen.passes.legal.legalise import legalise
+from sssgen.passes.legal.plain_loops import plain_loops
+from sssgen.passes.legal.result_structs import result_structs
+from sssgen.passes.legal.single_exit import single_exits
 from sssgen.passes.names import rename
 from sssgen.passes.prune import prune
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
+from sssgen.targets import registry
 
 SEEDS = st.integers(0, 1 << 32)
 VALUES = {"map": None, "level": 2.0, "mode": 1, "tint": (0.5, 1.0, 2.0)}
@@ -112,6 +119,36 @@ def test_parameters(seed: int, discards: bool) -> None:
 def test_hoist(seed: int, discards: bool) -> None:
     def change(module: Module) -> Module:
         return hoist(module, [key(module, "f")])[0]
+
+    same(seed, discards, change)
+
+
+@given(SEEDS, st.booleans())
+def test_plain_loops(seed: int, discards: bool) -> None:
+    same(seed, discards, plain_loops)
+
+
+@given(SEEDS, st.booleans())
+def test_single_exits(seed: int, discards: bool) -> None:
+    def change(module: Module) -> Module:
+        module = single_exits(module)
+        for function in module.functions:
+            returns = [stmt for stmt in statements(function.body or ()) if isinstance(stmt, Return)]
+            assert returns == list((function.body or ())[-1:])
+        return module
+
+    same(seed, discards, change)
+
+
+@given(SEEDS, st.booleans())
+def test_functions_without_references(seed: int, discards: bool) -> None:
+    """All that is rewritten for a language whose functions only return."""
+
+    def change(module: Module) -> Module:
+        target = registry.load("tsl")
+        module = result_structs(legalise(module, target.dialect, target.capabilities, polyfill))
+        assert all(param.direction == "in" for function in module.functions for param in function.params)
+        return single_exits(plain_loops(module))
 
     same(seed, discards, change)
 

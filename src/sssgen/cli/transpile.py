@@ -84,7 +84,9 @@ def add_options(parser: ArgumentParser) -> None:
         help="also write the IR after each pass to FILE.trace/NN-PASS.ir, where -o is FILE",
     )
     add(
-        "--verify", action="store_true", help="run every function as written and as translated, and compare the results"
+        "--verify",
+        action="store_true",
+        help="run every function as written and as translated, and compare the results; with --target only that one's",
     )
     add(
         "--samples",
@@ -150,15 +152,11 @@ def _other_stage(arguments: Namespace) -> Module:
 
 
 def _wanted_target(arguments: Namespace, wrong: list[Diagnostic]) -> list[str]:
-    """The requested target; none if nothing is translated."""
-    if arguments.verify or arguments.as_:
-        if arguments.target is not None:
-            if arguments.verify:
-                message = "--verify takes no --target: it runs the translations to GLSL, HLSL, WGSL and NumPy together"
-                hint = f"sssgen transpile {arguments.FILE} --verify"
-            else:
-                message, hint = "--as takes no --target", f"sssgen transpile {arguments.FILE} --as {arguments.as_}"
-            wrong.append(Diagnostic("error", message, hint=hint))
+    """The requested target; none if nothing is translated, or all that --verify runs."""
+    if arguments.as_ and arguments.target is not None:
+        hint = f"sssgen transpile {arguments.FILE} --as {arguments.as_}"
+        wrong.append(Diagnostic("error", "--as takes no --target", hint=hint))
+    if arguments.as_ or (arguments.verify and arguments.target is None):
         return []
     names = one_target(arguments.target, wrong)
     if arguments.trace and arguments.output in (None, "-"):
@@ -238,12 +236,14 @@ def _verify(arguments: Namespace, path: Path, computes: bool) -> int:
     if computes:
         if arguments.function:
             raise failure("a compute shader is run as a whole", "leave out --function", path.as_posix())
+        if arguments.target:
+            raise failure("a compute shader runs on all back ends together", "leave out --target", path.as_posix())
         report = compute.verify_compute(text, path.as_posix(), arguments.seed)
     else:
         with ProgressBar() as progress:
             report = transpiled.verify(
                 text, path.as_posix(), arguments.samples, arguments.seed, arguments.entry, progress=progress,
-                function=arguments.function,
+                function=arguments.function, target=arguments.target or "",
             )  # fmt: skip
     if arguments.json:
         print_json({"ok": report.ok, **report.as_json()})

@@ -1,12 +1,14 @@
 """`sssgen transpile --verify`: a file's functions as the driver reads them, compared with their translations.
 
 Each function runs on inputs that reach its branches (`input_search`): the author's own text in OpenGL's driver, and its
-translations to GLSL, HLSL, WGSL and NumPy in float64, the oracle. A deviation is the difference from the author's text,
-relative to the larger of the value's size and 1. Two kinds of lanes are excluded and counted:
+translations to GLSL, HLSL, WGSL and NumPy in float64, the oracle, or to the target that is named. A deviation is the
+difference from the author's text, relative to the larger of the value's size and 1. Two kinds of lanes are excluded
+and counted:
 
 - undefined ones, where the function meets an operation that GLSL leaves undefined (`lane_interpreter`), or where the
   author's text gives infinity or NaN: the languages guarantee nothing there;
-- ill-conditioned ones, where rounding explains the deviation (`rounding_noise`): at the edge of a cell, in a hash. The
+- ill-conditioned ones, where rounding explains the deviation (`rounding_noise`): at the edge of a cell, in a hash; or
+  where a device takes the derivative of the other row or column of a quad of pixels, which GLSL leaves to it. The
   translation to GLSL runs in the driver that runs the author's text, so its builtins have the same errors; for the
   others, builtins have the errors that their rows grant.
 
@@ -36,7 +38,15 @@ from sssgen.harness.verify.plain_inputs import Source, picture, select_lanes
 from sssgen.harness.verify.plain_probes import TEXTURES, Leaf, Probe, Probed, probed
 from sssgen.harness.verify.rounding_noise import explained, noise
 from sssgen.harness.verify.stage_variables import MAIN, Plain, plain, without_functions
-from sssgen.harness.verify.verification_report import BACKENDS, Comparison, Coverage, Report, Row
+from sssgen.harness.verify.verification_report import (
+    BACKENDS,
+    EVERY,
+    TRANSLATIONS,
+    Comparison,
+    Coverage,
+    Report,
+    Row,
+)
 from sssgen.ir.nodes import Function, Module, Param, Span
 from sssgen.ir.types import Sampler, spell, with_article
 from sssgen.lang import shadertoy
@@ -77,13 +87,14 @@ def load(text: str, shown: str, version: str = "") -> Module:
 def verify(
     text: str, shown: str, samples: int = SAMPLES, seed: int = 0, entry: str = "",
     read: Callable[[str, str], Module] | None = None, machines: Machines | None = None,
-    progress: Progress = silent, function: str = "",
+    progress: Progress = silent, function: str = "", target: str = "",
 ) -> Report:  # fmt: skip
     """Runs every function of a text without `#include` (see `inline_includes`) on `samples` inputs.
 
     `shown` is the text's name in messages; `entry` as in `load_glsl`; `read(text, shown)` parses it; without `machines`
-    the back ends are started here; `function` is the name of the only one to run. Raises SssgenError where the front
-    end refuses the text, where no function has that name, and without OpenGL, which runs the reference.
+    the back ends are started here, those of `target` if it is named; `function` is the name of the only one to run.
+    Raises SssgenError where the front end refuses the text, where no function has that name, where no back end runs
+    the target here, and without OpenGL, which runs the reference.
     """
     written = plain(_scene(text) if entry == "shadertoy" else text)
     read = read or partial(load, version=written.version)
@@ -94,12 +105,21 @@ def verify(
     cases = probed(module, functions, written.text)
     probes = "\n".join(probe.text for case in cases for probe in case.probes)
     with_probes = read(written.text + probes, shown)
-    with nullcontext(machines) if machines else start_machines() as (running, missing):
+    with nullcontext(machines) if machines else start_machines(backends_of(target)) as (running, missing):
         rows = []
         for index, case in enumerate(cases):
             progress(index, len(cases), case.function.name)
             rows.append(Case(case, written, with_probes, running, samples, seed).row())
-    return Report(rows, missing)
+    return Report(rows, missing, (*running, *missing))
+
+
+def backends_of(target: str) -> tuple[str, ...]:
+    """The back ends that run a target's text, and the author's; '' for all. Raises SssgenError."""
+    if not target:
+        return tuple(BACKENDS.values())
+    if target not in TRANSLATIONS:
+        raise failure(f"--verify runs no text of the target '{target}'", f"choose from: {', '.join(TRANSLATIONS)}")
+    return tuple(dict.fromkeys(["gl", *TRANSLATIONS[target].values()]))
 
 
 def _called(name: str, functions: list[Function], shown: str) -> list[Function]:
@@ -253,7 +273,7 @@ class Case:
             original = self.all_rounds(self.original)
         except SssgenError as error:
             return row._replace(reason=f"the driver refuses it as written: {error.diagnostics[0].message}")
-        names = [name for name, backend in BACKENDS.items() if backend in self.machines]
+        names = [name for name, backend in EVERY.items() if backend in self.machines]
         with ThreadPoolExecutor(len(names)) as pool:  # each waits for its own process
             results = dict(zip(names, pool.map(self.result, names), strict=True))
         defined = _finite(original) & ~undefined
@@ -350,7 +370,7 @@ class Case:
     def result(self, name: str) -> dict[str, Array] | str:
         """The outputs of one translation, or why it does not run."""
         try:
-            return self.all_rounds(partial(self.transpiled, BACKENDS[name]))
+            return self.all_rounds(partial(self.transpiled, EVERY[name]))
         except SssgenError as error:
             return error.diagnostics[0].message
 

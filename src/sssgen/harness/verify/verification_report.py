@@ -9,8 +9,17 @@ import numpy as np
 
 from sssgen.harness.evaluate.deviation import GOAL
 
-BACKENDS = {"glsl": "gl", "hlsl": "hlsl", "wgsl": "webgpu", "tsl": "tsl", "tsl-gl2": "tsl-webgl2", "oracle": "numpy"}
-"""The translations that are compared with the author's text, and the back end that runs each."""
+TRANSLATIONS: Mapping[str, Mapping[str, str]] = {
+    "glsl-330": {"glsl": "gl"},
+    "hlsl": {"hlsl": "hlsl"},
+    "wgsl": {"wgsl": "webgpu"},
+    "numpy": {"oracle": "numpy"},
+    "tsl": {"tsl": "tsl", "tsl-gl2": "tsl-webgl2"},
+}
+"""Target → the names of its comparisons with the author's text, and the back end that runs each."""
+EVERY = {name: backend for named in TRANSLATIONS.values() for name, backend in named.items()}
+BACKENDS = {name: backend for name, backend in EVERY.items() if name not in TRANSLATIONS["tsl"]}
+"""Those where no target is named."""
 
 
 class Comparison(NamedTuple):
@@ -55,7 +64,7 @@ class Row(NamedTuple):
     undefined: int = 0
     """The number of lanes in which GLSL leaves an operation undefined."""
     comparisons: Mapping[str, Comparison] = {}
-    """By the keys of `BACKENDS`."""
+    """By the keys of `EVERY`."""
     reason: str = ""
     """Why it was not run; '' where it was."""
     branches: Coverage = Coverage()
@@ -107,6 +116,8 @@ class Report(NamedTuple):
     rows: list[Row]
     missing: dict[str, str]
     """Missing back end → how to install it."""
+    backends: tuple[str, ...] = tuple(BACKENDS.values())
+    """The back ends that were asked for."""
 
     @property
     def ok(self) -> bool:
@@ -120,7 +131,9 @@ class Report(NamedTuple):
 
     def lines(self) -> Iterator[str]:
         """The report as lines of text: the largest deviations from the author's text, and the excluded lanes."""
-        available = [name for name, backend in BACKENDS.items() if backend not in self.missing]
+        available = [
+            name for name, backend in EVERY.items() if backend in self.backends and backend not in self.missing
+        ]
         width = max([len("largest deviation"), *(len(row.function) for row in self.rows)])
         yield (
             f"{'largest deviation':{width}}"

@@ -65,6 +65,11 @@ class TslPrinter(Printer):
     def binary(self, binary: ir.Binary) -> tuple[str, int]:
         return f"{self.node(binary.left)}.{_METHODS[binary.op]}({self.expr(binary.right)})", PRIMARY
 
+    def arguments(self, args: tuple[ir.Expr, ...]) -> str:
+        """Not every function of three takes numbers alone."""
+        plain = all(isinstance(arg, ir.Literal) for arg in args)
+        return self.listed([self.node(arg) if plain else self.expr(arg) for arg in args])
+
     def select(self, select: ir.Select) -> tuple[str, int]:
         return f"select({self.arguments((select.condition, select.yes, select.no))})", PRIMARY
 
