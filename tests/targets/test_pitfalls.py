@@ -44,7 +44,7 @@ def test_every_case_compiles(target: str, assert_compiles: Callable[[Source], No
 
 
 def test_renames_are_reported() -> None:
-    module = module_of("float f(float lerp, float x1) { float point = lerp; return point * x1; }")
+    module = module_of("float f(float lerp, float x1) { float point = 2.0 * lerp; return point * x1; }")
     for target in ("glsl-330", "wgsl", "numpy"):
         assert transpile(module, target, "case").reflection["renames"] == {"f.lerp": "lerp_", "f.point": "point_"}
 

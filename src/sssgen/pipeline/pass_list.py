@@ -96,6 +96,7 @@ _UNDEFINED = Pass(
     "undefined", steps.refuse_undefined_constants, "refuse constants without a value; fold has left exactly these"
 )
 _PRUNE = Pass("prune", steps.prune_unused, "remove what is not used, so that nothing of it is moved or renamed")
+_ALIASES = Pass("aliases", steps.remove_aliases, "give each value one name; conversions and prune leave others behind")
 _HOIST = Pass("hoist", steps.hoist_derivatives, "move derivatives and texture reads out of non-uniform flow")
 _GUARDS = Pass(
     "guards", steps.insert_guards, "guard operations that may fail; the program is final and uniforms have their hints"
@@ -110,6 +111,7 @@ MATERIAL: tuple[Pass, ...] = (
     Pass("conversions", steps.remove_conversions, "remove conversions, which serve the type check alone"),
     _PRUNE,
     Pass("frame", steps.find_frame, "find the values that the target supplies to what is left of the shell", _SHELL),
+    _ALIASES,
     _HOIST,
     _GUARDS,
     Pass("cost", steps.count_cost, "count the operations of the program that all targets get"),
@@ -135,7 +137,7 @@ SIMPLIFY: tuple[Pass, ...] = (
 )
 """Plain functions without anything that depends on a target."""
 
-PLAIN: tuple[Pass, ...] = (*_SHADER_INPUT, *SIMPLIFY, _GUARDS)
+PLAIN: tuple[Pass, ...] = (*_SHADER_INPUT, *SIMPLIFY, _ALIASES, _GUARDS)
 """A module of plain functions, or a whole shader."""
 
 KEPT: tuple[Pass, ...] = (

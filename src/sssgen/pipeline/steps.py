@@ -11,6 +11,7 @@ from sssgen.lang.polyfills import polyfill
 from sssgen.lang.source_lines import source_line
 from sssgen.material.chain_assembly import TAKEN, ChainFunction, Entry, assemble
 from sssgen.material.shell_assembly import add_shell, supplied
+from sssgen.passes.aliases import drop_aliases
 from sssgen.passes.conversions import drop_conversions
 from sssgen.passes.cost import cost_of
 from sssgen.passes.fold import fold
@@ -170,6 +171,10 @@ def refuse_undefined_constants(state: State) -> Module:
 
 def remove_conversions(state: State) -> Module:
     return drop_conversions(state.module)
+
+
+def remove_aliases(state: State) -> Module:
+    return drop_aliases(state.module)
 
 
 def prune_unused(state: State) -> Module:
