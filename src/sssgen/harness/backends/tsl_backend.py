@@ -53,7 +53,8 @@ class TslBackend(Backend):
         used = {arg for call in calls for arg in call.args if isinstance(arg, str)}
         data = np.concatenate(rows) if rows else np.zeros((grid.rows * grid.width, 4), np.uint32)
         plan = {
-            "modules": {"module.js": text.text}, "renderer": self.page.name, "width": grid.width, "height": slots * grid.rows,
+            "modules": {"module.js": text.text}, "renderer": self.page.name,
+            "width": grid.width, "height": slots * grid.rows,
             "rows": grid.rows, "data": bytes_.piece(data, np.uint32), "calls": plans,
             "textures": {name: _texture(one, bytes_) for name, one in (textures or {}).items() if name in used},
         }  # fmt: skip
