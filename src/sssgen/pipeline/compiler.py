@@ -20,7 +20,7 @@ from sssgen.passes.names import checked_prefix
 from sssgen.pipeline.emitted_cache import installation
 from sssgen.pipeline.facts import facts_of
 from sssgen.support import cache
-from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
+from sssgen.support.diagnostics import Diagnostic, SssgenError, UnsupportedError, failure
 from sssgen.support.gc_pause import paused
 from sssgen.support.paths import place
 from sssgen.targets import registry
@@ -99,6 +99,9 @@ def compile(
     _check_guards(guards)
     facts = facts_of(material)
     chosen = _prefixed(registry.load(target).for_material(facts), prefix, form, material.name)
+    if form not in chosen.files:
+        hint = f"its forms: {', '.join([one for one in FORMS if one in chosen.files])}"
+        raise UnsupportedError(failure(f"{chosen.title} has no form '{form}'", hint).diagnostics)
     key = (id(material), target, form, guards, prefix, standalone)
     cached = _compiled.get(key) if templates is None and trace is None else None
     if cached is not None and cached[0] is material:

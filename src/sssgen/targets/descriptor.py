@@ -192,10 +192,10 @@ class Target(NamedTuple):
     also: tuple[str, ...] = ()
     """Names under which users look for it; the error for such a name gives the right one."""
     language: str = ""
-    """Which printer prints it: glsl, gdshader, hlsl, metal, wgsl or python, or `module:Class` of a plug-in."""
+    """Which printer prints it: glsl, gdshader, hlsl, metal, wgsl, tsl or python, or `module:Class` of a plug-in."""
     dialect: str = ""
     """The intrinsic table's language: glsl, glsl-330, glsl-godot, hlsl, hlsl-dx9, hlsl-macros, hlsl-unreal, wgsl,
-    wgsl-metal, wgsl-wesl, python."""
+    wgsl-metal, wgsl-wesl, tsl, python."""
     types: Mapping[str, str] = {}
     """Type as sssgen spells it → as the target does. In a descriptor '' takes away a type of the base; so it does in
     `inputs` and `light_inputs`."""
