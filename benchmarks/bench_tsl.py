@@ -22,7 +22,7 @@ from typing import Any
 
 from public_code import Code, Pool, file_errors, read, reason_of, without_names
 
-from sssgen.harness.verify.verification import Machines, start_machines, verify
+from sssgen.harness.verify.verification import Machines, Options, start_machines, verify
 from sssgen.harness.verify.verification_report import Row
 from sssgen.lang.plain_glsl import load_glsl
 from sssgen.pipeline.compiler import transpile
@@ -60,7 +60,7 @@ def verification(code: Code, functions: Sequence[str], samples: int) -> dict[str
     result: dict[str, dict[str, Any]] = {"agree": {}, "deviate": {}, "not_run": {}}
     for name in functions:
         try:
-            rows = verify(code.text, code.path.name, samples, machines=_machines[0], function=name).rows
+            rows = verify(code.text, code.path.name, Options(samples, function=name), machines=_machines[0]).rows
         except Exception as error:
             result["not_run"][name] = reason_of(error)
             continue

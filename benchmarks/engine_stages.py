@@ -13,7 +13,7 @@ from public_code import READ, reason_of
 from sssgen.harness import compilers
 from sssgen.harness.check.handwritten import hand_written
 from sssgen.harness.compilers import errors
-from sssgen.harness.verify.verification import Machines, start_machines, verify
+from sssgen.harness.verify.verification import Machines, Options, start_machines, verify
 from sssgen.lang.plain_glsl import load_glsl, preprocessed
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.text_files import read_text
@@ -61,7 +61,7 @@ def verification(path: Path, samples: int) -> dict[str, Any]:
         _machines.append(context.__enter__())  # until the process ends
     try:
         text = read_text(path, path.name)
-        (row,) = verify(text, path.name, samples, machines=_machines[0], function="main").rows
+        (row,) = verify(text, path.name, Options(samples, function="main"), machines=_machines[0]).rows
     except Exception as error:
         return {"problem": f"not run: {reason_of(error)}"}
     if row.reason:

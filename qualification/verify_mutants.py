@@ -37,7 +37,7 @@ from sssgen.harness.verify.plain_inputs import RANGES
 from sssgen.harness.verify.plain_probes import probed
 from sssgen.harness.verify.rounding_noise import explained, noise
 from sssgen.harness.verify.stage_variables import plain
-from sssgen.harness.verify.verification import Case, load
+from sssgen.harness.verify.verification import Case, Options, load
 from sssgen.ir.nodes import Literal, Module
 from sssgen.ir.types import Sampler, Type, kind_of
 from sssgen.ir.walk import all_expressions
@@ -225,7 +225,7 @@ def originals(path: Path, seed: int) -> Iterator[Original]:
     probes = "\n".join(probe.text for case in cases for probe in case.probes)
     with_probes = load(written.text + probes, shown, written.version)
     for number in range(len(cases)):
-        case = Case(cases[number], written, with_probes, {}, SAMPLES, seed)
+        case = Case(cases[number], written, with_probes, {}, Options(SAMPLES, seed))
         if case.inputs:
             yield Original(path, case, seed)
 

@@ -10,7 +10,7 @@ import pytest
 
 from oracle import Array, close, technique
 from sssgen.bake import cells
-from sssgen.bake.cells import scale, voronoi
+from sssgen.bake.cells import Pattern, scale, voronoi
 from sssgen.bake.channel_packing import Source, load, pack, parse
 from sssgen.bake.normal_map import from_height
 from sssgen.support.diagnostics import SssgenError
@@ -56,8 +56,8 @@ def test_the_two_nearest_of_all_sites_are_found(across: int, up: int, jitter: fl
         result = np.sort(distances(centers(41, 32) * [across, up], all_of_them), axis=-1)
         first, second = result[..., 0], result[..., 1]
         options: Any = {"size": (41, 32), "cells": (across, up), "jitter": jitter, "seed": seed, "tileable": tileable}
-        close(voronoi(**options, feature="f1") * scale("f1", jitter), first, atol=1e-12)
-        close(voronoi(**options, feature="f2-f1") * scale("f2-f1", jitter), second - first, atol=1e-12)
+        close(voronoi(Pattern(**options, feature="f1")) * scale("f1", jitter), first, atol=1e-12)
+        close(voronoi(Pattern(**options, feature="f2-f1")) * scale("f2-f1", jitter), second - first, atol=1e-12)
 
 
 def test_far_sites_matter_at_full_jitter() -> None:
@@ -74,14 +74,14 @@ def test_one_is_the_largest_possible_distance() -> None:
         assert scale("f1", jitter) == pytest.approx(np.hypot(reach, reach))
         assert scale("f2-f1", jitter) == pytest.approx(np.hypot(1.0 + 0.5 * jitter, 0.5 * jitter))
         for feature in ("f1", "f2-f1"):
-            picture = voronoi((300, 300), (60, 60), jitter, feature=feature)
+            picture = voronoi(Pattern((300, 300), (60, 60), jitter, feature=feature))
             assert picture.min() >= 0.0
             assert 0.6 < picture.max() <= 1.0
-    assert voronoi((3, 3), (2, 2), 0.0, feature="f1").max() == 1.0  # a texel on a corner of four cells
+    assert voronoi(Pattern((3, 3), (2, 2), 0.0, feature="f1")).max() == 1.0  # a texel on a corner of four cells
 
 
 def test_facets_are_the_technique_voronoi_thickness() -> None:
-    picture = voronoi((64, 48), (9, 9), 0.6, tileable=False, bevel=0.2, variation=0.8)
+    picture = voronoi(Pattern((64, 48), (9, 9), 0.6, tileable=False, bevel=0.2, variation=0.8))
     values = {"thickness_factor": 1.0, "cell_count": 9.0, "bevel": 0.2, "variation": 0.8}
     close(
         picture, technique("voronoi_thickness")(uv=centers(64, 48).reshape(-1, 2), **values).reshape(48, 64), atol=1e-9
@@ -89,28 +89,28 @@ def test_facets_are_the_technique_voronoi_thickness() -> None:
 
 
 def test_facets_have_level_tops_and_edges_at_0() -> None:
-    picture = voronoi((256, 256), (6, 6), 0.7, bevel=0.1, variation=0.5)
+    picture = voronoi(Pattern((256, 256), (6, 6), 0.7, bevel=0.1, variation=0.5))
     tops, counts = np.unique(picture, return_counts=True)
     assert 30 <= (counts > 100).sum() <= 36  # one a cell
     assert tops[counts > 100].min() > 0.5
     assert picture.min() < 0.01
-    assert np.unique(voronoi((64, 64), (4, 4), variation=0.0)).max() == 1.0
+    assert np.unique(voronoi(Pattern((64, 64), (4, 4), variation=0.0))).max() == 1.0
 
 
 @pytest.mark.parametrize("feature", cells.FEATURES)
 def test_tiles_have_no_seam(feature: str) -> None:
     options: Any = {"size": (384, 512), "cells": (3, 4), "seed": 9, "feature": feature, "bevel": 1.0}
-    tile = voronoi(**options)
+    tile = voronoi(Pattern(**options))
     for axis in (0, 1):
         step = np.abs(np.diff(tile, axis=axis)).max()
         assert np.abs(np.take(tile, 0, axis) - np.take(tile, -1, axis)).max() <= step
-    lone = voronoi(**options, tileable=False)
+    lone = voronoi(Pattern(**options, tileable=False))
     assert np.abs(lone[:, 0] - lone[:, -1]).max() > 5.0 * np.abs(np.diff(lone, axis=1)).max()
 
 
 def test_a_tile_continues_in_its_neighbours() -> None:
     """The sites of the tile, repeated by hand around it, give the picture of the tiles to its right and above."""
-    tile = voronoi((40, 30), (4, 3), seed=2, feature="f1") * scale("f1", 1.0)
+    tile = voronoi(Pattern((40, 30), (4, 3), seed=2, feature="f1")) * scale("f1", 1.0)
     once = sites(4, 3, 1.0, 2, False, beyond=0)
     repeated = np.concatenate([once + np.array([4 * i, 3 * j]) for i in range(-3, 4) for j in range(-3, 4)])
     for shift in ((4, 0), (0, 3), (-4, 3)):
@@ -118,9 +118,9 @@ def test_a_tile_continues_in_its_neighbours() -> None:
 
 
 def test_blocks_of_rows_make_no_difference(monkeypatch: pytest.MonkeyPatch) -> None:
-    whole = voronoi((50, 37), (5, 4))
+    whole = voronoi(Pattern((50, 37), (5, 4)))
     monkeypatch.setattr(cells, "_BLOCK", 200)
-    assert np.array_equal(voronoi((50, 37), (5, 4)), whole)
+    assert np.array_equal(voronoi(Pattern((50, 37), (5, 4))), whole)
 
 
 def test_cells_depend_on_an_integer_hash() -> None:
@@ -138,7 +138,7 @@ def test_cells_depend_on_an_integer_hash() -> None:
     for seed in (0, 1, 2**32 - 1):
         result = cells._keys(columns, rows, None, seed)
         assert result.tolist() == [[key(int(column), int(row), seed) for column in columns] for row in rows]
-    assert not np.array_equal(voronoi((32, 32), (4, 4), seed=1), voronoi((32, 32), (4, 4), seed=2))
+    assert not np.array_equal(voronoi(Pattern((32, 32), (4, 4), seed=1)), voronoi(Pattern((32, 32), (4, 4), seed=2)))
 
 
 @pytest.mark.parametrize(
@@ -159,7 +159,7 @@ def test_cells_depend_on_an_integer_hash() -> None:
     ],
 )
 def test_invalid_cells_are_refused(changed: dict[str, Any], message: str) -> None:
-    assert message in failing(voronoi, **{"size": (64, 64), "cells": (4, 4), **changed})
+    assert message in failing(voronoi, Pattern(**{"size": (64, 64), "cells": (4, 4), **changed}))
 
 
 # Normals
@@ -199,7 +199,7 @@ def test_normals_of_a_wave_converge_to_its_own() -> None:
 
 def test_normals_of_a_tile_have_no_seam() -> None:
     """Normals of the tile are those of the middle one of nine, which have the same height in a third of the widths."""
-    tile = voronoi((40, 24), (5, 3))
+    tile = voronoi(Pattern((40, 24), (5, 3)))
     nine = from_height(np.tile(tile, (3, 3)), 0.05 / 3.0, tileable=False)
     close(from_height(tile, 0.05), nine[24:48, 40:80], atol=1e-12)
 

@@ -11,7 +11,7 @@ import pytest
 from sssgen.harness.evaluate.deviation import GOAL
 from sssgen.harness.verify.inline_includes import expanded
 from sssgen.harness.verify.stage_variables import plain, without_functions
-from sssgen.harness.verify.verification import Machines, load, verify
+from sssgen.harness.verify.verification import Machines, Options, load, verify
 from sssgen.harness.verify.verification_report import BACKENDS, Comparison, Coverage, Report, Row
 from sssgen.ir.nodes import Module
 from sssgen.ir.old_names import OLD_NAMES
@@ -44,7 +44,7 @@ def rows(machines: Machines) -> Rows:
     """`rows(text, read)`: the rows by function."""
 
     def run(text: str, read: Callable[[str, str], Module] = load) -> dict[str, Row]:
-        report = verify(text, "shader.glsl", SAMPLES, read=read, machines=machines)
+        report = verify(text, "shader.glsl", Options(SAMPLES), read=read, machines=machines)
         return {row.function: row for row in report.rows}
 
     return run
@@ -225,7 +225,7 @@ def test_a_scene_of_shadertoy_has_its_uniforms(machines: Machines) -> None:
     text = """void mainImage(out vec4 color, in vec2 at) {
     color = vec4(at / iResolution.xy, sin(iTime), iChannelTime[1]) + texture(iChannel0, at / 64.0);
 }"""
-    report = verify(text, "scene.glsl", SAMPLES, entry="shadertoy", machines=machines)
+    report = verify(text, "scene.glsl", Options(SAMPLES, entry="shadertoy"), machines=machines)
     assert [row.function for row in report.rows] == ["mainImage(vec4,vec2)"] and report.ok
 
 
@@ -251,10 +251,10 @@ def test_functions_are_removed_with_their_lines() -> None:
 
 def test_one_function_is_run_by_its_name(machines: Machines) -> None:
     text = "float f(float x) { return x; }\nfloat f(vec2 x) { return x.y; }\nvoid main() { }"
-    report = verify(text, "a.frag", 50, machines=machines, function="f")
+    report = verify(text, "a.frag", Options(50, function="f"), machines=machines)
     assert [row.function for row in report.rows] == ["f(float)", "f(vec2)"] and report.ok
     with pytest.raises(SssgenError, match="the file has no function 'mains'") as error:
-        verify(text, "a.frag", 50, machines=machines, function="mains")
+        verify(text, "a.frag", Options(50, function="mains"), machines=machines)
     assert error.value.diagnostics[0].hint == "did you mean 'main'?"
 
 
@@ -316,7 +316,7 @@ def test_a_search_around_one_comparison_has_whole_quads(rows: Rows) -> None:
 
 @pytest.mark.slow
 def test_the_same_seed_gives_the_same_rows(machines: Machines) -> None:
-    once, again = (verify(FUNCTIONS, "shader.glsl", 50, seed, machines=machines) for seed in (3, 3))
+    once, again = (verify(FUNCTIONS, "shader.glsl", Options(50, seed), machines=machines) for seed in (3, 3))
     assert once == again
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from sssgen.harness.verify import verification
-from sssgen.harness.verify.verification import Machines, verify
+from sssgen.harness.verify.verification import Machines, Options, verify
 from sssgen.harness.verify.verification_report import Coverage, Row
 from sssgen.pipeline import compiler
 
@@ -18,7 +18,9 @@ Verify = Callable[..., Row]
 @pytest.fixture(scope="module")
 def row(machines: Machines) -> Verify:
     """`row(text, samples, seed)` is the row of the last function."""
-    return lambda text, samples=1000, seed=0: verify(text, "shader.glsl", samples, seed, machines=machines).rows[-1]
+    return lambda text, samples=1000, seed=0: verify(
+        text, "shader.glsl", Options(samples, seed), machines=machines
+    ).rows[-1]
 
 
 CHANGES = [

@@ -15,6 +15,7 @@ from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Ball, Box, Distance, Geometry, Slab, Torus
 from sssgen.lab.reference import transport
 from sssgen.lab.reference.geometry_mesh import mesh_of
+from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.transport import Light, Transport, radiance, radiance_along
 from sssgen.lab.reference.transport_mitsuba import Renderer
 from sssgen.lab.scene.media import Medium, preset
@@ -110,7 +111,9 @@ def test_a_ball_lit_along_the_ray_has_a_closed_form() -> None:
 
 def half_space_agrees(albedo: float, cosine_in: float, samples: int, tightest: float) -> None:
     cosines = np.array([1.0, 0.8, 0.5, 0.2])
-    estimate = radiance_along(wide_slab(80.0), grey(albedo), Light(towards(cosine_in)), *looking(cosines), samples)
+    estimate = radiance_along(
+        wide_slab(80.0), grey(albedo), Light(towards(cosine_in)), *looking(cosines), Sampling(samples)
+    )
     assert_agrees(estimate, half_space(albedo, cosine_in, cosines), tightest)
 
 
@@ -136,7 +139,7 @@ def slab_agrees(depth: float, albedo: float, anisotropy: float, samples: int, ti
         origins, directions = looking(side * cosines)
         if side < 0.0:
             origins[:, 2] -= depth
-        estimate = radiance_along(geometry, medium, Light((0.0, 0.0, 1.0)), origins, directions, samples)
+        estimate = radiance_along(geometry, medium, Light((0.0, 0.0, 1.0)), origins, directions, Sampling(samples))
         share = 2.0 * weights * cosines
         fluxes.append((share @ estimate.mean[:, 0], np.sqrt(share**2 @ estimate.error[:, 0] ** 2)))
     # more quadrature points than 16 lose energy in this version of iadpython
@@ -167,7 +170,7 @@ def test_slabs_by_adding_and_doubling_closely(depth: float, albedo: float, aniso
 
 def test_without_scattering_beer_and_lambert_hold() -> None:
     cosines = np.array([1.0, 0.7, 0.4])
-    estimate = radiance_along(wide_slab(0.8), grey(0.0), SKY, *looking(cosines), 8192)
+    estimate = radiance_along(wide_slab(0.8), grey(0.0), SKY, *looking(cosines), Sampling(8192))
     assert_agrees(estimate, unscattered(0.8, cosines), 0.03)
 
 
@@ -179,8 +182,8 @@ def test_once_scattered_in_a_slab(anisotropy: float, back: bool) -> None:
         origins[:, 2] -= depth
     sun = np.array(towards(cosine_in))
     estimate = radiance_along(
-        wide_slab(depth), grey(0.8, 1.0, anisotropy), Light(towards(cosine_in)), origins, directions, 20_000,
-        scatterings=1,
+        wide_slab(depth), grey(0.8, 1.0, anisotropy), Light(towards(cosine_in)), origins, directions,
+        Sampling(20_000, scatterings=1),
     )  # fmt: skip
     phase = float(henyey_greenstein(anisotropy, directions[0] @ sun))
     assert_agrees(estimate, [slab_once(depth, 0.8, phase, cosine_in, cosine_out, back)], 0.02)
@@ -193,7 +196,7 @@ def test_once_scattered_in_a_ball() -> None:
     hit = ball.hits(origin, directions).hit
     origins = np.broadcast_to(origin, (int(hit.sum()), 3))
     estimate = radiance_along(
-        ball, grey(0.7, 1.5, 0.3), Light((0.6, 0.48, -0.64)), origins, directions[hit], 16_384, scatterings=1
+        ball, grey(0.7, 1.5, 0.3), Light((0.6, 0.48, -0.64)), origins, directions[hit], Sampling(16_384, scatterings=1)
     )
     assert hit.sum() > 8
     assert_agrees(estimate, ball_once(0.9, 0.45, 1.05, 0.3, sun, origin, directions[hit]), 0.05)
@@ -201,7 +204,9 @@ def test_once_scattered_in_a_ball() -> None:
 
 def test_little_scattering_is_nearly_once() -> None:
     origins, directions = np.array([[0.0, 0.0, 4.0]]), np.array([[0.0, 0.0, -1.0]])
-    estimate = radiance_along(Ball(radius=0.1), grey(0.05), Light((1.0, 0.0, 0.0)), origins, directions, 100_000)
+    estimate = radiance_along(
+        Ball(radius=0.1), grey(0.05), Light((1.0, 0.0, 0.0)), origins, directions, Sampling(100_000)
+    )
     once = ball_once(0.1, 0.95, 0.05, 0.0, (1.0, 0.0, 0.0), origins[0], directions)
     # the light scattered twice is at most albedo × optical diameter of the light scattered once
     assert once[0] - 3.0 * estimate.error[0, 0] < estimate.mean[0, 0] < 1.01 * once[0] + 3.0 * estimate.error[0, 0]
@@ -269,7 +274,9 @@ def test_the_error_is_that_of_equal_rays() -> None:
     # 400 equal rays, in 8 and in 64 batches: their means spread by their standard errors
     origins, directions = (np.repeat(part, 400, axis=0) for part in looking(np.array([0.8])))
     for samples in (128, 1024):
-        estimate = radiance_along(wide_slab(40.0), grey(0.9), Light((0.0, 0.0, 1.0)), origins, directions, samples)
+        estimate = radiance_along(
+            wide_slab(40.0), grey(0.9), Light((0.0, 0.0, 1.0)), origins, directions, Sampling(samples)
+        )
         spread = estimate.mean[:, 0].std(ddof=1)
         assert spread == pytest.approx(np.sqrt((estimate.error[:, 0] ** 2).mean()), rel=0.15)
         predicted = half_space(0.9, 1.0, 0.8)
@@ -278,7 +285,9 @@ def test_the_error_is_that_of_equal_rays() -> None:
 
 def test_channels_have_their_own_coefficients() -> None:
     medium = Medium("skin", (0.1, 0.5, 0.1), (0.9, 0.5, 0.9))
-    estimate = radiance_along(wide_slab(60.0), medium, Light((0.0, 0.0, 1.0)), *looking(np.array([1.0])), 3072)
+    estimate = radiance_along(
+        wide_slab(60.0), medium, Light((0.0, 0.0, 1.0)), *looking(np.array([1.0])), Sampling(3072)
+    )
     assert (estimate.mean[:, 0] == estimate.mean[:, 2]).all()
     for at, albedo in enumerate(medium.albedo):
         assert abs(estimate.mean[0, at] - half_space(albedo, 1.0, 1.0)) < 3.0 * estimate.error[0, at]
@@ -315,7 +324,7 @@ def test_a_refracting_boundary_conserves_energy() -> None:
 def test_a_refracting_slab_by_adding_and_doubling() -> None:
     # by reciprocity: the radiance of a slab under an even sky, seen from above, is R + T of a beam along the ray
     medium = Medium("resin", (0.1,) * 3, (0.9,) * 3, ior=1.5)
-    estimate = radiance_along(wide_slab(2.0), medium, SKY, *looking(np.array([1.0])), 40_000)
+    estimate = radiance_along(wide_slab(2.0), medium, SKY, *looking(np.array([1.0])), Sampling(40_000))
     reflected, through, _, _ = iadpython.Sample(a=0.9, b=2.0, g=0.0, n=1.5, quad_pts=16).rt()
     assert_agrees(estimate, [reflected + through], 0.01)
 
@@ -323,7 +332,9 @@ def test_a_refracting_slab_by_adding_and_doubling() -> None:
 def test_a_light_of_small_width_is_nearly_a_point() -> None:
     cosines = np.array([0.9, 0.4])
     narrow = half_space(0.8, 0.7, cosines)
-    estimate = radiance_along(wide_slab(60.0), grey(0.8), Light(towards(0.7), radius=5.0), *looking(cosines), 8192)
+    estimate = radiance_along(
+        wide_slab(60.0), grey(0.8), Light(towards(0.7), radius=5.0), *looking(cosines), Sampling(8192)
+    )
     assert_agrees(estimate, narrow, 0.02)
 
 

@@ -104,7 +104,7 @@ def test_a_second_transpilation_changes_nothing(name: str) -> None:
 def check_results(name: str, samples: int, machines: Machines) -> None:
     """Fails where a function's result differs from that of the original text in OpenGL's driver."""
     text = expanded((CORPUS / name).read_text("utf-8"), CORPUS / name)
-    report = verification.verify(text, name, samples, 0, entry(name), machines=machines)
+    report = verification.verify(text, name, verification.Options(samples, 0, entry(name)), machines=machines)
     failures = [
         f"{row.function} as {target}: {result.error or result.at}"
         for row in report.rows

@@ -24,33 +24,38 @@ _BLOCK = 2**15
 """Texels per block: their arrays fit a processor's cache."""
 
 
-def voronoi(
-    size: tuple[int, int],
-    cells: tuple[int, int],
-    jitter: float = 1.0,
-    seed: int = 0,
-    tileable: bool = True,
-    feature: str = "faceted",
-    bevel: float = 0.35,
-    variation: float = 0.6,
-    progress: Progress = silent,
-) -> Array:
-    """Voronoi cells as heights 0..1, (height, width), row 0 at the top (v = 1).
+class Pattern(NamedTuple):
+    """A picture of Voronoi cells. Distances are in cells, so square cells need as many cells per texel across as up."""
 
-    size: width and height in texels, 1..16384; sampled at the texels' centres. cells: their numbers across and up, with
-    one site in each; at most the numbers of texels. Distances are in cells, so square cells need as many cells per
-    texel across as up. jitter: 0..1, the share of its cell's sides in which a site may lie; near 1 two sites may be so
-    close that their cells are low, because F2 - F1 is small everywhere in them. seed: 0..2³² - 1. tileable: opposite
-    edges match.
+    size: tuple[int, int]
+    """Width and height in texels, 1..16384"""
+    cells: tuple[int, int]
+    """Their numbers across and up, with one site in each; at most the numbers of texels"""
+    jitter: float = 1.0
+    """0..1, the share of its cell's sides in which a site may lie; near 1 two sites may be so close that their cells
+    are low, because F2 - F1 is small everywhere in them"""
+    seed: int = 0
+    """0..2³² - 1"""
+    tileable: bool = True
+    """Whether opposite edges match"""
+    feature: str = "faceted"
+    """f1, the distance to the nearest site; f2-f1, the difference of the distances to the second and the nearest site,
+    0 on edges. Both are divided by `scale`, so that no value exceeds 1. faceted: level · smoothstep(0, bevel, F2 - F1)
+    with level = 1 - variation · hash(cell), as the technique voronoi_thickness: the same cells with jitter 0.6, seed 0,
+    and not tileable."""
+    bevel: float = 0.35
+    """Above 0, in cells"""
+    variation: float = 0.6
+    """0..1"""
 
-    feature: "f1", the distance to the nearest site; "f2-f1", the difference of the distances to the second and the
-    nearest site, 0 on edges. Both are divided by `scale`, so that no value exceeds 1. "faceted": level ·
-    smoothstep(0, bevel, F2 - F1) with level = 1 - variation · hash(cell), as the technique voronoi_thickness: the same
-    cells with jitter 0.6, seed 0, and not tileable. bevel: above 0, in cells; variation: 0..1.
+
+def voronoi(pattern: Pattern, progress: Progress = silent) -> Array:
+    """Voronoi cells as heights 0..1, (height, width), row 0 at the top (v = 1), sampled at the texels' centres.
 
     The result is the same on every platform: sites come from an integer hash, not from a generator that NumPy may
-    change. Raises SssgenError for arguments out of these ranges.
+    change. Raises SssgenError for values out of the pattern's ranges.
     """
+    size, cells, jitter, seed, tileable, feature, bevel, variation = pattern
     _check(size, cells, seed, feature)
     for name, value, allowed, limits in (
         ("jitter", jitter, 0.0 <= jitter <= 1.0, "from 0 to 1"),

@@ -315,11 +315,11 @@ def _voronoi(arguments: Namespace) -> Result:
 
     output.picture_suffix(arguments.output)
     size, count, tiles = picture_size(arguments.size), pair(arguments.cells, "number of cells"), not arguments.no_tile
+    pattern = cells.Pattern(
+        size, count, arguments.jitter, arguments.seed, tiles, arguments.feature, arguments.bevel, arguments.variation
+    )
     with ProgressBar() as bar:
-        texels = cells.voronoi(
-            size, count, arguments.jitter, arguments.seed, tiles, arguments.feature, arguments.bevel,
-            arguments.variation, bar,
-        )  # fmt: skip
+        texels = cells.voronoi(pattern, bar)
         facts = {
             "kind": "cells", "holds": "thickness", "feature": arguments.feature,
             "cells": list(count), "jitter": arguments.jitter, "seed": arguments.seed, "tiles": tiles,

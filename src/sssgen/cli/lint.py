@@ -7,7 +7,7 @@ import os
 import sys
 from argparse import ArgumentParser, Namespace
 from collections import Counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sssgen.cli.output import CHECK_FAILED, OK, WRONG_INPUT, print_errors, print_json, print_warnings
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
@@ -54,29 +54,17 @@ def run(arguments: Namespace) -> int:
     A file with errors does not stop the others, unless a report is written: it would lack findings.
     """
     from sssgen.harness.lint.finding_baseline import baseline_text, load_baseline, new_findings
-    from sssgen.harness.lint.lint_findings import PROVEN, lint
 
     kinds = _kinds(arguments.kind)
     if arguments.write_baseline and not arguments.baseline:
         raise failure("--write-baseline needs --baseline FILE", "name the file to write")
     accepted = load_baseline(arguments.baseline) if arguments.baseline and not arguments.write_baseline else None
-    wrong: list[Diagnostic] = []
-    reports: list[Report] = []
-    names = list(dict.fromkeys(arguments.NAME))
-    with ProgressBar() as progress:
-        for index, name in enumerate(names):
-            progress(index, len(names), name)
-            try:
-                reports.append(lint(name, not arguments.no_examples, kinds, arguments.assume))
-            except SssgenError as error:
-                wrong += error.diagnostics
+    reports, wrong = _reports(arguments, kinds)
     if wrong and (not reports or arguments.write_baseline or arguments.sarif):
         raise SssgenError(wrong)
     warnings = _warnings(reports)
     unproven = [finding for report in reports for finding in report.unproven()]
-    new = unproven
-    if accepted is not None:
-        new = new_findings(unproven, accepted)
+    new = unproven if accepted is None else new_findings(unproven, accepted)
     if arguments.write_baseline:
         _write(arguments.baseline, baseline_text(unproven))
         new = []
@@ -86,29 +74,15 @@ def run(arguments: Namespace) -> int:
 
         log = sarif(reports, is_new if arguments.baseline else None)
         _write(arguments.sarif, f"{json.dumps(log, indent=1)}\n")
-    unguarded = any(not finding.guarded for finding in new)
+    result = WRONG_INPUT if wrong else CHECK_FAILED if any(not finding.guarded for finding in new) else OK
     if arguments.json:
-        listed = [
-            {
-                "name": report.name,
-                "findings": [finding.as_json() | {"new": id(finding) in is_new} for finding in report.findings],
-                "hidden": dict(report.hidden),
-                "assumptions": [fact.as_json() for fact in report.assumptions],
-            }
-            for report in reports
-        ]
         others = {"warnings": [warning.as_json() for warning in warnings]}
         others |= {"diagnostics": [error.as_json() for error in wrong]} if wrong else {}
-        print_json({"ok": not unguarded and not wrong, "results": listed, **others})
-        return WRONG_INPUT if wrong else CHECK_FAILED if unguarded else OK
+        print_json({"ok": result == OK, "results": [_as_json(report, is_new) for report in reports], **others})
+        return result
     print_warnings(warnings)
     for report in reports:
-        for finding in report.findings:
-            if id(finding) in is_new or (finding.verdict == PROVEN and arguments.all):
-                print(f"{finding.render()}\n")
-        print(_summary(report))
-        for source, assumed in _assumptions(report):
-            print(f"  assumed ({source}): {assumed}")
+        _print(report, is_new, arguments.all)
     if arguments.baseline:
         count = len(unproven) - len(new)
         written = " now" if arguments.write_baseline else ""
@@ -116,7 +90,46 @@ def run(arguments: Namespace) -> int:
     if wrong:
         sys.stdout.flush()
         print_errors(wrong)
-    return WRONG_INPUT if wrong else CHECK_FAILED if unguarded else OK
+    return result
+
+
+def _reports(arguments: Namespace, kinds: tuple[Kind, ...]) -> tuple[list[Report], list[Diagnostic]]:
+    """The reports of the files, and the errors of those that have some."""
+    from sssgen.harness.lint.lint_findings import lint
+
+    reports: list[Report] = []
+    wrong: list[Diagnostic] = []
+    names = list(dict.fromkeys(arguments.NAME))
+    with ProgressBar() as progress:
+        for index, name in enumerate(names):
+            progress(index, len(names), name)
+            try:
+                reports.append(lint(name, not arguments.no_examples, kinds, arguments.assume))
+            except SssgenError as error:
+                wrong += error.diagnostics
+    return reports, wrong
+
+
+def _as_json(report: Report, new: set[int]) -> dict[str, Any]:
+    """A report; `new` has the identities of the findings that no baseline accepts."""
+    return {
+        "name": report.name,
+        "findings": [finding.as_json() | {"new": id(finding) in new} for finding in report.findings],
+        "hidden": dict(report.hidden),
+        "assumptions": [fact.as_json() for fact in report.assumptions],
+    }
+
+
+def _print(report: Report, new: set[int], proven: bool) -> None:
+    """Prints the new findings of a report, and those that are proven if these are wanted."""
+    from sssgen.harness.lint.lint_findings import PROVEN
+
+    for finding in report.findings:
+        if id(finding) in new or (finding.verdict == PROVEN and proven):
+            print(f"{finding.render()}\n")
+    print(_summary(report))
+    for source, assumed in _assumptions(report):
+        print(f"  assumed ({source}): {assumed}")
 
 
 def _write(path: str, text: str) -> None:

@@ -241,10 +241,10 @@ def _verify(arguments: Namespace, path: Path, computes: bool) -> int:
         report = compute.verify_compute(text, path.as_posix(), arguments.seed)
     else:
         with ProgressBar() as progress:
-            report = transpiled.verify(
-                text, path.as_posix(), arguments.samples, arguments.seed, arguments.entry, progress=progress,
-                function=arguments.function, target=arguments.target or "",
-            )  # fmt: skip
+            options = transpiled.Options(
+                arguments.samples, arguments.seed, arguments.entry, arguments.function, arguments.target or ""
+            )
+            report = transpiled.verify(text, path.as_posix(), options, progress=progress)
     if arguments.json:
         print_json({"ok": report.ok, **report.as_json()})
     else:

@@ -189,13 +189,7 @@ class FunctionCleaner:
             unit.otherwise, otherwise_ends = self.block(stmt.otherwise, unit)
             return then_ends and otherwise_ends
         elif isinstance(stmt, For):
-            unit.otherwise = header = []
-            for part in (stmt.init, stmt.step):
-                if part is not None:
-                    header.append(Unit(part, unit))
-                    self.statement(part, header[-1])
-            if stmt.condition is not None:
-                self.expression(stmt.condition, unit)
+            self.header(stmt, unit)
             self.loop(stmt.body, unit)
         elif isinstance(stmt, While):
             self.expression(stmt.condition, unit)
@@ -218,6 +212,15 @@ class FunctionCleaner:
             self.jumps.append(unit)
             return True
         return False
+
+    def header(self, loop: For, unit: Unit) -> None:
+        unit.otherwise = header = []
+        for part in (loop.init, loop.step):
+            if part is not None:
+                header.append(Unit(part, unit))
+                self.statement(part, header[-1])
+        if loop.condition is not None:
+            self.expression(loop.condition, unit)
 
     def loop(self, body: Block, unit: Unit) -> None:
         outer = self.jumps

@@ -84,32 +84,47 @@ def load(text: str, shown: str, version: str = "") -> Module:
     return load_glsl_text(text, shown, defines=defines).module
 
 
-def verify(
-    text: str, shown: str, samples: int = SAMPLES, seed: int = 0, entry: str = "",
-    read: Callable[[str, str], Module] | None = None, machines: Machines | None = None,
-    progress: Progress = silent, function: str = "", target: str = "",
-) -> Report:  # fmt: skip
-    """Runs every function of a text without `#include` (see `inline_includes`) on `samples` inputs.
+class Options(NamedTuple):
+    """What to run, and how often."""
 
-    `shown` is the text's name in messages; `entry` as in `load_glsl`; `read(text, shown)` parses it; without `machines`
-    the back ends are started here, those of `target` if it is named; `function` is the name of the only one to run.
-    Raises SssgenError where the front end refuses the text, where no function has that name, where no back end runs
-    the target here, and without OpenGL, which runs the reference.
+    samples: int = SAMPLES
+    """Inputs of a function."""
+    seed: int = 0
+    entry: str = ""
+    """As in `load_glsl`."""
+    function: str = ""
+    """The name of the only function to run; '' for all."""
+    target: str = ""
+    """The target whose text runs; '' for all that `verify` knows."""
+
+
+DEFAULTS = Options()
+
+
+def verify(
+    text: str, shown: str, options: Options = DEFAULTS, read: Callable[[str, str], Module] | None = None,
+    machines: Machines | None = None, progress: Progress = silent,
+) -> Report:  # fmt: skip
+    """Runs the functions of a text without `#include` (see `inline_includes`).
+
+    `shown` is the text's name in messages; `read(text, shown)` parses it; without `machines` the back ends are started
+    here. Raises SssgenError where the front end refuses the text, where no function has the name, where no back end
+    runs the target here, and without OpenGL, which runs the reference.
     """
-    written = plain(_scene(text) if entry == "shadertoy" else text)
+    written = plain(_scene(text) if options.entry == "shadertoy" else text)
     read = read or partial(load, version=written.version)
     module = read(written.text, shown)
     functions = [part for part in module.functions if part.body is not None and part.span.file == shown]
-    if function:
-        functions = _called(function, functions, shown)
+    if options.function:
+        functions = _called(options.function, functions, shown)
     cases = probed(module, functions, written.text)
     probes = "\n".join(probe.text for case in cases for probe in case.probes)
     with_probes = read(written.text + probes, shown)
-    with nullcontext(machines) if machines else start_machines(backends_of(target)) as (running, missing):
+    with nullcontext(machines) if machines else start_machines(backends_of(options.target)) as (running, missing):
         rows = []
         for index, case in enumerate(cases):
             progress(index, len(cases), case.function.name)
-            rows.append(Case(case, written, with_probes, running, samples, seed).row())
+            rows.append(Case(case, written, with_probes, running, options).row())
     return Report(rows, missing, (*running, *missing))
 
 
@@ -190,9 +205,9 @@ class Case:
     """One function on all back ends."""
 
     def __init__(
-        self, case: Probed, written: Plain, module: Module, machines: Mapping[str, Isolated], samples: int, seed: int
+        self, case: Probed, written: Plain, module: Module, machines: Mapping[str, Isolated], options: Options
     ) -> None:
-        self.case, self.written, self.machines, self.seed = case, written, machines, seed
+        self.case, self.written, self.machines, self.seed = case, written, machines, options.seed
         self.texts: dict[str, list[_Emitted]] = {}
         names = {probe.name for probe in case.probes}
         self.keys = {function.name: function.key for function in module.functions if function.name in names}
@@ -217,7 +232,7 @@ class Case:
             self.program = Program(prune(self.module, list(self.keys.values())))
             self.key = self.keys[case.probes[0].name]
             self.textures = self.drawn_textures()
-            self.inputs = self.search(samples)
+            self.inputs = self.search(options.samples)
 
     def uniforms(self) -> dict[str, Param]:
         """The uniforms of the text that the function reads."""

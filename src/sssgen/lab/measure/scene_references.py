@@ -16,6 +16,7 @@ from sssgen.lab.jobs.executor import Item
 from sssgen.lab.measure.problem import LightReference
 from sssgen.lab.reference.eye_paths import Eye, readings
 from sssgen.lab.reference.first_light import Lamp
+from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.transport import radiance_along
 from sssgen.lab.reference.transport_mitsuba import Light as Beam
 from sssgen.lab.scene.measured_scene import MeasuredScene
@@ -38,7 +39,7 @@ def transport(scene: MeasuredScene, light: int, samples: int, seed: int) -> tupl
     assert direction is not None
     origins = np.broadcast_to(visible.origin, (visible.count, 3))
     rays = np.ascontiguousarray(-visible.inputs["V"].T)
-    result = radiance_along(scene.geometry, scene.medium, Beam(direction), origins, rays, samples, seed)
+    result = radiance_along(scene.geometry, scene.medium, Beam(direction), origins, rays, Sampling(samples, seed))
     return result.mean.T.astype(np.float32), result.error.T.astype(np.float32)
 
 
@@ -52,7 +53,7 @@ def traced(scene: MeasuredScene, samples: int, seed: int) -> list[LightReference
     eye = Eye(*(np.ascontiguousarray(part.T) for part in (inputs["P"], inputs["N"], -inputs["V"])))
     lamps = [Lamp(light.direction, light.position) for light in scene.lights]
     sky = scene.environment.sky() if scene.environment is not None else None
-    result = readings(scene.geometry, scene.medium, eye, lamps, sky, samples, seed)
+    result = readings(scene.geometry, scene.medium, eye, lamps, sky, Sampling(samples, seed))
     return [
         (mean.T.astype(np.float32), error.T.astype(np.float32))
         for mean, error in zip(result.mean, result.error, strict=True)

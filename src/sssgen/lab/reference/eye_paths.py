@@ -20,6 +20,7 @@ import numpy.typing as npt
 from sssgen.harness.scenes.geometry import Geometry
 from sssgen.lab.reference.dielectric import Dielectric, axes
 from sssgen.lab.reference.first_light import FirstLight, Lamp, Voxels, first_light, voxels_of
+from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.surface_rays import SurfaceRays
 from sssgen.lab.scene.media import Medium
 from sssgen.support.diagnostics import failure
@@ -57,6 +58,15 @@ class Eye(NamedTuple):
     """(n, 3): from the eye, unit"""
 
 
+class _Body(NamedTuple):
+    """What the paths meet."""
+
+    surface: SurfaceRays
+    voxels: Voxels
+    boundary: Dielectric
+    medium: Medium
+
+
 class _Channel(NamedTuple):
     extinction: float
     albedo: float
@@ -69,47 +79,42 @@ def readings(
     eye: Eye,
     lamps: Sequence[Lamp],
     sky: Sky | None,
-    samples: int,
-    seed: int = 0,
+    sampling: Sampling,
     rays: int = RAYS,
     shape: tuple[int, int, int] | None = None,
-    scatterings: int = 0,
 ) -> Readings:
-    """The readings of points by `samples` paths each, rounded up to full batches.
+    """The readings of points.
 
-    The light of a lamp that reaches the eye without scattering does not count, but that of the sky does. `shape` is the
-    number of voxels along each axis of the object. With `scatterings` above 0, only light with at most that many
-    scatterings counts. Raises SssgenError for a point light in the body, and a body without an inside.
+    The light of a lamp that reaches the eye without scattering does not count, but that of the sky does. `rays` are
+    those of a lamp in one batch, and `shape` is the number of voxels along each axis of the object. Raises SssgenError
+    for a point light in the body, and a body without an inside.
     """
-    if samples < 1:
-        raise failure(f"{samples} samples are too few", "a few hundred are enough for a picture")
+    if sampling.samples < 1:
+        raise failure(f"{sampling.samples} samples are too few", "a few hundred are enough for a picture")
     surface = SurfaceRays(geometry)
     voxels = Voxels(surface, shape) if shape else voxels_of(surface, max(medium.extinction))
-    boundary = Dielectric(medium.ior, medium.roughness)
+    body = _Body(surface, voxels, Dielectric(medium.ior, medium.roughness), medium)
     eye = eye._replace(position=surface.entrances(eye.position, eye.normal, eye.direction))
-    each = -(-samples // BATCHES)
+    each = sampling._replace(samples=-(-sampling.samples // BATCHES))
     batches = [
-        _batch(surface, voxels, boundary, medium, eye, lamps, sky, each, rays, scatterings, np.random.default_rng(part))
-        for part in np.random.SeedSequence(seed).spawn(BATCHES)
+        _batch(body, eye, lamps, sky, each, rays, np.random.default_rng(part))
+        for part in np.random.SeedSequence(sampling.seed).spawn(BATCHES)
     ]
     values = np.stack(batches)
     return Readings(values.mean(axis=0), values.std(axis=0, ddof=1) / np.sqrt(BATCHES))
 
 
 def _batch(
-    surface: SurfaceRays,
-    voxels: Voxels,
-    boundary: Dielectric,
-    medium: Medium,
+    body: _Body,
     eye: Eye,
     lamps: Sequence[Lamp],
     sky: Sky | None,
-    samples: int,
+    sampling: Sampling,
     rays: int,
-    scatterings: int,
     rng: np.random.Generator,
 ) -> Array:
     """One batch of readings: (lights, n, 3)."""
+    medium = body.medium
     channels = [
         _Channel(extinction, albedo, medium.anisotropy)
         for extinction, albedo in zip(medium.extinction, medium.albedo, strict=True)
@@ -117,13 +122,13 @@ def _batch(
     unique = list(dict.fromkeys(channels))
     extinction = np.array([channel.extinction for channel in unique])
     fields = [
-        first_light(voxels, boundary, extinction, lamp, rays, rng, directions=medium.anisotropy != 0.0)
+        first_light(body.voxels, body.boundary, extinction, lamp, rays, rng, directions=medium.anisotropy != 0.0)
         for lamp in lamps
     ]
     result = np.zeros((len(lamps) + (sky is not None), len(eye.position), 3))
     for number, channel in enumerate(unique):
         same = [index for index, candidate in enumerate(channels) if candidate == channel]
-        traced = _traced(surface, voxels, boundary, channel, number, eye, fields, sky, samples, scatterings, rng)
+        traced = _traced(body, channel, number, eye, fields, sky, sampling, rng)
         # the sky may differ between channels with the same coefficients
         result[: len(lamps), :, same] = traced[: len(lamps), :, None, 0]
         if sky is not None:
@@ -150,32 +155,31 @@ class _Paths(NamedTuple):
         )
 
 
-def _begun(surface: SurfaceRays, boundary: Dielectric, eye: Eye, samples: int, rng: np.random.Generator) -> _Paths:
+def _begun(body: _Body, eye: Eye, samples: int, rng: np.random.Generator) -> _Paths:
     """Paths behind the surface, `samples` for each point."""
+    boundary = body.boundary
     directions, normals = (np.repeat(part, samples, axis=0) for part in (eye.direction, eye.normal))
     turn = boundary.entered(directions, normals, rng)
-    position = np.repeat(eye.position, samples, axis=0) + surface.step * turn.direction
+    position = np.repeat(eye.position, samples, axis=0) + body.surface.step * turn.direction
     point = np.repeat(np.arange(len(eye.position)), samples)
     return _Paths(point, position, turn.direction, turn.weight / boundary.ior**2, np.zeros_like(point))
 
 
 def _traced(
-    surface: SurfaceRays,
-    voxels: Voxels,
-    boundary: Dielectric,
+    body: _Body,
     channel: _Channel,
     number: int,
     eye: Eye,
     fields: Sequence[FirstLight],
     sky: Sky | None,
-    samples: int,
-    scatterings: int,
+    sampling: Sampling,
     rng: np.random.Generator,
 ) -> Array:
-    """The readings by `samples` paths of each point in one channel: (lights, n, 3); a lamp's is in the first column."""
-    count = len(eye.position)
+    """The readings of each point in one channel: (lights, n, 3); a lamp's is in the first column."""
+    surface, voxels, boundary, _ = body
+    samples, count = sampling.samples, len(eye.position)
     sums = np.zeros((len(fields) + (sky is not None), count, 3))
-    paths = _begun(surface, boundary, eye, samples, rng)
+    paths = _begun(body, eye, samples, rng)
     # the first free paths of a point's samples are evenly distributed
     chance = (np.tile(np.arange(samples), count) + rng.random(len(paths.point))) / samples
     while len(paths.point):
@@ -211,8 +215,8 @@ def _traced(
         position[meets] += surface.step * turn.direction
         faint = weight < FAINT / boundary.ior**2
         lives = (weight > 0.0) & ~(faint & (rng.random(len(weight)) > SURVIVAL))
-        if scatterings:
-            lives &= collisions < scatterings
+        if sampling.scatterings:
+            lives &= collisions < sampling.scatterings
         weight = np.where(faint, weight / SURVIVAL, weight)
         paths = _Paths(point, position, direction, weight, collisions).only(lives)
         chance = rng.random(len(paths.point))

@@ -143,7 +143,8 @@ def first_light(
         position, direction, weight = position[found], direction[found], weight[found]
         ahead, normal = crossing.ahead[found], crossing.normal[found]
         inside = np.flatnonzero(np.einsum("nc,nc->n", direction, normal) > 0.0)
-        for cell, share, ways in _spread(voxels, position, direction, ahead, weight, inside, extinction, least, rng):
+        segments = position[inside], direction[inside], ahead[inside], weight[inside]
+        for cell, share, ways in _spread(voxels, *segments, extinction, least, rng):
             for channel in range(len(extinction)):
                 sums[channel] += np.bincount(cell, share[:, channel], voxels.count)
             for picked, values in zip(chosen, share.T, strict=False):
@@ -165,30 +166,28 @@ def first_light(
 
 def _spread(
     voxels: Voxels,
-    position: Array,
-    direction: Array,
+    start: Array,
+    way: Array,
     ahead: Array,
-    weight: Array,
-    inside: Indices,
+    light: Array,
     extinction: Array,
     least: float,
     rng: np.random.Generator,
 ) -> list[tuple[Indices, Array, Array]]:
     """The light of rays' segments inside the body, as (voxels, weights per channel, directions): one per place."""
-    if not len(inside):
+    if not len(start):
         return []
-    start, way, light = position[inside], direction[inside], weight[inside]
     # the places are distributed as the light of the channel that reaches farthest
-    share = -np.expm1(-least * ahead[inside])
+    share = -np.expm1(-least * ahead)
     results = []
     for place in range(PLACES):
-        u = (place + rng.random(len(inside))) / PLACES
-        if least * float(ahead[inside].max()) > 1e-6:
+        u = (place + rng.random(len(start))) / PLACES
+        if least * float(ahead.max()) > 1e-6:
             s = -np.log1p(-u * share) / least
             density = least * np.exp(-least * s) / np.maximum(share, 1e-300)
         else:
-            s = u * ahead[inside]
-            density = 1.0 / np.maximum(ahead[inside], 1e-300)
+            s = u * ahead
+            density = 1.0 / np.maximum(ahead, 1e-300)
         amount = light * np.exp(-extinction * s[:, None]) / (PLACES * density[:, None])
         results.append((voxels.index(start + s[:, None] * way), amount, way))
     return results

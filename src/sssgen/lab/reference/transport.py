@@ -16,6 +16,7 @@ from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.geometry import Geometry
 from sssgen.lab.reference.geometry_mesh import RESOLUTION
 from sssgen.lab.reference.render_cache import Batches, cached, store
+from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.transport_mitsuba import Body, Channel, Light, Renderer, body_of, mitsuba
 from sssgen.lab.scene.media import Medium
 from sssgen.support import cache
@@ -83,7 +84,7 @@ def radiance(
     origin, directions = camera.rays(width, height)
     hit = np.flatnonzero(geometry.hits(origin, directions).hit)
     origins = np.broadcast_to(origin, (len(hit), 3))
-    result = radiance_along(geometry, medium, light, origins, directions[hit], samples, seed, resolution)
+    result = radiance_along(geometry, medium, light, origins, directions[hit], Sampling(samples, seed), resolution)
 
     def picture(values: Array) -> Array:
         pixels = np.zeros((height * width, 3))
@@ -99,19 +100,16 @@ def radiance_along(
     light: Light,
     origins: Array,
     directions: Array,
-    samples: int,
-    seed: int = 0,
+    sampling: Sampling,
     resolution: int = RESOLUTION,
-    scatterings: int = 0,
 ) -> Transport:
     """The readings, (n, 3), along rays from outside the body: origins and unit directions (n, 3), in world space.
 
-    Rays that miss the body see the light, if it has a radius or comes from everywhere. With `scatterings` above 0, only
-    light with at most that many scatterings counts. About one sample in ten thousand is assigned to the next ray,
-    because Mitsuba indexes them in single precision. Otherwise as `radiance`.
+    Rays that miss the body see the light, if it has a radius or comes from everywhere. About one sample in ten
+    thousand is assigned to the next ray, because Mitsuba indexes them in single precision. Otherwise as `radiance`.
     """
-    _check(geometry, medium, light, origins, directions, samples)
-    batches = max(-(-samples // BATCH), FEWEST_BATCHES)
+    _check(geometry, medium, light, origins, directions, sampling.samples)
+    batches = max(-(-sampling.samples // BATCH), FEWEST_BATCHES)
     shape = (len(directions), 3)
     if not len(directions):
         return Transport(np.zeros(shape), np.zeros(shape), batches * BATCH)
@@ -124,24 +122,24 @@ def radiance_along(
     ]
     # each channel separately, because free paths that are sampled for a channel have a large variance in another one
     for channel in dict.fromkeys(channels):
-        state = _converge(body, channel, light, rays, batches, seed, scatterings)
+        state = _converge(body, channel, light, rays, batches, sampling)
         equal_channels = [index for index, candidate in enumerate(channels) if candidate == channel]
         mean[:, equal_channels], error[:, equal_channels] = state.mean()[:, None], state.error()[:, None]
     return Transport(mean, error, batches * BATCH)
 
 
 def _converge(
-    body: Body, channel: Channel, light: Light, rays: tuple[Array, Array], count: int, seed: int, scatterings: int
+    body: Body, channel: Channel, light: Light, rays: tuple[Array, Array], count: int, sampling: Sampling
 ) -> Batches:
     """The `count` batches of one channel: from the cache, and newly rendered."""
-    arguments = (_VERSION, mitsuba().__version__, BATCH, channel, light, seed, scatterings)
+    arguments = (_VERSION, mitsuba().__version__, BATCH, channel, light, sampling.seed, sampling.scatterings)
     content = b"".join([repr(arguments).encode(), body.content(), rays[0].tobytes(), rays[1].tobytes()])
     key = cache.digest(content)
     state = cached(key, (len(rays[0]),), count)
     if state.number == count:
         return state
     base = int(np.random.SeedSequence(int(cache.digest(content + b"stream"), 16)).generate_state(1)[0])
-    renderer = Renderer(body, channel, light, rays, base, scatterings)
+    renderer = Renderer(body, channel, light, rays, base, sampling.scatterings)
     written_batches, written = 0, time.monotonic()
     while state.number < count:
         state = state.with_batch(renderer.batch(state.number, BATCH))

@@ -83,17 +83,21 @@ class ConstructorChecker:
         if isinstance(type_, Array):
             quantities = {arg.quantity for arg in args}
             return Typed(ir.Construct(type_, values, call.span), quantities.pop() if len(quantities) == 1 else "")
+        return self.converted(type_, quantity, values, call.span)
+
+    def converted(self, type_: Type, quantity: str, values: tuple[ir.Expr, ...], span: ir.Span) -> Typed:
+        """A constructor of numbers; of a literal, or a value of this type, it is that value."""
         kind, first = kind_of(type_), values[0].type
         if isinstance(type_, Scalar) and isinstance(values[0], ir.Literal):
-            return Typed(self.literal(values[0], type_, call.span), quantity)
+            return Typed(self.literal(values[0], type_, span), quantity)
         if isinstance(first, Vector) and len(values) == 1 and components(first) > components(type_):
             letters = "xyzw"[: components(type_)]
-            values = (ir.Swizzle(vector_of(first.kind, len(letters)), values[0], letters, call.span),)
+            values = (ir.Swizzle(vector_of(first.kind, len(letters)), values[0], letters, span),)
         if kind and not (len(values) == 1 and components(values[0].type) == components(type_)):
             values = tuple([as_kind(value, kind) for value in values])
         if len(values) == 1 and values[0].type == type_:
             return Typed(values[0], quantity)
-        return Typed(ir.Construct(type_, values, call.span), quantity)
+        return Typed(ir.Construct(type_, values, span), quantity)
 
     def with_columns(self, values: tuple[ir.Expr, ...], count: int) -> tuple[ir.Expr, ...]:
         """The arguments of a vector of `count` components, with the columns of the matrix at their end."""

@@ -75,6 +75,17 @@ class Place(NamedTuple):
         return by_length and isinstance(self.type, Vector)
 
 
+class _Walk:
+    """The way of a chain so far."""
+
+    def __init__(self, by_length: bool, fails: Callable[[Range], bool]) -> None:
+        self.by_length = by_length
+        """Whether the range of a vector is that of its length."""
+        self.fails: Callable[[Range], bool] | None = fails
+        """Whether a range fails; None behind the operation that widens, where the widest part is followed."""
+        self.steps: list[Step] = []
+
+
 def _access(node: ir.Expr) -> Place:
     """The variable that an expression is a part of, if it is one, and the way from there."""
     path: list[str | int | None] = []
@@ -203,55 +214,64 @@ class Origins:
         """The steps behind a site's failure, from the operation on."""
         start, fails = self._operand(site, guard)
         place = None if start is None else Place(start)
-        steps: list[Step] = []
+        walk = _Walk(isinstance(site.node, ir.Intrinsic) and not BUILTINS[site.node.name].componentwise, fails)
         visited: set[tuple[int, Path]] = set()
-        by_length = isinstance(site.node, ir.Intrinsic) and not BUILTINS[site.node.name].componentwise
-        widest = False
-        while place is not None and (id(place.node), place.path) not in visited and len(steps) < LONGEST:
+        while place is not None and (id(place.node), place.path) not in visited and len(walk.steps) < LONGEST:
             visited.add((id(place.node), place.path))
-            own = self.trace.range_of(place, by_length)
+            own = self.trace.range_of(place, walk.by_length)
             if own is None:
                 break
-            node, path = place
-            variable = _access(node)
+            variable = _access(place.node)
             if isinstance(variable.node, ir.Local | ir.Global):
-                variable = Place(variable.node, (*variable.path, *path))
-                length = place.is_length(by_length)
-                place, step = self._behind(variable, own, length, by_length, None if widest else fails)
-                is_name = place is not None and isinstance(_access(place.node).node, ir.Local | ir.Global)
-                if step is not None and not (step.what in ("argument", "definition") and is_name):
-                    steps.append(step)
-                continue
-            if isinstance(node, ir.Call):
-                function = self.functions[node.function]
-                returned = [
-                    _part(stmt.value, path)
-                    for stmt in statements(function.body or ())
-                    if isinstance(stmt, ir.Return) and stmt.value
-                ]
-                place = self._worst(returned, by_length, None if widest else fails)
-                if place is not None:
-                    own = self.trace.range_of(place, by_length) or own
-                    length = place.is_length(by_length)
-                    steps.append(Step(place.node.span, "result", function.name, own, length, node=place.node))
-                continue
-            parts = self._parts(node)
-            if not parts:
-                if isinstance(node, ir.Intrinsic):
-                    what = "texel" if BUILTINS[node.name].reads_texels else "operation"
-                    steps.append(Step(node.span, what, "", own, node=node))
-                break
-            failing = [] if widest else self._failing(node, parts, by_length, fails)
-            through = isinstance(node, ir.Swizzle | ir.Index | ir.Member | ir.Construct | ir.Select)
-            if not failing and not widest and not through:
-                length = place.is_length(by_length)
-                steps.append(Step(node.span, "operation", "", own, length, widens=True, node=node))
-                widest, by_length = True, False
-            place = self._worst([Place(part) for part in failing or parts], by_length, None)
-            part = self.trace.range_of(place, by_length) if widest and place is not None else None
-            if part is not None and (part.size > _BOUNDED * own.size or _is_direction(node)):
-                break  # the operation is a bound: its range is not from there
-        return steps
+                variable = Place(variable.node, (*variable.path, *place.path))
+                place = self._through_variable(walk, place, variable, own)
+            elif isinstance(place.node, ir.Call):
+                place = self._through_call(walk, place.node, place.path, own)
+            else:
+                place = self._through_operation(walk, place, own)
+        return walk.steps
+
+    def _through_variable(self, walk: _Walk, place: Place, variable: Place, own: Range) -> Place | None:
+        length = place.is_length(walk.by_length)
+        behind, step = self._behind(variable, own, length, walk.by_length, walk.fails)
+        is_name = behind is not None and isinstance(_access(behind.node).node, ir.Local | ir.Global)
+        if step is not None and not (step.what in ("argument", "definition") and is_name):
+            walk.steps.append(step)
+        return behind
+
+    def _through_call(self, walk: _Walk, call: ir.Call, path: Path, own: Range) -> Place | None:
+        function = self.functions[call.function]
+        returned = [
+            _part(stmt.value, path)
+            for stmt in statements(function.body or ())
+            if isinstance(stmt, ir.Return) and stmt.value
+        ]
+        place = self._worst(returned, walk.by_length, walk.fails)
+        if place is not None:
+            own = self.trace.range_of(place, walk.by_length) or own
+            length = place.is_length(walk.by_length)
+            walk.steps.append(Step(place.node.span, "result", function.name, own, length, node=place.node))
+        return place
+
+    def _through_operation(self, walk: _Walk, place: Place, own: Range) -> Place | None:
+        """The part that fails, or the widest one; None where the range is not from the parts."""
+        node = place.node
+        parts = self._parts(node)
+        if not parts:
+            if isinstance(node, ir.Intrinsic):
+                what = "texel" if BUILTINS[node.name].reads_texels else "operation"
+                walk.steps.append(Step(node.span, what, "", own, node=node))
+            return None
+        failing = self._failing(node, parts, walk.by_length, walk.fails) if walk.fails is not None else []
+        through = isinstance(node, ir.Swizzle | ir.Index | ir.Member | ir.Construct | ir.Select)
+        if not failing and walk.fails is not None and not through:
+            length = place.is_length(walk.by_length)
+            walk.steps.append(Step(node.span, "operation", "", own, length, widens=True, node=node))
+            walk.by_length, walk.fails = False, None
+        behind = self._worst([Place(part) for part in failing or parts], walk.by_length, None)
+        part = self.trace.range_of(behind, walk.by_length) if walk.fails is None and behind is not None else None
+        is_bound = part is not None and (part.size > _BOUNDED * own.size or _is_direction(node))
+        return None if is_bound else behind
 
     def _operand(self, site: Site, guard: Guard) -> tuple[ir.Expr | None, Callable[[Range], bool]]:
         """The operand to blame for a failure, and whether a range of it fails."""

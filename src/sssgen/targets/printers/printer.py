@@ -130,16 +130,7 @@ class Printer:
         if isinstance(expr, ir.Binary):
             return self.binary(expr)
         if isinstance(expr, ir.Swizzle):
-            letters = expr.components
-            if self.kept and expr.span.line == expr.span.end_line:
-                end = expr.span.end_column - 1
-                written = self.source(expr.span)[end - len(letters) : end]
-                if written == letters.translate(_COLOR_LETTERS):
-                    return f"{self.expr(expr.value, POSTFIX)}.{written}", POSTFIX
-            texel = isinstance(expr.value, ir.Intrinsic) and BUILTINS[expr.value.name].kind == "fetch"
-            if texel and components(expr.value.type) == 4:
-                letters = letters.translate(_COLOR_LETTERS)  # readers expect colour channels of a texel
-            return f"{self.expr(expr.value, POSTFIX)}.{letters}", POSTFIX
+            return f"{self.expr(expr.value, POSTFIX)}.{self.letters(expr)}", POSTFIX
         if isinstance(expr, ir.Global):
             return self.global_value(expr), PRIMARY
         if isinstance(expr, ir.Intrinsic):
@@ -158,6 +149,16 @@ class Printer:
         if isinstance(expr, ir.Index):
             return f"{self.expr(expr.value, POSTFIX)}[{self.expr(expr.index)}]", POSTFIX
         raise TypeError(f"not an expression: {expr!r}")
+
+    def letters(self, swizzle: ir.Swizzle) -> str:
+        """The letters of a swizzle: colours where the author wrote them, and of a texel, as readers expect."""
+        value, colors = swizzle.value, swizzle.components.translate(_COLOR_LETTERS)
+        if self.kept and swizzle.span.line == swizzle.span.end_line:
+            end = swizzle.span.end_column - 1
+            if self.source(swizzle.span)[end - len(colors) : end] == colors:
+                return colors
+        texel = isinstance(value, ir.Intrinsic) and BUILTINS[value.name].kind == "fetch"
+        return colors if texel and components(value.type) == 4 else swizzle.components
 
     def local(self, local: ir.Local) -> tuple[str, int]:
         text = self.inlined.get(local.name)
