@@ -269,7 +269,7 @@ def test_no_shell_normalises_by_itself(target: str, compiled_shell: Callable[[st
             shell = [line for number, line in lines if str(number) not in places]
             assert [line for line in shell if NORMALISING.search(line)] == [], file
             calls = [line for line in shell if re.search(r"\b(?:sss_)?safe_normalize\w*\(", line)]
-            defined = re.search(r"^\S+ (?:sss_)?safe_normalize\w*\(", shader.files[file], re.MULTILINE)
+            defined = re.search(r"^\s*(?!return)\S+ (?:sss_)?safe_normalize\w*\(", shader.files[file], re.MULTILINE)
             assert not calls or defined, f"{file}: a function is called and not defined"
 
 

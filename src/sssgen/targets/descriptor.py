@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from sssgen.ir.surface_fields import NAMES, OPTIONAL
 from sssgen.ir.types import BY_NAME
+from sssgen.lang.check.quantities import SCALARS
 from sssgen.passes.capabilities import Capabilities
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.paths import stem
@@ -228,7 +229,8 @@ class Target(NamedTuple):
     material_group: int = 0
     """WGSL: the group of the material's uniform block, textures and samplers."""
     ports: Mapping[str, Port] = {}
-    """Shader Graph, Unreal: chain input → its port, in the order of the node."""
+    """Shader Graph, Unreal: chain input, or `Front` → its port, in the order of the node. The names of those that the
+    program reads are the place `ports` of the frame."""
     embedded: Mapping[str, Embedded] = {}
     """Name in the templates → the functions of another target that the files contain, too."""
     properties: Properties = Properties()
@@ -315,18 +317,18 @@ _NESTED = ("files", "ports", "embedded", *_FRAME)
 _REQUIRED = ("title", "language", "types", "files")
 FACTS = (
     "two_sided", "lit", "unlit", "mesh", "screen", "picture", "opaque", "mask", "blend",
-    "normal_mapped", "translucency", "subsurface", "per_light", "lighting",
+    "normal_mapped", "tangent_frame", "translucency", "subsurface", "per_light", "lighting",
 )  # fmt: skip
 """The properties of a material for which a descriptor may have variants; the later ones win. `screen` is a material
 that makes its own picture, without a mesh, and `picture` one of these that reads no ray of the eye; `opaque`, `mask`
-and `blend` are alpha modes. The last five are those of the chain in a file: a technique writes the normal; light comes
-through; it does so alike from all lights (`subsurface`), or depends on the light (`per_light`); a technique lights."""
+and `blend` are alpha modes. The last six are those of the chain in a file: a technique writes the normal; one does, or
+reads T or B (`tangent_frame`); light comes through; it does so alike from all lights (`subsurface`), or depends on the light (`per_light`); a technique lights."""
 _KEYS: dict[str, Collection[str]] = {
     "": ("extends", "words", *Target._fields[:-1]),
     "types": (*BY_NAME, "sampler", "samplerShadow"),
     "inputs": {**CHAIN_INPUTS, **SHELL_INPUTS},
     "light_inputs": CHAIN_INPUTS,
-    "ports": CHAIN_INPUTS,
+    "ports": (*CHAIN_INPUTS, "Front"),
     "lacks": OPTIONAL,
     "variants": FACTS,
     "stage_builtins": STAGE_BUILTINS,
@@ -392,7 +394,7 @@ class _Reader:
 
     def frames(self, table: Mapping[str, Any], section: str) -> dict[str, Any]:
         """The sections of a frame that a table has."""
-        names = {"frame": (), "surface": NAMES, "absent": NAMES}
+        names = {"frame": (), "surface": (*NAMES, *SCALARS), "absent": NAMES}
         found: dict[str, Any] = {
             key: self.parts(table[key], section + key, names[key]) for key in names if key in table
         }

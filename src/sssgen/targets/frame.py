@@ -101,9 +101,10 @@ def _mentioned(named: Mapping[str, list[tuple[str, str]]], text: str, stage: str
     """The keys of the parts that a text of a stage mentions."""
     for path in _PATH.findall(text):
         members = path.split(".")
-        keys = [key for end in range(1, len(members) + 1) for key in named.get(".".join(members[:end]), ())]
-        own = [key for key in keys if stage_of(key[0]) == stage]
-        visible = own or [key for key in keys if stage_of(key[0]) == ""]
-        yield from visible
-        if stage != VERTEX and any(key[0] == VARYINGS for key in visible):
-            yield from [key for key in keys if stage_of(key[0]) == VERTEX]
+        for end in range(1, len(members) + 1):
+            keys = named.get(".".join(members[:end]), [])
+            visible = [key for key in keys if stage_of(key[0]) == stage]
+            visible = visible or [key for key in keys if stage_of(key[0]) == ""]
+            yield from visible
+            if stage != VERTEX and any(place == VARYINGS for place, _ in visible):
+                yield from [key for key in keys if stage_of(key[0]) == VERTEX]

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from sssgen.ir.surface_fields import NAMES
+from sssgen.lang.check.quantities import SCALARS
 from sssgen.targets.descriptor import Target
 from sssgen.targets.frame import LIGHT, SURFACE, stage_of, used_parts
 
@@ -50,9 +51,11 @@ def used_frame(
         stage = LIGHT if kind in PER_LIGHT else SURFACE if kind == SURFACE else ""
         own = in_light if stage == LIGHT else target.inputs
         texts += [(stage, own.get(name, name)) for name in names]
-    sinks = {place: _rows(target, place, fields) for place in {**target.surface, **target.absent}}
+    places = {**target.surface, **target.absent}
+    sinks = {place: _rows(target, place, fields) if "color" not in entries else [] for place in places}
     of_sinks = [(stage_of(place), row) for place, rows in sinks.items() for row in rows]
-    frame = used_parts(target.frame, target.reads, [*texts, *of_sinks])
+    parts = {**target.frame, "ports": {name: name for name in target.ports}}
+    frame = used_parts(parts, target.reads, [*texts, *of_sinks])
     surface = {place: "\n".join(rows) for place, rows in sinks.items()}
     return UsedFrame(target, facts, frame, surface, [text for _, text in texts])
 
@@ -62,12 +65,14 @@ def _chain_facts(entries: Mapping[str, Sequence[str]], fields: Collection[str]) 
     facts = {kind for kind in PER_LIGHT if kind in entries}
     if "translucency" in entries:
         facts.add("subsurface" if OF_A_LIGHT.isdisjoint(entries["translucency"]) else "per_light")
-    return facts | ({"normal_mapped"} if "normal" in fields else set())
+    facts |= {"normal_mapped"} if "normal" in fields else set()
+    framed = "normal" in fields or any(name in ("T", "B") for names in entries.values() for name in names)
+    return facts | ({"tangent_frame"} if framed else set())
 
 def _rows(target: Target, place: str, fields: Collection[str]) -> list[str]:
-    """The texts of a place for the values of the surface, in the order of their table."""
+    """The texts of a place for the values of the surface, in the order of their table; then those for the lights."""
     given, absent = target.surface.get(place, {}), target.absent.get(place, {})
-    texts = [given.get(name, "") if name in fields else absent.get(name, "") for name in NAMES]
+    texts = [given.get(name, "") if name in fields else absent.get(name, "") for name in (*NAMES, *SCALARS)]
     return [text for text in texts if text]
 
 

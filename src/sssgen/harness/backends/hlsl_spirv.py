@@ -16,9 +16,9 @@ from sssgen.harness.backends.spirv_rewriting import rewritten
 from sssgen.harness.compilers import CompilerMissing, Message, dxc, glslang
 
 _ENDINGS = {
-    "position": ("POSITION", "_position", "_vertex"),
-    "normal": ("NORMAL", "_normal"),
-    "tangent": ("TANGENT", "_tangent"),
+    "position": ("POSITION", "_position", "_positionOS", "_vertex"),
+    "normal": ("NORMAL", "_normal", "_normalOS"),
+    "tangent": ("TANGENT", "_tangent", "_tangentOS"),
     "uv": ("TEXCOORD0", "_uv", "_texcoord"),
     "uv2": ("TEXCOORD1", "_uv2", "_texcoord1"),
     "color": ("COLOR", "COLOR0", "_color"),
