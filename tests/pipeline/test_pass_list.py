@@ -33,7 +33,9 @@ def test_the_trace_of_emit_shows_each_pass_that_changed_the_module(tmp_path: Pat
         assert main([*command, "--trace"]) == 0
         files = sorted((tmp_path / "ice.wgsl.trace").iterdir())
         names = [path.name for path in files]
-        assert names[:4] == ["01-link.ir", "02-chain.ir", "03-shell.ir", "04-fold.ir"] and names[-1].endswith("-names.ir")
+        assert names[:4] == ["01-link.ir", "02-chain.ir", "03-shell.ir", "04-fold.ir"] and names[-1].endswith(
+            "-names.ir"
+        )
         (tmp_path / "ice.wgsl.trace" / "99-old.ir").write_text("of an earlier run", "utf-8")
     assert (tmp_path / "ice.wgsl").read_text("utf-8") == untraced
     assert any(path.name.endswith("-masks.ir") for path in (tmp_path / "ice.numpy.trace").iterdir())
