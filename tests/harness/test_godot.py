@@ -37,6 +37,7 @@ from sssgen.targets import registry
 from validate import module_of
 
 GODOT = "godot"
+TEMPLATES = ROOT / "templates" / "godot"
 
 
 def shader(name: str) -> str:
@@ -79,8 +80,25 @@ def test_colors_are_converted_where_they_are_read() -> None:
 
 
 def test_textures_of_the_program_are_explained_at_the_head() -> None:
-    head = shader("jade_ring").partition("shader_type")[0]
-    assert "// back_face_map: draw the translucent body" in head and "taken for one from afar" in head
+    text = shader("jade_ring")
+    assert "// back_face_map: draw the translucent body" in text.partition("shader_type")[0]
+    assert "taken for one from afar" in text.partition("void light()")[2]
+
+
+def test_light_gets_what_it_reads() -> None:
+    """Of the values of the surface, fragment() passes on those that light() reads."""
+    both = sssgen.compile("ice", GODOT).files
+    godots, own = both["ice.gdshader"], both["ice.own_light.gdshader"]
+    assert re.findall(r"varying \w+ passed_(\w+);", godots) == ["transmittance"]
+    assert {"albedo", "roughness"} <= set(re.findall(r"varying \w+ passed_(\w+);", own))
+    for text in (godots, own):
+        passed = re.findall(r"varying \w+ (passed_\w+);", text)
+        assert all(f"    {name} = surface." in text and f"= {name};" in text for name in passed)
+
+
+def test_each_file_has_the_functions_that_it_calls() -> None:
+    both = sssgen.compile("ice", GODOT).files
+    assert "reflected_light(" in both["ice.gdshader"] and "reflected_light(" not in both["ice.own_light.gdshader"]
 
 
 def test_no_parameter_has_the_name_of_a_uniform() -> None:
@@ -99,11 +117,14 @@ def test_matrices_by_columns() -> None:
 
 def test_variables_of_the_shell_are_reserved_at_file_scope() -> None:
     """Godot refuses a variable or a parameter with the name of a uniform."""
-    paths = [*(ROOT / "templates" / "godot").glob("*.j2"), ROOT / "templates" / "common" / "unit_vector.j2"]
-    texts = [re.sub(r"\{#.*?#\}|//[^\n]*", "", path.read_text("utf-8"), flags=re.DOTALL) for path in paths]
-    declared = set(re.findall(r"(?:float|vec[234]|mat4|}}) (\w+)(?= =|\)|;)", "\n".join(texts)))
+    texts = [re.sub(r"\{#.*?#\}", "", path.read_text("utf-8"), flags=re.DOTALL) for path in TEMPLATES.glob("*.j2")]
+    target = registry.load(GODOT)
+    for parts in (target, *target.variants.values()):
+        texts += [text for place in (*parts.frame.values(), *parts.surface.values()) for text in place.values()]
+    code = re.sub(r"//[^\n]*", "", "\n".join(texts))
+    declared = set(re.findall(r"(?:float|vec[234]|mat4|}}) (\w+)(?= =|\)|;)", code))
     names = registry.load(GODOT).names
-    assert {"v", "surface", "cos_view", "texel", "world_position", "N"} <= declared
+    assert {"reflected", "surface", "light_color", "texel", "world_position", "N"} <= declared
     assert declared <= names.local | names.shell
 
 

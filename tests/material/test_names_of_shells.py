@@ -24,12 +24,15 @@ LIGHT = "vec3 made_light(world_direction N, world_direction V, world_direction L
 
 
 def words_of_shells() -> set[str]:
-    """The identifiers of the templates and of the descriptors' expressions, but for the names of builtins."""
+    """The identifiers of the templates and of the descriptors' texts, but for the names of builtins."""
     texts = [
         re.sub(r"\{#.*?#\}", "", path.read_text("utf-8"), flags=re.DOTALL) for path in ROOT.glob("templates/**/*.j2")
     ]
     for target in map(registry.load, registry.names()):
-        texts += [*target.inputs.values(), *target.light_inputs.values(), *target.names.shell]
+        texts += target.names.shell
+        for part in (target, *target.variants.values()):
+            places = [part.inputs, part.light_inputs, *part.frame.values(), *part.surface.values(), *part.absent.values()]
+            texts += [text for place in places for text in place.values()]
     return set(re.findall(r"[A-Za-z_]\w*", " ".join(texts))) | TAKEN - BUILTINS.keys()
 
 

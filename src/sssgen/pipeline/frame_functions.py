@@ -6,7 +6,7 @@ import os
 
 from sssgen.ir.formats import Format
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.nodes import Module
+from sssgen.ir.nodes import Function, Module
 from sssgen.ir.surface_fields import NAMES
 from sssgen.ir.types import VEC3
 from sssgen.lang.loader import load_file
@@ -30,16 +30,17 @@ def add_frame_functions(state: State) -> Module:
         used_frame(state.target, {kind: names for kind, names in inputs.items() if kind not in kinds}, shell, fields)
         for kinds in left_out
     ]
-    module = state.module
+    own = {function.key for function in state.module.functions}
+    added: dict[str, Function] = {}
     whole = state.form == "shader"
     for name in dict.fromkeys(name for used in frames for name in named(used, whole)):
         if name not in NAMES and (name == _NORMALIZE or os.path.isfile(_path(name))):
-            added = _function(name, state.format, state.guards)
-            keys = {function.key for function in module.functions}
-            new = tuple(function for function in added.functions if function.key not in keys)
-            module = module._replace(functions=(*new, *module.functions))
-            state.frame_functions[name] = added.functions[-1]
-    return module
+            functions = _function(name, state.format, state.guards).functions
+            if functions[-1].key not in own:  # with those that it calls before it
+                added |= {function.key: function for function in functions}
+            state.frame_functions[name] = functions[-1]
+    others = tuple(function for function in state.module.functions if function.key not in added)
+    return state.module._replace(functions=(*added.values(), *others))
 
 
 def _path(name: str) -> str:

@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 from sssgen.ir.contracts import Assumed
 from sssgen.ir.formats import FLOAT32
-from sssgen.ir.nodes import Function, Module
+from sssgen.ir.nodes import Function, Member, Module
 from sssgen.ir.types import Struct
+from sssgen.ir.walk import all_expressions
 from sssgen.lang.source_lines import comment_behind, comments_before, source_line
 from sssgen.material.chain_assembly import Entry
 from sssgen.material.model import Material
@@ -185,6 +186,7 @@ def finish_program(state: State, trace: Trace | None = None) -> Program:
     entries = {kind: final(entry) for kind, entry in state.entries.items()}
     name = state.renames.get("Surface", "Surface")
     surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == name), None)
+    surface_reads = {kind: _members_read(function, surface) for kind, (function, _) in entries.items()}
     module = module._replace(functions=tuple([function._replace(body=()) for function in module.functions]))
     warnings = [
         Diagnostic("warning", note.message, note.span, note.hint, source_line(note.span)) for note in state.notes
@@ -193,8 +195,14 @@ def finish_program(state: State, trace: Trace | None = None) -> Program:
         module, entries, surface, state.source_names, About("", ""), encoded, parts, state.owners, state.renames,
         {kind: cost._asdict() for kind, cost in state.costs.items()}, warnings, state.settings,
         report(state.guarded.sites, state.guarded.guarded, folder) if state.guarded else {}, state.stage,
-        reached=reached, shell=shell, frame_functions=state.frame_names, folder=folder,
+        reached=reached, shell=shell, frame_functions=state.frame_names, folder=folder, surface_reads=surface_reads,
     )  # fmt: skip
+
+
+def _members_read(function: Function, surface: Struct | None) -> frozenset[str]:
+    """The members of the surface that a function reads."""
+    expressions = all_expressions(function.body or ())
+    return frozenset(expr.field for expr in expressions if type(expr) is Member and expr.value.type == surface)
 
 
 def _reached(state: State, module: Module) -> dict[str, frozenset[str]]:

@@ -25,7 +25,7 @@ from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text
 from sssgen.targets.printers.printer import Comments, Printer
 from sssgen.targets.templates import NO_LINES, render
 from sssgen.targets.uniform_layout import Member, padding, place
-from sssgen.targets.used_frame import PER_LIGHT, UsedFrame, named, used_frame, with_names
+from sssgen.targets.used_frame import PER_LIGHT, UsedFrame, named, named_per_light, used_frame, with_names
 
 _MARK = re.compile(r"\x02(\d{1,9})\x03", re.ASCII)
 
@@ -84,6 +84,8 @@ class Program(NamedTuple):
     """The function around the chain of a target without an engine, and the values that the target supplies to it."""
     frame_functions: Mapping[str, str] = {}
     """A function of `shells/` that the target's frame names → its name in the text."""
+    surface_reads: Mapping[str, frozenset[str]] = {}
+    """Entry kind → the members of the surface that its function reads."""
     reached: Mapping[str, frozenset[str]] = {}
     """Entry kind, or function of the frame → the names of the functions that it calls, where a file of the target
     leaves an entry out."""
@@ -281,6 +283,9 @@ def _context(
     entries = {kind: _entry(target, printer, kind, *program.entries[kind], program.frame_functions) for kind in kinds}
     inputs = {name for kind in kinds for name in program.entries[kind][1]}
     _check_properties(target, program)
+    members = [{"name": field.name, "type": printer.type(field.type)} for field in surface.fields] if surface else []
+    per_light = [program.surface_reads[kind] for kind in PER_LIGHT if kind in kinds]
+    read_per_light = frozenset(named_per_light(used)).union(*per_light)
     texts_of_names = {**program.frame_functions} | _surface_values(target, printer, fields)
     return {
         "frame": {place: with_names(text, texts_of_names) for place, text in used.frame.items()},
@@ -299,7 +304,8 @@ def _context(
         "textures": _textures(printer, program),
         "entries": entries,
         "inputs": inputs,
-        "surface_fields": [{"name": f.name, "type": printer.type(f.type)} for f in surface.fields] if surface else [],
+        "surface_fields": members,
+        "light_fields": [member for member in members if member["name"] in read_per_light],
         "library": [function.name for function in program.module.functions],
         "encoded": program.encoded or "output" in entries,
         "workgroup": program.module.workgroup,

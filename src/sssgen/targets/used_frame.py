@@ -83,6 +83,13 @@ def named(used: UsedFrame, whole: bool = True) -> Iterator[str]:
         yield from _NAMED.findall(text)
 
 
+def named_per_light(used: UsedFrame) -> Iterator[str]:
+    """The same in the texts of the loop over the lights."""
+    for place, text in (*used.frame.items(), *used.surface.items()):
+        if stage_of(place) == LIGHT:
+            yield from _NAMED.findall(text)
+
+
 def with_names(text: str, names: Mapping[str, str]) -> str:
     """A text with these texts in place of the names in braces. Other braces stay."""
     return _NAMED.sub(lambda match: names.get(match[1], match[0]), text)
