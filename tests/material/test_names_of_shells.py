@@ -31,7 +31,13 @@ def words_of_shells() -> set[str]:
     for target in map(registry.load, registry.names()):
         texts += target.names.shell
         for part in (target, *target.variants.values()):
-            places = [part.inputs, part.light_inputs, *part.frame.values(), *part.surface.values(), *part.absent.values()]
+            places = [
+                part.inputs,
+                part.light_inputs,
+                *part.frame.values(),
+                *part.surface.values(),
+                *part.absent.values(),
+            ]
             texts += [text for place in places for text in place.values()]
     return set(re.findall(r"[A-Za-z_]\w*", " ".join(texts))) | TAKEN - BUILTINS.keys()
 

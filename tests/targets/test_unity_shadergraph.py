@@ -322,7 +322,9 @@ def test_one_graph_includes_the_files_of_several_materials(compiler: Callable[[s
     """All of them read light and declare functions, constants and types of the same names in the techniques."""
     graphs = [Graph(path) for path in (str(LEAF), "wax_mouse", "jade_ring")]
     text = "".join(graph.hlsl for graph in graphs)
-    assert text.count("float in_layers(uint light_layers)") == len(graphs) == len(re.findall(r"struct \w+_Surface", text))
+    assert (
+        text.count("float in_layers(uint light_layers)") == len(graphs) == len(re.findall(r"struct \w+_Surface", text))
+    )
     assert errors(compiler("unity").check(Source(text, "unity-shadergraph", "library"))) == []
     for part in (r"\b(?:leaf|wax_mouse|jade_ring)_", "#ifndef SSSGEN_IN_LAYERS"):
         wrong = re.sub(part, "#if 1" if part[0] == "#" else "", text)

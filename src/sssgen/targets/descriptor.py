@@ -320,9 +320,10 @@ FACTS = (
     "normal_mapped", "tangent_frame", "translucency", "subsurface", "per_light", "lighting",
 )  # fmt: skip
 """The properties of a material for which a descriptor may have variants; the later ones win. `screen` is a material
-that makes its own picture, without a mesh, and `picture` one of these that reads no ray of the eye; `opaque`, `mask`
-and `blend` are alpha modes. The last six are those of the chain in a file: a technique writes the normal; one does, or
-reads T or B (`tangent_frame`); light comes through; it does so alike from all lights (`subsurface`), or depends on the light (`per_light`); a technique lights."""
+that makes its own picture, without a mesh, and `picture` one of these that reads no ray of the eye; `opaque`,
+`mask` and `blend` are alpha modes. The last six are those of the chain in a file: a technique writes the normal;
+one does, or reads T or B (`tangent_frame`); light comes through; it does so alike from all lights (`subsurface`),
+or depends on the light (`per_light`); a technique lights."""
 _KEYS: dict[str, Collection[str]] = {
     "": ("extends", "words", *Target._fields[:-1]),
     "types": (*BY_NAME, "sampler", "samplerShadow"),

@@ -69,6 +69,7 @@ def _chain_facts(entries: Mapping[str, Sequence[str]], fields: Collection[str]) 
     framed = "normal" in fields or any(name in ("T", "B") for names in entries.values() for name in names)
     return facts | ({"tangent_frame"} if framed else set())
 
+
 def _rows(target: Target, place: str, fields: Collection[str]) -> list[str]:
     """The texts of a place for the values of the surface, in the order of their table; then those for the lights."""
     given, absent = target.surface.get(place, {}), target.absent.get(place, {})
