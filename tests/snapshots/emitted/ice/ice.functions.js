@@ -28,12 +28,12 @@ const float sss_OPAQUE_DEPTH = 80.0;
 
 // The direction of \`x\`; of a zero vector, 0.
 vec2 sss_safe_normalize(vec2 x) {
-    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
 }
 
 // The direction of \`x\`; of a zero vector, 0.
 vec3 sss_safe_normalize(vec3 x) {
-    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
 }
 
 // Scrambles the bits of \`x\`; 0 stays 0.
@@ -176,14 +176,13 @@ float sss_left_at(vec2 uv, float edge, float erosion, sampler2D erosion_texture)
 void sss_alpha_erosion(vec2 uv, inout float alpha, inout vec3 normal, vec2 uv_per_unit, float texel_size,
     float edge, float erosion, sampler2D erosion_texture, float edge_height) {
     vec2 e = vec2(texel_size, 0.0);
-    vec2 at = uv;
-    float across = sss_left_at(at + e, edge, erosion, erosion_texture)
-        - sss_left_at(at - e, edge, erosion, erosion_texture);
-    float up = sss_left_at(at + e.yx, edge, erosion, erosion_texture)
-        - sss_left_at(at - e.yx, edge, erosion, erosion_texture);
+    float across = sss_left_at(uv + e, edge, erosion, erosion_texture)
+        - sss_left_at(uv - e, edge, erosion, erosion_texture);
+    float up = sss_left_at(uv + e.yx, edge, erosion, erosion_texture)
+        - sss_left_at(uv - e.yx, edge, erosion, erosion_texture);
     vec2 slope = edge_height * uv_per_unit * vec2(across, up) / (2.0 * texel_size);
     normal = sss_blend_normals(normal, sss_normal_of_slope(slope));
-    alpha *= sss_left_at(at, edge, erosion, erosion_texture);
+    alpha *= sss_left_at(uv, edge, erosion, erosion_texture);
 }
 
 // The transmitted light for a lobe value of 0..1 and a transmittance.
@@ -259,12 +258,12 @@ const sss_OPAQUE_DEPTH: f32 = 80.0;
 
 // The direction of \`x\`; of a zero vector, 0.
 fn sss_safe_normalize_vec2(x: vec2f) -> vec2f {
-    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+    return x * select(0.0, inverseSqrt(dot(x, x)), dot(x, x) > 1.0e-30);
 }
 
 // The direction of \`x\`; of a zero vector, 0.
 fn sss_safe_normalize_vec3(x: vec3f) -> vec3f {
-    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+    return x * select(0.0, inverseSqrt(dot(x, x)), dot(x, x) > 1.0e-30);
 }
 
 // Scrambles the bits of \`x\`; 0 stays 0.
@@ -417,14 +416,13 @@ fn sss_alpha_erosion(uv: vec2f, alpha: ptr<function, f32>, normal: ptr<function,
     texel_size: f32, edge: f32, erosion: f32, erosion_texture: texture_2d<f32>,
     erosion_texture_sampler: sampler, edge_height: f32) {
     let e = vec2f(texel_size, 0.0);
-    let at = uv;
-    let across = sss_left_at(at + e, edge, erosion, erosion_texture, erosion_texture_sampler)
-        - sss_left_at(at - e, edge, erosion, erosion_texture, erosion_texture_sampler);
-    let up = sss_left_at(at + e.yx, edge, erosion, erosion_texture, erosion_texture_sampler)
-        - sss_left_at(at - e.yx, edge, erosion, erosion_texture, erosion_texture_sampler);
+    let across = sss_left_at(uv + e, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - sss_left_at(uv - e, edge, erosion, erosion_texture, erosion_texture_sampler);
+    let up = sss_left_at(uv + e.yx, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - sss_left_at(uv - e.yx, edge, erosion, erosion_texture, erosion_texture_sampler);
     let slope = edge_height * uv_per_unit * vec2f(across, up) / (2.0 * texel_size);
     *normal = sss_blend_normals(*normal, sss_normal_of_slope(slope));
-    *alpha *= sss_left_at(at, edge, erosion, erosion_texture, erosion_texture_sampler);
+    *alpha *= sss_left_at(uv, edge, erosion, erosion_texture, erosion_texture_sampler);
 }
 
 // The transmitted light for a lobe value of 0..1 and a transmittance.

@@ -29,12 +29,12 @@ constant float OPAQUE_DEPTH = 80.0;
 
 // The direction of `x`; of a zero vector, 0.
 float2 safe_normalize(float2 x) {
-    return x * rsqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? rsqrt(dot(x, x)) : 0.0);
 }
 
 // The direction of `x`; of a zero vector, 0.
 float3 safe_normalize(float3 x) {
-    return x * rsqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? rsqrt(dot(x, x)) : 0.0);
 }
 
 // Scrambles the bits of `x`; 0 stays 0.
@@ -184,14 +184,13 @@ void alpha_erosion(float2 uv, thread float& alpha, thread float3& normal, float2
     float texel_size, float edge, float erosion, texture2d<float> erosion_texture,
     sampler erosion_texture_sampler, float edge_height) {
     float2 e = float2(texel_size, 0.0);
-    float2 at = uv;
-    float across = left_at(at + e, edge, erosion, erosion_texture, erosion_texture_sampler)
-        - left_at(at - e, edge, erosion, erosion_texture, erosion_texture_sampler);
-    float up = left_at(at + e.yx, edge, erosion, erosion_texture, erosion_texture_sampler)
-        - left_at(at - e.yx, edge, erosion, erosion_texture, erosion_texture_sampler);
+    float across = left_at(uv + e, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - left_at(uv - e, edge, erosion, erosion_texture, erosion_texture_sampler);
+    float up = left_at(uv + e.yx, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - left_at(uv - e.yx, edge, erosion, erosion_texture, erosion_texture_sampler);
     float2 slope = edge_height * uv_per_unit * float2(across, up) / (2.0 * texel_size);
     normal = blend_normals(normal, normal_of_slope(slope));
-    alpha *= left_at(at, edge, erosion, erosion_texture, erosion_texture_sampler);
+    alpha *= left_at(uv, edge, erosion, erosion_texture, erosion_texture_sampler);
 }
 
 // The transmitted light for a lobe value of 0..1 and a transmittance.
@@ -228,7 +227,8 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
     float3 F0 = mix(float3(0.04), min(albedo, float3(1.0)), float3(metallic));
     float3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     float3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
-    return (diffuse + facets * visible * F) * NoL * light_color;
+    float3 reflected = (diffuse + facets * visible * F) * NoL;
+    return reflected * light_color;
 }
 
 // The values of the surface that do not depend on a light.

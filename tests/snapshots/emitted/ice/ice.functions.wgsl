@@ -25,12 +25,12 @@ const OPAQUE_DEPTH: f32 = 80.0;
 
 // The direction of `x`; of a zero vector, 0.
 fn safe_normalize_vec2(x: vec2f) -> vec2f {
-    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+    return x * select(0.0, inverseSqrt(dot(x, x)), dot(x, x) > 1.0e-30);
 }
 
 // The direction of `x`; of a zero vector, 0.
 fn safe_normalize_vec3(x: vec3f) -> vec3f {
-    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+    return x * select(0.0, inverseSqrt(dot(x, x)), dot(x, x) > 1.0e-30);
 }
 
 // Scrambles the bits of `x`; 0 stays 0.
@@ -182,14 +182,13 @@ fn alpha_erosion(uv: vec2f, alpha: ptr<function, f32>, normal: ptr<function, vec
     texel_size: f32, edge: f32, erosion: f32, erosion_texture: texture_2d<f32>,
     erosion_texture_sampler: sampler, edge_height: f32) {
     let e = vec2f(texel_size, 0.0);
-    let at = uv;
-    let across = left_at(at + e, edge, erosion, erosion_texture, erosion_texture_sampler)
-        - left_at(at - e, edge, erosion, erosion_texture, erosion_texture_sampler);
-    let up = left_at(at + e.yx, edge, erosion, erosion_texture, erosion_texture_sampler)
-        - left_at(at - e.yx, edge, erosion, erosion_texture, erosion_texture_sampler);
+    let across = left_at(uv + e, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - left_at(uv - e, edge, erosion, erosion_texture, erosion_texture_sampler);
+    let up = left_at(uv + e.yx, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - left_at(uv - e.yx, edge, erosion, erosion_texture, erosion_texture_sampler);
     let slope = edge_height * uv_per_unit * vec2f(across, up) / (2.0 * texel_size);
     *normal = blend_normals(*normal, normal_of_slope(slope));
-    *alpha *= left_at(at, edge, erosion, erosion_texture, erosion_texture_sampler);
+    *alpha *= left_at(uv, edge, erosion, erosion_texture, erosion_texture_sampler);
 }
 
 // The transmitted light for a lobe value of 0..1 and a transmittance.
@@ -226,7 +225,8 @@ fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughnes
     let F0 = mix(vec3f(0.04), min(albedo, vec3f(1.0)), metallic);
     let F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     let diffuse = albedo * (1.0 - metallic) * (1.0 - F);
-    return (diffuse + facets * visible * F) * NoL * light_color;
+    let reflected = (diffuse + facets * visible * F) * NoL;
+    return reflected * light_color;
 }
 
 // The values of the surface that do not depend on a light.

@@ -23,6 +23,7 @@ const float JITTER = 0.6;
 const float OPAQUE_DISTANCE = 1.0e-6;
 const float ENDLESS = 10000.0;
 const float OPAQUE_DEPTH = 80.0;
+const int MAX_LIGHTS = 4;
 
 uniform float variation;  // How much the levels of the cells differ: 0 = all are equal
 uniform float cell_count;  // Number of cells along one unit of texture coordinate
@@ -58,12 +59,12 @@ uniform sampler2D erosion_texture;  // Mask of the erosion: dark parts disappear
 
 // The direction of `x`; of a zero vector, 0.
 vec2 safe_normalize(vec2 x) {
-    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
 }
 
 // The direction of `x`; of a zero vector, 0.
 vec3 safe_normalize(vec3 x) {
-    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
 }
 
 // Scrambles the bits of `x`; 0 stays 0.
@@ -202,12 +203,11 @@ float left_at(vec2 uv) {
 // Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
 void alpha_erosion(vec2 uv, inout float alpha, inout vec3 normal) {
     vec2 e = vec2(texel_size, 0.0);
-    vec2 at = uv;
-    float across = left_at(at + e) - left_at(at - e);
-    float up = left_at(at + e.yx) - left_at(at - e.yx);
+    float across = left_at(uv + e) - left_at(uv - e);
+    float up = left_at(uv + e.yx) - left_at(uv - e.yx);
     vec2 slope = edge_height * uv_per_unit * vec2(across, up) / (2.0 * texel_size);
     normal = blend_normals(normal, normal_of_slope(slope));
-    alpha *= left_at(at);
+    alpha *= left_at(uv);
 }
 
 // The transmitted light for a lobe value of 0..1 and a transmittance.
@@ -240,7 +240,8 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     vec3 F0 = mix(vec3(0.04), min(albedo, 1.0), metallic);
     vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
-    return (diffuse + facets * visible * F) * NoL * light_color;
+    vec3 reflected = (diffuse + facets * visible * F) * NoL;
+    return reflected * light_color;
 }
 
 // The values of the surface that do not depend on a light.
@@ -274,10 +275,9 @@ vec3 evaluate_lighting(Surface surface, vec3 N, vec3 V, vec3 L, vec3 light_color
 
 uniform vec3 camera_position;
 uniform float time;  // s
-const int MAX_LIGHTS = 4;
 uniform int light_count;
-uniform vec4 light_positions[MAX_LIGHTS];  // w = 1: where the light is; w = 0: the direction towards it
-uniform vec3 light_colors[MAX_LIGHTS];
+uniform vec4 light_positions[4];  // w = 1: where the light is; w = 0: the direction towards it
+uniform vec3 light_colors[4];
 uniform vec3 ambient_color;
 
 in vec3 v_position;
@@ -286,29 +286,26 @@ in vec4 v_tangent;
 in vec2 v_uv;
 out vec4 fragment_color;
 
-// v / |v|; 0 stays 0, of which normalize makes NaN.
-vec3 unit_vector(vec3 v) {
-    float square = dot(v, v);
-    return square > 1e-30 ? v * inversesqrt(square) : vec3(0.0);
-}
-
 void main() {
-    vec3 V = unit_vector(camera_position - v_position);
-    vec3 N = unit_vector(v_normal);
-    vec3 T = unit_vector(v_tangent.xyz);
+    vec3 V = safe_normalize(camera_position - v_position);
+    vec3 N = safe_normalize(v_normal);
+    vec3 T = safe_normalize(v_tangent.xyz);
     vec3 B = cross(N, T) * v_tangent.w;
     Surface surface = evaluate_surface(v_uv, time);
-    N = unit_vector(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
-
+    vec3 across = T * surface.normal.x + B * surface.normal.y;
+    N = safe_normalize(across + N * surface.normal.z);
     vec3 color = ambient_color * surface.albedo + surface.emission;
     for (int i = 0; i < min(light_count, MAX_LIGHTS); i++) {
-        vec3 to_light = light_positions[i].xyz - v_position * light_positions[i].w;
-        float distance_squared = max(dot(to_light, to_light), 1e-4);
+        float near = light_positions[i].w;
+        vec3 to_light = light_positions[i].xyz - v_position * near;
+        float distance_squared = max(dot(to_light, to_light), 0.0001);
         vec3 L = to_light * inversesqrt(distance_squared);
-        vec3 light_color = light_colors[i] * mix(1.0, 1.0 / distance_squared, light_positions[i].w);
+        vec3 light_color = light_colors[i].xyz * mix(1.0, 1.0 / distance_squared, near);
         color += evaluate_lighting(surface, N, V, L, light_color);
         color += evaluate_translucency(surface, V, N, L) * light_color;
     }
-    if (surface.alpha < 0.5) discard;
+    if (surface.alpha < 0.5) {
+        discard;
+    }
     fragment_color = vec4(color, surface.alpha);
 }

@@ -19,9 +19,9 @@ out vec2 v_uv;
 
 void main() {
     vec4 world_position = model * vec4(position, 1.0);
+    gl_Position = view_projection * world_position;
     v_position = world_position.xyz;
     v_normal = normal * mat3(inverse_model);
     v_tangent = vec4(mat3(model) * tangent.xyz, tangent.w * sign(determinant(mat3(model))));
     v_uv = uv;
-    gl_Position = view_projection * world_position;
 }

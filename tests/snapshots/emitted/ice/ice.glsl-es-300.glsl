@@ -28,12 +28,12 @@ const float OPAQUE_DEPTH = 80.0;
 
 // The direction of `x`; of a zero vector, 0.
 vec2 safe_normalize(vec2 x) {
-    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
 }
 
 // The direction of `x`; of a zero vector, 0.
 vec3 safe_normalize(vec3 x) {
-    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
 }
 
 // Scrambles the bits of `x`; 0 stays 0.
@@ -176,14 +176,13 @@ float left_at(vec2 uv, float edge, float erosion, sampler2D erosion_texture) {
 void alpha_erosion(vec2 uv, inout float alpha, inout vec3 normal, vec2 uv_per_unit, float texel_size,
     float edge, float erosion, sampler2D erosion_texture, float edge_height) {
     vec2 e = vec2(texel_size, 0.0);
-    vec2 at = uv;
-    float across = left_at(at + e, edge, erosion, erosion_texture)
-        - left_at(at - e, edge, erosion, erosion_texture);
-    float up = left_at(at + e.yx, edge, erosion, erosion_texture)
-        - left_at(at - e.yx, edge, erosion, erosion_texture);
+    float across = left_at(uv + e, edge, erosion, erosion_texture)
+        - left_at(uv - e, edge, erosion, erosion_texture);
+    float up = left_at(uv + e.yx, edge, erosion, erosion_texture)
+        - left_at(uv - e.yx, edge, erosion, erosion_texture);
     vec2 slope = edge_height * uv_per_unit * vec2(across, up) / (2.0 * texel_size);
     normal = blend_normals(normal, normal_of_slope(slope));
-    alpha *= left_at(at, edge, erosion, erosion_texture);
+    alpha *= left_at(uv, edge, erosion, erosion_texture);
 }
 
 // The transmitted light for a lobe value of 0..1 and a transmittance.
@@ -218,7 +217,8 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     vec3 F0 = mix(vec3(0.04), min(albedo, 1.0), metallic);
     vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
-    return (diffuse + facets * visible * F) * NoL * light_color;
+    vec3 reflected = (diffuse + facets * visible * F) * NoL;
+    return reflected * light_color;
 }
 
 // The values of the surface that do not depend on a light.

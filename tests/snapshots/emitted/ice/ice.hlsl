@@ -1,7 +1,7 @@
 // Ice: Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes
 // that melt into it.
 // Made by sssgen for HLSL, shader model 5 and 6 (Direct3D 11 and 12, Vulkan through DXC). Change the material and emit it again rather than this file.
-// Entry points: vertex_main and fragment_main. Matrices are column-major (HLSL's default) and multiply columns: mul(M, v).
+// Entry points: vertex_main and fragment_main. Matrices are stored column by column, and multiply as mul(v, M).
 
 struct Cell {
     float2 nearest;
@@ -23,6 +23,7 @@ static const float JITTER = 0.6;
 static const float OPAQUE_DISTANCE = 1.0e-6;
 static const float ENDLESS = 10000.0;
 static const float OPAQUE_DEPTH = 80.0;
+static const int MAX_LIGHTS = 4;
 
 cbuffer Material : register(b3) {
     float variation;  // How much the levels of the cells differ: 0 = all are equal
@@ -64,12 +65,12 @@ SamplerState erosion_texture_sampler : register(s3);
 
 // The direction of `x`; of a zero vector, 0.
 float2 safe_normalize(float2 x) {
-    return x * rsqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? rsqrt(dot(x, x)) : 0.0);
 }
 
 // The direction of `x`; of a zero vector, 0.
 float3 safe_normalize(float3 x) {
-    return x * rsqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? rsqrt(dot(x, x)) : 0.0);
 }
 
 // Scrambles the bits of `x`; 0 stays 0.
@@ -211,12 +212,11 @@ float left_at(float2 uv) {
 // Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
 void alpha_erosion(float2 uv, inout float alpha, inout float3 normal) {
     float2 e = float2(texel_size, 0.0);
-    float2 at = uv;
-    float across = left_at(at + e) - left_at(at - e);
-    float up = left_at(at + e.yx) - left_at(at - e.yx);
+    float across = left_at(uv + e) - left_at(uv - e);
+    float up = left_at(uv + e.yx) - left_at(uv - e.yx);
     float2 slope = edge_height * uv_per_unit * float2(across, up) / (2.0 * texel_size);
     normal = blend_normals(normal, normal_of_slope(slope));
-    alpha *= left_at(at);
+    alpha *= left_at(uv);
 }
 
 // The transmitted light for a lobe value of 0..1 and a transmittance.
@@ -250,7 +250,8 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
     float3 F0 = lerp((float3)0.04, min(albedo, 1.0), metallic);
     float3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     float3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
-    return (diffuse + facets * visible * F) * NoL * light_color;
+    float3 reflected = (diffuse + facets * visible * F) * NoL;
+    return reflected * light_color;
 }
 
 // The values of the surface that do not depend on a light.
@@ -284,24 +285,22 @@ float3 evaluate_lighting(Surface surface, float3 N, float3 V, float3 L, float3 l
 }
 
 cbuffer Camera : register(b0) {
-    float4x4 view_projection;
-    float4x4 inverse_view_projection;
+    row_major float4x4 view_projection;
+    row_major float4x4 inverse_view_projection;
     float3 camera_position;
     float time;  // s
 };
 
-static const int MAX_LIGHTS = 4;
-
 cbuffer Lights : register(b1) {
     float3 ambient_color;
     int light_count;
-    float4 light_positions[MAX_LIGHTS];  // w = 1: where the light is; w = 0: the direction towards it
-    float4 light_colors[MAX_LIGHTS];
+    float4 light_positions[4];  // w = 1: where the light is; w = 0: the direction towards it
+    float4 light_colors[4];
 };
 
 cbuffer Object : register(b2) {
-    float4x4 model;
-    float4x4 inverse_model;
+    row_major float4x4 model;
+    row_major float4x4 inverse_model;
 };
 
 struct VertexInput {
@@ -319,40 +318,39 @@ struct Varyings {
     float2 uv : TEXCOORD0;
 };
 
-Varyings vertex_main(VertexInput input) {
-    float4 world_position = mul(model, float4(input.position, 1.0));
+Varyings vertex_main(VertexInput mesh) {
     Varyings output;
-    output.clip_position = mul(view_projection, world_position);
+    float4 world_position = mul(float4(mesh.position, 1.0), model);
+    output.clip_position = mul(world_position, view_projection);
     output.position = world_position.xyz;
-    output.normal = mul(float4(input.normal, 0.0), inverse_model).xyz;
-    output.tangent = float4(mul(model, float4(input.tangent.xyz, 0.0)).xyz, input.tangent.w * sign(determinant((float3x3)model)));
-    output.uv = input.uv;
+    output.normal = mul(inverse_model, float4(mesh.normal, 0.0)).xyz;
+    float3 tangent = mul(float4(mesh.tangent.xyz, 0.0), model).xyz;
+    output.tangent = float4(tangent, mesh.tangent.w * sign(determinant((float3x3)model)));
+    output.uv = mesh.uv;
     return output;
 }
 
-// v / |v|; 0 stays 0, of which normalize makes NaN.
-float3 unit_vector(float3 v) {
-    float square = dot(v, v);
-    return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
-}
-
 float4 fragment_main(Varyings input) : SV_Target {
-    float3 V = unit_vector(camera_position - input.position);
-    float3 N = unit_vector(input.normal);
-    float3 T = unit_vector(input.tangent.xyz);
+    float3 V = safe_normalize(camera_position - input.position);
+    float3 N = safe_normalize(input.normal);
+    float3 T = safe_normalize(input.tangent.xyz);
     float3 B = cross(N, T) * input.tangent.w;
     Surface surface = evaluate_surface(input.uv, time);
-    N = unit_vector(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
-
+    float3 across = T * surface.normal.x + B * surface.normal.y;
+    N = safe_normalize(across + N * surface.normal.z);
     float3 color = ambient_color * surface.albedo + surface.emission;
+    [loop]
     for (int i = 0; i < min(light_count, MAX_LIGHTS); i++) {
-        float3 to_light = light_positions[i].xyz - input.position * light_positions[i].w;
-        float distance_squared = max(dot(to_light, to_light), 1e-4);
+        float near = light_positions[i].w;
+        float3 to_light = light_positions[i].xyz - input.position * near;
+        float distance_squared = max(dot(to_light, to_light), 0.0001);
         float3 L = to_light * rsqrt(distance_squared);
-        float3 light_color = light_colors[i].rgb * lerp(1.0, 1.0 / distance_squared, light_positions[i].w);
+        float3 light_color = light_colors[i].xyz * lerp(1.0, 1.0 / distance_squared, near);
         color += evaluate_lighting(surface, N, V, L, light_color);
         color += evaluate_translucency(surface, V, N, L) * light_color;
     }
-    clip(surface.alpha - 0.5);
+    if (surface.alpha < 0.5) {
+        discard;
+    }
     return float4(color, surface.alpha);
 }

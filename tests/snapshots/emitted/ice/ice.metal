@@ -27,6 +27,7 @@ constant float JITTER = 0.6;
 constant float OPAQUE_DISTANCE = 1.0e-6;
 constant float ENDLESS = 10000.0;
 constant float OPAQUE_DEPTH = 80.0;
+constant int MAX_LIGHTS = 4;
 
 struct Material {
     float variation;  // How much the levels of the cells differ: 0 = all are equal
@@ -59,12 +60,12 @@ struct Material {
 
 // The direction of `x`; of a zero vector, 0.
 float2 safe_normalize(float2 x) {
-    return x * rsqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? rsqrt(dot(x, x)) : 0.0);
 }
 
 // The direction of `x`; of a zero vector, 0.
 float3 safe_normalize(float3 x) {
-    return x * rsqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? rsqrt(dot(x, x)) : 0.0);
 }
 
 // Scrambles the bits of `x`; 0 stays 0.
@@ -214,14 +215,13 @@ void alpha_erosion(float2 uv, thread float& alpha, thread float3& normal, float2
     float texel_size, float edge, float erosion, texture2d<float> erosion_texture,
     sampler erosion_texture_sampler, float edge_height) {
     float2 e = float2(texel_size, 0.0);
-    float2 at = uv;
-    float across = left_at(at + e, edge, erosion, erosion_texture, erosion_texture_sampler)
-        - left_at(at - e, edge, erosion, erosion_texture, erosion_texture_sampler);
-    float up = left_at(at + e.yx, edge, erosion, erosion_texture, erosion_texture_sampler)
-        - left_at(at - e.yx, edge, erosion, erosion_texture, erosion_texture_sampler);
+    float across = left_at(uv + e, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - left_at(uv - e, edge, erosion, erosion_texture, erosion_texture_sampler);
+    float up = left_at(uv + e.yx, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - left_at(uv - e.yx, edge, erosion, erosion_texture, erosion_texture_sampler);
     float2 slope = edge_height * uv_per_unit * float2(across, up) / (2.0 * texel_size);
     normal = blend_normals(normal, normal_of_slope(slope));
-    alpha *= left_at(at, edge, erosion, erosion_texture, erosion_texture_sampler);
+    alpha *= left_at(uv, edge, erosion, erosion_texture, erosion_texture_sampler);
 }
 
 // The transmitted light for a lobe value of 0..1 and a transmittance.
@@ -258,7 +258,8 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
     float3 F0 = mix(float3(0.04), min(albedo, float3(1.0)), float3(metallic));
     float3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     float3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
-    return (diffuse + facets * visible * F) * NoL * light_color;
+    float3 reflected = (diffuse + facets * visible * F) * NoL;
+    return reflected * light_color;
 }
 
 // The values of the surface that do not depend on a light.
@@ -307,13 +308,11 @@ struct Camera {
     float time;  // s
 };
 
-constant int MAX_LIGHTS = 4;
-
 struct Lights {
     float3 ambient;
     int count;
-    float4 positions[MAX_LIGHTS];  // w = 1: where the light is; w = 0: the direction towards it
-    float4 colors[MAX_LIGHTS];
+    float4 positions[4];  // w = 1: where the light is; w = 0: the direction towards it
+    float4 colors[4];
 };
 
 struct Object {
@@ -337,25 +336,19 @@ struct Varyings {
 };
 
 vertex Varyings vertex_main(
-    VertexInput input [[stage_in]],
+    VertexInput mesh [[stage_in]],
     constant Camera& camera [[buffer(1)]],
     constant Object& object [[buffer(3)]]
 ) {
-    float4 world_position = object.model * float4(input.position, 1.0);
     Varyings output;
+    float4 world_position = object.model * float4(mesh.position, 1.0);
     output.clip_position = camera.view_projection * world_position;
     output.position = world_position.xyz;
-    output.normal = (float4(input.normal, 0.0) * object.inverse_model).xyz;
+    output.normal = (float4(mesh.normal, 0.0) * object.inverse_model).xyz;
     float mirrored = sign(determinant(float3x3(object.model[0].xyz, object.model[1].xyz, object.model[2].xyz)));
-    output.tangent = float4((object.model * float4(input.tangent.xyz, 0.0)).xyz, input.tangent.w * mirrored);
-    output.uv = input.uv;
+    output.tangent = float4((object.model * float4(mesh.tangent.xyz, 0.0)).xyz, mesh.tangent.w * mirrored);
+    output.uv = mesh.uv;
     return output;
-}
-
-// v / |v|; 0 stays 0, of which normalize makes NaN.
-float3 unit_vector(float3 v) {
-    float square = dot(v, v);
-    return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
 }
 
 fragment float4 fragment_main(
@@ -372,29 +365,29 @@ fragment float4 fragment_main(
     texture2d<float> erosion_texture [[texture(3)]],
     sampler erosion_texture_sampler [[sampler(3)]]
 ) {
-    float3 V = unit_vector(camera.position - input.position);
-    float3 N = unit_vector(input.normal);
-    float3 T = unit_vector(input.tangent.xyz);
+    float3 V = safe_normalize(camera.position - input.position);
+    float3 N = safe_normalize(input.normal);
+    float3 T = safe_normalize(input.tangent.xyz);
     float3 B = cross(N, T) * input.tangent.w;
-    Surface surface = evaluate_surface(input.uv, camera.time, material.variation, material.cell_count, material.thickness_factor,
-            material.bevel, material.attenuation_distance, material.tint, base_color_texture,
-            base_color_texture_sampler, material.metalness, material.surface_roughness,
-            material.relief, material.uv_per_unit, material.cover, cover_texture,
-            cover_texture_sampler, packed_texture, packed_texture_sampler, material.red_speed,
-            material.green_speed, material.blue_speed, material.vein_color, material.spark_color,
-            material.texel_size, material.edge, material.erosion, erosion_texture,
-            erosion_texture_sampler, material.edge_height);
-    N = unit_vector(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
-
+    Surface surface = evaluate_surface(input.uv, camera.time, material.variation, material.cell_count,
+        material.thickness_factor, material.bevel, material.attenuation_distance, material.tint,
+        base_color_texture, base_color_texture_sampler, material.metalness, material.surface_roughness,
+        material.relief, material.uv_per_unit, material.cover, cover_texture, cover_texture_sampler,
+        packed_texture, packed_texture_sampler, material.red_speed, material.green_speed, material.blue_speed,
+        material.vein_color, material.spark_color, material.texel_size, material.edge, material.erosion,
+        erosion_texture, erosion_texture_sampler, material.edge_height);
+    float3 across = T * surface.normal.x + B * surface.normal.y;
+    N = safe_normalize(across + N * surface.normal.z);
     float3 color = lights.ambient * surface.albedo + surface.emission;
     for (int i = 0; i < min(lights.count, MAX_LIGHTS); i++) {
-        float3 to_light = lights.positions[i].xyz - input.position * lights.positions[i].w;
-        float distance_squared = max(dot(to_light, to_light), 1e-4);
+        float near = lights.positions[i].w;
+        float3 to_light = lights.positions[i].xyz - input.position * near;
+        float distance_squared = max(dot(to_light, to_light), 0.0001);
         float3 L = to_light * rsqrt(distance_squared);
-        float3 light_color = lights.colors[i].rgb * mix(1.0, 1.0 / distance_squared, lights.positions[i].w);
+        float3 light_color = lights.colors[i].xyz * mix(1.0, 1.0 / distance_squared, near);
         color += evaluate_lighting(surface, N, V, L, light_color);
-        color += evaluate_translucency(surface, V, N, L, material.distortion, material.subsurface_color, material.attenuation,
-            material.scale, material.ambient, material.power) * light_color;
+        color += evaluate_translucency(surface, V, N, L, material.distortion, material.subsurface_color,
+            material.attenuation, material.scale, material.ambient, material.power) * light_color;
     }
     if (surface.alpha < 0.5) {
         discard_fragment();

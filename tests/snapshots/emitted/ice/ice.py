@@ -12,6 +12,7 @@ JITTER = 0.6
 OPAQUE_DISTANCE = 1e-06
 ENDLESS = 10000.0
 OPAQUE_DEPTH = 80.0
+MAX_LIGHTS = 4
 
 variation = 0.6  # How much the levels of the cells differ: 0 = all are equal
 cell_count = 10.0  # Number of cells along one unit of texture coordinate
@@ -47,11 +48,11 @@ erosion_texture = Texture([[[1.0, 1.0, 1.0, 1.0]]])
 
 def safe_normalize_vec2(x):
     """The direction of `x`; of a zero vector, 0."""
-    return x * inversesqrt(max(dot(x, x), 1.0000000031710769e-30))
+    return x * select(dot(x, x) > 1.0000000031710769e-30, inversesqrt(dot(x, x)), 0.0)
 
 def safe_normalize_vec3(x):
     """The direction of `x`; of a zero vector, 0."""
-    return x * inversesqrt(max(dot(x, x), 1.0000000031710769e-30))
+    return x * select(dot(x, x) > 1.0000000031710769e-30, inversesqrt(dot(x, x)), 0.0)
 
 def hash_bits(x):
     """Scrambles the bits of `x`; 0 stays 0."""
@@ -174,12 +175,11 @@ def left_at(uv):
 def alpha_erosion(uv, alpha, normal):
     """Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge."""
     e = vec(texel_size, 0.0)
-    at = uv
-    across = left_at(at + e) - left_at(at - e)
-    up = left_at(at + swizzle(e, "yx")) - left_at(at - swizzle(e, "yx"))
+    across = left_at(uv + e) - left_at(uv - e)
+    up = left_at(uv + swizzle(e, "yx")) - left_at(uv - swizzle(e, "yx"))
     slope = edge_height * uv_per_unit * vec(across, up) / (2.0 * texel_size)
     normal = blend_normals(normal, normal_of_slope(slope))
-    alpha = alpha * left_at(at)
+    alpha = alpha * left_at(uv)
     return alpha, normal
 
 def glow(lobe, through):
@@ -210,7 +210,8 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     F0 = mix(splat(3, 0.04), min(albedo, 1.0), metallic)
     F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
     diffuse = albedo * (1.0 - metallic) * (1.0 - F)
-    return (diffuse + facets * visible * F) * NoL * light_color
+    reflected = (diffuse + facets * visible * F) * NoL
+    return reflected * light_color
 
 def evaluate_surface(uv, time):
     """The values of the surface that do not depend on a light."""
@@ -234,3 +235,31 @@ def evaluate_translucency(surface, V, N, L):
 def evaluate_lighting(surface, N, V, L, light_color):
     """The reflected light of one light."""
     return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color)
+
+def shade_fragment(P, camera_position_, vertex_normal, vertex_tangent, ambient_color_, light_count_,
+    light_positions_, light_colors_, uv, time):
+    """The light of one fragment, in a target without an engine."""
+    discarded = False
+    V = safe_normalize_vec3(camera_position_ - P)
+    N = safe_normalize_vec3(vertex_normal)
+    T = safe_normalize_vec3(swizzle(vertex_tangent, "xyz"))
+    B = cross(N, T) * vertex_tangent[3]
+    surface = evaluate_surface(uv, time)
+    across = T * surface.normal[0] + B * surface.normal[1]
+    N = safe_normalize_vec3(across + N * surface.normal[2])
+    color = ambient_color_ * surface.albedo + surface.emission
+    i = 0
+    running = i < min(light_count_, MAX_LIGHTS)
+    while any(running):
+        near = index(light_positions_, i)[3]
+        to_light = swizzle(index(light_positions_, i), "xyz") - P * near
+        distance_squared = max(dot(to_light, to_light), 0.0001)
+        L = to_light * inversesqrt(distance_squared)
+        light_color = swizzle(index(light_colors_, i), "xyz") * mix(1.0, 1.0 / distance_squared, near)
+        color = select(running, color + evaluate_lighting(surface, N, V, L, light_color), color)
+        color = select(running, color + evaluate_translucency(surface, V, N, L) * light_color, color)
+        i = i + 1
+        running = running & (i < min(light_count_, MAX_LIGHTS))
+    mask = surface.alpha < 0.5
+    discarded = discarded | mask
+    return select(mask, splat(4, 0.0), vec(color, surface.alpha)), discarded

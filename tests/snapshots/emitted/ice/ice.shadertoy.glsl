@@ -2,7 +2,6 @@
 // that melt into it.
 // Made by sssgen for Shadertoy. Change the material and emit it again rather than this file.
 // Paste it into the tab "Image" of a new shader.
-// Drag the mouse to turn the camera.
 // iChannel0 is base_color_texture (wrap: repeat). Colour of the surface (an sRGB texture), with its opacity in alpha.
 // iChannel1 is cover_texture (wrap: repeat). Cover on the ice (snow, rock): black = bare ice, white = covered.
 // iChannel2 is packed_texture (wrap: repeat). Three pictures in one texture: red, green and blue each hold a layer.
@@ -47,6 +46,7 @@ const float JITTER = 0.6;
 const float OPAQUE_DISTANCE = 1.0e-6;
 const float ENDLESS = 10000.0;
 const float OPAQUE_DEPTH = 80.0;
+const int MAX_LIGHTS = 4;
 
 // How much the levels of the cells differ: 0 = all are equal. (0 to 1)
 const float variation = 0.6;
@@ -108,12 +108,12 @@ const float power = 6.0;
 
 // The direction of `x`; of a zero vector, 0.
 vec2 safe_normalize(vec2 x) {
-    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
 }
 
 // The direction of `x`; of a zero vector, 0.
 vec3 safe_normalize(vec3 x) {
-    return x * inversesqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
 }
 
 // Scrambles the bits of `x`; 0 stays 0.
@@ -252,12 +252,11 @@ float left_at(vec2 uv) {
 // Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
 void alpha_erosion(vec2 uv, inout float alpha, inout vec3 normal) {
     vec2 e = vec2(texel_size, 0.0);
-    vec2 at = uv;
-    float across = left_at(at + e) - left_at(at - e);
-    float up = left_at(at + e.yx) - left_at(at - e.yx);
+    float across = left_at(uv + e) - left_at(uv - e);
+    float up = left_at(uv + e.yx) - left_at(uv - e.yx);
     vec2 slope = edge_height * uv_per_unit * vec2(across, up) / (2.0 * texel_size);
     normal = blend_normals(normal, normal_of_slope(slope));
-    alpha *= left_at(at);
+    alpha *= left_at(uv);
 }
 
 // The transmitted light for a lobe value of 0..1 and a transmittance.
@@ -290,7 +289,8 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     vec3 F0 = mix(vec3(0.04), min(albedo, 1.0), metallic);
     vec3 F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     vec3 diffuse = albedo * (1.0 - metallic) * (1.0 - F);
-    return (diffuse + facets * visible * F) * NoL * light_color;
+    vec3 reflected = (diffuse + facets * visible * F) * NoL;
+    return reflected * light_color;
 }
 
 // The values of the surface that do not depend on a light.
@@ -322,12 +322,6 @@ vec3 evaluate_lighting(Surface surface, vec3 N, vec3 V, vec3 L, vec3 light_color
     return standard(N, V, L, surface.albedo, surface.metallic, surface.roughness, light_color);
 }
 
-// v / |v|; 0 stays 0, of which normalize makes NaN.
-vec3 unit_vector(vec3 v) {
-    float square = dot(v, v);
-    return square > 1e-30 ? v * inversesqrt(square) : vec3(0.0);
-}
-
 // A linear colour as a display shows it: sRGB.
 vec3 shown_color(vec3 color) {
     vec3 bright = max(color, vec3(0.0031308));
@@ -335,7 +329,7 @@ vec3 shown_color(vec3 color) {
 }
 
 void mainImage(out vec4 frag_color, in vec2 frag_coord) {
-    // before the first click iMouse is 0
+    // the mouse turns the camera; before the first click iMouse is 0
     vec2 mouse = iMouse.x > 0.0 ? iMouse.xy / iResolution.xy - 0.5 : vec2(0.0);
     vec2 angles = vec2(-6.2831853, -3.0) * mouse + vec2(0.0, 0.25);
     angles.y = clamp(angles.y, -1.5, 1.5);
@@ -344,33 +338,34 @@ void mainImage(out vec4 frag_color, in vec2 frag_coord) {
     vec3 right = vec3(cos(angles.x), 0.0, -sin(angles.x));
     vec3 up = cross(right, front);
     vec2 image = (2.0 * frag_coord - iResolution.xy) / iResolution.y * tan(radians(0.5 * FIELD_OF_VIEW));
-    vec3 ray = unit_vector(front + image.x * right + image.y * up);
-
+    vec3 ray = safe_normalize(front + image.x * right + image.y * up);
     // a ball of radius 1; a ray that passes by has the colour of the ball's edge, so that derivatives are defined
     vec3 closest = camera_position - dot(ray, camera_position) * ray;
     float depth_squared = 1.0 - dot(closest, closest);
-    vec3 P = unit_vector(closest - sqrt(max(depth_squared, 0.0)) * ray);
-    vec3 N = P;
-    vec3 V = unit_vector(camera_position - P);
-    vec3 T = unit_vector(vec3(P.z, 0.0, -P.x));
-    vec3 B = cross(N, T);
+    vec3 P = safe_normalize(closest - sqrt(max(depth_squared, 0.0)) * ray);
     float ring = length(P.xz);
     vec2 uv = 0.5 + vec2(ring > 0.0 ? atan(P.x, P.z) : 0.0, 2.0 * atan(P.y, ring)) / 6.2831853;
 
+    vec3 V = safe_normalize(camera_position - P);
+    vec3 N = safe_normalize(P);
+    vec3 T = safe_normalize(vec4(P.z, 0.0, -P.x, 1.0).xyz);
+    vec3 B = cross(N, T) * vec4(P.z, 0.0, -P.x, 1.0).w;
     Surface surface = evaluate_surface(uv, iTime);
-    N = unit_vector(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
+    vec3 across = T * surface.normal.x + B * surface.normal.y;
+    N = safe_normalize(across + N * surface.normal.z);
     vec3 color = AMBIENT_COLOR * surface.albedo + surface.emission;
-    for (int i = 0; i < LIGHT_COUNT; i++) {
-        vec3 to_light = LIGHT_POSITIONS[i].xyz - P * LIGHT_POSITIONS[i].w;
-        float distance_squared = max(dot(to_light, to_light), 1e-4);
+    for (int i = 0; i < min(LIGHT_COUNT, MAX_LIGHTS); i++) {
+        float near = LIGHT_POSITIONS[i].w;
+        vec3 to_light = LIGHT_POSITIONS[i].xyz - P * near;
+        float distance_squared = max(dot(to_light, to_light), 0.0001);
         vec3 L = to_light * inversesqrt(distance_squared);
-        vec3 light_color = LIGHT_COLORS[i] * mix(1.0, 1.0 / distance_squared, LIGHT_POSITIONS[i].w);
+        vec3 light_color = LIGHT_COLORS[i].xyz * mix(1.0, 1.0 / distance_squared, near);
         color += evaluate_lighting(surface, N, V, L, light_color);
         color += evaluate_translucency(surface, V, N, L) * light_color;
     }
-    float alpha = surface.alpha;
+    vec4 shaded = vec4(color, surface.alpha);
+    vec3 shown = shown_color(shaded.rgb);
     vec3 background = shown_color(BACKGROUND_COLOR);
-    color = shown_color(color);
-    color = alpha < 0.5 ? background : color;
-    frag_color = vec4(depth_squared > 0.0 ? color : background, 1.0);
+    shown = shaded.a < 0.5 ? background : shown;
+    frag_color = vec4(depth_squared > 0.0 ? shown : background, 1.0);
 }

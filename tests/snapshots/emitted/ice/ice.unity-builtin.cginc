@@ -28,12 +28,12 @@ static const float OPAQUE_DEPTH = 80.0;
 
 // The direction of `x`; of a zero vector, 0.
 float2 safe_normalize(float2 x) {
-    return x * rsqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? rsqrt(dot(x, x)) : 0.0);
 }
 
 // The direction of `x`; of a zero vector, 0.
 float3 safe_normalize(float3 x) {
-    return x * rsqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? rsqrt(dot(x, x)) : 0.0);
 }
 
 // Scrambles the bits of `x`; 0 stays 0.
@@ -179,14 +179,13 @@ float left_at(float2 uv, float edge, float erosion, sampler2D erosion_texture) {
 void alpha_erosion(float2 uv, inout float alpha, inout float3 normal, float2 uv_per_unit, float texel_size,
     float edge, float erosion, sampler2D erosion_texture, float edge_height) {
     float2 e = float2(texel_size, 0.0);
-    float2 at = uv;
-    float across = left_at(at + e, edge, erosion, erosion_texture)
-        - left_at(at - e, edge, erosion, erosion_texture);
-    float up = left_at(at + e.yx, edge, erosion, erosion_texture)
-        - left_at(at - e.yx, edge, erosion, erosion_texture);
+    float across = left_at(uv + e, edge, erosion, erosion_texture)
+        - left_at(uv - e, edge, erosion, erosion_texture);
+    float up = left_at(uv + e.yx, edge, erosion, erosion_texture)
+        - left_at(uv - e.yx, edge, erosion, erosion_texture);
     float2 slope = edge_height * uv_per_unit * float2(across, up) / (2.0 * texel_size);
     normal = blend_normals(normal, normal_of_slope(slope));
-    alpha *= left_at(at, edge, erosion, erosion_texture);
+    alpha *= left_at(uv, edge, erosion, erosion_texture);
 }
 
 // The transmitted light for a lobe value of 0..1 and a transmittance.

@@ -43,6 +43,27 @@ Shader "sssgen/Ice" {
         #pragma target 3.5
         #include "UnityPBSLighting.cginc"
 
+        struct Cell {
+            float2 nearest;
+            float2 second;
+            float level;
+        };
+
+        struct Surface {
+            float3 albedo;
+            float alpha;
+            float3 normal;
+            float metallic;
+            float roughness;
+            float3 emission;
+            float transmittance;
+        };
+
+        static const float JITTER = 0.6;
+        static const float OPAQUE_DISTANCE = 1.0e-6;
+        static const float ENDLESS = 10000.0;
+        static const float OPAQUE_DEPTH = 80.0;
+
         float _Variation;  // How much the levels of the cells differ: 0 = all are equal
         float _CellCount;  // Number of cells along one unit of texture coordinate
         float _ThicknessFactor;  // Thickness of a cell of level 1
@@ -75,27 +96,6 @@ Shader "sssgen/Ice" {
         sampler2D _PackedTexture;
         sampler2D _ErosionTexture;
 
-        struct Cell {
-            float2 nearest;
-            float2 second;
-            float level;
-        };
-
-        struct Surface {
-            float3 albedo;
-            float alpha;
-            float3 normal;
-            float metallic;
-            float roughness;
-            float3 emission;
-            float transmittance;
-        };
-
-        static const float JITTER = 0.6;
-        static const float OPAQUE_DISTANCE = 1.0e-6;
-        static const float ENDLESS = 10000.0;
-        static const float OPAQUE_DEPTH = 80.0;
-
         // Unity's first look at a surface shader understands no more than DX9's HLSL, and needs no bodies.
         #if defined(SHADER_TARGET_SURFACE_ANALYSIS_MOJOSHADER)
         Surface evaluate_surface(float2 uv, float time);
@@ -103,12 +103,12 @@ Shader "sssgen/Ice" {
         #else
         // The direction of `x`; of a zero vector, 0.
         float2 safe_normalize(float2 x) {
-            return x * rsqrt(max(dot(x, x), 1.0e-30));
+            return x * (dot(x, x) > 1.0e-30 ? rsqrt(dot(x, x)) : 0.0);
         }
 
         // The direction of `x`; of a zero vector, 0.
         float3 safe_normalize(float3 x) {
-            return x * rsqrt(max(dot(x, x), 1.0e-30));
+            return x * (dot(x, x) > 1.0e-30 ? rsqrt(dot(x, x)) : 0.0);
         }
 
         // Scrambles the bits of `x`; 0 stays 0.
@@ -250,12 +250,11 @@ Shader "sssgen/Ice" {
         // Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
         void alpha_erosion(float2 uv, inout float alpha, inout float3 normal) {
             float2 e = float2(_TexelSize, 0.0);
-            float2 at = uv;
-            float across = left_at(at + e) - left_at(at - e);
-            float up = left_at(at + e.yx) - left_at(at - e.yx);
+            float across = left_at(uv + e) - left_at(uv - e);
+            float up = left_at(uv + e.yx) - left_at(uv - e.yx);
             float2 slope = _EdgeHeight * _UvPerUnit * float2(across, up) / (2.0 * _TexelSize);
             normal = blend_normals(normal, normal_of_slope(slope));
-            alpha *= left_at(at);
+            alpha *= left_at(uv);
         }
 
         // The transmitted light for a lobe value of 0..1 and a transmittance.
@@ -295,12 +294,6 @@ Shader "sssgen/Ice" {
         }
         #endif
 
-        // v / |v|; 0 stays 0, of which normalize makes NaN.
-        float3 unit_vector(float3 v) {
-            float square = dot(v, v);
-            return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
-        }
-
         struct Input {
             float2 texcoord;
             float3 worldPos;
@@ -323,16 +316,16 @@ Shader "sssgen/Ice" {
             o.texcoord = v.texcoord.xy;
         }
 
-        void surf(Input IN, inout SurfaceOutputSss o) {
-            Surface surface = evaluate_surface(IN.texcoord, _Time.y);
+        void surf(Input input, inout SurfaceOutputSss o) {
+            Surface surface = evaluate_surface(input.texcoord, _Time.y);
             o.Albedo = surface.albedo;
+            o.Alpha = surface.alpha;
+            clip(surface.alpha - 0.5);
             o.Normal = surface.normal;
-            o.Metallic = surface.metallic;
             o.Smoothness = 1.0 - surface.roughness;
             o.Emission = surface.emission;
-            o.Alpha = surface.alpha;
+            o.Metallic = surface.metallic;
             o.surface = surface;
-            clip(surface.alpha - 0.5);
         }
 
         SurfaceOutputStandard standard_surface(SurfaceOutputSss s) {
@@ -356,7 +349,7 @@ Shader "sssgen/Ice" {
         #else
             float3 light_color = gi.light.color;
         #endif
-            color.rgb += evaluate_translucency(s.surface, viewDir, unit_vector(s.Normal), gi.light.dir) * light_color;
+            color.rgb += evaluate_translucency(s.surface, viewDir, safe_normalize(s.Normal), gi.light.dir) * light_color;
             return color;
         }
 

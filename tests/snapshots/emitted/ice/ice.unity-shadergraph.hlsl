@@ -37,12 +37,12 @@ static const float ice_OPAQUE_DEPTH = 80.0;
 
 // The direction of `x`; of a zero vector, 0.
 float2 ice_safe_normalize(float2 x) {
-    return x * rsqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? rsqrt(dot(x, x)) : 0.0);
 }
 
 // The direction of `x`; of a zero vector, 0.
 float3 ice_safe_normalize(float3 x) {
-    return x * rsqrt(max(dot(x, x), 1.0e-30));
+    return x * (dot(x, x) > 1.0e-30 ? rsqrt(dot(x, x)) : 0.0);
 }
 
 // Scrambles the bits of `x`; 0 stays 0.
@@ -196,14 +196,13 @@ void ice_alpha_erosion(float2 uv, inout float alpha, inout float3 normal, float2
     float texel_size, float edge, float erosion, UnityTexture2D erosion_texture,
     UnitySamplerState erosion_texture_sampler, float edge_height) {
     float2 e = float2(texel_size, 0.0);
-    float2 at = uv;
-    float across = ice_left_at(at + e, edge, erosion, erosion_texture, erosion_texture_sampler)
-        - ice_left_at(at - e, edge, erosion, erosion_texture, erosion_texture_sampler);
-    float up = ice_left_at(at + e.yx, edge, erosion, erosion_texture, erosion_texture_sampler)
-        - ice_left_at(at - e.yx, edge, erosion, erosion_texture, erosion_texture_sampler);
+    float across = ice_left_at(uv + e, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - ice_left_at(uv - e, edge, erosion, erosion_texture, erosion_texture_sampler);
+    float up = ice_left_at(uv + e.yx, edge, erosion, erosion_texture, erosion_texture_sampler)
+        - ice_left_at(uv - e.yx, edge, erosion, erosion_texture, erosion_texture_sampler);
     float2 slope = edge_height * uv_per_unit * float2(across, up) / (2.0 * texel_size);
     normal = ice_blend_normals(normal, ice_normal_of_slope(slope));
-    alpha *= ice_left_at(at, edge, erosion, erosion_texture, erosion_texture_sampler);
+    alpha *= ice_left_at(uv, edge, erosion, erosion_texture, erosion_texture_sampler);
 }
 
 // The transmitted light for a lobe value of 0..1 and a transmittance.
@@ -255,15 +254,6 @@ float3 ice_evaluate_translucency(ice_Surface surface, float3 V, float3 N, float3
     return ice_lobe_normalized(V, N, L, surface.transmittance, distortion, subsurface_color, attenuation,
         scale, ambient, power);
 }
-
-#ifndef SSSGEN_UNIT_VECTOR
-#define SSSGEN_UNIT_VECTOR
-// v / |v|; 0 stays 0, of which normalize makes NaN.
-float3 unit_vector(float3 v) {
-    float square = dot(v, v);
-    return square > 1e-30 ? v * rsqrt(square) : float3(0.0, 0.0, 0.0);
-}
-#endif
 
 #ifndef SSSGEN_IN_LAYERS
 #define SSSGEN_IN_LAYERS
@@ -332,35 +322,34 @@ void Ice_float(
     out float3 Emission,
     out float Alpha,
     out float Transmittance) {
-    V = unit_vector(V);
-    N = unit_vector(N);
+    V = ice_safe_normalize(V);
+    N = ice_safe_normalize(N);
     ice_Surface surface = ice_evaluate_surface(uv, time, variation, cell_count, thickness_factor, bevel, attenuation_distance, tint, base_color_texture, base_color_texture_sampler, metalness, surface_roughness, relief, uv_per_unit, cover, cover_texture, cover_texture_sampler, packed_texture, packed_texture_sampler, red_speed, green_speed, blue_speed, vein_color, spark_color, texel_size, edge, erosion, erosion_texture, erosion_texture_sampler, edge_height);
-    N = unit_vector(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
     BaseColor = surface.albedo;
+    Alpha = surface.alpha;
     NormalTS = surface.normal;
-    Metallic = surface.metallic;
     Smoothness = 1.0 - surface.roughness;
     Occlusion = 1.0;
     Emission = surface.emission;
-    Alpha = surface.alpha;
+    Metallic = surface.metallic;
     Transmittance = surface.transmittance;
 
-    // Goes to Emission, without shadow: light that comes through entered on the far side, in the object's own shadow. In URP
-    // only: in HDRP a graph does not see lights.
+    // Goes to Emission, and in URP only: in HDRP a graph does not see lights.
+    N = ice_safe_normalize(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
 #if defined(SHADERGRAPH_PREVIEW)
-    float3 L = normalize(float3(0.5, 0.5, -0.5));
     float3 light_color = 1.0;
+    float3 L = normalize(float3(0.5, 0.5, -0.5));
     Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power) * light_color;
 #elif defined(UNIVERSAL_LIGHTING_INCLUDED)
-    half4 no_mask = half4(1.0, 1.0, 1.0, 1.0);
-    Light light = GetMainLight(TransformWorldToShadowCoord(P), P, no_mask);  // with its cookie
-    float3 L = light.direction;
-    float3 light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
-    Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power) * light_color;
-#if defined(_ADDITIONAL_LIGHTS)
     InputData inputData = (InputData)0;
     inputData.positionWS = P;
     inputData.normalizedScreenSpaceUV = ComputeNormalizedDeviceCoordinates(P, GetWorldToHClipMatrix());
+    // Without the object's own shadow: light that comes through entered on the far side.
+    Light light = GetMainLight(TransformWorldToShadowCoord(P), P, half4(1.0, 1.0, 1.0, 1.0));  // with its cookie
+    float3 light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
+    float3 L = light.direction;
+    Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power) * light_color;
+#if defined(_ADDITIONAL_LIGHTS)
 #if USE_CLUSTER_LIGHT_LOOP || USE_FORWARD_PLUS || USE_CLUSTERED_LIGHTING
     // The loop below has the lights near this part of the screen; directional ones come first in the array.
 #if USE_CLUSTERED_LIGHTING
@@ -369,17 +358,17 @@ void Ice_float(
     uint directional_count = min(URP_FP_DIRECTIONAL_LIGHTS_COUNT, MAX_VISIBLE_LIGHTS);
 #endif
     for (uint number = 0u; number < directional_count; number++) {
-        light = GetAdditionalLight(number, P, no_mask);
-        L = light.direction;
+        light = GetAdditionalLight(number, P, half4(1.0, 1.0, 1.0, 1.0));
         light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
+        L = light.direction;
         Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power) * light_color;
     }
 #endif
     uint light_count = GetAdditionalLightsCount();
     LIGHT_LOOP_BEGIN(light_count)
-        light = GetAdditionalLight(lightIndex, P, no_mask);
-        L = light.direction;
+        light = GetAdditionalLight(lightIndex, P, half4(1.0, 1.0, 1.0, 1.0));
         light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
+        L = light.direction;
         Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power) * light_color;
     LIGHT_LOOP_END
 #endif

@@ -248,12 +248,11 @@ Shader "sssgen/Ice (URP)" {
         // Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
         void alpha_erosion(float2 uv, inout float alpha, inout float3 normal) {
             float2 e = float2(_TexelSize, 0.0);
-            float2 at = uv;
-            float across = left_at(at + e) - left_at(at - e);
-            float up = left_at(at + e.yx) - left_at(at - e.yx);
+            float across = left_at(uv + e) - left_at(uv - e);
+            float up = left_at(uv + e.yx) - left_at(uv - e.yx);
             float2 slope = _EdgeHeight * _UvPerUnit * float2(across, up) / (2.0 * _TexelSize);
             normal = blend_normals(normal, normal_of_slope(slope));
-            alpha *= left_at(at);
+            alpha *= left_at(uv);
         }
 
         // The transmitted light for a lobe value of 0..1 and a transmittance.

@@ -23,6 +23,7 @@ const JITTER: f32 = 0.6;
 const OPAQUE_DISTANCE: f32 = 1.0e-6;
 const ENDLESS: f32 = 10000.0;
 const OPAQUE_DEPTH: f32 = 80.0;
+const MAX_LIGHTS: i32 = 4;
 
 struct Material {
     variation: f32,  // How much the levels of the cells differ: 0 = all are equal
@@ -65,12 +66,12 @@ struct Material {
 
 // The direction of `x`; of a zero vector, 0.
 fn safe_normalize_vec2(x: vec2f) -> vec2f {
-    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+    return x * select(0.0, inverseSqrt(dot(x, x)), dot(x, x) > 1.0e-30);
 }
 
 // The direction of `x`; of a zero vector, 0.
 fn safe_normalize_vec3(x: vec3f) -> vec3f {
-    return x * inverseSqrt(max(dot(x, x), 1.0e-30));
+    return x * select(0.0, inverseSqrt(dot(x, x)), dot(x, x) > 1.0e-30);
 }
 
 // Scrambles the bits of `x`; 0 stays 0.
@@ -212,12 +213,11 @@ fn left_at(uv: vec2f) -> f32 {
 // Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge.
 fn alpha_erosion(uv: vec2f, alpha: ptr<function, f32>, normal: ptr<function, vec3f>) {
     let e = vec2f(material.texel_size, 0.0);
-    let at = uv;
-    let across = left_at(at + e) - left_at(at - e);
-    let up = left_at(at + e.yx) - left_at(at - e.yx);
+    let across = left_at(uv + e) - left_at(uv - e);
+    let up = left_at(uv + e.yx) - left_at(uv - e.yx);
     let slope = material.edge_height * material.uv_per_unit * vec2f(across, up) / (2.0 * material.texel_size);
     *normal = blend_normals(*normal, normal_of_slope(slope));
-    *alpha *= left_at(at);
+    *alpha *= left_at(uv);
 }
 
 // The transmitted light for a lobe value of 0..1 and a transmittance.
@@ -252,7 +252,8 @@ fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughnes
     let F0 = mix(vec3f(0.04), min(albedo, vec3f(1.0)), metallic);
     let F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0);
     let diffuse = albedo * (1.0 - metallic) * (1.0 - F);
-    return (diffuse + facets * visible * F) * NoL * light_color;
+    let reflected = (diffuse + facets * visible * F) * NoL;
+    return reflected * light_color;
 }
 
 // The values of the surface that do not depend on a light.
@@ -292,13 +293,11 @@ struct Camera {
 }
 @group(0) @binding(0) var<uniform> camera: Camera;
 
-const MAX_LIGHTS = 4;
-
 struct Lights {
     ambient: vec3f,
     count: i32,
-    positions: array<vec4f, MAX_LIGHTS>,  // w = 1: where the light is; w = 0: the direction towards it
-    colors: array<vec4f, MAX_LIGHTS>,
+    positions: array<vec4f, 4>,  // w = 1: where the light is; w = 0: the direction towards it
+    colors: array<vec4f, 4>,
 }
 @group(0) @binding(1) var<uniform> lights: Lights;
 
@@ -324,42 +323,34 @@ struct Varyings {
 }
 
 @vertex
-fn vertex_main(input: VertexInput) -> Varyings {
-    let world_position = object.model * vec4f(input.position, 1.0);
+fn vertex_main(mesh: VertexInput) -> Varyings {
     var output: Varyings;
+    let world_position = object.model * vec4f(mesh.position, 1.0);
     output.clip_position = camera.view_projection * world_position;
     output.position = world_position.xyz;
-    output.normal = (vec4f(input.normal, 0.0) * object.inverse_model).xyz;
+    output.normal = (vec4f(mesh.normal, 0.0) * object.inverse_model).xyz;
     let mirrored = sign(determinant(mat3x3f(object.model[0].xyz, object.model[1].xyz, object.model[2].xyz)));
-    output.tangent = vec4f((object.model * vec4f(input.tangent.xyz, 0.0)).xyz, input.tangent.w * mirrored);
-    output.uv = input.uv;
+    output.tangent = vec4f((object.model * vec4f(mesh.tangent.xyz, 0.0)).xyz, mesh.tangent.w * mirrored);
+    output.uv = mesh.uv;
     return output;
-}
-
-// v / |v|; 0 stays 0, of which normalize makes NaN.
-fn unit_vector(v: vec3f) -> vec3f {
-    let square = dot(v, v);
-    if (square > 1e-30) {
-        return v * inverseSqrt(square);
-    }
-    return vec3f(0.0);
 }
 
 @fragment
 fn fragment_main(input: Varyings) -> @location(0) vec4f {
-    let V = unit_vector(camera.position - input.position);
-    var N = unit_vector(input.normal);
-    let T = unit_vector(input.tangent.xyz);
+    let V = safe_normalize_vec3(camera.position - input.position);
+    var N = safe_normalize_vec3(input.normal);
+    let T = safe_normalize_vec3(input.tangent.xyz);
     let B = cross(N, T) * input.tangent.w;
     let surface = evaluate_surface(input.uv, camera.time);
-    N = unit_vector(T * surface.normal.x + B * surface.normal.y + N * surface.normal.z);
-
+    let across = T * surface.normal.x + B * surface.normal.y;
+    N = safe_normalize_vec3(across + N * surface.normal.z);
     var color = lights.ambient * surface.albedo + surface.emission;
     for (var i = 0; i < min(lights.count, MAX_LIGHTS); i++) {
-        let to_light = lights.positions[i].xyz - input.position * lights.positions[i].w;
-        let distance_squared = max(dot(to_light, to_light), 1e-4);
+        let near = lights.positions[i].w;
+        let to_light = lights.positions[i].xyz - input.position * near;
+        let distance_squared = max(dot(to_light, to_light), 0.0001);
         let L = to_light * inverseSqrt(distance_squared);
-        let light_color = lights.colors[i].rgb * mix(1.0, 1.0 / distance_squared, lights.positions[i].w);
+        let light_color = lights.colors[i].xyz * mix(1.0, 1.0 / distance_squared, near);
         color += evaluate_lighting(surface, N, V, L, light_color);
         color += evaluate_translucency(surface, V, N, L) * light_color;
     }

@@ -15,11 +15,11 @@ OPAQUE_DEPTH = 80.0
 
 def safe_normalize_vec2(x):
     """The direction of `x`; of a zero vector, 0."""
-    return x * inversesqrt(max(dot(x, x), 1.0000000031710769e-30))
+    return x * select(dot(x, x) > 1.0000000031710769e-30, inversesqrt(dot(x, x)), 0.0)
 
 def safe_normalize_vec3(x):
     """The direction of `x`; of a zero vector, 0."""
-    return x * inversesqrt(max(dot(x, x), 1.0000000031710769e-30))
+    return x * select(dot(x, x) > 1.0000000031710769e-30, inversesqrt(dot(x, x)), 0.0)
 
 def hash_bits(x):
     """Scrambles the bits of `x`; 0 stays 0."""
@@ -143,13 +143,12 @@ def left_at(uv, edge, erosion, erosion_texture):
 def alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, erosion_texture, edge_height):
     """Erodes the surface, dark parts of a mask first, with a bevelled normal at the edge."""
     e = vec(texel_size, 0.0)
-    at = uv
-    across = left_at(at + e, edge, erosion, erosion_texture) - left_at(at - e, edge, erosion, erosion_texture)
-    up = left_at(at + swizzle(e, "yx"), edge, erosion, erosion_texture) - left_at(at - swizzle(e, "yx"), edge,
+    across = left_at(uv + e, edge, erosion, erosion_texture) - left_at(uv - e, edge, erosion, erosion_texture)
+    up = left_at(uv + swizzle(e, "yx"), edge, erosion, erosion_texture) - left_at(uv - swizzle(e, "yx"), edge,
         erosion, erosion_texture)
     slope = edge_height * uv_per_unit * vec(across, up) / (2.0 * texel_size)
     normal = blend_normals(normal, normal_of_slope(slope))
-    alpha = alpha * left_at(at, edge, erosion, erosion_texture)
+    alpha = alpha * left_at(uv, edge, erosion, erosion_texture)
     return alpha, normal
 
 def glow(lobe, through, subsurface_color, attenuation, scale, ambient):
@@ -181,7 +180,8 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     F0 = mix(splat(3, 0.04), min(albedo, 1.0), metallic)
     F = F0 + (1.0 - F0) * pow(1.0 - clamp(dot(V, H), 0.0, 1.0), 5.0)
     diffuse = albedo * (1.0 - metallic) * (1.0 - F)
-    return (diffuse + facets * visible * F) * NoL * light_color
+    reflected = (diffuse + facets * visible * F) * NoL
+    return reflected * light_color
 
 def evaluate_surface(uv, time, variation, cell_count, thickness_factor, bevel, attenuation_distance, tint,
     base_color_texture, metalness, surface_roughness, relief, uv_per_unit, cover, cover_texture,
