@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import tempfile
 from functools import cache
 from pathlib import Path
@@ -28,6 +27,7 @@ MESHES = ["ice", "ice_inlay", "jade_ring", "marble_idol", "paper_lantern", "resi
 WHOLE, THROUGH = "whole", "through"
 """All light of a file whose light is ours; the light alone that comes through, of the file with Godot's light."""
 SIZE = (160, 120)
+_NO_LIGHTING = "def evaluate_lighting(*_):\n    return np.zeros((3, 1))\n"
 _OWN = "    // Godot's own reflected"
 _THROUGH = "    // Light that comes through"
 
@@ -66,8 +66,9 @@ def _picture(name: str, engine: str, part: str) -> Array:
         if isinstance(backend, Godot):
             return godot_values.shade(text_of(compiled, part), reflection, shell, backend, size, points)
         if part == THROUGH:
-            reflection["entries"].pop("lighting")
-            compiled = compiled._replace(files={**compiled.files, list(compiled.files)[-1]: json.dumps(reflection)})
+            file = next(file for file in compiled.files if file.endswith(".py"))
+            text = f"{compiled.files[file]}\n{_NO_LIGHTING}"
+            compiled = compiled._replace(files={**compiled.files, file: text})
         return shade_numpy.shade(compiled, shell, size, points, "float64")
 
     usual, scene_render.shade = scene_render.shade, shade
