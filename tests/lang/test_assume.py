@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from name_rules import rules_of
 from pass_cases import assert_is, key, module_of
 from sssgen.harness.backends import Array
 from sssgen.harness.backends import call_program as calls
@@ -123,7 +124,7 @@ def test_conversions_hoist_and_names_keep_it() -> None:
     module = module_of(source)
     for result in (
         drop_conversions(module), hoist(module, [key(module, "f")])[0],
-        rename(module, {"x", "v", "a"}, str, True)[0],
+        rename(module, rules_of("xva", False))[0],
     ):  # fmt: skip
         assert verify(result) == [] and assumptions(result), print_module(result, spans=False)
 

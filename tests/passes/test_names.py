@@ -4,19 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
+from name_rules import rules_of
 from pass_cases import assert_is, module_of, text
 from sssgen.ir.verify import verify
-from sssgen.passes.capabilities import Capabilities
-from sssgen.passes.names import Rules, rename
+from sssgen.passes.names import rename
 
 
 def unity(name: str) -> str:
     return "_" + "".join(word.capitalize() for word in name.split("_"))
-
-
-def rules_of(reserved: Iterable[str] = (), overloads: bool = True) -> Rules:
-    able = Capabilities(matrix_overloads=True, loop_scope=True, member_types=True, hiding=True, overloads=overloads)
-    return Rules(frozenset(reserved), capabilities=able)
 
 
 def becomes(

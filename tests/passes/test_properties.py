@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ir_interpreter import BUILTINS, Discarded, Interpreter, componentwise, flat
+from name_rules import rules_of
 from pass_cases import key
 from shaded_programs import module_for
 from sssgen.ir.nodes import Module, Return
@@ -99,7 +100,7 @@ def test_conversions(seed: int, discards: bool) -> None:
 def test_names(seed: int, discards: bool) -> None:
     module = module_for(seed, discards)
     reserved = {"a", "v", "x1", "x2", "x3", "i1", "i2", "k", "pair", "first", "look", "Pair", "split", "d"}
-    changed, names = rename(module, reserved, str, True, frozenset({"two", "list"}))
+    changed, names = rename(module, rules_of(reserved, False, ("two", "list")))
     assert verify(changed) == []
     assert outcomes(changed) == outcomes(module)
     declared = {param.name for function in changed.functions for param in function.params}
@@ -159,6 +160,6 @@ def test_all_passes_in_sequence(seed: int, discards: bool) -> None:
         module = prune(fold(module, {"mode": (1,)}), [key(module, "f")])
         module = hoist(module, [key(module, "f")])[0]
         module = prune(drop_conversions(module), [key(module, "f")])
-        return rename(module, {"a", "b"}, str, True)[0]
+        return rename(module, rules_of("ab", False))[0]
 
     same(seed, discards, change, linked=True)

@@ -226,8 +226,9 @@ def own_standard(albedo: Array, metallic: Array, roughness: Array, reflected: An
     return np.where(((nl > 0.0) & (nv > 0.0))[:, None], lit, 0.0)
 
 
-BARE = {"specular": 0.04, "clearcoat": 0.0, "clearcoat_roughness": 0.0}
-"""The usual reflection of a dielectric, without a coat."""
+NO_SHEEN = {"sheen_color": (0.0, 0.0, 0.0), "sheen_roughness": 0.0}
+BARE = {"specular": 0.04, "clearcoat": 0.0, "clearcoat_roughness": 0.0, **NO_SHEEN}
+"""The usual reflection of a dielectric, without a coat and a sheen."""
 
 
 def test_standard_light() -> None:
@@ -247,7 +248,7 @@ def test_standard_light_under_a_clear_coat() -> None:
     reflected, weight, rough = rng(3).uniform(size=COUNT), rng(4).uniform(size=COUNT), rng(5).uniform(size=COUNT)
     weight[:5] = 0.0
     values = {"albedo": albedo, "metallic": metallic, "roughness": roughness, "light_color": COLOR}
-    layers = {"specular": reflected, "clearcoat": weight, "clearcoat_roughness": rough}
+    layers = {"specular": reflected, "clearcoat": weight, "clearcoat_roughness": rough, **NO_SHEEN}
     result = technique("standard")(N=N, V=V, L=L, **values, **layers)
     h = unit(V + L)
     share = (weight * (0.04 + 0.96 * (1.0 - dot(V, h)) ** 5))[:, None]

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ir_interpreter import Discarded, Interpreter
+from name_rules import rules_of
 from sssgen.ir.nodes import Function, Module
 from sssgen.ir.types import Array, Matrix, Struct, Type, Vector, kind_of
 from sssgen.ir.verify import verify
@@ -27,7 +28,7 @@ def module_of(source: str) -> Module:
 
 def python_of(module: Module) -> str:
     """The Python text of a checked module."""
-    renamed, _ = rename(predicate(module), load("numpy").names.exact, lambda name: name, True)
+    renamed, _ = rename(predicate(module), rules_of(load("numpy").names.exact, False))
     return print_functions(renamed)
 
 
