@@ -19,7 +19,7 @@ BIN := .venv/bin
 BUNDLED_PACKAGES := three@0.187.0 esbuild@0.28.2 pyodide@314.0.7
 NODE_PACKAGES := webgpu@0.6.2 playcanvas@2.23.3 wesl@0.7.31 @babylonjs/core@9.34.0 gltf-validator@2.0.0-dev.3.10 $(BUNDLED_PACKAGES)
 # Babylon.js is thousands of files: a page loads one.
-BABYLON_BUNDLE := src/sssgen/harness/backends/babylon_bundle.js
+BABYLON_BUNDLE := src/sssgen/run/backends/babylon_bundle.js
 # What the preview's page imports, as one file: the wheel has it.
 PREVIEW_BUNDLE := src/sssgen/preview/library_bundle.js
 # What checks the JavaScript; editors/vscode/package.json has the last two, too.

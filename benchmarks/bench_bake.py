@@ -26,8 +26,8 @@ import numpy.typing as npt
 
 from sssgen.bake.voxel_distance import distances, inside
 from sssgen.bake.voxel_grid import Grid, around
-from sssgen.harness.scenes.mesh import Mesh
-from sssgen.harness.scenes.mesh_distance import MeshDistance
+from sssgen.scene.mesh import Mesh
+from sssgen.scene.mesh_distance import MeshDistance
 
 Array: TypeAlias = npt.NDArray[np.float64]
 Indices: TypeAlias = npt.NDArray[np.int64]

@@ -13,14 +13,14 @@ import sys
 import time
 from collections.abc import Callable
 
-from sssgen.harness import backends
-from sssgen.harness.backends import DrawingBackend
-from sssgen.harness.evaluate import evaluation as evaluate
-from sssgen.harness.evaluate.probes import subject
-from sssgen.harness.evaluate.random_inputs import samples
-from sssgen.harness.render import scene_render as render
-from sssgen.harness.scenes import scene_loading
 from sssgen.material.material_loading import examples
+from sssgen.run import backends
+from sssgen.run.backends import DrawingBackend
+from sssgen.run.evaluate import evaluation as evaluate
+from sssgen.run.evaluate.probes import subject
+from sssgen.run.evaluate.random_inputs import samples
+from sssgen.run.render import scene_render as render
+from sssgen.scene import scene_loading
 
 TECHNIQUES = ("lobe_gdc2011", "standard", "thinness_uniform")
 ROUNDS = 7

@@ -19,12 +19,12 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from sssgen.harness.check import compile_check, shader_files
 from sssgen.interchange import format_readers
 from sssgen.interchange.gltf_container import open_file
 from sssgen.interchange.gltf_materials import READ
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.material_writer import WrittenMaterial, write_import
+from sssgen.run.check import compile_check, shader_files
 from sssgen.support.diagnostics import SssgenError
 
 EXTENSIONS = {*READ, "KHR_texture_transform"}
@@ -66,10 +66,10 @@ def draw(materials: list[WrittenMaterial], folder: str, sheet: Path) -> None:
 
     import numpy as np
 
-    from sssgen.harness import backends
-    from sssgen.harness.pictures import images
-    from sssgen.harness.render.scene_render import render
-    from sssgen.harness.scenes import scene_loading
+    from sssgen.run import backends
+    from sssgen.run.render.scene_render import render
+    from sssgen.scene import scene_loading
+    from sssgen.scene.pictures import images
 
     chosen = sorted(materials, key=lambda material: material.transmits, reverse=True)[:DRAWN]
     pictures = []

@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from sssgen.harness.lint.lint_findings import REPORTED, lint
+from sssgen.analyse.lint.lint_findings import REPORTED, lint
 from sssgen.ir.intrinsics import KINDS
 from sssgen.lang.plain_glsl import load_glsl
 from sssgen.pipeline.programs import plain_module, traced_sites

@@ -27,10 +27,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from sssgen.harness.installed import chromium
 from sssgen.material import library
 from sssgen.preview.preview_server import PreviewServer
 from sssgen.preview.shown_picture import ShownPicture
+from sssgen.run.installed import chromium
 from sssgen.support.paths import folder
 
 VALUE_SAVES, LINE_SAVES, FRAMES = 10, 5, 5

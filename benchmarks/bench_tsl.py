@@ -22,8 +22,8 @@ from typing import Any
 
 from public_code import Code, Pool, file_errors, read, reason_of, without_names
 
-from sssgen.harness.verify.verification import Machines, Options, start_machines, verify
-from sssgen.harness.verify.verification_report import Row
+from sssgen.analyse.verify.verification import Machines, Options, start_machines, verify
+from sssgen.analyse.verify.verification_report import Row
 from sssgen.lang.plain_glsl import load_glsl
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.worker_process import LostError

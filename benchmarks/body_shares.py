@@ -20,7 +20,6 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import nnls
 
-from sssgen.harness.scenes.geometry import Ball, Capsule
 from sssgen.interchange.body_shares import FILE
 from sssgen.interchange.scatter_color import multiscatter_of_albedo
 from sssgen.lab.chart import charting
@@ -32,10 +31,11 @@ from sssgen.lab.measure.problem import WHITE, Problem
 from sssgen.lab.measure.scene_references import ROUND_LIGHTS, lit_body
 from sssgen.lab.reference.transport import radiance_along
 from sssgen.lab.reference.transport_mitsuba import Light
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.media import Medium
-from sssgen.lab.scene.scene_body import body
-from sssgen.lab.scene.view_points import points
+from sssgen.scene.geometry import Ball, Capsule
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.media import Medium
+from sssgen.scene.measured.scene_body import body
+from sssgen.scene.measured.view_points import points
 
 Array = npt.NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from pathlib import Path
 from sssgen.lab.gpu import device_costs
 from sssgen.lab.measure import candidates
 from sssgen.lab.measure.candidates import Candidate
-from sssgen.lab.scene import measured_scene
+from sssgen.scene.measured import measured_scene
 from sssgen.support.file_writer import write_files
 
 SCENE = "cube"

@@ -10,12 +10,12 @@ from typing import Any
 
 from public_code import READ, reason_of
 
-from sssgen.harness import compilers
-from sssgen.harness.check.handwritten import hand_written
-from sssgen.harness.compilers import errors
-from sssgen.harness.verify.verification import Machines, Options, start_machines, verify
+from sssgen.analyse.verify.verification import Machines, Options, start_machines, verify
 from sssgen.lang.plain_glsl import load_glsl, preprocessed
 from sssgen.pipeline.compiler import transpile
+from sssgen.run import compilers
+from sssgen.run.check.handwritten import hand_written
+from sssgen.run.compilers import errors
 from sssgen.support.text_files import read_text
 
 TARGET = "wgsl"

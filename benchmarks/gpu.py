@@ -20,18 +20,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import sssgen
-from sssgen.harness.pictures.picture_difference import compare
-from sssgen.harness.scenes import scene_loading
 from sssgen.lab.gpu import device_costs
 from sssgen.lab.gpu import gpu_timing as gpu_cost
 from sssgen.lab.gpu import timed_programs as gpu_programs
 from sssgen.lab.gpu.gpu_timing import Program, ProgramTimes, Spread
 from sssgen.lab.measure import candidates
 from sssgen.lab.measure.candidates import Candidate
-from sssgen.lab.scene import measured_scene
 from sssgen.material import library
 from sssgen.material.material_loading import examples
 from sssgen.material.slots import needs
+from sssgen.scene import scene_loading
+from sssgen.scene.measured import measured_scene
+from sssgen.scene.pictures.picture_difference import compare
 
 BY_HAND = Path(__file__).parent / "by_hand"
 TIME = 1.2

@@ -17,16 +17,16 @@ from pathlib import Path
 from queue import Queue
 from typing import Any, NamedTuple
 
-from sssgen.harness import compilers
-from sssgen.harness.check.handwritten import hand_written
-from sssgen.harness.compilers import Source, errors
-from sssgen.harness.compilers.calling_entry import glsl_entry
-from sssgen.harness.compilers.gl_driver import with_version
-from sssgen.harness.verify.inline_includes import expanded
-from sssgen.harness.verify.stage_variables import without_interface
+from sssgen.analyse.verify.inline_includes import expanded
+from sssgen.analyse.verify.stage_variables import without_interface
 from sssgen.lang.plain_glsl import load_glsl
 from sssgen.lang.shadertoy import UNIFORMS
 from sssgen.pipeline.compiler import transpile
+from sssgen.run import compilers
+from sssgen.run.check.handwritten import hand_written
+from sssgen.run.compilers import Source, errors
+from sssgen.run.compilers.calling_entry import glsl_entry
+from sssgen.run.compilers.gl_driver import with_version
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.text_files import read_code
 from sssgen.support.worker_process import LostError, Process

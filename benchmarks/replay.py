@@ -54,14 +54,13 @@ def emitted(project: Path, materials: Path, out: Path) -> dict[str, str]:
 def texts_of_this_state() -> dict[str, str]:
     """The texts of the sssgen that is imported, for the examples of the current folder and for all techniques."""
     import sssgen
+    from sssgen.material import library
+    from sssgen.pipeline import compiler
 
     try:
-        from sssgen.harness.evaluate import probes
-        from sssgen.material import library
-        from sssgen.pipeline import compiler
+        from sssgen.run.evaluate import probes
     except ImportError:  # the folders of earlier states
-        from sssgen import compiler, library
-        from sssgen.harness import probes
+        from sssgen.harness.evaluate import probes
 
     texts: dict[str, str] = {}
     materials = [path for path in sorted(Path().glob("examples/*/*.toml")) if path.stem == path.parent.name]

@@ -29,8 +29,8 @@ from sssgen.lab.chart.choice_pictures import ScenePictures, scene_pictures
 from sssgen.lab.chart.record import checked, to_json
 from sssgen.lab.chart.scene_conditions import boundary, lights
 from sssgen.lab.gpu import chart_times as chart_gpu
-from sssgen.lab.scene import measured_scene
-from sssgen.lab.scene.measured_scene import MeasuredScene
+from sssgen.scene.measured import measured_scene
+from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.support.file_writer import write_files
 from sssgen.support.progress import ProgressBar
 

@@ -8,10 +8,10 @@ from textwrap import fill
 
 import numpy as np
 
-from sssgen.harness.backends import Array
-from sssgen.harness.pictures.images import encode_srgb
 from sssgen.lab.chart.choice_pictures import Choice, ScenePictures
 from sssgen.lab.chart.drawing import figure as charts
+from sssgen.run.backends import Array
+from sssgen.scene.pictures.images import encode_srgb
 from sssgen.support.extras import need
 
 LIMITS = (0.3, 0.2, 0.1)

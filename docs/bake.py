@@ -19,9 +19,9 @@ import bake_reference
 import numpy as np
 
 from sssgen.cli.main import main as sssgen
-from sssgen.harness.pictures import images
-from sssgen.harness.pictures.picture_difference import compare
-from sssgen.harness.scenes.mesh import Mesh
+from sssgen.scene.mesh import Mesh
+from sssgen.scene.pictures import images
+from sssgen.scene.pictures.picture_difference import compare
 from sssgen.support.extras import need
 from sssgen.support.file_writer import write_files
 from sssgen.targets.runtime.numpy_textures import Texture

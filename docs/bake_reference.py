@@ -9,12 +9,12 @@ import numpy as np
 
 from sssgen.bake.atlas import filled
 from sssgen.bake.baked_files import write_picture
-from sssgen.harness.scenes.geometry import Mesh
-from sssgen.harness.scenes.inside_intervals import intervals
-from sssgen.harness.scenes.light_view import point_view
-from sssgen.harness.scenes.scene import Scene
-from sssgen.harness.scenes.scene_loading import load
 from sssgen.lab.reference.inside_lengths import thickness
+from sssgen.scene.geometry import Mesh
+from sssgen.scene.inside_intervals import intervals
+from sssgen.scene.light_view import point_view
+from sssgen.scene.scene import Scene
+from sssgen.scene.scene_loading import load
 from sssgen.targets.texture_import import import_settings
 
 SIZE = 1024

@@ -19,22 +19,22 @@ from typing import Any, NamedTuple
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from sssgen.harness import backends
-from sssgen.harness.backends import Array
-from sssgen.harness.evaluate.evaluation import evaluate
-from sssgen.harness.evaluate.probes import subject
-from sssgen.harness.pictures.images import encode_srgb
-from sssgen.harness.render.scene_render import Rendered, render
-from sssgen.harness.scenes import scene_loading
-from sssgen.harness.scenes.environment import Environment, digest
-from sssgen.harness.scenes.geometry import Distance
-from sssgen.harness.scenes.scene import Scene
 from sssgen.lab.measure import scene_references
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.media import Medium
-from sssgen.lab.scene.view_points import points
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
+from sssgen.run import backends
+from sssgen.run.backends import Array
+from sssgen.run.evaluate.evaluation import evaluate
+from sssgen.run.evaluate.probes import subject
+from sssgen.run.render.scene_render import Rendered, render
+from sssgen.scene import scene_loading
+from sssgen.scene.environment import Environment, digest
+from sssgen.scene.geometry import Distance
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.media import Medium
+from sssgen.scene.measured.view_points import points
+from sssgen.scene.pictures.images import encode_srgb
+from sssgen.scene.scene import Scene
 
 FOLDER = Path(__file__).parent / "accuracy"
 PANEL = (256, 192)

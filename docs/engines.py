@@ -16,13 +16,13 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 import sssgen
-from sssgen.harness import backends
-from sssgen.harness.backends import BACKENDS, Array, Bound, CompilerMissing, Drawing, DrawingBackend, Place, Stage, Text
-from sssgen.harness.compilers.shadertoy_page import program
-from sssgen.harness.evaluate.evaluation import default_texture
-from sssgen.harness.pictures.images import decode_srgb, encode_srgb
-from sssgen.harness.render.scene_render import render
-from sssgen.harness.scenes import scene_loading
+from sssgen.run import backends
+from sssgen.run.backends import BACKENDS, Array, Bound, CompilerMissing, Drawing, DrawingBackend, Place, Stage, Text
+from sssgen.run.compilers.shadertoy_page import program
+from sssgen.run.evaluate.evaluation import default_texture
+from sssgen.run.render.scene_render import render
+from sssgen.scene import scene_loading
+from sssgen.scene.pictures.images import decode_srgb, encode_srgb
 from sssgen.support.file_writer import write_files
 
 FOLDER = Path(__file__).with_name("engines") / "side_by_side"

@@ -17,13 +17,13 @@ import gallery_loop
 
 import sssgen
 from sssgen.cli.options import add_workers
-from sssgen.harness import backends
-from sssgen.harness.backends import Backend
 from sssgen.lab.jobs.executor import Item, failures, run
 from sssgen.lab.jobs.result_store import Store
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.material.requirements import described
+from sssgen.run import backends
+from sssgen.run.backends import Backend
 from sssgen.support.file_writer import write_files
 from sssgen.support.progress import ProgressBar
 
@@ -144,7 +144,7 @@ def page(present: list[Backend], small: dict[str, list[str]], large: dict[str, l
         *_paragraph(
             f"Each scene at {SMALL[0]} × {SMALL[1]} on every back end: the largest difference of any channel of any "
             "pixel from NumPy's picture in float64, in 1/255 of the encoded sRGB value, before rounding to 8 bits. "
-            "`tests/harness/test_gallery.py` checks that it is below 1 at 64 × 48 with one sample per pixel."
+            "`tests/run/test_gallery.py` checks that it is below 1 at 64 × 48 with one sample per pixel."
         ),
         f"| Scene | {' | '.join(f'`{backend.name}`' for backend in present)} |",
         f"|---|{'---|' * len(present)}",

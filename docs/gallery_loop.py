@@ -9,10 +9,10 @@ import math
 import numpy as np
 from PIL import Image
 
-from sssgen.harness import backends
-from sssgen.harness.render.scene_render import render
-from sssgen.harness.scenes import scene_loading
-from sssgen.harness.scenes.scene import Light
+from sssgen.run import backends
+from sssgen.run.render.scene_render import render
+from sssgen.scene import scene_loading
+from sssgen.scene.scene import Light
 
 LOOP = "light_around.webp"
 SCENE = "jelly"

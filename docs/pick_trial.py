@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Geometry, Torus, Union
-from sssgen.harness.scenes.scene import Light
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.picking import allowed, chosen, cost_of
-from sssgen.lab.scene import media
-from sssgen.lab.scene.measured_scene import MeasuredScene
+from sssgen.scene.camera import Camera
+from sssgen.scene.geometry import Ball, Box, Capsule, Geometry, Torus, Union
+from sssgen.scene.measured import media
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.scene import Light
 
 SCENES = 5
 LIMITS = 8

@@ -11,14 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.harness.backends import Array, Backend
-from sssgen.harness.evaluate.deviation import errors
-from sssgen.harness.evaluate.evaluation import run as evaluated
-from sssgen.harness.stress.guard_witness import Witness, only, sites, witness
-from sssgen.harness.stress.result_checks import non_finite
-from sssgen.harness.stress.stress_run import Machines
-from sssgen.harness.stress.subject import Specimen
+from sssgen.analyse.stress.guard_witness import Witness, only, sites, witness
+from sssgen.analyse.stress.result_checks import non_finite
+from sssgen.analyse.stress.stress_run import Machines
+from sssgen.analyse.stress.subject import Specimen
 from sssgen.passes.ranges.sites import Site
+from sssgen.run.backends import Array, Backend
+from sssgen.run.evaluate.deviation import errors
+from sssgen.run.evaluate.evaluation import run as evaluated
 from sssgen.support.diagnostics import SssgenError
 
 CHANGED = 1e-3

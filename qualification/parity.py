@@ -24,8 +24,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from qualification.parity_inputs import MAX, MIN, TEXTURE_LANES, Case, cases, evaluated, textures, widened
-from sssgen.harness.backends import DRIVERS, Array, Backend, Call, Text
-from sssgen.harness.backends.call_program import grid
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import Builtin
 from sssgen.ir.nodes import Intrinsic
@@ -34,6 +32,8 @@ from sssgen.ir.walk import all_expressions
 from sssgen.lang.loader import load_text
 from sssgen.lang.polyfills import polyfill
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import DRIVERS, Array, Backend, Call, Text
+from sssgen.run.backends.call_program import grid
 from sssgen.targets import numpy_runtime as runtime
 
 __all__ = ["BACKENDS", "FULL", "Case", "Figure", "cases", "measure", "oracle", "run", "supported"]

@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.harness.backends import Array
-from sssgen.harness.backends.call_program import grid
-from sssgen.harness.evaluate.evaluation import shape_of
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS, Builtin
 from sssgen.ir.types import BY_NAME, INT, Matrix, Sampler, Scalar, Type, Vector, components, kind_of, spell
+from sssgen.run.backends import Array
+from sssgen.run.backends.call_program import grid
+from sssgen.run.evaluate.evaluation import shape_of
 from sssgen.targets import numpy_runtime as runtime
 from sssgen.targets.runtime.numpy_textures import Texture
 

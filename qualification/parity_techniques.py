@@ -13,12 +13,12 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from sssgen.harness.backends import DRIVERS, Array, Backend, get
-from sssgen.harness.evaluate.deviation import GOAL, Deviation, deviation, rounding_deviation
-from sssgen.harness.evaluate.evaluation import Inputs, fitted, run
-from sssgen.harness.evaluate.probes import Subject, subject
-from sssgen.harness.evaluate.random_inputs import samples
 from sssgen.material import library, slots
+from sssgen.run.backends import DRIVERS, Array, Backend, get
+from sssgen.run.evaluate.deviation import GOAL, Deviation, deviation, rounding_deviation
+from sssgen.run.evaluate.evaluation import Inputs, fitted, run
+from sssgen.run.evaluate.probes import Subject, subject
+from sssgen.run.evaluate.random_inputs import samples
 
 BACKENDS = DRIVERS
 LANES, SEED = 10_000, 1

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from sssgen.harness.evaluate.probes import Subject
 from sssgen.lang.polyfills import guard as guard_source
 from sssgen.lang.polyfills import polyfill
 from sssgen.passes.cost import Cost, cost_of
 from sssgen.passes.guards import guard
 from sssgen.pipeline.compiler import GUARDS
 from sssgen.pipeline.programs import plain_module
+from sssgen.run.evaluate.probes import Subject
 
 
 class Safety(NamedTuple):

@@ -27,20 +27,20 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from qualification.ir_mutations import Mutation, mutated, mutations
-from sssgen.harness.backends import Array, get
-from sssgen.harness.evaluate.deviation import GOAL, errors
-from sssgen.harness.evaluate.evaluation import shape_of
-from sssgen.harness.verify.inline_includes import expanded
-from sssgen.harness.verify.lane_interpreter import Program, Run
-from sssgen.harness.verify.loop_inputs import loop_inputs
-from sssgen.harness.verify.plain_inputs import RANGES
-from sssgen.harness.verify.plain_probes import probed
-from sssgen.harness.verify.rounding_noise import explained, noise
-from sssgen.harness.verify.stage_variables import plain
-from sssgen.harness.verify.verification import Case, Options, load
+from sssgen.analyse.verify.inline_includes import expanded
+from sssgen.analyse.verify.lane_interpreter import Program, Run
+from sssgen.analyse.verify.loop_inputs import loop_inputs
+from sssgen.analyse.verify.plain_inputs import RANGES
+from sssgen.analyse.verify.plain_probes import probed
+from sssgen.analyse.verify.rounding_noise import explained, noise
+from sssgen.analyse.verify.stage_variables import plain
+from sssgen.analyse.verify.verification import Case, Options, load
 from sssgen.ir.nodes import Literal, Module
 from sssgen.ir.types import Sampler, Type, kind_of
 from sssgen.ir.walk import all_expressions
+from sssgen.run.backends import Array, get
+from sssgen.run.evaluate.deviation import GOAL, errors
+from sssgen.run.evaluate.evaluation import shape_of
 
 ROOT = Path(__file__).parent.parent
 FOLDERS = (ROOT / "tests/transpile", ROOT / "qualification/plain_glsl")

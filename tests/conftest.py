@@ -14,12 +14,12 @@ from hypothesis import settings
 from amounts import COUNTED
 from command_line import CommandResult, Run
 from skips import compiler_or_skip, or_skip
+from sssgen.analyse.verify.verification import Machines, start_machines
+from sssgen.analyse.verify.verification_report import BACKENDS
 from sssgen.cli import main as cli
-from sssgen.harness import backends, compilers
-from sssgen.harness.backends import Backend
-from sssgen.harness.compilers import Compiler, Source, errors
-from sssgen.harness.verify.verification import Machines, start_machines
-from sssgen.harness.verify.verification_report import BACKENDS
+from sssgen.run import backends, compilers
+from sssgen.run.backends import Backend
+from sssgen.run.compilers import Compiler, Source, errors
 
 settings.register_profile("steady", deadline=None, derandomize=True)
 settings.load_profile("steady")
@@ -91,7 +91,7 @@ def assert_compiles() -> Callable[[Source], None]:
 def pytest_report_header() -> list[str]:
     """The Unity headers of the run."""
     named = os.environ.get("SSSGEN_UNITY_INCLUDES")
-    return [f"Unity headers: {f'real ones, {named}' if named else 'the stand-ins of harness/compilers/unity_standin'}"]
+    return [f"Unity headers: {f'real ones, {named}' if named else 'the stand-ins of run/compilers/unity_standin'}"]
 
 
 # `pytest -n` runs the tests in workers; the counts of each are added up where the run is reported

@@ -23,8 +23,8 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
-from sssgen.harness.backends.browser_page import WEBGL, Page
-from sssgen.harness.installed import chromium
+from sssgen.run.backends.browser_page import WEBGL, Page
+from sssgen.run.installed import chromium
 
 HERE = Path(__file__).resolve().parent
 DUMP = HERE.parent.parent / "tools" / "dump_shaders.js"

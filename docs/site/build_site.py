@@ -20,10 +20,10 @@ from chart_pictures import beside_path_tracing
 from menu import ROOT, documents, problems
 from picture import Picture
 from records import best_point
-from sssgen.harness import backends
-from sssgen.harness.backends import Backend
 from sssgen.material import library
 from sssgen.material.library import Technique
+from sssgen.run import backends
+from sssgen.run.backends import Backend
 from staging import Staging
 from technique_curves import curves_at_the_ends
 from technique_pictures import ball_at_the_ends, draw, why_none

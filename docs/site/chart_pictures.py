@@ -9,11 +9,11 @@ import numpy as np
 
 from picture import Picture
 from records import Point
-from sssgen.harness.backends import Array
-from sssgen.harness.pictures.images import encode_srgb
 from sssgen.lab.chart import charting
 from sssgen.lab.measure.measurement import View, pictures_of
-from sssgen.lab.scene import measured_scene
+from sssgen.run.backends import Array
+from sssgen.scene.measured import measured_scene
+from sssgen.scene.pictures.images import encode_srgb
 
 SIDE = 112
 """Pixels along each side of a picture."""

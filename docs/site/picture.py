@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from sssgen.harness.backends import Array
+from sssgen.run.backends import Array
 
 
 class Picture(NamedTuple):

@@ -12,8 +12,8 @@ import shutil
 from pathlib import Path
 
 from menu import HOME, ROOT, sections
-from sssgen.harness.backends import Array
-from sssgen.harness.pictures.images import write_png
+from sssgen.run.backends import Array
+from sssgen.scene.pictures.images import write_png
 
 _LINK = re.compile(r"(?P<before>\]\(|<img [^>]*?src=\")(?P<path>[^)\s\"#:]+)(?=[)#\"])")
 _FENCE = re.compile(r"^```.*?^```$", re.DOTALL | re.MULTILINE)

@@ -18,13 +18,13 @@ from matplotlib.figure import Figure
 
 from markup import number
 from picture import Picture
-from sssgen.harness import backends
-from sssgen.harness.backends import Array
-from sssgen.harness.evaluate.evaluation import evaluate
-from sssgen.harness.evaluate.probes import subject
 from sssgen.ir.types import Sampler, spell
 from sssgen.material.library import Technique
 from sssgen.material.technique_facts import facts_of
+from sssgen.run import backends
+from sssgen.run.backends import Array
+from sssgen.run.evaluate.evaluation import evaluate
+from sssgen.run.evaluate.probes import subject
 from sssgen.support.diagnostics import SssgenError
 
 STEPS = 181

@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 import formula_math
 from markup import escaped, fenced, number, table
 from records import points_of
-from sssgen.harness.evaluate import probes
 from sssgen.ir.types import VOID, spell
 from sssgen.material import library
 from sssgen.material.library import ROLES, Technique
 from sssgen.material.technique_facts import facts_of
 from sssgen.pipeline import compiler
+from sssgen.run.evaluate import probes
 from stability_pictures import PAGE, comparisons_of
 
 OVERVIEW = "docs/reference/techniques.md"

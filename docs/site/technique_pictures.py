@@ -18,11 +18,6 @@ import numpy as np
 
 from picture import Picture
 from records import Point, best_point
-from sssgen.harness.backends import Array, Backend
-from sssgen.harness.pictures.images import encode_srgb
-from sssgen.harness.render.scene_render import Rendered, render
-from sssgen.harness.scenes import scene_loading
-from sssgen.harness.scenes.example_scenes import measured_scenes
 from sssgen.lab.chart.picked_material import stages_of
 from sssgen.lab.measure.measured_chain import MaterialSection, material_text
 from sssgen.lab.measure.technique_chain import (
@@ -33,10 +28,15 @@ from sssgen.lab.measure.technique_chain import (
     textures_of,
     write_pictures,
 )
-from sssgen.lab.scene import measured_scene, scene_body
 from sssgen.material import library
 from sssgen.material.library import Technique
 from sssgen.material.technique_facts import facts_of
+from sssgen.run.backends import Array, Backend
+from sssgen.run.render.scene_render import Rendered, render
+from sssgen.scene import scene_loading
+from sssgen.scene.example_scenes import measured_scenes
+from sssgen.scene.measured import measured_scene, scene_body
+from sssgen.scene.pictures.images import encode_srgb
 from sssgen.support.diagnostics import SssgenError
 from technique_curves import default_curve
 

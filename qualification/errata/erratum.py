@@ -10,9 +10,9 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from sssgen.harness.backends import Array, Backend
-from sssgen.harness.evaluate.evaluation import evaluate
-from sssgen.harness.evaluate.probes import Subject, subject
+from sssgen.run.backends import Array, Backend
+from sssgen.run.evaluate.evaluation import evaluate
+from sssgen.run.evaluate.probes import Subject, subject
 
 Outputs: TypeAlias = Mapping[str, Array]
 Figures: TypeAlias = tuple[float, ...]

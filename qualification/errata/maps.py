@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from qualification.errata.erratum import subject_of
-from sssgen.harness.backends import Array, Backend
-from sssgen.harness.evaluate.evaluation import evaluate
-from sssgen.harness.pictures.images import encode_srgb
-from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.geometry import Ball
 from sssgen.material import library
+from sssgen.run.backends import Array, Backend
+from sssgen.run.evaluate.evaluation import evaluate
+from sssgen.scene.camera import Camera
+from sssgen.scene.geometry import Ball
+from sssgen.scene.pictures.images import encode_srgb
 
 NO_NUMBER = (1.0, 0.0, 1.0)
 SIZE = (320, 240)

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from qualification.parity import BACKENDS, FULL, Figure, cases, measure
 from qualification.parity_inputs import TEXTURE_LANES
-from sssgen.harness import backends
 from sssgen.ir.intrinsics import BUILTINS, Builtin
 from sssgen.ir.types import kind_of
+from sssgen.run import backends
 
 PAGE = Path(__file__).parents[2] / "docs" / "parity.md"
 

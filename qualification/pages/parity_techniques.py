@@ -10,10 +10,10 @@ from textwrap import wrap
 from typing import NamedTuple
 
 from qualification.parity_techniques import BACKENDS, BOUND_LANES, LANES, SEED, cases, excess, measure
-from sssgen.harness import backends
-from sssgen.harness.backends import Backend
-from sssgen.harness.evaluate.deviation import DRAWS, GOAL, MARGIN, Deviation
 from sssgen.material import library
+from sssgen.run import backends
+from sssgen.run.backends import Backend
+from sssgen.run.evaluate.deviation import DRAWS, GOAL, MARGIN, Deviation
 
 PAGE = Path(__file__).parents[2] / "docs" / "parity_techniques.md"
 
@@ -50,7 +50,7 @@ def page(present: list[Backend], rows_by_name: dict[str, Row]) -> str:
         "Measured by `python -m qualification.pages.parity_techniques`; "
         "`tests/qualification/test_parity_techniques.py` checks it. "
         f"Each technique gets {LANES:,} random inputs (random seed {SEED}) in the declared range of each parameter "
-        f"(`src/sssgen/harness/evaluate/random_inputs.py`), and {BOUND_LANES:,} more for each other function of "
+        f"(`src/sssgen/run/evaluate/random_inputs.py`), and {BOUND_LANES:,} more for each other function of "
         "the library that fits one of its slots. The oracle is the output of the `numpy` target, in float64.",
         "A deviation is |result − oracle| divided by the larger of |oracle| and 1; for a vector, each of the two "
         f"sizes is the largest over its components. The goal is {_number(GOAL)}; larger deviations are in bold.",

@@ -12,9 +12,9 @@ from textwrap import wrap
 
 from qualification.mutants import Mutant, mutants
 from qualification.safety import Safety, safety
-from sssgen.harness.stress import dangerous_inputs as dangerous
-from sssgen.harness.stress.stress_run import Machines, Settings, stress
-from sssgen.harness.stress.subject import Specimen, specimens
+from sssgen.analyse.stress import dangerous_inputs as dangerous
+from sssgen.analyse.stress.stress_run import Machines, Settings, stress
+from sssgen.analyse.stress.subject import Specimen, specimens
 from sssgen.material.material_loading import examples, load_material
 from sssgen.pipeline.compiler import guarded_sites
 

@@ -19,10 +19,10 @@ import numpy.typing as npt
 from PIL import Image
 
 from qualification.errata import BACKENDS, CHAPTERS, OPEN, TEXT_ERRATA, Erratum, Right, as_corrected, as_published, maps
-from sssgen.harness import backends
-from sssgen.harness.backends import Backend
-from sssgen.harness.render.scene_render import render
-from sssgen.harness.scenes.scene_loading import load
+from sssgen.run import backends
+from sssgen.run.backends import Backend
+from sssgen.run.render.scene_render import render
+from sssgen.scene.scene_loading import load
 from sssgen.support.file_writer import write_files
 
 DOCS = Path(__file__).parents[2] / "docs"

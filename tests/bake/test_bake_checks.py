@@ -12,11 +12,11 @@ import bake_meshes as meshes
 from bake_meshes import bake, facts, write
 from sssgen.bake import memory_check
 from sssgen.cli.main import main
-from sssgen.harness import backends
-from sssgen.harness.render.scene_render import render
-from sssgen.harness.scenes import body_identity
-from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Mesh, Union
-from sssgen.harness.scenes.scene_loading import load
+from sssgen.run import backends
+from sssgen.run.render.scene_render import render
+from sssgen.scene import body_identity
+from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Mesh, Union
+from sssgen.scene.scene_loading import load
 from sssgen.support.diagnostics import SssgenError
 
 for package in ("trimesh", "igl", "embreex", "scipy", "psutil"):

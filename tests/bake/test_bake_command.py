@@ -28,7 +28,7 @@ pytest.importorskip("psutil", reason="psutil is missing: pip install -e '.[bake]
 pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install -e '.[bake]'")
 
 from sssgen.bake.distance_encoding import ENCODINGS
-from sssgen.harness.pictures import images
+from sssgen.scene.pictures import images
 from sssgen.support import progress
 
 pytestmark = pytest.mark.usefixtures("folder")
@@ -52,7 +52,7 @@ def idle(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr("sssgen.bake.distance_texture.distances", working)
     monkeypatch.setattr("sssgen.bake.thickness_map._measured", working)
-    monkeypatch.setattr("sssgen.harness.scenes.mesh_rays.MeshRays.nearest", working)
+    monkeypatch.setattr("sssgen.scene.mesh_rays.MeshRays.nearest", working)
 
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:

@@ -15,11 +15,11 @@ import pytest
 
 from folders import ROOT
 from sssgen.cli.main import main
-from sssgen.harness import backends
-from sssgen.harness.backends import Backend
-from sssgen.harness.render.scene_render import Rendered, render
-from sssgen.harness.scenes.scene_loading import load
 from sssgen.pipeline.compiler import compile
+from sssgen.run import backends
+from sssgen.run.backends import Backend
+from sssgen.run.render.scene_render import Rendered, render
+from sssgen.scene.scene_loading import load
 from sssgen.support.diagnostics import SssgenError
 
 for package in ("trimesh", "igl", "embreex", "xatlas", "scipy", "psutil"):

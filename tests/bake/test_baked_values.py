@@ -21,13 +21,13 @@ pytest.importorskip("xatlas", reason="xatlas is missing: pip install -e '.[bake]
 pytest.importorskip("psutil", reason="psutil is missing: pip install -e '.[bake]'")
 pytest.importorskip("OpenEXR", reason="OpenEXR is missing: pip install -e '.[bake]'")
 
-from sssgen.harness.backends import Backend
-from sssgen.harness.pictures import images
-from sssgen.harness.render.scene_values import shell_of
-from sssgen.harness.render.shell_values import Shell
-from sssgen.harness.scenes.scene_loading import load
 from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import compile
+from sssgen.run.backends import Backend
+from sssgen.run.render.scene_values import shell_of
+from sssgen.run.render.shell_values import Shell
+from sssgen.scene.pictures import images
+from sssgen.scene.scene_loading import load
 from sssgen.support.diagnostics import SssgenError
 
 pytestmark = pytest.mark.usefixtures("folder")

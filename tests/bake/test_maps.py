@@ -18,7 +18,7 @@ from sssgen.targets.runtime.numpy_textures import Texture
 
 pytest.importorskip("PIL", reason="Pillow is missing: pip install -e '.[render]'")
 
-from sssgen.harness.pictures.images import png_bytes, read, write_png
+from sssgen.scene.pictures.images import png_bytes, read, write_png
 
 
 def failing(call: Any, *arguments: Any, **named: Any) -> str:

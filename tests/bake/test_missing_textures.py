@@ -13,15 +13,15 @@ import pytest
 from sssgen.cli.bake import KINDS
 from sssgen.cli.commands import command_parser
 from sssgen.cli.main import main
-from sssgen.harness.pictures import images
-from sssgen.harness.testing.project_run import Run, cases
 from sssgen.ir.baked_textures import is_baked
 from sssgen.material import library
 from sssgen.material.attributes import Bake, read, sections
 from sssgen.material.requirements import baked_functions
 from sssgen.preview.page_messages import PageMessages
 from sssgen.preview.shown_picture import ShownPicture
+from sssgen.scene.pictures import images
 from sssgen.support.diagnostics import SssgenError
+from sssgen.testing.project_run import Run, cases
 
 for package in ("trimesh", "igl", "embreex", "xatlas", "scipy", "psutil"):
     pytest.importorskip(package, reason=f"{package} is missing: pip install -e '.[bake]'")

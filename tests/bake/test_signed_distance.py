@@ -22,9 +22,9 @@ from sssgen.bake.distance_encoding import ENCODINGS
 from sssgen.bake.distance_texture import Volume, sdf
 from sssgen.bake.voxel_distance import distances, inside
 from sssgen.bake.voxel_grid import Grid, around
-from sssgen.harness.scenes.mesh import Mesh
-from sssgen.harness.scenes.mesh_distance import INSIDE, MeshDistance
 from sssgen.lab.reference.inside_lengths import thickness
+from sssgen.scene.mesh import Mesh
+from sssgen.scene.mesh_distance import INSIDE, MeshDistance
 from sssgen.targets.runtime.numpy_textures import Texture
 
 pytestmark = pytest.mark.usefixtures("in_folder")

@@ -26,8 +26,8 @@ from sssgen.bake.bake_light import BakeLight
 from sssgen.bake.chord_lengths import Chords, inward
 from sssgen.bake.depth_map import depth_map
 from sssgen.bake.thickness_map import Map, Request, thickness_map, warnings
-from sssgen.harness.scenes.mesh import Mesh
 from sssgen.lab.jobs.executor import Failure, run
+from sssgen.scene.mesh import Mesh
 from sssgen.targets.runtime.numpy_textures import Texture
 
 pytestmark = pytest.mark.usefixtures("in_folder")

@@ -13,11 +13,11 @@ from bake_meshes import Array, bake, facts, write
 from oracle import close, technique, unit, units
 from sssgen.bake import memory_check
 from sssgen.cli.main import main
-from sssgen.harness import backends
-from sssgen.harness.backends import Backend
-from sssgen.harness.pictures import images
-from sssgen.harness.render.scene_render import Rendered, render
-from sssgen.harness.scenes.scene_loading import load
+from sssgen.run import backends
+from sssgen.run.backends import Backend
+from sssgen.run.render.scene_render import Rendered, render
+from sssgen.scene.pictures import images
+from sssgen.scene.scene_loading import load
 from sssgen.targets.runtime.numpy_textures import Texture
 
 for package in ("trimesh", "igl", "embreex", "xatlas", "scipy", "psutil"):

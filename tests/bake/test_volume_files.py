@@ -15,8 +15,8 @@ import pytest
 
 from sssgen.bake.slice_sheet import columns_and_rows
 from sssgen.bake.volume_files import FORMATS, encoded, layout
-from sssgen.harness.pictures import images
-from sssgen.harness.pictures.volumes import read
+from sssgen.scene.pictures import images
+from sssgen.scene.pictures.volumes import read
 from sssgen.support.diagnostics import SssgenError
 from sssgen.version import VERSION
 

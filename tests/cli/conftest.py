@@ -10,8 +10,8 @@ import pytest
 from command_line import WAX, FakeCompiler
 from sssgen.cli import listing, transpile
 from sssgen.cli.shown import shown_material  # noqa: F401 - before the fake compiler, which it would keep
-from sssgen.harness.scenes import scene_loading  # noqa: F401 - the same
 from sssgen.pipeline import emitted_cache
+from sssgen.scene import scene_loading  # noqa: F401 - the same
 
 
 @pytest.fixture

@@ -16,9 +16,9 @@ from folders import ROOT
 from sssgen.cli import candidates
 from sssgen.cli.commands import COMMANDS, command_parser
 from sssgen.cli.completion import SHELLS
-from sssgen.harness.backend_registry import BACKENDS, SCENES
 from sssgen.material import library
 from sssgen.material.material_loading import examples
+from sssgen.run.backend_registry import BACKENDS, SCENES
 from sssgen.targets import registry
 
 

@@ -11,9 +11,9 @@ import pytest
 
 from command_line import Run
 from folders import ROOT
-from sssgen.harness import installed, machine_facts
-from sssgen.harness.backend_registry import BACKENDS
-from sssgen.harness.compiler_registry import COMPILERS
+from sssgen.run import installed, machine_facts
+from sssgen.run.backend_registry import BACKENDS
+from sssgen.run.compiler_registry import COMPILERS
 from sssgen.support import extra_packages
 from sssgen.support.installation import install_hint
 from sssgen.version import VERSION

@@ -10,8 +10,8 @@ import pytest
 
 from gltf_files import box, write_gltf
 from sssgen.cli.main import main
-from sssgen.harness.scenes.scene_loading import load
 from sssgen.interchange.mapping_report import shown
+from sssgen.scene.scene_loading import load
 
 GLASS: dict[str, Any] = {
     "name": "glass",

@@ -18,10 +18,10 @@ from sssgen.cli import eval as eval_command
 from sssgen.cli import main as cli
 from sssgen.cli import show
 from sssgen.cli.output import coloured
-from sssgen.harness.check.compile_check import Report, Result
-from sssgen.harness.check.shader_files import Shader
-from sssgen.harness.compilers import Message, Source
-from sssgen.harness.evaluate.deviation import Row
+from sssgen.run.check.compile_check import Report, Result
+from sssgen.run.check.shader_files import Shader
+from sssgen.run.compilers import Message, Source
+from sssgen.run.evaluate.deviation import Row
 from sssgen.support.progress import ProgressBar
 
 TEXT = "error: no such file\n  --> a.toml\n  help: an error: as a word"

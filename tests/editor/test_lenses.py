@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
+from sssgen.analyse.lint.lint_findings import PROVEN, lint
 from sssgen.editor.lenses import lenses_of
-from sssgen.harness.lint.lint_findings import PROVEN, lint
 from sssgen.ir.intrinsics import KINDS
 from sssgen.material.material_loading import examples
 from sssgen.passes.cost import Cost

@@ -13,15 +13,15 @@ from jsonschema import Draft7Validator
 from sssgen.cli.main import main
 from sssgen.editor import schemas
 from sssgen.editor.documents import MATERIAL, SCENE, kind_of
-from sssgen.harness.scenes import scene_keys
-from sssgen.harness.scenes.distance_field import PROJECTIONS
-from sssgen.harness.scenes.scene_loading import parse_scene
 from sssgen.ir import types
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, components
 from sssgen.material import library
 from sssgen.material.material_loading import examples, parse_material
 from sssgen.material.values import WrongValue, read_value
+from sssgen.scene import scene_keys
+from sssgen.scene.distance_field import PROJECTIONS
+from sssgen.scene.scene_loading import parse_scene
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import place
 

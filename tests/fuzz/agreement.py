@@ -7,20 +7,20 @@ from functools import cache
 
 import numpy as np
 
-from sssgen.harness.backends import Array, Backend, get
-from sssgen.harness.check.compiler_inputs import sources
-from sssgen.harness.compilers import Source
-from sssgen.harness.evaluate.deviation import errors
-from sssgen.harness.evaluate.evaluation import DTYPES, Inputs, run
-from sssgen.harness.evaluate.probes import Probe, Subject
 from sssgen.ir.nodes import Module
 from sssgen.lang.loader import load_text
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import Array, Backend, get
+from sssgen.run.check.compiler_inputs import sources
+from sssgen.run.compilers import Source
+from sssgen.run.evaluate.deviation import errors
+from sssgen.run.evaluate.evaluation import DTYPES, Inputs, run
+from sssgen.run.evaluate.probes import Probe, Subject
 
 LANES = 48
 TOLERANCE = 1e-3
-"""What a program may deviate by, in the measure of `harness.deviation`: it nests builtins that may each be off by 1e-6.
-One that is wrong is further off, in some lane."""
+"""What a program may deviate by, in the measure of `run.evaluate.deviation`: it nests builtins that may each be off by
+1e-6. A program that is wrong deviates more, in some lane."""
 STEADY = 1e-5
 """A lane where NumPy's float32 is further from float64 than this is excused: the formulas themselves lose too much."""
 LANGUAGES = ("glsl-330", "glsl-es-300", "hlsl", "wgsl", "tsl")

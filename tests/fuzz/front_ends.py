@@ -18,33 +18,33 @@ from amounts import COUNTED
 from folders import TESTS
 from gltf_files import box, data_uri, inlined, png
 from ir_sample import SAMPLE
+from sssgen.analyse.verify.inline_includes import expanded
 from sssgen.bake import bake_light as light
 from sssgen.bake.volume_files import encoded
-from sssgen.harness.check import shader_files
-from sssgen.harness.evaluate import input_files as inputs
-from sssgen.harness.evaluate import probes
-from sssgen.harness.evaluate.evaluation import fitted
-from sssgen.harness.pictures import images
-from sssgen.harness.scenes import scene_loading
-from sssgen.harness.scenes.mesh import Mesh
-from sssgen.harness.testing import project_run as ci
-from sssgen.harness.verify.inline_includes import expanded
 from sssgen.interchange import gltf_reader
 from sssgen.interchange.mapping_report import Report
 from sssgen.ir.nodes import Span
 from sssgen.ir.text import print_module
 from sssgen.ir.text_reader import TextError, read_module
-from sssgen.lab.scene import measured_scene
 from sssgen.lang.loader import load_file, load_text
 from sssgen.lang.plain_glsl import load_glsl, load_glsl_text
 from sssgen.material import baked
 from sssgen.material.library import TECHNIQUES, load_path
 from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import compile, transpile
+from sssgen.run.check import shader_files
+from sssgen.run.evaluate import input_files as inputs
+from sssgen.run.evaluate import probes
+from sssgen.run.evaluate.evaluation import fitted
+from sssgen.scene import scene_loading
+from sssgen.scene.measured import measured_scene
+from sssgen.scene.mesh import Mesh
+from sssgen.scene.pictures import images
 from sssgen.support import paths as data
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.support.text_files import read_text
 from sssgen.targets.texture_import import import_settings
+from sssgen.testing import project_run as ci
 from watchdog import bounded
 
 NAME = "fuzzed"

@@ -17,9 +17,6 @@ from glsl_programs import INPUTS
 from glsl_tree import Program, source
 from glsl_values import Undefined, kind, matrix_size, vector_size
 from hlsl_in_vulkan import HLSLInVulkan
-from sssgen.harness.backends import Backend, Call, Text
-from sssgen.harness.backends.isolated import isolated
-from sssgen.harness.compilers import CompilerMissing
 from sssgen.ir.nodes import Module
 from sssgen.ir.types import BY_NAME
 from sssgen.lang.plain_glsl import load_glsl_text
@@ -27,6 +24,9 @@ from sssgen.passes.reachable import only
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import Backend, Call, Text
+from sssgen.run.backends.isolated import isolated
+from sssgen.run.compilers import CompilerMissing
 from sssgen.support.diagnostics import SssgenError
 
 LANES = 16

@@ -23,12 +23,12 @@ sys.path[:0] = [str(Path(__file__).parents[1] / "tools")]
 
 # After the line above, because tests/tools is not on the path of a script.
 from hazard_programs import PARAMETERS, source  # noqa: E402
-from sssgen.harness.backends import Array, Backend, Call, Text, get  # noqa: E402
-from sssgen.harness.evaluate.evaluation import shape_of  # noqa: E402
 from sssgen.ir import contracts  # noqa: E402
 from sssgen.ir.types import BY_NAME, Matrix, Type, kind_of  # noqa: E402
 from sssgen.lang.loader import load_text  # noqa: E402
 from sssgen.pipeline.compiler import transpile  # noqa: E402
+from sssgen.run.backends import Array, Backend, Call, Text, get  # noqa: E402
+from sssgen.run.evaluate.evaluation import shape_of  # noqa: E402
 
 BATCH = 40
 """Programs in one text."""

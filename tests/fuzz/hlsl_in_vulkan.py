@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.harness.backends import Array, Drawing
-from sssgen.harness.backends.backend_interface import backend_failure
-from sssgen.harness.backends.draw_backend import DrawingBackend
-from sssgen.harness.compilers import CompilerMissing
+from sssgen.run.backends import Array, Drawing
+from sssgen.run.backends.backend_interface import backend_failure
+from sssgen.run.backends.draw_backend import DrawingBackend
+from sssgen.run.compilers import CompilerMissing
 from sssgen.support.worker_process import LostError, Process
 
 SECONDS = 60.0

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import pytest
 
 from agreement import Oracle, compiles
-from sssgen.harness.backends import Backend
-from sssgen.harness.compilers import Source
+from sssgen.run.backends import Backend
+from sssgen.run.compilers import Source
 
 FAULTS = {
     "HLSL gave a literal the type of the count": "int least_whole(uint h) { return -8 >> h; }",

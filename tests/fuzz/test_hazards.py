@@ -11,7 +11,7 @@ import pytest
 from amounts import COUNTED
 from hazard_programs import HELPERS, PARAMETERS, source
 from hazards import batch, run
-from sssgen.harness.backends import Backend
+from sssgen.run.backends import Backend
 from watchdog import bounded
 
 SECONDS = 600

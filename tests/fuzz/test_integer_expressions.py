@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 
 from amounts import COUNTED, examples
 from integer_expressions import HIGHEST, LOWEST, MOST, PARAMETERS, Expressions, Part, program, result_of
-from sssgen.harness.backend_registry import BACKENDS, SINGLE
-from sssgen.harness.backends import Array, Backend, Call, Text
 from sssgen.ir.types import INT, UINT, Scalar
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backend_registry import BACKENDS, SINGLE
+from sssgen.run.backends import Array, Backend, Call, Text
 from sssgen.support.diagnostics import SssgenError
 
 BATCH = 60

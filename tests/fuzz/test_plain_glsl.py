@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from front_ends import CORPUS
-from sssgen.harness.verify.inline_includes import expanded
+from sssgen.analyse.verify.inline_includes import expanded
 from sssgen.lang.plain_glsl import load_glsl, load_glsl_text
 from sssgen.lang.syntax.lexer import scan
 from sssgen.support.diagnostics import SssgenError

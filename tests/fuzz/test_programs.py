@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from agreement import Oracle, compiles, subject_of
 from amounts import COUNTED, examples
 from shader_programs import source
-from sssgen.harness.backends import Backend
-from sssgen.harness.compilers import Source
+from sssgen.run.backends import Backend
+from sssgen.run.compilers import Source
 from watchdog import bounded
 
 BATCH = 4

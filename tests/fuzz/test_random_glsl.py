@@ -14,7 +14,7 @@ from glsl_reduction import reduced, size
 from glsl_tree import Function, Node, Parameter, Program, source
 from hlsl_in_vulkan import HLSLInVulkan
 from skips import or_skip
-from sssgen.harness.backends import Backend
+from sssgen.run.backends import Backend
 from sssgen.support import diagnostics
 
 FEW, MANY = 4, 140

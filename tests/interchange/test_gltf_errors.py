@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 from gltf_files import box, data_uri, glb_header, png, write_gltf
-from sssgen.harness.scenes.scene_loading import load
 from sssgen.interchange.gltf_container import LARGEST_FILE
 from sssgen.interchange.gltf_reader import read
 from sssgen.interchange.mapping_report import Report
 from sssgen.material.model import wrong_name
+from sssgen.scene.scene_loading import load
 from sssgen.support.diagnostics import SssgenError
 
 Edit = Callable[[dict[str, Any]], Any]

@@ -14,7 +14,6 @@ import pytest
 from folders import ROOT
 from gltf_files import box, box_arrays, data_uri, png, write_gltf
 from sssgen.cli.main import main
-from sssgen.harness.installed import node_modules
 from sssgen.interchange.dense_bodies import scatters_inside
 from sssgen.interchange.gltf_container import open_file
 from sssgen.interchange.gltf_reader import read
@@ -22,6 +21,7 @@ from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.material_writer import write_import
 from sssgen.interchange.surface_model import SurfaceModel
 from sssgen.interchange.texels import mean_of
+from sssgen.run.installed import node_modules
 
 VALIDATOR = node_modules() / "gltf-validator"
 

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 from gltf_files import box, data_uri, png, write_gltf
-from sssgen.harness.pictures import images
-from sssgen.harness.scenes import mesh_files, scene_loading
 from sssgen.interchange.gltf_reader import read
 from sssgen.interchange.imported import Imported
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.material_writer import identifiers, mean_chord, write_import
 from sssgen.interchange.scatter_color import albedo_of_multiscatter, multiscatter_of_albedo
 from sssgen.material.material_loading import load_material
+from sssgen.scene import mesh_files, scene_loading
+from sssgen.scene.pictures import images
 
 GLASS = {"KHR_materials_transmission": {"transmissionFactor": 1.0}}
 

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sssgen.harness.pictures.images import write_png
 from sssgen.interchange.imported import Imported
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.surface_model import Image, Quantity, SurfaceModel
 from sssgen.interchange.texels import mean_of, texel_values
+from sssgen.scene.pictures.images import write_png
 
 pytest.importorskip("MaterialX")
 

@@ -13,8 +13,6 @@ import pytest
 
 from pass_cases import module_of
 from qualification.parity_inputs import DTYPES, EDGES, evaluated, inside, widened
-from sssgen.harness.backends import Array, Backend, Call, Text
-from sssgen.harness.evaluate.evaluation import shape_of
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures, vector_ranges
 from sssgen.ir.component_ranges import within
@@ -26,6 +24,8 @@ from sssgen.ir.types import BY_NAME, Scalar, Type, Vector, components, kind_of, 
 from sssgen.ir.vector_ranges import Value, length
 from sssgen.passes.ranges.range_pass import RangeAnalysis
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import Array, Backend, Call, Text
+from sssgen.run.evaluate.evaluation import shape_of
 from sssgen.targets import numpy_runtime as runtime
 
 BOXES, LANES = 40, 48

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from qualification.parity_inputs import DTYPES, textures
-from sssgen.harness.backends import SINGLE, Array, Backend, Call, Text
 from sssgen.ir.out_builtins import OUT_BUILTINS, is_out_builtin, out_builtin
 from sssgen.ir.types import FLOAT, VEC2, VEC3, VEC4, Sampler, Type, kind_of, spell, vector_of
 from sssgen.lang.loader import load_text
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import SINGLE, Array, Backend, Call, Text
 
 BACKENDS = ("numpy", *(name for name in SINGLE if name != "bevy"))  # its text is that of webgpu, in a larger program
 LANES = 64

@@ -12,7 +12,7 @@ from sssgen.lab.measure import (
     scene_references as references,
 )
 from sssgen.lab.measure.measurement import View
-from sssgen.lab.scene import measured_scene
+from sssgen.scene.measured import measured_scene
 from sssgen.support import cache
 
 

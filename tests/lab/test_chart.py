@@ -13,7 +13,6 @@ import pytest
 
 from sssgen.cli.chart import announce, summary
 from sssgen.cli.main import main
-from sssgen.harness.backends import Backend
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.picked_material import stages_of
@@ -25,9 +24,10 @@ from sssgen.lab.jobs.executor import Failure
 from sssgen.lab.measure import candidates
 from sssgen.lab.measure import measurement as measure
 from sssgen.lab.measure import scene_references as references
-from sssgen.lab.scene import measured_scene
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.scene_body import Body, body
+from sssgen.run.backends import Backend
+from sssgen.scene.measured import measured_scene
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.scene_body import Body, body
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError
 

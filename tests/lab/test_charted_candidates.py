@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sssgen.harness.scenes.scene import Light
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.measure import candidates
-from sssgen.lab.scene import measured_scene
+from sssgen.scene.measured import measured_scene
+from sssgen.scene.scene import Light
 
 
 def test_refraction_is_charted_where_the_body_refracts() -> None:

@@ -6,12 +6,12 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.geometry import Ball, Box, Geometry, Torus
 from sssgen.lab.measure.scene_inputs import principal_curvatures
 from sssgen.lab.reference.curvature import normal_curvature
-from sssgen.lab.scene.measured_scene import Inlay, MeasuredScene
-from sssgen.lab.scene.view_points import points
+from sssgen.scene.camera import Camera
+from sssgen.scene.geometry import Ball, Box, Geometry, Torus
+from sssgen.scene.measured.measured_scene import Inlay, MeasuredScene
+from sssgen.scene.measured.view_points import points
 
 
 def seen(shape: Geometry) -> MeasuredScene:

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sssgen.harness.backends import Backend
 from sssgen.lab.chart.record import checked, hypervolumes, on_fronts
 from sssgen.lab.gpu import device_costs
 from sssgen.lab.gpu.device_costs import OPERATORS, Device, TimedChains
 from sssgen.lab.gpu.gpu_timing import Device as Driver
 from sssgen.lab.measure.measurement import chain_of, static_cost
-from sssgen.lab.scene import measured_scene
-from sssgen.lab.scene.scene_body import body
+from sssgen.run.backends import Backend
+from sssgen.scene.measured import measured_scene
+from sssgen.scene.measured.scene_body import body
 from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("scipy", reason="scipy is missing: pip install -e '.[chart]'")

@@ -18,18 +18,19 @@ import pytest
 from executor_items import GATE, items, open_gate, runs
 from folders import TESTS
 from processes import HANG, enable_interrupts, wait_until
+from sssgen.analyse.stress.stress_report import Report, as_json
+from sssgen.analyse.stress.stress_run import Machines, Settings, stress
+from sssgen.analyse.stress.subject import specimens
 from sssgen.cli import main as cli
-from sssgen.harness.stress.stress_report import Report, as_json
-from sssgen.harness.stress.stress_run import Machines, Settings, stress
-from sssgen.harness.stress.subject import specimens
 from sssgen.lab.jobs import dask_cluster as cluster
 from sssgen.lab.jobs import work_items as work
 from sssgen.lab.jobs.executor import Failure, Item, failures, run
-from sssgen.lab.jobs.result_store import Store, decoded, encoded
+from sssgen.lab.jobs.result_store import Store
 from sssgen.lab.jobs.stress_items import run_stress
 from sssgen.lab.jobs.work_items import execute, task_of
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.progress import ProgressBar
+from sssgen.support.value_bytes import decoded, encoded
 
 
 @pytest.fixture(autouse=True)

@@ -10,8 +10,6 @@ import numpy.typing as npt
 import pytest
 
 from qualification.closed_forms import henyey_greenstein
-from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.geometry import Ball, Box, Distance, Geometry, Slab, Torus
 from sssgen.lab.reference import dielectric
 from sssgen.lab.reference.dielectric import Dielectric, axes, fresnel
 from sssgen.lab.reference.eye_paths import BATCHES, Eye, Readings, readings
@@ -20,7 +18,9 @@ from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.surface_rays import SurfaceRays
 from sssgen.lab.reference.transport import Light, radiance_along
 from sssgen.lab.reference.transport_mitsuba import mitsuba
-from sssgen.lab.scene.media import Medium
+from sssgen.scene.camera import Camera
+from sssgen.scene.geometry import Ball, Box, Distance, Geometry, Slab, Torus
+from sssgen.scene.measured.media import Medium
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError
 

@@ -31,10 +31,10 @@ from sssgen.lab.measure.candidates import Candidate
 from sssgen.lab.measure.measured_chain import Chain
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.measure.problem import Problem
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.scene_body import body
 from sssgen.material.material_loading import parse_material
 from sssgen.pipeline.compiler import compile
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.scene_body import body
 
 pytest.importorskip("scipy")
 pytest.importorskip("flip_evaluator")

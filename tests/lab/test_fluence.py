@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 from oracle import Array, close, rng, technique, unit, units
-from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.geometry import Ball, Box, Torus
 from sssgen.lab.fluence import fluence_field as field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence import octahedron
@@ -19,8 +17,10 @@ from sssgen.lab.fluence.photons import scatter
 from sssgen.lab.fluence.projection import Projection, covered, hats_at
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.lab.reference.inside_lengths import thickness
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.media import Medium
+from sssgen.scene.camera import Camera
+from sssgen.scene.geometry import Ball, Box, Torus
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.media import Medium
 from sssgen.support.diagnostics import SssgenError
 
 FEW = Settings(voxels=10, side=4, photons=4000)
@@ -241,7 +241,7 @@ def test_a_body_without_voxels_inside_is_an_error() -> None:
 
 def test_the_bake_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from sssgen.cli.main import main
-    from sssgen.harness.pictures.volumes import read
+    from sssgen.scene.pictures.volumes import read
 
     monkeypatch.chdir(tmp_path)
     small = ["--voxels", "8", "--photons", "40", "--processes", "1"]

@@ -14,18 +14,18 @@ import numpy as np
 import pytest
 
 from folders import ROOT
-from sssgen.harness import backends
-from sssgen.harness.backends import Backend
-from sssgen.harness.evaluate import evaluation as evaluate
-from sssgen.harness.evaluate.probes import subject
-from sssgen.harness.pictures.images import decode_srgb
-from sssgen.harness.pictures.picture_difference import compare
-from sssgen.harness.render import scene_render as render
-from sssgen.harness.scenes import scene_loading
-from sssgen.harness.scenes.camera import Camera
 from sssgen.lab.gpu import gpu_timing as gpu_cost
 from sssgen.lab.gpu import timed_programs as gpu_programs
 from sssgen.lab.gpu.gpu_timing import Program, ProgramTimes
+from sssgen.run import backends
+from sssgen.run.backends import Backend
+from sssgen.run.evaluate import evaluation as evaluate
+from sssgen.run.evaluate.probes import subject
+from sssgen.run.render import scene_render as render
+from sssgen.scene import scene_loading
+from sssgen.scene.camera import Camera
+from sssgen.scene.pictures.images import decode_srgb
+from sssgen.scene.pictures.picture_difference import compare
 from sssgen.support.diagnostics import SssgenError
 
 SIZE = (64, 36)

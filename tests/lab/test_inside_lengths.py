@@ -11,10 +11,10 @@ import numpy.typing as npt
 import pytest
 
 from folders import MESHES
-from sssgen.harness.scenes.drawn_views import back_faces
-from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
-from sssgen.harness.scenes.inside_intervals import intervals, merged
 from sssgen.lab.reference.inside_lengths import first_exit, thickness
+from sssgen.scene.drawn_views import back_faces
+from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
+from sssgen.scene.inside_intervals import intervals, merged
 
 Array = npt.NDArray[np.float64]
 

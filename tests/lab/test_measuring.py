@@ -14,11 +14,6 @@ import numpy.typing as npt
 import pytest
 
 from measured_views import SIZE, candidate, chain, small, synthetic_view
-from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.environment import Environment
-from sssgen.harness.scenes.geometry import Ball, Box, Union
-from sssgen.harness.scenes.scene import Light
-from sssgen.harness.scenes.scene_loading import parse_scene
 from sssgen.lab.measure import (
     candidates,
     problem,
@@ -38,10 +33,15 @@ from sssgen.lab.measure.measured_chain import Chain, MaterialSection, material_o
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.measure.problem import Problem
 from sssgen.lab.reference.inside_lengths import thickness
-from sssgen.lab.scene import measured_scene
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.media import Medium
-from sssgen.lab.scene.view_points import points
+from sssgen.scene.camera import Camera
+from sssgen.scene.environment import Environment
+from sssgen.scene.geometry import Ball, Box, Union
+from sssgen.scene.measured import measured_scene
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.media import Medium
+from sssgen.scene.measured.view_points import points
+from sssgen.scene.scene import Light
+from sssgen.scene.scene_loading import parse_scene
 from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("scipy")

@@ -24,7 +24,7 @@ from sssgen.lab.chart.record import hypervolumes, on_fronts
 from sssgen.lab.gpu import device_costs
 from sssgen.lab.jobs import executor
 from sssgen.lab.measure import candidates
-from sssgen.lab.scene import measured_scene
+from sssgen.scene.measured import measured_scene
 from sssgen.support.diagnostics import SssgenError
 
 
@@ -345,7 +345,7 @@ def test_wrong_arguments(
 
 def test_another_process_uses_the_cache(stored_chart: str) -> None:
     code = (
-        "from sssgen.cli.main import main; from sssgen.lab.scene import measured_scene; measured_scene.SIDE = 12; "
+        "from sssgen.cli.main import main; from sssgen.scene.measured import measured_scene; measured_scene.SIDE = 12; "
         "raise SystemExit(main())"
     )
     arguments = ["pick", "inlay_plate", "--samples", "8", "--max-error", "0.01"]

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.geometry import Ball, Box, Geometry, Slab
 from sssgen.lab.reference.inlay_refraction import plane_offset, refracted, visible_inlay
-from sssgen.lab.scene.measured_scene import Inlay, MeasuredScene
-from sssgen.lab.scene.view_points import points
+from sssgen.scene.camera import Camera
+from sssgen.scene.geometry import Ball, Box, Geometry, Slab
+from sssgen.scene.measured.measured_scene import Inlay, MeasuredScene
+from sssgen.scene.measured.view_points import points
 
 ANGLES = np.radians([15.0, 30.0, 45.0, 60.0, 75.0, 85.0])
 PUBLISHED = {

@@ -10,13 +10,13 @@ import pytest
 
 from measured_views import small
 from oracle import Array, close, rng, unit, units
-from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Slab
 from sssgen.lab.measure import candidates, scene_inputs
 from sssgen.lab.measure import measurement as measure
 from sssgen.lab.measure.fitting import Fitted
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.reference import view_harmonics
-from sssgen.lab.scene.media import Medium
+from sssgen.scene.geometry import Ball, Box, Capsule, Slab
+from sssgen.scene.measured.media import Medium
 
 UNFITTED = Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0)
 

@@ -10,12 +10,6 @@ import pytest
 
 from name_rules import rules_of
 from pass_cases import assert_is, key, module_of
-from sssgen.harness.backends import Array
-from sssgen.harness.backends import call_program as calls
-from sssgen.harness.backends.numpy_reference import namespace
-from sssgen.harness.evaluate.evaluation import Inputs, fitted
-from sssgen.harness.evaluate.probes import Subject, subject
-from sssgen.harness.evaluate.random_inputs import samples
 from sssgen.ir import nodes as ir
 from sssgen.ir.text import print_module
 from sssgen.ir.text_reader import read_module
@@ -32,6 +26,12 @@ from sssgen.passes.hoist import hoist
 from sssgen.passes.names import rename
 from sssgen.passes.prune import prune
 from sssgen.pipeline.compiler import GUARDS, transpile
+from sssgen.run.backends import Array
+from sssgen.run.backends import call_program as calls
+from sssgen.run.backends.numpy_reference import namespace
+from sssgen.run.evaluate.evaluation import Inputs, fitted
+from sssgen.run.evaluate.probes import Subject, subject
+from sssgen.run.evaluate.random_inputs import samples
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import registry
 from sssgen.targets.runtime.numpy_values import grid, precision

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import pytest
 
 from results_of_glsl import check_results
-from sssgen.harness.backends import Backend
 from sssgen.lang.plain_glsl import load_glsl_text
+from sssgen.run.backends import Backend
 from sssgen.support.diagnostics import SssgenError
 
 GLOBALS = """
@@ -49,7 +49,7 @@ def test_an_expression_has_a_value_wherever_one_must_be_constant(expression: str
 
 
 def _numpy() -> Backend:
-    from sssgen.harness import backends
+    from sssgen.run import backends
 
     return backends.get("numpy")
 

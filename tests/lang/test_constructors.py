@@ -7,8 +7,8 @@ from collections.abc import Callable
 import pytest
 
 from results_of_glsl import check_results
-from sssgen.harness.backends import Backend
 from sssgen.lang.plain_glsl import load_glsl_text
+from sssgen.run.backends import Backend
 from sssgen.support.diagnostics import SssgenError
 
 M = "mat2 m = mat2(1.0, 2.0, 3.0, 4.0) * x;"

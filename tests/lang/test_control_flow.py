@@ -11,8 +11,8 @@ import pytest
 
 from control_flow import Body, glsl, pairs, random_body, result
 from plain_calls import BACKENDS, called, called_all, module_of
-from sssgen.harness.backends import Backend
 from sssgen.ir.verify import verify
+from sssgen.run.backends import Backend
 
 A = np.repeat(np.arange(6, dtype=np.int32), 6)
 B = np.tile(np.arange(6, dtype=np.int32), 6)

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 
 from plain_calls import BACKENDS, Array, called, module_of
-from sssgen.harness.backends import Backend, get
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.out_builtins import OUT_BUILTINS
 from sssgen.ir.verify import verify
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import Backend, get
 from sssgen.support.diagnostics import SssgenError
 
 X = np.array([-3.0, -1.5, 0.25, 1.0, 2.5, 4.0, 5.75, 7.0])

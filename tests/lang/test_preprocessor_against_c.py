@@ -11,9 +11,9 @@ import pytest
 from preprocessed import run
 from processes import HANG
 from skips import or_skip
-from sssgen.harness.compilers import CompilerMissing
 from sssgen.lang.syntax.lexer import scan
 from sssgen.lang.syntax.tokens import Token
+from sssgen.run.compilers import CompilerMissing
 from sssgen.support.diagnostics import SssgenError
 
 MACROS, FUNCTIONS = "ABCD", "fgh"

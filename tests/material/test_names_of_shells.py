@@ -10,11 +10,11 @@ import pytest
 
 import sssgen
 from folders import ROOT
-from sssgen.harness.check.compiler_inputs import sources
-from sssgen.harness.compilers import Source
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.lang.loader import load_text
 from sssgen.material.chain_assembly import TAKEN
+from sssgen.run.check.compiler_inputs import sources
+from sssgen.run.compilers import Source
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import registry
 

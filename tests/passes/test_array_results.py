@@ -7,9 +7,9 @@ from collections.abc import Callable
 import pytest
 
 from results_of_glsl import check_results
-from sssgen.harness.backends import Backend
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import Backend
 
 CASES = {
     "all elements": (

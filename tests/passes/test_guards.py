@@ -10,9 +10,6 @@ import pytest
 
 import sssgen
 from pass_cases import module_of, text
-from sssgen.harness.backends import Backend, Call, Text
-from sssgen.harness.compilers import Source, errors
-from sssgen.harness.evaluate.probes import subject
 from sssgen.ir.nodes import Assume, Module
 from sssgen.ir.verify import verify
 from sssgen.ir.walk import all_expressions, statements
@@ -22,6 +19,9 @@ from sssgen.lang.polyfills import polyfill
 from sssgen.material import library
 from sssgen.passes.guards import Guarded, guard
 from sssgen.pipeline.compiler import GUARDS, transpile
+from sssgen.run.backends import Backend, Call, Text
+from sssgen.run.compilers import Source, errors
+from sssgen.run.evaluate.probes import subject
 
 NAMES = sorted(library.index())
 
@@ -276,7 +276,7 @@ def test_every_technique_is_valid_with_guards(mode: str) -> None:
 @pytest.mark.parametrize("target", ["glsl-330", "hlsl", "wgsl"])
 def test_the_guarded_library_compiles(target: str, assert_compiles: Callable[[Source], None]) -> None:
     """Each technique as functions, with guards everywhere."""
-    from sssgen.harness.check.compiler_inputs import sources
+    from sssgen.run.check.compiler_inputs import sources
 
     count = 0
     for name in NAMES:

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from pass_cases import module_of
-from sssgen.harness.backends import Array, Backend, Call, Text
-from sssgen.harness.check.compiler_inputs import sources
-from sssgen.harness.compilers import Source
 from sssgen.ir.formats import FLOAT32
 from sssgen.passes.ranges.range_pass import analyse
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import Array, Backend, Call, Text
+from sssgen.run.check.compiler_inputs import sources
+from sssgen.run.compilers import Source
 from sssgen.support.diagnostics import SssgenError
 
 LARGEST = FLOAT32.largest

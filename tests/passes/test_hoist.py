@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from pass_cases import assert_is, module_of, text
 from shaded_programs import module_for
-from sssgen.harness.compilers import Compiler, Source, errors
-from sssgen.harness.compilers.calling_entry import functions
 from sssgen.passes.hoist import hoist
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.compilers import Compiler, Source, errors
+from sssgen.run.compilers.calling_entry import functions
 from sssgen.support.diagnostics import SssgenError
 
 HEAD = """

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from plain_calls import BACKENDS, called, module_of
-from sssgen.harness.backends import Backend
-from sssgen.harness.compilers import Compiler, Source, errors, readers
 from sssgen.ir.nodes import Assign
 from sssgen.passes.places import may_overlap
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import Backend
+from sssgen.run.compilers import Compiler, Source, errors, readers
 
 X = np.array([-3.0, -0.5, 0.0, 1.0, 2.5, 8.0])
 TWO = "void two(inout float a, inout float b) { a = a + 1.0; b = b * 10.0 + a; a += 3.0; }\n"

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import pytest
 
-from sssgen.harness.compilers import Source
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.compilers import Source
 
 TEXT = "in vec3 normal; out vec3 tint; void main() { tint = normal * 0.5; }"
 ENTRIES = {"glsl-330": "main", "glsl-es-300": "main", "hlsl": "vertex_main", "wgsl": "vertex_main"}

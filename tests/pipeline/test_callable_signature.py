@@ -10,8 +10,8 @@ import pytest
 
 import sssgen
 from sssgen.cli import main as cli
-from sssgen.harness.check.compiler_inputs import sources
-from sssgen.harness.compilers import Source
+from sssgen.run.check.compiler_inputs import sources
+from sssgen.run.compilers import Source
 from sssgen.support.diagnostics import SssgenError
 
 EXAMPLES = ("ice", "jade_ring", "marble_idol", "wax_mouse")

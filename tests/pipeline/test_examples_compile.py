@@ -13,9 +13,9 @@ import pytest
 import sssgen
 from carried import carrying
 from example_cases import marks
-from sssgen.harness.check.compiler_inputs import sources
-from sssgen.harness.compilers import Source
 from sssgen.material.material_loading import examples
+from sssgen.run.check.compiler_inputs import sources
+from sssgen.run.compilers import Source
 
 FORMS = ("shader", "functions")
 LACKING = {name: {"shadertoy"} for name in ("jade_ring", "marble_idol", "wax_mouse")}

@@ -13,13 +13,13 @@ import pytest
 from folders import SNAPSHOTS, TESTS
 from skips import compiler_or_skip
 from snapshot import check_snapshot
-from sssgen.harness.compilers import Source, Stage, errors, readers
-from sssgen.harness.verify import verification
-from sssgen.harness.verify.inline_includes import expanded
-from sssgen.harness.verify.verification import Machines
+from sssgen.analyse.verify import verification
+from sssgen.analyse.verify.inline_includes import expanded
+from sssgen.analyse.verify.verification import Machines
 from sssgen.ir.text import print_module
 from sssgen.lang.plain_glsl import load_glsl, load_glsl_text
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.compilers import Source, Stage, errors, readers
 from sssgen.support.diagnostics import SssgenError
 
 CORPUS = TESTS / "transpile"

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import build_playground
-from sssgen.harness.installed import chromium, node, node_modules
 from sssgen.pipeline.compiler import compile
+from sssgen.run.installed import chromium, node, node_modules
 from static_host import serving
 
 playwright = pytest.importorskip("playwright.sync_api")

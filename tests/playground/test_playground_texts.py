@@ -13,12 +13,12 @@ import pytest
 
 import python_bundle
 import starts
-from sssgen.harness.installed import node, node_modules
 from sssgen.lang.plain_glsl import load_glsl
 from sssgen.material.material_loading import examples, load_material, parse_material
 from sssgen.pipeline.compiler import all_targets, compile, transpile
 from sssgen.preview.emitted_head import TARGET, emitted_head
 from sssgen.preview.flat_head import plain_head
+from sssgen.run.installed import node, node_modules
 from sssgen.support.diagnostics import SssgenError
 
 HERE = Path(__file__).parent

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sssgen.harness.scenes.geometry import Ball, Box, Mesh
 from sssgen.preview import bodies
 from sssgen.preview.bodies import OWN_MESH, dropped_mesh, extent, fitted, framed
 from sssgen.preview.body_triangles import body_triangles
 from sssgen.preview.page_messages import PageMessages, unpacked
 from sssgen.preview.shown_picture import ShownPicture
+from sssgen.scene.geometry import Ball, Box, Mesh
 from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("trimesh")

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sssgen.harness.pictures.images import png_bytes
 from sssgen.preview.page_messages import PageMessages
 from sssgen.preview.shown_picture import ShownPicture
+from sssgen.scene.pictures.images import png_bytes
 from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("tomlkit")

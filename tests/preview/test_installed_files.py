@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from sssgen.cli.main import main
-from sssgen.harness.pictures.images import png_bytes
-from sssgen.harness.scenes.preview_scene import scene_of
-from sssgen.harness.scenes.scene_loading import load
 from sssgen.material.material_loading import examples, load_material
 from sssgen.preview.page_messages import PageMessages
 from sssgen.preview.shown_picture import ShownPicture
+from sssgen.scene.pictures.images import png_bytes
+from sssgen.scene.preview_scene import scene_of
+from sssgen.scene.scene_loading import load
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.file_memo import noted_files
 from sssgen.support.installed_files import is_installed

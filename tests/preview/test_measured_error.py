@@ -10,11 +10,11 @@ import pytest
 
 from sssgen.cli.chart import settings_of
 from sssgen.cli.commands import command_parser
-from sssgen.harness.scenes.preview_scene import scene_of
 from sssgen.lab.chart.charting import Settings
-from sssgen.lab.scene import measured_scene
 from sssgen.material.material_loading import load_material
 from sssgen.preview.measured_error import measured_error, nearest
+from sssgen.scene.measured import measured_scene
+from sssgen.scene.preview_scene import scene_of
 from sssgen.support import cache
 
 pytest.importorskip("numpy")

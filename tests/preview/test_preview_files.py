@@ -86,7 +86,7 @@ def test_the_head_is_a_body_in_the_middle(shown: Shown) -> None:
 
 
 def test_a_picture_in_a_slot_is_shown_at_once_and_saved(shown: Shown, tmp_path: Path) -> None:
-    from sssgen.harness.pictures.images import png_bytes
+    from sssgen.scene.pictures.images import png_bytes
 
     red = shown.picture()[130:170, 130:170].mean(axis=(0, 1))
     drop(shown, "[data-property=baseColorTexture]", "black.png", png_bytes(np.zeros((4, 4, 3))))

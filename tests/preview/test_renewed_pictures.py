@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from sssgen.harness.render import scene_values
 from sssgen.preview import body_triangles
 from sssgen.preview.shown_picture import ShownPicture
+from sssgen.run.render import scene_values
 from sssgen.support import cache
 
 pytest.importorskip("igl")

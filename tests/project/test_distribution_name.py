@@ -15,9 +15,9 @@ from pathlib import Path
 import pytest
 
 from folders import ROOT
-from sssgen.harness import installed
-from sssgen.harness.backend_registry import BACKENDS
-from sssgen.harness.compiler_registry import COMPILERS
+from sssgen.run import installed
+from sssgen.run.backend_registry import BACKENDS
+from sssgen.run.compiler_registry import COMPILERS
 from sssgen.support import installation
 from sssgen.support.installation import DISTRIBUTION, install_hint, make_hint, npm_hint
 

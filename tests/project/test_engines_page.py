@@ -11,8 +11,8 @@ import pytest
 
 import sssgen
 from folders import ROOT
-from sssgen.harness import backends
-from sssgen.harness.backends import BACKENDS, Backend
+from sssgen.run import backends
+from sssgen.run.backends import BACKENDS, Backend
 
 pytest.importorskip("PIL", reason="Pillow is missing: pip install -e '.[dev]'")
 

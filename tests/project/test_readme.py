@@ -16,7 +16,7 @@ import pytest
 from documents import Block, Reader, blocks, programs, read, uncommented
 from folders import ROOT
 from sssgen.cli.commands import COMMANDS, command_parser
-from sssgen.harness import compilers
+from sssgen.run import compilers
 from sssgen.targets import registry
 
 README = ROOT / "README.md"

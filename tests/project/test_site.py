@@ -22,9 +22,9 @@ import technique_pages
 import technique_pictures
 from folders import ROOT
 from sssgen.cli.commands import COMMANDS, command_parser
-from sssgen.harness.backends import Backend
 from sssgen.material import library, slots
 from sssgen.material.library import Technique
+from sssgen.run.backends import Backend
 
 
 def test_every_page_is_in_the_menu_once() -> None:

@@ -13,8 +13,8 @@ import stability_pictures
 import technique_curves
 import technique_pages
 import technique_pictures
-from sssgen.harness.backends import Backend
 from sssgen.material import library
+from sssgen.run.backends import Backend
 
 
 def _curve(name: str, **values: float) -> np.ndarray:

@@ -11,8 +11,8 @@ import pytest
 
 from documents import Reader, blocks, programs, read, uncommented
 from folders import ROOT
-from sssgen.harness.backends import Backend
-from sssgen.harness.pictures.images import read as read_picture
+from sssgen.run.backends import Backend
+from sssgen.scene.pictures.images import read as read_picture
 
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
 LARGEST = 150_000

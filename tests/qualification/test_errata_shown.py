@@ -21,8 +21,8 @@ from qualification.errata import (
     holds,
     shows,
 )
-from sssgen.harness.backends import Backend
 from sssgen.material import library
+from sssgen.run.backends import Backend
 
 Get = Callable[[str], Backend]
 

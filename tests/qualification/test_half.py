@@ -14,18 +14,18 @@ from half_cases import half_cases, wrong_lanes
 from qualification.parity import run as run_cases
 from qualification.parity import supported
 from sssgen.cli import main as cli
-from sssgen.harness import backends
-from sssgen.harness.backends import Array, Backend, Call, CompilerMissing, Text
-from sssgen.harness.backends.call_program import drawing
-from sssgen.harness.backends.webgpu import WebGPU
-from sssgen.harness.compilers import Compiler, Source, errors
-from sssgen.harness.evaluate.evaluation import fitted, run
-from sssgen.harness.evaluate.probes import Subject, subject
-from sssgen.harness.evaluate.random_inputs import samples
 from sssgen.ir.types import FLOAT, INT, Type
 from sssgen.lang.loader import load_text
 from sssgen.material import library
 from sssgen.pipeline.compiler import transpile
+from sssgen.run import backends
+from sssgen.run.backends import Array, Backend, Call, CompilerMissing, Text
+from sssgen.run.backends.call_program import drawing
+from sssgen.run.backends.webgpu import WebGPU
+from sssgen.run.compilers import Compiler, Source, errors
+from sssgen.run.evaluate.evaluation import fitted, run
+from sssgen.run.evaluate.probes import Subject, subject
+from sssgen.run.evaluate.random_inputs import samples
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import registry
 from sssgen.targets.printers.wgsl_half import half_text

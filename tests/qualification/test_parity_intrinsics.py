@@ -12,10 +12,10 @@ import pytest
 from folders import DOCS
 from qualification.pages import parity as parity_page
 from qualification.parity import BACKENDS, FULL, Figure, cases, measure, oracle, supported
-from sssgen.harness.backends import Backend
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import FLOAT
 from sssgen.lang import polyfills
+from sssgen.run.backends import Backend
 
 LANES = 240
 

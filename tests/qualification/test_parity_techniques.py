@@ -13,13 +13,13 @@ import pytest
 from folders import DOCS
 from qualification.parity_techniques import BACKENDS, BOUND_LANES, LANES, Case, cases, excess, measure
 from sssgen.cli import main as cli
-from sssgen.harness import backends
-from sssgen.harness.backends import Backend
-from sssgen.harness.evaluate.deviation import GOAL, MARGIN, compared, deviation, rounding_deviation
-from sssgen.harness.evaluate.evaluation import fitted, run
-from sssgen.harness.evaluate.probes import subject
-from sssgen.harness.evaluate.random_inputs import samples
 from sssgen.material import library
+from sssgen.run import backends
+from sssgen.run.backends import Backend
+from sssgen.run.evaluate.deviation import GOAL, MARGIN, compared, deviation, rounding_deviation
+from sssgen.run.evaluate.evaluation import fitted, run
+from sssgen.run.evaluate.probes import subject
+from sssgen.run.evaluate.random_inputs import samples
 from sssgen.targets.runtime.numpy_textures import Texture
 
 PAGE = DOCS / "parity_techniques.md"

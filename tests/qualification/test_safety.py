@@ -9,10 +9,10 @@ import pytest
 
 from folders import DOCS
 from qualification.safety import Safety, safety
-from sssgen.harness.evaluate.probes import subject
-from sssgen.harness.stress.guard_witness import sites, witness
-from sssgen.harness.stress.subject import technique
+from sssgen.analyse.stress.guard_witness import sites, witness
+from sssgen.analyse.stress.subject import technique
 from sssgen.material import library
+from sssgen.run.evaluate.probes import subject
 
 PAGE = DOCS / "safety.md"
 NAMES = [name for name, path in library.index().items() if library.folder_of(path) != "baselines"]

@@ -15,8 +15,8 @@ from PIL import Image
 from folders import DOCS
 from qualification.errata import ERRATA, OPEN, TEXT_ERRATA, as_corrected, as_published
 from qualification.pages import stability
-from sssgen.harness.backends import Backend
-from sssgen.harness.pictures import images
+from sssgen.run.backends import Backend
+from sssgen.scene.pictures import images
 
 FOLDER = DOCS / "stability"
 MAGENTA = (1.0, 0.0, 1.0)

@@ -15,10 +15,10 @@ import pytest
 
 import sssgen
 from folders import EXAMPLES
-from sssgen.harness.backends import Backend, Call, Text
-from sssgen.harness.compilers import Compiler, Source, errors
-from sssgen.harness.compilers.bevy_compiler import CONDITIONS, Bevy
 from sssgen.ir.types import BY_NAME, VEC2, VEC3, Sampler, Type
+from sssgen.run.backends import Backend, Call, Text
+from sssgen.run.compilers import Compiler, Source, errors
+from sssgen.run.compilers.bevy_compiler import CONDITIONS, Bevy
 from sssgen.targets.runtime.numpy_textures import Texture
 
 LANES = 64

@@ -7,12 +7,12 @@ from collections.abc import Callable
 
 import pytest
 
-from sssgen.harness.compilers import Source
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Module
 from sssgen.ir.signatures import overload, parse
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.compilers import Source
 from texts_of_builtins import ALL
 from validate import TARGETS, module_of, printed, validate_all
 

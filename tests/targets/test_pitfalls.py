@@ -14,8 +14,8 @@ import pytest
 
 import sssgen
 from pitfall_cases import COMPARED_WITH, RULES, program, read
-from sssgen.harness.compilers import Source
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.compilers import Source
 from validate import TARGETS, module_of, validate_all
 
 

@@ -11,12 +11,12 @@ from collections.abc import Callable
 
 import pytest
 
-from sssgen.harness.compilers import Source
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.signatures import overloads
 from sssgen.ir.types import BY_NAME, FLOAT, Sampler, Type, spell
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.compilers import Source
 from sssgen.support.diagnostics import SssgenError
 from validate import SAMPLERS
 

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from results_of_glsl import check_results
-from sssgen.harness.backends import Backend
-from sssgen.harness.compilers import Source
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import Backend
+from sssgen.run.compilers import Source
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.runtime.numpy_textures import Texture
 

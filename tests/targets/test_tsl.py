@@ -14,14 +14,14 @@ import sssgen
 from folders import TESTS
 from skips import or_skip
 from snapshot import check_snapshot
-from sssgen.harness import backends, installed
-from sssgen.harness.backends import Backend, Call, Text
-from sssgen.harness.compilers import Source
-from sssgen.harness.verify.verification import Machines, backends_of, start_machines, verify
+from sssgen.analyse.verify.verification import Machines, backends_of, start_machines, verify
 from sssgen.ir.nodes import Module
 from sssgen.ir.types import FLOAT, INT, VEC3
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
+from sssgen.run import backends, installed
+from sssgen.run.backends import Backend, Call, Text
+from sssgen.run.compilers import Source
 from sssgen.support.diagnostics import SssgenError
 
 CONSTRUCTS = (TESTS / "targets" / "tsl_constructs.glsl").read_text(encoding="utf-8")

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import sssgen
-from sssgen.harness.check.compiler_inputs import sources
-from sssgen.harness.compilers import Source
+from sssgen.run.check.compiler_inputs import sources
+from sssgen.run.compilers import Source
 from sssgen.support.diagnostics import UnsupportedError
 
 HEAD = "/** X.\nrole: surface\n*/\n"

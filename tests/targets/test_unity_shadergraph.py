@@ -18,8 +18,8 @@ import pytest
 
 import sssgen
 from folders import ROOT
-from sssgen.harness.compilers import Compiler, Source, errors
-from sssgen.harness.compilers.calling_entry import functions
+from sssgen.run.compilers import Compiler, Source, errors
+from sssgen.run.compilers.calling_entry import functions
 
 LEAF = ROOT / "examples" / "engines" / "unity" / "leaf.toml"
 EVERY_KIND = """

@@ -13,11 +13,11 @@ import pytest
 
 import sssgen
 from folders import EXAMPLES
-from sssgen.harness.backends import Backend, Call, Text
-from sssgen.harness.check.compiler_inputs import sources
-from sssgen.harness.compilers import Compiler, Source, errors, unreal_node
-from sssgen.harness.compilers.unreal_node import CustomNode
 from sssgen.ir.types import BY_NAME, FLOAT, VEC2, VEC3, Sampler, Type
+from sssgen.run.backends import Backend, Call, Text
+from sssgen.run.check.compiler_inputs import sources
+from sssgen.run.compilers import Compiler, Source, errors, unreal_node
+from sssgen.run.compilers.unreal_node import CustomNode
 from sssgen.targets.runtime.numpy_textures import Texture
 
 LANES = 64

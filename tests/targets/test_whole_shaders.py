@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from sssgen.harness.compilers import Source, check, errors
 from sssgen.ir.text import read_module
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.compilers import Source, check, errors
 from sssgen.support.diagnostics import SssgenError
 from whole_shaders import FRAGMENT, FUNCTIONS, OLD, SEVERAL, STAGES, TARGETS, VERTEX, compile_errors, emitted_shader
 

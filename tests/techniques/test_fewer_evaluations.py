@@ -14,11 +14,11 @@ import pytest
 
 from ir_interpreter import Interpreter
 from oracle import Array, rng, technique, unit, units
-from sssgen.harness.evaluate.probes import subject
-from sssgen.harness.scenes.geometry import Ball, Box, Geometry, Slab, Torus
 from sssgen.ir import nodes as ir
 from sssgen.ir.nodes import Module
 from sssgen.ir.transform import rewrite_module
+from sssgen.run.evaluate.probes import subject
+from sssgen.scene.geometry import Ball, Box, Geometry, Slab, Torus
 
 REACH, WAY = 0.4, 2.0
 TWO_BALLS_AND_A_WALL = """

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from oracle import Array, close, rng, technique, unit, units
-from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.geometry import Ball
 from sssgen.lab.fluence import fluence_field as field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence.fluence_field import Settings
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.media import Medium
+from sssgen.scene.camera import Camera
+from sssgen.scene.geometry import Ball
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.media import Medium
 from sssgen.targets.runtime.numpy_textures import Texture
 
 

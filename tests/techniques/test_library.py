@@ -10,9 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from sssgen.harness import compilers
-from sssgen.harness.check.compiler_inputs import sources
-from sssgen.harness.compilers import Compiler, errors
 from sssgen.ir.baked_textures import is_baked
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Matrix, Sampler, Scalar
@@ -27,6 +24,9 @@ from sssgen.material.requirements import DRAWN, baked_textures, requirements, te
 from sssgen.material.slots import candidates
 from sssgen.pipeline.compiler import FORMS, Compiled
 from sssgen.pipeline.compiler import compile as compile_material
+from sssgen.run import compilers
+from sssgen.run.check.compiler_inputs import sources
+from sssgen.run.compilers import Compiler, errors
 from sssgen.support.diagnostics import SssgenError, UnsupportedError
 from sssgen.support.paths import source_name
 from sssgen.targets import registry

@@ -9,11 +9,11 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from sssgen.harness.backends import Backend, Call, Text
-from sssgen.harness.evaluate.evaluation import shape_of
 from sssgen.ir.nodes import Function, Module, Param
 from sssgen.ir.types import Sampler, kind_of
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import Backend, Call, Text
+from sssgen.run.evaluate.evaluation import shape_of
 from sssgen.targets import numpy_runtime as rt
 from sssgen.targets.runtime.numpy_textures import Texture
 from validate import code

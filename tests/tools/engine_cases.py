@@ -15,17 +15,17 @@ import pytest
 
 import sssgen
 from folders import ROOT
-from sssgen.harness.backends import Array
-from sssgen.harness.backends.backend_interface import VERTEX_SIZE
-from sssgen.harness.backends.engine_page import EngineDrawing, EnginePage
-from sssgen.harness.check.compiler_inputs import sources
-from sssgen.harness.compilers import Compiler, errors
-from sssgen.harness.render import page_values, shade_numpy
-from sssgen.harness.render.scene_render import PlacedMesh, placed
-from sssgen.harness.render.scene_values import shell_of
-from sssgen.harness.render.shell_values import Shell
-from sssgen.harness.scenes import scene_loading
 from sssgen.material.material_loading import load_material
+from sssgen.run.backends import Array
+from sssgen.run.backends.backend_interface import VERTEX_SIZE
+from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
+from sssgen.run.check.compiler_inputs import sources
+from sssgen.run.compilers import Compiler, errors
+from sssgen.run.render import page_values, shade_numpy
+from sssgen.run.render.scene_render import PlacedMesh, placed
+from sssgen.run.render.scene_values import shell_of
+from sssgen.run.render.shell_values import Shell
+from sssgen.scene import scene_loading
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import registry
 from sssgen.targets.runtime.numpy_textures import Texture

@@ -12,15 +12,15 @@ import numpy as np
 
 import sssgen
 from folders import ROOT
-from sssgen.harness import backends
-from sssgen.harness.backends import VERTEX_SIZE, Array
-from sssgen.harness.backends.godot_drawing import Godot, View
-from sssgen.harness.pictures.images import encode_srgb
-from sssgen.harness.render import godot_values, scene_render, shade_numpy
-from sssgen.harness.render.shell_values import Shell
-from sssgen.harness.scenes import scene_loading
-from sssgen.harness.scenes.scene import Scene
 from sssgen.pipeline.compiler import Compiled
+from sssgen.run import backends
+from sssgen.run.backends import VERTEX_SIZE, Array
+from sssgen.run.backends.godot_drawing import Godot, View
+from sssgen.run.render import godot_values, scene_render, shade_numpy
+from sssgen.run.render.shell_values import Shell
+from sssgen.scene import scene_loading
+from sssgen.scene.pictures.images import encode_srgb
+from sssgen.scene.scene import Scene
 
 MESHES = ["ice", "ice_inlay", "jade_ring", "marble_idol", "paper_lantern", "resin_inlay", "wax_mouse"]
 """The examples that are on a mesh."""

@@ -10,10 +10,10 @@ import numpy as np
 
 from qualification.parity import Case, cases, oracle
 from qualification.parity_inputs import TEXTURE_LANES, evaluated, widened
-from sssgen.harness.backends import Array
-from sssgen.harness.evaluate.evaluation import shape_of
 from sssgen.ir.intrinsics import BUILTINS, Samples
 from sssgen.ir.types import Matrix, Type, kind_of
+from sssgen.run.backends import Array
+from sssgen.run.evaluate.evaluation import shape_of
 
 LANES = 400
 LARGEST, LEAST = 8.0, 2.0**-6

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from folders import EXAMPLES
-from sssgen.harness.render.scene_render import Rendered
+from sssgen.run.render.scene_render import Rendered
 
 LAMP = """
 [[light]]

@@ -15,10 +15,10 @@ from sssgen.lab.measure.measured_chain import Chain
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.measure.problem import LightReference
 from sssgen.lab.reference.inside_lengths import thickness
-from sssgen.lab.scene import measured_scene
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.scene_body import body
-from sssgen.lab.scene.view_points import points
+from sssgen.scene.measured import measured_scene
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.scene_body import body
+from sssgen.scene.measured.view_points import points
 
 SIZE = (12, 12)
 

@@ -12,12 +12,12 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from sssgen.harness.backends import Backend, Call, Text
 from sssgen.ir.nodes import Function, Module
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import Backend, Call, Text
 
 Array: TypeAlias = np.ndarray[Any, Any]
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.backends import Backend, Call, Text
 from sssgen.ir.types import Sampler
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import Backend, Call, Text
 from sssgen.targets.runtime.numpy_textures import Texture
 
 BACKENDS = ("numpy", "gl", "gl-es", "webgpu", "hlsl", "hlsl-glslang", "unity", "metal")

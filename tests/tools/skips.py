@@ -8,9 +8,9 @@ from typing import TypeVar
 
 import pytest
 
-from sssgen.harness import compilers
-from sssgen.harness.backend_registry import BACKENDS
-from sssgen.harness.compilers import Compiler, CompilerMissing
+from sssgen.run import compilers
+from sssgen.run.backend_registry import BACKENDS
+from sssgen.run.compilers import Compiler, CompilerMissing
 
 Tool = TypeVar("Tool")
 

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.backends import Backend, Text
-from sssgen.harness.backends.backend_interface import Drawing, Stage
-from sssgen.harness.backends.hlsl_spirv import HLSL
-from sssgen.harness.backends.opengl import OpenGL
-from sssgen.harness.backends.webgpu import WebGPU
 from sssgen.ir.nodes import Module
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.backends import Backend, Text
+from sssgen.run.backends.backend_interface import Drawing, Stage
+from sssgen.run.backends.hlsl_spirv import HLSL
+from sssgen.run.backends.opengl import OpenGL
+from sssgen.run.backends.webgpu import WebGPU
 
 SIZE = 4, 4
 BACKENDS = ("gl", "gl-es", "hlsl", "webgpu")

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from sssgen.harness.compilers import Source, Stage, check, errors
 from sssgen.ir.text import read_module
 from sssgen.ir.verify import check_module
 from sssgen.pipeline.compiler import transpile
+from sssgen.run.compilers import Source, Stage, check, errors
 
 FUNCTIONS = """variable private float g = 1.0
 variable private vec2 h = vec2{2.0, 3.0}

@@ -1,6 +1,6 @@
 """What the page of the playground asks of Python, which runs in the browser: texts and the head of a picture.
 
-`precompile.mjs` compiles this module into the page's bundle. It needs no NumPy and none of the harness.
+`precompile.mjs` compiles this module into the page's bundle. It needs no NumPy and runs no compiler.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The part of sssgen that the playground runs, compiled for Pyodide: no NumPy, no harness, no lark."""
+"""The part of sssgen that the playground runs, compiled for Pyodide: no NumPy, no compilers, no lark."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from packed_file import write_packed
-from sssgen.harness.installed import node, node_modules
+from sssgen.run.installed import node, node_modules
 from sssgen.support import paths
 from sssgen.support.diagnostics import failure
 from sssgen.support.installation import npm_hint

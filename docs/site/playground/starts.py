@@ -15,14 +15,14 @@ from typing import Any, NamedTuple
 from body_piece import packed_body
 from packed_file import write_packed
 from playground_session import texture_files
-from sssgen.harness.scenes.preview_scene import scene_of
-from sssgen.harness.scenes.scene import Scene
 from sssgen.material.material_loading import examples, load_material
 from sssgen.pipeline.compiler import compile
 from sssgen.preview.bodies import SHAPES, packed
 from sssgen.preview.emitted_head import PARTS, TARGET
 from sssgen.preview.flat_picture import raymarched_picture
 from sssgen.preview.picture import Chosen, Picture, picture_of
+from sssgen.scene.preview_scene import scene_of
+from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.file_memo import noted_files
 from sssgen.support.toml_source import parse

@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from sssgen.bake.voxel_distance import BLOCK
 from sssgen.bake.voxel_grid import Array
-from sssgen.harness.scenes.mesh import Triangles, barycentric
-from sssgen.harness.scenes.mesh_rays import MeshRays
+from sssgen.scene.mesh import Triangles, barycentric
+from sssgen.scene.mesh_rays import MeshRays
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
 from sssgen.support.paths import posix

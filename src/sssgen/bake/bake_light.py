@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.bake.voxel_grid import Array
-from sssgen.harness.scenes.light_view import LightView, directional_view, point_view
+from sssgen.scene.light_view import LightView, directional_view, point_view
 from sssgen.support import json_source
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix

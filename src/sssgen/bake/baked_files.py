@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.bake.volume_files import FORMATS, encoded, layout
-from sssgen.harness.pictures import images
 from sssgen.material import baked
+from sssgen.scene.pictures import images
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.file_writer import check_names, write_files
 from sssgen.support.paths import posix

@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.harness.pictures.images import LARGEST_SIDE
+from sssgen.scene.pictures.images import LARGEST_SIDE
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.progress import Progress, silent
 

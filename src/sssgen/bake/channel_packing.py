@@ -8,7 +8,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.harness.pictures import images
+from sssgen.scene.pictures import images
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
 from sssgen.support.progress import Progress, silent

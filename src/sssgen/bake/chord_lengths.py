@@ -9,11 +9,11 @@ from typing import NamedTuple
 import numpy as np
 
 from sssgen.bake.voxel_grid import Array
-from sssgen.harness.scenes.mesh import Mesh
-from sssgen.harness.scenes.placed import perpendiculars
 from sssgen.lab.reference import view_harmonics
 from sssgen.lab.reference.inside_lengths import thickness
 from sssgen.lab.reference.view_harmonics import Fit
+from sssgen.scene.mesh import Mesh
+from sssgen.scene.placed import perpendiculars
 
 
 class Chords(NamedTuple):

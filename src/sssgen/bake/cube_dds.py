@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy.typing as npt
 
-from sssgen.harness.pictures.volumes import DDPF_FOURCC, DDS_HEADER, DDS_HEADER_DX10
+from sssgen.scene.pictures.volumes import DDPF_FOURCC, DDS_HEADER, DDS_HEADER_DX10
 
 _FLAGS = 0x1 | 0x2 | 0x4 | 0x8 | 0x1000 | 0x20000
 """DDSD_CAPS, _HEIGHT, _WIDTH, _PITCH, _PIXELFORMAT, _MIPMAPCOUNT."""

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy.typing as npt
 
-from sssgen.harness.pictures.volumes import (
+from sssgen.scene.pictures.volumes import (
     DDPF_FOURCC,
     DDS_HEADER,
     DDS_HEADER_DX10,

@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.bake.voxel_distance import Distances
-from sssgen.harness.pictures import volumes
-from sssgen.harness.pictures.volumes import Encoding
-from sssgen.harness.scenes.scene import stored
+from sssgen.scene.pictures import volumes
+from sssgen.scene.pictures.volumes import Encoding
+from sssgen.scene.scene import stored
 
 ENCODINGS = {encoding.name: encoding for encoding in volumes.ENCODINGS if encoding.channels == 1}
 """By the names of the command line: unsigned normalised integers, and floats."""

@@ -14,18 +14,18 @@ import numpy.typing as npt
 
 from sssgen.bake import memory_check as memory
 from sssgen.bake.bake_light import BakeLight
-from sssgen.harness.scenes import body_identity
-from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.geometry import Mesh
-from sssgen.harness.scenes.mesh_files import SUFFIXES
 from sssgen.lab.fluence import fluence_field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence.fluence_field import Field, Settings
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.lab.jobs.executor import Progress
 from sssgen.lab.reference import geometry_mesh
-from sssgen.lab.scene import measured_scene, media
-from sssgen.lab.scene.measured_scene import MeasuredScene
+from sssgen.scene import body_identity
+from sssgen.scene.camera import Camera
+from sssgen.scene.geometry import Mesh
+from sssgen.scene.measured import measured_scene, media
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.mesh_files import SUFFIXES
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix, stem
 from sssgen.support.text_files import refuse_folder

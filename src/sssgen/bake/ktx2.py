@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.harness.pictures.volumes import KTX2_HEADER, KTX2_IDENTIFIER, KTX2_LEVEL, Encoding
+from sssgen.scene.pictures.volumes import KTX2_HEADER, KTX2_IDENTIFIER, KTX2_LEVEL, Encoding
 from sssgen.version import VERSION
 
 ORIENTATION = "ruo"

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.harness.pictures.images import LARGEST_SIDE
+from sssgen.scene.pictures.images import LARGEST_SIDE
 from sssgen.support.diagnostics import failure
 
 

@@ -15,14 +15,14 @@ from sssgen.bake import memory_check as memory
 from sssgen.bake.atlas import atlas, filled
 from sssgen.bake.texture_unwrap import obj, unwrapped
 from sssgen.bake.voxel_grid import Array
-from sssgen.harness.scenes import body_identity
-from sssgen.harness.scenes.mesh import Mesh
-from sssgen.harness.scenes.mesh_distance import mixed_sides
 from sssgen.lab.jobs.executor import Item, Progress, failures, run
 from sssgen.lab.jobs.result_store import Store
 from sssgen.lab.reference import view_harmonics
-from sssgen.lab.scene import measured_scene, media
-from sssgen.lab.scene.media import Medium
+from sssgen.scene import body_identity
+from sssgen.scene.measured import measured_scene, media
+from sssgen.scene.measured.media import Medium
+from sssgen.scene.mesh import Mesh
+from sssgen.scene.mesh_distance import mixed_sides
 from sssgen.support import cache
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from sssgen.bake.dds import dds_bytes
 from sssgen.bake.ktx2 import ORIENTATION, ktx2_bytes
 from sssgen.bake.slice_sheet import columns_and_rows, sheet
-from sssgen.harness.pictures import images
-from sssgen.harness.pictures.volumes import ENCODINGS, Encoding
+from sssgen.scene.pictures import images
+from sssgen.scene.pictures.volumes import ENCODINGS, Encoding
 from sssgen.support.diagnostics import did_you_mean, failure
 
 FORMATS = {"npy": ".npy", "dds": ".dds", "ktx2": ".ktx2", "exr-slices": ".exr", "raw+json": ".raw"}

@@ -91,7 +91,7 @@ def _sdf_options(parser: ArgumentParser) -> None:
 def _sdf(arguments: Namespace) -> Result:
     from sssgen.bake import baked_files as output
     from sssgen.bake.distance_texture import sdf
-    from sssgen.harness.scenes.mesh_distance import MIXED
+    from sssgen.scene.mesh_distance import MIXED
 
     format = output.volume_format(arguments.output, arguments.format)
     output.check_apart(arguments.output, [arguments.MESH])
@@ -347,7 +347,7 @@ def _normal_options(parser: ArgumentParser) -> None:
 def _normal(arguments: Namespace) -> Result:
     from sssgen.bake import baked_files as output
     from sssgen.bake import normal_map as normals
-    from sssgen.harness.pictures import images
+    from sssgen.scene.pictures import images
 
     output.picture_suffix(arguments.output)
     output.check_apart(arguments.output, [arguments.HEIGHT])
@@ -403,9 +403,9 @@ def _environment_options(parser: ArgumentParser) -> None:
 def _environment(arguments: Namespace) -> Result:
     from sssgen.bake import baked_files as output
     from sssgen.bake.cube_dds import cube_bytes
-    from sssgen.harness.evaluate.evaluation import half
-    from sssgen.harness.render import environment_maps as maps
-    from sssgen.harness.scenes.environment import Environment, digest
+    from sssgen.run.evaluate.evaluation import half
+    from sssgen.run.render import environment_maps as maps
+    from sssgen.scene.environment import Environment, digest
 
     output.check_cube_path(arguments.output)
     output.check_apart(arguments.output, [arguments.SKY])

@@ -14,10 +14,10 @@ from sssgen.cli.commands import COMMANDS, command_module
 from sssgen.cli.options import add_json
 from sssgen.cli.parser import Parser
 from sssgen.cli.show import KINDS, names_of
-from sssgen.harness.backend_registry import FUNCTIONS, SCENES
-from sssgen.harness.compiler_registry import COMPILERS
-from sssgen.harness.scenes.example_scenes import drawn_scenes, measured_scenes
 from sssgen.material import library
+from sssgen.run.backend_registry import FUNCTIONS, SCENES
+from sssgen.run.compiler_registry import COMPILERS
+from sssgen.scene.example_scenes import drawn_scenes, measured_scenes
 
 
 class Values(NamedTuple):

@@ -16,7 +16,7 @@ from sssgen.support.progress import ProgressBar
 
 if TYPE_CHECKING:
     from sssgen.lab.chart.charting import Settings
-    from sssgen.lab.scene.measured_scene import MeasuredScene
+    from sssgen.scene.measured.measured_scene import MeasuredScene
 
 MAX_SAMPLES = 1 << 16
 
@@ -57,7 +57,7 @@ def run(arguments: Namespace) -> int:
     from sssgen.lab.chart import charting as chart
     from sssgen.lab.chart import drawing
     from sssgen.lab.chart.engine_conditions import by_bytes, under
-    from sssgen.lab.scene import measured_scene
+    from sssgen.scene.measured import measured_scene
 
     scenes = [measured_scene.load(name) for name in arguments.SCENE or chart.DEFAULTS]
     names = [scene.name for scene in scenes]

@@ -10,11 +10,11 @@ from collections.abc import Mapping, Sequence
 from sssgen.cli.emit import chosen_targets
 from sssgen.cli.layout import table_rows, table_width, wrapped
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
-from sssgen.harness.check import compile_check as check
-from sssgen.harness.check.compile_check import Report, Result
-from sssgen.harness.check.shader_files import Shader, read
-from sssgen.harness.compiler_registry import COMPILERS, readers
 from sssgen.ir.spans import Span
+from sssgen.run.check import compile_check as check
+from sssgen.run.check.compile_check import Report, Result
+from sssgen.run.check.shader_files import Shader, read
+from sssgen.run.compiler_registry import COMPILERS, readers
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure, visible
 from sssgen.support.progress import ProgressBar
 

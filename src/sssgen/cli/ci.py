@@ -6,11 +6,11 @@ from argparse import ArgumentParser, Namespace
 from collections import Counter
 
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
-from sssgen.harness.testing import junit
-from sssgen.harness.testing import project_run as ci
-from sssgen.harness.testing.project_run import Case, CaseResult
 from sssgen.support.diagnostics import visible
 from sssgen.support.progress import ProgressBar
+from sssgen.testing import junit
+from sssgen.testing import project_run as ci
+from sssgen.testing.project_run import Case, CaseResult
 
 WORDS = {"passed": "ok  ", "failed": "FAIL", "skipped": "skip"}
 
@@ -70,7 +70,7 @@ def run(arguments: Namespace) -> int:
 def _backends(text: str | None) -> list[str]:
     if text is None:
         return []
-    from sssgen.harness.backends import chosen
+    from sssgen.run.backends import chosen
 
     return chosen(text)
 
@@ -78,7 +78,7 @@ def _backends(text: str | None) -> list[str]:
 def _limit(flip: float | None) -> float | None:
     if flip is None:
         return None
-    from sssgen.harness.testing.golden import check_limit
+    from sssgen.testing.golden import check_limit
 
     return check_limit(flip)
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from sssgen.cli.layout import table_rows, table_width
 from sssgen.cli.output import OK, print_json
-from sssgen.harness.machine_facts import VARIABLES, Facts, Item, facts
+from sssgen.run.machine_facts import VARIABLES, Facts, Item, facts
 from sssgen.support.diagnostics import visible
 
 

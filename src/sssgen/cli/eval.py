@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 from sssgen.cli.layout import table_rows, table_width
 from sssgen.cli.options import add_guards, add_seed
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
-from sssgen.harness.backend_registry import BACKENDS, FUNCTIONS, HALF, chosen, in_half
-from sssgen.harness.testing.outcome import in_ci
+from sssgen.run.backend_registry import BACKENDS, FUNCTIONS, HALF, chosen, in_half
 from sssgen.support.diagnostics import failure
+from sssgen.testing.outcome import in_ci
 
 if TYPE_CHECKING:
-    from sssgen.harness.evaluate.deviation import Row
+    from sssgen.run.evaluate.deviation import Row
 
 SHOWN = 12
 """The number of lanes that are printed."""
@@ -50,8 +50,8 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Prints the outputs; for several back ends, the deviation of each from the oracle."""
-    from sssgen.harness.evaluate import input_files as inputs
-    from sssgen.harness.evaluate.probes import subject
+    from sssgen.run.evaluate import input_files as inputs
+    from sssgen.run.evaluate.probes import subject
 
     names = _backends(arguments.backend, arguments.precision)
     chosen = subject(arguments.TECHNIQUE, inputs.bindings(arguments.bind))
@@ -59,7 +59,7 @@ def run(arguments: Namespace) -> int:
     sampled = arguments.samples is not None
     if sampled:
         values = _sampled(chosen, arguments.samples, arguments.seed) | values
-    from sssgen.harness.evaluate.evaluation import fitted
+    from sssgen.run.evaluate.evaluation import fitted
 
     fit = fitted(chosen, values)
     if len(names) == 1:
@@ -73,7 +73,7 @@ def _sampled(chosen: Any, count: int, seed: int) -> dict[str, Any]:
         raise failure(f"--samples {count} is not a number of samples", f"from 1 to {MAX_SAMPLES}")
     if seed < 0:
         raise failure(f"--seed {seed} is negative")
-    from sssgen.harness.evaluate.random_inputs import samples
+    from sssgen.run.evaluate.random_inputs import samples
 
     return samples(chosen, count, seed)
 
@@ -94,8 +94,8 @@ def _backends(text: str, precision: str | None) -> list[str]:
 
 
 def _report(subject: Any, fit: Any, name: str, as_json: bool, guards: str) -> int:
-    from sssgen.harness.backends import needed
-    from sssgen.harness.evaluate.evaluation import run as evaluated
+    from sssgen.run.backends import needed
+    from sssgen.run.evaluate.evaluation import run as evaluated
 
     backend = needed(name)
     outputs = evaluated(subject, fit, backend, guards)
@@ -109,7 +109,7 @@ def _report(subject: Any, fit: Any, name: str, as_json: bool, guards: str) -> in
 
 
 def _several(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bool, guards: str) -> int:
-    from sssgen.harness.evaluate.deviation import GOAL, compared
+    from sssgen.run.evaluate.deviation import GOAL, compared
     from sssgen.support.progress import ProgressBar
 
     with ProgressBar() as progress:
@@ -131,7 +131,7 @@ def _several(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bo
 
 def _print_rows(rows: Sequence[Row]) -> None:
     """A row for each back end, wrapped on a terminal."""
-    from sssgen.harness.evaluate.deviation import GOAL
+    from sssgen.run.evaluate.deviation import GOAL
 
     width = max(len(row.name) for row in rows)
     print(f"\n{'':{width}}  largest deviation (goal: {GOAL:g})")

@@ -35,11 +35,11 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Writes the glTF file, and prints what became of the material's parameters."""
-    from sssgen.harness.scenes import mesh_files
-    from sssgen.harness.scenes.preview_scene import mesh_beside
     from sssgen.interchange.gltf_container import SUFFIXES
     from sssgen.interchange.gltf_writer import export
     from sssgen.interchange.mapping_report import Report
+    from sssgen.scene import mesh_files
+    from sssgen.scene.preview_scene import mesh_beside
 
     path = arguments.output
     if os.path.splitext(path)[1].lower() not in SUFFIXES:

@@ -23,7 +23,7 @@ def run(arguments: Namespace) -> int:
     settings = settings_of(arguments)._replace(roles=("coordinates", "translucency"))
     from sssgen.lab.chart import charting as chart
     from sssgen.lab.measure import candidates
-    from sssgen.lab.scene import measured_scene
+    from sssgen.scene.measured import measured_scene
 
     scene = measured_scene.load(arguments.SCENE)
     wanted = set(arguments.TECHNIQUE)

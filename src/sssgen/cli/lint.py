@@ -14,7 +14,7 @@ from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, fa
 from sssgen.support.progress import ProgressBar
 
 if TYPE_CHECKING:
-    from sssgen.harness.lint.lint_findings import Report
+    from sssgen.analyse.lint.lint_findings import Report
     from sssgen.ir.intrinsics import Kind
 
 
@@ -53,7 +53,7 @@ def run(arguments: Namespace) -> int:
 
     A file with errors does not stop the others, unless a report is written: it would lack findings.
     """
-    from sssgen.harness.lint.finding_baseline import baseline_text, load_baseline, new_findings
+    from sssgen.analyse.lint.finding_baseline import baseline_text, load_baseline, new_findings
 
     kinds = _kinds(arguments.kind)
     if arguments.write_baseline and not arguments.baseline:
@@ -70,7 +70,7 @@ def run(arguments: Namespace) -> int:
         new = []
     is_new = {id(finding) for finding in new}
     if arguments.sarif:
-        from sssgen.harness.lint.sarif_report import sarif
+        from sssgen.analyse.lint.sarif_report import sarif
 
         log = sarif(reports, is_new if arguments.baseline else None)
         _write(arguments.sarif, f"{json.dumps(log, indent=1)}\n")
@@ -95,7 +95,7 @@ def run(arguments: Namespace) -> int:
 
 def _reports(arguments: Namespace, kinds: tuple[Kind, ...]) -> tuple[list[Report], list[Diagnostic]]:
     """The reports of the files, and the errors of those that have some."""
-    from sssgen.harness.lint.lint_findings import lint
+    from sssgen.analyse.lint.lint_findings import lint
 
     reports: list[Report] = []
     wrong: list[Diagnostic] = []
@@ -122,7 +122,7 @@ def _as_json(report: Report, new: set[int]) -> dict[str, Any]:
 
 def _print(report: Report, new: set[int], proven: bool) -> None:
     """Prints the new findings of a report, and those that are proven if these are wanted."""
-    from sssgen.harness.lint.lint_findings import PROVEN
+    from sssgen.analyse.lint.lint_findings import PROVEN
 
     for finding in report.findings:
         if id(finding) in new or (finding.verdict == PROVEN and proven):
@@ -151,7 +151,7 @@ def _warnings(reports: list[Report]) -> list[Diagnostic]:
 
 def _kinds(option: str | None) -> tuple[Kind, ...]:
     """The kinds that `--kind` selects. Raises SssgenError for an unknown one."""
-    from sssgen.harness.lint.lint_findings import REPORTED
+    from sssgen.analyse.lint.lint_findings import REPORTED
     from sssgen.ir.intrinsics import KINDS
 
     if option is None:
@@ -172,7 +172,7 @@ def _assumptions(report: Report) -> list[tuple[str, str]]:
 
 def _summary(report: Report) -> str:
     """The line below the findings of a file: how many operations were proven, and how many findings are not shown."""
-    from sssgen.harness.lint.lint_findings import MAY_FAIL, NOT_PROVEN, PROVEN
+    from sssgen.analyse.lint.lint_findings import MAY_FAIL, NOT_PROVEN, PROVEN
 
     counts = Counter(finding.verdict for finding in report.findings)
     total = len({id(finding.site) for finding in report.findings})

@@ -7,13 +7,13 @@ from typing import Any
 
 from sssgen.cli.layout import table_rows, table_width
 from sssgen.cli.output import OK, print_json
-from sssgen.harness.backend_registry import BACKENDS
-from sssgen.harness.scenes.example_scenes import all_scenes, summary
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
 from sssgen.material.requirements import requirements
 from sssgen.pipeline.compiler import all_targets
+from sssgen.run.backend_registry import BACKENDS
+from sssgen.scene.example_scenes import all_scenes, summary
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import display_name, posix, source_name
 
@@ -96,7 +96,7 @@ def _materials() -> list[dict[str, Any]]:
 
 
 def _media() -> list[dict[str, Any]]:
-    from sssgen.lab.scene import media
+    from sssgen.scene.measured import media
 
     return [{"name": name, "summary": medium.source} for name, medium in media.media().items()]
 

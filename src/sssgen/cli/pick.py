@@ -19,7 +19,7 @@ from sssgen.support.file_writer import write_files
 
 if TYPE_CHECKING:
     from sssgen.lab.chart.picking import Pick
-    from sssgen.lab.scene.measured_scene import MeasuredScene
+    from sssgen.scene.measured.measured_scene import MeasuredScene
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -51,7 +51,7 @@ def run(arguments: Namespace) -> int:
     settings, conditions, device = settings_of(arguments), conditions_of(arguments), device_of(arguments)
     from sssgen.lab.chart import charting as chart
     from sssgen.lab.chart.picking import pick
-    from sssgen.lab.scene import measured_scene
+    from sssgen.scene.measured import measured_scene
 
     scene = measured_scene.load(arguments.SCENE)
     announce([scene], settings)

@@ -25,10 +25,10 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Serves the page until Ctrl-C."""
-    from sssgen.harness.scenes.geometry import Mesh
     from sssgen.preview.bodies import checked_mesh
     from sssgen.preview.preview_server import PreviewServer
     from sssgen.preview.shown_picture import ShownPicture
+    from sssgen.scene.geometry import Mesh
 
     mesh = checked_mesh(Mesh(path=arguments.mesh)) if arguments.mesh else None
 

@@ -9,7 +9,7 @@ from time import perf_counter
 
 from sssgen.cli.options import add_guards, given
 from sssgen.cli.output import CHECK_FAILED, OK, print_json, report_errors
-from sssgen.harness.backend_registry import PREFERRED, SCENES
+from sssgen.run.backend_registry import PREFERRED, SCENES
 from sssgen.support.diagnostics import failure
 from sssgen.support.progress import ProgressBar
 
@@ -49,12 +49,12 @@ def run(arguments: Namespace) -> int:
 
 
 def _render(arguments: Namespace) -> int:
-    from sssgen.harness import backends
-    from sssgen.harness.pictures import images
-    from sssgen.harness.render.missing_textures import MissingTextures
-    from sssgen.harness.render.scene_render import render, with_samples
-    from sssgen.harness.scenes.preview_scene import scene_of
-    from sssgen.harness.scenes.scene_keys import MAX_SAMPLES
+    from sssgen.run import backends
+    from sssgen.run.render.missing_textures import MissingTextures
+    from sssgen.run.render.scene_render import render, with_samples
+    from sssgen.scene.pictures import images
+    from sssgen.scene.preview_scene import scene_of
+    from sssgen.scene.scene_keys import MAX_SAMPLES
 
     size = _size(arguments.size) if arguments.size else None
     name, *more = backends.chosen(arguments.backend, scenes=True)
@@ -100,8 +100,8 @@ def _size(text: str) -> tuple[int, int]:
 
 
 def _compare(arguments: Namespace) -> int:
-    from sssgen.harness.pictures import images
-    from sssgen.harness.pictures.picture_difference import compare
+    from sssgen.scene.pictures import images
+    from sssgen.scene.pictures.picture_difference import compare
 
     if arguments.SCENE:
         raise failure(

@@ -7,7 +7,7 @@ from sssgen.support.diagnostics import failure
 
 def picture_size(text: str) -> tuple[int, int]:
     """A picture's width and height. Raises SssgenError."""
-    from sssgen.harness.pictures.images import LARGEST_SIDE
+    from sssgen.scene.pictures.images import LARGEST_SIDE
 
     size = pair(text, "size")
     if not all(1 <= side <= LARGEST_SIDE for side in size):

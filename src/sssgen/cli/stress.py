@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 
 from sssgen.cli.options import add_guards, add_seed, add_workers, given
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
-from sssgen.harness.backend_registry import DEFAULT, HALF, SINGLE, chosen, in_half
-from sssgen.harness.testing.outcome import in_ci
+from sssgen.run.backend_registry import DEFAULT, HALF, SINGLE, chosen, in_half
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_writer import write_files
+from sssgen.testing.outcome import in_ci
 
 if TYPE_CHECKING:
-    from sssgen.harness.stress.stress_report import Report
-    from sssgen.harness.stress.stress_run import Settings
-    from sssgen.harness.stress.subject import Specimen
+    from sssgen.analyse.stress.stress_report import Report
+    from sssgen.analyse.stress.stress_run import Settings
+    from sssgen.analyse.stress.subject import Specimen
 
 MAX_SAMPLES = 10**9
 
@@ -50,10 +50,10 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Runs the named techniques and prints their faults; returns 1 for a fault that counts."""
-    from sssgen.harness.stress import dangerous_inputs as dangerous
-    from sssgen.harness.stress import stress_report as report
-    from sssgen.harness.stress.stress_run import Settings
-    from sssgen.harness.stress.subject import specimens
+    from sssgen.analyse.stress import dangerous_inputs as dangerous
+    from sssgen.analyse.stress import stress_report as report
+    from sssgen.analyse.stress.stress_run import Settings
+    from sssgen.analyse.stress.subject import specimens
 
     if not 1 <= arguments.samples <= MAX_SAMPLES:
         raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 1 to {MAX_SAMPLES}")
@@ -83,7 +83,7 @@ def run(arguments: Namespace) -> int:
 
 def _check_rows(rows: Sequence[str], subjects: Sequence[Specimen]) -> None:
     """Raises SssgenError for a row without a trial for any of the subjects: it would silently pass."""
-    from sssgen.harness.stress import dangerous_inputs as dangerous
+    from sssgen.analyse.stress import dangerous_inputs as dangerous
 
     hints = {row.name: row.elsewhere for row in dangerous.ROWS}
     for row in rows:
@@ -106,8 +106,8 @@ def _backends(text: str, half: bool) -> list[str]:
 
 def _stressed(subjects: list[Specimen], names: list[str], settings: Settings) -> Report:
     """Stresses one technique after the other, each on all back ends, with a progress bar."""
-    from sssgen.harness.stress.stress_report import Report
-    from sssgen.harness.stress.stress_run import Machines, stress
+    from sssgen.analyse.stress.stress_report import Report
+    from sssgen.analyse.stress.stress_run import Machines, stress
     from sssgen.support.progress import ProgressBar
 
     with Machines(names) as machines, ProgressBar() as progress:
@@ -136,7 +136,7 @@ def _suffix(path: str, suffixes: tuple[str, ...]) -> str:
 
 def _write(path: str, suffix: str, results: Report) -> None:
     """Writes the report atomically."""
-    from sssgen.harness.stress import stress_report as report
+    from sssgen.analyse.stress import stress_report as report
 
     text = report.as_markdown(results)
     if suffix == ".json":
@@ -146,7 +146,7 @@ def _write(path: str, suffix: str, results: Report) -> None:
 
 
 def _print(results: Report, written: str | None) -> None:
-    from sssgen.harness.stress import stress_report as report
+    from sssgen.analyse.stress import stress_report as report
 
     for line in report.summary(results):
         print(line)

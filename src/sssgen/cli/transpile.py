@@ -225,9 +225,9 @@ def _print(
 
 def _verify(arguments: Namespace, path: Path, computes: bool) -> int:
     """Runs each function, or a compute shader, as written and as translated, and prints the differences."""
-    from sssgen.harness.verify import compute_verification as compute
-    from sssgen.harness.verify import inline_includes as includes
-    from sssgen.harness.verify import verification as transpiled
+    from sssgen.analyse.verify import compute_verification as compute
+    from sssgen.analyse.verify import inline_includes as includes
+    from sssgen.analyse.verify import verification as transpiled
 
     if arguments.define:
         raise failure("-D cannot be used with --verify", "write the #define into the file")

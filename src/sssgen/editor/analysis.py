@@ -8,8 +8,6 @@ from typing import NamedTuple
 
 from sssgen.editor import scene_parameters
 from sssgen.editor.documents import GLSL, MATERIAL, SCENE, TECHNIQUE, Document
-from sssgen.harness.scenes.scene import Scene
-from sssgen.harness.scenes.scene_loading import parse_scene
 from sssgen.ir.nodes import Module
 from sssgen.lang.assumption_comments import AssumedInput
 from sssgen.lang.loader import load_file
@@ -18,6 +16,8 @@ from sssgen.material import library
 from sssgen.material.library import ROLES, Technique, folder_of, load_path
 from sssgen.material.material_loading import parse_material
 from sssgen.material.model import Material
+from sssgen.scene.scene import Scene
+from sssgen.scene.scene_loading import parse_scene
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.support.file_memo import noted_files
 from sssgen.support.paths import source_name, stem

@@ -6,12 +6,11 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from sssgen.analyse.lint.input_assumptions import Assumptions, input_names, rules_of_comments
 from sssgen.editor.analysis import Analysis, own_names
 from sssgen.editor.documents import GLSL, MATERIAL, TECHNIQUE, Document
 from sssgen.editor.problems import Range, range_of
 from sssgen.editor.toml_places import tables_of
-from sssgen.harness.evaluate.probes import subject
-from sssgen.harness.lint.input_assumptions import Assumptions, input_names, rules_of_comments
 from sssgen.ir.intrinsics import KINDS
 from sssgen.ir.nodes import Module, Span
 from sssgen.ir.walk import all_expressions
@@ -21,6 +20,7 @@ from sssgen.passes.ranges.sites import Site
 from sssgen.passes.reachable import only
 from sssgen.passes.stage.stage_interface import stage_kind
 from sssgen.pipeline.programs import analysed, library_sites, plain_module, traced_sites
+from sssgen.run.evaluate.probes import subject
 from sssgen.targets import registry
 
 PLAIN_TARGET = "glsl-330"

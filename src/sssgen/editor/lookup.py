@@ -10,13 +10,13 @@ from sssgen.editor.analysis import Analysis
 from sssgen.editor.documents import MATERIAL, SCENE, TECHNIQUE, Document, Word
 from sssgen.editor.scene_parameters import uniforms_of
 from sssgen.editor.source_files import path_of
-from sssgen.harness.scenes.scene_reader import material_beside
 from sssgen.ir.nodes import Declare, Function, Module, Uniform
 from sssgen.ir.walk import all_expressions, statements
 from sssgen.lang.check.quantities import QUANTITIES
 from sssgen.material import library, slots
 from sssgen.material.library import Technique
 from sssgen.material.material_loading import examples
+from sssgen.scene.scene_reader import material_beside
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import source_name
 from sssgen.targets import builtin_facts

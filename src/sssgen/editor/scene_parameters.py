@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from sssgen.harness.scenes.scene import Scene
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import library
@@ -11,6 +10,7 @@ from sssgen.material.model import Material
 from sssgen.material.requirements import read_uniforms
 from sssgen.material.shell_stages import NONE
 from sssgen.material.values import WrongValue, read_value
+from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean
 from sssgen.support.paths import display_name
 from sssgen.targets import registry

@@ -8,11 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from sssgen.harness.scenes import scene_keys
-from sssgen.harness.scenes.toml_table import ANY, Key
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Array, Matrix, Sampler, components, kind_of
-from sssgen.lab.scene.media import media
 from sssgen.material import library, roles, slots
 from sssgen.material.library import Technique
 from sssgen.material.material_loading import examples
@@ -21,6 +18,9 @@ from sssgen.material.model import NAME, UV_SETS
 from sssgen.material.shell_stages import choices
 from sssgen.material.technique_facts import uniform_facts, uniform_text
 from sssgen.material.values import HEX_COLOUR, is_colour, limits
+from sssgen.scene import scene_keys
+from sssgen.scene.measured.media import media
+from sssgen.scene.toml_table import ANY, Key
 
 Schema = dict[str, Any]
 

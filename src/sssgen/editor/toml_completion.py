@@ -9,7 +9,6 @@ from sssgen.editor.completion_item import Item, plain
 from sssgen.editor.documents import Document
 from sssgen.editor.lookup import names_of, slots_of, technique_named, uniforms_at
 from sssgen.editor.toml_places import TomlPlace, place_at, tables_of
-from sssgen.harness.scenes.scene_keys import CAMERA, KEYS, LIGHT, PLACE, SHAPES
 from sssgen.ir.nodes import Span, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import library, roles, slots
@@ -19,6 +18,7 @@ from sssgen.material.material_reader import CHOICES, MATERIAL_KEYS, STAGE_KEYS
 from sssgen.material.model import UV_SETS
 from sssgen.material.shell_stages import choices
 from sssgen.material.technique_facts import uniform_facts, uniform_text
+from sssgen.scene.scene_keys import CAMERA, KEYS, LIGHT, PLACE, SHAPES
 from sssgen.support.paths import source_name
 
 _LISTS = ("light",)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sssgen.interchange.scatter_color import albedo_of_multiscatter
 from sssgen.interchange.surface_model import extinction_of_color, medium
-from sssgen.lab.scene.media import Medium
+from sssgen.scene.measured.media import Medium
 
 LEAST_RADIUS = 1e-6
 """A shorter mean free path, in metres, counts as this."""

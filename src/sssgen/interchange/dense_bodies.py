@@ -8,7 +8,7 @@ from sssgen.interchange.imported import Notes
 from sssgen.interchange.scatter_color import multiscatter_of_albedo
 from sssgen.interchange.surface_model import ZERO, Quantity, SurfaceModel
 from sssgen.interchange.texels import mean_of
-from sssgen.lab.scene.media import Medium
+from sssgen.scene.measured.media import Medium
 
 DENSE = 30.0
 """The mean chord of a body, in mean free paths, from which on it is matte."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from sssgen.interchange.albedo_inversion import subsurface_medium
 from sssgen.interchange.unity_project import UnityProject
 from sssgen.interchange.unity_yaml import UnityFile, Value
-from sssgen.lab.scene.media import Medium
+from sssgen.scene.measured.media import Medium
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.paths import posix
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sssgen.harness.scenes.mesh_files import FileContent
 from sssgen.interchange.gltf_buffers import Buffers
 from sssgen.interchange.gltf_container import open_file
 from sssgen.interchange.gltf_json import JsonElement
@@ -13,6 +12,7 @@ from sssgen.interchange.gltf_meshes import joined, meshes
 from sssgen.interchange.gltf_textures import Textures
 from sssgen.interchange.imported import Imported, check_name
 from sssgen.interchange.mapping_report import Report, shown
+from sssgen.scene.mesh_files import FileContent
 
 _ALSO_READ = ("KHR_texture_transform", "EXT_texture_webp", "KHR_mesh_quantization")
 _WITHOUT_EFFECT = (

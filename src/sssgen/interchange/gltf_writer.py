@@ -10,8 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.pictures import images
-from sssgen.harness.scenes.mesh_files import FileContent
 from sssgen.interchange.gltf_parameters import Parameters, Texture
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.mesh_glb import Buffer, document, glb, primitive
@@ -19,6 +17,8 @@ from sssgen.interchange.scatter_color import multiscatter_of_albedo
 from sssgen.interchange.surface_model import Picture
 from sssgen.interchange.texels import stored
 from sssgen.material.model import Material
+from sssgen.scene.mesh_files import FileContent
+from sssgen.scene.pictures import images
 
 _USUAL_REFLECTED, _MOST_REFLECTED = 0.04, 0.08
 _LINEAR = 9729, 9987

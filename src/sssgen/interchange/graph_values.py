@@ -14,9 +14,9 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.harness.pictures.images import encode_srgb, png_bytes
 from sssgen.interchange.surface_model import Image, Picture, Quantity, UvTransform, Wrap
 from sssgen.interchange.texels import Texels, resized, stored, values_on
+from sssgen.scene.pictures.images import encode_srgb, png_bytes
 
 MAX_SIDE = 2048
 """Texels on a side of a computed picture; larger ones are computed at this size."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from sssgen.harness.scenes.mesh_files import FileContent
-from sssgen.harness.scenes.placed import Array
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.surface_model import SurfaceModel
+from sssgen.scene.mesh_files import FileContent
+from sssgen.scene.placed import Array
 from sssgen.support.diagnostics import did_you_mean, failure
 
 BAKED_SET = 2

@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from sssgen.harness.scenes.mesh_files import FileContent
 from sssgen.interchange.imported import BAKED_SET, Imported, Notes, report_fields
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.mesh_glb import mesh_file
@@ -17,6 +16,7 @@ from sssgen.interchange.technique_choice import Choice, choose
 from sssgen.interchange.texture_composer import Coordinates
 from sssgen.lab.measure.measured_chain import material_text
 from sssgen.material.model import wrong_name
+from sssgen.scene.mesh_files import FileContent
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_writer import as_bytes, has_content, write_files
 from sssgen.support.paths import place, posix

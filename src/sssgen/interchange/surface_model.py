@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, TypeAlias
 
-from sssgen.lab.scene.media import Medium
+from sssgen.scene.measured.media import Medium
 
 Wrap: TypeAlias = Literal["repeat", "clamp"]
 AlphaMode: TypeAlias = Literal["opaque", "mask", "blend"]

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.harness.pictures.images import LARGEST_SIDE, decode_srgb
 from sssgen.interchange.surface_model import Image, Picture, Quantity
+from sssgen.scene.pictures.images import LARGEST_SIDE, decode_srgb
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
 

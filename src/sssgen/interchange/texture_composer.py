@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.harness.pictures.images import encode_srgb, png_bytes
 from sssgen.interchange.surface_model import Image, Quantity, SurfaceModel, UvTransform, Wrap
 from sssgen.interchange.texels import Texels, mean_of, resized, stored, texel_values, values_on
+from sssgen.scene.pictures.images import encode_srgb, png_bytes
 
 FOLDER = "textures"
 _QUICKLY = 1

@@ -12,14 +12,14 @@ import numpy as np
 
 from sssgen.bake.texture_unwrap import unwrapped
 from sssgen.bake.thickness_map import Request, thickness_map
-from sssgen.harness.pictures.images import png_bytes
-from sssgen.harness.scenes.mesh import Mesh
-from sssgen.harness.scenes.mesh_files import FileContent
-from sssgen.harness.scenes.placed import Array
 from sssgen.interchange.imported import BAKED_SET, Imported
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.mesh_glb import mesh_file
 from sssgen.interchange.surface_model import Image, Picture, Quantity
+from sssgen.scene.mesh import Mesh
+from sssgen.scene.mesh_files import FileContent
+from sssgen.scene.pictures.images import png_bytes
+from sssgen.scene.placed import Array
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.progress import Progress, silent
 

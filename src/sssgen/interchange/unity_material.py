@@ -6,13 +6,13 @@ import os
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from sssgen.harness.pictures.images import decode_srgb
 from sssgen.interchange.imported import Element
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.surface_model import Image, Picture, Quantity, UvTransform, Wrap
 from sssgen.interchange.texture_files import read_picture
 from sssgen.interchange.unity_project import UnityProject
 from sssgen.interchange.unity_yaml import UnityFile, Value, read_plain
+from sssgen.scene.pictures.images import decode_srgb
 from sssgen.support.diagnostics import failure
 
 _MAX_PARENTS = 16

@@ -18,7 +18,7 @@ from sssgen.material.model import Material, TechniqueUse
 from sssgen.material.requirements import bodies
 from sssgen.passes.names import checked_prefix
 from sssgen.pipeline.emitted_cache import installation
-from sssgen.pipeline.facts import facts_of
+from sssgen.pipeline.material_facts import facts_of
 from sssgen.support import cache
 from sssgen.support.diagnostics import Diagnostic, SssgenError, UnsupportedError, failure
 from sssgen.support.gc_pause import paused

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.harness.scenes.geometry import Ball, Box, Distance, Geometry, Mesh, Slab
 from sssgen.preview.body_triangles import body_triangles
+from sssgen.scene.geometry import Ball, Box, Distance, Geometry, Mesh, Slab
 from sssgen.support import cache
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import CachedResult, noted_files, remembered

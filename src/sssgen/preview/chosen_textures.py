@@ -12,9 +12,9 @@ import weakref
 from collections.abc import Mapping
 from typing import Any
 
-from sssgen.harness.pictures import images
-from sssgen.harness.scenes.scene import Picture, Scene
 from sssgen.preview.saved_values import is_saved_in_scene, save_to_material, save_to_scene
+from sssgen.scene.pictures import images
+from sssgen.scene.scene import Picture, Scene
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.extras import need
 from sssgen.support.file_writer import write_files

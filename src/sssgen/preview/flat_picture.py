@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.evaluate import input_files
-from sssgen.harness.evaluate.evaluation import half
-from sssgen.harness.render.scene_values import shell_of
-from sssgen.harness.scenes.scene import Scene
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile
 from sssgen.preview.flat_head import TARGET, plain_head, raymarched_head
 from sssgen.preview.picture import Chosen, Picture, Pieces, missing_text, texels_of
+from sssgen.run.evaluate import input_files
+from sssgen.run.evaluate.evaluation import half
+from sssgen.run.render.scene_values import shell_of
+from sssgen.scene.scene import Scene
 from sssgen.targets.runtime.numpy_textures import Texture
 
 

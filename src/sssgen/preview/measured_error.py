@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sssgen.harness.scenes.scene import Scene
 from sssgen.lab.chart.charting import Settings, cached
 from sssgen.lab.chart.picking import cost_of, limit_of
 from sssgen.lab.chart.record import measures
 from sssgen.lab.measure.candidates import ROLES, is_path
-from sssgen.lab.scene import measured_scene
 from sssgen.material.model import Material
+from sssgen.scene.measured import measured_scene
+from sssgen.scene.scene import Scene
 from sssgen.support.paths import shell_word
 
 _MEASURED = (*ROLES, "conversion")

@@ -12,17 +12,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.harness.render.missing_textures import missing_textures
-from sssgen.harness.render.scene_values import shell_of
-from sssgen.harness.render.shell_values import Shell
-from sssgen.harness.scenes.geometry import Mesh
-from sssgen.harness.scenes.scene import Picture as PictureFile
-from sssgen.harness.scenes.scene import Scene
 from sssgen.material.model import Material
 from sssgen.material.requirements import bodies
 from sssgen.pipeline.compiler import compile
 from sssgen.preview.bodies import OWN_MESH, SHAPES, fitted, framed, packed
 from sssgen.preview.emitted_head import DRAWN_BY_PAGE, TARGET, emitted_head
+from sssgen.run.render.missing_textures import missing_textures
+from sssgen.run.render.scene_values import shell_of
+from sssgen.run.render.shell_values import Shell
+from sssgen.scene.geometry import Mesh
+from sssgen.scene.scene import Picture as PictureFile
+from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import failure
 from sssgen.targets.runtime.numpy_textures import Texture
 

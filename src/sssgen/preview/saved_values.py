@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.scenes.bake_advice import is_scene
-from sssgen.harness.scenes.scene import Scene
 from sssgen.material.model import Material
+from sssgen.scene.bake_advice import is_scene
+from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
 from sssgen.support.file_writer import write_files

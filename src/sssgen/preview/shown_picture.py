@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sssgen.harness.scenes.geometry import Mesh
-from sssgen.harness.scenes.preview_scene import scene_of
-from sssgen.harness.scenes.scene import Scene
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled, compile
@@ -18,6 +15,9 @@ from sssgen.preview.flat_picture import plain_picture, raymarched_picture
 from sssgen.preview.picture import Chosen, Picture, picture_of
 from sssgen.preview.saved_values import is_saved_in_scene, save_to_material, save_to_scene, saves_where
 from sssgen.preview.technique_scene import SAVES, is_technique, scene_of_technique
+from sssgen.scene.geometry import Mesh
+from sssgen.scene.preview_scene import scene_of
+from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.file_memo import FileState, noted_files
 from sssgen.support.paths import posix

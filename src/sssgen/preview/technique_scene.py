@@ -8,13 +8,13 @@ import json
 import os
 import tempfile
 
-from sssgen.harness.scenes.preview_scene import BALL, plain_scene
-from sssgen.harness.scenes.scene import Light, Scene
 from sssgen.lab.measure.measured_chain import material_text
 from sssgen.lab.measure.technique_chain import BODY, chain_of, named, write_pictures
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
 from sssgen.material.model import Material
+from sssgen.scene.preview_scene import BALL, plain_scene
+from sssgen.scene.scene import Light, Scene
 from sssgen.support.file_writer import write_files
 
 _EVEN = Light(None, (0.0, 0.6, 0.8), (1.0, 1.0, 1.0))

@@ -1,6 +1,6 @@
 """A Python process that answers questions: if a driver crashes or hangs there, only one answer is lost.
 
-    process = Process("sssgen.harness.compilers.compiler_process", "tint", seconds=60.0)
+    process = Process("sssgen.run.compilers.compiler_process", "tint", seconds=60.0)
     version = process.start()
     messages = process.ask(source)
 

@@ -1,4 +1,4 @@
-"""All targets by their names: the project's own, those of plug-ins, and those that only the harness runs, in
+"""All targets by their names: the project's own, those of plug-ins, and those that only tests run, in
 `targets/half`.
 
 A plug-in brings a target through the entry-point group `sssgen.targets`: an entry with the target's name that gives a

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from sssgen.cli.layout import wrapped
-from sssgen.harness.backend_registry import BACKENDS, unknown
+from sssgen.run.backend_registry import BACKENDS, unknown
 
 
 def names() -> Collection[str]:

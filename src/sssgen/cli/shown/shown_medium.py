@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from sssgen.cli.layout import wrapped
-from sssgen.lab.scene import media
+from sssgen.scene.measured import media
 from sssgen.support.diagnostics import did_you_mean, failure
 
 

@@ -6,14 +6,14 @@ from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
 from sssgen.cli.layout import wrapped
-from sssgen.harness.scenes.example_scenes import all_scenes, summary
 from sssgen.material.material_loading import examples
+from sssgen.scene.example_scenes import all_scenes, summary
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
 from sssgen.support.text_files import refuse_folder
 
 if TYPE_CHECKING:
-    from sssgen.harness.scenes.scene import Light, Scene
+    from sssgen.scene.scene import Light, Scene
 
 
 def names() -> Collection[str]:
@@ -23,8 +23,8 @@ def names() -> Collection[str]:
 
 def describe(name: str) -> dict[str, Any]:
     """Everything about an example scene, or about that of a .toml file. Raises SssgenError."""
-    from sssgen.harness.scenes.scene import DistanceTexture
-    from sssgen.harness.scenes.scene_loading import load
+    from sssgen.scene.scene import DistanceTexture
+    from sssgen.scene.scene_loading import load
 
     scenes = all_scenes()
     if not name.endswith(".toml") and name not in scenes:

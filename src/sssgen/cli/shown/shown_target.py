@@ -6,12 +6,12 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from sssgen.cli.layout import wrapped
-from sssgen.harness.backend_registry import BACKENDS
-from sssgen.harness.compiler_registry import readers
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.surface_fields import OPTIONAL
 from sssgen.material.library import OF_SHELLS
+from sssgen.run.backend_registry import BACKENDS
+from sssgen.run.compiler_registry import readers
 from sssgen.targets import registry
 from sssgen.targets.chain_inputs import CHAIN_INPUTS
 from sssgen.targets.descriptor import OutputFile, Target

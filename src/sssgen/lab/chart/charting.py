@@ -24,8 +24,8 @@ from sssgen.lab.measure.candidates import Candidate
 from sssgen.lab.measure.fitting import Fitted
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.measure.problem import LENGTHS
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.scene_body import span
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.scene_body import span
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.version import VERSION

@@ -13,11 +13,11 @@ from sssgen.lab.chart.charting import candidate_of
 from sssgen.lab.chart.picking import Pick
 from sssgen.lab.measure.candidates import load
 from sssgen.lab.measure.measured_chain import MaterialSection, material_text
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.media import Medium
-from sssgen.lab.scene.scene_body import Body, body
 from sssgen.material import library
 from sssgen.material.slots import needs
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.media import Medium
+from sssgen.scene.measured.scene_body import Body, body
 
 
 def material_files(scene: MeasuredScene, picked: Pick, name: str) -> dict[str, str]:

@@ -16,8 +16,8 @@ from sssgen.lab.fluence.voxels import Grid
 from sssgen.lab.fluence.walks import Walks
 from sssgen.lab.jobs.executor import Failure, Item, Progress, run
 from sssgen.lab.reference.geometry_mesh import mesh_of
-from sssgen.lab.scene import scene_body
-from sssgen.lab.scene.measured_scene import MeasuredScene
+from sssgen.scene.measured import scene_body
+from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
 

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.harness.scenes.mesh_rays import MeshRays
 from sssgen.lab.fluence.voxels import Grid
+from sssgen.scene.mesh_rays import MeshRays
 
 Array = npt.NDArray[np.float64]
 Singles = npt.NDArray[np.float32]

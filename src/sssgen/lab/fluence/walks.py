@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.harness.scenes.geometry import Geometry
 from sssgen.lab.fluence.photons import STEP, Medium, Singles, Tracer
 from sssgen.lab.fluence.voxels import Grid
+from sssgen.scene.geometry import Geometry
 from sssgen.support.extras import need
 
 Array = npt.NDArray[np.float64]

@@ -13,18 +13,18 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.scenes.scene import Scene
-from sssgen.harness.scenes.scene_loading import parse_scene
 from sssgen.lab.chart.picked_material import stages_of
 from sssgen.lab.gpu import gpu_timing as gpu_cost
 from sssgen.lab.gpu import timed_programs as gpu_programs
 from sssgen.lab.gpu.gpu_timing import ProgramTimes
 from sssgen.lab.measure.measured_chain import MaterialSection, material_of
-from sssgen.lab.scene import scene_body as body
-from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.material import library
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile
+from sssgen.scene.measured import scene_body as body
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.scene import Scene
+from sssgen.scene.scene_loading import parse_scene
 
 AT_ONCE = 40
 """Programs that alternate; with more of them, a round is so long that clocks change in it."""

@@ -17,14 +17,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.harness.backends import Array
 from sssgen.lab.chart.record import fronts_of
 from sssgen.lab.gpu.chart_times import EMPTY, timed
 from sssgen.lab.gpu.gpu_timing import Device as Driver
 from sssgen.lab.measure.candidates import Candidate
 from sssgen.lab.measure.measurement import chain_of, static_cost
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.scene_body import body
+from sssgen.run.backends import Array
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.scene_body import body
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.extras import need
 

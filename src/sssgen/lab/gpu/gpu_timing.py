@@ -22,10 +22,10 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.harness import backends
-from sssgen.harness.backends.backend_interface import Text, refused
-from sssgen.harness.backends.opengl import OpenGL, is_loose
-from sssgen.harness.compilers.gl_driver import messages
+from sssgen.run import backends
+from sssgen.run.backends.backend_interface import Text, refused
+from sssgen.run.backends.opengl import OpenGL, is_loose
+from sssgen.run.compilers.gl_driver import messages
 from sssgen.targets.runtime.numpy_textures import Texture
 
 SIZE = (1920, 1080)

@@ -20,22 +20,22 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.harness.backends import Array
-from sssgen.harness.evaluate import probes
-from sssgen.harness.evaluate import random_inputs as samples
-from sssgen.harness.evaluate.evaluation import half
-from sssgen.harness.render.scene_values import shell_of
-from sssgen.harness.render.shell_values import drawing
-from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.drawn_views import back_faces
-from sssgen.harness.scenes.geometry import Ball, Geometry
-from sssgen.harness.scenes.scene import Scene
 from sssgen.ir.drawn import BACK_FACES
 from sssgen.ir.types import Sampler
 from sssgen.lab.gpu.gpu_timing import ROUNDS, SIZE, Program, ProgramTimes, measure
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile, transpile
+from sssgen.run.backends import Array
+from sssgen.run.evaluate import probes
+from sssgen.run.evaluate import random_inputs as samples
+from sssgen.run.evaluate.evaluation import half
+from sssgen.run.render.scene_values import shell_of
+from sssgen.run.render.shell_values import drawing
+from sssgen.scene.camera import Camera
+from sssgen.scene.drawn_views import back_faces
+from sssgen.scene.geometry import Ball, Geometry
+from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.targets.runtime.numpy_textures import Texture
 

@@ -13,8 +13,9 @@ import os
 from collections.abc import Callable, Generator, Sequence
 from typing import Any
 
-from sssgen.lab.jobs.result_store import Store, decoded
+from sssgen.lab.jobs.result_store import Store
 from sssgen.lab.jobs.work_items import EncodedResult, Failure, Item, Task, execute, task_of
+from sssgen.support.value_bytes import decoded
 
 __all__ = ["Failure", "Item", "Progress", "failures", "run"]
 

@@ -7,8 +7,8 @@ import queue
 import threading
 from collections.abc import Callable, Generator
 
-from sssgen.lab.jobs.result_store import encoded
 from sssgen.lab.jobs.work_items import EncodedResult, Failure, Task, execute
+from sssgen.support.value_bytes import encoded
 from sssgen.support.worker_process import LostError, Process
 
 TRIES = 3

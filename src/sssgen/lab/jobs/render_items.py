@@ -15,11 +15,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.harness import backends
-from sssgen.harness.backends import Backend
-from sssgen.harness.render.scene_render import render
-from sssgen.harness.scenes.scene import Scene
-from sssgen.harness.scenes.scene_loading import load
+from sssgen.run import backends
+from sssgen.run.backends import Backend
+from sssgen.run.render.scene_render import render
+from sssgen.scene.scene import Scene
+from sssgen.scene.scene_loading import load
 from sssgen.support.extras import need
 from sssgen.support.paths import place
 

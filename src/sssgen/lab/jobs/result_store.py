@@ -1,4 +1,4 @@
-"""Results as bytes, and the folder that stores each atomically under its item's key.
+"""The folder that stores results as bytes, each atomically under its item's key.
 
 A run continues with the results of an interrupted run. The folder may be deleted; results are then computed again.
 """
@@ -6,10 +6,7 @@ A run continues with the results of an interrupted run. The folder may be delete
 from __future__ import annotations
 
 import contextlib
-import io
 import os
-import pickle
-from typing import Any
 
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError
@@ -17,33 +14,6 @@ from sssgen.support.file_writer import write_files
 
 FOLDER = os.path.join("lab", "results")
 """The subfolder of the cache folder."""
-
-
-def encoded(value: Any) -> bytes:
-    """A value as bytes that depend only on its content, not on shared objects or an array's memory layout.
-
-    Pickle must accept the value. It has no cycles (ValueError) and no sets, whose order differs between processes.
-    """
-    file = io.BytesIO()
-    pickler = _Pickler(file, protocol=5)
-    pickler.fast = True  # fast mode writes no references to earlier objects
-    pickler.dump(value)
-    return file.getvalue()
-
-
-class _Pickler(pickle.Pickler):
-    def reducer_override(self, value: Any) -> Any:
-        if type(value).__module__ == "numpy" and type(value).__name__ == "ndarray":
-            import numpy as np
-
-            if not (value.flags.c_contiguous and value.flags.writeable):
-                return np.array(value, order="C").__reduce_ex__(5)
-        return NotImplemented
-
-
-def decoded(data: bytes) -> Any:
-    """The value of `encoded` bytes, a new object."""
-    return pickle.loads(data)
 
 
 class Store:

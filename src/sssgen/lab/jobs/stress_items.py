@@ -9,9 +9,9 @@ import functools
 import threading
 from collections.abc import Sequence
 
-from sssgen.harness.stress.stress_report import Report
-from sssgen.harness.stress.stress_run import Machines, Row, Settings, stress
-from sssgen.harness.stress.subject import Specimen
+from sssgen.analyse.stress.stress_report import Report
+from sssgen.analyse.stress.stress_run import Machines, Row, Settings, stress
+from sssgen.analyse.stress.subject import Specimen
 from sssgen.lab.jobs.executor import Item, failures, run
 from sssgen.lab.jobs.result_store import Store
 from sssgen.support.diagnostics import Diagnostic, SssgenError

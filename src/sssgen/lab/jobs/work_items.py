@@ -14,10 +14,10 @@ import traceback
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any, NamedTuple
 
-from sssgen.lab.jobs.result_store import decoded, encoded
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import PACKAGE, place
+from sssgen.support.value_bytes import decoded, encoded
 
 EncodedResult = tuple[str, bytes]
 """The key of a finished item, and its encoded result."""

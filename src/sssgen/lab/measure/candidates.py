@@ -17,10 +17,10 @@ from sssgen.ir.nodes import Function, Uniform
 from sssgen.ir.types import Sampler, kind_of
 from sssgen.lab.measure.fluence_inputs import PREFIX
 from sssgen.lab.measure.measured_chain import MaterialSection
-from sssgen.lab.scene.scene_body import Body
 from sssgen.lang.check.quantities import SCALARS
 from sssgen.material import library, slots
 from sssgen.material.library import Technique
+from sssgen.scene.measured.scene_body import Body
 
 ROLES = ("coordinates", "thickness", "view_thickness", "translucency", "material")
 """The roles that have a reference. A surface's look (masks, waves, colours) is the artist's choice: it has no error."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from sssgen.harness.backends import Array
-from sssgen.harness.pictures.images import encode_srgb
-from sssgen.harness.pictures.picture_difference import EPSILON
-from sssgen.harness.pictures.picture_difference import compare as differ
+from sssgen.run.backends import Array
+from sssgen.scene.pictures.images import encode_srgb
+from sssgen.scene.pictures.picture_difference import EPSILON
+from sssgen.scene.pictures.picture_difference import compare as differ
 
 BARS = 2.0
 """Standard errors to either side, in an error bar."""

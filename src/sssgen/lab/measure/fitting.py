@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.harness.backends import Array
-from sssgen.harness.pictures.picture_difference import EPSILON
 from sssgen.ir.types import BY_NAME, components, kind_of
 from sssgen.lab.measure.measured_chain import Chain
 from sssgen.lab.measure.problem import Problem
+from sssgen.run.backends import Array
+from sssgen.scene.pictures.picture_difference import EPSILON
 from sssgen.support.extras import need
 
 LANES = 400

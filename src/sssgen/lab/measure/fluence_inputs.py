@@ -8,14 +8,14 @@ from itertools import chain
 
 import numpy as np
 
-from sssgen.harness.backends import Array
-from sssgen.harness.scenes.bounds import placed_corners
-from sssgen.harness.scenes.scene import Light
 from sssgen.lab.fluence import fluence_field as field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence import octahedron
 from sssgen.lab.jobs.executor import Item
-from sssgen.lab.scene.measured_scene import MeasuredScene
+from sssgen.run.backends import Array
+from sssgen.scene.bounds import placed_corners
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.scene import Light
 from sssgen.targets.runtime.numpy_textures import Texture
 
 SETTINGS = field.Settings()

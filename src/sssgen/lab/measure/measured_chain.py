@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.harness.backends import Array
 from sssgen.ir.types import BY_NAME, Matrix, Vector, kind_of
 from sssgen.material.material_loading import parse_material
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled, compile
+from sssgen.run.backends import Array
 from sssgen.targets.runtime.numpy_textures import Texture
 from sssgen.targets.runtime.numpy_values import grid, precision
 

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.harness.backends import Array
 from sssgen.lab.measure import error_metric as metrics
 from sssgen.lab.measure import fitting
 from sssgen.lab.measure.candidates import PROBES, Candidate, converged_counts, is_calibrated, load
@@ -28,11 +27,12 @@ from sssgen.lab.measure.problem import (
     translucency_problem,
     view_thickness_problem,
 )
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.scene_body import Body, body
-from sssgen.lab.scene.view_points import points
 from sssgen.passes.cost import Cost, cost_of
 from sssgen.pipeline.compiler import compile
+from sssgen.run.backends import Array
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.scene_body import Body, body
+from sssgen.scene.measured.view_points import points
 from sssgen.support.diagnostics import failure
 
 COST_TARGET = "glsl-330"

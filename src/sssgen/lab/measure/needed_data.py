@@ -10,9 +10,9 @@ from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler
 from sssgen.lab.measure import fluence_inputs
 from sssgen.lab.measure.scene_inputs import of_scene
-from sssgen.lab.scene.measured_scene import MeasuredScene
 from sssgen.material import requirements
 from sssgen.material.model import TechniqueUse
+from sssgen.scene.measured.measured_scene import MeasuredScene
 
 MAP_SIDE = 512
 """Width and height of a baked map in texels, the default of `sssgen bake`; measured maps are ideal and have no size."""

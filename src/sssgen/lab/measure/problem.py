@@ -9,14 +9,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.harness.backends import Array
-from sssgen.harness.scenes.scene import Light
 from sssgen.lab.measure import fluence_inputs, scene_inputs
 from sssgen.lab.measure.measured_chain import Chain
 from sssgen.lab.reference import inlay_refraction as refraction
 from sssgen.lab.reference.inside_lengths import thickness
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.view_points import Points, points
+from sssgen.run.backends import Array
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.view_points import Points, points
+from sssgen.scene.scene import Light
 from sssgen.support.diagnostics import failure
 from sssgen.targets.runtime.numpy_textures import Texture
 

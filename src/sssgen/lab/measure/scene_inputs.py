@@ -12,20 +12,20 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.backends import Array
-from sssgen.harness.evaluate.evaluation import half
-from sssgen.harness.scenes.bounds import placed_corners
-from sssgen.harness.scenes.inside_intervals import intervals
-from sssgen.harness.scenes.light_view import directional_view, point_view
-from sssgen.harness.scenes.scene import Light
 from sssgen.lab.measure import fluence_inputs
 from sssgen.lab.reference import view_harmonics
 from sssgen.lab.reference.curvature import normal_curvature
 from sssgen.lab.reference.inside_lengths import first_exit, thickness
 from sssgen.lab.reference.view_harmonics import LARGEST
-from sssgen.lab.scene import scene_body as body
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.view_points import points
+from sssgen.run.backends import Array
+from sssgen.run.evaluate.evaluation import half
+from sssgen.scene.bounds import placed_corners
+from sssgen.scene.inside_intervals import intervals
+from sssgen.scene.light_view import directional_view, point_view
+from sssgen.scene.measured import scene_body as body
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.view_points import points
+from sssgen.scene.scene import Light
 from sssgen.targets.runtime.numpy_textures import Texture
 
 RAYS = 32

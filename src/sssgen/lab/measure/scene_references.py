@@ -8,10 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.harness.scenes.bounds import placed_corners
-from sssgen.harness.scenes.camera import Camera
-from sssgen.harness.scenes.geometry import Ball, Capsule, Geometry, Slab
-from sssgen.harness.scenes.scene import Light
 from sssgen.lab.jobs.executor import Item
 from sssgen.lab.measure.problem import LightReference
 from sssgen.lab.reference.eye_paths import Eye, readings
@@ -19,9 +15,13 @@ from sssgen.lab.reference.first_light import Lamp
 from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.transport import radiance_along
 from sssgen.lab.reference.transport_mitsuba import Light as Beam
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.media import Medium
-from sssgen.lab.scene.view_points import points
+from sssgen.scene.bounds import placed_corners
+from sssgen.scene.camera import Camera
+from sssgen.scene.geometry import Ball, Capsule, Geometry, Slab
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.media import Medium
+from sssgen.scene.measured.view_points import points
+from sssgen.scene.scene import Light
 
 SAMPLES = 512
 """Per ray and channel."""

@@ -7,8 +7,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sssgen.harness.backends import Array
-from sssgen.harness.pictures.images import write_png
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, spell
 from sssgen.lab.measure.candidates import PROBES
@@ -16,6 +14,8 @@ from sssgen.lab.measure.measured_chain import MaterialSection
 from sssgen.material import library
 from sssgen.material.library import Technique
 from sssgen.material.technique_facts import facts_of
+from sssgen.run.backends import Array
+from sssgen.scene.pictures.images import write_png
 from sssgen.support.diagnostics import failure
 
 BODY = "box"

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from sssgen.harness.backends import Array
-from sssgen.harness.scenes.geometry import Geometry
+from sssgen.run.backends import Array
+from sssgen.scene.geometry import Geometry
 
 
 def normal_curvature(geometry: Geometry, positions: Array, directions: Array, step: float) -> Array:

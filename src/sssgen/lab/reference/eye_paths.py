@@ -17,12 +17,12 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.harness.scenes.geometry import Geometry
 from sssgen.lab.reference.dielectric import Dielectric, axes
 from sssgen.lab.reference.first_light import FirstLight, Lamp, Voxels, first_light, voxels_of
 from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.surface_rays import SurfaceRays
-from sssgen.lab.scene.media import Medium
+from sssgen.scene.geometry import Geometry
+from sssgen.scene.measured.media import Medium
 from sssgen.support.diagnostics import failure
 
 Array = npt.NDArray[np.float64]

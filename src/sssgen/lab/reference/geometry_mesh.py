@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.harness.scenes.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
+from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
 

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.harness.backends import Array
-from sssgen.lab.scene.measured_scene import MeasuredScene
-from sssgen.lab.scene.view_points import Points
+from sssgen.run.backends import Array
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.view_points import Points
 
 STEPS = 400
 TOUCHED = 1e-9

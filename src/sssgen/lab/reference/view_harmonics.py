@@ -16,10 +16,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.harness.scenes.bounds import placed_corners
-from sssgen.harness.scenes.geometry import Geometry
-from sssgen.harness.scenes.placed import Array, Bools, perpendiculars
 from sssgen.lab.reference.inside_lengths import first_exit, thickness
+from sssgen.scene.bounds import placed_corners
+from sssgen.scene.geometry import Geometry
+from sssgen.scene.placed import Array, Bools, perpendiculars
 
 NUMBERS = 9
 """The harmonics up to order 2."""

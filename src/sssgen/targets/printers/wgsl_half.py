@@ -1,4 +1,4 @@
-"""WGSL with an f16 for every float: not a target for users; the harness runs it to test half precision. It has only the
+"""WGSL with an f16 for every float: not a target for users; tests run it in half precision. It has only the
 functions form: uniform blocks hold float32.
 
 Builtins that WGSL has for float32 alone (texture reads, derivatives, bits of numbers) are computed in it and rounded.

@@ -1,0 +1,1 @@
+"""What is wrong with a program: `lint`, `stress`, and `transpile --verify`."""

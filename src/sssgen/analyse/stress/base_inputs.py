@@ -1,0 +1,117 @@
+"""Plain inputs for a technique; a row of the table of dangerous inputs changes those that it tests."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from sssgen.analyse.stress.contract_inputs import contract, fixed, is_direction
+from sssgen.analyse.stress.subject import Specimen
+from sssgen.ir.formats import FLOAT16, FLOAT32, Format
+from sssgen.ir.nodes import Intrinsic
+from sssgen.ir.types import Matrix, Sampler, kind_of, spell
+from sssgen.ir.walk import all_expressions
+from sssgen.run.backends import Array
+from sssgen.run.evaluate.evaluation import Inputs, default_texture, shape_of
+from sssgen.targets.runtime.numpy_textures import Texture
+
+_PLAIN: dict[str, Any] = {
+    "N": (0, 0, 1), "V": (0, 0, 1), "L": (0, 0, -1), "T": (1, 0, 0), "B": (0, 1, 0), "normal": (0, 0, 1),
+    "ray_origin": (0, 0, 3), "ray_direction": (0, 0, -1), "uv": (0.3, 0.6), "P": (0.1, 0.2, 0.5),
+    "P_object": (0.1, 0.2, 0.5), "V_object": (0, 0, 1), "L_object": (0, 0, -1), "alpha": 1, "time": 1,
+    "screen_uv": (0.3, 0.6), "eye_distance": 3, "light_nearness": 0.25, "uv2": (0.7, 0.4),
+    "vertex_color": (0.8, 0.6, 0.4, 0.9), "specular": 0.04,
+}  # fmt: skip
+_OF_QUANTITY = {"thickness": 0.1, "view_thickness": 0.1, "thinness": 0.5, "transmittance": 0.5}
+
+
+def plain(specimen: Specimen, lanes: int, overrides: dict[str, Any] | None = None) -> Inputs:
+    """Defaults for uniforms, a lit surface for parameters; `overrides`, lanes last, replaces the values of such inputs.
+
+    A texture in `overrides` has its uniform's name as the key.
+    """
+    values: dict[str, Array] = {}
+    textures: dict[str, Texture] = {}
+    changes = overrides or {}
+    for name, param in specimen.subject.params.items():
+        if isinstance(param.type, Sampler):
+            hints = [hint.removeprefix("default_") for hint, _ in specimen.subject.uniforms[name].hints]
+            color = next((hint for hint in hints if hint in ("white", "black", "gray", "bump")), "white")
+            textures[name] = changes.get(name) or default_texture(spell(param.type), color)
+        elif name in changes and name not in specimen.settings:
+            values[name] = _shaped(changes[name], shape_of(param.type))
+        elif name in specimen.subject.uniforms:
+            values[name] = fixed(specimen, name)
+        else:
+            value = np.asarray(_PLAIN.get(name, 0.5))
+            if value.shape != shape_of(param.type) or name not in _PLAIN:
+                value = np.asarray(_OF_QUANTITY.get(param.quantity, 0.5))
+            if isinstance(param.type, Matrix):
+                value = np.eye(param.type.columns, param.type.rows)
+            dtype = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}[kind_of(param.type)]
+            values[name] = np.broadcast_to(value[..., None], (*shape_of(param.type), 1)).astype(dtype)
+    return Inputs(values, textures, lanes)
+
+
+def _shaped(value: Any, shape: tuple[int, ...]) -> Array:
+    """Numbers or vectors, lanes last; a number for a vector goes into all its components."""
+    array = np.asarray(value)
+    array = array.astype(np.float32) if array.dtype.kind == "f" else array
+    array = np.broadcast_to(array, shape) if not array.ndim else array
+    array = array[..., None] if array.ndim == len(shape) else array
+    return np.ascontiguousarray(np.broadcast_to(array, (*shape, array.shape[-1])))
+
+
+def mixed(specimen: Specimen, choices: dict[str, list[Any]], lanes: int = 4096) -> Inputs:
+    """Each lane has one of the choices of each input; the other inputs are plain."""
+    rng = np.random.default_rng(7)
+    changes = {}
+    for name, listed in choices.items():
+        if name in specimen.subject.params:
+            shape = shape_of(specimen.subject.params[name].type)
+            each = np.stack([np.broadcast_to(np.asarray(choice, np.float32), shape) for choice in listed], axis=-1)
+            changes[name] = each[..., rng.integers(0, len(listed), lanes)]
+    return plain(specimen, lanes, changes)
+
+
+def directions(specimen: Specimen) -> list[str]:
+    """The inputs that are directions of three components."""
+    return [
+        name
+        for name, param in specimen.subject.params.items()
+        if shape_of(param.type) == (3,) and is_direction(name, contract(specimen, name))
+    ]
+
+
+def scalars(specimen: Specimen, format: Format = FLOAT32) -> dict[str, list[float]]:
+    """For each scalar input: the ends of its range, and 0, 1 and nearly 0, if these are in the range."""
+    least = 1e-3 if format is FLOAT16 else 1e-30
+    choices = {}
+    for name, param in specimen.subject.params.items():
+        if kind_of(param.type) == "float" and not isinstance(param.type, Matrix) and name not in directions(specimen):
+            ends = contract(specimen, name, format)
+            inner = [value for value in (0.0, least, 1.0) if ends.low <= value <= ends.high]
+            choices[name] = [ends.low, ends.high, *inner]
+    return choices
+
+
+def calls(specimen: Specimen, *names: str) -> bool:
+    """Whether a technique calls one of these builtins."""
+    bodies = [function.body or () for function in specimen.subject.module.functions]
+    return any(isinstance(expr, Intrinsic) and expr.name in names for body in bodies for expr in all_expressions(body))
+
+
+def samplers(specimen: Specimen, data: bool = False) -> list[str]:
+    """The textures; with `data` only those that hold a quantity or distances."""
+    names = []
+    for name, uniform in specimen.subject.uniforms.items():
+        if isinstance(uniform.type, Sampler) and (not data or uniform.quantity or "distance" in name):
+            names.append(name)
+    return names
+
+
+def angles(start: float, end: float, count: int = 2001) -> tuple[Array, Array]:
+    """Sines and cosines of evenly spaced angles, in degrees."""
+    angle = np.radians(np.linspace(start, end, count))
+    return np.sin(angle), np.cos(angle)

@@ -1,0 +1,162 @@
+"""How far the result of a lane may move because of rounding: what a deviation is compared with.
+
+The function is run in float64, and many times with a random error of each operation (`rounded_floats`), and with random
+numbers in variables that were not written, which have any number in a driver. No input moves: all drivers get the same
+numbers. The errors of builtins are a few units in the last place, or, for another language or driver, those that the
+table of builtins grants; derivatives of another driver may be those of one row or column of a quad.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from sssgen.analyse.verify.lane_interpreter import DTYPES, Program, Run, Value, filled
+from sssgen.analyse.verify.plain_inputs import select_lanes
+from sssgen.analyse.verify.rounded_floats import drawn, rounded, seeded, with_error
+from sssgen.ir.intrinsics.table import LARGEST
+from sssgen.ir.types import Type
+from sssgen.run.backends import Array
+from sssgen.run.backends.call_program import grid
+from sssgen.run.evaluate.deviation import GOAL, MARGIN, errors
+from sssgen.targets import numpy_runtime as rt
+
+CHUNK = 8192
+"""How many lanes are run together."""
+
+
+UNDETERMINED = 0.5
+"""Where rounding moves a result by more than this, relative to its size, it may also become infinite or NaN: in the
+direction of a vector that is only rounding errors."""
+
+
+NEARLY_LARGEST = 2.0**-8 * LARGEST
+
+
+class RoundedRun(Run):
+    """A run with a random error of each operation; `granted` adds those that the table grants to builtins."""
+
+    granted = False
+
+    def number(self, value: Value) -> Value:
+        return rounded(value)
+
+    def finite(self, value: Value) -> Value:
+        self.require(np.abs(np.asarray(value)) <= NEARLY_LARGEST)  # in another order, its terms may overflow
+        return value
+
+    def unwritten(self, type_: Type) -> Value:
+        def numbers(shape: tuple[int, ...], kind: str) -> Array:
+            values = drawn((*shape, self.lanes))
+            magnitudes = np.exp2(24.0 * drawn(values.shape))
+            return rounded(magnitudes * values) if kind == "float" else (2.0 * (values > 0.0)).astype(DTYPES[kind])
+
+        return filled(type_, numbers)
+
+    def inexact(self, row: Any, args: list[Value], result: Value) -> Value:
+        if row.ulp == 0.0 or row.kind == "derivative" or any(np.asarray(arg).dtype == bool for arg in args):
+            return result
+        if self.granted and row.size is not None:  # other formulas are allowed, whose terms cancel: x + (y - x) * a
+            size = np.abs(np.asarray(row.size(rt, *[np.asarray(arg) for arg in args]))).astype(np.float32)
+            return with_error(result, 0.0, row.ulp * np.spacing(size))
+        if row.kind == "alu" and row.ulp <= 4.0:
+            return result
+        if not self.granted:
+            return result if row.kind == "fetch" else with_error(result, min(row.ulp, 4.0), 0.0)
+        absolute: Any = row.absolute
+        if row.name in ("sin", "cos", "tan"):
+            absolute = np.maximum(absolute, 2.0**-22 * np.abs(np.asarray(args[0])))
+        return with_error(result, row.ulp, absolute)
+
+    def read_from(self, row: Any, args: list[Value]) -> list[Value]:
+        if row.kind != "fetch" or not self.granted:
+            return args
+        return [
+            with_error(arg, 2.0, 2.0**-12) if isinstance(arg, np.ndarray) and arg.dtype.kind == "f" else arg
+            for arg in args
+        ]
+
+
+class GrantedRun(RoundedRun):
+    """A run with the errors that other drivers may make."""
+
+    granted = True
+
+    def inexact(self, row: Any, args: list[Value], result: Value) -> Value:
+        if row.kind != "derivative" or np.shape(result)[-1:] != (self.lanes,):
+            return super().inexact(row, args, result)
+        if row.axis:
+            return rounded(self.of_a_quad(np.asarray(result), row.axis))
+        along = zip((rt.dFdx, rt.dFdy), "xy", strict=True)
+        changes = [np.abs(self.of_a_quad(np.asarray(change(args[0])), axis)) for change, axis in along]
+        return rounded(changes[0] + changes[1])
+
+    def of_a_quad(self, derivatives: Array, axis: str) -> Array:
+        """Derivatives as another device may have them: of one row (column) of a quad of pixels in both."""
+        draw = float(drawn(()))
+        if draw < -0.5:
+            return derivatives
+        shape = grid(self.lanes)
+        image = derivatives.reshape(*derivatives.shape[:-1], shape.rows, shape.width)
+        across = {"x": -2, "y": -1}[axis]
+        count = image.shape[across]
+        places = np.minimum(np.arange(count) // 2 * 2 + int(draw > 0.25), count - 1)
+        taken: Array = np.take(image, places, across).reshape(derivatives.shape)
+        return taken
+
+
+def explained(error: Array, limit: Array) -> Array:
+    """Whether rounding, which moves a result by `limit`, explains a deviation; or whether there is none."""
+    result: Array = (error <= GOAL) | (error <= MARGIN * limit) | (np.isinf(error) & (limit > UNDETERMINED))
+    return result
+
+
+def noise(
+    program: Program, keys: Sequence[str], values: Mapping[str, Array], textures: Mapping[str, Any], lanes: Array,
+    draws: int, granted: bool, seed: int = 0,
+) -> list[Array]:  # fmt: skip
+    """For the result of each function the largest movement in these lanes, relative as that of `errors`.
+
+    It is infinite where rounding makes an operation undefined.
+    """
+    chosen = dict(values) if program.neighbours else select_lanes(dict(values), lanes)
+    count = next(value.shape[-1] for value in chosen.values())
+    repeats = 1 if program.neighbours else max(1, min(draws, CHUNK // max(count, 1)))
+    repeated = {name: np.tile(value, repeats) for name, value in chosen.items()}
+    results = []
+    for key in keys:
+        exact, _ = result(Run, program, key, chosen, textures)
+        largest = np.zeros(count)
+        if granted:  # compilers may compute constants in higher precision
+            other = Run(program, count, {**textures, **chosen}, exact_literals=True)
+            largest = _apart(_first(other.result(key, {**textures, **chosen})), exact)
+        expected = np.concatenate([exact] * repeats)
+        for draw in range(-(-draws // repeats)):
+            with seeded(1000 * seed + draw):
+                actual, undefined = result(GrantedRun if granted else RoundedRun, program, key, repeated, textures)
+            moved = np.where(undefined, np.inf, _apart(actual, expected)).reshape(repeats, count).max(axis=0)
+            largest = np.maximum(largest, moved)
+        results.append(largest[lanes] if program.neighbours else largest)
+    return results
+
+
+def result(
+    kind: type[Run], program: Program, key: str, values: Mapping[str, Array], textures: Mapping[str, Any]
+) -> tuple[Array, Array]:
+    """The result of a function, lanes first, and the lanes in which it is undefined."""
+    lanes = next(value.shape[-1] for value in values.values())
+    run = kind(program, lanes, {**textures, **values})
+    value = run.result(key, {**textures, **values})
+    return _first(value), run.undefined | run.endless
+
+
+def _apart(left: Array, right: Array) -> Array:
+    """How far two results are apart, relative to the smaller one, as the result in question may be either."""
+    return np.maximum(errors(left, right), errors(right, left))
+
+
+def _first(value: Array) -> Array:
+    """Lanes first."""
+    return np.moveaxis(np.asarray(value), -1, 0)

@@ -1,0 +1,153 @@
+"""The result of `sssgen transpile --verify`: a row for each function, as text and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from sssgen.run.evaluate.deviation import GOAL
+
+TRANSLATIONS: Mapping[str, Mapping[str, str]] = {
+    "glsl-330": {"glsl": "gl"},
+    "hlsl": {"hlsl": "hlsl"},
+    "wgsl": {"wgsl": "webgpu"},
+    "numpy": {"oracle": "numpy"},
+    "tsl": {"tsl": "tsl", "tsl-gl2": "tsl-webgl2"},
+}
+"""Target → the names of its comparisons with the author's text, and the back end that runs each."""
+EVERY = {name: backend for named in TRANSLATIONS.values() for name, backend in named.items()}
+BACKENDS = {name: backend for name, backend in EVERY.items() if name not in TRANSLATIONS["tsl"]}
+"""Those where no target is named."""
+
+
+class Comparison(NamedTuple):
+    """How far one translation is from the author's text."""
+
+    deviation: float | None
+    """The largest of the lanes that are not excluded; None where no lane is left, or where it did not run."""
+    excluded: int = 0
+    """The number of ill-conditioned lanes, where rounding explains the deviation."""
+    at: str = ""
+    """The place of the largest deviation, the value there, that of the author's text, and the inputs."""
+    error: str = ""
+
+    @property
+    def ok(self) -> bool:
+        """Whether it ran, and is within the goal, or no lane is left."""
+        return not self.error and (self.deviation is None or self.deviation <= GOAL)
+
+    @property
+    def cell(self) -> str:
+        """The deviation as text."""
+        return "failed" if self.error else "–" if self.deviation is None else f"{self.deviation:.2g}"
+
+
+class Coverage(NamedTuple):
+    """Which branches of a function the inputs take."""
+
+    reached: int = 0
+    outcomes: int = 0
+    """Each `if`, `?:` and loop counts twice."""
+    never: tuple[str, ...] = ()
+    """Such as `line 12 (else)`."""
+
+
+class Row(NamedTuple):
+    """The result for one function."""
+
+    function: str
+    """As `box(vec3,vec3)`."""
+    line: int
+    lanes: int = 0
+    undefined: int = 0
+    """The number of lanes in which GLSL leaves an operation undefined."""
+    comparisons: Mapping[str, Comparison] = {}
+    """By the keys of `EVERY`."""
+    reason: str = ""
+    """Why it was not run; '' where it was."""
+    branches: Coverage = Coverage()
+
+    @property
+    def ok(self) -> bool:
+        """Whether it ran, and every translation passes."""
+        return not self.reason and all(comparison.ok for comparison in self.comparisons.values())
+
+    def cells(self, names: list[str]) -> str:
+        """The deviations of these translations, the number of lanes, and that of branches, as text."""
+        cells = [self.comparisons[name].cell if name in self.comparisons else "" for name in names]
+        excluded = [f"{self.undefined} undefined"] * bool(self.undefined)
+        excluded += [
+            f"{comparison.excluded} ill-conditioned in {name}"
+            for name, comparison in self.comparisons.items()
+            if comparison.excluded
+        ]
+        row = "".join([f"{cell:>9}" for cell in cells])
+        lanes = f"{self.lanes}" + (f" but for {', '.join(excluded)}" if excluded else "")
+        branches = f"; branches {self.branches.reached} of {self.branches.outcomes}" if self.branches.outcomes else ""
+        return f"{row}   {lanes}{branches}"
+
+    def as_json(self) -> dict[str, Any]:
+        """The row for programs."""
+        row: dict[str, Any] = {"function": self.function, "line": self.line, "ok": self.ok}
+        if self.reason:
+            return row | {"not_run": self.reason}
+        texts = {
+            name: {
+                "deviation": comparison.deviation
+                if comparison.deviation is not None and np.isfinite(comparison.deviation)
+                else None,
+                "ok": comparison.ok,
+                "excluded": comparison.excluded,
+            }
+            | ({"at": comparison.at} if comparison.at else {})
+            | ({"error": comparison.error} if comparison.error else {})
+            for name, comparison in self.comparisons.items()
+        }
+        reached, outcomes, never = self.branches
+        branches = {"outcomes": outcomes, "taken": reached, "never": list(never)}
+        return row | {"lanes": self.lanes, "undefined": self.undefined, "branches": branches, "texts": texts}
+
+
+class Report(NamedTuple):
+    """The rows of all functions, in the order of the text."""
+
+    rows: list[Row]
+    missing: dict[str, str]
+    """Missing back end → how to install it."""
+    backends: tuple[str, ...] = tuple(BACKENDS.values())
+    """The back ends that were asked for."""
+
+    @property
+    def ok(self) -> bool:
+        """Whether a function ran, and all that ran pass."""
+        executed_rows = [row for row in self.rows if not row.reason]
+        return bool(executed_rows) and all(row.ok for row in executed_rows)
+
+    def as_json(self) -> dict[str, Any]:
+        """The report for programs."""
+        return {"goal": GOAL, "functions": [row.as_json() for row in self.rows], "missing": self.missing}
+
+    def lines(self) -> Iterator[str]:
+        """The report as lines of text: the largest deviations from the author's text, and the excluded lanes."""
+        available = [
+            name for name, backend in EVERY.items() if backend in self.backends and backend not in self.missing
+        ]
+        width = max([len("largest deviation"), *(len(row.function) for row in self.rows)])
+        yield (
+            f"{'largest deviation':{width}}"
+            + "".join([f"{name:>9}" for name in available])
+            + f"   of lanes (goal: {GOAL:g})"
+        )
+        for row in self.rows:
+            yield f"{row.function:{width}}" + (f"  not run: {row.reason}" if row.reason else row.cells(available))
+            for name, comparison in row.comparisons.items():
+                if comparison.error:
+                    yield f"    {name} does not run: {comparison.error}"
+                elif not comparison.ok and not row.reason:
+                    yield f"    {name} {comparison.at}"
+            if row.branches.never:
+                yield f"    never taken: {', '.join(row.branches.never)}"
+        for name, instruction in self.missing.items():
+            yield f"{name} is missing: {instruction}"

@@ -1,1 +1,0 @@
-"""What a render shows: scenes in TOML, cameras, and geometry that rays meet on the CPU."""

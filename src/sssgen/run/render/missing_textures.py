@@ -1,0 +1,52 @@
+"""The textures that a picture needs and lacks: those that are baked from a body, and files that are not there."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from sssgen.material.model import Material
+from sssgen.material.requirements import baked_functions
+from sssgen.scene.bake_advice import advice, is_scene
+from sssgen.scene.scene import Scene
+from sssgen.support.diagnostics import Diagnostic, SssgenError
+from sssgen.support.paths import posix
+
+
+class MissingTextures(SssgenError):
+    """A material and a scene are right, but a file has not been made yet."""
+
+
+def missing_textures(
+    scene: Scene, material: Material, reflection: Mapping[str, Any], bound: Collection[str]
+) -> list[Diagnostic]:
+    """An error for each function whose baked textures are missing, and for each other picture that a stage names and
+    that is not there; `bound` are the textures that there are, by their names in the scene.
+
+    A texture that is not baked is optional: without a file it has its default.
+    """
+    lacking = {
+        (texture["technique"], texture["technique_name"])
+        for texture in reflection["textures"]
+        if texture["source_name"] not in bound
+    }
+    errors = []
+    for function in baked_functions(material.stages):
+        stage = function.stage
+        missing = [texture.name for texture in function.textures if (stage.technique.name, texture.name) in lacking]
+        if missing:
+            lacking -= {(stage.technique.name, name) for name in missing}
+            given = {name: stage.textures[name] for name in missing if name in stage.textures}
+            *others, last = [f"'{name}'" for name in missing]
+            names = f"textures {', '.join(others)} and {last}" if others else f"texture {last}"
+            about = f"{function.name} reads the {names}, baked from the body, and there is no file"
+            hint = advice(function, material, scene, given, is_scene(scene, material) and not given)
+            errors.append(Diagnostic("error", about, stage.span, hint))
+    for stage in material.stages:
+        for name, file in stage.textures.items():
+            if (stage.technique.name, name) in lacking:
+                about = f"cannot find the file '{file}' of the texture '{name}'"
+                hint = f"it is searched for next to the material, in {posix(os.path.dirname(material.file) or '.')}"
+                errors.append(Diagnostic("error", about, stage.span, hint))
+    return errors

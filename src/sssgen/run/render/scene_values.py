@@ -1,0 +1,309 @@
+"""The inputs of a material from a scene: lights, parameters and textures, those of baked files included."""
+
+from __future__ import annotations
+
+import copy
+import os
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from sssgen.ir.drawn import CUBES, DISTANT_VIEWS, IRRADIANCE, LAYERS, LIGHT_VIEWS, REFLECTIONS
+from sssgen.ir.nodes import Uniform
+from sssgen.ir.types import with_article
+from sssgen.material import baked
+from sssgen.material.baked import Baked
+from sssgen.material.model import Material
+from sssgen.material.values import WrongValue, read_value
+from sssgen.run.evaluate import input_files as inputs
+from sssgen.run.evaluate.evaluation import half
+from sssgen.run.render import baked_body
+from sssgen.run.render.environment_maps import irradiance_map, reflection_map
+from sssgen.run.render.shell_values import Shell
+from sssgen.scene.drawn_views import light_depth
+from sssgen.scene.environment import read_environment
+from sssgen.scene.geometry import Distance, Geometry
+from sssgen.scene.light_view import LightView
+from sssgen.scene.scene import DistanceTexture, Picture, Scene, placement
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+from sssgen.support.file_memo import CachedResult, note, remembered
+from sssgen.support.paths import posix
+from sssgen.targets.runtime.numpy_textures import Texture
+
+MOST_TEXTURES = 16
+"""The number of textures that are kept in memory."""
+_kept_textures: dict[str, CachedResult] = {}
+MOST_LIGHT_MAPS = 4
+"""The number of light maps that are kept in memory."""
+_kept_light_maps: dict[str, CachedResult] = {}
+
+
+def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> Shell:
+    """The shell's values for a scene. Raises SssgenError at the scene's own lines."""
+    positions = [
+        [*light.position, 1.0] if light.position else [*(light.direction or ()), 0.0] for light in scene.lights
+    ]
+    views = _light_views(scene, material, reflection, positions)
+    surroundings = _surroundings(scene, material, reflection)
+    maps = surroundings | {name: texture for name, (_, texture) in views.items()}
+    parameters = _parameters(scene, material, reflection, views, maps)
+    if any(uniform["source_name"] == "aspect" for uniform in reflection["uniforms"]):  # of a camera in the chain
+        parameters.setdefault("aspect", (scene.size[0] / scene.size[1],))
+    return Shell(
+        view_projection=np.eye(4),
+        camera_position=scene.camera.position,
+        time=scene.time,
+        ambient=scene.ambient,
+        light_positions=np.array(positions, float).reshape(-1, 4),
+        light_colors=np.array([light.color for light in scene.lights], float).reshape(-1, 3),
+        model=scene.geometry.to_world() if scene.geometry else np.eye(4),
+        parameters=parameters,
+        textures=_textures(scene, material, reflection, maps),
+    )
+
+
+def _light_views(
+    scene: Scene, material: Material, reflection: Mapping[str, Any], lights: list[list[float]]
+) -> dict[str, tuple[LightView, Texture]]:
+    """The depth maps that the program draws, by the hint `drawn`: of the first light that the map is for.
+
+    A texture of the scene or of the material is not drawn. Raises SssgenError without such a light.
+    """
+    views: dict[str, tuple[LightView, Texture]] = {}
+    for texture in reflection["textures"]:
+        drawn = texture["drawn"]
+        if drawn not in LIGHT_VIEWS or drawn in views or scene.geometry is None or _file(scene, material, texture):
+            continue
+        light = next((light for light in lights if not (light[3] and drawn in DISTANT_VIEWS)), None)
+        if light is None:
+            hint = "add [[light]] with a direction" if drawn in DISTANT_VIEWS else "add [[light]]"
+            file = scene.document.reporter.file
+            raise failure(f"'{texture['source_name']}' is drawn from a light, and the scene has none", hint, file)
+        views[drawn] = _light_view(scene.geometry, light, drawn == LAYERS)
+    return views
+
+
+def _light_view(geometry: Geometry, light: list[float], layers: bool) -> tuple[LightView, Texture]:
+    """A light's view of a body; those of slow bodies, distance functions, are kept until a file of theirs changes."""
+
+    def make() -> tuple[LightView, Texture]:
+        # the copy has no compiled function, so that the files of the function are read here
+        view, depth = light_depth(copy.deepcopy(geometry) if slow else geometry, np.array(light), layers)
+        return view, half(Texture(depth, wrap="clamp"))
+
+    slow = isinstance(geometry, Distance)
+    return remembered(_kept_light_maps, repr((geometry, light, layers)), make, MOST_LIGHT_MAPS) if slow else make()
+
+
+def _surroundings(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, Texture]:
+    """The cube maps of the scene's [environment], by the hint `drawn`."""
+    if "environment" not in scene.measured:
+        return {}
+    makers = {IRRADIANCE: irradiance_map, REFLECTIONS: reflection_map}
+    asked = {texture["drawn"] for texture in reflection["textures"] if not _file(scene, material, texture)}
+    needed = [(name, maker) for name, maker in makers.items() if name in asked]
+    environment = read_environment(scene) if needed else None
+    scene.document.reporter.check()
+    return {name: half(maker(environment)) for name, maker in needed} if environment is not None else {}
+
+
+def _parameters(
+    scene: Scene,
+    material: Material,
+    reflection: Mapping[str, Any],
+    views: Mapping[str, tuple[LightView, Texture]],
+    maps: Mapping[str, Texture],
+) -> dict[str, tuple[float, ...]]:
+    """The scene's values for the material's uniforms, with the same checks as in a material."""
+    uniforms = {uniform["source_name"]: uniform for uniform in reflection["uniforms"]}
+    document, values = scene.document, _baked_parameters(scene, material, reflection)
+    for name, uniform in uniforms.items():
+        drawn = uniform["drawn"]
+        if drawn in views and uniform["type"] == "mat4":
+            values[name] = (*views[drawn][0].matrix.T.ravel(),)
+        elif drawn in maps:
+            values[name] = (len(maps[drawn].levels) - 1.0 if drawn in CUBES else float(maps[drawn].size()[0]),)
+    for name, raw in scene.parameters.items():
+        place = document.place("parameters", name)
+        if name not in uniforms:
+            hint = did_you_mean(name, uniforms) or f"it has: {', '.join(uniforms) or 'none'}"
+            document.error(place.key, f"{material.name} has no parameter '{name}'", hint)
+            continue
+        try:
+            value = read_value(_uniform(material, uniforms[name]), raw)
+            _check_own(scene, material, reflection, uniforms[name], value)
+            values[name] = value
+        except WrongValue as wrong:
+            document.error(place.value, wrong.message, wrong.hint)
+        except SssgenError as error:
+            for diagnostic in error.diagnostics:
+                document.error(place.value, diagnostic.message, diagnostic.hint)
+    document.reporter.check()
+    return values
+
+
+def _check_own(
+    scene: Scene,
+    material: Material,
+    reflection: Mapping[str, Any],
+    uniform: Mapping[str, Any],
+    value: tuple[float, ...],
+) -> None:
+    """Raises SssgenError if a scene's value for a uniform is not that of the medium of its technique's baked light."""
+    for texture in reflection["textures"]:
+        file = _file(scene, material, texture) if texture["technique"] == uniform["technique"] else ""
+        sidecar = baked.read(file) if file else None
+        if sidecar is not None:
+            baked.check_medium(sidecar, {uniform["technique_name"]: value}, os.path.basename(file))
+
+
+def _baked_parameters(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
+    """The parameters of baked textures, for the transform of the scene's geometry."""
+    parameters: dict[str, tuple[float, ...]] = {}
+    for texture in reflection["textures"]:
+        file = _file(scene, material, texture)
+        try:
+            sidecar = baked.read(file) if file else None
+            if sidecar is None:
+                continue
+            baked.check(sidecar, _uniform(material, texture), os.path.basename(file))
+            stages = [stage for stage in material.stages if stage.technique.name == texture["technique"]]
+            declared = [uniform.name for stage in stages for uniform in stage.technique.uniforms]
+            baked.check_boundary(sidecar, declared, os.path.basename(file))
+            for stage in stages:
+                baked.check_medium(sidecar, stage.values, os.path.basename(file))
+            if scene.geometry is not None:
+                _check_scene(sidecar, scene, scene.geometry, material, os.path.basename(file))
+            values = _in_world_space(sidecar, scene.geometry)
+        except SssgenError as error:
+            if (name := texture["source_name"]) not in scene.textures:
+                raise
+            for diagnostic in error.diagnostics:
+                place = scene.document.place("textures", name).value
+                scene.document.error(place, diagnostic.message, diagnostic.hint)
+            continue
+        for entry in reflection["uniforms"]:
+            if entry["technique"] == texture["technique"] and entry["technique_name"] in values:
+                raw = values[entry["technique_name"]]
+                try:
+                    parameters[entry["source_name"]] = read_value(_uniform(material, entry), raw)
+                except WrongValue as wrong:
+                    hint = "; ".join(filter(None, (wrong.hint, baked.UNITS)))
+                    raise failure(f"the baked parameters do not fit: {wrong.message}", hint, posix(file)) from None
+    return parameters
+
+
+def _check_scene(sidecar: Baked, scene: Scene, geometry: Geometry, material: Material, name: str) -> None:
+    """Raises SssgenError if a texture is baked for another body, medium or light than the scene's."""
+    baked_body.check_body(sidecar, geometry, name)
+    baked_body.check_lights(sidecar, geometry, scene.lights, name)
+    baked_body.check_resolution(sidecar, geometry, [stage.values for stage in material.stages], name)
+
+
+def _in_world_space(sidecar: Baked, geometry: Geometry | None) -> dict[str, Any]:
+    """The parameters of a JSON file, transformed from object space to world space where techniques need that.
+
+    Raises SssgenError for a depth map of a body that the scene scales, as its lengths are in the units of the bake.
+    """
+    values = dict(sidecar.parameters)
+    if geometry is None:
+        return values
+    to_object = geometry.to_object()
+    if sidecar.kind == "distance":
+        values |= placement(geometry)
+    if isinstance(factor := values.get("thickness_factor"), int | float) and sidecar.kind == "thickness":
+        values["thickness_factor"] = factor * geometry.scale
+    if isinstance(length := values.get("fade_length"), int | float) and sidecar.kind == "view_thickness":
+        values["fade_length"] = length * geometry.scale
+    if isinstance(matrix := values.get("light_matrix"), list) and sidecar.kind == "depth" and len(matrix) == 16:
+        if geometry.scale != 1.0:
+            raise failure("the depth map is for the unscaled body, but the scene scales it", "scale the mesh itself")
+        values["light_matrix"] = [*(np.array(matrix).reshape(4, 4).T @ to_object).T.ravel()]
+    if isinstance(matrix := values.get("world_to_volume"), list) and sidecar.kind == "fluence" and len(matrix) == 16:
+        values["world_to_volume"] = [*(np.array(matrix).reshape(4, 4).T @ to_object).T.ravel()]
+    return values
+
+
+def _uniform(material: Material, entry: Mapping[str, Any]) -> Uniform:
+    """The uniform that an entry of the reflection comes from."""
+    for stage in material.stages:
+        modules = [stage.technique.module, *(binding.module for binding in stage.bindings.values())]
+        for uniform in (uniform for module in modules for uniform in module.uniforms):
+            if uniform.name == entry["technique_name"] and stage.technique.name == entry["technique"]:
+                return uniform
+    own = (uniform for stage in material.stages for uniform in stage.technique.module.uniforms)
+    return next(uniform for uniform in own if uniform.name == entry["technique_name"])
+
+
+def _textures(
+    scene: Scene,
+    material: Material,
+    reflection: Mapping[str, Any],
+    maps: Mapping[str, Texture],
+) -> dict[str, Texture]:
+    """The scene's textures; for the others those that the material suggests, or that the program draws.
+
+    A file that is not there is left out: `missing_textures` reports it.
+    """
+    entries = {texture["source_name"]: texture for texture in reflection["textures"]}
+    document, textures = scene.document, {}
+    for name in scene.textures:
+        if name not in entries:
+            hint = did_you_mean(name, entries) or f"it has: {', '.join(entries) or 'none'}"
+            document.error(document.place("textures", name).key, f"{material.name} has no texture '{name}'", hint)
+    document.reporter.check()
+    for name, texture in entries.items():
+        chosen = scene.textures.get(name)
+        if isinstance(chosen, DistanceTexture):
+            if scene.geometry is None:
+                raise failure(f"texture '{name}' is the distance to the scene's geometry, but the scene has none")
+            textures[name] = _distances(chosen, scene.geometry)
+        elif not (file := _file(scene, material, texture)):
+            if texture["drawn"] in maps:
+                textures[name] = maps[texture["drawn"]]
+        elif not os.path.isfile(file):
+            note(file)
+        else:
+            wrap = getattr(chosen, "wrap", "") or str(texture["import"]["wrap"])
+            textures[name] = _picture(file, wrap, texture)
+    return textures
+
+
+def _file(scene: Scene, material: Material, texture: Mapping[str, Any]) -> str:
+    """The file of a texture: the scene's, or else the one that the material suggests; '' if there is none."""
+    chosen = scene.textures.get(texture["source_name"])
+    if chosen is not None:
+        return chosen.file if isinstance(chosen, Picture) else ""
+    return _suggested(material, texture)
+
+
+def _suggested(material: Material, texture: Mapping[str, Any]) -> str:
+    for stage in material.stages:
+        if stage.technique.name == texture["technique"] and texture["technique_name"] in stage.textures:
+            return str(material.path.parent / stage.textures[texture["technique_name"]])
+    return ""
+
+
+def _distances(chosen: DistanceTexture, geometry: Geometry) -> Texture:
+    """The texture of the distance; the last ones are kept until a file of the geometry changes."""
+
+    def make() -> Texture:
+        return half(Texture(chosen.values(copy.deepcopy(geometry)), wrap="clamp"))
+
+    return remembered(_kept_textures, repr((chosen, geometry)), make, MOST_TEXTURES)
+
+
+def _picture(file: str, wrap: str, texture: Mapping[str, Any]) -> Texture:
+    """The texture of a file; the last ones are kept until their files change."""
+    declared = [texture[name] for name in ("source_name", "type", "color_space")]
+    key = repr((os.path.abspath(file), wrap, declared))
+    return remembered(_kept_textures, key, lambda: _read_picture(file, wrap, texture), MOST_TEXTURES)
+
+
+def _read_picture(file: str, wrap: str, texture: Mapping[str, Any]) -> Texture:
+    picture = inputs.texture(file, wrap, srgb=texture["color_space"] == "sRGB")
+    if picture.dim != texture["type"].removeprefix("sampler"):
+        type_ = with_article(texture["type"])
+        raise failure(f"this is a {picture.dim} texture, and '{texture['source_name']}' is {type_}", file=file)
+    return half(picture)

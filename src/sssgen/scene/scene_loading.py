@@ -1,0 +1,34 @@
+"""Loads scenes: from a TOML file, from a TOML text, or an example by its name."""
+
+from __future__ import annotations
+
+import os
+
+from sssgen.material.material_loading import examples
+from sssgen.scene.scene import Scene
+from sssgen.scene.scene_reader import read_scene
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.paths import posix
+from sssgen.support.text_files import read_text, refuse_folder
+from sssgen.support.toml_source import parse
+
+
+def load(path: str | os.PathLike[str], draws: bool = True) -> Scene:
+    """The scene of a TOML file, or of an example by its name.
+
+    A missing picture is an error unless nothing `draws` the scene. Raises SssgenError with all errors.
+    """
+    text = os.fspath(path)
+    if not text.endswith(".toml") and "/" not in text and "\\" not in text and not os.path.isfile(text):
+        names = examples()
+        if text not in names:
+            refuse_folder(text, (".toml",), "scene.toml")
+            hint = did_you_mean(text, names) or f"give a path that ends in .toml, or one of: {', '.join(names)}"
+            raise failure(f"unknown scene '{text}'", hint)
+        path = os.path.join(os.path.dirname(names[text]), "scene.toml")
+    return parse_scene(read_text(os.fspath(path), posix(path)), path, draws)
+
+
+def parse_scene(text: str, path: str | os.PathLike[str], draws: bool = True) -> Scene:
+    """The scene that a TOML text describes; files that it names are searched for next to `path`. Raises SssgenError."""
+    return read_scene(parse(text, posix(path)), os.path.dirname(os.fspath(path)), draws)
