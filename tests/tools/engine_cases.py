@@ -7,7 +7,6 @@ import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,6 +25,7 @@ from sssgen.harness.render.scene_values import shell_of
 from sssgen.harness.render.shell_values import Shell
 from sssgen.harness.scenes import scene_loading
 from sssgen.material.material_loading import load_material
+from sssgen.pipeline.compiler import Compiled
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import registry
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -56,6 +56,7 @@ MATERIALS = {
 }
 MESHES = ("ice", "ice_inlay", "jade_ring", "marble_idol", "paper_lantern", "resin_inlay", "wax_mouse")
 SIZE = (96, 72)
+_NO_LIGHTING = "def evaluate_lighting(*_):\n    return np.zeros((3, 1))\n"
 
 
 @cache
@@ -70,12 +71,15 @@ def mesh_of(name: str) -> PlacedMesh:
 
 def through(name: str, mesh: PlacedMesh) -> Array:
     """Emission and the light that comes through, in NumPy's float64."""
-    compiled = sssgen.compile(name, "numpy")
-    reflection = compiled.reflection
-    del reflection["entries"]["lighting"]
     dark = dataclasses.replace(mesh.shell, ambient=(0.0, 0.0, 0.0))
-    program: Any = SimpleNamespace(files=compiled.files, reflection=reflection)
-    return shade_numpy.shade(program, dark, mesh.size, mesh.points, "float64")
+    return shade_numpy.shade(_without_reflection(name), dark, mesh.size, mesh.points, "float64")
+
+
+def _without_reflection(material: str) -> Compiled:
+    """The material in NumPy, without reflected light."""
+    compiled = sssgen.compile(material, "numpy")
+    file = next(file for file in compiled.files if file.endswith(".py"))
+    return compiled._replace(files={**compiled.files, file: f"{compiled.files[file]}\n{_NO_LIGHTING}"})
 
 
 class ChainCase(NamedTuple):
@@ -108,10 +112,7 @@ def chain_case(name: str, front: bool, light: str, folder: Path) -> ChainCase:
         mesh.shell, model=turned, parameters={}, textures={}, ambient=(0.0, 0.0, 0.0), time=0.75, front=front,
         light_positions=np.array([position]), light_colors=np.array([[0.5, 0.7, 0.9]]),
     )  # fmt: skip
-    numpy = sssgen.compile(str(path), "numpy")
-    reflection = numpy.reflection
-    reflection["entries"].pop("lighting", None)
-    program: Any = SimpleNamespace(files=numpy.files, reflection=reflection)
+    program = _without_reflection(str(path))
     expected = shade_numpy.shade(program, shell, mesh.size, None if name == "rays" else points, "float64")
     if name == "rays":  # of the mesh's points here, of the screen there
         world = points[:, :3] @ turned[:3, :3].T + turned[:3, 3] - shell.camera_position
