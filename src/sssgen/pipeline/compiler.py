@@ -140,6 +140,8 @@ def _inner(target: Target, embedded: Embedded) -> Target:
     """The target of an embedded text: that language under the outer target's engine."""
     return registry.load(embedded.target)._replace(
         name=f"{target.name}.{embedded.target}", inputs=embedded.inputs, light_inputs=embedded.light_inputs,
+        frame=embedded.frame, surface=embedded.surface, absent=embedded.absent, reads=embedded.reads,
+        variants=embedded.variants, spelling=embedded.spelling, arguments=embedded.arguments,
         lighting=target.lighting, fragment_shell=target.fragment_shell, engine_encodes=target.engine_encodes,
         parameters=target.parameters,
         prefix=target.prefix, properties=target.properties,

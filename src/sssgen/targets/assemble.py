@@ -286,7 +286,7 @@ def _context(
     members = [{"name": field.name, "type": printer.type(field.type)} for field in surface.fields] if surface else []
     per_light = [program.surface_reads[kind] for kind in PER_LIGHT if kind in kinds]
     read_per_light = frozenset(named_per_light(used)).union(*per_light)
-    texts_of_names = {**program.frame_functions} | _surface_values(target, printer, fields)
+    texts_of_names = {**target.spelling, **program.frame_functions} | _surface_values(target, printer, fields)
     return {
         "frame": {place: with_names(text, texts_of_names) for place, text in used.frame.items()},
         "surface": {place: with_names(text, texts_of_names) for place, text in used.surface.items()},
@@ -361,13 +361,14 @@ def _entry(
 ) -> dict[str, Any]:  # fmt: skip
     """An entry with the text of its call: the shell's expressions for its inputs, then the uniforms."""
     expressions = {**target.inputs, **(target.light_inputs if kind in PER_LIGHT else {})}
+    texts_of_names = {**target.spelling, **functions}
     leading = ["surface"] if len(function.params) > 0 and isinstance(function.params[0].type, Struct) else []
     names = [*leading, *inputs]
     params = []
     for index, param in enumerate(function.params):
         name = names[index] if index < len(names) else ""
         uniform = "" if name else param.passes
-        text = with_names(expressions.get(name, name), functions) if name else _passed(printer, param, uniform)
+        text = with_names(expressions.get(name, name), texts_of_names) if name else _passed(printer, param, uniform)
         described = {"name": param.name, "type": printer.type(param.type), "base": spell(param.type)}
         params.append({**described, "input": name, "uniform": uniform, "expression": text})
     listed = ", ".join([param["expression"] for param in params])
@@ -386,6 +387,9 @@ def _texts(target: Target, printer: Printer, shell: Function, inputs: Sequence[s
 
 def _passed(printer: Printer, param: Param, uniform: str) -> str:
     """A uniform as an argument; the shell has it under the uniform's name, not under the parameter's."""
+    for types, text in printer.target.arguments.items():
+        if spell(param.type) in types.split():
+            return with_names(text, {"name": uniform, "type": printer.type(param.type)})
     return printer.passed(Local(param.type, uniform, param.span), param)
 
 

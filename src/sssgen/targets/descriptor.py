@@ -172,7 +172,12 @@ class Embedded(NamedTuple):
     absent: Mapping[str, Mapping[str, str]] = {}
     reads: tuple[str, ...] = ()
     variants: Mapping[str, Variant] = {}
+    spelling: Mapping[str, str] = {}
+    arguments: Mapping[str, str] = {}
     """As in a target."""
+    same_shell: bool = False
+    """Whether the target's frame is that of these functions, too, with the spelling of their language; what this record
+    has of a frame is then in addition."""
 
 
 class Properties(NamedTuple):
@@ -217,6 +222,11 @@ class Target(NamedTuple):
     """Names of parts of the frame that the templates themselves mention."""
     variants: Mapping[str, Variant] = {}
     """Property of a material (see `FACTS`) → what differs for materials that have it."""
+    spelling: Mapping[str, str] = {}
+    """Name → what `{NAME}` in all these texts is in the target's language, where its files have a second one."""
+    arguments: Mapping[str, str] = {}
+    """Type, or several → how the shell passes a parameter of that type, where it is not by its name alone: with
+    `{name}`, and `{type}`, the type in the target's language."""
     names: Names = Names()
     capabilities: Capabilities = Capabilities()
     """What the language can express; the passes rewrite the rest."""
@@ -370,8 +380,7 @@ class _Reader:
             for name, entry in self.is_a(dict, table.get("embedded", {}), "embedded").items()
         }
         self.check_keys(ports := self.is_a(dict, table.get("ports", {}), "ports"), _KEYS["ports"], "ports")
-        return target._replace(
-            embedded={name: _completed(inner, target) for name, inner in embedded.items()},
+        target = target._replace(
             types=_present(target.types),
             inputs=_present(target.inputs),
             light_inputs=_present(target.light_inputs),
@@ -379,6 +388,7 @@ class _Reader:
             **self.frames(table, ""),
             ports={name: self.record(Port(), port, f"ports.{name}") for name, port in ports.items()},
         )
+        return target._replace(embedded={name: _completed(inner, target) for name, inner in embedded.items()})
 
     def parts(self, table: object, section: str, names: Collection[str] = ()) -> Parts:
         """Parts of a frame: place → name → text; only these `names`, where any are given."""
@@ -461,10 +471,17 @@ def _present(texts: Mapping[str, str]) -> Mapping[str, str]:
 
 
 def _completed(inner: Embedded, outer: Target) -> Embedded:
-    """An embedded language with the inputs that it has in common with the target."""
-    return inner._replace(
-        inputs={**outer.inputs, **inner.inputs}, light_inputs={**outer.light_inputs, **inner.light_inputs}
-    )
+    """An embedded language with the inputs that it has in common with the target, and the frame if it is the same."""
+    own = Variant(inner.inputs, inner.light_inputs, inner.frame, inner.surface, inner.absent, inner.reads)
+    common = Variant(outer.inputs, outer.light_inputs)
+    variants = inner.variants
+    if inner.same_shell:
+        common = Variant(outer.inputs, outer.light_inputs, outer.frame, outer.surface, outer.absent, outer.reads)
+        variants = {
+            fact: outer.variants.get(fact, Variant()).with_variant(inner.variants.get(fact, Variant()))
+            for fact in {**outer.variants, **inner.variants}
+        }
+    return inner._replace(**common.with_variant(own)._asdict(), variants=variants)
 
 
 def _listed(keys: Collection[str]) -> str:

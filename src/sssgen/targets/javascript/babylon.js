@@ -27,20 +27,97 @@ import { Properties, TEXELS } from './values.js';
  * @property {string[]} inputs the values that its functions read
  * @property {Record<string, import('./values.js').Parameter>} parameters
  * @property {Record<string, import('./values.js').TextureParameter>} textures
- * @property {Record<string, string>[]} vertex place in Babylon's vertex shader → text, in GLSL and in WGSL
- * @property {Record<string, string>[]} fragment the same of its fragment shader
+ * @property {Record<string, string>} varyings name → type
+ * @property {Record<string, string>} variables of the fragment shader: the same
+ * @property {Shell[]} shells in GLSL and in WGSL
+ */
+
+/**
+ * A material's text in one language.
+ * @typedef {object} Shell
+ * @property {string} functions
+ * @property {string} vertex the varyings' values
+ * @property {string} begin the variables' values, and the surface
+ * @property {string} [through] the share of a light that comes through
+ * @property {Record<string, string>} places place in Babylon's fragment shader → the way of the surface into it
  */
 
 /** The uniforms in Babylon's block: type → number of floats. */
 const SIZES = { float: 1, vec2: 2, vec3: 3, vec4: 4, mat4: 16 };
 const uniformType = (type) => (type.startsWith('mat') ? 'mat4' : /\d/.test(type) ? `vec${type.at(-1)}` : 'float');
 
-/** The declaration of a texture, in GLSL and in WGSL. */
+/** The declarations of a texture, of a varying and of a variable, in GLSL and in WGSL. */
 const DECLARATIONS = [
-  ({ type, name }) => `uniform highp ${type} ${name};`,
-  ({ type, name }) => `var ${name}Sampler: sampler;\nvar ${name}: texture_${TEXTURE_TYPES[type]}<f32>;`,
+  {
+    texture: (name, type) => `uniform highp ${type} ${name};`,
+    varying: (name, type) => `varying ${type} ${name};`,
+    variable: (name, type) => `${type} ${name};`,
+  },
+  {
+    texture: (name, type) => `var ${name}Sampler: sampler;\nvar ${name}: texture_${TEXTURE_TYPES[type]}<f32>;`,
+    varying: (name, type) => `varying ${name}: ${type}f;`,
+    variable: (name, type) => `var<private> ${name}: ${WGSL_TYPES[type] ?? type.replace(/^vec./, '$&f')};`,
+  },
 ];
 const TEXTURE_TYPES = { sampler2D: '2d', sampler3D: '3d', samplerCube: 'cube', sampler2DArray: '2d_array' };
+const WGSL_TYPES = { bool: 'bool', float: 'f32', mat3: 'mat3x3f' };
+const declared = (declaration, types) => Object.entries(types).map(([name, type]) => `${declaration(name, type)}\n`).join('');
+
+/** Where a function of Babylon takes a variable of the material in place of a value of its own: what is sought, and its text then. */
+const ARGUMENTS = {
+  sss_reflectivity: [
+    '!reflectivityOut=reflectivityBlock\\(\\s*(?:uniforms\\.)?vReflectivityColor', 'reflectivityOut=reflectivityBlock(\nsss_reflectivity',
+  ],
+  sss_coat: ['!,viewDirectionW\\s*,(?:uniforms\\.)?vClearCoatParams', ',viewDirectionW\n,sss_coat'],
+};
+
+/** The places of the light that comes through: where Babylon begins a light, the one before it is complete. */
+function lightPlaces(through, uniform) {
+  const add = `
+if (sss_pending) {
+  sss_lights += sss_light_color * preInfo.attenuation * ${through};
+}`;
+  return {
+    // without the light's shadow: light that comes through entered on the far side
+    '!#define CUSTOM_LIGHT(\\d+)_COLOR': `${add}
+sss_light_color = diffuse$1.rgb;
+sss_light_nearness = 0.0;
+#if defined(POINTLIGHT$1) || defined(SPOTLIGHT$1)
+sss_light_nearness = 1.0;
+#endif
+sss_pending = true;
+#if defined(HEMILIGHT$1) || defined(AREALIGHT$1) || defined(CLUSTLIGHT$1)
+sss_pending = false;
+#endif
+#define CUSTOM_LIGHT$1_COLOR
+`,
+    CUSTOM_FRAGMENT_BEFORE_FINALCOLORCOMPOSITION: `
+#ifndef UNLIT${add}
+finalDiffuse += sss_lights * ${uniform}vLightingIntensity.x / 3.14159265;
+#endif
+`,
+  };
+}
+
+/** What goes into Babylon's shaders in one language: place → text. */
+function placesOf({ textures, varyings, variables, shells }, language) {
+  const { functions, vertex, begin, through, places } = shells[language];
+  const { texture, varying, variable } = DECLARATIONS[language];
+  const samplers = Object.fromEntries(Object.values(textures).map(({ name, type }) => [name, type]));
+  const passed = declared(varying, varyings);
+  const lights = through ? lightPlaces(through, ['', 'uniforms.'][language]) : {};
+  const fragment = {
+    CUSTOM_FRAGMENT_DEFINITIONS: declared(texture, samplers) + passed + functions + declared(variable, variables),
+    CUSTOM_FRAGMENT_MAIN_BEGIN: begin,
+    ...Object.fromEntries(Object.keys(variables).filter((name) => name in ARGUMENTS).map((name) => ARGUMENTS[name])),
+    ...lights,
+  };
+  for (const [place, text] of Object.entries(places)) fragment[place] = (lights[place] ?? '') + text;
+  return {
+    vertex: withoutComments({ CUSTOM_VERTEX_DEFINITIONS: passed, CUSTOM_VERTEX_MAIN_END: vertex }),
+    fragment: withoutComments(fragment),
+  };
+}
 
 /** Places with their texts. Babylon takes shaders apart at semicolons, also in comments. */
 const withoutComments = (places) => Object.fromEntries(
@@ -48,19 +125,14 @@ const withoutComments = (places) => Object.fromEntries(
 );
 
 /** The plug-in of a material. */
-function pluginClass({ name: materialName, parameters, textures, vertex, fragment }, { moves, takesLight }) {
+function pluginClass(description, { moves, takesLight }) {
+  const { name: materialName, parameters, textures } = description;
+  const code = [0, 1].map((language) => placesOf(description, language));
   // Babylon keeps one program for each name of a plug-in
-  const key = `Sssgen_${materialName}_${Properties.hashOf(JSON.stringify([vertex, fragment]))}`;
+  const key = `Sssgen_${materialName}_${Properties.hashOf(JSON.stringify(code))}`;
   const uniforms = Object.values(parameters).map(({ name, type }) => [name, uniformType(type)]);
   if (moves) uniforms.push(['sss_time', 'float']);
   if (takesLight) uniforms.push(['sss_light_place', 'vec4'], ['sss_light_radiance', 'vec3']);
-  const declarations = DECLARATIONS.map((declaration) => Object.values(textures).map(declaration).join('\n'));
-  const code = {
-    vertex: vertex.map(withoutComments),
-    fragment: fragment.map(({ CUSTOM_FRAGMENT_DEFINITIONS: definitions, ...others }, language) => withoutComments({
-      CUSTOM_FRAGMENT_DEFINITIONS: `${declarations[language]}\n${definitions}`, ...others,
-    })),
-  };
 
   return class extends MaterialPluginBase {
     constructor(material) {
@@ -88,7 +160,7 @@ function pluginClass({ name: materialName, parameters, textures, vertex, fragmen
     }
 
     getCustomCode(stage, language) {
-      const places = code[stage][language];
+      const places = code[language][stage];
       const whole = ShaderStore.GetShadersStore(language).pbrPixelShader ?? '';
       for (const place of Object.keys(places)) { // those without a name in Babylon
         const absent = whole && /^![^#]/.test(place) && !new RegExp(place.slice(1)).test(whole);

@@ -7,14 +7,24 @@ import { Properties, TEXELS } from './values.js';
 /**
  * A material's text in one language: what it adds to PlayCanvas's chunks.
  * @typedef {object} Chunks
- * @property {string} litUserDeclarationVS
- * @property {string} litUserMainEndVS
- * @property {string} litUserDeclarationPS
- * @property {string} front the surface, and its way into PlayCanvas's arguments of the light
+ * @property {string} functions
+ * @property {string} vertex the values of varyings without an attribute
+ * @property {string} begin the variables' values, and the surface
+ * @property {string} front the surface's way into PlayCanvas's arguments of the light
  * @property {string} opacity
- * @property {string} combine the sum of the lights
- * @property {string} [lambert] the diffuse reflection of a light
- * @property {string} [clustered] what a clustered light adds
+ * @property {string} ambient what becomes of the ambient light
+ * @property {string} [translucency] the share of a light that comes through
+ * @property {string} [lighting] the reflected light
+ */
+
+/**
+ * What the vertex shader passes on: the value of an attribute, or the default where the mesh has none.
+ * @typedef {object} Varying
+ * @property {string} type
+ * @property {string} [attribute]
+ * @property {string} [semantic]
+ * @property {string} [define] with which PlayCanvas declares the attribute itself
+ * @property {number} [default]
  */
 
 /**
@@ -27,9 +37,10 @@ import { Properties, TEXELS } from './values.js';
  * @property {'mask' | 'blend'} [alphaMode] opaque, if it has none
  * @property {string[]} [fields] the members of its surface
  * @property {string[]} inputs the values that its functions read
- * @property {boolean} [readsPerLight] whether it reads a texture for each light, and these differ from pixel to pixel
  * @property {Record<string, import('./values.js').Parameter>} parameters
  * @property {Record<string, import('./values.js').TextureParameter>} textures
+ * @property {Record<string, Varying>} varyings
+ * @property {Record<string, string>} variables of the fragment shader: name → type
  * @property {Chunks} glsl
  * @property {Chunks} wgsl
  */
@@ -41,35 +52,155 @@ const TEXTURE_TYPES = { sampler2D: '2d', sampler3D: '3d', samplerCube: 'cube', s
 const wgslType = (type) => SCALARS[type]
   ?? type.replace(/^([iu]?)vec(\d)/, (_, kind, size) => `vec${size}${kind || 'f'}`).replace(/^mat(\d)/, 'mat$1x$1f');
 
+/** GLSL, and the same in WGSL: a declaration with a keyword, a variable, and the head of a function. */
+const LANGUAGES = [
+  {
+    declared: (keyword, type, name) => `${keyword} ${type} ${name};`,
+    variable: (type, name) => `${type} ${name};`,
+    head: (text) => text,
+  },
+  {
+    declared: (keyword, type, name) => `${keyword} ${name}: ${wgslType(type)};`,
+    variable: (type, name) => `var<private> ${name}: ${wgslType(type)};`,
+    head(text) {
+      const [, result, name, params] = /** @type {RegExpMatchArray} */ (text.match(/^(\w+) (\w+)\((.*)\)$/));
+      const typed = params.replace(/(\w+) (\w+)/g, (_, type, param) => `${param}: ${wgslType(type)}`);
+      return `fn ${name}(${typed})${result === 'void' ? '' : ` -> ${wgslType(result)}`}`;
+    },
+  },
+];
+
 /** The declarations of the uniforms and textures. */
 function declarations({ parameters, textures }, { moves, takesLight }, gpu) {
   const uniforms = Object.values(parameters).map(({ type, name }) => [type, name]);
   if (moves) uniforms.push(['float', 'sss_time']);
   if (takesLight) uniforms.push(['vec4', 'sss_light_place'], ['vec3', 'sss_light_radiance']);
   const read = Object.values(textures);
-  const lines = gpu
-    ? [
-      ...uniforms.map(([type, name]) => `uniform ${name}: ${wgslType(type)};`),
-      ...read.map(({ type, name }) => `var ${name}: texture_${TEXTURE_TYPES[type]}<f32>;\nvar ${name}_sampler: sampler;`),
-    ]
-    : [
-      ...[...new Set(read.map(({ type }) => type))].map((type) => `precision highp ${type};`),
-      ...uniforms.map(([type, name]) => `uniform ${type} ${name};`),
-      ...read.map(({ type, name }) => `uniform highp ${type} ${name};`),
-    ];
-  return lines.join('\n');
+  const { declared } = LANGUAGES[Number(gpu)];
+  const lines = uniforms.map(([type, name]) => declared('uniform', type, name));
+  if (gpu) return [...lines, ...read.map(({ type, name }) => `var ${name}: texture_${TEXTURE_TYPES[type]}<f32>;\nvar ${name}_sampler: sampler;`)];
+  return [
+    ...[...new Set(read.map(({ type }) => type))].map((type) => `precision highp ${type};`),
+    ...lines,
+    ...read.map(({ type, name }) => `uniform highp ${type} ${name};`),
+  ];
 }
 
-/** A chunk of PlayCanvas, what is sought in it, what it becomes, and what follows the chunk. */
-const CHANGES = (own, lit) => [
-  ['stdFrontEndPS', /evaluateFrontend/, 'sss_engine_front', own.front],
-  ['opacityPS', /getOpacity/, 'sss_engine_opacity', own.opacity],
-  ['combinePS', /combineColor/, 'sss_engine_combine', own.combine],
-  ...(lit ? LIGHT_CHANGES(own) : []),
-];
+/** The variables of the light that comes through, and of that which the material reflects itself. */
+const LIGHT = { sss_L: 'vec3', sss_light_color: 'vec3', sss_light_nearness: 'float', sss_light_sum: 'vec3' };
 
-const LIGHT_CHANGES = (own) => [
-  ['lightDiffuseLambertPS', /getLightDiffuse/, 'sss_engine_lambert', own.lambert],
+/** What is added to PlayCanvas's chunks as it is: the declarations, and the varyings' values. */
+function additions(description, properties, gpu) {
+  const own = gpu ? description.wgsl : description.glsl;
+  const { declared, variable } = LANGUAGES[Number(gpu)];
+  const varyings = Object.entries(description.varyings);
+  const attributes = varyings.filter(([, { attribute }]) => attribute);
+  const passed = varyings.map(([name, { type }]) => declared('varying', type, name));
+  const variables = Object.entries({ ...description.variables, ...(description.lit ? LIGHT : {}) });
+  const out = gpu ? 'output.' : '';
+  // in a cluster each pixel has lights of its own, and WGSL refuses reads with derivatives there
+  const perLight = `${own.translucency} ${own.lighting}`;
+  const readsPerLight = Object.values(description.textures).some(({ name }) => perLight.includes(name));
+  const functions = gpu && readsPerLight ? own.functions.replaceAll('\nfn ', '\n@diagnostic(off, derivative_uniformity) fn ') : own.functions;
+  const texts = {
+    litUserDeclarationVS: [
+      ...passed,
+      ...attributes.map(([, { type, attribute, semantic, define }]) => `
+#if defined(SSS_${semantic}) && !defined(${define})
+${declared('attribute', type, attribute)}
+#endif`),
+    ],
+    litUserMainEndVS: [
+      ...attributes.map(([name, { type, attribute, semantic, default: other }]) => `
+#ifdef SSS_${semantic}
+${out}${name} = ${attribute};
+#else
+${out}${name} = ${type}(${other}.0);
+#endif`),
+      own.vertex,
+    ],
+    litUserDeclarationPS: [
+      ...declarations(description, properties, gpu), ...passed, functions, ...variables.map(([name, type]) => variable(type, name)),
+    ],
+  };
+  return Object.entries(texts).map(([chunk, lines]) => [chunk, `\n${lines.join('\n')}\n`]);
+}
+
+/** Changes of PlayCanvas's chunks: a chunk, what is sought in it, what it becomes, and what follows the chunk. */
+function changes({ lit, glsl, wgsl }, gpu) {
+  const own = gpu ? wgsl : glsl;
+  const { head } = LANGUAGES[Number(gpu)];
+  return [
+    ['stdFrontEndPS', /evaluateFrontend/, 'sss_engine_front', `
+${head('void evaluateFrontend()')} {
+${lit ? 'sss_light_sum = vec3(0.0);' : ''}
+${own.begin}
+  sss_engine_front();
+#ifdef FORWARD_PASS
+${own.front}
+#endif
+}
+${lit ? lightFunctions(own, head) : ''}`],
+    ['opacityPS', /getOpacity/, 'sss_engine_opacity', `
+${head('void getOpacity()')} {
+  sss_engine_opacity();
+${own.opacity}
+}
+`],
+    ['combinePS', /combineColor/, 'sss_engine_combine', `
+${lit && !gpu ? AMBIENT_DECLARATION : ''}
+${head('vec3 combineColor(vec3 albedo, vec3 sheenSpecularity, float clearcoatSpecularity)')} {
+${lit ? lightSum(own) : 'return vec3(0.0);'}
+}
+`],
+    ...(lit ? lightChanges(gpu, head) : []),
+  ];
+}
+
+const AMBIENT_DECLARATION = `
+#if defined(SSS_OWN_LIGHT) && defined(LIT_ADD_AMBIENT)
+void addAmbient(vec3 worldNormal);
+#endif`;
+
+const lightSum = ({ ambient }) => `
+#ifdef SSS_OWN_LIGHT
+#ifdef LIT_ADD_AMBIENT
+dDiffuseLight = vec3(0.0);
+addAmbient(litArgs_worldNormal);
+${ambient}
+sss_light_sum += dDiffuseLight;
+#endif
+return sss_light_sum;
+#else
+return sss_engine_combine(albedo, sheenSpecularity, clearcoatSpecularity) + sss_light_sum;
+#endif`;
+
+/** One of PlayCanvas's lights: what comes through has no shadow, as it entered on the far side. */
+const lightFunctions = ({ translucency, lighting }, head) => `
+${head('void sss_light_through(vec3 L, vec3 color, float nearness)')} {
+  sss_L = L;
+  sss_light_color = color;
+  sss_light_nearness = nearness;
+${translucency ? `sss_light_sum += color * ${translucency};` : ''}
+}
+#ifdef SSS_OWN_LIGHT
+${head('void sss_light_reflected(vec3 color)')} {
+  sss_light_color = color;
+  sss_light_sum += ${lighting};
+}
+#endif
+`;
+
+const lightChanges = (gpu, head) => [
+  ['lightDiffuseLambertPS', /getLightDiffuse/, 'sss_engine_lambert', `
+${head('float getLightDiffuse(vec3 worldNormal, vec3 viewDir, vec3 lightDirNorm)')} {
+#ifdef SSS_OWN_LIGHT
+  return 1.0;
+#else
+  return sss_engine_lambert(worldNormal, viewDir, lightDirNorm);
+#endif
+}
+`],
   ['lightFunctionLightPS', /(?=dAtten\b[^;\n]*getLightDiffuse)/, `
 #if LIGHT{i}TYPE == DIRECTIONAL
 sss_light_through(-dLightDirNormW, lightColor * dAtten, 0.0);
@@ -82,7 +213,14 @@ sss_light_through(-dLightDirNormW, lightColor * dAtten, 1.0 / max(length(lightDi
 sss_light_reflected(lightColor * dAtten);
 #endif
 `, ''],
-  ['clusteredLightPS', /(?=falloffAttenuation\b[^;\n]*getLightDiffuse)/, own.clustered, ''],
+  ['clusteredLightPS', /(?=falloffAttenuation\b[^;\n]*getLightDiffuse)/, `
+${gpu ? 'var' : 'float'} sss_arriving = falloffAttenuation;
+if (light.isSpot) {
+  ${gpu ? 'let' : 'ClusterLightSpotData'} spot = decodeClusterLightSpot();
+  sss_arriving *= getSpotEffect(light.direction, spot.innerConeAngleCos, spot.outerConeAngleCos, lightDirNormW);
+}
+sss_light_through(-lightDirNormW, light.color * sss_arriving, 1.0 / max(length(lightDirW), 0.01));
+`, ''],
   ['clusteredLightPS', /(?=dAtten = falloffAttenuation;)/, `
 #ifdef SSS_OWN_LIGHT
 if (light.shape == {LIGHTSHAPE_PUNCTUAL}) { sss_light_reflected(light.color * cookieAttenuation * falloffAttenuation); }
@@ -94,17 +232,10 @@ if (light.shape == {LIGHTSHAPE_PUNCTUAL}) { sss_light_reflected(light.color * co
 function setChunks(material, device, description, properties) {
   const gpu = device.isWebGPU;
   const language = gpu ? pc.SHADERLANGUAGE_WGSL : pc.SHADERLANGUAGE_GLSL;
-  const own = gpu ? description.wgsl : description.glsl;
   const engine = pc.ShaderChunks.get(device, language);
   const chunks = material.getShaderChunks(language);
-  const text = own.litUserDeclarationPS;
-  // in a cluster each pixel has lights of its own, and WGSL refuses reads with derivatives there
-  const functions = gpu && description.readsPerLight ? text.replaceAll('\nfn ', '\n@diagnostic(off, derivative_uniformity) fn ') : text;
-  const added = { ...own, litUserDeclarationPS: `\n${declarations(description, properties, gpu)}${functions}` };
-  for (const name of ['litUserDeclarationVS', 'litUserMainEndVS', 'litUserDeclarationPS']) {
-    chunks.set(name, (engine.get(name) ?? '') + added[name]);
-  }
-  for (const [name, sought, instead, after] of CHANGES(own, description.lit)) {
+  for (const [name, text] of additions(description, properties, gpu)) chunks.set(name, (engine.get(name) ?? '') + text);
+  for (const [name, sought, instead, after] of changes(description, gpu)) {
     const chunk = chunks.get(name) ?? engine.get(name) ?? '';
     if (!sought.test(chunk)) throw new Error(`${description.name}: this version of PlayCanvas has no ${sought.source} in its chunk ${name}`);
     chunks.set(name, chunk.replace(sought, () => instead) + after);
