@@ -80,7 +80,7 @@ def test_a_name_of_several_kinds(run: Run) -> None:
 
 def test_a_target(run: Run) -> None:
     lacks = json.loads(run("show", "unity-builtin", "--json").out)["lacks"]
-    assert list(lacks["values"]) == ["clearcoat", "sheen_color", "sheen_roughness"]
+    assert list(lacks["values"]) == ["clearcoat", "clearcoat_roughness", "sheen_color", "sheen_roughness"]
     assert "textureSize" in lacks["functions"]
     assert "clearcoat: leave the stage out" in run("show", "unity-builtin").out
 

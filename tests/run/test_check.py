@@ -242,9 +242,9 @@ def test_a_missing_compiler_is_reported(run: Run, monkeypatch: pytest.MonkeyPatc
 
 def test_engines_are_named_and_none_is_started(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each with how to get it where its program or its package is missing."""
-    families = ("threejs", "babylonjs", "playcanvas", "godot", "firefox", "bevy", "metal", "unreal")
+    families = ("threejs", "babylonjs", "playcanvas", "godot", "firefox", "bevy", "metal", "unreal", "tsl")
     scenes = {name for name, record in BACKENDS.items() if record.scenes_only}
-    assert scenes | set(families) == set(ENGINES)
+    assert scenes | {*families, "tsl-webgl2"} == set(ENGINES)
     write({"a.py": "x = 1\n"})
     for variable in ("SSSGEN_NODE_MODULES", "SSSGEN_CHROMIUM", "SSSGEN_FIREFOX", "SSSGEN_GODOT", "PATH"):
         monkeypatch.setenv(variable, "nowhere")
@@ -256,10 +256,14 @@ def test_engines_are_named_and_none_is_started(run: Run, monkeypatch: pytest.Mon
         "threejs": "Chromium.*npm package three", "babylonjs": "Chromium.*@babylonjs/core",
         "playcanvas": "Chromium.*npm package playcanvas", "godot": "make .*engines", "firefox": "firefox-esr",
         "bevy": "node.*npm package webgpu.*npm package wesl", "metal": r"g\+\+", "unreal": "spirv-cross",
+        "tsl": "Chromium.*npm package three",
     }  # fmt: skip
     for name, row in rows.items():
         assert re.search(needs[name.partition("-")[0]], row["how"]), row
-    for text in ("threejs, threejs-webgl, threejs-webgl2: not found: ", "metal: not found: g++ (Debian: g++)\n"):
+    for text in (
+        "threejs, threejs-webgl, threejs-webgl2, tsl, tsl-webgl2: not found: ",
+        "metal: not found: g++ (Debian: g++)\n",
+    ):
         assert text in run("check", "a.py").out
 
 

@@ -89,7 +89,7 @@ def test_light_gets_what_it_reads() -> None:
     """Of the values of the surface, fragment() passes on those that light() reads."""
     both = sssgen.compile("ice", GODOT).files
     godots, own = both["ice.gdshader"], both["ice.own_light.gdshader"]
-    assert re.findall(r"varying \w+ passed_(\w+);", godots) == ["transmittance"]
+    assert re.findall(r"varying \w+ passed_(\w+);", godots) == ["albedo", "transmittance"]
     assert {"albedo", "roughness"} <= set(re.findall(r"varying \w+ passed_(\w+);", own))
     for text in (godots, own):
         passed = re.findall(r"varying \w+ (passed_\w+);", text)
@@ -104,9 +104,9 @@ def test_each_file_has_the_functions_that_it_calls() -> None:
 def test_no_parameter_has_the_name_of_a_uniform() -> None:
     """Functions read uniforms, and Godot refuses a parameter or a local of the name."""
     source = "const float near = 2.0;\nfloat g(float x) { return x * near; }\n"
-    module = module_of(f"{source}float f(float near, float x) {{ float h = near; return g(h * x); }}")
+    module = module_of(f"{source}float f(float near, float x) {{ float h = near + x; return g(h * h); }}")
     text = transpile(module, GODOT, "names").files["names.gdshaderinc"]
-    assert "float f(float near_, float x)" in text and "float h = near_;" in text
+    assert "float f(float near_, float x)" in text and "float h = near_ + x;" in text
     assert "float f(float near, float x)" in next(iter(transpile(module, "glsl-330", "names").files.values()))
 
 

@@ -42,7 +42,7 @@ def test_what_draws_no_scenes_is_refused_for_a_scene() -> None:
             SssgenError, match=f"{name} evaluates functions and draws no scenes\n.*choose from: numpy, "
         ):
             chosen(name, scenes=True)
-    assert {"bevy", "unreal", "webgpu-f16"} == set(BACKENDS) - set(SCENES)
+    assert {"bevy", "tsl", "tsl-webgl2", "unreal", "webgpu-f16"} == set(BACKENDS) - set(SCENES)
 
 
 def test_the_documentation_lists_every_back_end() -> None:

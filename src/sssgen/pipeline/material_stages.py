@@ -51,15 +51,17 @@ def stages_for(material: Material, target: Target) -> list[TargetTechnique]:
 
 
 def check_values(material: Material, target: Target) -> None:
-    """Raises UnsupportedError for stages that write a value of the surface which the target's engine lacks."""
-    wrong = [
-        Diagnostic("error", f"{target.title} has no '{param.name}', which '{stage.technique.name}' gives", stage.span,
-                   target.lacks[param.name], source_line(stage.span))
-        for stage in material.stages
-        if material.shading == "lit"
-        for param in stage.technique.function.params
-        if param.direction != "in" and param.name in target.lacks
-    ]  # fmt: skip
+    """Raises UnsupportedError for stages that write a value of the surface which the target's engine lacks.
+
+    A stage has one error, for the first of these values.
+    """
+    wrong = []
+    for stage in material.stages if material.shading == "lit" else ():
+        written = [param.name for param in stage.technique.function.params if param.direction != "in"]
+        lacking = [name for name in written if name in target.lacks]
+        if lacking:
+            message = f"{target.title} has no '{lacking[0]}', which '{stage.technique.name}' gives"
+            wrong.append(Diagnostic("error", message, stage.span, target.lacks[lacking[0]], source_line(stage.span)))
     if wrong:
         raise UnsupportedError(wrong)
 

@@ -53,9 +53,13 @@ def shell_word(path: str) -> str:
 def source_name(path: str | os.PathLike[str]) -> str:
     """The one name of a source file, however its path is spelled: its place in the library, or its real path.
 
-    Spans have this name, so two declarations of equal spans are the same. People see `display_name`.
+    Spans have this name, so two declarations of equal spans are the same. People see `display_name`. A name that no
+    file can have stays: who reads the file says so.
     """
-    real = os.path.realpath(path)
+    try:
+        real = os.path.realpath(path)
+    except ValueError:  # it contains a zero byte, or what is no character
+        return posix(path)
     for library in (TECHNIQUES, PACKAGE):
         real = real.removeprefix(os.path.realpath(library) + os.sep)
     return posix(real)

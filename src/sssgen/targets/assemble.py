@@ -121,14 +121,22 @@ _PRINTERS = {
 
 def printer_for(target: Target, module: Module) -> Printer:
     """The target's printer. Raises SssgenError where a plug-in names one that does not exist."""
+    made = _imported(_PRINTERS.get(target.language, target.language))
+    if made is None:
+        raise failure(f"target '{target.name}' names a printer that does not exist: {target.language}")
+    printer: Printer = made(target, module)
+    return printer
+
+
+def _imported(name: str) -> Any:
+    """What a descriptor names as `module:name`; None where it does not exist."""
     import importlib
 
-    place, _, name = _PRINTERS.get(target.language, target.language).partition(":")
+    place, _, name = name.partition(":")
     try:
-        printer: Printer = getattr(importlib.import_module(place), name)(target, module)
+        return getattr(importlib.import_module(place), name)
     except (ImportError, AttributeError, ValueError):
-        raise failure(f"target '{target.name}' names a printer that does not exist: {target.language}") from None
-    return printer
+        return None
 
 
 def print_parts(
@@ -195,11 +203,20 @@ def emit(
             own = _printed(target, program, form, marks, output.without)[0]
         if output.note:
             own = {**own, "header": [*own["header"], output.note]}
+        if output.graph:
+            own = {**own, "graph": _graph(target, output, own)}
         text = render(output.template, own, templates, target.folder)
         if text.strip():  # a template may have nothing to say about a material
             files[name], lines[name] = _finish(text, marks)
     embedded_calls = {name: _calls(inner) for name, inner in embedded.items()}
     return Emitted(files, lines, members, size, bindings, _calls(context), embedded_calls)
+
+
+def _graph(target: Target, output: OutputFile, context: Mapping[str, Any]) -> Any:
+    graph = _imported(output.graph)
+    if graph is None:
+        raise failure(f"target '{target.name}' names a graph that does not exist: {output.graph}")
+    return graph(context)
 
 
 def _runtime(target: Target, outputs: Sequence[OutputFile], standalone: bool) -> dict[str, str]:

@@ -36,6 +36,9 @@ class OutputFile(NamedTuple):
     """With `{material}` for the material's name, and `{module}` for that of a module in another language than the
     shader's: the same, with `_` where `[names]` has it in `modules` or `host_words`."""
     template: str = ""
+    graph: str = ""
+    """The function, `module:name`, that makes `graph` of the template's other variables: the nodes of an engine's graph
+    (`targets/graphs/`), which the template lays out."""
     stages: Mapping[str, str] = {}
     """Stage (vertex, fragment, library) → its entry point; '' for a library."""
     includes: str = ""
@@ -156,6 +159,8 @@ class Port(NamedTuple):
     type: str = ""
     wire: str = ""
     """What to connect to it, for people."""
+    nodes: tuple[str, ...] = ()
+    """The engine's nodes that supply it (`graphs/port_nodes.py`)."""
 
 
 class Embedded(NamedTuple):
@@ -239,7 +244,7 @@ class Target(NamedTuple):
     material_group: int = 0
     """WGSL: the group of the material's uniform block, textures and samplers."""
     ports: Mapping[str, Port] = {}
-    """Shader Graph, Unreal: chain input, or `Front` → its port, in the order of the node. The names of those that the
+    """Shader Graph, Unreal: chain input, or the side of the face → its port, in the order of the node. The names of those that the
     program reads are the place `ports` of the frame."""
     embedded: Mapping[str, Embedded] = {}
     """Name in the templates → the functions of another target that the files contain, too."""
@@ -339,7 +344,7 @@ _KEYS: dict[str, Collection[str]] = {
     "types": (*BY_NAME, "sampler", "samplerShadow"),
     "inputs": {**CHAIN_INPUTS, **SHELL_INPUTS},
     "light_inputs": CHAIN_INPUTS,
-    "ports": (*CHAIN_INPUTS, "Front"),
+    "ports": (*CHAIN_INPUTS, "Front", "side"),
     "lacks": OPTIONAL,
     "variants": FACTS,
     "stage_builtins": STAGE_BUILTINS,

@@ -27,7 +27,7 @@ from sssgen.scene.scene_loading import load as load_scene
 from sssgen.scene.toml_table import Table
 from sssgen.support import cache
 from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.support.paths import posix, stem
+from sssgen.support.paths import stem
 from sssgen.support.text_files import refuse_folder
 from sssgen.support.value_bytes import encoded
 
@@ -124,12 +124,14 @@ def load(name: str) -> MeasuredScene:
 
 def of_scene(scene: Scene, path: str) -> MeasuredScene:
     """The measured scene of a scene with physical data. Raises SssgenError for an incomplete description."""
-    document, file = scene.document, posix(path)
+    document, whole = scene.document, scene.document.place().key
     if not scene.measured:
         hint = 'add [medium] with preset = "marble", say; or [inlay] with depth = 0.02: docs/accuracy.md'
-        raise failure("the scene does not describe the medium of its body", hint, file)
+        document.error(whole, "the scene does not describe the medium of its body", hint)
     if scene.geometry is None:
-        raise failure("the scene has no geometry to measure", "add [geometry]", file)
+        document.error(whole, "the scene has no geometry to measure", "add [geometry]")
+    document.reporter.check()
+    assert scene.geometry is not None
     medium = _medium(scene) if "medium" in scene.measured else None
     inlay = _inlay(scene) if "inlay" in scene.measured else None
     environment = read_environment(scene) if "environment" in scene.measured else None
@@ -138,7 +140,7 @@ def of_scene(scene: Scene, path: str) -> MeasuredScene:
             span = document.place("light", number, "position").value
             document.error(span, "the light is inside the body", "move it out: only light that enters is measured")
     if medium is not None and not scene.lights and environment is None:
-        document.error(document.place().key, "the scene has no light", "add [[light]] with direction = […]")
+        document.error(whole, "the scene has no light", "add [[light]] with direction = […]")
     document.reporter.check()
     width, height = scene.size
     scale = SIDE / max(width, height)
