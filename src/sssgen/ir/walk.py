@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from sssgen.ir import nodes as ir
 
-_Part = TypeVar("_Part", bound=ir.Call | ir.Intrinsic)
+_Part = TypeVar("_Part", bound=ir.Expr)
 
 _LEAVES = frozenset({ir.Literal, ir.Local, ir.Global})
 _LEAF = itemgetter(slice(0, 0))
@@ -139,11 +139,10 @@ def inner_parts(block: ir.Block, kind: type[_Part]) -> list[_Part]:
         while stack:
             node = stack.pop()
             class_ = node.__class__
-            if class_ in leaves:
-                continue
             if class_ is kind:
                 parts.append(node)  # type: ignore[arg-type]  # narrowed by its exact class
-            stack += inside[class_](node)[::-1]
+            if class_ not in leaves:
+                stack += inside[class_](node)[::-1]
     return parts
 
 

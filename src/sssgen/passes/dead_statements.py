@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import Array, Struct, Type
-from sssgen.ir.walk import root, subexpressions
+from sssgen.ir.walk import expressions, operands, root, subexpressions
+from sssgen.passes.scopes import outs_of
 
 
 class Needs(NamedTuple):
@@ -55,10 +56,7 @@ class Cleaner:
     def __init__(self, module: ir.Module) -> None:
         self.functions = {function.key: function for function in module.functions}
         self.done: dict[str, Cleaned] = {}
-        self.outs: dict[str, tuple[int, ...]] = {
-            key: tuple([index for index, param in enumerate(function.params) if param.direction != "in"])
-            for key, function in self.functions.items()
-        }
+        self.outs = outs_of(module.functions)
 
     def cleaned(self, key: str) -> Cleaned:
         cleaned = self.done.get(key)
@@ -145,43 +143,33 @@ class FunctionCleaner:
 
     def statement(self, stmt: ir.Stmt, unit: Unit) -> bool:
         """Fills a statement's unit; returns whether the statements after it are unreachable."""
+        if isinstance(stmt, ir.For):
+            self.header(stmt, unit)
+        for expr in expressions(stmt):
+            self.expression(expr, unit)
         if isinstance(stmt, ir.Declare):
-            if stmt.value is not None:
-                self.expression(stmt.value, unit)
             number = self.number(stmt.name)
             unit.variables.append(number)
             unit.needs.append(stmt)
             self.stores[number].append(unit)
         elif isinstance(stmt, ir.Assign):
-            self.expression(stmt.target, unit)
-            self.expression(stmt.value, unit)
             self.store(stmt.target, unit)
         elif isinstance(stmt, ir.If):
-            self.expression(stmt.condition, unit)
             unit.then, then_ends = self.block(stmt.then, unit)
             unit.otherwise, otherwise_ends = self.block(stmt.otherwise, unit)
             return then_ends and otherwise_ends
-        elif isinstance(stmt, ir.For):
-            self.header(stmt, unit)
-            self.loop(stmt.body, unit)
-        elif isinstance(stmt, ir.While):
-            self.expression(stmt.condition, unit)
+        elif isinstance(stmt, ir.For | ir.While):
             self.loop(stmt.body, unit)
         elif isinstance(stmt, ir.Return):
-            if stmt.value is not None:
-                self.expression(stmt.value, unit)
             self.essential.append(unit)
             return True
-        elif isinstance(stmt, ir.Evaluate):
-            self.expression(stmt.call, unit)
         elif isinstance(stmt, ir.Assume):
-            self.expression(stmt.condition, unit)
             self.assumptions.append(unit)
-        elif isinstance(stmt, ir.Discard):
-            # a target may require a return after it, so the statements after it are kept
+        elif isinstance(stmt, ir.Discard | ir.MemoryOperation):
+            # a target may require a return after a discard, so the statements after it are kept
             self.acts = True
             self.essential.append(unit)
-        elif self.jumps is not None:
+        elif isinstance(stmt, ir.Break | ir.Continue) and self.jumps is not None:
             self.jumps.append(unit)
             return True
         return False
@@ -192,8 +180,6 @@ class FunctionCleaner:
             if part is not None:
                 header.append(Unit(part, unit))
                 self.statement(part, header[-1])
-        if loop.condition is not None:
-            self.expression(loop.condition, unit)
 
     def loop(self, body: ir.Block, unit: Unit) -> None:
         outer = self.jumps
@@ -212,27 +198,12 @@ class FunctionCleaner:
                 number = numbers.get(node.name)
                 if number is not None:
                     variables.append(number)
-            elif kind is ir.Binary:
-                stack += (node.left, node.right)
-            elif kind is ir.Literal:
-                pass
-            elif kind is ir.Intrinsic:
-                stack += node.args
-            elif kind is ir.Global:
-                unit.needs.append(node)
-            elif kind is ir.Swizzle or kind is ir.Member:
-                stack.append(node.value)
-            elif kind is ir.Call or kind is ir.Construct:
-                stack += node.args
-                unit.needs.append(node)
+            elif kind is not ir.Literal:
+                stack += operands(node)
+                if kind is ir.Call or kind is ir.Global or kind is ir.Construct:
+                    unit.needs.append(node)
                 if kind is ir.Call:
                     self.call(node, unit)
-            elif kind is ir.Unary:
-                stack.append(node.operand)
-            elif kind is ir.Select:
-                stack += (node.condition, node.yes, node.no)
-            else:
-                stack += (node.value, node.index)
 
     def call(self, call: ir.Call, unit: Unit) -> None:
         for index in self.cleaner.outs.get(call.function, ()):

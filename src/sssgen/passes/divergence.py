@@ -9,13 +9,14 @@ or loop.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.walk import expressions, operands, root, statements
+from sssgen.ir.walk import callees, inner_parts, operands, root, statements
+from sssgen.passes.scopes import out_positions
 from sssgen.passes.variable_effects import NONE, Effects, effects
 
 
@@ -77,33 +78,17 @@ def summaries(module: ir.Module) -> dict[str, Summary]:
     return result
 
 
-def _summary(function: ir.Function, visit: Any, shared: Effects) -> Summary:
-    names: set[str] = set()
-    callees: dict[str, None] = {}
-    discards = function.body is None
-    for stmt in statements(function.body or ()):
-        discards = discards or type(stmt) is ir.Discard
-        stack = list(expressions(stmt))
-        while stack:
-            node = stack.pop()
-            kind = type(node)
-            if kind is ir.Local or kind is ir.Literal or kind is ir.Global:
-                continue
-            if isinstance(node, ir.Binary):
-                stack += (node.left, node.right)
-                continue
-            if isinstance(node, ir.Call):
-                callees[node.function] = None
-            elif isinstance(node, ir.Intrinsic):
-                names.add(node.name)
-            stack += operands(node)
-    called = [visit(key) for key in callees]
+def _summary(function: ir.Function, visit: Callable[[str], Summary], shared: Effects) -> Summary:
+    body, keys = function.body or (), callees(function)
+    names = {part.name for part in inner_parts(body, ir.Intrinsic)}
+    discards = function.body is None or any(type(stmt) is ir.Discard for stmt in statements(body))
+    called = [visit(key) for key in keys]
     return Summary(
         not names.isdisjoint(implicit()) or any(callee.compares for callee in called),
         bool(shared.reads) or not names.isdisjoint(varying_builtins()) or any(callee.varies for callee in called),
         discards or any(callee.discards for callee in called),
-        tuple([index for index, param in enumerate(function.params) if param.direction != "in"]),
-        tuple(callees),
+        out_positions(function),
+        tuple(keys),
         *shared,
     )
 

@@ -15,9 +15,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.constant_expressions import zero
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.transform import Transformer
-from sssgen.ir.types import FLOAT, Sampler, Scalar, Type, components, vector_of
+from sssgen.ir.types import FLOAT, Sampler, components, vector_of
 from sssgen.ir.walk import (
     all_expressions,
     builtins_of,
@@ -29,7 +30,7 @@ from sssgen.ir.walk import (
 )
 from sssgen.passes.divergence import CallContext, Divergence, Summary, implicit, joined, summaries
 from sssgen.passes.explicit_levels import at_level
-from sssgen.passes.scopes import declared, fresh, qualified_name
+from sssgen.passes.scopes import claim, declared, qualified_name
 from sssgen.passes.unsupported import Note
 
 _LARGEST = 64
@@ -292,8 +293,7 @@ class _Hoister(Transformer):
         key = _key(value)
         variable = self.region.variables.get(key)
         if variable is None:
-            variable = self.region.variables[key] = fresh(name, self.taken)
-            self.taken.add(variable)
+            variable = self.region.variables[key] = claim(name, self.taken)
             self.region.available.add(variable)
             self.region.hoisted.append(ir.Declare(variable, value.type, value, span))
         return ir.Local(value.type, variable, span)
@@ -305,7 +305,7 @@ class _Hoister(Transformer):
         row = BUILTINS[expr.name]
         if row.kind == "derivative":
             self.note(f"{expr.name} is taken as 0 here", expr.span)
-            return _zero(expr.type, expr.span)
+            return zero(expr.type, expr.span)
         map_, coordinate, *others = expr.args
         assert isinstance(map_.type, Sampler)
         if row.with_level is None or not row.with_gradients:
@@ -372,11 +372,6 @@ def _base_name(expr: ir.Call | ir.Intrinsic) -> str:
 
 def _words(map: ir.Expr) -> str:
     return f"'{map.name}'" if isinstance(map, ir.Local | ir.Global) else "a texture"
-
-
-def _zero(type: Type, span: ir.Span) -> ir.Expr:
-    zero = ir.Literal(FLOAT, 0.0, span)
-    return zero if isinstance(type, Scalar) else ir.Construct(type, (zero,), span)
 
 
 def _key(expr: ir.Expr) -> object:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.loops import break_unless
 from sssgen.ir.transform import Transformer
 from sssgen.ir.types import BOOL, Type
 from sssgen.ir.walk import (
@@ -24,7 +25,7 @@ from sssgen.ir.walk import (
     written_root,
 )
 from sssgen.passes.places import may_overlap
-from sssgen.passes.scopes import declared, fresh, qualified_name
+from sssgen.passes.scopes import claim, declared, qualified_name
 from sssgen.passes.variable_effects import NONE, Effects
 
 Functions = Mapping[str, ir.Function]
@@ -66,16 +67,7 @@ class Calls:
 
     def writing(self, expr: ir.Expr) -> bool:
         """Whether a call inside an expression has an effect apart from its result."""
-        stack = [expr]
-        while stack:
-            node = stack.pop()
-            kind = type(node)
-            if kind is ir.Local or kind is ir.Literal or kind is ir.Global:
-                continue
-            if isinstance(node, ir.Call) and self.change(node.function):
-                return True
-            stack += operands(node)
-        return False
+        return any(type(part) is ir.Call and self.change(part.function) for part in subexpressions(expr))
 
 
 def lift(function: ir.Function, calls: Calls) -> ir.Function:
@@ -164,9 +156,7 @@ class _Lifter(Transformer):
 
     def local(self, type: Type, name: str, span: ir.Span) -> ir.Local:
         self.names = self.names or set(declared(self.source))
-        name = fresh(name, self.names)
-        self.names.add(name)
-        return ir.Local(type, name, span)
+        return ir.Local(type, claim(name, self.names), span)
 
     # Statements
 
@@ -216,8 +206,7 @@ class _Lifter(Transformer):
         """Condition and body. A condition that writes moves into the body: `while (true) { if (!c) break; … }`."""
         body, condition = self.block(loop.body), loop.condition
         if condition is not None and self.writes(condition):
-            leave = ir.If(ir.Unary(BOOL, "!", condition, condition.span), (ir.Break(loop.span),), (), condition.span)
-            body = (*self.block((leave,)), *body)
+            body = (*self.block((break_unless(condition),)), *body)
             condition = ir.Literal(BOOL, True, condition.span)
         return condition, body
 

@@ -11,7 +11,8 @@ from typing import Any
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.transform import Transformer
-from sssgen.ir.walk import calls_of, expressions, inner_statements, operands, root, statements, written_places
+from sssgen.ir.types import spell
+from sssgen.ir.walk import calls_of, inner_parts, inner_statements, root, statements, written_places
 
 _NONE: Mapping[str, str] = {}
 
@@ -29,24 +30,16 @@ def declared(function: ir.Function) -> list[str]:
     return names
 
 
-def mentions(function: ir.Function) -> tuple[set[str], set[str]]:
-    """The names of the uniforms and constants that a function reads, and the keys of the functions it
-    calls."""
-    globals_, calls = set[str](), set[str]()
-    for stmt in statements(function.body or ()):
-        stack: list[Any] = [*expressions(stmt)]
-        while stack:
-            node = stack.pop()
-            kind = type(node)
-            if kind is ir.Local or kind is ir.Literal:
-                continue
-            if kind is ir.Global:
-                globals_.add(node.name)
-                continue
-            if kind is ir.Call:
-                calls.add(node.function)
-            stack += operands(node)
-    return globals_, calls
+def globals_of(function: ir.Function) -> set[str]:
+    """The names of the uniforms, constants and module variables that a function mentions."""
+    return {part.name for part in inner_parts(function.body or (), ir.Global)}
+
+
+def names_of(module: ir.Module) -> set[str]:
+    """The names that a module declares, those of structs among them."""
+    declared = (module.constants, module.uniforms, module.variables, module.functions)
+    names = {declaration.name for group in declared for declaration in group}
+    return names | {spell(struct.type) for struct in module.structs}
 
 
 def qualified_name(variable: ir.Local | ir.Global) -> str:
@@ -54,14 +47,14 @@ def qualified_name(variable: ir.Local | ir.Global) -> str:
     return variable.name if isinstance(variable, ir.Local) else f"${variable.name}"
 
 
+def out_positions(function: ir.Function) -> tuple[int, ...]:
+    """The positions of a function's out and inout parameters."""
+    return tuple([index for index, param in enumerate(function.params) if param.direction != "in"])
+
+
 def outs_of(functions: Iterable[ir.Function]) -> dict[str, tuple[int, ...]]:
     """The keys of the functions that write through parameters, and the positions of these."""
-    outs = {}
-    for function in functions:
-        places = tuple([index for index, param in enumerate(function.params) if param.direction != "in"])
-        if places:
-            outs[function.key] = places
-    return outs
+    return {function.key: positions for function in functions if (positions := out_positions(function))}
 
 
 def assigned(function: ir.Function, outs: Mapping[str, tuple[int, ...]]) -> set[str]:
@@ -87,6 +80,13 @@ def fresh(name: str, taken: Container[str]) -> str:
     while f"{base}_{number}" in taken:
         number += 1
     return f"{base}_{number}"
+
+
+def claim(name: str, taken: set[str]) -> str:
+    """A fresh name, which is taken from now on."""
+    name = fresh(name, taken)
+    taken.add(name)
+    return name
 
 
 def separate(function: ir.Function) -> ir.Function:

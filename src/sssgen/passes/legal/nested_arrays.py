@@ -10,7 +10,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.transform import rewrite, rewrite_block
 from sssgen.ir.types import Array, Field, Struct, Type, spell, unnested
 from sssgen.ir.walk import all_expressions, statements
-from sssgen.passes.scopes import fresh
+from sssgen.passes.scopes import claim, names_of
 
 ITEMS = "items"
 
@@ -38,9 +38,7 @@ def _types(module: ir.Module) -> list[Type]:
 class _Wrapper:
     def __init__(self, module: ir.Module) -> None:
         self.module = module
-        declared = (module.constants, module.uniforms, module.variables, module.functions)
-        self.taken = {declaration.name for group in declared for declaration in group}
-        self.taken |= {spell(struct.type) for struct in module.structs}
+        self.taken = names_of(module)
         self.rows: dict[Type, Struct] = {}
         """The struct for each array that is an element of another."""
         self.structs: list[ir.StructDecl] = []
@@ -91,8 +89,7 @@ class _Wrapper:
         if array not in self.rows:
             innermost, lengths = unnested(array)
             name = spell(innermost)
-            name = fresh(f"{name[0].upper()}{name[1:]}Row{'x'.join(map(str, lengths))}", self.taken)
-            self.taken.add(name)
+            name = claim(f"{name[0].upper()}{name[1:]}Row{'x'.join(map(str, lengths))}", self.taken)
             self.rows[array] = Struct(name, (Field(ITEMS, array),))
             self.structs.append(ir.StructDecl(self.rows[array], "", ir.NOWHERE))
         return self.rows[array]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.loops import at_every_end
+from sssgen.ir.loops import at_every_end, break_unless
 from sssgen.ir.transform import Transformer
 from sssgen.ir.types import BOOL, Scalar
 from sssgen.ir.walk import subexpressions
@@ -38,10 +38,8 @@ class _Loops(Transformer):
     def loop(self, loop: ir.While) -> ir.While:
         if _is_plain(loop.condition):
             return loop
-        condition = loop.condition
-        stop = ir.If(ir.Unary(BOOL, "!", condition, condition.span), (ir.Break(loop.span),), (), condition.span)
-        body: ir.Block = (stop, *loop.body)
-        return ir.While(ir.Literal(BOOL, True, condition.span), body, loop.span)
+        body = (break_unless(loop.condition), *loop.body)
+        return ir.While(ir.Literal(BOOL, True, loop.condition.span), body, loop.span)
 
 
 def counts(loop: ir.For) -> bool:

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.transform import Transformer
-from sssgen.ir.types import VOID, Array, Field, Struct, Type, spell
-from sssgen.passes.scopes import declared, fresh
+from sssgen.ir.types import VOID, Array, Field, Struct, Type
+from sssgen.passes.scopes import claim, declared, fresh, names_of
 from sssgen.passes.unsupported import Unsupported
 
 VALUE = "value"
@@ -33,11 +33,7 @@ class _Results(Transformer):
         self.new: dict[str, ir.Function] = {}
         """The new functions by their old keys."""
         self.structs: list[ir.StructDecl] = []
-        self.taken = {spell(struct.type) for struct in module.structs} | {
-            declaration.name
-            for group in (module.constants, module.uniforms, module.variables, module.functions)
-            for declaration in group
-        }
+        self.taken = names_of(module)
         self.names: set[str] = set()
         self.returned: list[ir.Local] = []
         """What the current function returns behind its value."""
@@ -62,10 +58,8 @@ class _Results(Transformer):
                 continue
             value = None
             if param.direction == "inout":
-                name = fresh(f"{param.name}_in", self.names)
-                self.names.add(name)
-                params.append(param._replace(name=name, direction="in"))
-                value = ir.Local(param.type, name, param.span)
+                params.append(param._replace(name=claim(f"{param.name}_in", self.names), direction="in"))
+                value = ir.Local(param.type, params[-1].name, param.span)
             begin.append(ir.Declare(param.name, param.type, value, param.span))
         self.result = self.result_type(function)
         new = function._replace(params=tuple(params), result=self.result)
@@ -88,8 +82,7 @@ class _Results(Transformer):
             if isinstance(field.type, Array):
                 hint = "put the array into a loop of the caller, or return one value at a time"
                 raise Unsupported("an array is among several results", function.span, hint=hint)
-        name = fresh(f"{function.name[0].upper()}{function.name[1:]}Result", self.taken)
-        self.taken.add(name)
+        name = claim(f"{function.name[0].upper()}{function.name[1:]}Result", self.taken)
         struct = Struct(name, tuple(fields))
         self.structs.append(ir.StructDecl(struct, "", function.span))
         return struct
@@ -104,19 +97,13 @@ class _Results(Transformer):
         return parts[0] if len(parts) == 1 else ir.Construct(self.result, parts, span)
 
     def statement(self, stmt: ir.Stmt) -> ir.Stmt | None:
-        call = (
-            stmt.call
-            if isinstance(stmt, ir.Evaluate)
-            else stmt.value
-            if isinstance(stmt, ir.Declare | ir.Assign)
-            else None
-        )
+        call = stmt.call if isinstance(stmt, ir.Evaluate) else getattr(stmt, "value", None)
         if isinstance(call, ir.Call) and any(map(_writes, self.old[call.function].params)):
-            self.out += self.called(stmt, call)
+            self.out += self.call(stmt, call)
             return None
         return super().statement(stmt)
 
-    def called(self, stmt: ir.Stmt, call: ir.Call) -> list[ir.Stmt]:
+    def call(self, stmt: ir.Stmt, call: ir.Call) -> list[ir.Stmt]:
         """The call, and the assignments of what it returns."""
         old, new, span = self.old[call.function], self.new[call.function], call.span
         arguments = list(zip(call.args, old.params, strict=True))
@@ -127,8 +114,7 @@ class _Results(Transformer):
         if old.result == VOID and len(places) == 1:
             return [ir.Assign(places[0], "", value, span)]
         assert isinstance(new.result, Struct)
-        name = fresh(f"{old.name}_result", self.names)
-        self.names.add(name)
+        name = claim(f"{old.name}_result", self.names)
         result = ir.Local(new.result, name, span)
         parts: list[ir.Expr] = [ir.Member(field.type, result, field.name, span) for field in new.result.fields]
         stmts: list[ir.Stmt] = [ir.Declare(name, new.result, value, span)]

@@ -21,15 +21,16 @@ The result is ordinary IR with these conventions:
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.constant_expressions import zero
 from sssgen.ir.types import BOOL, VOID, Type
 from sssgen.ir.walk import root, statements
 from sssgen.passes.lift_calls import DISCARDED, Functions, lift_calls, out_arguments
-from sssgen.passes.numpy.masks import Mask, negated, zero
+from sssgen.passes.numpy.masks import Mask, negated
 from sssgen.passes.numpy.settle import settle
 from sssgen.passes.numpy.tidy import renumber, tidy
 from sssgen.passes.numpy.uniformity import Uniformity, uniform_constants
 from sssgen.passes.numpy.variable_uses import may_change, written_outside
-from sssgen.passes.scopes import declared, fresh, separate
+from sssgen.passes.scopes import claim, declared, separate
 
 
 def predicate(module: ir.Module) -> ir.Module:
@@ -91,8 +92,7 @@ class _Converter:
     # Names
 
     def new(self, name: str) -> str:
-        name = fresh(name, self.names)
-        self.names.add(name)
+        name = claim(name, self.names)
         self.temporaries.add(name)
         return name
 

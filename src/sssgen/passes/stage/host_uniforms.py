@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.transform import rewrite_module
-from sssgen.ir.types import INT, Struct, Type, components, spell
-from sssgen.passes.scopes import fresh
+from sssgen.ir.types import INT, Type, components, spell
+from sssgen.passes.scopes import claim, names_of
 from sssgen.passes.unsupported import Note
 
 _COUNT = "gl_NumWorkGroups"
@@ -62,9 +62,7 @@ class _Uniforms:
     """New uniforms of a module, with a note for each."""
 
     def __init__(self, module: ir.Module) -> None:
-        declared = (module.constants, module.uniforms, module.variables, module.functions)
-        self.taken = {declaration.name for group in declared for declaration in group}
-        self.taken |= {struct.type.name for struct in module.structs if isinstance(struct.type, Struct)}
+        self.taken = names_of(module)
         self.uniforms: dict[str, ir.Uniform] = {}
         """By what they are, which is their documentation."""
         self.notes: list[Note] = []
@@ -72,8 +70,7 @@ class _Uniforms:
     def uniform(self, doc: str, name: str, type_: Type, message: str, hint: str, span: ir.Span) -> ir.Global:
         """The uniform with this documentation, which gets about that name."""
         if doc not in self.uniforms:
-            name = fresh(name, self.taken)
-            self.taken.add(name)
+            name = claim(name, self.taken)
             self.uniforms[doc] = ir.Uniform(name, type_, (0.0,) * components(type_), (), "", doc, span)
             self.notes.append(Note(message.format(name), span, hint))
         return ir.Global(type_, self.uniforms[doc].name, span)

@@ -18,7 +18,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.transform import rewrite, rewrite_module
 from sssgen.ir.types import INT, Array, Struct, Type, components
 from sssgen.ir.walk import operands, subexpressions, with_operands
-from sssgen.passes.scopes import fresh
+from sssgen.passes.scopes import claim, names_of
 from sssgen.passes.unsupported import Unsupported
 
 Path = tuple[str, ...]
@@ -53,22 +53,18 @@ def _is_split(type_: Type) -> bool:
 class _Splitter:
     def __init__(self, module: ir.Module) -> None:
         self.module = module
-        declared = (module.constants, module.uniforms, module.variables, module.functions)
-        self.taken = {declaration.name for group in declared for declaration in group}
+        self.taken = names_of(module)
         self.split = {uniform.name: uniform.type for uniform in module.uniforms if _is_split(uniform.type)}
         self.leaves: dict[Path, _Leaf] = {}
 
     def run(self) -> ir.Module:
         uniforms = tuple([part for uniform in self.module.uniforms for part in self.parts(uniform)])
-        variables = tuple(
-            [
-                variable
-                if variable.value is None
-                else variable._replace(value=self.whole(rewrite(variable.value, self.change)))
-                for variable in self.module.variables
-            ]
-        )
-        return rewrite_module(self.module._replace(uniforms=uniforms, variables=variables), self.change, self.restate)
+        variables = [
+            variable._replace(value=self.whole(rewrite(variable.value, self.change))) if variable.value else variable
+            for variable in self.module.variables
+        ]
+        module = self.module._replace(uniforms=uniforms, variables=tuple(variables))
+        return rewrite_module(module, self.change, self.restate)
 
     def parts(self, uniform: ir.Uniform) -> Iterator[ir.Uniform]:
         """The uniforms that replace one."""
@@ -77,8 +73,7 @@ class _Splitter:
             return
         numbers = uniform.default or (0.0,) * components(uniform.type)
         for path, lengths, element, default in _members((uniform.name,), uniform.type, (), [numbers]):
-            name = fresh("_".join(path), self.taken) if len(path) > 1 else uniform.name
-            self.taken.add(name)
+            name = claim("_".join(path), self.taken) if len(path) > 1 else uniform.name
             leaf = self.leaves[path] = _Leaf(name, lengths, element)
             spelt = _spelt((uniform.path or uniform.name, *path[1:]), uniform.type)
             yield uniform._replace(name=name, type=leaf.type, default=default, path=spelt)
@@ -107,9 +102,8 @@ class _Splitter:
         """Whether it is a split uniform, or a member or element of one."""
         while isinstance(node, ir.Member | ir.Index):
             node = node.value
-        return (
-            isinstance(node, ir.Global) and self.split.get(node.name) == node.type
-        )  # the new uniform may have its name
+        # the new uniform may have its name
+        return isinstance(node, ir.Global) and self.split.get(node.name) == node.type
 
     def whole(self, node: ir.Expr) -> ir.Expr:
         """The value of a chain; any other expression unchanged."""
