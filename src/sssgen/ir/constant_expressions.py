@@ -7,7 +7,7 @@ from math import copysign
 from sssgen.ir import constant_arithmetic as arithmetic
 from sssgen.ir.constant_arithmetic import Number, Numbers
 from sssgen.ir.nodes import Construct, Expr, Literal, Span
-from sssgen.ir.types import Array, Matrix, Scalar, Type, Vector, components, kind_of
+from sssgen.ir.types import Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of
 
 
 def uniform_value(type: Type, numbers: tuple[float, ...], span: Span) -> Expr:
@@ -23,6 +23,18 @@ def uniform_value(type: Type, numbers: tuple[float, ...], span: Span) -> Expr:
     if isinstance(type, Matrix):
         return Construct(type, tuple([Literal(Scalar(kind), value, span) for value in values]), span)
     return literal(type, values, span)
+
+
+def zero(type: Type, span: Span) -> Expr:
+    """A value of this type whose components are all zero."""
+    if isinstance(type, Scalar):
+        return Literal(type, {"float": 0.0, "bool": False}.get(type.kind, 0), span)
+    if isinstance(type, Vector | Matrix):
+        return Construct(type, (zero(Scalar(type.kind), span),), span)
+    if isinstance(type, Array):
+        return Construct(type, (zero(type.element, span),) * type.length, span)
+    assert isinstance(type, Struct)
+    return Construct(type, tuple([zero(field.type, span) for field in type.fields]), span)
 
 
 def literal(type: Type, values: Numbers, span: Span) -> Expr:

@@ -1,10 +1,17 @@
-"""Bodies of loops."""
+"""Bodies of loops, and how they leave them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.types import BOOL
+
+
+def break_unless(condition: ir.Expr) -> ir.If:
+    """Leaves the loop where a condition does not hold."""
+    span = condition.span
+    return ir.If(ir.Unary(BOOL, "!", condition, span), (ir.Break(span),), (), span)
 
 
 def at_every_end(body: ir.Block, added: Sequence[ir.Stmt]) -> ir.Block:

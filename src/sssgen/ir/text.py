@@ -25,54 +25,22 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import isfinite
 
-from sssgen.ir.nodes import (
-    NOWHERE,
-    Assign,
-    Assume,
-    Binary,
-    Block,
-    Call,
-    Constant,
-    Construct,
-    Declare,
-    Evaluate,
-    Expr,
-    For,
-    Function,
-    Global,
-    If,
-    Index,
-    Intrinsic,
-    Literal,
-    Local,
-    Member,
-    MemoryOperation,
-    Module,
-    Return,
-    Span,
-    Stmt,
-    StructDecl,
-    Swizzle,
-    Unary,
-    Uniform,
-    Variable,
-    While,
-)
+from sssgen.ir import nodes as ir
 from sssgen.ir.text_reader import TextError, read_module
 from sssgen.ir.types import BOOL, FLOAT, UINT, Struct, spell
 
 __all__ = ["TextError", "print_module", "read_module"]
 
 
-def print_meaning(declaration: Function | Constant) -> str:
+def print_meaning(declaration: ir.Function | ir.Constant) -> str:
     """A declaration without its documentation and places: what two files declare alike has one text."""
     printer = _Printer(spans=False)
-    if isinstance(declaration, Constant):
+    if isinstance(declaration, ir.Constant):
         return printer.constant(declaration)
     return printer.function(declaration._replace(doc=""))
 
 
-def print_module(module: Module, spans: bool = True) -> str:
+def print_module(module: ir.Module, spans: bool = True) -> str:
     """The text of a valid module. Raises ValueError for a number that is not finite."""
     return _Printer(spans).module(module)
 
@@ -82,7 +50,7 @@ class _Printer:
         self.spans = spans
         self.files: dict[str, int] = {}
 
-    def module(self, module: Module) -> str:
+    def module(self, module: ir.Module) -> str:
         parts = [self.struct(struct) for struct in module.structs]
         parts += [self.constant(constant) for constant in module.constants]
         parts += [self.uniform(uniform) for uniform in module.uniforms]
@@ -93,29 +61,29 @@ class _Printer:
         files = [f"file {index} {_quoted(name)}\n" for name, index in self.files.items()]
         return "".join(files + parts)
 
-    def at(self, span: Span) -> str:
-        if not self.spans or span == NOWHERE:
+    def at(self, span: ir.Span) -> str:
+        if not self.spans or span == ir.NOWHERE:
             return ""
         file = self.files.setdefault(span.file, len(self.files))
         end = f"{span.end_column}" if span.end_line == span.line else f"{span.end_line}:{span.end_column}"
         return f"@{file}:{span.line}:{span.column}-{end}"
 
-    def struct(self, struct: StructDecl) -> str:
+    def struct(self, struct: ir.StructDecl) -> str:
         assert isinstance(struct.type, Struct)
         fields = [f"    {spell(field.type)} {field.name}{_colon(field.quantity)};\n" for field in struct.type.fields]
         head = f"{_doc(struct.doc)}struct{self.at(struct.span)} {struct.type.name}"
         return f"{head} {{\n{''.join(fields)}}}\n"
 
-    def constant(self, constant: Constant) -> str:
+    def constant(self, constant: ir.Constant) -> str:
         value = self.expr(constant.value)
         return f"const{self.at(constant.span)} {spell(constant.type)} {constant.name} = {value}\n"
 
-    def uniform(self, uniform: Uniform) -> str:
+    def uniform(self, uniform: ir.Uniform) -> str:
         declared = f"{spell(uniform.type)} {uniform.name}{_colon(uniform.quantity)}"
         default = f" = ({', '.join(map(_number, uniform.default))})" if uniform.default else ""
         return f"{_doc(uniform.doc)}uniform{self.at(uniform.span)} {declared}{default}{_hints(uniform.hints)}\n"
 
-    def variable(self, variable: Variable) -> str:
+    def variable(self, variable: ir.Variable) -> str:
         declared = f"{variable.storage} {spell(variable.type)} {variable.name}"
         hints: list[tuple[str, tuple[float | str, ...]]] = []
         hints += [("builtin", (variable.builtin,))] if variable.builtin else []
@@ -126,7 +94,7 @@ class _Printer:
         value = f" = {self.expr(variable.value)}" if variable.value is not None else ""
         return f"{_doc(variable.doc)}variable{self.at(variable.span)} {declared}{_hints(hints)}{value}\n"
 
-    def function(self, function: Function) -> str:
+    def function(self, function: ir.Function) -> str:
         params = [
             f"{param.direction}{self.at(param.span)} {spell(param.type)} {param.name}{_colon(param.quantity)}"
             f"{f' passes {param.passes}' if param.passes else ''}"
@@ -136,72 +104,72 @@ class _Printer:
         body = " slot" if function.body is None else f" {self.block(function.body, 0)}"
         return f"{_doc(function.doc)}function{at} {declared}{_colon(function.quantity)}{body}\n"
 
-    def block(self, block: Block, depth: int) -> str:
+    def block(self, block: ir.Block, depth: int) -> str:
         inside = "    " * (depth + 1)
         lines = "".join([f"{inside}{self.stmt(stmt, depth + 1)}\n" for stmt in block])
         return f"{{\n{lines}{'    ' * depth}}}"
 
-    def stmt(self, stmt: Stmt, depth: int) -> str:
+    def stmt(self, stmt: ir.Stmt, depth: int) -> str:
         at = self.at(stmt.span)
-        if isinstance(stmt, Declare):
+        if isinstance(stmt, ir.Declare):
             value = f" = {self.expr(stmt.value)}" if stmt.value is not None else ""
             return f"var{at} {spell(stmt.type)} {stmt.name}{value};"
-        if isinstance(stmt, Assign):
+        if isinstance(stmt, ir.Assign):
             return f"set{at} {self.expr(stmt.target)} {stmt.op}= {self.expr(stmt.value)};"
-        if isinstance(stmt, Evaluate):
+        if isinstance(stmt, ir.Evaluate):
             return f"call{at} {self.expr(stmt.call)};"
-        if isinstance(stmt, Assume):
+        if isinstance(stmt, ir.Assume):
             return f"assume{at} {self.expr(stmt.condition)};"
-        if isinstance(stmt, If):
+        if isinstance(stmt, ir.If):
             otherwise = f" else {self.block(stmt.otherwise, depth)}" if stmt.otherwise else ""
             return f"if{at} {self.expr(stmt.condition)} then {self.block(stmt.then, depth)}{otherwise}"
-        if isinstance(stmt, For):
+        if isinstance(stmt, ir.For):
             init = self.stmt(stmt.init, depth) if stmt.init is not None else ";"
             condition = f" {self.expr(stmt.condition)}" if stmt.condition is not None else ""
             step = f" {self.stmt(stmt.step, depth)}" if stmt.step is not None else " ;"
             return f"for{at} ({init}{condition};{step}) {self.block(stmt.body, depth)}"
-        if isinstance(stmt, While):
+        if isinstance(stmt, ir.While):
             return f"while{at} {self.expr(stmt.condition)} do {self.block(stmt.body, depth)}"
-        if isinstance(stmt, MemoryOperation):
+        if isinstance(stmt, ir.MemoryOperation):
             result = f" -> {self.expr(stmt.result)}" if stmt.result is not None else ""
             return f"memory{at} {stmt.name}({self.list(stmt.args)}){result};"
-        if isinstance(stmt, Return) and stmt.value is not None:
+        if isinstance(stmt, ir.Return) and stmt.value is not None:
             return f"return{at} {self.expr(stmt.value)};"
         return f"{type(stmt).__name__.lower()}{at};"
 
-    def expr(self, expr: Expr) -> str:
+    def expr(self, expr: ir.Expr) -> str:
         return f"{self.bare(expr)}{self.at(expr.span)}"
 
-    def bare(self, expr: Expr) -> str:
-        if isinstance(expr, Local):
+    def bare(self, expr: ir.Expr) -> str:
+        if isinstance(expr, ir.Local):
             return expr.name
-        if isinstance(expr, Literal):
+        if isinstance(expr, ir.Literal):
             return _literal(expr)
-        if isinstance(expr, Binary):
+        if isinstance(expr, ir.Binary):
             return f"({self.expr(expr.left)} {expr.op} {self.expr(expr.right)})"
-        if isinstance(expr, Global):
+        if isinstance(expr, ir.Global):
             return f"${expr.name}"
-        if isinstance(expr, Intrinsic):
+        if isinstance(expr, ir.Intrinsic):
             return f"{expr.name}({self.list(expr.args)})"
-        if isinstance(expr, Swizzle):
+        if isinstance(expr, ir.Swizzle):
             return f"{self.expr(expr.value)}.{expr.components}"
-        if isinstance(expr, Construct):
+        if isinstance(expr, ir.Construct):
             return f"{spell(expr.type)}{{{self.list(expr.args)}}}"
-        if isinstance(expr, Call):
+        if isinstance(expr, ir.Call):
             return f"${expr.function.split('(')[0]}({self.list(expr.args)})"
-        if isinstance(expr, Unary):
+        if isinstance(expr, ir.Unary):
             return f"({expr.op} {self.expr(expr.operand)})"
-        if isinstance(expr, Member):
+        if isinstance(expr, ir.Member):
             return f"{self.expr(expr.value)}.{expr.field}"
-        if isinstance(expr, Index):
+        if isinstance(expr, ir.Index):
             return f"{self.expr(expr.value)}[{self.expr(expr.index)}]"
         return f"({self.expr(expr.condition)} ? {self.expr(expr.yes)} : {self.expr(expr.no)})"
 
-    def list(self, exprs: Iterable[Expr]) -> str:
+    def list(self, exprs: Iterable[ir.Expr]) -> str:
         return ", ".join([self.expr(expr) for expr in exprs])
 
 
-def _literal(literal: Literal) -> str:
+def _literal(literal: ir.Literal) -> str:
     if literal.type == FLOAT:
         return _number(literal.value)
     if literal.type == BOOL:

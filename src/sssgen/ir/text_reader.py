@@ -6,46 +6,8 @@ import re
 from collections.abc import Callable
 from math import isfinite
 
+from sssgen.ir import nodes as ir
 from sssgen.ir.memory_operations import MEMORY
-from sssgen.ir.nodes import (
-    NOWHERE,
-    Assign,
-    Assume,
-    Binary,
-    Block,
-    Break,
-    Call,
-    Constant,
-    Construct,
-    Continue,
-    Declare,
-    Discard,
-    Evaluate,
-    Expr,
-    For,
-    Function,
-    Global,
-    If,
-    Index,
-    Intrinsic,
-    Literal,
-    Local,
-    Member,
-    MemoryOperation,
-    Module,
-    Param,
-    Return,
-    Select,
-    Span,
-    Stmt,
-    StructDecl,
-    Swizzle,
-    Unary,
-    Uniform,
-    Variable,
-    While,
-    function_key,
-)
 from sssgen.ir.rules import inferred
 from sssgen.ir.types import BOOL, BY_NAME, FLOAT, INT, UINT, VOID, Array, Field, Struct, Type
 
@@ -58,7 +20,7 @@ class TextError(ValueError):
         self.message, self.line, self.column = message, line, column
 
 
-def read_module(text: str) -> Module:
+def read_module(text: str) -> ir.Module:
     """The module in the text form. Raises TextError."""
     return _Reader(text).module()
 
@@ -160,13 +122,13 @@ class _Reader:
             raise self.fail(f"{text} is not finite", 1)
         return value
 
-    def span(self) -> Span:
+    def span(self) -> ir.Span:
         if self.tokens[self.next][0] != "span":
-            return NOWHERE
+            return ir.NOWHERE
         file, line, start, *end = self.kind("span")[1:].replace("-", ":").split(":")
         if file not in self.files:
             raise self.fail(f"there is no file {file}", 1)
-        return Span(self.files[file], int(line), int(start), int(end[0] if end[1:] else line), int(end[-1]))
+        return ir.Span(self.files[file], int(line), int(start), int(end[0] if end[1:] else line), int(end[-1]))
 
     def type(self) -> Type:
         name = self.name()
@@ -186,7 +148,7 @@ class _Reader:
 
     # Declarations
 
-    def module(self) -> Module:
+    def module(self) -> ir.Module:
         declarations: dict[str, list[object]] = {
             "struct": [],
             "const": [],
@@ -214,14 +176,14 @@ class _Reader:
                 if keyword == "function" and not self.take("slot"):
                     bodies[len(declarations[keyword]) - 1] = self.next
                     self.skip_block()
-            functions: list[Function] = declarations["function"]  # type: ignore[assignment]  # what `function` returns
+            functions: list[ir.Function] = declarations["function"]  # type: ignore[assignment]  # what `function` returns
             for index, start in bodies.items():
                 function, self.next = functions[index], start
                 self.locals = {param.name: param.type for param in function.params}
                 functions[index] = function._replace(body=self.block())
         except RecursionError:
             raise self.fail("nested too deeply") from None
-        module = Module(*(tuple(of_one_kind) for of_one_kind in declarations.values()))  # type: ignore[arg-type]  # its fields, in order
+        module = ir.Module(*(tuple(of_one_kind) for of_one_kind in declarations.values()))  # type: ignore[arg-type]  # its fields, in order
         return module._replace(workgroup=self.workgroup)
 
     def skip_block(self) -> None:
@@ -233,22 +195,22 @@ class _Reader:
                 raise self.fail("a '}' is missing")
             self.next += 1
 
-    def struct(self, doc: str, span: Span) -> StructDecl:
+    def struct(self, doc: str, span: ir.Span) -> ir.StructDecl:
         name, fields = self.name(), []
         self.expect("{")
         while not self.take("}"):
             fields.append(Field(type=self.type(), name=self.name(), quantity=self.quantity()))
             self.expect(";")
         self.types[name] = Struct(name, tuple(fields))
-        return StructDecl(self.types[name], doc, span)
+        return ir.StructDecl(self.types[name], doc, span)
 
-    def const(self, doc: str, span: Span) -> Constant:
+    def const(self, doc: str, span: ir.Span) -> ir.Constant:
         type_, name = self.type(), self.name()
         self.expect("=")
         self.globals[name] = type_
-        return Constant(name, type_, self.expr(), span)
+        return ir.Constant(name, type_, self.expr(), span)
 
-    def uniform(self, doc: str, span: Span) -> Uniform:
+    def uniform(self, doc: str, span: ir.Span) -> ir.Uniform:
         type_, name, quantity = self.type(), self.name(), self.quantity()
         self.globals[name] = type_
         default = []
@@ -258,9 +220,9 @@ class _Reader:
             while self.take(","):
                 default.append(self.number())
             self.expect(")")
-        return Uniform(name, type_, tuple(default), self.hints(), quantity, doc, span)
+        return ir.Uniform(name, type_, tuple(default), self.hints(), quantity, doc, span)
 
-    def variable(self, doc: str, span: Span) -> Variable:
+    def variable(self, doc: str, span: ir.Span) -> ir.Variable:
         storage, type_, name = self.name(), self.type(), self.name()
         values: dict[str, float | str] = {
             "builtin": "", "interpolation": "", "location": -1.0, "access": "", "layout": ""
@@ -272,7 +234,7 @@ class _Reader:
         value = self.expr() if self.take("=") else None
         self.globals[name] = type_
         builtin, interpolation, location, access, layout = values.values()
-        return Variable(
+        return ir.Variable(
             name, type_, storage, value, str(builtin), str(interpolation), int(location), doc, span, str(access),
             str(layout),
         )  # fmt: skip
@@ -295,7 +257,7 @@ class _Reader:
                 self.expect(",")
         return name, tuple(args)
 
-    def function(self, doc: str, span: Span) -> Function:
+    def function(self, doc: str, span: ir.Span) -> ir.Function:
         result, name, params = self.type(), self.name(), []
         self.expect("(")
         while not self.take(")"):
@@ -303,54 +265,54 @@ class _Reader:
             type_, param = self.type(), self.name()
             quantity = self.quantity()
             passes = self.name() if self.take("passes") else ""
-            params.append(Param(param, type_, direction, quantity, place, passes))
+            params.append(ir.Param(param, type_, direction, quantity, place, passes))
             if self.peek() != ")":
                 self.expect(",")
-        function = Function(name, tuple(params), result, self.quantity(), None, doc, span)
+        function = ir.Function(name, tuple(params), result, self.quantity(), None, doc, span)
         self.results[function.key] = result
         return function
 
     # Statements
 
-    def block(self) -> Block:
+    def block(self) -> ir.Block:
         self.expect("{")
-        stmts: list[Stmt] = []
+        stmts: list[ir.Stmt] = []
         while not self.take("}"):
             stmts.append(self.stmt())
         return tuple(stmts)
 
-    def stmt(self) -> Stmt:
+    def stmt(self) -> ir.Stmt:
         keyword = self.name()
         span = self.span()
-        stmt: Stmt
+        stmt: ir.Stmt
         if keyword == "if":
             condition = self.expr()
             self.expect("then")
             then = self.block()
-            return If(condition, then, self.block() if self.take("else") else (), span)
+            return ir.If(condition, then, self.block() if self.take("else") else (), span)
         if keyword == "while":
             condition = self.expr()
             self.expect("do")
-            return While(condition, self.block(), span)
+            return ir.While(condition, self.block(), span)
         if keyword == "for":
             return self.loop(span)
         if keyword == "var":
             type_, name = self.type(), self.name()
-            stmt = Declare(name, type_, self.expr() if self.take("=") else None, span)
+            stmt = ir.Declare(name, type_, self.expr() if self.take("=") else None, span)
             self.locals[name] = type_
         elif keyword == "set":
             target, op = self.expr(), self.kind("op")
             if op[-1] != "=" or op in ("==", "!=", "<=", ">="):
                 raise self.fail(f"an assignment is expected here, not '{op}'", 1)
-            stmt = Assign(target, op[:-1], self.expr(), span)
+            stmt = ir.Assign(target, op[:-1], self.expr(), span)
         elif keyword == "call":
-            stmt = Evaluate(self.expr(), span)
+            stmt = ir.Evaluate(self.expr(), span)
         elif keyword == "memory":
             stmt = self.memory(span)
         elif keyword == "assume":
-            stmt = Assume(self.expr(), span)
+            stmt = ir.Assume(self.expr(), span)
         elif keyword == "return":
-            stmt = Return(None if self.peek() == ";" else self.expr(), span)
+            stmt = ir.Return(None if self.peek() == ";" else self.expr(), span)
         elif keyword in _JUMPS:
             stmt = _JUMPS[keyword](span)
         else:
@@ -358,47 +320,47 @@ class _Reader:
         self.expect(";")
         return stmt
 
-    def memory(self, span: Span) -> MemoryOperation:
+    def memory(self, span: ir.Span) -> ir.MemoryOperation:
         name = self.name()
         if name not in MEMORY:
             raise self.fail(f"there is no operation '{name}'", 1)
         args = self.list("(", ")")
         if self.peek() != "-":
-            return MemoryOperation(name, args, None, span)
+            return ir.MemoryOperation(name, args, None, span)
         self.expect("-")
         self.expect(">")
-        return MemoryOperation(name, args, self.expr(), span)
+        return ir.MemoryOperation(name, args, self.expr(), span)
 
-    def loop(self, span: Span) -> For:
+    def loop(self, span: ir.Span) -> ir.For:
         self.expect("(")
         init = None if self.take(";") else self.stmt()
         condition = None if self.peek() == ";" else self.expr()
         self.expect(";")
         step = None if self.take(";") else self.stmt()
         self.expect(")")
-        return For(init, condition, step, self.block(), span)
+        return ir.For(init, condition, step, self.block(), span)
 
     # Expressions
 
-    def expr(self) -> Expr:
+    def expr(self) -> ir.Expr:
         kind, text, _ = self.tokens[self.next]
         self.next += 1
-        expr: Expr
+        expr: ir.Expr
         if kind == "number":
             expr = self.literal(text)
         elif text in ("true", "false"):
-            expr = Literal(BOOL, text == "true", NOWHERE)
+            expr = ir.Literal(BOOL, text == "true", ir.NOWHERE)
         elif text == "(":
             expr = self.parenthesized()
         elif kind == "name" and text.startswith("$"):
             expr = self.of_module(text[1:])
         elif kind == "name" and (self.peek() == "{" or (self.peek() == "[" and self.peek(3) == "{")):
             self.next -= 1
-            expr = Construct(self.type(), self.list("{", "}"), NOWHERE)
+            expr = ir.Construct(self.type(), self.list("{", "}"), ir.NOWHERE)
         elif kind == "name" and self.peek() == "(":
-            expr = self.inferred(Intrinsic(VOID, text, self.list("(", ")"), NOWHERE), text)
+            expr = self.inferred(ir.Intrinsic(VOID, text, self.list("(", ")"), ir.NOWHERE), text)
         elif kind == "name":
-            expr = Local(self.type_of(self.locals, text), text, NOWHERE)
+            expr = ir.Local(self.type_of(self.locals, text), text, ir.NOWHERE)
         else:
             raise self.fail(f"an expression is expected here, not '{text}'", 1)
         expr = expr._replace(span=self.span())
@@ -406,64 +368,64 @@ class _Reader:
             if self.take("."):
                 name = self.name()
                 is_struct = isinstance(expr.type, Struct)
-                expr = (Member if is_struct else Swizzle)(VOID, expr, name, NOWHERE)
+                expr = (ir.Member if is_struct else ir.Swizzle)(VOID, expr, name, ir.NOWHERE)
                 expr = self.inferred(expr, f".{name}")
             else:
                 self.expect("[")
-                expr = self.inferred(Index(VOID, expr, self.expr(), NOWHERE), "an index")
+                expr = self.inferred(ir.Index(VOID, expr, self.expr(), ir.NOWHERE), "an index")
                 self.expect("]")
             expr = expr._replace(span=self.span())
         return expr
 
-    def literal(self, text: str) -> Literal:
+    def literal(self, text: str) -> ir.Literal:
         if text.endswith("u"):
-            return Literal(UINT, int(text[:-1]), NOWHERE) if text[:-1].isdigit() else self.no_number(text)
+            return ir.Literal(UINT, int(text[:-1]), ir.NOWHERE) if text[:-1].isdigit() else self.no_number(text)
         if text.lstrip("-").isdigit():
-            return Literal(INT, int(text), NOWHERE)
-        return Literal(FLOAT, float(text), NOWHERE) if isfinite(float(text)) else self.no_number(text)
+            return ir.Literal(INT, int(text), ir.NOWHERE)
+        return ir.Literal(FLOAT, float(text), ir.NOWHERE) if isfinite(float(text)) else self.no_number(text)
 
-    def no_number(self, text: str) -> Literal:
+    def no_number(self, text: str) -> ir.Literal:
         raise self.fail(f"{text} is not a number", 1)
 
-    def parenthesized(self) -> Expr:
+    def parenthesized(self) -> ir.Expr:
         """The expression after an opening parenthesis: a negation, a binary operator, or a choice."""
         if self.peek() in ("-", "!", "~"):
             op = self.kind("op")
-            return self.closed(Unary(VOID, op, self.expr(), NOWHERE), op)
+            return self.closed(ir.Unary(VOID, op, self.expr(), ir.NOWHERE), op)
         left = self.expr()
         op = self.kind("op")
         if op == "?":
             yes = self.expr()
             self.expect(":")
-            return self.closed(Select(VOID, left, yes, self.expr(), NOWHERE), op)
-        return self.closed(Binary(VOID, op, left, self.expr(), NOWHERE), op)
+            return self.closed(ir.Select(VOID, left, yes, self.expr(), ir.NOWHERE), op)
+        return self.closed(ir.Binary(VOID, op, left, self.expr(), ir.NOWHERE), op)
 
-    def closed(self, expr: Expr, op: str) -> Expr:
+    def closed(self, expr: ir.Expr, op: str) -> ir.Expr:
         expr = self.inferred(expr, f"'{op}'")
         self.expect(")")
         return expr
 
-    def of_module(self, name: str) -> Expr:
+    def of_module(self, name: str) -> ir.Expr:
         if self.peek() != "(":
-            return Global(self.type_of(self.globals, name), name, NOWHERE)
+            return ir.Global(self.type_of(self.globals, name), name, ir.NOWHERE)
         args = self.list("(", ")")
-        key = function_key(name, [arg.type for arg in args])
-        return Call(self.type_of(self.results, key), key, args, NOWHERE)
+        key = ir.function_key(name, [arg.type for arg in args])
+        return ir.Call(self.type_of(self.results, key), key, args, ir.NOWHERE)
 
     def type_of(self, among: dict[str, Type], name: str) -> Type:
         if name not in among:
             raise self.fail(f"'{name}' is not declared", 1)
         return among[name]
 
-    def inferred(self, expr: Expr, subject: str) -> Expr:
+    def inferred(self, expr: ir.Expr, subject: str) -> ir.Expr:
         """The expression with the type that follows from its operands."""
         type_ = inferred(expr)
         if type_ is None:
             raise self.fail(f"{subject} is not defined for these operands", 1)
         return expr._replace(type=type_)
 
-    def list(self, opening: str, closing: str) -> tuple[Expr, ...]:
-        exprs: list[Expr] = []
+    def list(self, opening: str, closing: str) -> tuple[ir.Expr, ...]:
+        exprs: list[ir.Expr] = []
         self.expect(opening)
         while not self.take(closing):
             exprs.append(self.expr())
@@ -472,4 +434,4 @@ class _Reader:
         return tuple(exprs)
 
 
-_JUMPS: dict[str, Callable[[Span], Stmt]] = {"break": Break, "continue": Continue, "discard": Discard}
+_JUMPS: dict[str, Callable[[ir.Span], ir.Stmt]] = {"break": ir.Break, "continue": ir.Continue, "discard": ir.Discard}

@@ -9,41 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from math import isfinite
 
+from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.memory_operations import MEMORY
-from sssgen.ir.nodes import (
-    Assign,
-    Assume,
-    Binary,
-    Block,
-    Break,
-    Call,
-    Construct,
-    Continue,
-    Declare,
-    Discard,
-    Evaluate,
-    Expr,
-    For,
-    Function,
-    Global,
-    If,
-    Index,
-    Intrinsic,
-    Literal,
-    Local,
-    Member,
-    MemoryOperation,
-    Module,
-    Return,
-    Span,
-    Stmt,
-    Swizzle,
-    Unary,
-    Uniform,
-    Variable,
-    While,
-)
 from sssgen.ir.rules import FLOAT_MAX, constructs, element_type, inferred, is_type, operator_type, returns
 from sssgen.ir.types import (
     BOOL,
@@ -71,14 +39,14 @@ class InvalidIR(AssertionError):
         super().__init__("invalid IR:\n" + "\n".join(problems))
 
 
-def check_module(module: Module, linked: bool = False) -> None:
+def check_module(module: ir.Module, linked: bool = False) -> None:
     """Raises InvalidIR if a module breaks a rule."""
     problems = verify(module, linked)
     if problems:
         raise InvalidIR(problems)
 
 
-def verify(module: Module, linked: bool = False) -> list[str]:
+def verify(module: ir.Module, linked: bool = False) -> list[str]:
     """The faults of a module, with their positions. `linked`: no slots are left, and callees come first."""
     verifier = _Verifier(module, linked)
     verifier.signatures()
@@ -88,7 +56,7 @@ def verify(module: Module, linked: bool = False) -> list[str]:
 
 
 class _Verifier:
-    def __init__(self, module: Module, linked: bool) -> None:
+    def __init__(self, module: ir.Module, linked: bool) -> None:
         self.checked = module
         self.linked = linked
         self.problems: list[str] = []
@@ -96,11 +64,11 @@ class _Verifier:
         self.globals: dict[str, Type] = {}
         self.written: set[str] = set()
         """The module variables that can be written."""
-        self.functions: dict[str, Function] = {}
-        self.function_at_hand: Function | None = None
+        self.functions: dict[str, ir.Function] = {}
+        self.function_at_hand: ir.Function | None = None
         self.scopes: list[dict[str, Type]] = []
 
-    def report(self, span: Span, message: str) -> None:
+    def report(self, span: ir.Span, message: str) -> None:
         place = f"{span.file}:{span.line}:{span.column}: " if span.file else ""
         inside = f" (in {self.function_at_hand.key})" if self.function_at_hand is not None else ""
         self.problems.append(f"{place}{message}{inside}")
@@ -142,9 +110,9 @@ class _Verifier:
             self.expression(constant.value)
             self.same(constant.value.type, constant.type, constant.span, f"constant '{constant.name}'")
             for part in subexpressions(constant.value):
-                reads = isinstance(part, Intrinsic) and BUILTINS[part.name].reads_neighbours_or_textures
-                varies = isinstance(part, Global) and part.name not in constants
-                if reads or varies or isinstance(part, Local | Call):
+                reads = isinstance(part, ir.Intrinsic) and BUILTINS[part.name].reads_neighbours_or_textures
+                varies = isinstance(part, ir.Global) and part.name not in constants
+                if reads or varies or isinstance(part, ir.Local | ir.Call):
                     self.report(part.span, f"the value of '{constant.name}' is not constant")
             constants.add(constant.name)
             self.globals[constant.name] = constant.type
@@ -156,14 +124,14 @@ class _Verifier:
             self.function(function)
             self.function_at_hand = None
 
-    def unique(self, names: Iterable[tuple[str, Span]], message: str) -> None:
+    def unique(self, names: Iterable[tuple[str, ir.Span]], message: str) -> None:
         seen = set()
         for name, span in names:
             if name in seen:
                 self.report(span, f"'{name}' {message}")
             seen.add(name)
 
-    def type(self, type_: Type, span: Span, excluded: tuple[type, ...] = ()) -> None:
+    def type(self, type_: Type, span: ir.Span, excluded: tuple[type, ...] = ()) -> None:
         """A type that is used: it is valid, its structs are declared, and it is none of the `excluded` classes."""
         if isinstance(type_, excluded) or not is_type(type_):
             self.report(span, f"this cannot be {type_!r}")
@@ -172,7 +140,7 @@ class _Verifier:
         if isinstance(innermost, Struct) and self.structs.get(innermost.name) != innermost:
             self.report(span, f"struct '{innermost.name}' is not declared with these fields")
 
-    def uniform(self, uniform: Uniform) -> None:
+    def uniform(self, uniform: ir.Uniform) -> None:
         type_, span, name = uniform.type, uniform.span, uniform.name
         self.globals[name] = type_
         self.type(type_, span, (type(VOID),))
@@ -185,7 +153,7 @@ class _Verifier:
         elif not all(_fits(value, kind_of(innermost)) for value in uniform.default):
             self.report(span, f"'{name}' has a default that is not a value of {spell(innermost)}: {uniform.default}")
 
-    def variable(self, variable: Variable) -> None:
+    def variable(self, variable: ir.Variable) -> None:
         name, span = variable.name, variable.span
         self.type(variable.type, span, (Sampler, type(VOID)))
         if variable.storage not in ("private", "in", "out", "shared", "buffer"):
@@ -198,7 +166,7 @@ class _Verifier:
             self.expression(variable.value)
             self.same(variable.value.type, variable.type, span, f"'{name}'")
             for part in subexpressions(variable.value):
-                if isinstance(part, Call):
+                if isinstance(part, ir.Call):
                     self.report(part.span, f"the value of '{name}' contains a call")
         self.globals[name] = variable.type
         if variable.storage != "in":
@@ -221,7 +189,7 @@ class _Verifier:
         for key in pending:
             self.report(self.functions[key].span, f"{key} is recursive, or calls a recursive function")
 
-    def function(self, function: Function) -> None:
+    def function(self, function: ir.Function) -> None:
         span = function.span
         self.type(function.result, span, (Sampler,))
         self.scopes = [{}]
@@ -242,7 +210,7 @@ class _Verifier:
 
     # Statements
 
-    def declare(self, name: str, type_: Type, span: Span) -> None:
+    def declare(self, name: str, type_: Type, span: ir.Span) -> None:
         if self.local(name) is not None:
             self.report(span, f"'{name}' hides a variable of the same name")
         self.scopes[-1][name] = type_
@@ -250,50 +218,50 @@ class _Verifier:
     def local(self, name: str) -> Type | None:
         return next((scope[name] for scope in reversed(self.scopes) if name in scope), None)
 
-    def block(self, block: Block, loop: bool) -> None:
+    def block(self, block: ir.Block, loop: bool) -> None:
         for stmt in block:
             self.statement(stmt, loop)
 
-    def inner(self, block: Block, loop: bool) -> None:
+    def inner(self, block: ir.Block, loop: bool) -> None:
         self.scopes.append({})
         self.block(block, loop)
         self.scopes.pop()
 
-    def statement(self, stmt: Stmt, loop: bool) -> None:
-        if isinstance(stmt, Declare):
+    def statement(self, stmt: ir.Stmt, loop: bool) -> None:
+        if isinstance(stmt, ir.Declare):
             self.type(stmt.type, stmt.span, (Sampler, type(VOID)))
             if stmt.value is not None:
                 self.expression(stmt.value)
                 self.same(stmt.value.type, stmt.type, stmt.span, f"'{stmt.name}'")
             self.declare(stmt.name, stmt.type, stmt.span)
-        elif isinstance(stmt, Assign):
+        elif isinstance(stmt, ir.Assign):
             self.assign(stmt)
-        elif isinstance(stmt, Evaluate):
-            if not isinstance(stmt.call, Call):
+        elif isinstance(stmt, ir.Evaluate):
+            if not isinstance(stmt.call, ir.Call):
                 self.report(stmt.span, f"{with_article(type(stmt.call).__name__)} is evaluated and dropped")
             self.expression(stmt.call, nothing=True)
-        elif isinstance(stmt, Assume):
+        elif isinstance(stmt, ir.Assume):
             self.condition(stmt.condition)
-        elif isinstance(stmt, If):
+        elif isinstance(stmt, ir.If):
             self.condition(stmt.condition)
             self.inner(stmt.then, loop)
             self.inner(stmt.otherwise, loop)
-        elif isinstance(stmt, While):
+        elif isinstance(stmt, ir.While):
             self.condition(stmt.condition)
             self.inner(stmt.body, True)
-        elif isinstance(stmt, For):
+        elif isinstance(stmt, ir.For):
             self.loop(stmt)
-        elif isinstance(stmt, Break | Continue):
+        elif isinstance(stmt, ir.Break | ir.Continue):
             if not loop:
                 self.report(stmt.span, f"{type(stmt).__name__.lower()} outside a loop")
-        elif isinstance(stmt, Return):
+        elif isinstance(stmt, ir.Return):
             self.leave(stmt)
-        elif isinstance(stmt, MemoryOperation):
+        elif isinstance(stmt, ir.MemoryOperation):
             self.memory(stmt)
-        elif not isinstance(stmt, Discard):
-            self.report(Span("", 0, 0, 0, 0), f"not a statement: {stmt!r}")
+        elif not isinstance(stmt, ir.Discard):
+            self.report(ir.Span("", 0, 0, 0, 0), f"not a statement: {stmt!r}")
 
-    def assign(self, stmt: Assign) -> None:
+    def assign(self, stmt: ir.Assign) -> None:
         self.expression(stmt.target)
         self.expression(stmt.value)
         self.writable(stmt.target)
@@ -303,7 +271,7 @@ class _Verifier:
         elif operator_type(stmt.op, target, value) != target or target == BOOL:
             self.report(stmt.span, f"'{stmt.op}=' is not defined for {_name(target)} and {_name(value)}")
 
-    def memory(self, stmt: MemoryOperation) -> None:
+    def memory(self, stmt: ir.MemoryOperation) -> None:
         row = MEMORY[stmt.name]
         for arg in stmt.args:
             self.expression(arg)
@@ -313,11 +281,11 @@ class _Verifier:
             self.expression(stmt.result)
             self.writable(stmt.result)
 
-    def loop(self, stmt: For) -> None:
+    def loop(self, stmt: ir.For) -> None:
         self.scopes.append({})
         for part in (stmt.init, stmt.step):
             if part is not None:
-                allowed = Assign | Evaluate if part is stmt.step else Declare | Assign | Evaluate
+                allowed = ir.Assign | ir.Evaluate if part is stmt.step else ir.Declare | ir.Assign | ir.Evaluate
                 if isinstance(part, allowed):
                     self.statement(part, False)
                 else:
@@ -327,35 +295,35 @@ class _Verifier:
         self.inner(stmt.body, True)
         self.scopes.pop()
 
-    def leave(self, stmt: Return) -> None:
+    def leave(self, stmt: ir.Return) -> None:
         wanted = self.function_at_hand.result if self.function_at_hand is not None else VOID
         if stmt.value is not None:
             self.expression(stmt.value)
         returned = stmt.value.type if stmt.value is not None else VOID
         self.same(returned, wanted, stmt.span, "the return")
 
-    def condition(self, expr: Expr) -> None:
+    def condition(self, expr: ir.Expr) -> None:
         self.expression(expr)
         self.same(expr.type, BOOL, expr.span, "a condition")
 
-    def same(self, actual: Type, wanted: Type, span: Span, subject: str) -> None:
+    def same(self, actual: Type, wanted: Type, span: ir.Span, subject: str) -> None:
         if actual != wanted:
             self.report(span, f"{subject} is {_a_type(wanted)}, but gets {_a_type(actual)}")
 
     # Expressions
 
-    def writable(self, target: Expr) -> None:
+    def writable(self, target: ir.Expr) -> None:
         inner = target
-        while isinstance(inner, Swizzle | Index | Member):
-            if isinstance(inner, Swizzle) and len(set(inner.components)) != len(inner.components):
+        while isinstance(inner, ir.Swizzle | ir.Index | ir.Member):
+            if isinstance(inner, ir.Swizzle) and len(set(inner.components)) != len(inner.components):
                 self.report(target.span, f"'.{inner.components}' is assigned to, and names a component twice")
             inner = inner.value
-        variable = isinstance(inner, Local) or (isinstance(inner, Global) and inner.name in self.written)
+        variable = isinstance(inner, ir.Local) or (isinstance(inner, ir.Global) and inner.name in self.written)
         if not variable or isinstance(target.type, Sampler):
             place = f"{with_article(type(inner).__name__)} of type {_name(target.type)}"
             self.report(target.span, f"{place} cannot be assigned to")
 
-    def expression(self, expr: Expr, nothing: bool = False) -> None:
+    def expression(self, expr: ir.Expr, nothing: bool = False) -> None:
         """An expression and its operands; with `nothing` it may be a call without a result."""
         if expr.type == VOID and not nothing:
             self.report(expr.span, "a call without a result is used as a value")
@@ -365,23 +333,23 @@ class _Verifier:
             for operand in operands(node):
                 if operand.type == VOID:
                     self.report(operand.span, "a call without a result is used as a value")
-                passed = isinstance(node, Call | Intrinsic) and isinstance(operand, Local | Global)
+                passed = isinstance(node, ir.Call | ir.Intrinsic) and isinstance(operand, ir.Local | ir.Global)
                 if isinstance(operand.type, Sampler) and not passed:
                     self.report(operand.span, "a sampler can only be named, and only as an argument")
 
-    def node(self, node: Expr) -> Iterator[str]:
+    def node(self, node: ir.Expr) -> Iterator[str]:
         """The faults of one node, on the assumption that its operands are valid."""
-        if isinstance(node, Literal):
+        if isinstance(node, ir.Literal):
             if node.type not in (FLOAT, INT, UINT, BOOL) or not _is_value(node.value, kind_of(node.type)):
                 yield f"{node.value!r} is not a value of type {_name(node.type)}"
-        elif isinstance(node, Local):
+        elif isinstance(node, ir.Local):
             yield from self.named(node, self.local(node.name) if self.scopes else None)
-        elif isinstance(node, Global):
+        elif isinstance(node, ir.Global):
             yield from self.named(node, self.globals.get(node.name))
-        elif isinstance(node, Construct):
+        elif isinstance(node, ir.Construct):
             if not constructs(node.type, [arg.type for arg in node.args]):
                 yield f"{_name(node.type)} cannot be constructed from {_names(node.args)}"
-        elif isinstance(node, Call):
+        elif isinstance(node, ir.Call):
             yield from self.call(node)
         else:
             wanted = inferred(node)
@@ -390,18 +358,18 @@ class _Verifier:
             elif wanted != node.type:
                 types = _names(operands(node))
                 yield f"{_operation(node)} of {types} is {_a_type(wanted)}, not {_a_type(node.type)}"
-            elif isinstance(node, Index) and isinstance(node.index, Literal):
+            elif isinstance(node, ir.Index) and isinstance(node.index, ir.Literal):
                 elements = element_type(node.value.type)
                 if elements is not None and not 0 <= node.index.value < (elements[1] or node.index.value + 1):
                     yield f"index {node.index.value} is outside {_name(node.value.type)}"
 
-    def named(self, node: Local | Global, declared: Type | None) -> Iterator[str]:
+    def named(self, node: ir.Local | ir.Global, declared: Type | None) -> Iterator[str]:
         if declared is None:
             yield f"'{node.name}' is not declared here"
         elif declared != node.type:
             yield f"'{node.name}' is {_a_type(declared)}, not {_a_type(node.type)}"
 
-    def call(self, node: Call) -> Iterator[str]:
+    def call(self, node: ir.Call) -> Iterator[str]:
         function = self.functions.get(node.function)
         if function is None:
             yield f"there is no function {node.function}"
@@ -440,18 +408,18 @@ def _a_type(type_: Type) -> str:
     return with_article(_name(type_))
 
 
-def _names(args: Iterable[Expr]) -> str:
+def _names(args: Iterable[ir.Expr]) -> str:
     return f"({', '.join(_name(arg.type) for arg in args)})"
 
 
-def _operation(node: Expr) -> str:
+def _operation(node: ir.Expr) -> str:
     """A short name of a node, for messages."""
-    if isinstance(node, Unary | Binary):
+    if isinstance(node, ir.Unary | ir.Binary):
         return f"'{node.op}'"
-    if isinstance(node, Intrinsic):
+    if isinstance(node, ir.Intrinsic):
         return node.name
-    if isinstance(node, Swizzle):
+    if isinstance(node, ir.Swizzle):
         return f"'.{node.components}'"
-    if isinstance(node, Member):
+    if isinstance(node, ir.Member):
         return f"'.{node.field}'"
-    return "an index" if isinstance(node, Index) else "a choice"
+    return "an index" if isinstance(node, ir.Index) else "a choice"

@@ -10,36 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from sssgen.ir.nodes import (
-    Assign,
-    Assume,
-    Binary,
-    Block,
-    Call,
-    Construct,
-    Declare,
-    Discard,
-    Evaluate,
-    Expr,
-    For,
-    Function,
-    Global,
-    If,
-    Intrinsic,
-    Literal,
-    Local,
-    Member,
-    Module,
-    Param,
-    Return,
-    Select,
-    Stmt,
-    Swizzle,
-    Unary,
-    While,
-)
+from sssgen.ir import nodes as ir
 from sssgen.ir.types import Array, Struct, Type
-from sssgen.ir.walk import root, subexpressions
+from sssgen.ir.walk import expressions, operands, root, subexpressions
+from sssgen.passes.scopes import outs_of
 
 
 class Needs(NamedTuple):
@@ -51,7 +25,7 @@ class Needs(NamedTuple):
 
 
 class Cleaned(NamedTuple):
-    function: Function
+    function: ir.Function
     needs: Needs
     acts: bool
 
@@ -61,13 +35,13 @@ class Unit:
 
     __slots__ = ("jumps", "kept", "needs", "otherwise", "parent", "stmt", "then", "variables")
 
-    def __init__(self, stmt: Stmt, parent: Unit | None) -> None:
+    def __init__(self, stmt: ir.Stmt, parent: Unit | None) -> None:
         self.stmt = stmt
         self.parent = parent
         self.kept = False
         self.variables: list[int] = []
         """The variables that the statement itself reads or writes."""
-        self.needs: list[Call | Global | Construct | Declare] = []
+        self.needs: list[ir.Call | ir.Global | ir.Construct | ir.Declare] = []
         self.then: Sequence[Unit] = ()
         """The units of an if's first arm or a loop's body."""
         self.otherwise: Sequence[Unit] = ()
@@ -79,13 +53,10 @@ class Unit:
 class Cleaner:
     """Cleans the functions of a module, each at its first use."""
 
-    def __init__(self, module: Module) -> None:
+    def __init__(self, module: ir.Module) -> None:
         self.functions = {function.key: function for function in module.functions}
         self.done: dict[str, Cleaned] = {}
-        self.outs: dict[str, tuple[int, ...]] = {
-            key: tuple([index for index, param in enumerate(function.params) if param.direction != "in"])
-            for key, function in self.functions.items()
-        }
+        self.outs = outs_of(module.functions)
 
     def cleaned(self, key: str) -> Cleaned:
         cleaned = self.done.get(key)
@@ -114,7 +85,7 @@ class FunctionCleaner:
     visible variable is hidden, so a name means its latest declaration.
     """
 
-    def __init__(self, cleaner: Cleaner, function: Function) -> None:
+    def __init__(self, cleaner: Cleaner, function: ir.Function) -> None:
         self.cleaner = cleaner
         self.function = function
         self.numbers: dict[str, int] = {}
@@ -144,10 +115,10 @@ class FunctionCleaner:
     def keep_assumptions(self) -> None:
         """Keeps the assumptions about values that are live without them."""
         kept = [need for unit in self.units if unit.kept for need in unit.needs]
-        read = {need.name for need in kept if isinstance(need, Global)}
-        read.update(*(self.cleaner.reads(need.function) for need in kept if isinstance(need, Call)))
+        read = {need.name for need in kept if isinstance(need, ir.Global)}
+        read.update(*(self.cleaner.reads(need.function) for need in kept if isinstance(need, ir.Call)))
         for unit in self.assumptions:
-            read_anyway = all(need.name in read for need in unit.needs if isinstance(need, Global))
+            read_anyway = all(need.name in read for need in unit.needs if isinstance(need, ir.Global))
             live = all(self.live[number] for number in unit.variables)
             unit.kept = read_anyway and live and (unit.parent is None or unit.parent.kept)
 
@@ -159,7 +130,7 @@ class FunctionCleaner:
 
     # Finding what each statement reads and writes
 
-    def block(self, block: Block, parent: Unit | None) -> tuple[list[Unit], bool]:
+    def block(self, block: ir.Block, parent: Unit | None) -> tuple[list[Unit], bool]:
         """The units of a block up to its first statement that always leaves it, and whether there is one."""
         units = []
         for stmt in block:
@@ -170,105 +141,78 @@ class FunctionCleaner:
                 return units, True
         return units, False
 
-    def statement(self, stmt: Stmt, unit: Unit) -> bool:
+    def statement(self, stmt: ir.Stmt, unit: Unit) -> bool:
         """Fills a statement's unit; returns whether the statements after it are unreachable."""
-        if isinstance(stmt, Declare):
-            if stmt.value is not None:
-                self.expression(stmt.value, unit)
+        if isinstance(stmt, ir.For):
+            self.header(stmt, unit)
+        for expr in expressions(stmt):
+            self.expression(expr, unit)
+        if isinstance(stmt, ir.Declare):
             number = self.number(stmt.name)
             unit.variables.append(number)
             unit.needs.append(stmt)
             self.stores[number].append(unit)
-        elif isinstance(stmt, Assign):
-            self.expression(stmt.target, unit)
-            self.expression(stmt.value, unit)
+        elif isinstance(stmt, ir.Assign):
             self.store(stmt.target, unit)
-        elif isinstance(stmt, If):
-            self.expression(stmt.condition, unit)
+        elif isinstance(stmt, ir.If):
             unit.then, then_ends = self.block(stmt.then, unit)
             unit.otherwise, otherwise_ends = self.block(stmt.otherwise, unit)
             return then_ends and otherwise_ends
-        elif isinstance(stmt, For):
-            self.header(stmt, unit)
+        elif isinstance(stmt, ir.For | ir.While):
             self.loop(stmt.body, unit)
-        elif isinstance(stmt, While):
-            self.expression(stmt.condition, unit)
-            self.loop(stmt.body, unit)
-        elif isinstance(stmt, Return):
-            if stmt.value is not None:
-                self.expression(stmt.value, unit)
+        elif isinstance(stmt, ir.Return):
             self.essential.append(unit)
             return True
-        elif isinstance(stmt, Evaluate):
-            self.expression(stmt.call, unit)
-        elif isinstance(stmt, Assume):
-            self.expression(stmt.condition, unit)
+        elif isinstance(stmt, ir.Assume):
             self.assumptions.append(unit)
-        elif isinstance(stmt, Discard):
-            # a target may require a return after it, so the statements after it are kept
+        elif isinstance(stmt, ir.Discard | ir.MemoryOperation):
+            # a target may require a return after a discard, so the statements after it are kept
             self.acts = True
             self.essential.append(unit)
-        elif self.jumps is not None:
+        elif isinstance(stmt, ir.Break | ir.Continue) and self.jumps is not None:
             self.jumps.append(unit)
             return True
         return False
 
-    def header(self, loop: For, unit: Unit) -> None:
+    def header(self, loop: ir.For, unit: Unit) -> None:
         unit.otherwise = header = []
         for part in (loop.init, loop.step):
             if part is not None:
                 header.append(Unit(part, unit))
                 self.statement(part, header[-1])
-        if loop.condition is not None:
-            self.expression(loop.condition, unit)
 
-    def loop(self, body: Block, unit: Unit) -> None:
+    def loop(self, body: ir.Block, unit: Unit) -> None:
         outer = self.jumps
         self.jumps = unit.jumps = []
         unit.then, _ = self.block(body, unit)
         self.jumps = outer
 
-    def expression(self, expr: Expr, unit: Unit) -> None:
+    def expression(self, expr: ir.Expr, unit: Unit) -> None:
         """Notes the variables that an expression reads, and those that its calls write."""
         variables, numbers = unit.variables, self.numbers
         stack: list[Any] = [expr]
         while stack:
             node = stack.pop()
             kind = type(node)
-            if kind is Local:
+            if kind is ir.Local:
                 number = numbers.get(node.name)
                 if number is not None:
                     variables.append(number)
-            elif kind is Binary:
-                stack += (node.left, node.right)
-            elif kind is Literal:
-                pass
-            elif kind is Intrinsic:
-                stack += node.args
-            elif kind is Global:
-                unit.needs.append(node)
-            elif kind is Swizzle or kind is Member:
-                stack.append(node.value)
-            elif kind is Call or kind is Construct:
-                stack += node.args
-                unit.needs.append(node)
-                if kind is Call:
+            elif kind is not ir.Literal:
+                stack += operands(node)
+                if kind is ir.Call or kind is ir.Global or kind is ir.Construct:
+                    unit.needs.append(node)
+                if kind is ir.Call:
                     self.call(node, unit)
-            elif kind is Unary:
-                stack.append(node.operand)
-            elif kind is Select:
-                stack += (node.condition, node.yes, node.no)
-            else:
-                stack += (node.value, node.index)
 
-    def call(self, call: Call, unit: Unit) -> None:
+    def call(self, call: ir.Call, unit: Unit) -> None:
         for index in self.cleaner.outs.get(call.function, ()):
             self.store(call.args[index], unit)
         if self.cleaner.acts(call.function):
             self.acts = True
             self.essential.append(unit)
 
-    def store(self, target: Expr, unit: Unit) -> None:
+    def store(self, target: ir.Expr, unit: Unit) -> None:
         """Notes that a statement writes a variable; a write of a module variable is an effect."""
         variable = root(target)
         number = self.numbers.get(variable.name) if variable is not None else None
@@ -297,7 +241,7 @@ class FunctionCleaner:
             if unit.jumps is not None:
                 pending += unit.jumps
 
-    def rebuild(self, units: Sequence[Unit], block: Block, needs: Needs) -> Block:
+    def rebuild(self, units: Sequence[Unit], block: ir.Block, needs: Needs) -> ir.Block:
         """The block that the kept units make."""
         result = []
         changed = len(units) != len(block)
@@ -308,24 +252,24 @@ class FunctionCleaner:
             for node in unit.needs:
                 _note(needs, node)
             stmt = unit.stmt
-            new: Stmt = stmt
-            if isinstance(stmt, If):
+            new: ir.Stmt = stmt
+            if isinstance(stmt, ir.If):
                 then = self.rebuild(unit.then, stmt.then, needs)
                 otherwise = self.rebuild(unit.otherwise, stmt.otherwise, needs)
                 if otherwise and not then:
-                    new = If(_negated(stmt.condition), otherwise, (), stmt.span)
+                    new = ir.If(_negated(stmt.condition), otherwise, (), stmt.span)
                 elif then is not stmt.then or otherwise is not stmt.otherwise:
-                    new = If(stmt.condition, then, otherwise, stmt.span)
-            elif isinstance(stmt, For):
+                    new = ir.If(stmt.condition, then, otherwise, stmt.span)
+            elif isinstance(stmt, ir.For):
                 body = self.rebuild(unit.then, stmt.body, needs)
                 header = self.rebuild(unit.otherwise, (), needs)
                 init, step = (part if any(part is kept for kept in header) else None for part in (stmt.init, stmt.step))
                 if body is not stmt.body or init is not stmt.init or step is not stmt.step:
-                    new = For(init, stmt.condition, step, body, stmt.span)
-            elif isinstance(stmt, While):
+                    new = ir.For(init, stmt.condition, step, body, stmt.span)
+            elif isinstance(stmt, ir.While):
                 body = self.rebuild(unit.then, stmt.body, needs)
                 if body is not stmt.body:
-                    new = While(stmt.condition, body, stmt.span)
+                    new = ir.While(stmt.condition, body, stmt.span)
             changed = changed or new is not stmt
             result.append(new)
         return tuple(result) if changed else block
@@ -334,37 +278,37 @@ class FunctionCleaner:
 _OPPOSITE = {"==": "!=", "!=": "=="}
 
 
-def _negated(condition: Expr) -> Expr:
+def _negated(condition: ir.Expr) -> ir.Expr:
     """The opposite of a condition. `<` has none among the operators, because of NaN."""
-    if isinstance(condition, Unary) and condition.op == "!":
+    if isinstance(condition, ir.Unary) and condition.op == "!":
         return condition.operand
-    if isinstance(condition, Binary) and condition.op in _OPPOSITE:
+    if isinstance(condition, ir.Binary) and condition.op in _OPPOSITE:
         return condition._replace(op=_OPPOSITE[condition.op])
-    return Unary(condition.type, "!", condition, condition.span)
+    return ir.Unary(condition.type, "!", condition, condition.span)
 
 
-def _note(needs: Needs, node: Expr | Declare) -> None:
+def _note(needs: Needs, node: ir.Expr | ir.Declare) -> None:
     """Adds what a node mentions."""
-    if isinstance(node, Call):
+    if isinstance(node, ir.Call):
         needs.calls[node.function] = None
-    elif isinstance(node, Global):
+    elif isinstance(node, ir.Global):
         needs.globals.add(node.name)
     elif isinstance(node.type, (Struct, Array)):
         needs.types.add(node.type)
 
 
-def _note_types(needs: Needs, result: Type, params: tuple[Param, ...]) -> None:
+def _note_types(needs: Needs, result: Type, params: tuple[ir.Param, ...]) -> None:
     for type_ in (result, *[param.type for param in params]):
         if isinstance(type_, (Struct, Array)):
             needs.types.add(type_)
 
 
-def needs_of(value: Expr | None, type_: Type) -> Needs:
+def needs_of(value: ir.Expr | None, type_: Type) -> Needs:
     """What a constant or a variable mentions."""
     needs = Needs({}, set(), {type_})
     if value is None:
         return needs
     for part in subexpressions(value):
-        if isinstance(part, Call | Global | Construct):
+        if isinstance(part, ir.Call | ir.Global | ir.Construct):
             _note(needs, part)
     return needs

@@ -9,36 +9,14 @@ or loop.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.nodes import (
-    Assign,
-    Binary,
-    Block,
-    Break,
-    Call,
-    Continue,
-    Declare,
-    Discard,
-    Evaluate,
-    Expr,
-    For,
-    Function,
-    Global,
-    If,
-    Intrinsic,
-    Literal,
-    Local,
-    Module,
-    Return,
-    Select,
-    Stmt,
-    While,
-)
-from sssgen.ir.walk import expressions, operands, root, statements
+from sssgen.ir.walk import callees, inner_parts, operands, root, statements
+from sssgen.passes.scopes import out_positions
 from sssgen.passes.variable_effects import NONE, Effects, effects
 
 
@@ -79,7 +57,7 @@ class Summary(NamedTuple):
 _UNKNOWN = Summary(False, True, True, (), ())
 
 
-def summaries(module: Module) -> dict[str, Summary]:
+def summaries(module: ir.Module) -> dict[str, Summary]:
     """A summary of each function of a module."""
     functions = {function.key: function for function in module.functions}
     result: dict[str, Summary] = {}
@@ -100,33 +78,17 @@ def summaries(module: Module) -> dict[str, Summary]:
     return result
 
 
-def _summary(function: Function, visit: Any, shared: Effects) -> Summary:
-    names: set[str] = set()
-    callees: dict[str, None] = {}
-    discards = function.body is None
-    for stmt in statements(function.body or ()):
-        discards = discards or type(stmt) is Discard
-        stack = list(expressions(stmt))
-        while stack:
-            node = stack.pop()
-            kind = type(node)
-            if kind is Local or kind is Literal or kind is Global:
-                continue
-            if isinstance(node, Binary):
-                stack += (node.left, node.right)
-                continue
-            if isinstance(node, Call):
-                callees[node.function] = None
-            elif isinstance(node, Intrinsic):
-                names.add(node.name)
-            stack += operands(node)
-    called = [visit(key) for key in callees]
+def _summary(function: ir.Function, visit: Callable[[str], Summary], shared: Effects) -> Summary:
+    body, keys = function.body or (), callees(function)
+    names = {part.name for part in inner_parts(body, ir.Intrinsic)}
+    discards = function.body is None or any(type(stmt) is ir.Discard for stmt in statements(body))
+    called = [visit(key) for key in keys]
     return Summary(
         not names.isdisjoint(implicit()) or any(callee.compares for callee in called),
         bool(shared.reads) or not names.isdisjoint(varying_builtins()) or any(callee.varies for callee in called),
         discards or any(callee.discards for callee in called),
-        tuple([index for index, param in enumerate(function.params) if param.direction != "in"]),
-        tuple(callees),
+        out_positions(function),
+        tuple(keys),
         *shared,
     )
 
@@ -149,10 +111,10 @@ class Divergence:
 
     def __init__(
         self,
-        function: Function,
+        function: ir.Function,
         site: CallContext,
         summaries: Mapping[str, Summary],
-        functions: Mapping[str, Function],
+        functions: Mapping[str, ir.Function],
     ) -> None:
         self.summaries, self.functions = summaries, functions
         self.misplaced: set[int] = set()
@@ -178,41 +140,41 @@ class Divergence:
 
     # Statements
 
-    def block(self, block: Block) -> None:
+    def block(self, block: ir.Block) -> None:
         for stmt in block:
             self.statement(stmt)
 
-    def statement(self, stmt: Stmt) -> None:
+    def statement(self, stmt: ir.Stmt) -> None:
         uniform_before = self.flow
         diverges = False
         hits = self.hits
-        if isinstance(stmt, Declare):
+        if isinstance(stmt, ir.Declare):
             varies = stmt.value is not None and self.varies(stmt.value)
             self.store(stmt.name, varies, True)
-        elif isinstance(stmt, Assign):
+        elif isinstance(stmt, ir.Assign):
             varies = self.varies(stmt.value)
             target = root(stmt.target)
             for index in operands(stmt.target):
                 varies = self.varies(index) or varies
             if target is not None:
                 self.store(target.name, varies, not stmt.op and stmt.target is target)
-        elif isinstance(stmt, If):
+        elif isinstance(stmt, ir.If):
             diverges = self.choice(stmt)
-        elif isinstance(stmt, For | While):
+        elif isinstance(stmt, ir.For | ir.While):
             diverges = self.loop(stmt)
-        elif isinstance(stmt, Break | Continue):
+        elif isinstance(stmt, ir.Break | ir.Continue):
             self.jumps += not self.flow
             self.left |= self.varying
-        elif isinstance(stmt, Return):
+        elif isinstance(stmt, ir.Return):
             if stmt.value is not None:
                 self.varies(stmt.value)
             self.escapes += not self.flow
-        elif isinstance(stmt, Discard):
+        elif isinstance(stmt, ir.Discard):
             self.escapes += not self.flow
-        elif isinstance(stmt, Evaluate):
+        elif isinstance(stmt, ir.Evaluate):
             self.varies(stmt.call)
         if uniform_before:
-            if diverges or (self.hits > hits and not isinstance(stmt, If | For | While)):
+            if diverges or (self.hits > hits and not isinstance(stmt, ir.If | ir.For | ir.While)):
                 self.inside.add(id(stmt))
             if not self.flow:
                 self.after.add(id(stmt))
@@ -223,7 +185,7 @@ class Divergence:
         elif complete:
             self.varying.discard(name)
 
-    def choice(self, stmt: If) -> bool:
+    def choice(self, stmt: ir.If) -> bool:
         """Follows both arms; whether flow diverges."""
         hits = self.hits
         condition = self.varies(stmt.condition)
@@ -242,10 +204,10 @@ class Divergence:
             self.flow = self.flow and flow
         return apart
 
-    def loop(self, stmt: For | While) -> bool:
+    def loop(self, stmt: ir.For | ir.While) -> bool:
         """Follows a loop until nothing new is found; whether flow diverges in it."""
         hits = self.hits
-        if isinstance(stmt, For) and stmt.init is not None:
+        if isinstance(stmt, ir.For) and stmt.init is not None:
             self.statement(stmt.init)
         apart = self.hits > hits
         before, jumps, left, escapes = self.flow, self.jumps, self.left, self.escapes
@@ -257,7 +219,7 @@ class Divergence:
             self.flow = uniform and not condition
             self.block(stmt.body)
             hits = self.hits
-            if isinstance(stmt, For) and stmt.step is not None:
+            if isinstance(stmt, ir.For) and stmt.step is not None:
                 self.statement(stmt.step)
             apart = apart or self.hits > hits
             again = self.flow and not self.jumps and self.escapes == escapes
@@ -271,34 +233,34 @@ class Divergence:
 
     # Expressions
 
-    def varies(self, expr: Expr) -> bool:
+    def varies(self, expr: ir.Expr) -> bool:
         """Whether a value may differ from pixel to pixel. Records every misplaced operation."""
-        if isinstance(expr, Local):
+        if isinstance(expr, ir.Local):
             return expr.name in self.varying
-        if isinstance(expr, Global):
+        if isinstance(expr, ir.Global):
             return expr.name in self.shared
-        if isinstance(expr, Binary) and expr.op in ("&&", "||"):
+        if isinstance(expr, ir.Binary) and expr.op in ("&&", "||"):
             left = self.varies(expr.left)
             return self.apart(left, (expr.right,)) or left
-        if isinstance(expr, Select):
+        if isinstance(expr, ir.Select):
             condition = self.varies(expr.condition)
             return self.apart(condition, (expr.yes, expr.no)) or condition
         parts = [self.varies(operand) for operand in operands(expr)]
-        if isinstance(expr, Intrinsic):
+        if isinstance(expr, ir.Intrinsic):
             if expr.name in implicit():
                 self.compare(expr)
             return expr.name in varying_builtins() or any(parts)
-        if isinstance(expr, Call):
+        if isinstance(expr, ir.Call):
             return self.call(expr, parts)
         return any(parts)
 
-    def compare(self, expr: Intrinsic | Call) -> None:
+    def compare(self, expr: ir.Intrinsic | ir.Call) -> None:
         """Records an operation that needs uniform flow."""
         if not self.flow:
             self.misplaced.add(id(expr))
             self.hits += 1
 
-    def apart(self, condition: bool, exprs: Iterable[Expr]) -> bool:
+    def apart(self, condition: bool, exprs: Iterable[ir.Expr]) -> bool:
         """Looks at expressions that are evaluated on a condition."""
         before, escapes = self.flow, self.escapes
         self.flow = before and not condition
@@ -306,7 +268,7 @@ class Divergence:
         self.flow = before and self.escapes == escapes
         return any(varies)
 
-    def call(self, expr: Call, args: list[bool]) -> bool:
+    def call(self, expr: ir.Call, args: list[bool]) -> bool:
         summary = self.summaries.get(expr.function, _UNKNOWN)
         varies = summary.varies or any(args)
         if summary.compares:

@@ -15,33 +15,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from sssgen.ir import constant_arithmetic as arithmetic
+from sssgen.ir import nodes as ir
 from sssgen.ir.constant_arithmetic import Numbers
 from sssgen.ir.constant_expressions import constant_numbers, literal, placed_at, same_number, uniform_value
-from sssgen.ir.nodes import (
-    Assign,
-    Assume,
-    Binary,
-    Call,
-    Construct,
-    Declare,
-    Expr,
-    For,
-    Function,
-    Global,
-    If,
-    Index,
-    Intrinsic,
-    Literal,
-    Local,
-    Member,
-    Module,
-    Select,
-    Stmt,
-    Swizzle,
-    Unary,
-    Variable,
-    While,
-)
 from sssgen.ir.rules import element_type
 from sssgen.ir.transform import Transformer, rewrite
 from sssgen.ir.types import BOOL, Matrix, Scalar, Struct, Vector, kind_of
@@ -50,7 +26,7 @@ from sssgen.passes.constructed_parts import calls, only_argument, picked
 from sssgen.passes.scopes import separate
 
 
-def fold(module: Module, fixed: Mapping[str, tuple[float, ...]] = {}) -> Module:
+def fold(module: ir.Module, fixed: Mapping[str, tuple[float, ...]] = {}) -> ir.Module:
     """The module with its constants computed; the uniforms named in `fixed` are replaced by these components.
 
     Raises ValueError where the components of a fixed uniform are not as many as its type has.
@@ -64,7 +40,7 @@ def fold(module: Module, fixed: Mapping[str, tuple[float, ...]] = {}) -> Module:
         value = folder.expression(constant.value)
         constants.append(constant if value is constant.value else constant._replace(value=value))
         substituted = folder.with_constants(value)
-        if isinstance(substituted, Literal) or constant_numbers(substituted) is not None:
+        if isinstance(substituted, ir.Literal) or constant_numbers(substituted) is not None:
             folder.constants[constant.name] = substituted
     functions = tuple([folder.function(function) for function in module.functions])
     uniforms = module.uniforms
@@ -79,109 +55,109 @@ class _Folder(Transformer):
 
     def __init__(self) -> None:
         super().__init__()
-        self.fixed: dict[str, Expr] = {}
-        self.constants: dict[str, Expr] = {}
+        self.fixed: dict[str, ir.Expr] = {}
+        self.constants: dict[str, ir.Expr] = {}
         self.spliced = False
         """Whether statements of an inner block have moved into an outer one."""
         self.methods: dict[type, Any] = {
-            Binary: self.binary,
-            Unary: self.unary,
-            Select: self.select,
-            Intrinsic: self.intrinsic,
-            Construct: self.construct,
-            Swizzle: self.swizzle,
-            Index: self.index,
-            Member: self.member,
+            ir.Binary: self.binary,
+            ir.Unary: self.unary,
+            ir.Select: self.select,
+            ir.Intrinsic: self.intrinsic,
+            ir.Construct: self.construct,
+            ir.Swizzle: self.swizzle,
+            ir.Index: self.index,
+            ir.Member: self.member,
         }
 
-    def variable(self, variable: Variable) -> Variable:
+    def variable(self, variable: ir.Variable) -> ir.Variable:
         value = self.expression(variable.value) if variable.value is not None else None
         return variable if value is variable.value else variable._replace(value=value)
 
     # Statements
 
-    def function(self, function: Function) -> Function:
+    def function(self, function: ir.Function) -> ir.Function:
         self.spliced = False
         function = super().function(function)
         return separate(function) if self.spliced else function
 
-    def assign(self, stmt: Assign) -> Stmt | None:
+    def assign(self, stmt: ir.Assign) -> ir.Stmt | None:
         target, value = self.expression(stmt.target), self.expression(stmt.value)
         if stmt.op and _is_neutral(stmt.op, value) and value.type == target.type and not calls(target):
             return None
         same = target is stmt.target and value is stmt.value
-        return stmt if same else Assign(target, stmt.op, value, stmt.span)
+        return stmt if same else ir.Assign(target, stmt.op, value, stmt.span)
 
-    def branch(self, stmt: If) -> Stmt | None:
+    def branch(self, stmt: ir.If) -> ir.Stmt | None:
         condition = self.condition(stmt.condition)
-        if isinstance(condition, Literal):
+        if isinstance(condition, ir.Literal):
             self.spliced = True
             self.out += self.block(stmt.then if condition.value else stmt.otherwise)
             return None
         then, otherwise = self.inner(stmt.then), self.inner(stmt.otherwise)
         same = condition is stmt.condition and then is stmt.then and otherwise is stmt.otherwise
-        return stmt if same else If(condition, then, otherwise, stmt.span)
+        return stmt if same else ir.If(condition, then, otherwise, stmt.span)
 
-    def assume(self, stmt: Assume) -> Stmt | None:
+    def assume(self, stmt: ir.Assume) -> ir.Stmt | None:
         new = super().assume(stmt)
-        return None if isinstance(new, Assume) and isinstance(new.condition, Literal) else new
+        return None if isinstance(new, ir.Assume) and isinstance(new.condition, ir.Literal) else new
 
-    def while_loop(self, stmt: While) -> Stmt | None:
+    def while_loop(self, stmt: ir.While) -> ir.Stmt | None:
         condition = self.condition(stmt.condition)
-        if isinstance(condition, Literal) and not condition.value:
+        if isinstance(condition, ir.Literal) and not condition.value:
             return None
         body = self.inner(stmt.body)
-        return stmt if condition is stmt.condition and body is stmt.body else While(condition, body, stmt.span)
+        return stmt if condition is stmt.condition and body is stmt.body else ir.While(condition, body, stmt.span)
 
-    def for_loop(self, stmt: For) -> Stmt | None:
+    def for_loop(self, stmt: ir.For) -> ir.Stmt | None:
         new = super().for_loop(stmt)
-        assert isinstance(new, For)
+        assert isinstance(new, ir.For)
         init, condition = new.init, new.condition
-        if condition is None or not isinstance(init, (Declare, Assign)) or not self.never_runs(init, condition):
+        if condition is None or not isinstance(init, (ir.Declare, ir.Assign)) or not self.never_runs(init, condition):
             return new
-        return init if isinstance(init, Assign) else None
+        return init if isinstance(init, ir.Assign) else None
 
-    def header(self, stmt: Stmt | None) -> Stmt | None:
+    def header(self, stmt: ir.Stmt | None) -> ir.Stmt | None:
         """A statement without effect stays here, as the loop would not be seen to end."""
         return super().header(stmt) or stmt
 
-    def never_runs(self, init: Declare | Assign, condition: Expr) -> bool:
+    def never_runs(self, init: ir.Declare | ir.Assign, condition: ir.Expr) -> bool:
         """Whether a loop's condition is false with the value that `init` sets."""
-        if init.value is None or (isinstance(init, Assign) and (init.op or not isinstance(init.target, Local))):
+        if init.value is None or (isinstance(init, ir.Assign) and (init.op or not isinstance(init.target, ir.Local))):
             return False
         start = self.with_constants(init.value)
         if constant_numbers(start) is None:
             return False
-        name = init.name if isinstance(init, Declare) else init.target.name  # type: ignore[union-attr]  # a Local
+        name = init.name if isinstance(init, ir.Declare) else init.target.name  # type: ignore[union-attr]  # a Local
 
-        def change(node: Expr) -> Expr:
-            return start if type(node) is Local and node.name == name else node
+        def change(node: ir.Expr) -> ir.Expr:
+            return start if type(node) is ir.Local and node.name == name else node
 
         first = self.with_constants(self.expression(rewrite(condition, change)))
-        return isinstance(first, Literal) and not first.value
+        return isinstance(first, ir.Literal) and not first.value
 
     # Conditions
 
-    def with_constants(self, expr: Expr) -> Expr:
+    def with_constants(self, expr: ir.Expr) -> ir.Expr:
         """The expression with the values of module constants substituted and folded."""
 
-        def change(node: Expr) -> Expr:
-            return self.constants.get(node.name, node) if type(node) is Global else node
+        def change(node: ir.Expr) -> ir.Expr:
+            return self.constants.get(node.name, node) if type(node) is ir.Global else node
 
         substituted = rewrite(expr, change)
         return expr if substituted is expr else self.expression(substituted)
 
-    def condition(self, condition: Expr) -> Expr:
+    def condition(self, condition: ir.Expr) -> ir.Expr:
         """A condition, as a literal where the module's constants decide it."""
         return self.settled(self.expression(condition))
 
-    def settled(self, condition: Expr) -> Expr:
-        if isinstance(condition, Literal) or not self.constants:
+    def settled(self, condition: ir.Expr) -> ir.Expr:
+        if isinstance(condition, ir.Literal) or not self.constants:
             return condition
         substituted = self.with_constants(condition)
-        if substituted is condition or isinstance(substituted, Literal):
+        if substituted is condition or isinstance(substituted, ir.Literal):
             return substituted
-        if isinstance(condition, Binary) and condition.op in ("&&", "||"):
+        if isinstance(condition, ir.Binary) and condition.op in ("&&", "||"):
             left, right = self.settled(condition.left), self.settled(condition.right)
             if left is not condition.left or right is not condition.right:
                 return self.simplified(condition._replace(left=left, right=right))
@@ -189,29 +165,34 @@ class _Folder(Transformer):
 
     # Expressions
 
-    def expression(self, expr: Expr) -> Expr:
+    def expression(self, expr: ir.Expr) -> ir.Expr:
         """The expression, folded."""
         kind = type(expr)
-        if kind is Local or kind is Literal:
+        if kind is ir.Local or kind is ir.Literal:
             return expr
-        if kind is Global:
+        if kind is ir.Global:
             value = self.fixed.get(expr.name)  # type: ignore[union-attr]  # it is a Global
             return expr if value is None else placed_at(value, expr.span)
-        if kind is Call:
+        if kind is ir.Call:
             return super().expression(expr)
-        folded: Expr = self.methods[kind](expr)
+        folded: ir.Expr = self.methods[kind](expr)
         return folded
 
-    def binary(self, expr: Binary) -> Expr:
+    def binary(self, expr: ir.Binary) -> ir.Expr:
         left, right = self.expression(expr.left), self.expression(expr.right)
         if left is not expr.left or right is not expr.right:
-            expr = Binary(expr.type, expr.op, left, right, expr.span)
+            expr = ir.Binary(expr.type, expr.op, left, right, expr.span)
         left_kind, right_kind = type(left), type(right)
-        if left_kind is Literal or right_kind is Literal or left_kind is Construct or right_kind is Construct:
+        if (
+            left_kind is ir.Literal
+            or right_kind is ir.Literal
+            or left_kind is ir.Construct
+            or right_kind is ir.Construct
+        ):
             return self.simplified(expr)
         return expr
 
-    def simplified(self, expr: Binary) -> Expr:
+    def simplified(self, expr: ir.Binary) -> ir.Expr:
         """The value of an operator with a constant operand or two, where that is simpler."""
         op, left, right = expr.op, expr.left, expr.right
         x, y = constant_numbers(left), constant_numbers(right)
@@ -224,33 +205,33 @@ class _Folder(Transformer):
             return left
         return right if right.type == expr.type and op in "*+|^" and _is_neutral(op, left) else expr
 
-    def unary(self, expr: Unary) -> Expr:
+    def unary(self, expr: ir.Unary) -> ir.Expr:
         operand = self.expression(expr.operand)
         values = constant_numbers(operand)
         if values is not None:
             result = arithmetic.unary(expr.op, values, kind_of(expr.type))
             if result is not None:
                 return literal(expr.type, result, expr.span)
-        if isinstance(operand, Unary) and operand.op == expr.op:
+        if isinstance(operand, ir.Unary) and operand.op == expr.op:
             return operand.operand
-        return expr if operand is expr.operand else Unary(expr.type, expr.op, operand, expr.span)
+        return expr if operand is expr.operand else ir.Unary(expr.type, expr.op, operand, expr.span)
 
-    def select(self, expr: Select) -> Expr:
+    def select(self, expr: ir.Select) -> ir.Expr:
         condition = self.condition(expr.condition)
-        if isinstance(condition, Literal):
+        if isinstance(condition, ir.Literal):
             return self.expression(expr.yes if condition.value else expr.no)
         yes, no = self.expression(expr.yes), self.expression(expr.no)
-        if expr.type == BOOL and isinstance(yes, Literal) and isinstance(no, Literal) and yes.value != no.value:
-            return condition if yes.value else Unary(BOOL, "!", condition, expr.span)
+        if expr.type == BOOL and isinstance(yes, ir.Literal) and isinstance(no, ir.Literal) and yes.value != no.value:
+            return condition if yes.value else ir.Unary(BOOL, "!", condition, expr.span)
         if condition is expr.condition and yes is expr.yes and no is expr.no:
             return expr
-        return Select(expr.type, condition, yes, no, expr.span)
+        return ir.Select(expr.type, condition, yes, no, expr.span)
 
-    def intrinsic(self, expr: Intrinsic) -> Expr:
+    def intrinsic(self, expr: ir.Intrinsic) -> ir.Expr:
         new = super().expression(expr)
         args: list[Numbers] = []
         for arg in operands(new):
-            if type(arg) is not Literal and type(arg) is not Construct:
+            if type(arg) is not ir.Literal and type(arg) is not ir.Construct:
                 return new
             values = constant_numbers(arg)
             if values is None:
@@ -259,9 +240,9 @@ class _Folder(Transformer):
         result = arithmetic.builtin(expr.name, args, [arg.type for arg in expr.args], expr.type)
         return new if result is None else literal(expr.type, result, expr.span)
 
-    def construct(self, expr: Construct) -> Expr:
+    def construct(self, expr: ir.Construct) -> ir.Expr:
         new = super().expression(expr)
-        assert isinstance(new, Construct)
+        assert isinstance(new, ir.Construct)
         type_, args = new.type, new.args
         if not isinstance(type_, Scalar | Vector):
             return new
@@ -274,47 +255,47 @@ class _Folder(Transformer):
             if converted and None not in converted:
                 return literal(type_, tuple([value for value in converted if value is not None]), new.span)
             return new
-        flat: list[Expr] = []
+        flat: list[ir.Expr] = []
         for arg in args:
-            if isinstance(arg, Construct) and len(arg.args) > 1:
+            if isinstance(arg, ir.Construct) and len(arg.args) > 1:
                 flat.extend(arg.args)
             else:
                 flat.append(arg)
         if len(flat) > len(args):
-            new = Construct(type_, tuple(flat), new.span)
+            new = ir.Construct(type_, tuple(flat), new.span)
         parts = [constant_numbers(arg) or () for arg in flat]
         numbers = tuple([number for part in parts for number in part])
         if () not in parts and all(same_number(number, numbers[0]) for number in numbers):
             return literal(type_, numbers, new.span)
         return new
 
-    def swizzle(self, expr: Swizzle) -> Expr:
+    def swizzle(self, expr: ir.Swizzle) -> ir.Expr:
         value, letters = self.expression(expr.value), expr.components
-        if isinstance(value, Swizzle):
+        if isinstance(value, ir.Swizzle):
             letters = "".join([value.components["xyzw".index(letter)] for letter in letters])
             value = value.value
         if value.type == expr.type and letters == "xyzw"[: len(letters)]:
             return value
-        if isinstance(value, Construct):
+        if isinstance(value, ir.Construct):
             parts = picked(value, ["xyzw".index(letter) for letter in letters], expr.type, expr.span)
             if parts is not None:
                 return parts
         if value is expr.value and letters == expr.components:
             return expr
-        return Swizzle(expr.type, value, letters, expr.span)
+        return ir.Swizzle(expr.type, value, letters, expr.span)
 
-    def index(self, expr: Index) -> Expr:
+    def index(self, expr: ir.Index) -> ir.Expr:
         new = super().expression(expr)
-        assert isinstance(new, Index)
+        assert isinstance(new, ir.Index)
         value, index = new.value, new.index
-        if not isinstance(index, Literal):
+        if not isinstance(index, ir.Literal):
             return new
         last = (element_type(value.type) or (expr.type, 1))[1] - 1
         if not 0 <= index.value <= last:
             # the value is undefined; targets refuse such an index
             index = index._replace(value=0 if index.value < 0 else last)
-            new = Index(expr.type, value, index, expr.span)
-        if isinstance(value, Construct):
+            new = ir.Index(expr.type, value, index, expr.span)
+        if isinstance(value, ir.Construct):
             place = int(index.value)
             if isinstance(value.type, Vector):
                 return picked(value, [place], expr.type, expr.span) or new
@@ -322,10 +303,10 @@ class _Folder(Transformer):
                 return only_argument(value, place) or new
         return new
 
-    def member(self, expr: Member) -> Expr:
+    def member(self, expr: ir.Member) -> ir.Expr:
         new = super().expression(expr)
-        assert isinstance(new, Member)
-        if isinstance(new.value, Construct) and isinstance(new.value.type, Struct):
+        assert isinstance(new, ir.Member)
+        if isinstance(new.value, ir.Construct) and isinstance(new.value.type, Struct):
             names = [field.name for field in new.value.type.fields]
             return only_argument(new.value, names.index(expr.field)) or new
         return new
@@ -334,7 +315,7 @@ class _Folder(Transformer):
 _NEUTRAL = {"*": 1, "/": 1, "+": 0, "-": 0, "<<": 0, ">>": 0, "|": 0, "^": 0}
 
 
-def _is_neutral(op: str, right: Expr) -> bool:
+def _is_neutral(op: str, right: ir.Expr) -> bool:
     """Whether `x op right` is x (given that it has x's type)."""
     neutral = _NEUTRAL.get(op)
     if neutral is None or isinstance(right.type, Matrix):
@@ -343,14 +324,14 @@ def _is_neutral(op: str, right: Expr) -> bool:
     return values is not None and all(value == neutral for value in values)
 
 
-def _logic(expr: Binary, x: Numbers | None, y: Numbers | None) -> Expr:
+def _logic(expr: ir.Binary, x: Numbers | None, y: Numbers | None) -> ir.Expr:
     """`&&`, `||` or `^^`, of which one side may be known."""
     constant, other = (x, expr.right) if x is not None else (y, expr.left)
     if constant is None:
         return expr
     if expr.op == "^^":
-        return Unary(BOOL, "!", other, expr.span) if constant[0] else other
+        return ir.Unary(BOOL, "!", other, expr.span) if constant[0] else other
     if constant[0] == (expr.op == "&&"):
         return other
     # the right side is not evaluated where the left one decides; a left side with effects is
-    return expr if x is None and calls(other) else Literal(BOOL, constant[0], expr.span)
+    return expr if x is None and calls(other) else ir.Literal(BOOL, constant[0], expr.span)

@@ -14,29 +14,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from sssgen.ir import nodes as ir
+from sssgen.ir.constant_expressions import zero
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.nodes import (
-    Assign,
-    Binary,
-    Block,
-    Call,
-    Construct,
-    Declare,
-    Expr,
-    For,
-    Function,
-    Global,
-    Intrinsic,
-    Literal,
-    Local,
-    Module,
-    Span,
-    Stmt,
-    Swizzle,
-    While,
-)
 from sssgen.ir.transform import Transformer
-from sssgen.ir.types import FLOAT, Sampler, Scalar, Type, components, vector_of
+from sssgen.ir.types import FLOAT, Sampler, components, vector_of
 from sssgen.ir.walk import (
     all_expressions,
     builtins_of,
@@ -48,14 +30,14 @@ from sssgen.ir.walk import (
 )
 from sssgen.passes.divergence import CallContext, Divergence, Summary, implicit, joined, summaries
 from sssgen.passes.explicit_levels import at_level
-from sssgen.passes.scopes import declared, fresh, qualified_name
+from sssgen.passes.scopes import claim, declared, qualified_name
 from sssgen.passes.unsupported import Note
 
 _LARGEST = 64
 """How many nodes an expression may have that replaces a variable."""
 
 
-def hoist(module: Module, entries: Iterable[str]) -> tuple[Module, list[Note]]:
+def hoist(module: ir.Module, entries: Iterable[str]) -> tuple[ir.Module, list[Note]]:
     """The module with every implicit derivative in uniform control flow, and notes on what that changed.
 
     `entries` are the keys of the functions that are called from outside, for each pixel with other values.
@@ -108,11 +90,11 @@ class _Region:
         """The variables that exist before the region."""
         self.changed: set[str] = set()
         """Those of them that have changed since, and module variables (see `qualified_name`)."""
-        self.definitions: dict[str, Expr] = {}
+        self.definitions: dict[str, ir.Expr] = {}
         """The values of variables, as expressions over available variables that have not changed."""
-        self.starts: dict[str, Expr] = {}
+        self.starts: dict[str, ir.Expr] = {}
         """The first values of the region's own variables, in the same form."""
-        self.hoisted: list[Stmt] = []
+        self.hoisted: list[ir.Stmt] = []
         self.variables: dict[object, str] = {}
         """The names of the hoisted variables, by the keys of their values."""
         self.reachable = reachable
@@ -129,7 +111,7 @@ class _Hoister(Transformer):
 
     def __init__(
         self,
-        function: Function,
+        function: ir.Function,
         site: CallContext,
         flow: Divergence,
         summaries: Mapping[str, Summary],
@@ -145,19 +127,19 @@ class _Hoister(Transformer):
         self.shared = summaries[function.key].reads
         self.region = None if site.uniform else _Region((), False)
 
-    def run(self) -> Function:
+    def run(self) -> ir.Function:
         return self.function(self.source)
 
     # Statements
 
-    def block(self, block: Block) -> Block:
+    def block(self, block: ir.Block) -> ir.Block:
         self.depth += 1
         new = self.sequence(block)
         self.depth -= 1
         return tuple(new)
 
-    def sequence(self, block: Block) -> list[Stmt]:
-        out: list[Stmt] = []
+    def sequence(self, block: ir.Block) -> list[ir.Stmt]:
+        out: list[ir.Stmt] = []
         for index, stmt in enumerate(block):
             if self.region is not None:
                 out.append(self.rewritten(stmt))
@@ -178,14 +160,14 @@ class _Hoister(Transformer):
             out += [*region.hoisted, new]
         return out
 
-    def rewritten(self, stmt: Stmt) -> Stmt:
+    def rewritten(self, stmt: ir.Stmt) -> ir.Stmt:
         new = self.statement(stmt)
         assert new is not None
         return new
 
-    def declare(self, stmt: Declare) -> Stmt | None:
+    def declare(self, stmt: ir.Declare) -> ir.Stmt | None:
         new = super().declare(stmt)
-        assert isinstance(new, Declare)
+        assert isinstance(new, ir.Declare)
         self.depths[stmt.name] = self.depth
         if self.region is not None:
             self.region.starts.pop(stmt.name, None)
@@ -195,30 +177,30 @@ class _Hoister(Transformer):
                 self.region.starts[stmt.name] = earlier
         return new
 
-    def assign(self, stmt: Assign) -> Stmt | None:
+    def assign(self, stmt: ir.Assign) -> ir.Stmt | None:
         new = super().assign(stmt)
-        if self.region is not None and isinstance(new, Assign):
+        if self.region is not None and isinstance(new, ir.Assign):
             self.note_store(new.target, new.op, new.value)
         return new
 
-    def for_loop(self, stmt: For) -> Stmt | None:
+    def for_loop(self, stmt: ir.For) -> ir.Stmt | None:
         if self.region is not None:
             self.region.change(self.assigned((stmt,)))
         return super().for_loop(stmt)
 
-    def while_loop(self, stmt: While) -> Stmt | None:
+    def while_loop(self, stmt: ir.While) -> ir.Stmt | None:
         if self.region is not None:
             self.region.change(self.assigned((stmt,)))
         return super().while_loop(stmt)
 
-    def header(self, stmt: Stmt | None) -> Stmt | None:
+    def header(self, stmt: ir.Stmt | None) -> ir.Stmt | None:
         new = super().header(stmt)
-        if self.region is not None and isinstance(stmt, Declare):
+        if self.region is not None and isinstance(stmt, ir.Declare):
             self.region.change((stmt.name,))
             self.region.starts.pop(stmt.name, None)
         return new
 
-    def define(self, name: str, value: Expr | None) -> None:
+    def define(self, name: str, value: ir.Expr | None) -> None:
         """Notes the new value of a variable, as an expression over variables from before the region."""
         assert self.region is not None
         if value is not None and sum(1 for _ in subexpressions(value)) <= _LARGEST:
@@ -226,36 +208,36 @@ class _Hoister(Transformer):
         else:
             self.region.definitions.pop(name, None)
 
-    def note_store(self, target: Expr, op: str, value: Expr) -> None:
+    def note_store(self, target: ir.Expr, op: str, value: ir.Expr) -> None:
         """Notes what an assignment changes. In the block of the variable's declaration it defines the variable."""
         assert self.region is not None
         variable = written_root(target)
         if variable is None:
             return
-        if isinstance(variable, Global):
+        if isinstance(variable, ir.Global):
             self.region.change((qualified_name(variable),))
         elif target is variable and self.depths.get(variable.name, 0) == self.depth:
             if op:
-                value = Binary(target.type, op, target, value, target.span)
+                value = ir.Binary(target.type, op, target, value, target.span)
             earlier = self.before(value)
             self.region.change((variable.name,))
             self.define(variable.name, earlier)
         else:
             self.region.change((variable.name,))
 
-    def assigned(self, block: Block) -> set[str]:
+    def assigned(self, block: ir.Block) -> set[str]:
         """The variables that a block may change."""
         names = set()
         for stmt in statements(block):
-            target = written_root(stmt.target) if isinstance(stmt, Assign) else None
+            target = written_root(stmt.target) if isinstance(stmt, ir.Assign) else None
             if target is not None:
                 names.add(qualified_name(target))
         for expr in all_expressions(block):
-            if isinstance(expr, Call):
+            if isinstance(expr, ir.Call):
                 names |= self.written(expr)
         return names
 
-    def written(self, call: Call) -> set[str]:
+    def written(self, call: ir.Call) -> set[str]:
         summary = self.summaries[call.function]
         targets = [written_root(call.args[index]) for index in summary.outs]
         return {qualified_name(target) for target in targets if target is not None}.union(
@@ -264,38 +246,38 @@ class _Hoister(Transformer):
 
     # Expressions
 
-    def expression(self, expr: Expr) -> Expr:
+    def expression(self, expr: ir.Expr) -> ir.Expr:
         """The expression with every misplaced operation in it moved or replaced, from the inside out."""
         changed = super().expression(expr)
         if id(expr) in self.flow.misplaced:
-            assert isinstance(changed, Call | Intrinsic)
+            assert isinstance(changed, ir.Call | ir.Intrinsic)
             earlier = self.before(changed)
             if earlier is not None:
                 return self.hoisted(earlier, _base_name(changed), expr.span)
-            if isinstance(changed, Intrinsic):
+            if isinstance(changed, ir.Intrinsic):
                 return self.explicit(changed)
-        if self.region is not None and isinstance(expr, Call):
+        if self.region is not None and isinstance(expr, ir.Call):
             self.region.change(self.written(expr))
         return changed
 
-    def before(self, expr: Expr) -> Expr | None:
+    def before(self, expr: ir.Expr) -> ir.Expr | None:
         """An expression with the same value before the region, or None if there is none."""
         region = self.region
         if region is None or not region.reachable:
             return None
-        if isinstance(expr, Local):
+        if isinstance(expr, ir.Local):
             if expr.name in region.definitions:
                 return region.definitions[expr.name]
             return expr if expr.name in region.available and expr.name not in region.changed else None
-        if isinstance(expr, Global):
+        if isinstance(expr, ir.Global):
             return None if qualified_name(expr) in region.changed else expr
-        if isinstance(expr, Call):
+        if isinstance(expr, ir.Call):
             called = self.summaries[expr.function]
             if not called.pure or not region.changed.isdisjoint(map("${}".format, called.reads)):
                 return None
         return self.over(expr, [self.before(operand) for operand in operands(expr)])
 
-    def over(self, expr: Expr, new: list[Expr | None]) -> Expr | None:
+    def over(self, expr: ir.Expr, new: list[ir.Expr | None]) -> ir.Expr | None:
         """`expr` with other operands, or None where one is missing."""
         if not new:
             return expr
@@ -305,26 +287,25 @@ class _Hoister(Transformer):
         same = all(replacement is operand_ for replacement, operand_ in zip(whole, operands(expr), strict=True))
         return expr if same else with_operands(expr, whole)
 
-    def hoisted(self, value: Expr, name: str, span: Span) -> Local:
+    def hoisted(self, value: ir.Expr, name: str, span: ir.Span) -> ir.Local:
         """A variable before the region that holds a value."""
         assert self.region is not None
         key = _key(value)
         variable = self.region.variables.get(key)
         if variable is None:
-            variable = self.region.variables[key] = fresh(name, self.taken)
-            self.taken.add(variable)
+            variable = self.region.variables[key] = claim(name, self.taken)
             self.region.available.add(variable)
-            self.region.hoisted.append(Declare(variable, value.type, value, span))
-        return Local(value.type, variable, span)
+            self.region.hoisted.append(ir.Declare(variable, value.type, value, span))
+        return ir.Local(value.type, variable, span)
 
     # The level made explicit
 
-    def explicit(self, expr: Intrinsic) -> Expr:
+    def explicit(self, expr: ir.Intrinsic) -> ir.Expr:
         """A builtin that cannot be moved, without the comparison of neighbours."""
         row = BUILTINS[expr.name]
         if row.kind == "derivative":
             self.note(f"{expr.name} is taken as 0 here", expr.span)
-            return _zero(expr.type, expr.span)
+            return zero(expr.type, expr.span)
         map_, coordinate, *others = expr.args
         assert isinstance(map_.type, Sampler)
         if row.with_level is None or not row.with_gradients:
@@ -332,73 +313,68 @@ class _Hoister(Transformer):
         offset, bias = others[: len(row.constant)], others[len(row.constant) :]
         coordinates = self.start(coordinate) if not map_.type.shadow else None
         if coordinates is None or not any(map(self.may_vary, subexpressions(coordinates))):
-            read = at_level(expr, bias[0] if bias else Literal(FLOAT, 0.0, expr.span))
+            read = at_level(expr, bias[0] if bias else ir.Literal(FLOAT, 0.0, expr.span))
             if read is None:
                 return expr  # no such builtin has an explicit level
             self.note(f"{_words(map_)} is read at level 0 here", expr.span)
             return read
-        name = coordinates.name if isinstance(coordinates, Local) else "coordinates"
+        name = coordinates.name if isinstance(coordinates, ir.Local) else "coordinates"
         if map_.type.array:  # the layer has no slope
             letters = "xyzw"[: components(coordinate.type) - 1]
-            coordinates = Swizzle(vector_of("float", len(letters)), coordinates, letters, expr.span)
-        slopes: list[Expr] = []
+            coordinates = ir.Swizzle(vector_of("float", len(letters)), coordinates, letters, expr.span)
+        slopes: list[ir.Expr] = []
         for builtin, axis in (("dFdx", "dx"), ("dFdy", "dy")):
-            slope = Intrinsic(coordinates.type, builtin, (coordinates,), expr.span)
+            slope = ir.Intrinsic(coordinates.type, builtin, (coordinates,), expr.span)
             slopes.append(self.hoisted(slope, f"{name}_{axis}", expr.span))
         if bias:
-            scale = Intrinsic(FLOAT, "exp2", (bias[0],), expr.span)
-            slopes = [Binary(slope.type, "*", slope, scale, expr.span) for slope in slopes]
+            scale = ir.Intrinsic(FLOAT, "exp2", (bias[0],), expr.span)
+            slopes = [ir.Binary(slope.type, "*", slope, scale, expr.span) for slope in slopes]
         self.note(f"{_words(map_)} is read here at the level that its coordinates had before", expr.span)
-        return Intrinsic(expr.type, row.with_gradients, (map_, coordinate, *slopes, *offset), expr.span)
+        return ir.Intrinsic(expr.type, row.with_gradients, (map_, coordinate, *slopes, *offset), expr.span)
 
-    def may_vary(self, part: Expr) -> bool:
+    def may_vary(self, part: ir.Expr) -> bool:
         """Whether it is a variable, of the function or of the module."""
-        return isinstance(part, Local) or (isinstance(part, Global) and part.name in self.shared)
+        return isinstance(part, ir.Local) or (isinstance(part, ir.Global) and part.name in self.shared)
 
-    def start(self, expr: Expr) -> Expr | None:
+    def start(self, expr: ir.Expr) -> ir.Expr | None:
         """The value that coordinates have before the region; unknown terms of a sum are omitted."""
         region = self.region
         if region is None or not region.reachable:
             return None
-        if isinstance(expr, Local):
+        if isinstance(expr, ir.Local):
             return expr if expr.name in region.available else region.starts.get(expr.name)
-        if isinstance(expr, Call) and not self.summaries[expr.function].pure:
+        if isinstance(expr, ir.Call) and not self.summaries[expr.function].pure:
             return None
         parts = [self.start(operand) for operand in operands(expr)]
-        if isinstance(expr, Binary) and expr.op in ("+", "-"):
+        if isinstance(expr, ir.Binary) and expr.op in ("+", "-"):
             left, right = parts
             if left is None or right is None:
                 term = left if left is not None else right
                 return term if term is not None and term.type == expr.type else None
         return self.over(expr, parts)
 
-    def note(self, message: str, span: Span) -> None:
+    def note(self, message: str, span: ir.Span) -> None:
         reason = "neighbouring pixels may take another branch"
         self.notes[Note(f"{message}: {reason}, so their difference is not known", span)] = None
 
 
-def _base_name(expr: Call | Intrinsic) -> str:
+def _base_name(expr: ir.Call | ir.Intrinsic) -> str:
     """A readable name for the value of an operation that is moved."""
-    if isinstance(expr, Call):
+    if isinstance(expr, ir.Call):
         return f"{expr.function.split('(')[0]}_value"
     subject = expr.args[0]
-    name = subject.name if isinstance(subject, Local | Global) else ""
+    name = subject.name if isinstance(subject, ir.Local | ir.Global) else ""
     row = BUILTINS[expr.name]
     if row.kind == "fetch":
         return f"{name or 'texture'}_sample"
     return f"{name or 'value'}_{f'd{row.axis}' if row.axis else 'width'}"
 
 
-def _words(map: Expr) -> str:
-    return f"'{map.name}'" if isinstance(map, Local | Global) else "a texture"
+def _words(map: ir.Expr) -> str:
+    return f"'{map.name}'" if isinstance(map, ir.Local | ir.Global) else "a texture"
 
 
-def _zero(type: Type, span: Span) -> Expr:
-    zero = Literal(FLOAT, 0.0, span)
-    return zero if isinstance(type, Scalar) else Construct(type, (zero,), span)
-
-
-def _key(expr: Expr) -> object:
+def _key(expr: ir.Expr) -> object:
     """A key that is equal for expressions that differ in their spans alone."""
     fields = [part for part in expr[:-1] if isinstance(part, (str, int, float))]
     return (type(expr), expr.type, *fields, *[_key(operand) for operand in operands(expr)])

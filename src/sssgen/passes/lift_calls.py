@@ -10,33 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sssgen.ir.nodes import (
-    Assign,
-    Binary,
-    Block,
-    Break,
-    Call,
-    Declare,
-    Discard,
-    Evaluate,
-    Expr,
-    For,
-    Function,
-    Global,
-    If,
-    Index,
-    Literal,
-    Local,
-    Member,
-    Module,
-    Param,
-    Select,
-    Span,
-    Stmt,
-    Swizzle,
-    Unary,
-    While,
-)
+from sssgen.ir import nodes as ir
+from sssgen.ir.loops import break_unless
 from sssgen.ir.transform import Transformer
 from sssgen.ir.types import BOOL, Type
 from sssgen.ir.walk import (
@@ -50,20 +25,20 @@ from sssgen.ir.walk import (
     written_root,
 )
 from sssgen.passes.places import may_overlap
-from sssgen.passes.scopes import declared, fresh, qualified_name
+from sssgen.passes.scopes import claim, declared, qualified_name
 from sssgen.passes.variable_effects import NONE, Effects
 
-Functions = Mapping[str, Function]
+Functions = Mapping[str, ir.Function]
 
 DISCARDED = "discarded"
 
 _NOTHING: Mapping[str, Effects] = {}
 
 
-def lift_calls(module: Module) -> Module:
+def lift_calls(module: ir.Module) -> ir.Module:
     """The module with its writing calls as statements. Functions come after those that they call."""
-    lifted: dict[str, Function] = {}
-    old: dict[str, Function] = {}
+    lifted: dict[str, ir.Function] = {}
+    old: dict[str, ir.Function] = {}
     for function in module.functions:
         new = _announce_discard(function, old, {other.key for other in module.functions})
         old[function.key] = new
@@ -86,30 +61,21 @@ class Calls:
             changes = self.effects[key] = by_parameter or bool(self.shared.get(key, NONE).writes)
         return changes
 
-    def changing(self, function: Function) -> bool:
+    def changing(self, function: ir.Function) -> bool:
         """Whether any call in a function has an effect apart from its result."""
         return any(self.change(call.function) for call in calls_of(function.body or ()))
 
-    def writing(self, expr: Expr) -> bool:
+    def writing(self, expr: ir.Expr) -> bool:
         """Whether a call inside an expression has an effect apart from its result."""
-        stack = [expr]
-        while stack:
-            node = stack.pop()
-            kind = type(node)
-            if kind is Local or kind is Literal or kind is Global:
-                continue
-            if isinstance(node, Call) and self.change(node.function):
-                return True
-            stack += operands(node)
-        return False
+        return any(type(part) is ir.Call and self.change(part.function) for part in subexpressions(expr))
 
 
-def lift(function: Function, calls: Calls) -> Function:
+def lift(function: ir.Function, calls: Calls) -> ir.Function:
     """One function with its writing calls as statements; discards are not changed."""
     return _Lifter(function, calls).run()
 
 
-def awkward(function: Function, calls: Calls) -> list[Stmt]:
+def awkward(function: ir.Function, calls: Calls) -> list[ir.Stmt]:
     """The statements in which a writing call is inside a larger expression, or is passed one variable twice.
 
     Languages differ there in the order of evaluation, and in whether the right side of `&&` and both arms of a choice
@@ -120,59 +86,60 @@ def awkward(function: Function, calls: Calls) -> list[Stmt]:
     stmts = []
     for stmt in statements(function.body or ()):
         for expr in expressions(stmt):
-            whole_statement = isinstance(expr, Call) and not (isinstance(stmt, Assign) and lifter.meets(stmt))
+            whole_statement = isinstance(expr, ir.Call) and not (isinstance(stmt, ir.Assign) and lifter.meets(stmt))
             inner = operands(expr) if whole_statement else (expr,)
-            if any(map(lifter.writes, inner)) or (isinstance(expr, Call) and lifter.overlaps(expr)):
+            if any(map(lifter.writes, inner)) or (isinstance(expr, ir.Call) and lifter.overlaps(expr)):
                 stmts.append(stmt)
     return stmts
 
 
-def reads_too_late(function: Function, calls: Calls) -> bool:
+def reads_too_late(function: ir.Function, calls: Calls) -> bool:
     """Whether an operand reads a variable that a call to its right writes.
 
     Where a language evaluates calls from left to right, a driver may still read variables after all of them.
     """
     lifter = _Lifter(function, calls)
     return any(
-        (isinstance(stmt, Assign) and bool(stmt.op) and lifter.meets(stmt)) or any(map(lifter.late, expressions(stmt)))
+        (isinstance(stmt, ir.Assign) and bool(stmt.op) and lifter.meets(stmt))
+        or any(map(lifter.late, expressions(stmt)))
         for stmt in statements(function.body or ())
     )
 
 
-def out_arguments(call: Expr, functions: Functions) -> list[str]:
+def out_arguments(call: ir.Expr, functions: Functions) -> list[str]:
     """The variables that a lifted call writes."""
-    if not isinstance(call, Call):
+    if not isinstance(call, ir.Call):
         return []
     params = functions[call.function].params
     return [arg.name for arg, param in zip(call.args, params, strict=True)
-            if param.direction != "in" and isinstance(arg, Local)]  # fmt: skip
+            if param.direction != "in" and isinstance(arg, ir.Local)]  # fmt: skip
 
 
-def discards(function: Function) -> bool:
+def discards(function: ir.Function) -> bool:
     """Whether the last parameter of the function reports which lanes are discarded."""
     return bool(function.params) and function.params[-1].name == DISCARDED and function.params[-1].direction == "out"
 
 
-def _announce_discard(function: Function, functions: Functions, taken: set[str]) -> Function:
+def _announce_discard(function: ir.Function, functions: Functions, taken: set[str]) -> ir.Function:
     body = function.body or ()
-    own = any(isinstance(stmt, Discard) for stmt in statements(body))
+    own = any(isinstance(stmt, ir.Discard) for stmt in statements(body))
     if not own and not any(discards(functions[key]) for key in callees(function) if key in functions):
         return function
-    new = function._replace(params=(*function.params, Param(DISCARDED, BOOL, "out", "", function.span)))
+    new = function._replace(params=(*function.params, ir.Param(DISCARDED, BOOL, "out", "", function.span)))
     while new.key in taken:
         new = new._replace(name=f"{new.name}_")
     return new
 
 
-def _read(expr: Expr) -> list[str]:
+def _read(expr: ir.Expr) -> list[str]:
     """The variables that an expression mentions."""
-    return [qualified_name(part) for part in subexpressions(expr) if isinstance(part, Local | Global)]
+    return [qualified_name(part) for part in subexpressions(expr) if isinstance(part, ir.Local | ir.Global)]
 
 
 class _Lifter(Transformer):
     """Rewrites one function: values that must be computed before a statement are appended to `out` before it."""
 
-    def __init__(self, function: Function, calls: Calls) -> None:
+    def __init__(self, function: ir.Function, calls: Calls) -> None:
         super().__init__()
         self.source = function
         self.calls = calls
@@ -180,92 +147,89 @@ class _Lifter(Transformer):
         self.names: set[str] = set()
         """All names of the function, once a new name is chosen."""
 
-    def run(self) -> Function:
+    def run(self) -> ir.Function:
         return self.function(self.source) if self.calls.changing(self.source) else self.source
 
-    def writes(self, expr: Expr | None) -> bool:
+    def writes(self, expr: ir.Expr | None) -> bool:
         """Whether a call inside the expression has an effect apart from its result."""
         return expr is not None and self.calls.writing(expr)
 
-    def local(self, type: Type, name: str, span: Span) -> Local:
+    def local(self, type: Type, name: str, span: ir.Span) -> ir.Local:
         self.names = self.names or set(declared(self.source))
-        name = fresh(name, self.names)
-        self.names.add(name)
-        return Local(type, name, span)
+        return ir.Local(type, claim(name, self.names), span)
 
     # Statements
 
-    def declare(self, stmt: Declare) -> Stmt | None:
-        if isinstance(stmt.value, Call) and self.writes_itself(stmt.value):
+    def declare(self, stmt: ir.Declare) -> ir.Stmt | None:
+        if isinstance(stmt.value, ir.Call) and self.writes_itself(stmt.value):
             call, after = self.call(stmt.value)
             self.out += [stmt._replace(value=call), *after]
             return None
         return super().declare(stmt)
 
-    def evaluate(self, stmt: Evaluate) -> Stmt | None:
-        if isinstance(stmt.call, Call) and self.writes_itself(stmt.call):
+    def evaluate(self, stmt: ir.Evaluate) -> ir.Stmt | None:
+        if isinstance(stmt.call, ir.Call) and self.writes_itself(stmt.call):
             call, after = self.call(stmt.call)
             self.out += [stmt._replace(call=call), *after]
             return None
         return stmt._replace(call=with_operands(stmt.call, tuple(self.in_order(operands(stmt.call)))))
 
-    def assign(self, stmt: Assign) -> Stmt | None:
+    def assign(self, stmt: ir.Assign) -> ir.Stmt | None:
         value = stmt.value
         if not self.writes(value) and not self.writes(stmt.target):
             return stmt
         pinned = any(map(self.written(value).__contains__, _read(stmt.target)))
         target = self.expression(self.pinned(stmt.target) if pinned else stmt.target)
         if stmt.op and self.meets(stmt):  # the old value is read before the calls change it
-            value = Binary(target.type, stmt.op, target, value, stmt.span)
-            return Assign(target, "", self.expression(value), stmt.span)
-        direct = isinstance(target, Local | Global) and not stmt.op and not self.meets(stmt)
-        if direct and isinstance(value, Call) and self.writes_itself(value):
+            value = ir.Binary(target.type, stmt.op, target, value, stmt.span)
+            return ir.Assign(target, "", self.expression(value), stmt.span)
+        direct = isinstance(target, ir.Local | ir.Global) and not stmt.op and not self.meets(stmt)
+        if direct and isinstance(value, ir.Call) and self.writes_itself(value):
             call, after = self.call(value)
-            self.out += [Assign(target, "", call, stmt.span), *after]
+            self.out += [ir.Assign(target, "", call, stmt.span), *after]
             return None
-        return Assign(target, stmt.op, self.expression(value), stmt.span)
+        return ir.Assign(target, stmt.op, self.expression(value), stmt.span)
 
-    def for_loop(self, stmt: For) -> Stmt | None:
+    def for_loop(self, stmt: ir.For) -> ir.Stmt | None:
         init = stmt.init
-        if isinstance(init, Declare | Assign) and init.value is not None:
+        if isinstance(init, ir.Declare | ir.Assign) and init.value is not None:
             init = init._replace(value=self.expression(init.value))
         condition, body = self.loop(stmt)
-        return For(init, condition, stmt.step, body, stmt.span)
+        return ir.For(init, condition, stmt.step, body, stmt.span)
 
-    def while_loop(self, stmt: While) -> Stmt | None:
+    def while_loop(self, stmt: ir.While) -> ir.Stmt | None:
         condition, body = self.loop(stmt)
         assert condition is not None
-        return While(condition, body, stmt.span)
+        return ir.While(condition, body, stmt.span)
 
-    def loop(self, loop: For | While) -> tuple[Expr | None, Block]:
+    def loop(self, loop: ir.For | ir.While) -> tuple[ir.Expr | None, ir.Block]:
         """Condition and body. A condition that writes moves into the body: `while (true) { if (!c) break; … }`."""
         body, condition = self.block(loop.body), loop.condition
         if condition is not None and self.writes(condition):
-            leave = If(Unary(BOOL, "!", condition, condition.span), (Break(loop.span),), (), condition.span)
-            body = (*self.block((leave,)), *body)
-            condition = Literal(BOOL, True, condition.span)
+            body = (*self.block((break_unless(condition),)), *body)
+            condition = ir.Literal(BOOL, True, condition.span)
         return condition, body
 
     # Expressions
 
-    def writes_itself(self, call: Call) -> bool:
+    def writes_itself(self, call: ir.Call) -> bool:
         return self.calls.change(call.function)
 
-    def places(self, call: Call) -> list[Expr]:
+    def places(self, call: ir.Call) -> list[ir.Expr]:
         """The out arguments of a call."""
         params = self.functions[call.function].params
         return [arg for arg, param in zip(call.args, params, strict=False) if param.direction != "in"]
 
-    def written_places(self, call: Call) -> set[str]:
+    def written_places(self, call: ir.Call) -> set[str]:
         """The variables that the out arguments of a call are parts of, the module's as `$name`."""
         return {qualified_name(place) for place in map(written_root, self.places(call)) if place is not None}
 
-    def meet_each_other(self, call: Call) -> bool:
+    def meet_each_other(self, call: ir.Call) -> bool:
         """Whether two out arguments of a call may share a component."""
         places = self.places(call)
         return any(may_overlap(place, earlier) for index, place in enumerate(places) for earlier in places[:index])
 
-    def overlaps(self, call: Call) -> bool:
+    def overlaps(self, call: ir.Call) -> bool:
         """Whether an out argument may be read or written in another way, too, during the call."""
         if not self.writes_itself(call):
             return False
@@ -273,60 +237,60 @@ class _Lifter(Transformer):
         used = {f"${name}" for name in effect.reads | effect.writes}
         return self.meet_each_other(call) or not used.isdisjoint(self.written_places(call) if used else ())
 
-    def meets(self, stmt: Assign) -> bool:
+    def meets(self, stmt: ir.Assign) -> bool:
         """Whether an assignment's value also writes what the assignment writes."""
         target = written_root(stmt.target)
         return target is not None and qualified_name(target) in self.written(stmt.value)
 
-    def expression(self, expr: Expr) -> Expr:
+    def expression(self, expr: ir.Expr) -> ir.Expr:
         """The expression without its writing calls, which are executed before it."""
         if not self.writes(expr):
             return expr
-        if isinstance(expr, Select) and (self.writes(expr.yes) or self.writes(expr.no)):
+        if isinstance(expr, ir.Select) and (self.writes(expr.yes) or self.writes(expr.no)):
             return self.choose(expr)
-        if isinstance(expr, Binary) and expr.op in ("&&", "||") and self.writes(expr.right):
-            constant = Literal(BOOL, expr.op == "||", expr.span)
+        if isinstance(expr, ir.Binary) and expr.op in ("&&", "||") and self.writes(expr.right):
+            constant = ir.Literal(BOOL, expr.op == "||", expr.span)
             yes, no = (expr.right, constant) if expr.op == "&&" else (constant, expr.right)
-            return self.choose(Select(BOOL, expr.left, yes, no, expr.span))
-        if isinstance(expr, Call) and self.writes_itself(expr):
+            return self.choose(ir.Select(BOOL, expr.left, yes, no, expr.span))
+        if isinstance(expr, ir.Call) and self.writes_itself(expr):
             call, after = self.call(expr)
             result = self.local(expr.type, self.functions[expr.function].name + "_value", expr.span)
-            self.out += [Declare(result.name, result.type, call, expr.span), *after]
+            self.out += [ir.Declare(result.name, result.type, call, expr.span), *after]
             return result
         return with_operands(expr, tuple(self.in_order(operands(expr))))
 
-    def written(self, expr: Expr) -> set[str]:
+    def written(self, expr: ir.Expr) -> set[str]:
         """The variables that the calls in an expression change, the module's as `$name`."""
         names: set[str] = set()
         for part in subexpressions(expr) if self.writes(expr) else ():
-            if isinstance(part, Call):
+            if isinstance(part, ir.Call):
                 names.update(self.written_places(part))
                 names.update(map("${}".format, self.shared.get(part.function, NONE).writes))
         return names
 
-    def read(self, expr: Expr) -> set[str]:
+    def read(self, expr: ir.Expr) -> set[str]:
         """The variables that an expression and its calls read, the module's as `$name`."""
         names = set(_read(expr))
         for part in subexpressions(expr):
-            if isinstance(part, Call):
+            if isinstance(part, ir.Call):
                 names.update(map("${}".format, self.shared.get(part.function, NONE).reads))
         return names
 
-    def in_order(self, exprs: tuple[Expr, ...]) -> list[Expr]:
+    def in_order(self, exprs: tuple[ir.Expr, ...]) -> list[ir.Expr]:
         """Expressions evaluated from left to right: a variable that a later one changes is read before."""
         return [self.before(expr, exprs[index + 1 :]) for index, expr in enumerate(exprs)]
 
-    def before(self, expr: Expr, others: tuple[Expr, ...]) -> Expr:
+    def before(self, expr: ir.Expr, others: tuple[ir.Expr, ...]) -> ir.Expr:
         """An expression's value, read before those that are evaluated later can change it."""
         later = {name for other in others if self.writes(other) for name in self.written(other)}
         value = self.expression(expr)
         if later and later & self.read(value):
             kept = self.local(value.type, "before", value.span)
-            self.out.append(Declare(kept.name, kept.type, value, value.span))
+            self.out.append(ir.Declare(kept.name, kept.type, value, value.span))
             value = kept
         return value
 
-    def late(self, expr: Expr) -> bool:
+    def late(self, expr: ir.Expr) -> bool:
         """Whether an operand inside the expression reads a variable that a call to its right writes."""
         if not self.writes(expr):
             return False
@@ -337,50 +301,50 @@ class _Lifter(Transformer):
             for index, part in enumerate(parts)
         )
 
-    def choose(self, select: Select) -> Expr:
+    def choose(self, select: ir.Select) -> ir.Expr:
         """A choice as an if, so that only the chosen arm's calls write."""
         chosen = self.local(select.type, "chosen", select.span)
-        self.out.append(Declare(chosen.name, chosen.type, None, select.span))
-        yes, no = (Assign(chosen, "", arm, arm.span) for arm in (select.yes, select.no))
-        branch = self.branch(If(select.condition, (yes,), (no,), select.span))
+        self.out.append(ir.Declare(chosen.name, chosen.type, None, select.span))
+        yes, no = (ir.Assign(chosen, "", arm, arm.span) for arm in (select.yes, select.no))
+        branch = self.branch(ir.If(select.condition, (yes,), (no,), select.span))
         assert branch is not None
         self.out.append(branch)
         return chosen
 
-    def call(self, call: Call) -> tuple[Call, list[Stmt]]:
+    def call(self, call: ir.Call) -> tuple[ir.Call, list[ir.Stmt]]:
         """A call with variables for its out arguments, and the statements to be executed after it."""
         function = self.functions[call.function]
-        args: list[Expr] = []
-        copies: list[Stmt] = []
-        after: list[Stmt] = []
+        args: list[ir.Expr] = []
+        copies: list[ir.Stmt] = []
+        after: list[ir.Stmt] = []
         copied = self.meet_each_other(call)
         for index, (arg, param) in enumerate(zip(call.args, function.params, strict=False)):
             if param.direction == "in":
                 arg = self.before(arg, call.args[index + 1 :])
-            elif copied or not isinstance(arg, Local):
+            elif copied or not isinstance(arg, ir.Local):
                 place = self.expression(self.pinned(arg))
                 arg = self.local(arg.type, param.name, arg.span)
                 value = place if param.direction == "inout" else None
-                copies.append(Declare(arg.name, arg.type, value, arg.span))
-                after.append(Assign(place, "", arg, arg.span))
+                copies.append(ir.Declare(arg.name, arg.type, value, arg.span))
+                after.append(ir.Assign(place, "", arg, arg.span))
             args.append(arg)
         self.out += copies
         if discards(function) and len(args) < len(function.params):
             discarded = self.local(BOOL, DISCARDED, call.span)
-            self.out.append(Declare(discarded.name, BOOL, None, call.span))
+            self.out.append(ir.Declare(discarded.name, BOOL, None, call.span))
             args.append(discarded)
-            after.append(If(discarded, (Discard(call.span),), (), call.span))
-        return Call(call.type, function.key, tuple(args), call.span), after
+            after.append(ir.If(discarded, (ir.Discard(call.span),), (), call.span))
+        return ir.Call(call.type, function.key, tuple(args), call.span), after
 
-    def pinned(self, place: Expr) -> Expr:
+    def pinned(self, place: ir.Expr) -> ir.Expr:
         """A place to write to, with its indices computed now, as the call may change their values."""
-        if isinstance(place, Swizzle | Member):
+        if isinstance(place, ir.Swizzle | ir.Member):
             return place._replace(value=self.pinned(place.value))
-        if isinstance(place, Index):
+        if isinstance(place, ir.Index):
             index = self.expression(place.index)
-            if not isinstance(index, Literal):
+            if not isinstance(index, ir.Literal):
                 copy = self.local(index.type, "place", index.span)
-                self.out.append(Declare(copy.name, copy.type, index, index.span))
+                self.out.append(ir.Declare(copy.name, copy.type, index, index.span))
                 index = copy
             return place._replace(value=self.pinned(place.value), index=index)
         return place

@@ -15,20 +15,8 @@ import re
 from collections.abc import Callable, Container, Mapping
 from typing import NamedTuple
 
+from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.nodes import (
-    Call,
-    Constant,
-    Construct,
-    Declare,
-    Expr,
-    Function,
-    Global,
-    Intrinsic,
-    Module,
-    Variable,
-    function_key,
-)
 from sssgen.ir.transform import rewrite
 from sssgen.ir.types import VEC4, Array, Field, Matrix, Struct, Type, spell
 from sssgen.ir.walk import all_expressions, statements, subexpressions
@@ -58,7 +46,7 @@ class Rules(NamedTuple):
     """Whether uniforms are ports of a node, which have no prefix."""
 
 
-def rename(module: Module, rules: Rules) -> tuple[Module, dict[str, str]]:
+def rename(module: ir.Module, rules: Rules) -> tuple[ir.Module, dict[str, str]]:
     """The module with legal names, and what was renamed, as old → new.
 
     Overloads that got other names are listed under their key (as in `box(vec3)`), local names under `function.name`,
@@ -78,7 +66,7 @@ def checked_prefix(prefix: str, reserved: tuple[str, ...]) -> str:
 
 
 class _Namer:
-    def __init__(self, module: Module, rules: Rules) -> None:
+    def __init__(self, module: ir.Module, rules: Rules) -> None:
         self.module, self.rules = module, rules
         self.keyed = [(function.key, function) for function in module.functions]
         self.values: set[str] = set()
@@ -100,7 +88,7 @@ class _Namer:
         self.uses: dict[str, set[str]] = {}
         """What `used_by` has found."""
 
-    def run(self) -> tuple[Module, dict[str, str]]:
+    def run(self) -> tuple[ir.Module, dict[str, str]]:
         self.name_declarations()
         module = self.module
         structs, constants = module.structs, module.constants
@@ -116,7 +104,7 @@ class _Namer:
         if self.structs or self.globals:
             variables = tuple([self.variable(variable) for variable in variables])
         functions = tuple([self.function(key, function) for key, function in self.keyed])
-        return Module(structs, constants, uniforms, functions, variables, module.workgroup), self.renamed
+        return ir.Module(structs, constants, uniforms, functions, variables, module.workgroup), self.renamed
 
     # The module's own names
 
@@ -197,11 +185,11 @@ class _Namer:
             self.function_names[key] = new
             if new != function.name or self.structs:
                 types = [self.retyper.type(param.type) for param in function.params]
-                self.keys[key] = function_key(new, types)
+                self.keys[key] = ir.function_key(new, types)
 
     def mangled(self) -> dict[str, str]:
         """Names for overloads: the fewest parameter types that distinguish them."""
-        overloads: dict[str, list[tuple[str, Function]]] = {}
+        overloads: dict[str, list[tuple[str, ir.Function]]] = {}
         for key, function in self.keyed:
             overloads.setdefault(function.name, []).append((key, function))
         result: dict[str, str] = {}
@@ -217,7 +205,7 @@ class _Namer:
                 result |= {key: word for (key, _), word in zip(functions, spelled, strict=True)}
         return result
 
-    def confused(self, overloads: list[Function]) -> bool:
+    def confused(self, overloads: list[ir.Function]) -> bool:
         """Whether the target cannot distinguish these: HLSL a vec4 from a mat2."""
         if self.rules.capabilities.matrix_overloads:
             return False
@@ -258,22 +246,22 @@ class _Namer:
 
     # What uses the names
 
-    def constant(self, constant: Constant) -> Constant:
+    def constant(self, constant: ir.Constant) -> ir.Constant:
         name = self.globals.get(constant.name, constant.name)
-        return Constant(name, self.retyper.type(constant.type), self.value(constant.value), constant.span)
+        return ir.Constant(name, self.retyper.type(constant.type), self.value(constant.value), constant.span)
 
-    def variable(self, variable: Variable) -> Variable:
+    def variable(self, variable: ir.Variable) -> ir.Variable:
         name = self.globals.get(variable.name, variable.name)
         value = self.value(variable.value) if variable.value is not None else None
         return variable._replace(name=name, type=self.retyper.type(variable.type), value=value)
 
-    def value(self, value: Expr) -> Expr:
+    def value(self, value: ir.Expr) -> ir.Expr:
         """A declaration's value with the new names."""
         value = rewrite(value, self.retyper.node) if self.structs else value
-        renamed: Expr = Renamer(self.globals, self.keys).expression(value)
+        renamed: ir.Expr = Renamer(self.globals, self.keys).expression(value)
         return renamed
 
-    def function(self, key: str, function: Function) -> Function:
+    def function(self, key: str, function: ir.Function) -> ir.Function:
         name = self.function_names[key]
         names = set(declared(function))
         bad = [local for local in names if not self.legal(local)]
@@ -290,7 +278,7 @@ class _Namer:
             new = new._replace(params=tuple(passed))
         return new if name == new.name else new._replace(name=name)
 
-    def hidden(self, function: Function, names: set[str]) -> set[str]:
+    def hidden(self, function: ir.Function, names: set[str]) -> set[str]:
         """The names of a function's variables that are also those of declarations or builtins it uses."""
         names = {name for name in names if name in self.taken or name in BUILTINS}
         return names & self.used(function) if names else names
@@ -301,26 +289,26 @@ class _Namer:
             self.uses[name] = {self.globals.get(name, name)}
             if name in self.constant_values:
                 for part in subexpressions(self.constant_values[name]):
-                    if isinstance(part, Global):
+                    if isinstance(part, ir.Global):
                         self.uses[name] |= self.used_by(part.name)
-                    elif isinstance(part, Intrinsic):
+                    elif isinstance(part, ir.Intrinsic):
                         self.uses[name].add(part.name)
         return self.uses[name]
 
-    def used(self, function: Function) -> set[str]:
+    def used(self, function: ir.Function) -> set[str]:
         """The new names of what a function uses of the module, and of the builtins it calls."""
         used: set[str] = set()
         types = [function.result, *(param.type for param in function.params)]
         for expr in all_expressions(function.body or ()):
-            if isinstance(expr, Global):
+            if isinstance(expr, ir.Global):
                 used |= self.used_by(expr.name)
-            elif isinstance(expr, Call):
+            elif isinstance(expr, ir.Call):
                 used.add(self.function_names[expr.function])
-            elif isinstance(expr, Intrinsic):
+            elif isinstance(expr, ir.Intrinsic):
                 used.add(expr.name)
-            elif isinstance(expr, Construct):
+            elif isinstance(expr, ir.Construct):
                 types.append(expr.type)
-        types += [stmt.type for stmt in statements(function.body or ()) if isinstance(stmt, Declare)]
+        types += [stmt.type for stmt in statements(function.body or ()) if isinstance(stmt, ir.Declare)]
         for type_ in types:
             while isinstance(type_, Array):
                 type_ = type_.element

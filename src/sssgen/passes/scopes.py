@@ -9,82 +9,61 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Container, Iterable, Mapping
 from typing import Any
 
-from sssgen.ir.nodes import (
-    Binary,
-    Block,
-    Call,
-    Declare,
-    Expr,
-    For,
-    Function,
-    Global,
-    If,
-    Literal,
-    Local,
-    Stmt,
-    While,
-)
+from sssgen.ir import nodes as ir
 from sssgen.ir.transform import Transformer
-from sssgen.ir.walk import calls_of, expressions, inner_statements, operands, root, statements, written_places
+from sssgen.ir.types import spell
+from sssgen.ir.walk import calls_of, inner_parts, inner_statements, root, statements, written_places
 
 _NONE: Mapping[str, str] = {}
 
 
-def declared(function: Function) -> list[str]:
+def declared(function: ir.Function) -> list[str]:
     """The names of a function's parameters and variables, each as often as it is declared."""
     names = [param.name for param in function.params]
     stack = list(function.body or ())
     while stack:
         stmt = stack.pop()
-        if isinstance(stmt, Declare):
+        if isinstance(stmt, ir.Declare):
             names.append(stmt.name)
-        elif isinstance(stmt, (If, For, While)):
+        elif isinstance(stmt, (ir.If, ir.For, ir.While)):
             stack.extend(inner_statements(stmt))
     return names
 
 
-def mentions(function: Function) -> tuple[set[str], set[str]]:
-    """The names of the uniforms and constants that a function reads, and the keys of the functions it
-    calls."""
-    globals_, calls = set[str](), set[str]()
-    for stmt in statements(function.body or ()):
-        stack: list[Any] = [*expressions(stmt)]
-        while stack:
-            node = stack.pop()
-            kind = type(node)
-            if kind is Local or kind is Literal:
-                continue
-            if kind is Global:
-                globals_.add(node.name)
-                continue
-            if kind is Call:
-                calls.add(node.function)
-            stack += operands(node)
-    return globals_, calls
+def globals_of(function: ir.Function) -> set[str]:
+    """The names of the uniforms, constants and module variables that a function mentions."""
+    return {part.name for part in inner_parts(function.body or (), ir.Global)}
 
 
-def qualified_name(variable: Local | Global) -> str:
+def names_of(module: ir.Module) -> set[str]:
+    """The names that a module declares, those of structs among them."""
+    declared = (module.constants, module.uniforms, module.variables, module.functions)
+    names = {declaration.name for group in declared for declaration in group}
+    return names | {spell(struct.type) for struct in module.structs}
+
+
+def qualified_name(variable: ir.Local | ir.Global) -> str:
     """A variable's name, with `$` for one of the module, as in the IR's text form."""
-    return variable.name if isinstance(variable, Local) else f"${variable.name}"
+    return variable.name if isinstance(variable, ir.Local) else f"${variable.name}"
 
 
-def outs_of(functions: Iterable[Function]) -> dict[str, tuple[int, ...]]:
+def out_positions(function: ir.Function) -> tuple[int, ...]:
+    """The positions of a function's out and inout parameters."""
+    return tuple([index for index, param in enumerate(function.params) if param.direction != "in"])
+
+
+def outs_of(functions: Iterable[ir.Function]) -> dict[str, tuple[int, ...]]:
     """The keys of the functions that write through parameters, and the positions of these."""
-    outs = {}
-    for function in functions:
-        places = tuple([index for index, param in enumerate(function.params) if param.direction != "in"])
-        if places:
-            outs[function.key] = places
-    return outs
+    return {function.key: positions for function in functions if (positions := out_positions(function))}
 
 
-def assigned(function: Function, outs: Mapping[str, tuple[int, ...]]) -> set[str]:
+def assigned(function: ir.Function, outs: Mapping[str, tuple[int, ...]]) -> set[str]:
     """The parameters and variables of a function that its statements write; declarations do not count.
 
     `outs` is the result of `outs_of` for the module's functions.
     """
     body = function.body or ()
-    targets: list[Expr] = [place for stmt in statements(body) for place in written_places(stmt)]
+    targets: list[ir.Expr] = [place for stmt in statements(body) for place in written_places(stmt)]
     for call in calls_of(body) if outs else ():
         targets += [call.args[index] for index in outs.get(call.function, ())]
     return {variable.name for variable in map(root, targets) if variable is not None}
@@ -103,20 +82,27 @@ def fresh(name: str, taken: Container[str]) -> str:
     return f"{base}_{number}"
 
 
-def separate(function: Function) -> Function:
+def claim(name: str, taken: set[str]) -> str:
+    """A fresh name, which is taken from now on."""
+    name = fresh(name, taken)
+    taken.add(name)
+    return name
+
+
+def separate(function: ir.Function) -> ir.Function:
     """The function with every variable renamed that is declared where its name is visible already."""
     return rename_locals(function, (), fresh)[0]
 
 
 def rename_locals(
-    function: Function,
+    function: ir.Function,
     bad: Collection[str],
     choose: Callable[[str, Container[str]], str],
     globals: Mapping[str, str] = _NONE,
     calls: Mapping[str, str] = _NONE,
     loop_scope: bool = True,
     taken: Iterable[str] = (),
-) -> tuple[Function, dict[str, str]]:
+) -> tuple[ir.Function, dict[str, str]]:
     """Renames variables whose name is `bad`, or visible already where they are declared; returns old name → new name.
 
     `choose` gives a new name that is not among those taken: the function's own, and those in `taken`. The module's
@@ -155,7 +141,7 @@ class Renamer(Transformer):
         self.renamed: dict[str, str] = {}
         """The variables renamed so far: old name → new name."""
 
-    def function(self, function: Function) -> Function:
+    def function(self, function: ir.Function) -> ir.Function:
         if function.body is None:
             return function
         self.scope, params = {}, []
@@ -175,41 +161,41 @@ class Renamer(Transformer):
         self.taken.add(new)
         return new
 
-    def block(self, block: Block) -> Block:
+    def block(self, block: ir.Block) -> ir.Block:
         outer, self.heads = self.heads, set()
         new = super().block(block)
         self.heads = outer
         return new
 
-    def for_loop(self, stmt: For) -> Stmt | None:
+    def for_loop(self, stmt: ir.For) -> ir.Stmt | None:
         outer, self.heads = self.heads, set()  # heads may have the same variable
         new = super().for_loop(stmt)
         self.heads = outer
-        if not self.loop_scope and isinstance(new, For) and isinstance(new.init, Declare):
+        if not self.loop_scope and isinstance(new, ir.For) and isinstance(new.init, ir.Declare):
             self.heads.add(new.init.name)
         return new
 
-    def declare(self, stmt: Declare) -> Stmt:
+    def declare(self, stmt: ir.Declare) -> ir.Stmt:
         value = self.expression(stmt.value) if stmt.value is not None else None
         name = self.new_name(stmt.name)
         same = value is stmt.value and name == stmt.name
-        new = self.scope[stmt.name] = stmt if same else Declare(name, stmt.type, value, stmt.span)
+        new = self.scope[stmt.name] = stmt if same else ir.Declare(name, stmt.type, value, stmt.span)
         return new
 
     def expression(self, expr: Any) -> Any:
         kind = type(expr)
-        if kind is Local:
+        if kind is ir.Local:
             new = self.scope[expr.name].name if self.renamed else expr.name
-            return expr if new == expr.name else Local(expr.type, new, expr.span)
-        if kind is Literal:
+            return expr if new == expr.name else ir.Local(expr.type, new, expr.span)
+        if kind is ir.Literal:
             return expr
-        if kind is Global:
+        if kind is ir.Global:
             new = self.globals.get(expr.name, expr.name)
-            return expr if new == expr.name else Global(expr.type, new, expr.span)
-        if kind is Binary:
+            return expr if new == expr.name else ir.Global(expr.type, new, expr.span)
+        if kind is ir.Binary:
             left, right = self.expression(expr.left), self.expression(expr.right)
             same = left is expr.left and right is expr.right
-            return expr if same else Binary(expr.type, expr.op, left, right, expr.span)
-        if kind is Call and expr.function in self.calls:
-            expr = Call(expr.type, self.calls[expr.function], expr.args, expr.span)
+            return expr if same else ir.Binary(expr.type, expr.op, left, right, expr.span)
+        if kind is ir.Call and expr.function in self.calls:
+            expr = ir.Call(expr.type, self.calls[expr.function], expr.args, expr.span)
         return super().expression(expr)

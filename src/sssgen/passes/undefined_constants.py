@@ -11,21 +11,10 @@ from math import isfinite
 from typing import NamedTuple
 
 from sssgen.ir import constant_arithmetic as arithmetic
+from sssgen.ir import nodes as ir
 from sssgen.ir.constant_arithmetic import Numbers
 from sssgen.ir.constant_evaluation import Value, combined
 from sssgen.ir.constant_expressions import constant_numbers
-from sssgen.ir.nodes import (
-    Assign,
-    Binary,
-    Construct,
-    Expr,
-    Global,
-    Intrinsic,
-    Literal,
-    Local,
-    Module,
-    Span,
-)
 from sssgen.ir.rules import FLOAT_MAX
 from sssgen.ir.types import Matrix, kind_of, with_article
 from sssgen.ir.walk import expressions, operands, statements
@@ -35,10 +24,10 @@ class Undefined(NamedTuple):
     """One constant expression without a value."""
 
     message: str
-    span: Span
+    span: ir.Span
 
 
-def undefined_constants(module: Module) -> list[Undefined]:
+def undefined_constants(module: ir.Module) -> list[Undefined]:
     """The constant expressions of a folded module that have no finite value, each once."""
     checker = _Checker()
     for constant in module.constants:
@@ -50,8 +39,8 @@ def undefined_constants(module: Module) -> list[Undefined]:
         for stmt in statements(function.body or ()):
             for expr in expressions(stmt):
                 checker.value(expr)
-            if isinstance(stmt, Assign) and stmt.op:
-                checked = Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span)
+            if isinstance(stmt, ir.Assign) and stmt.op:
+                checked = ir.Binary(stmt.target.type, stmt.op, stmt.target, stmt.value, stmt.span)
                 checker.binary(checked, None, checker.value(stmt.value))
     return list(checker.undefined.values())
 
@@ -61,31 +50,31 @@ class _Checker:
 
     def __init__(self) -> None:
         self.constants: dict[str, Value | None] = {}
-        self.undefined: dict[Span, Undefined] = {}
+        self.undefined: dict[ir.Span, Undefined] = {}
 
-    def value(self, expr: Expr) -> Value | None:
+    def value(self, expr: ir.Expr) -> Value | None:
         """The value of a constant; None for anything else."""
         kind = type(expr)
-        if kind is Literal:
+        if kind is ir.Literal:
             return constant_numbers(expr)
-        if kind is Local:
+        if kind is ir.Local:
             return None
-        if isinstance(expr, Global):
+        if isinstance(expr, ir.Global):
             return self.constants.get(expr.name)
-        if isinstance(expr, Binary):
+        if isinstance(expr, ir.Binary):
             return self.binary(expr, self.value(expr.left), self.value(expr.right))
         parts = [self.value(operand) for operand in operands(expr)]
         constants = [part for part in parts if part is not None]
         if len(constants) < len(parts):
             return None
-        if isinstance(expr, Intrinsic):
+        if isinstance(expr, ir.Intrinsic):
             return self.builtin(expr, constants)
         value = combined(expr, constants) if constants else None
-        if value is None and isinstance(expr, Construct) and kind_of(expr.type) in ("int", "uint"):
+        if value is None and isinstance(expr, ir.Construct) and kind_of(expr.type) in ("int", "uint"):
             return self.wrong(f"this constant does not fit in {with_article(kind_of(expr.type))}", expr)
         return value
 
-    def binary(self, expr: Binary, left: Value | None, right: Value | None) -> Value | None:
+    def binary(self, expr: ir.Binary, left: Value | None, right: Value | None) -> Value | None:
         if right is None:
             return None
         op, kind = expr.op, kind_of(expr.right.type)
@@ -104,13 +93,13 @@ class _Checker:
             return self.wrong("this constant is too large for a float", expr)
         return None
 
-    def builtin(self, expr: Intrinsic, args: list[Value]) -> Value | None:
+    def builtin(self, expr: ir.Intrinsic, args: list[Value]) -> Value | None:
         types = [arg.type for arg in expr.args]
         if args and arithmetic.outside(expr.name, args, types, expr.type):
             return self.wrong(arithmetic.reason(expr.name, args, kind_of(expr.type)), expr)
         return arithmetic.builtin(expr.name, args, types, expr.type)
 
-    def wrong(self, message: str, expr: Expr) -> Value | None:
+    def wrong(self, message: str, expr: ir.Expr) -> Value | None:
         self.undefined.setdefault(expr.span, Undefined(message, expr.span))
         return None
 

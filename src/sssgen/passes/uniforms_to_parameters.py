@@ -13,7 +13,8 @@ from collections.abc import Container, Mapping
 from sssgen.ir.nodes import Call, Expr, Function, Global, Local, Module, Param, function_key
 from sssgen.ir.transform import rewrite_function
 from sssgen.ir.types import Sampler
-from sssgen.passes.scopes import declared, fresh, mentions, rename_locals
+from sssgen.ir.walk import callees
+from sssgen.passes.scopes import declared, fresh, globals_of, rename_locals
 
 
 def uniforms_to_parameters(module: Module, textures: bool = True) -> Module:
@@ -72,10 +73,8 @@ class Closer:
         if ordered is None:
             names, self.reads[key] = set[str](), []
             if key in self.functions:
-                globals_, calls = mentions(self.functions[key])
-                names = globals_ & self.parameters.keys()
-                for callee in calls:
-                    names.update(self.read(callee))
+                names = globals_of(self.functions[key]) & self.parameters.keys()
+                names.update(*map(self.read, callees(self.functions[key])))
             ordered = self.reads[key] = sorted(names, key=self.order.__getitem__)
         return ordered
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from sssgen.ir.nodes import Call, Expr, Function, Global, Literal, Local, Module
-from sssgen.ir.walk import expressions, operands, statements, written_places, written_root
-from sssgen.passes.scopes import outs_of
+from sssgen.ir.nodes import Function, Global, Module
+from sssgen.ir.walk import calls_of, statements, written_places, written_root
+from sssgen.passes.scopes import globals_of, outs_of
 
 
 class Effects(NamedTuple):
@@ -48,27 +48,13 @@ class _Finder:
         return effect
 
     def function(self, function: Function) -> Effects:
-        reads: set[str] = set()
-        targets: list[Expr] = []
-        calls: set[str] = set()
-        for stmt in statements(function.body or ()):
-            targets += written_places(stmt)
-            stack = list(expressions(stmt))
-            while stack:
-                node = stack.pop()
-                kind = type(node)
-                if kind is Local or kind is Literal:
-                    continue
-                if isinstance(node, Global):
-                    reads.add(node.name)
-                    continue
-                if isinstance(node, Call):
-                    calls.add(node.function)
-                    targets += [node.args[index] for index in self.outs.get(node.function, ())]
-                stack += operands(node)
+        body = function.body or ()
+        calls = calls_of(body)
+        targets = [place for stmt in statements(body) for place in written_places(stmt)]
+        targets += [call.args[index] for call in calls for index in self.outs.get(call.function, ())]
         writes = {place.name for place in map(written_root, targets) if isinstance(place, Global)}
-        called = [self.of(key) for key in calls]
+        called = [self.of(key) for key in {call.function for call in calls}]
         return Effects(
-            frozenset(reads & self.variables).union(*[effect.reads for effect in called]),
+            (self.variables & globals_of(function)).union(*[effect.reads for effect in called]),
             frozenset(writes).union(*[effect.writes for effect in called]),
         )

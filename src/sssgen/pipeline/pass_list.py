@@ -12,8 +12,19 @@ from typing import NamedTuple
 
 from sssgen.ir.nodes import Module
 from sssgen.lang.source_lines import source_line
+from sssgen.passes.aliases import drop_aliases
+from sssgen.passes.capabilities import Capabilities
+from sssgen.passes.conversions import drop_conversions
+from sssgen.passes.legal.nested_arrays import nested_arrays
+from sssgen.passes.legal.plain_loops import plain_loops
+from sssgen.passes.legal.result_structs import result_structs
+from sssgen.passes.legal.single_exit import single_exits
 from sssgen.passes.link import LinkError
-from sssgen.passes.stage.stage_interface import entry_of
+from sssgen.passes.numpy.predicate import predicate
+from sssgen.passes.stage.stage_interface import colors_in_use, entry_of, turned_derivatives
+from sssgen.passes.stage.uniform_structs import uniform_structs
+from sssgen.passes.stage.vertex_reads import with_levels
+from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.passes.unsupported import Unsupported
 from sssgen.pipeline import steps
 from sssgen.pipeline.frame_functions import add_frame_functions
@@ -40,6 +51,11 @@ class Pass(NamedTuple):
     """None: always."""
 
 
+def _target(text: str, holds: Callable[[Capabilities], bool]) -> Condition:
+    """A condition on what the target's language can express."""
+    return Condition(f"the target {text}", lambda state: holds(state.target.capabilities))
+
+
 _SHADER = Condition("it is a whole shader", lambda state: state.whole_shader)
 _COMPUTE = Condition("it is a compute shader", lambda state: bool(state.module.workgroup))
 _NO_MAIN = Condition(
@@ -58,45 +74,32 @@ _NO_VERTEX_LEVELS = Condition(
 _MATERIAL = Condition("it is a whole material", lambda state: state.material is not None and state.form == "shader")
 _SHELL = Condition("the target has no engine", lambda state: state.has_shell)
 _CALLED = Condition("the called functions are given", lambda state: state.called is not None)
-_NO_LEVELS = Condition(
-    "the target has no derivatives in non-uniform flow", lambda state: not state.target.capabilities.implicit_levels
-)
-_NO_UNDEFINED = Condition(
-    "the target refuses undefined constants", lambda state: not state.target.capabilities.undefined_constants
-)
-_NO_VARIABLES = Condition(
-    "the target has no module variables", lambda state: not state.target.capabilities.module_variables
-)
+_NO_LEVELS = _target("has no derivatives in non-uniform flow", lambda can: not can.implicit_levels)
+_NO_UNDEFINED = _target("refuses undefined constants", lambda can: not can.undefined_constants)
+_NO_VARIABLES = _target("has no module variables", lambda can: not can.module_variables)
 _CONSTANT_VALUES = Condition(
     "a module variable can only begin with a constant",
     lambda state: state.target.capabilities.module_variables and not state.target.capabilities.variable_values,
 )
 _PARAMETERS = Condition("the form passes uniforms as parameters", lambda state: state.form in state.target.parameters)
-_MASKS = Condition(
-    "the target has no control flow per lane", lambda state: not state.target.capabilities.lane_control_flow
-)
+_MASKS = _target("has no control flow per lane", lambda can: not can.lane_control_flow)
 
-_FLAT_ARRAYS = Condition(
-    "the target has no arrays of arrays", lambda state: not state.target.capabilities.nested_arrays
-)
+_FLAT_ARRAYS = _target("has no arrays of arrays", lambda can: not can.nested_arrays)
 
-_NO_REFERENCES = Condition(
-    "the target has neither out parameters nor pointers",
-    lambda state: not (state.target.capabilities.out_parameters or state.target.capabilities.pointers),
+_NO_REFERENCES = _target(
+    "has neither out parameters nor pointers", lambda can: not (can.out_parameters or can.pointers)
 )
-_PLAIN_LOOPS = Condition(
-    "the target evaluates a loop's head once", lambda state: not state.target.capabilities.loop_heads
-)
-_ONE_EXIT = Condition(
-    "the target returns at a function's end", lambda state: not state.target.capabilities.early_returns
-)
+_PLAIN_LOOPS = _target("evaluates a loop's head once", lambda can: not can.loop_heads)
+_ONE_EXIT = _target("returns at a function's end", lambda can: not can.early_returns)
 
 _FOLD = Pass("fold", steps.fold_constants, "compute constants; before prune, which removes the dead branches' uses")
 _UNDEFINED = Pass(
     "undefined", steps.refuse_undefined_constants, "refuse constants without a value; fold has left exactly these"
 )
 _PRUNE = Pass("prune", steps.prune_unused, "remove what is not used, so that nothing of it is moved or renamed")
-_ALIASES = Pass("aliases", steps.remove_aliases, "give each value one name; conversions and prune leave others behind")
+_ALIASES = Pass(
+    "aliases", steps.on_module(drop_aliases), "give each value one name; conversions and prune leave others behind"
+)
 _HOIST = Pass("hoist", steps.hoist_derivatives, "move derivatives and texture reads out of non-uniform flow")
 _GUARDS = Pass(
     "guards", steps.insert_guards, "guard operations that may fail; the program is final and uniforms have their hints"
@@ -108,7 +111,7 @@ MATERIAL: tuple[Pass, ...] = (
     Pass("shell", steps.write_shell, "write the shell around these functions, which is simplified with them", _SHELL),
     _FOLD,
     _UNDEFINED,
-    Pass("conversions", steps.remove_conversions, "remove conversions, which serve the type check alone"),
+    Pass("conversions", steps.on_module(drop_conversions), "remove conversions, which serve the type check alone"),
     _PRUNE,
     Pass("frame", steps.find_frame, "find the values that the target supplies to what is left of the shell", _SHELL),
     _ALIASES,
@@ -120,10 +123,12 @@ MATERIAL: tuple[Pass, ...] = (
 precision: their result is cached for all targets that agree in these."""
 
 _SHADER_INPUT: tuple[Pass, ...] = (
-    Pass("uniform_structs", steps.split_uniform_structs, "split uniforms of structs; no other pass knows these"),
-    Pass("color_outputs", steps.shorten_color_outputs, "shorten gl_FragData to the elements in use", _SHADER),
-    Pass("vertical_derivatives", steps.negate_vertical_derivatives, "negate dFdy, which keeps its sign", _Y_DOWN),
-    Pass("vertex_levels", steps.read_level_zero, "read textures at level 0, as GLSL does there", _NO_VERTEX_LEVELS),
+    Pass("uniform_structs", steps.on_module(uniform_structs), "split uniforms of structs; no other pass knows these"),
+    Pass("color_outputs", steps.on_module(colors_in_use), "shorten gl_FragData to the elements in use", _SHADER),
+    Pass("vertical_derivatives", steps.on_module(turned_derivatives), "negate dFdy, which keeps its sign", _Y_DOWN),
+    Pass(
+        "vertex_levels", steps.on_module(with_levels), "read textures at level 0, as GLSL does there", _NO_VERTEX_LEVELS
+    ),
     Pass("partner", steps.match_partner, "check that the other stage fits, and interpolate as it does", _PARTNER),
     Pass("differences", steps.note_differences, "report what the target's stage cannot have", _SHADER),
 )
@@ -169,13 +174,18 @@ TARGET: tuple[Pass, ...] = (
         "variable_parameters", steps.pass_variables, "pass module variables to functions as parameters", _NO_VARIABLES
     ),
     Pass("initial_values", steps.set_variables_at_start, "set module variables in main()", _CONSTANT_VALUES),
-    Pass("uniform_parameters", steps.pass_uniforms, "pass uniforms as parameters", _PARAMETERS),
-    Pass("nested_arrays", steps.wrap_nested_arrays, "put the arrays in arrays into structs", _FLAT_ARRAYS),
+    Pass("uniform_parameters", steps.on_module(uniforms_to_parameters), "pass uniforms as parameters", _PARAMETERS),
+    Pass("nested_arrays", steps.on_module(nested_arrays), "put the arrays in arrays into structs", _FLAT_ARRAYS),
     Pass("legalise", steps.legalise_nodes, "rewrite what the target cannot express; printing is then a table"),
-    Pass("result_structs", steps.return_structs, "return what a function writes", _NO_REFERENCES),
-    Pass("plain_loops", steps.simplify_loops, "make loops that count or test a plain value", _PLAIN_LOOPS),
-    Pass("single_exits", steps.return_at_end, "return once; after the passes that add returns and loops", _ONE_EXIT),
-    Pass("masks", steps.convert_to_masks, "replace control flow by masks; no other pass expects these", _MASKS),
+    Pass("result_structs", steps.on_module(result_structs), "return what a function writes", _NO_REFERENCES),
+    Pass("plain_loops", steps.on_module(plain_loops), "make loops that count or test a plain value", _PLAIN_LOOPS),
+    Pass(
+        "single_exits",
+        steps.on_module(single_exits),
+        "return once; after the passes that add returns and loops",
+        _ONE_EXIT,
+    ),
+    Pass("masks", steps.on_module(predicate), "replace control flow by masks; no other pass expects these", _MASKS),
     Pass("names", steps.make_names_legal, "make names legal; every pass before may bring new ones"),
     Pass("interface", steps.find_interface, "place inputs and outputs, under their final names", _SHADER),
 )

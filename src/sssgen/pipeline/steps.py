@@ -11,20 +11,13 @@ from sssgen.lang.polyfills import polyfill
 from sssgen.lang.source_lines import source_line
 from sssgen.material.chain_assembly import TAKEN, ChainFunction, Entry, assemble
 from sssgen.material.shell_assembly import add_shell, supplied
-from sssgen.passes.aliases import drop_aliases
-from sssgen.passes.conversions import drop_conversions
 from sssgen.passes.cost import cost_of
 from sssgen.passes.fold import fold
 from sssgen.passes.guards import guard
 from sssgen.passes.hoist import hoist
 from sssgen.passes.legal.legalise import legalise
-from sssgen.passes.legal.nested_arrays import nested_arrays
-from sssgen.passes.legal.plain_loops import plain_loops
-from sssgen.passes.legal.result_structs import result_structs
-from sssgen.passes.legal.single_exit import single_exits
 from sssgen.passes.link import link
 from sssgen.passes.names import Rules, rename
-from sssgen.passes.numpy.predicate import predicate
 from sssgen.passes.prune import prune
 from sssgen.passes.reachable import only, used
 from sssgen.passes.stage.atomic_places import check_atomics
@@ -33,19 +26,14 @@ from sssgen.passes.stage.initial_values import set_at_start, set_in_functions
 from sssgen.passes.stage.stage_interface import (
     ENTRY,
     Matching,
-    colors_in_use,
     entry_of,
     interface,
     remarks,
-    turned_derivatives,
 )
 from sssgen.passes.stage.storage_layout import check_buffers
-from sssgen.passes.stage.uniform_structs import uniform_structs
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.stage.varyings import interpolated_alike, mismatches
-from sssgen.passes.stage.vertex_reads import with_levels
 from sssgen.passes.undefined_constants import undefined_constants
-from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.passes.unsupported import Unsupported
 from sssgen.pipeline.material_stages import slot_functions, stages_for
 from sssgen.pipeline.state import State
@@ -53,6 +41,12 @@ from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.targets import registry
 from sssgen.targets.descriptor import Names
 from sssgen.targets.registry import ReservedNames
+
+
+def on_module(change: Callable[[Module], Module]) -> Callable[[State], Module]:
+    """The step of a pass that needs the module alone."""
+    return lambda state: change(state.module)
+
 
 # The beginning of a material
 
@@ -111,22 +105,6 @@ def find_frame(state: State) -> Module:
 # The beginning of plain GLSL
 
 
-def split_uniform_structs(state: State) -> Module:
-    return uniform_structs(state.module)
-
-
-def shorten_color_outputs(state: State) -> Module:
-    return colors_in_use(state.module)
-
-
-def negate_vertical_derivatives(state: State) -> Module:
-    return turned_derivatives(state.module)
-
-
-def read_level_zero(state: State) -> Module:
-    return with_levels(state.module)
-
-
 def match_partner(state: State) -> Module:
     assert state.partner is not None
     is_vertex = state.form == "vertex"
@@ -167,14 +145,6 @@ def refuse_undefined_constants(state: State) -> Module:
         hint = "WGSL refuses it, and the others compute inf, NaN or any value"
         raise SssgenError([Diagnostic("error", message, span, hint, source_line(span)) for message, span in wrong])
     return state.module
-
-
-def remove_conversions(state: State) -> Module:
-    return drop_conversions(state.module)
-
-
-def remove_aliases(state: State) -> Module:
-    return drop_aliases(state.module)
 
 
 def prune_unused(state: State) -> Module:
@@ -231,7 +201,7 @@ def compute_variables_in_functions(state: State) -> Module:
 
 
 def pass_variables(state: State) -> Module:
-    return variables_to_parameters(state.module, _start(state)).module
+    return variables_to_parameters(state.module, _start(state))
 
 
 def set_variables_at_start(state: State) -> Module:
@@ -240,10 +210,6 @@ def set_variables_at_start(state: State) -> Module:
 
 def _start(state: State) -> str:
     return ENTRY if entry_of(state.module) is not None else ""
-
-
-def pass_uniforms(state: State) -> Module:
-    return uniforms_to_parameters(state.module)
 
 
 def pass_host_uniforms(state: State) -> Module:
@@ -263,31 +229,11 @@ def check_shared_memory(state: State) -> Module:
     return check_buffers(state.module, state.target.capabilities)
 
 
-def wrap_nested_arrays(state: State) -> Module:
-    return nested_arrays(state.module)
-
-
 def legalise_nodes(state: State) -> Module:
     capabilities = state.target.capabilities
     if state.keep:  # kept operators have the meaning of GLSL, in which some results are undefined
         capabilities = capabilities._replace(integer_division=True)
     return legalise(state.module, state.target.dialect, capabilities, polyfill)
-
-
-def return_structs(state: State) -> Module:
-    return result_structs(state.module)
-
-
-def simplify_loops(state: State) -> Module:
-    return plain_loops(state.module)
-
-
-def return_at_end(state: State) -> Module:
-    return single_exits(state.module)
-
-
-def convert_to_masks(state: State) -> Module:
-    return predicate(state.module)
 
 
 def make_names_legal(state: State) -> Module:

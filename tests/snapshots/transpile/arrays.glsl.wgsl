@@ -9,8 +9,8 @@ struct Lamp {
 const COUNT: i32 = 4;
 const WEIGHTS: array<f32, 3> = array<f32, 3>(0.25, 0.5, 0.25);
 const CORNERS: array<vec2f, 4> = array<vec2f, 4>(vec2f(0.0), vec2f(1.0, 0.0), vec2f(0.0, 1.0), vec2f(1.0));
-const LAMPS: array<Lamp, 2> = array<Lamp,
-    2>(Lamp(vec3f(0.0, 1.0, 0.0), 2.0), Lamp(vec3f(1.0, 0.0, 0.5), 0.5));
+const LAMPS: array<Lamp, 2> = array<Lamp, 2>(Lamp(vec3f(0.0, 1.0, 0.0), 2.0),
+    Lamp(vec3f(1.0, 0.0, 0.5), 0.5));
 
 fn weighted(x: f32, y: f32) -> f32 {
     let given = array<f32, 3>(x, y, x * y);

@@ -24,8 +24,8 @@ float4 texel(int2 at, int2 size, texture2d<float> picture, sampler picture_sampl
 }
 
 void main_(device Result& result, threadgroup fixed_array<float4, 36>& row, uint3 GlobalInvocationID_,
-    uint3 LocalInvocationID_, texture2d<float> picture, sampler picture_sampler, fixed_array<float,
-    3> weights) {
+    uint3 LocalInvocationID_, texture2d<float> picture, sampler picture_sampler,
+    fixed_array<float, 3> weights) {
     int2 size = int2(picture.get_width(uint(0)), picture.get_height(uint(0)));
     int2 at = int2(GlobalInvocationID_.xy);
     int lane = int(LocalInvocationID_.x);

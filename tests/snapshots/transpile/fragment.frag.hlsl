@@ -62,9 +62,9 @@ FragmentOutput fragment_main(noperspective float along_in : ALONG, nointerpolati
     FrontFacing = FrontFacing_in;
     FragCoord.w = 1.0 / FragCoord.w;
     main_();
-    FragmentOutput made;
-    made.color = color;
-    made.motion = motion;
-    made.FragDepth = FragDepth;
-    return made;
+    FragmentOutput output;
+    output.color = color;
+    output.motion = motion;
+    output.FragDepth = FragDepth;
+    return output;
 }

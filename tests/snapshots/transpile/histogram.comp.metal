@@ -63,7 +63,7 @@ void main_(const device Texels& data, device Bins& bins_buffer, device Extremes&
         uint seen;
         seen = 0u;
         while (!atomic_compare_exchange_weak_explicit(&bins_buffer.bins.items[15], &seen, 0u,
-            memory_order_relaxed, memory_order_relaxed) && seen == 0u) {
+                memory_order_relaxed, memory_order_relaxed) && seen == 0u) {
         }
         atomic_fetch_xor_explicit(&extremes_buffer.extremes[3], int(seen) * 0 + int(i), memory_order_relaxed);
         int old;

@@ -113,11 +113,11 @@ VertexOutput vertex_main(float3 position_in : ATTR0, float3 normal_in : ATTR1, u
     InstanceID = int(InstanceID_in);
     main_();
     Position.z = (Position.z + Position.w) * 0.5;
-    VertexOutput made;
-    made.v_color = v_color;
-    made.v_depth = v_depth;
-    made.v_joints = v_joints;
-    made.v_normal = v_normal;
-    made.Position = Position;
-    return made;
+    VertexOutput output;
+    output.v_color = v_color;
+    output.v_depth = v_depth;
+    output.v_joints = v_joints;
+    output.v_normal = v_normal;
+    output.Position = Position;
+    return output;
 }

@@ -6,10 +6,10 @@ struct Grid {
     weight: f32,
 }
 
-const KERNEL: array<array<f32, 3>, 3> = array<array<f32, 3>,
-    3>(array<f32, 3>(1.0, 2.0, 1.0), array<f32, 3>(2.0, 4.0, 2.0), array<f32, 3>(1.0, 2.0, 1.0));
-const CORNERS: array<array<vec2f, 2>, 2> = array<array<vec2f, 2>,
-    2>(array<vec2f, 2>(vec2f(0.0), vec2f(1.0, 0.0)), array<vec2f, 2>(vec2f(0.0, 1.0), vec2f(1.0)));
+const KERNEL: array<array<f32, 3>, 3> = array<array<f32, 3>, 3>(array<f32, 3>(1.0, 2.0, 1.0),
+    array<f32, 3>(2.0, 4.0, 2.0), array<f32, 3>(1.0, 2.0, 1.0));
+const CORNERS: array<array<vec2f, 2>, 2> = array<array<vec2f, 2>, 2>(array<vec2f, 2>(vec2f(0.0),
+    vec2f(1.0, 0.0)), array<vec2f, 2>(vec2f(0.0, 1.0), vec2f(1.0)));
 
 fn total(values: array<array<f32, 2>, 3>) -> f32 {
     var sum = 0.0;
@@ -31,9 +31,8 @@ fn doubled(values_in: array<array<f32, 3>, 2>, gain: f32) -> array<array<f32, 3>
 fn of_table(i: i32, j: i32, table: array<f32, 6>) -> f32 {
     let row = array<f32, 2>(table[i * 2], table[i * 2 + 1]);
     return row[j] + table[5]
-        * total(array<array<f32, 2>,
-        3>(array<f32, 2>(table[0], table[1]), array<f32, 2>(table[2], table[3]), array<f32,
-        2>(table[4], table[5])));
+        * total(array<array<f32, 2>, 3>(array<f32, 2>(table[0], table[1]), array<f32, 2>(table[2], table[3]),
+        array<f32, 2>(table[4], table[5])));
 }
 
 fn filtered(x: f32) -> f32 {
@@ -72,8 +71,8 @@ fn cell(i: i32, j: i32) -> i32 {
 }
 
 fn stepped(x: f32, gain: f32) -> f32 {
-    let pairs = array<array<f32, 2>,
-        3>(array<f32, 2>(x, 1.0), array<f32, 2>(2.0, x), array<f32, 2>(x * x, 3.0));
+    let pairs = array<array<f32, 2>, 3>(array<f32, 2>(x, 1.0), array<f32, 2>(2.0, x),
+        array<f32, 2>(x * x, 3.0));
     let changed = doubled(array<array<f32, 3>, 2>(array<f32, 3>(x, x, x), array<f32, 3>(1.0, 2.0, 3.0)),
         gain);
     return total(pairs) + changed[0][1] + changed[1][1];

@@ -26,8 +26,8 @@ VertexOutput vertex_main(float3 a_position_in : ATTR0, float2 a_uv_in : ATTR1) {
     a_uv = a_uv_in;
     main_();
     Position.z = (Position.z + Position.w) * 0.5;
-    VertexOutput made;
-    made.v_uv = v_uv;
-    made.Position = Position;
-    return made;
+    VertexOutput output;
+    output.v_uv = v_uv;
+    output.Position = Position;
+    return output;
 }

@@ -34,10 +34,10 @@ FragmentOutput fragment_main(nointerpolation float3 v_color_in : V__COLOR, float
     v_joints = v_joints_in;
     v_normal = v_normal_in;
     main_();
-    FragmentOutput made;
-    made.layers_0 = layers[0];
-    made.layers_1 = layers[1];
-    made.ids = ids;
-    made.cell = cell;
-    return made;
+    FragmentOutput output;
+    output.layers_0 = layers[0];
+    output.layers_1 = layers[1];
+    output.ids = ids;
+    output.cell = cell;
+    return output;
 }

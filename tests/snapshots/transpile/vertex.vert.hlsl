@@ -47,9 +47,9 @@ VertexOutput vertex_main(float3 position_in : ATTR0, float2 texcoord_in : ATTR1,
     InstanceID = int(InstanceID_in);
     main_();
     Position.z = (Position.z + Position.w) * 0.5;
-    VertexOutput made;
-    made.kind = kind;
-    made.uv = uv;
-    made.Position = Position;
-    return made;
+    VertexOutput output;
+    output.kind = kind;
+    output.uv = uv;
+    output.Position = Position;
+    return output;
 }

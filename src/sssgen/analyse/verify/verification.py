@@ -473,7 +473,7 @@ class Case:
         keys = [self.keys[probe.name] for probe in probes]
         module = only(self.module, keys)
         if self.passes_variables(target):
-            module = variables_to_parameters(module, keys[0]).module
+            module = variables_to_parameters(module, keys[0])
         compiled = transpile(module, target, "verified", "none", keys, keep=True)
         text = "\n".join([text for name, text in compiled.files.items() if not name.endswith(".json")])
         return _Emitted(tuple(probes), Text(text), compiled.reflection["renames"])

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.constant_expressions import zero
 from sssgen.ir.rules import returns
 from sssgen.ir.types import VOID, Sampler, spell
 from sssgen.lang.check.context import FunctionContext
 from sssgen.lang.check.declared_names import check_global_name, check_not_reserved
 from sssgen.lang.check.name_scope import Signature
-from sssgen.lang.check.statement_checker import StatementChecker, zero
+from sssgen.lang.check.statement_checker import StatementChecker
 from sssgen.lang.check.type_names import array_type, named_type
 from sssgen.lang.check.wording import a_type
 from sssgen.lang.syntax import tree as s

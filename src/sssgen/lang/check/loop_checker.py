@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.loops import at_every_end
+from sssgen.ir.loops import at_every_end, break_unless
 from sssgen.ir.types import BOOL, INT
 from sssgen.ir.walk import all_expressions, subexpressions
 from sssgen.lang.check.context import FunctionContext
@@ -53,7 +53,7 @@ class LoopChecker:
             body = at_every_end(body, others)
         if tested:
             assert condition is not None
-            body, condition = (*tested, _break_unless(condition), *body), None
+            body, condition = (*tested, break_unless(condition), *body), None
         if not context.plain and (
             condition is None
             or step is None
@@ -73,7 +73,7 @@ class LoopChecker:
         if condition is None or len(context.reporter.diagnostics) > errors:
             return []
         if tested:
-            body, condition = (*tested, _break_unless(condition), *body), ir.Literal(BOOL, True, span)
+            body, condition = (*tested, break_unless(condition), *body), ir.Literal(BOOL, True, span)
         if not context.plain and (skips(body) or not ends(condition, body, (), context.out_arguments, context.extent)):
             raise context.fail(span, "this loop cannot be proven to end", _LOOP_HINT)
         return [ir.While(condition, body, span)]
@@ -100,7 +100,7 @@ class LoopChecker:
             return [*body, *tested]
         if is_once:
             return [once(function, at_every_end(body, tested), span)]
-        last = tested if isinstance(condition, ir.Literal) else [*tested, _break_unless(condition)]
+        last = tested if isinstance(condition, ir.Literal) else [*tested, break_unless(condition)]
         return [ir.While(ir.Literal(BOOL, True, span), at_every_end(body, last), span)]
 
     def loop_body(self, statement: s.Statement, dissolve: bool = False) -> ir.Block:
@@ -119,10 +119,6 @@ def once(function: FunctionContext, body: ir.Block, span: ir.Span) -> ir.For:
     init = function.prelude.pop()
     test = ir.Binary(BOOL, "<", counter, ir.Literal(INT, 1, span), span)
     return ir.For(init, test, ir.Assign(counter, "+", ir.Literal(INT, 1, span), span), body, span)
-
-
-def _break_unless(condition: ir.Expr) -> ir.Stmt:
-    return ir.If(ir.Unary(BOOL, "!", condition, condition.span), (ir.Break(condition.span),), (), condition.span)
 
 
 def _fits_in_head(stmt: ir.Stmt) -> bool:

@@ -10,16 +10,12 @@ from dataclasses import replace
 from typing import Any
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.rules import element_type
 from sssgen.ir.types import (
     BOOL,
     FLOAT,
     VOID,
-    Array,
     Sampler,
     Scalar,
-    Struct,
-    Type,
     Vector,
     components,
     kind_of,
@@ -250,15 +246,3 @@ def _part(expr: ir.Expr, index: int) -> ir.Expr:
     if isinstance(expr.type, Scalar):
         return expr
     return ir.Swizzle(Scalar(kind_of(expr.type)), expr, "xyzw"[index], expr.span)
-
-
-def zero(type_: Type, span: ir.Span) -> ir.Expr:
-    """A value of this type whose components are all zero."""
-    if isinstance(type_, Struct):
-        return ir.Construct(type_, tuple([zero(field.type, span) for field in type_.fields]), span)
-    if isinstance(type_, Array):
-        return ir.Construct(type_, (zero(type_.element, span),) * type_.length, span)
-    kind = kind_of(type_)
-    number: float | int = 0.0 if kind == "float" else 0
-    literal = ir.Literal(Scalar(kind), False if kind == "bool" else number, span)
-    return literal if element_type(type_) is None else ir.Construct(type_, (literal,), span)

@@ -22,7 +22,7 @@ from sssgen.passes.legal.legal_operators import is_integer_division, legal_opera
 from sssgen.passes.legal.matrix_columns import by_whole_columns, matrix_from, needs_columns
 from sssgen.passes.legal.wide_constants import ConstantIntegers, is_wider
 from sssgen.passes.lift_calls import Calls
-from sssgen.passes.scopes import declared, fresh, outs_of
+from sssgen.passes.scopes import claim, declared, outs_of
 from sssgen.passes.substitute import inlined, is_cheap
 from sssgen.passes.unsupported import MissingBuiltin, Unsupported
 from sssgen.passes.variable_effects import effects
@@ -68,9 +68,7 @@ class LegalExpressions(Transformer):
         """A name that the function does not use yet."""
         assert self.current is not None
         self.names = self.names or set(declared(self.current))
-        name = fresh(name, self.names)
-        self.names.add(name)
-        return name
+        return claim(name, self.names)
 
     def keep(self, value: ir.Expr, name: str) -> ir.Expr:
         """Computes a value before the statement, into a variable."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.loops import at_every_end
+from sssgen.ir.loops import at_every_end, break_unless
 from sssgen.ir.types import BOOL, Array, Matrix, Struct
 from sssgen.ir.walk import written_root
 from sssgen.passes.capabilities import Capabilities
@@ -143,7 +143,6 @@ class LegalStatements(LegalExpressions):
         if before and id(loop) in self.ordered:
             raise OutOfOrderError
         if before and condition is not None:
-            stop = ir.Unary(BOOL, "!", condition, condition.span)
-            body = (*before, ir.If(stop, (ir.Break(loop.span),), (), loop.span), *body)
+            body = (*before, break_unless(condition), *body)
             condition = ir.Literal(BOOL, True, condition.span)
         return condition, body

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from sssgen.ir.nodes import Binary, Construct, Expr, Literal, Local, Select, Span, Unary
-from sssgen.ir.types import BOOL, Array, Matrix, Scalar, Struct, Type, Vector
+from sssgen.ir.nodes import Binary, Expr, Local, Select, Span, Unary
+from sssgen.ir.types import BOOL
 
 
 class Mask(NamedTuple):
@@ -35,16 +35,3 @@ def negated(condition: Expr) -> tuple[Expr, bool]:
     while isinstance(condition, Unary):
         condition, inverted = condition.operand, not inverted
     return condition, inverted
-
-
-def zero(type_: Type, span: Span) -> Expr:
-    """A value for lanes of which it does not matter."""
-    if isinstance(type_, Scalar):
-        start: float | int | bool = {"float": 0.0, "bool": False}.get(type_.kind, 0)
-        return Literal(type_, start, span)
-    if isinstance(type_, Vector | Matrix):
-        return Construct(type_, (zero(Scalar(type_.kind), span),), span)
-    if isinstance(type_, Array):
-        return Construct(type_, (zero(type_.element, span),) * type_.length, span)
-    assert isinstance(type_, Struct)
-    return Construct(type_, tuple([zero(field.type, span) for field in type_.fields]), span)

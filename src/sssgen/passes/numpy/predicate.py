@@ -20,43 +20,20 @@ The result is ordinary IR with these conventions:
 
 from __future__ import annotations
 
-from sssgen.ir.nodes import (
-    Assign,
-    Binary,
-    Block,
-    Break,
-    Call,
-    Continue,
-    Declare,
-    Discard,
-    Evaluate,
-    Expr,
-    For,
-    Function,
-    If,
-    Intrinsic,
-    Literal,
-    Local,
-    Module,
-    Return,
-    Select,
-    Span,
-    Stmt,
-    Unary,
-    While,
-)
+from sssgen.ir import nodes as ir
+from sssgen.ir.constant_expressions import zero
 from sssgen.ir.types import BOOL, VOID, Type
 from sssgen.ir.walk import root, statements
 from sssgen.passes.lift_calls import DISCARDED, Functions, lift_calls, out_arguments
-from sssgen.passes.numpy.masks import Mask, negated, zero
+from sssgen.passes.numpy.masks import Mask, negated
 from sssgen.passes.numpy.settle import settle
 from sssgen.passes.numpy.tidy import renumber, tidy
 from sssgen.passes.numpy.uniformity import Uniformity, uniform_constants
 from sssgen.passes.numpy.variable_uses import may_change, written_outside
-from sssgen.passes.scopes import declared, fresh, separate
+from sssgen.passes.scopes import claim, declared, separate
 
 
-def predicate(module: Module) -> Module:
+def predicate(module: ir.Module) -> ir.Module:
     """The module without control flow per lane. Its functions come after those they call."""
     module = lift_calls(module)
     functions = {function.key: function for function in module.functions}
@@ -86,7 +63,7 @@ _OUTSIDE = -1
 class _Converter:
     """Converts one function."""
 
-    def __init__(self, function: Function, functions: Functions, constants: frozenset[str]) -> None:
+    def __init__(self, function: ir.Function, functions: Functions, constants: frozenset[str]) -> None:
         self.function, self.functions = function, functions
         self.facts = Uniformity(function, constants, functions)
         self.names = set(declared(function)) | constants | {other.name for other in functions.values()}
@@ -97,33 +74,32 @@ class _Converter:
         self.frames = [_Frame(None)]
         self.loops: list[int] = []
         """The depth of the frame of each enclosing loop, 0 for a loop without one."""
-        self.out: list[Stmt] = []
+        self.out: list[ir.Stmt] = []
         self.python_depth = 0
         """How many loops and ifs of the result enclose the current statement."""
         self.diverges = "return" in self.facts.jumps(function.body or (), False)
         self.returned, self.result = "", ""
         self.arms_to_come = 0
 
-    def run(self) -> Function:
+    def run(self) -> ir.Function:
         function = self.function
         self.block(function.body or ())
-        if self.result and not (self.out and isinstance(self.out[-1], Return)):
-            self.out.append(Return(Local(function.result, self.result, function.span), function.span))
+        if self.result and not (self.out and isinstance(self.out[-1], ir.Return)):
+            self.out.append(ir.Return(ir.Local(function.result, self.result, function.span), function.span))
         body = renumber(tidy(tuple(self.out), self.temporaries, self.functions), self.temporaries, self.names)
         return separate(function._replace(body=settle(body, function, self.functions)))
 
     # Names
 
     def new(self, name: str) -> str:
-        name = fresh(name, self.names)
-        self.names.add(name)
+        name = claim(name, self.names)
         self.temporaries.add(name)
         return name
 
-    def mask(self, value: Expr, name: str = "mask") -> Mask:
+    def mask(self, value: ir.Expr, name: str = "mask") -> Mask:
         """Stores a condition in a mask."""
         name = self.new(name)
-        self.out.append(Declare(name, BOOL, value, value.span))
+        self.out.append(ir.Declare(name, BOOL, value, value.span))
         return Mask(name)
 
     @property
@@ -136,7 +112,7 @@ class _Converter:
 
     # Statements
 
-    def block(self, block: Block) -> bool:
+    def block(self, block: ir.Block) -> bool:
         """Converts statements; returns whether no lane of the frame reaches their end."""
         frame = self.frame
         outer = frame.more
@@ -149,7 +125,7 @@ class _Converter:
         frame.more = outer
         return ended
 
-    def nested(self, block: Block) -> tuple[Block, bool]:
+    def nested(self, block: ir.Block) -> tuple[ir.Block, bool]:
         """Converts statements into the block of a statement of the result; returns also what `block` does."""
         outer, self.out = self.out, []
         self.python_depth += 1
@@ -158,33 +134,33 @@ class _Converter:
         statements, self.out = self.out, outer
         return tuple(statements), ended
 
-    def statement(self, stmt: Stmt) -> bool:
+    def statement(self, stmt: ir.Stmt) -> bool:
         """Converts a statement; returns whether no lane of the frame reaches its end."""
-        if isinstance(stmt, Declare):
+        if isinstance(stmt, ir.Declare):
             self.depths[stmt.name] = self.depth
-            if isinstance(stmt.value, Call):
+            if isinstance(stmt.value, ir.Call):
                 self.call(stmt, stmt.value)
             else:
                 self.out.append(stmt)
-        elif isinstance(stmt, Assign):
-            if isinstance(stmt.value, Call):
+        elif isinstance(stmt, ir.Assign):
+            if isinstance(stmt.value, ir.Call):
                 self.call(stmt, stmt.value)
             else:
                 self.assign(stmt)
-        elif isinstance(stmt, Evaluate):
-            if isinstance(stmt.call, Call):
+        elif isinstance(stmt, ir.Evaluate):
+            if isinstance(stmt.call, ir.Call):
                 self.call(stmt, stmt.call)
-        elif isinstance(stmt, If):
+        elif isinstance(stmt, ir.If):
             return self.branch(stmt)
-        elif isinstance(stmt, For | While):
+        elif isinstance(stmt, ir.For | ir.While):
             self.loop(stmt)
-        elif isinstance(stmt, Return):
+        elif isinstance(stmt, ir.Return):
             self.leave_function(stmt.value, stmt.span)
             return True
-        elif isinstance(stmt, Discard):
+        elif isinstance(stmt, ir.Discard):
             self.discard(stmt)
             return True
-        elif isinstance(stmt, Break | Continue):
+        elif isinstance(stmt, ir.Break | ir.Continue):
             self.leave_loop(stmt)
             return True
         return False
@@ -193,7 +169,7 @@ class _Converter:
         """The lanes in which a variable may change here; None: all."""
         return self.frame.mask if self.depths[name] < self.depth else None
 
-    def assign(self, stmt: Assign) -> None:
+    def assign(self, stmt: ir.Assign) -> None:
         target, span = stmt.target, stmt.span
         variable = root(target)
         assert variable is not None
@@ -201,32 +177,32 @@ class _Converter:
         if mask is None:
             self.out.append(stmt)
             return
-        value = Binary(target.type, stmt.op, target, stmt.value, span) if stmt.op else stmt.value
-        self.out.append(Assign(target, "", mask.choose(value, target, span), span))
+        value = ir.Binary(target.type, stmt.op, target, stmt.value, span) if stmt.op else stmt.value
+        self.out.append(ir.Assign(target, "", mask.choose(value, target, span), span))
 
-    def call(self, stmt: Declare | Assign | Evaluate, call: Call) -> None:
+    def call(self, stmt: ir.Declare | ir.Assign | ir.Evaluate, call: ir.Call) -> None:
         """A call that may write: under a mask it writes to temporary variables, which are then copied."""
         args = list(call.args)
-        after: list[Stmt] = []
+        after: list[ir.Stmt] = []
         for index, param in enumerate(self.functions[call.function].params):
             arg = args[index]
             if param.direction != "in":
-                assert isinstance(arg, Local)
+                assert isinstance(arg, ir.Local)
                 mask = self.mask_for(arg.name)
                 if mask is not None:
-                    temporary = args[index] = Local(arg.type, self.new(arg.name), arg.span)
+                    temporary = args[index] = ir.Local(arg.type, self.new(arg.name), arg.span)
                     value = arg if param.direction == "inout" else None
-                    self.out.append(Declare(temporary.name, arg.type, value, arg.span))
-                    after.append(Assign(arg, "", mask.choose(temporary, arg, arg.span), arg.span))
+                    self.out.append(ir.Declare(temporary.name, arg.type, value, arg.span))
+                    after.append(ir.Assign(arg, "", mask.choose(temporary, arg, arg.span), arg.span))
         call = call._replace(args=tuple(args))
-        if isinstance(stmt, Evaluate):
+        if isinstance(stmt, ir.Evaluate):
             self.out.append(stmt._replace(call=call))
-        elif isinstance(stmt, Assign):
+        elif isinstance(stmt, ir.Assign):
             variable = root(stmt.target)
             assert variable is not None
             if out_arguments(call, self.functions) and self.mask_for(variable.name) is not None:
-                temporary = Local(stmt.target.type, self.new(variable.name), stmt.span)
-                self.out.append(Declare(temporary.name, temporary.type, call, stmt.span))
+                temporary = ir.Local(stmt.target.type, self.new(variable.name), stmt.span)
+                self.out.append(ir.Declare(temporary.name, temporary.type, call, stmt.span))
                 self.assign(stmt._replace(value=temporary))
             else:
                 self.assign(stmt._replace(value=call))
@@ -236,7 +212,7 @@ class _Converter:
 
     # Ifs
 
-    def branch(self, stmt: If) -> bool:
+    def branch(self, stmt: ir.If) -> bool:
         frame = self.frame
         if self.facts.uniform(stmt.condition):
             self.prepare_return(stmt)
@@ -244,12 +220,12 @@ class _Converter:
             then, then_ends = self.nested(stmt.then)
             otherwise, else_ends = self.nested(stmt.otherwise)
             frame.branches -= 1
-            self.out.append(If(stmt.condition, then, otherwise, stmt.span))
+            self.out.append(ir.If(stmt.condition, then, otherwise, stmt.span))
             return then_ends and else_ends
         condition, inverted = negated(stmt.condition)
         outer = frame.mask if self.base(stmt) < self.depth else None
         shared = outer is None and not _jumps_inside(stmt.then)
-        if outer is None and isinstance(condition, Local) and self.constant_in(condition.name, stmt):
+        if outer is None and isinstance(condition, ir.Local) and self.constant_in(condition.name, stmt):
             mask = Mask(condition.name)
         else:
             mask = self.mask(condition)
@@ -265,19 +241,19 @@ class _Converter:
         self.arms_to_come -= bool(stmt.otherwise)
         return self.arm(stmt.otherwise, else_mask) and then_ends
 
-    def arm(self, block: Block, mask: Mask) -> bool:
+    def arm(self, block: ir.Block, mask: Mask) -> bool:
         self.frames.append(_Frame(mask))
         ended = self.block(block)
         self.frames.pop()
         return ended
 
-    def constant_in(self, name: str, stmt: If) -> bool:
+    def constant_in(self, name: str, stmt: ir.If) -> bool:
         """Whether a variable can be the mask of an if: no statement inside changes it."""
         if any(_jumps_inside(arm) for arm in (stmt.then, stmt.otherwise)):
             return False
         return name not in written_outside(stmt, self.functions)
 
-    def base(self, stmt: If) -> int:
+    def base(self, stmt: ir.If) -> int:
         """The depth of the outermost frame whose variables or masks the if changes.
 
         The mask of the if must be right only for the lanes of that frame, so it need not include the masks further out.
@@ -285,49 +261,49 @@ class _Converter:
         depths = [self.depth]
         depths += [self.depths[name] for name in written_outside(stmt, self.functions) if name in self.depths]
         for inner in statements((stmt,)):
-            if isinstance(inner, Return):
+            if isinstance(inner, ir.Return):
                 depths.append(0)
-            elif isinstance(inner, Break | Continue) and self.loops:
+            elif isinstance(inner, ir.Break | ir.Continue) and self.loops:
                 target = self.loops[-1]  # or an inner loop; a lane that continues must not break
-                depths.append(target - 1 if self.frames[target].active and isinstance(inner, Break) else target)
-            elif isinstance(inner, Discard) or (
-                isinstance(inner, For | While) and self.facts.loops[id(inner)].diverges
+                depths.append(target - 1 if self.frames[target].active and isinstance(inner, ir.Break) else target)
+            elif isinstance(inner, ir.Discard) or (
+                isinstance(inner, ir.For | ir.While) and self.facts.loops[id(inner)].diverges
             ):
                 depths.append(_OUTSIDE)
         return min(depths)
 
     # Loops
 
-    def loop(self, loop: For | While) -> None:
+    def loop(self, loop: ir.For | ir.While) -> None:
         facts = self.facts.loops[id(loop)]
         if facts.diverges:
             self.diverging_loop(loop, facts.masked, facts.jumps)
             return
         self.prepare_return(loop)
         frame, span = self.frame, loop.span
-        if isinstance(loop, For) and isinstance(loop.init, Declare):
+        if isinstance(loop, ir.For) and isinstance(loop.init, ir.Declare):
             self.depths[loop.init.name] = self.depth
-        if isinstance(loop, For) and not facts.counted and loop.init is not None:
+        if isinstance(loop, ir.For) and not facts.counted and loop.init is not None:
             self.statement(loop.init)
         more, frame.more = frame.more, True
         frame.branches += 1
         self.loops.append(0)
-        if isinstance(loop, For) and facts.counted:
+        if isinstance(loop, ir.For) and facts.counted:
             self.out.append(loop._replace(body=self.nested(loop.body)[0]))
         else:
-            step = (loop.step,) if isinstance(loop, For) and loop.step is not None else ()
+            step = (loop.step,) if isinstance(loop, ir.For) and loop.step is not None else ()
             body, _ = self.nested(loop.body + step)
             assert loop.condition is not None
-            self.out.append(While(loop.condition, body, span))
+            self.out.append(ir.While(loop.condition, body, span))
         self.loops.pop()
         frame.branches -= 1
         frame.more = more
 
-    def diverging_loop(self, loop: For | While, masked: bool, jumps: frozenset[str]) -> None:
+    def diverging_loop(self, loop: ir.For | ir.While, masked: bool, jumps: frozenset[str]) -> None:
         """A loop with a mask of the lanes still in it, and where needed one of those still in this iteration."""
         outer, span = self.frame, loop.span
-        init, step = (loop.init, loop.step) if isinstance(loop, For) else (None, None)
-        if isinstance(init, Declare):
+        init, step = (loop.init, loop.step) if isinstance(loop, ir.For) else (None, None)
+        if isinstance(init, ir.Declare):
             # lanes that have left the loop need no counter, but those that continue with the next iteration do
             steps = "continue" in jumps and may_change(loop.body, init.name)
             self.depths[init.name] = self.depth + (0 if steps else 1)
@@ -335,14 +311,14 @@ class _Converter:
                 self.out.append(init)
         elif init is not None:
             self.statement(init)
-        everyone: Expr = Literal(BOOL, True, span)
-        test = loop.condition if masked and not isinstance(loop.condition, Literal) else None
+        everyone: ir.Expr = ir.Literal(BOOL, True, span)
+        test = loop.condition if masked and not isinstance(loop.condition, ir.Literal) else None
         start = everyone if outer.mask is None else outer.mask.expr(span)
         running = ""
         if masked or jumps - {"continue"}:
             first = start if test is None else test if outer.mask is None else outer.mask.also(test)
             running = self.mask(first, "running").name
-            start = Local(BOOL, running, span)
+            start = ir.Local(BOOL, running, span)
         self.prepare_return(loop)
         active = self.new("active") if "continue" in jumps else ""
         frame = _Frame(Mask(active or running), running, active)
@@ -351,9 +327,9 @@ class _Converter:
         statements, self.out = self.out, []
         self.python_depth += 1
         if active:
-            self.out.append(Declare(active, BOOL, start, span))
+            self.out.append(ir.Declare(active, BOOL, start, span))
         self.block(loop.body)
-        ended = bool(self.out) and isinstance(self.out[-1], Break)
+        ended = bool(self.out) and isinstance(self.out[-1], ir.Break)
         frame.mask = Mask(running)
         if masked and not ended:
             if step is not None:
@@ -361,34 +337,34 @@ class _Converter:
             if test is not None:
                 self.update(running, "&&", test)
         elif running and not ended:
-            left = Unary(BOOL, "!", _any_lane(running, span), span)
-            self.out.append(If(left, (Break(span),), (), span))
+            left = ir.Unary(BOOL, "!", _any_lane(running, span), span)
+            self.out.append(ir.If(left, (ir.Break(span),), (), span))
         self.python_depth -= 1
         body, self.out = tuple(self.out), statements
         self.loops.pop()
         self.frames.pop()
         if masked:
-            self.out.append(While(_any_lane(running, span), body, span))
+            self.out.append(ir.While(_any_lane(running, span), body, span))
         else:
-            assert isinstance(loop, For)
+            assert isinstance(loop, ir.For)
             self.out.append(loop._replace(body=body))
 
     # Jumps
 
-    def update(self, name: str, op: str, value: Expr) -> None:
-        local = Local(BOOL, name, value.span)
-        self.out.append(Assign(local, "", Binary(BOOL, op, local, value, value.span), value.span))
+    def update(self, name: str, op: str, value: ir.Expr) -> None:
+        local = ir.Local(BOOL, name, value.span)
+        self.out.append(ir.Assign(local, "", ir.Binary(BOOL, op, local, value, value.span), value.span))
 
-    def clear(self, mask: Mask, condition: Mask | None, span: Span) -> None:
+    def clear(self, mask: Mask, condition: Mask | None, span: ir.Span) -> None:
         """Removes lanes from a mask; None: all of them."""
         if condition is None:
-            self.out.append(Assign(Local(BOOL, mask.name, span), "", Literal(BOOL, mask.inverted, span), span))
+            self.out.append(ir.Assign(ir.Local(BOOL, mask.name, span), "", ir.Literal(BOOL, mask.inverted, span), span))
         elif mask.inverted:
             self.update(mask.name, "||", condition.expr(span))
         else:
             self.update(mask.name, "&&", Mask(condition.name, not condition.inverted).expr(span))
 
-    def leave(self, target: int, kind: str, span: Span) -> None:
+    def leave(self, target: int, kind: str, span: ir.Span) -> None:
         """Removes the lanes of this frame from the masks of the enclosing frames, up to that at depth `target`."""
         leaving = self.frame.mask
         assert leaving is not None
@@ -401,14 +377,14 @@ class _Converter:
         frame = self.frame
         if kind != "continue" and frame.running:
             if not frame.active:
-                self.out.append(Break(span))
+                self.out.append(ir.Break(span))
                 return
             self.clear(Mask(frame.running), leaving, span)
         if frame.more and (frame.branches or frame.active):
             self.clear(leaving, None, span)
 
-    def leave_loop(self, stmt: Break | Continue) -> None:
-        kind = "break" if isinstance(stmt, Break) else "continue"
+    def leave_loop(self, stmt: ir.Break | ir.Continue) -> None:
+        kind = "break" if isinstance(stmt, ir.Break) else "continue"
         target = self.loops[-1]
         uniform = target == 0 or (target == self.depth and not self.frame.active)
         if uniform:
@@ -416,33 +392,33 @@ class _Converter:
         else:
             self.leave(target, kind, stmt.span)
 
-    def prepare_return(self, stmt: Stmt) -> None:
+    def prepare_return(self, stmt: ir.Stmt) -> None:
         """Declares that no lane has returned yet, before a loop or if of the result in which lanes may return."""
-        may_return = any(isinstance(inner, Return | Discard) for inner in statements((stmt,)))
+        may_return = any(isinstance(inner, ir.Return | ir.Discard) for inner in statements((stmt,)))
         if self.diverges and may_return and not self.returned and self.python_depth == 0:
-            self.start_return(Literal(BOOL, False, stmt.span), None, stmt.span)
+            self.start_return(ir.Literal(BOOL, False, stmt.span), None, stmt.span)
 
-    def start_return(self, returned: Expr, result: Expr | None, span: Span) -> None:
+    def start_return(self, returned: ir.Expr, result: ir.Expr | None, span: ir.Span) -> None:
         """Declares which lanes have returned, and their results."""
         type_: Type = self.function.result
         if type_ != VOID:
             self.result = self.new("result")
-            self.out.append(Declare(self.result, type_, result, span))
+            self.out.append(ir.Declare(self.result, type_, result, span))
         self.returned = self.new("returned")
-        self.out.append(Declare(self.returned, BOOL, returned, span))
+        self.out.append(ir.Declare(self.returned, BOOL, returned, span))
         self.frames[0].mask = Mask(self.returned, True)
 
-    def leave_function(self, value: Expr | None, span: Span) -> None:
+    def leave_function(self, value: ir.Expr | None, span: ir.Span) -> None:
         if value is not None and self.returned:
-            value = Select(
+            value = ir.Select(
                 value.type,
-                Local(BOOL, self.returned, span),
-                Local(value.type, self.result, span),
+                ir.Local(BOOL, self.returned, span),
+                ir.Local(value.type, self.result, span),
                 value,
                 span,
             )
         if self.depth == 0:
-            self.out.append(Return(value, span))
+            self.out.append(ir.Return(value, span))
             return
         leaving = self.frame.mask
         assert leaving is not None
@@ -450,16 +426,16 @@ class _Converter:
             self.start_return(leaving.expr(span), value, span)
         else:
             if value is not None:
-                self.out.append(Assign(Local(value.type, self.result, span), "", value, span))
+                self.out.append(ir.Assign(ir.Local(value.type, self.result, span), "", value, span))
             if self.loops or self.arms_to_come or any(frame.more for frame in self.frames):
                 self.update(self.returned, "||", leaving.expr(span))
         self.leave(0, "return", span)
 
-    def discard(self, stmt: Discard) -> None:
+    def discard(self, stmt: ir.Discard) -> None:
         span = stmt.span
         mask = self.frame.mask
-        discarded = Local(BOOL, DISCARDED, span)
-        self.out.append(Assign(discarded, "", Literal(BOOL, True, span), span))
+        discarded = ir.Local(BOOL, DISCARDED, span)
+        self.out.append(ir.Assign(discarded, "", ir.Literal(BOOL, True, span), span))
         if mask is not None:
             self.out.pop()
             self.update(DISCARDED, "||", mask.expr(span))
@@ -467,13 +443,13 @@ class _Converter:
         self.leave_function(None if type_ == VOID else zero(type_, span), span)
 
 
-def _any_lane(mask: str, span: Span) -> Expr:
-    return Intrinsic(BOOL, "any_lane", (Local(BOOL, mask, span),), span)
+def _any_lane(mask: str, span: ir.Span) -> ir.Expr:
+    return ir.Intrinsic(BOOL, "any_lane", (ir.Local(BOOL, mask, span),), span)
 
 
-def _jumps_inside(block: Block) -> bool:
+def _jumps_inside(block: ir.Block) -> bool:
     """Whether a statement inside the block's statements is a jump; jumps of the block itself do not count."""
-    jumps = (Break, Continue, Return, Discard)
+    jumps = (ir.Break, ir.Continue, ir.Return, ir.Discard)
     return any(
         isinstance(inner, jumps) for stmt in block if not isinstance(stmt, jumps) for inner in statements((stmt,))
     )

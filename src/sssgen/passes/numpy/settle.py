@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from sssgen.ir.constant_expressions import zero
 from sssgen.ir.nodes import Assign, Block, Declare, For, Function, If, Local, Return, Stmt, While
 from sssgen.ir.types import Type
 from sssgen.ir.walk import expressions, statements
 from sssgen.passes.lift_calls import Functions, out_arguments
-from sssgen.passes.numpy.masks import zero
 from sssgen.passes.numpy.variable_uses import is_local, mentions, reads_of, writes_of
 
 

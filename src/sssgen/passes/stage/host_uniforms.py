@@ -6,21 +6,10 @@ Place: before `variable_parameters` and `uniform_parameters`, which pass on the 
 
 from __future__ import annotations
 
-from sssgen.ir.nodes import (
-    Assign,
-    Block,
-    Expr,
-    Global,
-    Member,
-    MemoryOperation,
-    Module,
-    Span,
-    Stmt,
-    Uniform,
-)
+from sssgen.ir import nodes as ir
 from sssgen.ir.transform import rewrite_module
-from sssgen.ir.types import INT, Struct, Type, components, spell
-from sssgen.passes.scopes import fresh
+from sssgen.ir.types import INT, Type, components, spell
+from sssgen.passes.scopes import claim, names_of
 from sssgen.passes.unsupported import Note
 
 _COUNT = "gl_NumWorkGroups"
@@ -33,26 +22,26 @@ def length_text(block: Type, member: str) -> str:
     return f"The number of elements of {spell(block)}.{member}"
 
 
-def lengths_to_uniforms(module: Module) -> tuple[Module, list[Note]]:
+def lengths_to_uniforms(module: ir.Module) -> tuple[ir.Module, list[Note]]:
     """The module with an int uniform `values_length` for each length of a buffer's member `values` that it reads."""
     uniforms = _Uniforms(module)
 
-    def restate(stmt: Stmt) -> Block | None:
-        if not isinstance(stmt, MemoryOperation) or stmt.name != "arrayLength" or stmt.result is None:
+    def restate(stmt: ir.Stmt) -> ir.Block | None:
+        if not isinstance(stmt, ir.MemoryOperation) or stmt.name != "arrayLength" or stmt.result is None:
             return None
         (array,) = stmt.args
-        assert isinstance(array, Member) and isinstance(array.value, Global)
+        assert isinstance(array, ir.Member) and isinstance(array.value, ir.Global)
         message = f"'{array.field}.length()' is the uniform '{{}}' here"
         doc = length_text(array.value.type, array.field)
         uniform = uniforms.uniform(
             doc, f"{array.field}_length", INT, message, "set it to the number of elements", stmt.span
         )
-        return (Assign(stmt.result, "", uniform, stmt.span),)
+        return (ir.Assign(stmt.result, "", uniform, stmt.span),)
 
     return uniforms.added_to(rewrite_module(module, lambda expr: expr, restate))
 
 
-def group_count_to_uniform(module: Module) -> tuple[Module, list[Note]]:
+def group_count_to_uniform(module: ir.Module) -> tuple[ir.Module, list[Note]]:
     """The module with a uvec3 uniform in the place of gl_NumWorkGroups, if it reads that."""
     variable = next((variable for variable in module.variables if variable.builtin == _COUNT), None)
     if variable is None:
@@ -62,8 +51,8 @@ def group_count_to_uniform(module: Module) -> tuple[Module, list[Note]]:
     hint = "set it to the number of workgroups for each dispatch"
     uniform = uniforms.uniform(COUNT_TEXT, _COUNT.removeprefix("gl_"), variable.type, message, hint, variable.span)
 
-    def change(expr: Expr) -> Expr:
-        return uniform if isinstance(expr, Global) and expr.name == variable.name else expr
+    def change(expr: ir.Expr) -> ir.Expr:
+        return uniform if isinstance(expr, ir.Global) and expr.name == variable.name else expr
 
     others = tuple([other for other in module.variables if other is not variable])
     return uniforms.added_to(rewrite_module(module._replace(variables=others), change))
@@ -72,22 +61,19 @@ def group_count_to_uniform(module: Module) -> tuple[Module, list[Note]]:
 class _Uniforms:
     """New uniforms of a module, with a note for each."""
 
-    def __init__(self, module: Module) -> None:
-        declared = (module.constants, module.uniforms, module.variables, module.functions)
-        self.taken = {declaration.name for group in declared for declaration in group}
-        self.taken |= {struct.type.name for struct in module.structs if isinstance(struct.type, Struct)}
-        self.uniforms: dict[str, Uniform] = {}
+    def __init__(self, module: ir.Module) -> None:
+        self.taken = names_of(module)
+        self.uniforms: dict[str, ir.Uniform] = {}
         """By what they are, which is their documentation."""
         self.notes: list[Note] = []
 
-    def uniform(self, doc: str, name: str, type_: Type, message: str, hint: str, span: Span) -> Global:
+    def uniform(self, doc: str, name: str, type_: Type, message: str, hint: str, span: ir.Span) -> ir.Global:
         """The uniform with this documentation, which gets about that name."""
         if doc not in self.uniforms:
-            name = fresh(name, self.taken)
-            self.taken.add(name)
-            self.uniforms[doc] = Uniform(name, type_, (0.0,) * components(type_), (), "", doc, span)
+            name = claim(name, self.taken)
+            self.uniforms[doc] = ir.Uniform(name, type_, (0.0,) * components(type_), (), "", doc, span)
             self.notes.append(Note(message.format(name), span, hint))
-        return Global(type_, self.uniforms[doc].name, span)
+        return ir.Global(type_, self.uniforms[doc].name, span)
 
-    def added_to(self, module: Module) -> tuple[Module, list[Note]]:
+    def added_to(self, module: ir.Module) -> tuple[ir.Module, list[Note]]:
         return module._replace(uniforms=(*module.uniforms, *self.uniforms.values())), self.notes

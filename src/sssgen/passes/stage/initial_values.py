@@ -13,7 +13,7 @@ from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Assign, Declare, Expr, Function, Global, Intrinsic, Local, Module, Variable
 from sssgen.ir.transform import rewrite, rewrite_function
 from sssgen.ir.walk import subexpressions
-from sssgen.passes.scopes import declared, fresh, mentions, rename_locals
+from sssgen.passes.scopes import declared, fresh, globals_of, rename_locals
 from sssgen.passes.unsupported import Unsupported
 from sssgen.passes.variable_effects import effects
 
@@ -25,29 +25,22 @@ def set_at_start(module: Module, entry: str, all_of_them: bool = False) -> Modul
     """
     constants = {constant.name for constant in module.constants}
     moved = [
-        declaration
-        for declaration in module.variables
-        if declaration.value is not None and (all_of_them or _varies(declaration, constants))
+        variable
+        for variable in module.variables
+        if variable.value is not None and (all_of_them or _varies(variable, constants))
     ]
     if not moved:
         return module
     if not entry:
         raise _unset(moved[0])
     names = {variable.name for variable in moved}
-    variables = tuple(
-        [
-            declaration._replace(value=None) if declaration.name in names else declaration
-            for declaration in module.variables
-        ]
-    )
+    variables = [each._replace(value=None) if each.name in names else each for each in module.variables]
     stmts = tuple(map(_set, moved))
-    functions = tuple(
-        [
-            declaration._replace(body=(*stmts, *(declaration.body or ()))) if declaration.key == entry else declaration
-            for declaration in module.functions
-        ]
-    )
-    return module._replace(variables=variables, functions=functions)
+    functions = [
+        function._replace(body=(*stmts, *(function.body or ()))) if function.key == entry else function
+        for function in module.functions
+    ]
+    return module._replace(variables=tuple(variables), functions=tuple(functions))
 
 
 def set_in_functions(module: Module, variables_exist: bool, values_vary: bool) -> Module:
@@ -84,7 +77,7 @@ def set_in_functions(module: Module, variables_exist: bool, values_vary: bool) -
 
 def _with_declarations(function: Function, computed: dict[str, Variable]) -> Function:
     """A function with local variables in place of the computed ones that it reads."""
-    needed = set(mentions(function)[0] & computed.keys())
+    needed = globals_of(function) & computed.keys()
     for name in reversed(computed):  # a value reads earlier variables only
         value = computed[name].value
         if name in needed and value is not None:

@@ -14,8 +14,8 @@ from itertools import zip_longest
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Call, Expr, Function, Global, Intrinsic, Local, Module, Uniform
 from sssgen.ir.types import Sampler
-from sssgen.ir.walk import all_expressions, subexpressions
-from sssgen.passes.scopes import fresh
+from sssgen.ir.walk import all_expressions, calls_of, subexpressions
+from sssgen.passes.scopes import claim, globals_of, names_of
 from sssgen.passes.stage.varyings import contrast, mismatches, output_of, place, varyings
 from sssgen.passes.unsupported import Unsupported
 
@@ -75,28 +75,21 @@ def linked(vertex: Module, fragment: Module) -> tuple[Module, Module]:
     fragment = _without_unread_inputs(fragment)
     outputs = varyings(vertex, "vertex")
     received = {output_of(input_, outputs) for input_ in varyings(fragment, "fragment")}
-    variables = tuple(
-        [
-            variable._replace(storage="private", location=-1, interpolation="")
-            if variable in outputs and variable not in received
-            else variable
-            for variable in vertex.variables
-        ]
-    )
-    return _without_unread_inputs(vertex._replace(variables=variables)), fragment
+    variables = [
+        variable._replace(storage="private", location=-1, interpolation="")
+        if variable in outputs and variable not in received
+        else variable
+        for variable in vertex.variables
+    ]
+    return _without_unread_inputs(vertex._replace(variables=tuple(variables))), fragment
 
 
 def _without_unread_inputs(module: Module) -> Module:
-    names = _mentioned(module)
+    names = set[str]().union(*map(globals_of, module.functions))
+    values = [variable.value for variable in module.variables if variable.value is not None]
+    names |= {node.name for value in values for node in subexpressions(value) if isinstance(node, Global)}
     variables = [variable for variable in module.variables if variable.storage != "in" or variable.name in names]
     return module._replace(variables=tuple(variables))
-
-
-def _mentioned(module: Module) -> set[str]:
-    """The names of the globals that the functions and the variables' values mention."""
-    nodes = [node for function in module.functions for node in all_expressions(function.body or ())]
-    nodes += [node for variable in module.variables if variable.value for node in subexpressions(variable.value)]
-    return {node.name for node in nodes if isinstance(node, Global)}
 
 
 def with_shared_uniforms(vertex: Module, fragment: Module) -> tuple[Module, Module]:
@@ -111,22 +104,19 @@ def with_shared_uniforms(vertex: Module, fragment: Module) -> tuple[Module, Modu
 def _declared(module: Module, names: list[str], other: Module) -> Module:
     mine = {uniform.source: uniform for uniform in module.uniforms}
     theirs = {uniform.source: uniform for uniform in other.uniforms}
-    declared = (module.constants, module.uniforms, module.variables, module.functions)
-    taken = {declaration.name for group in declared for declaration in group}
-    uniforms = list[Uniform]()
+    taken, uniforms = names_of(module), list[Uniform]()
     for name in names:
         uniform = mine.get(name)
         if uniform is None:
-            uniform = theirs[name]._replace(name=fresh(theirs[name].name, taken))
-            taken.add(uniform.name)
+            uniform = theirs[name]._replace(name=claim(theirs[name].name, taken))
         uniforms.append(uniform)
     return module._replace(uniforms=tuple(uniforms))
 
 
 def passed_textures(module: Module) -> set[str]:
     """The names of the textures that are given to functions: in most languages, each is given with its sampler."""
-    calls = [node for function in module.functions for node in all_expressions(function.body or ())]
-    arguments = [argument for call in calls if isinstance(call, Call) for argument in call.args]
+    calls = [call for function in module.functions for call in calls_of(function.body or ())]
+    arguments = [argument for call in calls for argument in call.args]
     return {each.name for each in arguments if isinstance(each, Global) and isinstance(each.type, Sampler)}
 
 

@@ -14,29 +14,11 @@ from collections.abc import Iterator
 from math import prod
 from typing import NamedTuple
 
-from sssgen.ir.nodes import (
-    Assign,
-    Binary,
-    Block,
-    Call,
-    Construct,
-    Declare,
-    Expr,
-    For,
-    Global,
-    Index,
-    Literal,
-    Member,
-    Module,
-    Return,
-    Span,
-    Stmt,
-    Uniform,
-)
+from sssgen.ir import nodes as ir
 from sssgen.ir.transform import rewrite, rewrite_module
 from sssgen.ir.types import INT, Array, Struct, Type, components
 from sssgen.ir.walk import operands, subexpressions, with_operands
-from sssgen.passes.scopes import fresh
+from sssgen.passes.scopes import claim, names_of
 from sssgen.passes.unsupported import Unsupported
 
 Path = tuple[str, ...]
@@ -56,7 +38,7 @@ class _Leaf(NamedTuple):
         return Array(self.element, prod(self.lengths)) if self.lengths else self.element
 
 
-def uniform_structs(module: Module) -> Module:
+def uniform_structs(module: ir.Module) -> ir.Module:
     """The module without uniforms that hold structs. Raises Unsupported."""
     if not any(_is_split(uniform.type) for uniform in module.uniforms):
         return module
@@ -69,41 +51,36 @@ def _is_split(type_: Type) -> bool:
 
 
 class _Splitter:
-    def __init__(self, module: Module) -> None:
+    def __init__(self, module: ir.Module) -> None:
         self.module = module
-        declared = (module.constants, module.uniforms, module.variables, module.functions)
-        self.taken = {declaration.name for group in declared for declaration in group}
+        self.taken = names_of(module)
         self.split = {uniform.name: uniform.type for uniform in module.uniforms if _is_split(uniform.type)}
         self.leaves: dict[Path, _Leaf] = {}
 
-    def run(self) -> Module:
+    def run(self) -> ir.Module:
         uniforms = tuple([part for uniform in self.module.uniforms for part in self.parts(uniform)])
-        variables = tuple(
-            [
-                variable
-                if variable.value is None
-                else variable._replace(value=self.whole(rewrite(variable.value, self.change)))
-                for variable in self.module.variables
-            ]
-        )
-        return rewrite_module(self.module._replace(uniforms=uniforms, variables=variables), self.change, self.restate)
+        variables = [
+            variable._replace(value=self.whole(rewrite(variable.value, self.change))) if variable.value else variable
+            for variable in self.module.variables
+        ]
+        module = self.module._replace(uniforms=uniforms, variables=tuple(variables))
+        return rewrite_module(module, self.change, self.restate)
 
-    def parts(self, uniform: Uniform) -> Iterator[Uniform]:
+    def parts(self, uniform: ir.Uniform) -> Iterator[ir.Uniform]:
         """The uniforms that replace one."""
         if uniform.name not in self.split:
             yield uniform
             return
         numbers = uniform.default or (0.0,) * components(uniform.type)
         for path, lengths, element, default in _members((uniform.name,), uniform.type, (), [numbers]):
-            name = fresh("_".join(path), self.taken) if len(path) > 1 else uniform.name
-            self.taken.add(name)
+            name = claim("_".join(path), self.taken) if len(path) > 1 else uniform.name
             leaf = self.leaves[path] = _Leaf(name, lengths, element)
             spelt = _spelt((uniform.path or uniform.name, *path[1:]), uniform.type)
             yield uniform._replace(name=name, type=leaf.type, default=default, path=spelt)
 
     # Rewriting, from the leaves up: a chain of members and indices is rewritten as a whole, at its end
 
-    def change(self, node: Expr) -> Expr:
+    def change(self, node: ir.Expr) -> ir.Expr:
         """A node whose operands are rewritten."""
         if self.waits(node):
             return node if isinstance(node.type, Struct | Array) else self.read(node)
@@ -112,64 +89,65 @@ class _Splitter:
             return node
         return with_operands(node, tuple([self.whole(operand) for operand in old]))
 
-    def restate(self, stmt: Stmt) -> Block | None:
+    def restate(self, stmt: ir.Stmt) -> ir.Block | None:
         """A statement whose value is a whole struct or array."""
-        if isinstance(stmt, For) and stmt.init is not None:
+        if isinstance(stmt, ir.For) and stmt.init is not None:
             init = self.restate(stmt.init)
             return None if init is None else (stmt._replace(init=init[0]),)
-        if isinstance(stmt, Declare | Assign | Return) and stmt.value is not None and self.waits(stmt.value):
+        if isinstance(stmt, ir.Declare | ir.Assign | ir.Return) and stmt.value is not None and self.waits(stmt.value):
             return (stmt._replace(value=self.whole(stmt.value)),)
         return None
 
-    def waits(self, node: Expr) -> bool:
+    def waits(self, node: ir.Expr) -> bool:
         """Whether it is a split uniform, or a member or element of one."""
-        while isinstance(node, Member | Index):
+        while isinstance(node, ir.Member | ir.Index):
             node = node.value
-        return isinstance(node, Global) and self.split.get(node.name) == node.type  # the new uniform may have its name
+        # the new uniform may have its name
+        return isinstance(node, ir.Global) and self.split.get(node.name) == node.type
 
-    def whole(self, node: Expr) -> Expr:
+    def whole(self, node: ir.Expr) -> ir.Expr:
         """The value of a chain; any other expression unchanged."""
         return self.read(node) if self.waits(node) else node
 
-    def read(self, node: Expr) -> Expr:
+    def read(self, node: ir.Expr) -> ir.Expr:
         path, indices = _taken_apart(node)
         leaf = self.leaves.get(path)
         whole = not indices and leaf is not None and len(leaf.lengths) == 1
         if leaf is not None and (len(indices) == len(leaf.lengths) or whole):
             return self.element(leaf, indices, node.span)
         for index in indices:
-            if any(isinstance(part, Call) for part in subexpressions(index)):
+            if any(isinstance(part, ir.Call) for part in subexpressions(index)):
                 raise Unsupported("this index is used more than once: store it in a variable first", index.span)
         if isinstance(node.type, Struct):
-            values = [self.read(Member(field.type, node, field.name, node.span)) for field in node.type.fields]
-            return Construct(node.type, tuple(values), node.span)
+            values = [self.read(ir.Member(field.type, node, field.name, node.span)) for field in node.type.fields]
+            return ir.Construct(node.type, tuple(values), node.span)
         assert isinstance(node.type, Array)
-        positions = [Literal(INT, index, node.span) for index in range(node.type.length)]
-        values = [self.read(Index(node.type.element, node, position, node.span)) for position in positions]
-        return Construct(node.type, tuple(values), node.span)
+        positions = [ir.Literal(INT, index, node.span) for index in range(node.type.length)]
+        values = [self.read(ir.Index(node.type.element, node, position, node.span)) for position in positions]
+        return ir.Construct(node.type, tuple(values), node.span)
 
-    def element(self, leaf: _Leaf, indices: list[Expr], span: Span) -> Expr:
+    def element(self, leaf: _Leaf, indices: list[ir.Expr], span: ir.Span) -> ir.Expr:
         """One element of a leaf; all of it where there are no indices."""
-        value = Global(leaf.type, leaf.name, span)
+        value = ir.Global(leaf.type, leaf.name, span)
         if not indices:
             return value
         position = indices[0]
         for length, index in zip(leaf.lengths[1:], indices[1:], strict=True):
             position = _sum(_product(_whole_number(position), length), _whole_number(index))
-        return Index(leaf.element, value, position, span)
+        return ir.Index(leaf.element, value, position, span)
 
 
-def _taken_apart(node: Expr) -> tuple[Path, list[Expr]]:
+def _taken_apart(node: ir.Expr) -> tuple[Path, list[ir.Expr]]:
     """The path of a chain, and its indices from the outermost array on."""
     names: list[str] = []
-    indices: list[Expr] = []
-    while isinstance(node, Member | Index):
-        if isinstance(node, Member):
+    indices: list[ir.Expr] = []
+    while isinstance(node, ir.Member | ir.Index):
+        if isinstance(node, ir.Member):
             names.append(node.field)
         else:
             indices.append(node.index)
         node = node.value
-    assert isinstance(node, Global)
+    assert isinstance(node, ir.Global)
     return (node.name, *reversed(names)), indices[::-1]
 
 
@@ -207,20 +185,20 @@ def _spelt(path: Path, type_: Type) -> str:
     return text
 
 
-def _whole_number(index: Expr) -> Expr:
-    return index if index.type == INT else Construct(INT, (index,), index.span)
+def _whole_number(index: ir.Expr) -> ir.Expr:
+    return index if index.type == INT else ir.Construct(INT, (index,), index.span)
 
 
-def _product(left: Expr, right: int) -> Expr:
-    if isinstance(left, Literal):
+def _product(left: ir.Expr, right: int) -> ir.Expr:
+    if isinstance(left, ir.Literal):
         return left._replace(value=int(left.value) * right)
-    return Binary(INT, "*", left, Literal(INT, right, left.span), left.span)
+    return ir.Binary(INT, "*", left, ir.Literal(INT, right, left.span), left.span)
 
 
-def _sum(left: Expr, right: Expr) -> Expr:
-    if isinstance(left, Literal) and isinstance(right, Literal):
+def _sum(left: ir.Expr, right: ir.Expr) -> ir.Expr:
+    if isinstance(left, ir.Literal) and isinstance(right, ir.Literal):
         return left._replace(value=int(left.value) + int(right.value))
     for first, second in ((left, right), (right, left)):
-        if isinstance(first, Literal) and first.value == 0:
+        if isinstance(first, ir.Literal) and first.value == 0:
             return second
-    return Binary(INT, "+", left, right, right.span)
+    return ir.Binary(INT, "+", left, right, right.span)

@@ -15,8 +15,6 @@ entry declares and passes them.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from sssgen.ir.nodes import Declare, Function, Module, Param, Stmt
 from sssgen.passes.lift_calls import Calls, lift
 from sssgen.passes.stage.initial_values import set_at_start
@@ -24,18 +22,10 @@ from sssgen.passes.uniforms_to_parameters import Closer
 from sssgen.passes.variable_effects import effects
 
 
-class Handed(NamedTuple):
-    """A module whose functions read no variables."""
-
-    module: Module
-    added: dict[str, tuple[Param, ...]]
-    """The old key of each function that got parameters → these, in their order."""
-
-
-def variables_to_parameters(module: Module, entry: str = "") -> Handed:
+def variables_to_parameters(module: Module, entry: str = "") -> Module:
     """The module with its variables as parameters; `entry` is the key of a stage's main function, if there is one."""
     if not module.variables:
-        return Handed(module, {})
+        return module
     if entry:
         module = set_at_start(module, entry, all_of_them=True)
     shared = effects(module)
@@ -47,19 +37,15 @@ def variables_to_parameters(module: Module, entry: str = "") -> Handed:
         for variable in module.variables
     }
     closer = Closer(module, parameters, {key: effect.writes for key, effect in shared.items()})
-    added: dict[str, tuple[Param, ...]] = {}
-    functions = []
-    for old, new in zip(module.functions, closer.run(), strict=True):
-        if old.key == entry:
-            new = _entered(new, len(old.params), module)
-        if len(new.params) > len(old.params):
-            added[old.key] = new.params[len(old.params) :]
-        functions.append(new)
-    kept = [variable for variable in module.variables if module.workgroup and variable.storage != "private"]
-    return Handed(module._replace(functions=tuple(functions), variables=tuple(kept)), added)
+    functions = [
+        _entry(new, len(old.params), module) if old.key == entry else new
+        for old, new in zip(module.functions, closer.run(), strict=True)
+    ]
+    others = [variable for variable in module.variables if module.workgroup and variable.storage != "private"]
+    return module._replace(functions=tuple(functions), variables=tuple(others))
 
 
-def _entered(function: Function, own: int, module: Module) -> Function:
+def _entry(function: Function, own: int, module: Module) -> Function:
     """The entry, with parameters for the inputs and outputs of its stage, and local variables for the others."""
     storage = {variable.name: variable.storage for variable in module.variables}
     params: list[Param] = list(function.params[:own])

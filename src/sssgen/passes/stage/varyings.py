@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from sssgen.ir.nodes import Module, Span, Variable
 from sssgen.ir.rules import element_type
 from sssgen.ir.types import Array, Matrix, Struct, Type, spell, unnested, with_article
-from sssgen.passes.scopes import mentions
+from sssgen.passes.scopes import globals_of
 from sssgen.passes.unsupported import Unsupported
 from sssgen.support.diagnostics import did_you_mean
 
@@ -96,7 +96,7 @@ def interpolated_alike(vertex: Module, fragment: Module) -> Module:
 def mismatches(vertex: Module, fragment: Module) -> list[Unsupported]:
     """Where the inputs that a fragment shader reads are not the outputs of the vertex shader, with their places."""
     outputs = varyings(vertex, "vertex")
-    read = set[str]().union(*[mentions(function)[0] for function in fragment.functions])
+    read = set[str]().union(*map(globals_of, fragment.functions))
     wrong = list[Unsupported]()
     for input_ in varyings(fragment, "fragment"):
         output = output_of(input_, outputs)

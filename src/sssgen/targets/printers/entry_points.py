@@ -9,12 +9,13 @@ space in D3D. gl_Position.z goes from -w to w in GLSL, from 0 to w in the others
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from sssgen.ir import nodes as ir
-from sssgen.ir.types import INT, UINT, Struct, Type
-from sssgen.passes.scopes import fresh
+from sssgen.ir.types import INT, UINT, Type
+from sssgen.passes.scopes import claim
 from sssgen.passes.stage.stage_interface import Slot, Stage
+from sssgen.targets.printers.printer import Printer
 
 
 class EntryParameter(NamedTuple):
@@ -24,21 +25,12 @@ class EntryParameter(NamedTuple):
     slot: Slot
 
 
-def names_of(module: ir.Module) -> set[str]:
-    """The names that the module declares."""
-    declared = (module.constants, module.uniforms, module.variables, module.functions)
-    structs = {struct.type.name for struct in module.structs if isinstance(struct.type, Struct)}
-    return structs | {declaration.name for group in declared for declaration in group}
-
-
 def parameters(stage: Stage, taken: set[str]) -> list[EntryParameter]:
     """A parameter for each input."""
-    parameters = []
-    for slot in stage.inputs:
-        name = fresh("_".join([slot.variable.name, "in", *map(str, slot.path)]), taken)
-        taken.add(name)
-        parameters.append(EntryParameter(name, slot))
-    return parameters
+    return [
+        EntryParameter(claim("_".join([slot.variable.name, "in", *map(str, slot.path)]), taken), slot)
+        for slot in stage.inputs
+    ]
 
 
 def place_text(slot: Slot) -> str:
@@ -61,7 +53,20 @@ def parameter_type(slot: Slot) -> Type:
     return UINT if is_count(slot) else slot.type
 
 
-def adjusted(stage: Stage, resolution: str, clip_w: bool) -> list[str]:
+def entry_body(
+    printer: Printer, stage: Stage, inputs: Sequence[EntryParameter], resolution: str, clip_w: bool
+) -> list[str]:
+    """The statements of the entry before its return: `inputs` are its parameters."""
+    body = [
+        f"{place_text(slot)} = {f'{printer.type(INT)}({name})' if is_count(slot) else name};"
+        for name, slot in inputs
+        if slot.is_declared
+    ]
+    body += fragment_coordinates(stage, resolution, clip_w)
+    return [*body, f"{printer.by_key[stage.function].name}();", *clip_space(stage)]
+
+
+def fragment_coordinates(stage: Stage, resolution: str, clip_w: bool) -> list[str]:
     """Statements that give gl_FragCoord its meaning in GLSL."""
     lines = []
     for slot in stage.inputs:

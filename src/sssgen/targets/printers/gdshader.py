@@ -8,7 +8,7 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.types import VEC4, Array, Matrix, Sampler, Scalar, Type, Vector, components, kind_of
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.glsl import GlslPrinter
-from sssgen.targets.printers.printed_lines import Line, comment_text
+from sssgen.targets.printers.printed_lines import Line, comment_text, wrap
 from sssgen.targets.printers.printer import PRIMARY, float_text
 from sssgen.targets.texture_import import has_hint, import_of
 from sssgen.targets.uniform_layout import Member
@@ -75,7 +75,7 @@ class GodotPrinter(GlslPrinter):
                 lines.append(Line(f"/** {words} */"))
             hints = self.texture_hints(uniform) if isinstance(uniform.type, Sampler) else _value_hints(uniform)
             text = f"uniform {self.variable(uniform.type, uniform.name)}{' : ' if hints else ''}{', '.join(hints)}"
-            lines.append(Line(f"{text}{self.default_of(uniform)};", uniform.span))
+            lines += wrap(f"{text}{self.default_of(uniform)};", uniform.span)
         return [*lines, Line("group_uniforms;")] if group else lines
 
     def texture_hints(self, texture: ir.Uniform) -> list[str]:

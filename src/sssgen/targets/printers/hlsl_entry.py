@@ -9,18 +9,9 @@ from __future__ import annotations
 import re
 
 from sssgen.ir.nodes import NOWHERE
-from sssgen.ir.types import INT
+from sssgen.passes.scopes import names_of
 from sssgen.passes.stage.stage_interface import Slot, Stage, interpolation
-from sssgen.targets.printers.entry_points import (
-    adjusted,
-    clip_space,
-    is_count,
-    member,
-    names_of,
-    parameter_type,
-    parameters,
-    place_text,
-)
+from sssgen.targets.printers.entry_points import entry_body, member, parameter_type, parameters, place_text
 from sssgen.targets.printers.printed_lines import Line, wrap
 from sssgen.targets.printers.printer import Printer
 
@@ -63,17 +54,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
         return f"{sampled(slot, semantics)}{variable} : {place_of(slot, semantics)}"
 
     params = ", ".join([declared(slot, name, _INPUT_SEMANTICS[stage.kind]) for name, slot in entry_parameters])
-    body = []
-    for parameter, slot in entry_parameters:
-        if not slot.is_declared:
-            continue
-        value = f"{printer.type(INT)}({parameter})" if is_count(slot) else parameter
-        body.append(f"{place_text(slot)} = {value};")
-    body += [
-        *adjusted(stage, resolution, True),
-        f"{printer.by_key[stage.function].name}();",
-        *clip_space(stage),
-    ]
+    body = entry_body(printer, stage, entry_parameters, resolution, True)
     lines: list[Line] = []
     if len(stage.outputs) == 1:
         (slot,) = stage.outputs
@@ -82,7 +63,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
         signature = f"{head} {name}({params}) : {place_of(slot, semantics)} {{"
         body.append(f"return {place_text(slot)};")
     elif stage.outputs:
-        struct, result = f"{stage.kind.capitalize()}Output", "made"
+        struct, result = f"{stage.kind.capitalize()}Output", "output"
         while struct in taken:
             struct += "_"
         while result in taken:

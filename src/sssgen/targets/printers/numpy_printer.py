@@ -142,7 +142,8 @@ class NumpyPrinter(NumpyExpressions):
         self.numbers.enter(function)
         params = ", ".join([param.name for param in function.params if param.direction != "out"])
         lines = [Line(""), *wrap(f"def {function.name}({params}):", function.span)]
-        if texts := [text.replace("\\", "\\\\").replace('"', "'") for text in summary(function.doc)]:
+        texts = summary(function.doc.replace("\\", "\\\\").replace('"', "'"), '    """"""')
+        if texts:
             texts[0] = f'"""{texts[0]}'
             texts[-1] += '"""'
             lines += [Line(f"    {text}") for text in texts]

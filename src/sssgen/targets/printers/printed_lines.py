@@ -20,18 +20,21 @@ class Line(NamedTuple):
 
 
 def wrap(text: str, span: ir.Span, chains: bool = False) -> list[Line]:
-    """Breaks a long line at the outermost commas and operators, with `chains` also before the methods of a result; the
-    rest is indented once more."""
+    """Breaks a long line at the outermost commas and operators, with `chains` also before the methods of a result.
+
+    The rest is indented once more, and that of the head of a block twice, as the block itself is indented once.
+    """
     if len(text) <= WIDTH:
         return [Line(text, span)]
     indent = len(text) - len(text.lstrip())
+    rest = " " * (indent + (8 if indent and text.endswith("{") else 4))
     lines = []
     while len(text) > WIDTH:
         place = _break_place(text, chains)
         if place == 0:
             break
         lines.append(Line(text[:place].rstrip(), span))
-        text = " " * (indent + 4) + text[place:].lstrip()
+        text = rest + text[place:].lstrip()
     return [*lines, Line(text, span)]
 
 
@@ -39,13 +42,18 @@ _BREAKS = (" + ", " - ", " * ", " ? ", " : ", " && ", " || ")
 
 
 def _break_place(text: str, chains: bool) -> int:
-    """Where to break a line: inside as few parentheses as possible, then as late as possible; 0 for nowhere."""
-    position, best_score, depth = 0, -1000.0, 0
+    """Where to break a line: inside as few parentheses as possible, then as late as possible; 0 for nowhere.
+
+    A type such as `array<vec4<f32>, 4>` is not broken; comparisons have spaces around them.
+    """
+    position, best_score, depth, angles = 0, -1000.0, 0, 0
     start = len(text) - len(text.lstrip()) + 8
     for index, char in enumerate(text[:WIDTH]):
         depth += (char in "([") - (char in ")]")
         ends = text[index - 1 : index + 1]
-        if index > start and (ends == ", " or (chains and ends == ").") or text.startswith(_BREAKS, index)):
+        angles += (char == "<" and text[index - 1].isalnum()) - (char == ">" and angles > 0)
+        can_break = ends in (", ", "; ") or (chains and ends == ").") or text.startswith(_BREAKS, index)
+        if index > start and not angles and can_break:
             score = index / WIDTH - 2.0 * depth
             if score > best_score:
                 position, best_score = index, score
@@ -61,8 +69,8 @@ _ATTRIBUTE = re.compile(r"[a-z]\w*:")
 _SENTENCE_END = re.compile(r"[.!?][)'\"`]*(?= +[^a-z ]|$)")
 
 
-def summary(doc: str) -> list[str]:
-    """The sentences that begin on the first line of a doc comment, whole, in lines that fit behind `// `."""
+def summary(doc: str, mark: str = "// ") -> list[str]:
+    """The sentences that begin on the first line of a doc comment, whole, in lines that fit behind a mark."""
     lines: list[str] = []
     for line in doc.strip().split("\n"):
         if not line.strip() or (lines and _ATTRIBUTE.match(line)):
@@ -70,7 +78,7 @@ def summary(doc: str) -> list[str]:
         lines.append(line.strip())
     text = " ".join(lines)
     end = next((end.end() for end in _SENTENCE_END.finditer(text) if end.end() >= len(lines[0])), None)
-    return [comment_text(line) for line in textwrap.wrap(text[:end], WIDTH - 3)]
+    return [comment_text(line) for line in textwrap.wrap(text[:end], WIDTH - len(mark))]
 
 
 def first_sentence(doc: str) -> str:

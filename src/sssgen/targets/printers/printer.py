@@ -18,7 +18,7 @@ from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.operators import PRECEDENCE
 from sssgen.ir.rules import FLOAT_MAX
 from sssgen.ir.types import FLOAT, INT, UINT, Array, Sampler, Scalar, Struct, Type, components, spell, unnested
-from sssgen.passes.scopes import declared, fresh
+from sssgen.passes.scopes import claim, declared
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import failure
 from sssgen.targets.descriptor import Target
@@ -272,25 +272,22 @@ class Printer:
         """A statement's lines."""
         pad = "    " * indent
         if isinstance(stmt, ir.If):
-            lines = [Line(f"{pad}if ({self.expr(stmt.condition)}) {{", stmt.span), *self.block(stmt.then, indent + 1)]
-            otherwise = stmt.otherwise
-            while len(otherwise) == 1 and isinstance(otherwise[0], ir.If):
-                inner = otherwise[0]
-                lines.append(Line(f"{pad}}} else if ({self.expr(inner.condition)}) {{", inner.span))
-                lines += self.block(inner.then, indent + 1)
-                otherwise = inner.otherwise
-            if otherwise:
-                lines += [Line(f"{pad}}} else {{"), *self.block(otherwise, indent + 1)]
+            lines = wrap(f"{pad}if ({self.expr(stmt.condition)}) {{", stmt.span)
+            lines += self.block(stmt.then, indent + 1)
+            while len(stmt.otherwise) == 1 and isinstance(stmt.otherwise[0], ir.If):
+                stmt = stmt.otherwise[0]
+                lines += wrap(f"{pad}}} else if ({self.expr(stmt.condition)}) {{", stmt.span)
+                lines += self.block(stmt.then, indent + 1)
+            if stmt.otherwise:
+                lines += [Line(f"{pad}}} else {{"), *self.block(stmt.otherwise, indent + 1)]
             return [*lines, Line(f"{pad}}}")]
-        if isinstance(stmt, ir.For):
-            return [
-                Line(f"{pad}for ({self.loop_header(stmt)}) {{", stmt.span),
-                *self.block(stmt.body, indent + 1),
-                Line(f"{pad}}}"),
-            ]
-        if isinstance(stmt, ir.While):
-            head = Line(f"{pad}while ({self.expr(stmt.condition)}) {{", stmt.span)
-            return [head, *self.block(stmt.body, indent + 1), Line(f"{pad}}}")]
+        if isinstance(stmt, ir.For | ir.While):
+            head = (
+                f"for ({self.loop_header(stmt)})"
+                if isinstance(stmt, ir.For)
+                else f"while ({self.expr(stmt.condition)})"
+            )
+            return [*wrap(f"{pad}{head} {{", stmt.span), *self.block(stmt.body, indent + 1), Line(f"{pad}}}")]
         if isinstance(stmt, ir.MemoryOperation):
             return [line for text in self.memory(stmt).split("\n") for line in wrap(f"{pad}{text}", stmt.span)]
         return wrap(f"{pad}{self.simple(stmt)};", stmt.span)
@@ -314,9 +311,7 @@ class Printer:
         assert self.function is not None
         if not self.chosen:
             self.chosen.update(declared(self.function), self.module_names)
-        name = fresh(name, self.chosen)
-        self.chosen.add(name)
-        return name
+        return claim(name, self.chosen)
 
     def loop_header(self, loop: ir.For) -> str:
         init = self.simple(loop.init) if loop.init is not None else ""

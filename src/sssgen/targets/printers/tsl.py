@@ -96,18 +96,19 @@ class TslPrinter(Printer):
     def statement(self, stmt: ir.Stmt, indent: int) -> list[Line]:
         pad = "    " * indent
         if isinstance(stmt, ir.If):
-            lines = wrap(f"{pad}If({self.expr(stmt.condition)}, () => {{", stmt.span)
+            lines = wrap(f"{pad}If({self.expr(stmt.condition)}, () => {{", stmt.span, chains=True)
             lines += self.block(stmt.then, indent + 1)
             while len(stmt.otherwise) == 1 and isinstance(stmt.otherwise[0], ir.If):
                 stmt = stmt.otherwise[0]
-                lines += wrap(f"{pad}}}).ElseIf({self.expr(stmt.condition)}, () => {{", stmt.span)
+                lines += wrap(f"{pad}}}).ElseIf({self.expr(stmt.condition)}, () => {{", stmt.span, chains=True)
                 lines += self.block(stmt.then, indent + 1)
             if stmt.otherwise:
                 lines += [Line(f"{pad}}}).Else(() => {{"), *self.block(stmt.otherwise, indent + 1)]
             return [*lines, Line(f"{pad}}});")]
         if isinstance(stmt, ir.For | ir.While):
             head = self.loop_header(stmt) if isinstance(stmt, ir.For) else f"{self.expr(stmt.condition)}, () => {{"
-            return [*wrap(f"{pad}Loop({head}", stmt.span), *self.block(stmt.body, indent + 1), Line(f"{pad}}});")]
+            lines = wrap(f"{pad}Loop({head}", stmt.span, chains=True)
+            return [*lines, *self.block(stmt.body, indent + 1), Line(f"{pad}}});")]
         return wrap(f"{pad}{self.simple(stmt)};", stmt.span, chains=True)
 
     def loop_header(self, loop: ir.For) -> str:

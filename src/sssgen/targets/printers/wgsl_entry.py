@@ -3,18 +3,9 @@
 from __future__ import annotations
 
 from sssgen.ir.nodes import NOWHERE
-from sssgen.ir.types import INT
+from sssgen.passes.scopes import names_of
 from sssgen.passes.stage.stage_interface import Slot, Stage, interpolation
-from sssgen.targets.printers.entry_points import (
-    adjusted,
-    clip_space,
-    is_count,
-    member,
-    names_of,
-    parameter_type,
-    parameters,
-    place_text,
-)
+from sssgen.targets.printers.entry_points import entry_body, member, parameter_type, parameters, place_text
 from sssgen.targets.printers.printed_lines import Line, wrap
 from sssgen.targets.printers.printer import Printer
 
@@ -38,15 +29,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
         return f"{attributes(slot, varying)} {printer.variable(parameter_type(slot), name)}"
 
     params = ", ".join([declared(slot, name, stage.kind == "fragment") for name, slot in entry_parameters])
-    body = []
-    for parameter, slot in entry_parameters:
-        value = f"{printer.type(INT)}({parameter})" if is_count(slot) else parameter
-        body.append(f"{place_text(slot)} = {value};")
-    body += [
-        *adjusted(stage, resolution, False),
-        f"{printer.by_key[stage.function].name}();",
-        *clip_space(stage),
-    ]
+    body = entry_body(printer, stage, entry_parameters, resolution, False)
     lines: list[Line] = []
     result = ""
     if len(stage.outputs) == 1:

@@ -192,8 +192,8 @@ def lobe_normalized(V, N, L, through):
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through)
 
 def standard(N, V, L, albedo, metallic, roughness, light_color):
-    """The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
-    light."""
+    """The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for
+    one light."""
     H = safe_normalize_vec3(V + L)
     NoL = max(dot(N, L), 0.0)
     NoV = max(dot(N, V), 0.0001)
