@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from sssgen.cli.emit import chosen_targets
-from sssgen.cli.layout import table_rows, table_width, wrapped
+from sssgen.cli.layout import table_rows, table_width, wrap
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.ir.spans import Span
 from sssgen.run.check import compile_check as check
@@ -53,10 +53,10 @@ def run(arguments: Namespace) -> int:
     with ProgressBar() as progress:
         report = check.run(shaders, compilers, arguments.unity_includes, progress)
     if arguments.json:
-        print_json(check.as_json(report) | {"not_compiled": _not_compiled(report, shaders)})
+        print_json(check.as_json(report) | {"not_compiled": _reasons_not_compiled(report, shaders)})
     else:
         _print(report, shaders, arguments.verbose)
-    return OK if _passed(report, shaders) else CHECK_FAILED
+    return OK if _passes(report, shaders) else CHECK_FAILED
 
 
 def _compilers(names: list[str], wrong: list[Diagnostic]) -> list[str]:
@@ -68,7 +68,7 @@ def _compilers(names: list[str], wrong: list[Diagnostic]) -> list[str]:
     return compilers
 
 
-def _passed(report: Report, shaders: list[Shader]) -> bool:
+def _passes(report: Report, shaders: list[Shader]) -> bool:
     """Whether something was compiled without errors; in CI, no compiler may be missing that `make setup` installs."""
     in_ci = os.environ.get("CI", "") not in ("", "0", "false")
     missing = [name for name in report.missing if not COMPILERS[name].apart]
@@ -85,7 +85,7 @@ def _print(report: Report, shaders: list[Shader], verbose: bool) -> None:
     for result in report.results:
         cells.setdefault((result.shader.name, result.compiler), []).append(result)
     width = max((len(shader.name) for shader in shaders), default=0)
-    not_compiled = _not_compiled(report, shaders)
+    not_compiled = _reasons_not_compiled(report, shaders)
     every = verbose or len(cells) + len(not_compiled) <= LISTED
     for (name, compiler), results in cells.items():
         passed = all(result.ok for result in results)
@@ -123,14 +123,14 @@ def _print_rows(rows: Sequence[tuple[str, str]], first: int, indent: int = 0) ->
 def _print_text(text: str) -> None:
     """A text, indented, and wrapped on a terminal."""
     width = table_width()
-    print("\n".join(wrapped(text, width, "  ", "    ")) if width else f"  {text}")
+    print("\n".join(wrap(text, width, "  ", "    ")) if width else f"  {text}")
 
 
 def _has_messages(results: list[Result]) -> bool:
     return any(result.messages for result in results)
 
 
-def _not_compiled(report: Report, shaders: list[Shader]) -> dict[str, str]:
+def _reasons_not_compiled(report: Report, shaders: list[Shader]) -> dict[str, str]:
     """The files that no compiler compiled, with the reason."""
     done = {result.shader.name for result in report.results}
     left = [shader for shader in shaders if shader.name not in done]

@@ -6,7 +6,7 @@ import re
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from sssgen.cli.output import OK, print_json
+from sssgen.cli.output import OK, print_result
 from sssgen.material.material_loading import examples
 from sssgen.material.model import wrong_name
 from sssgen.support.diagnostics import did_you_mean, failure
@@ -76,10 +76,8 @@ def run(arguments: Namespace) -> int:
     """Writes the starter, or copies an example; refuses to overwrite a file."""
     to, example = arguments.MATERIAL, arguments.copy
     written = _write_starter(to) if example is None else _copy(example, to)
-    if arguments.json:
-        print_json({"ok": True, "file": written[0], "files": written})
-    else:
-        print("\n".join(f"wrote {shown}" for shown in written))
+    text = "\n".join(f"wrote {file}" for file in written)
+    print_result(arguments.json, {"file": written[0], "files": written}, text)
     return OK
 
 

@@ -6,7 +6,7 @@ import json
 import os
 from argparse import ArgumentParser, Namespace
 
-from sssgen.cli.options import given
+from sssgen.cli.options import add_output
 from sssgen.cli.output import OK
 from sssgen.editor import schemas
 from sssgen.support.file_writer import write_files
@@ -21,7 +21,7 @@ def add_options(parser: ArgumentParser) -> None:
         "checks more and needs no schema."
     )
     parser.add_argument("KIND", choices=KINDS, help="material or scene")
-    parser.add_argument("-o", "--output", type=given, metavar="FILE", help="write it to a file, and print nothing")
+    add_output(parser, "FILE", "write it to a file, and print nothing")
 
 
 def run(arguments: Namespace) -> int:

@@ -51,6 +51,10 @@ class Report:
         counted = Counter(row.outcome for row in self.rows)
         return {outcome: counted[outcome] for outcome in OUTCOMES}
 
+    def summary(self) -> str:
+        """The number of rows of each outcome, as text."""
+        return ", ".join(f"{number} {outcome}" for outcome, number in self.counts().items())
+
     def as_json(self) -> dict[str, Any]:
         """The report for programs."""
         return {"source": self.source, "counts": self.counts(), "rows": [row._asdict() for row in self.rows]}
@@ -61,8 +65,7 @@ class Report:
 
     def markdown(self) -> str:
         """The text of report.md: a table for each outcome."""
-        counts = self.counts()
-        lines = [f"# {self.source}", "", ", ".join(f"{counts[outcome]} {outcome}" for outcome in OUTCOMES) + "."]
+        lines = [f"# {self.source}", "", f"{self.summary()}."]
         for outcome in OUTCOMES:
             if rows := [row for row in self.rows if row.outcome == outcome]:
                 lines += ["", f"## {outcome.capitalize()}", "", *_table(rows, outcome)]
