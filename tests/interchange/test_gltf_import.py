@@ -11,7 +11,7 @@ import pytest
 
 from gltf_files import box, data_uri, png, write_gltf
 from sssgen.interchange.gltf_reader import read
-from sssgen.interchange.imported import Imported
+from sssgen.interchange.imported_material import ImportedMaterial
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.material_writer import identifiers, mean_chord, write_import
 from sssgen.interchange.scatter_color import albedo_of_multiscatter, multiscatter_of_albedo
@@ -22,7 +22,7 @@ from sssgen.scene.pictures import images
 GLASS = {"KHR_materials_transmission": {"transmissionFactor": 1.0}}
 
 
-def imported(tmp_path: Path, material: dict[str, Any], **more: Any) -> tuple[Imported, Report]:
+def imported(tmp_path: Path, material: dict[str, Any], **more: Any) -> tuple[ImportedMaterial, Report]:
     content, data = box(material)
     report = Report("box")
     (result,) = read(str(write_gltf(tmp_path / "box.gltf", {**content, **more}, data)), report)

@@ -26,7 +26,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Prints or writes the schema."""
-    schema = schemas.of_materials() if arguments.KIND == "material" else schemas.of_scenes()
+    schema = schemas.material_schema() if arguments.KIND == "material" else schemas.scene_schema()
     text = json.dumps(schema, ensure_ascii=False, indent=1) + "\n"
     if arguments.output:
         folder, name = os.path.split(arguments.output)

@@ -29,7 +29,7 @@ def _group(weight: str, reason: str, *names: str) -> Reasons:
 
 
 def _one_minus(shader: Shader, value: Value) -> Value:
-    return shader.combined("subtract", Constant((1.0,)), value)
+    return shader.compute("subtract", Constant((1.0,)), value)
 
 
 def _opacity(shader: Shader, name: str) -> tuple[Quantity, AlphaMode]:
@@ -38,8 +38,8 @@ def _opacity(shader: Shader, name: str) -> tuple[Quantity, AlphaMode]:
     if len(mean(value)) == 3:
         weights = Constant((0.2126, 0.7152, 0.0722))
         if len(set(mean(value))) > 1:
-            shader.approximated(name, "its luminance: opacity has no colour")
-        value = shader.combined("dotproduct", value, weights)
+            shader.report_approximation(name, "its luminance: opacity has no colour")
+        value = shader.compute("dotproduct", value, weights)
     quantity = shader.as_quantity(value, "opacity")
     return quantity, "opaque" if quantity == Quantity((1.0,)) else "blend"
 
@@ -50,16 +50,16 @@ def _coat_attenuation(shader: Shader, base: Value, weight: str, color: str) -> V
     if mean(tint) == (1.0, 1.0, 1.0):
         return base
     if any(mean(shader.value(weight, "coat"))):
-        shader.approximated(color, "multiplied to the base colour, for light along the normal")
+        shader.report_approximation(color, "multiplied to the base colour, for light along the normal")
     white = Constant((1.0, 1.0, 1.0))
-    return shader.combined("multiply", base, shader.combined("mix", white, tint, shader.value(weight, "coat")))
+    return shader.compute("multiply", base, shader.compute("mix", white, tint, shader.value(weight, "coat")))
 
 
 def _emission(shader: Shader, weight: str, color: str) -> Quantity:
     """The emitted radiance: the number of the weight is taken as it is."""
     quantity = shader.product(weight, color, "emission")
     if max(quantity.factor) >= BRIGHTEST:
-        shader.approximated(weight, f"{BRIGHTEST:g}, the brightest emission of a material")
+        shader.report_approximation(weight, f"{BRIGHTEST:g}, the brightest emission of a material")
     return quantity
 
 
@@ -108,7 +108,7 @@ _TRANSMISSION_INPUTS = (
 )  # fmt: skip
 
 
-def _with_interior(shader: Shader, model: SurfaceModel, base: Value, names: _Names) -> SurfaceModel:
+def _add_interior(shader: Shader, model: SurfaceModel, base: Value, names: _Names) -> SurfaceModel:
     """The record with what is below the surface: a sheet's two sides, or a body's medium."""
     thin = bool(shader.number(names.thin_walled, "thin_walled"))
     model = replace(model, thin_walled=thin, two_sided=thin)
@@ -130,7 +130,7 @@ def _with_interior(shader: Shader, model: SurfaceModel, base: Value, names: _Nam
         if depth <= 0.0:
             tint = shader.quantity("transmission_color", "transmission_tint", color=True)
             model = replace(model, transmission_tint=tint)
-            return _with_subsurface(shader, model, names) if scatters else model
+            return _add_subsurface(shader, model, names) if scatters else model
         if not scatters or mean(shader.value(names.transmission, "transmission"))[0] >= 0.5:
             interior = transmission_medium(
                 shader.numbers("transmission_color", "interior"),
@@ -142,22 +142,22 @@ def _with_interior(shader: Shader, model: SurfaceModel, base: Value, names: _Nam
                 _drop(shader, _SUBSURFACE_INPUTS, "the body has one medium: that of the transmission")
             return replace(model, interior=interior)
         _drop(shader, _TRANSMISSION_INPUTS, "the body has one medium: that of the subsurface")
-    return _with_subsurface(shader, model, names) if scatters else model
+    return _add_subsurface(shader, model, names) if scatters else model
 
 
 def _drop(shader: Shader, names: tuple[str, ...], reason: str) -> None:
     for name in names:
-        shader.approximated(name, reason)
+        shader.report_approximation(name, reason)
 
 
-def _with_subsurface(shader: Shader, model: SurfaceModel, names: _Names) -> SurfaceModel:
+def _add_subsurface(shader: Shader, model: SurfaceModel, names: _Names) -> SurfaceModel:
     color = shader.numbers("subsurface_color", "interior")
     anisotropy = shader.number(names.subsurface_anisotropy, "interior")
     scale = shader.number(names.subsurface_scale, "interior")
     radii = tuple(scale * part for part in shader.numbers(names.subsurface_radii, "interior"))  # in metres
     interior = subsurface_medium(color, radii, anisotropy)
     albedo = ", ".join(f"{part:.4g}" for part in interior.albedo)
-    shader.approximated("subsurface_color", f"the scattering albedo {albedo}", _INVERSION)
+    shader.report_approximation("subsurface_color", f"the scattering albedo {albedo}", _INVERSION)
     return replace(model, interior=interior)
 
 
@@ -172,11 +172,11 @@ def _sheet(shader: Shader, model: SurfaceModel, base: Value, weight: Value, name
     through = 1.0
     if names is _OPEN_PBR:
         through = 0.5 * (1.0 + shader.number(names.subsurface_anisotropy, "diffuse_transmission"))
-    share = shader.combined("multiply", weight, Constant((through,)))
-    back = shader.combined("multiply", color, shader.combined("multiply", weight, Constant((1.0 - through,))))
-    front = shader.combined("multiply", base, _one_minus(shader, weight))
-    kept = shader.combined("max", _one_minus(shader, share), Constant((1e-3,)))
-    reflected = shader.combined("divide", shader.combined("add", front, back), kept)
+    share = shader.compute("multiply", weight, Constant((through,)))
+    back = shader.compute("multiply", color, shader.compute("multiply", weight, Constant((1.0 - through,))))
+    front = shader.compute("multiply", base, _one_minus(shader, weight))
+    kept = shader.compute("max", _one_minus(shader, share), Constant((1e-3,)))
+    reflected = shader.compute("divide", shader.compute("add", front, back), kept)
     return replace(
         model,
         base_color=shader.as_quantity(reflected, "base_color", color=True),
@@ -230,17 +230,19 @@ _STANDARD_LEFT_OUT: Reasons = {
 
 def open_pbr_surface(shader: Shader, name: str) -> SurfaceModel:
     """OpenPBR Surface 1.1."""
-    return _layered(shader, name, _OPEN_PBR, _OPEN_PBR_LEFT_OUT)
+    return _layered_surface(shader, name, _OPEN_PBR, _OPEN_PBR_LEFT_OUT)
 
 
 def standard_surface(shader: Shader, name: str) -> SurfaceModel:
     """Autodesk's standard_surface 1.0.1."""
-    return _layered(shader, name, _STANDARD, _STANDARD_LEFT_OUT)
+    return _layered_surface(shader, name, _STANDARD, _STANDARD_LEFT_OUT)
 
 
-def _layered(shader: Shader, name: str, names: _Names, left_out: Reasons) -> SurfaceModel:
+def _layered_surface(shader: Shader, name: str, names: _Names, left_out: Reasons) -> SurfaceModel:
     """A base with an interior, below a coat."""
-    base = _coat_attenuation(shader, shader.weighted(names.base, "base_color", "base_color"), names.coat, "coat_color")
+    base = _coat_attenuation(
+        shader, shader.weighted_value(names.base, "base_color", "base_color"), names.coat, "coat_color"
+    )
     opacity, alpha_mode = _opacity(shader, names.opacity)
     model = SurfaceModel(
         name,
@@ -257,8 +259,8 @@ def _layered(shader: Shader, name: str, names: _Names, left_out: Reasons) -> Sur
         coat=shader.quantity(names.coat, "coat"),
         coat_roughness=shader.quantity("coat_roughness", "coat_roughness"),
     )
-    model = _with_interior(shader, model, base, names)
-    shader.left_out(left_out)
+    model = _add_interior(shader, model, base, names)
+    shader.report_omissions(left_out)
     return model
 
 
@@ -307,7 +309,7 @@ def gltf_pbr(shader: Shader, name: str) -> SurfaceModel:
             extinction = extinction_of_color(shader.numbers("attenuation_color", "interior"), distance)
             model = replace(model, interior=medium(extinction, (0.0, 0.0, 0.0)))
         model = replace(model, thickness=thickness, thin_walled=thickness.is_zero)
-    shader.left_out(_GLTF_LEFT_OUT)
+    shader.report_omissions(_GLTF_LEFT_OUT)
     return model
 
 
@@ -324,7 +326,7 @@ def usd_preview_surface(shader: Shader, name: str) -> SurfaceModel:
     if threshold > 0.0 and alpha_mode == "blend":
         alpha_mode = "mask"
     if shader.number("useSpecularWorkflow", "metalness"):
-        shader.approximated("useSpecularWorkflow", "the workflow with metalness: specularColor is not read")
+        shader.report_approximation("useSpecularWorkflow", "the workflow with metalness: specularColor is not read")
     model = SurfaceModel(
         name,
         alpha_mode=alpha_mode,
@@ -340,9 +342,11 @@ def usd_preview_surface(shader: Shader, name: str) -> SurfaceModel:
         coat=shader.quantity("clearcoat", "coat"),
         coat_roughness=shader.quantity("clearcoatRoughness", "coat_roughness"),
     )
-    shader.left_out(_PREVIEW_LEFT_OUT)
+    shader.report_omissions(_PREVIEW_LEFT_OUT)
     if model.alpha_mode == "blend" and opacity.image is None:  # UsdPreviewSurface 2.6: what is clear still reflects
-        shader.approximated("opacity", "light that comes through without refraction: the surface still reflects")
+        shader.report_approximation(
+            "opacity", "light that comes through without refraction: the surface still reflects"
+        )
         through, white = Quantity((1.0 - opacity.factor[0],)), Quantity((1.0, 1.0, 1.0))
         model = replace(
             model, alpha_mode="opaque", opacity=Quantity((1.0,)), transmission=through, transmission_tint=white,
