@@ -1,7 +1,7 @@
 """Opens glTF files: the JSON, the binary chunk, and files beside it. Nothing outside one folder is read.
 
-pygltflib would replace the 25 lines that split a file into chunks, and none of the checks: it takes truncated files, adds
-a missing `asset`, accepts any index, and gives the numbers of an accessor as bytes.
+pygltflib would replace the 25 lines that split a file into chunks, and none of the checks: it takes truncated files,
+adds a missing `asset`, accepts any index, and gives the numbers of an accessor as bytes.
 """
 
 from __future__ import annotations
