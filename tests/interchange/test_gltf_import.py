@@ -172,7 +172,7 @@ def test_the_mesh_has_its_own_thickness(tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.setattr(thickness_bake, "SIDE", 32)
     monkeypatch.setattr(thickness_bake, "RAYS", 16)
     result, report = imported(tmp_path, volume(attenuationDistance=0.5, attenuationColor=[0.5, 0.5, 0.5]))
-    baked = thickness_bake.with_baked_thickness(result, report)
+    baked = thickness_bake.bake_thickness(result, report)
     image = baked.model.thickness.image
     assert image is not None and baked.baked_uv is not None and baked.mesh is not None
     assert len(baked.baked_uv) == len(baked.mesh.vertices)

@@ -6,7 +6,7 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from sssgen.cli.layout import table_rows, table_width
+from sssgen.cli.layout import print_rows
 from sssgen.cli.options import add_guards, add_seed, check_samples
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.run.backend_registry import BACKENDS, FUNCTIONS, HALF, chosen, in_half
@@ -127,7 +127,7 @@ def _print_rows(rows: Sequence[Row]) -> None:
 
     width = max(len(row.name) for row in rows)
     print(f"\n{'':{width}}  largest deviation (goal: {GOAL:g})")
-    print("\n".join(table_rows([(row.name, row.text) for row in rows], width, table_width(), 0)))
+    print_rows([(row.name, row.text) for row in rows], width, 0)
 
 
 def _json_numbers(value: Any) -> Any:

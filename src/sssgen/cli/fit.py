@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from sssgen.cli.chart import add_reference_options, settings_of
+from sssgen.cli.options import unknown_name
 from sssgen.cli.output import OK, print_result
-from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.diagnostics import failure
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -29,8 +30,7 @@ def run(arguments: Namespace) -> int:
     wanted = set(arguments.TECHNIQUE)
     techniques = {technique.name for role in settings.roles for technique in candidates.of_role(role)}
     for name in sorted(wanted - techniques):
-        hint = did_you_mean(name, techniques) or f"techniques: {', '.join(sorted(techniques))}"
-        raise failure(f"unknown technique '{name}'", hint)
+        raise unknown_name("technique", name, sorted(techniques))
     points = chart.chart_record([scene], settings._replace(techniques=frozenset(wanted)))["points"]
     points = [point for point in points if point["name"] != "none"]
     if not points:

@@ -7,8 +7,8 @@ import io
 from argparse import ArgumentParser, Namespace
 
 from sssgen.cli.commands import COMMANDS, Overview, command_parser
+from sssgen.cli.options import unknown_name
 from sssgen.cli.output import OK, print_result
-from sssgen.support.diagnostics import did_you_mean, failure
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -24,8 +24,7 @@ def run(arguments: Namespace) -> int:
         return OK
     name, *rest = arguments.COMMAND
     if name not in COMMANDS:
-        hint = did_you_mean(name, COMMANDS) or f"choose from: {', '.join(COMMANDS)}"
-        raise failure(f"unknown command '{name}'", hint)
+        raise unknown_name("command", name, COMMANDS)
     text = io.StringIO()
     with contextlib.redirect_stdout(text), contextlib.suppress(SystemExit):
         command_parser(name).parse_args([*rest, "--help"])

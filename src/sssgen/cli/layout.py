@@ -56,3 +56,8 @@ def table_rows(rows: Iterable[tuple[str, str]], first: int, width: int | None, i
             rest = len(start) if width > 2 * len(start) else 2 * indent
             lines += wrap(text, width, start, " " * rest)
     return lines
+
+
+def print_rows(rows: Iterable[tuple[str, str]], first: int, indent: int = 2) -> None:
+    """Prints rows of a name and a text, wrapped on a terminal."""
+    print("\n".join(table_rows(rows, first, table_width(), indent)))

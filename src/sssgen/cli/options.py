@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable
 
-from sssgen.support.diagnostics import failure
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 
 DEFAULT_TARGET = "glsl-330"
 """The target of a command that is called without one: plain text that the preferred back end draws."""
+
+
+def unknown_name(kind: str, name: str, names: Iterable[str]) -> SssgenError:
+    """The error for a name that no thing of a kind has; the hint has the most similar name, or all."""
+    return failure(f"unknown {kind} '{name}'", did_you_mean(name, names) or f"{kind}s: {', '.join(names)}")
 
 
 def nonempty(text: str) -> str:

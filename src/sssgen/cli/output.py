@@ -28,6 +28,14 @@ def print_result(as_json: bool, facts: Mapping[str, object], text: str, ok: bool
         print(text)
 
 
+def write_text(path: str, text: str) -> None:
+    """Writes a file, whole or not at all. Raises SssgenError where the system refuses."""
+    from sssgen.support.file_writer import write_files
+
+    folder, name = os.path.split(path)
+    write_files(folder or ".", {name: text})
+
+
 def failure_report(errors: Iterable[Diagnostic]) -> dict[str, object]:
     """The JSON report of a command that failed."""
     return {"ok": False, "diagnostics": [error.as_json() for error in errors]}

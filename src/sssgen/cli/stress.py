@@ -9,10 +9,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from sssgen.cli.options import add_guards, add_output, add_seed, add_workers, check_samples
-from sssgen.cli.output import CHECK_FAILED, OK, print_json
+from sssgen.cli.output import CHECK_FAILED, OK, print_json, write_text
 from sssgen.run.backend_registry import DEFAULT, HALF, SINGLE, chosen, in_half
 from sssgen.support.diagnostics import failure
-from sssgen.support.file_writer import write_files
 from sssgen.testing.outcome import in_ci
 
 if TYPE_CHECKING:
@@ -138,8 +137,7 @@ def _write(path: str, suffix: str, results: Report) -> None:
     text = report.as_markdown(results)
     if suffix == ".json":
         text = json.dumps(report.as_json(results), indent=2, ensure_ascii=False) + "\n"
-    folder, name = os.path.split(path)
-    write_files(folder or ".", {name: text})
+    write_text(path, text)
 
 
 def _print(results: Report, written: str | None) -> None:
