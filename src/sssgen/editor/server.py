@@ -138,6 +138,16 @@ def _without_errors(handler: Callable[[Server, Any], _Result]) -> Callable[[Serv
     return answer
 
 
+def _at_place(handler: Callable[[Server, Any, Place], _Result]) -> Callable[[Server, Any], _Result | None]:
+    """A handler that gets the place of the request; one in a document that is not open is answered with nothing."""
+
+    def answer(server: Server, params: Any) -> _Result | None:
+        place = server.place(params.text_document.uri, params.position)
+        return None if place is None else handler(server, params, place)
+
+    return answer
+
+
 def _on_open(server: Server, params: lsp.DidOpenTextDocumentParams) -> None:
     path = server.path_of(params.text_document.uri)
     if path:
@@ -180,20 +190,16 @@ def _on_file_changes(server: Server, params: lsp.DidChangeWatchedFilesParams) ->
         server.publish(other)
 
 
-def _hover(server: Server, params: lsp.HoverParams) -> lsp.Hover | None:
-    place = server.place(params.text_document.uri, params.position)
-    hover = hover_at(*place) if place else None
-    if place is None or hover is None:
+def _hover(server: Server, params: lsp.HoverParams, place: Place) -> lsp.Hover | None:
+    hover = hover_at(*place)
+    if hover is None:
         return None
     word = hover.word
     part = server.range_to_client(place[0].lines, Range(word.line, word.start, word.line, word.end))
     return lsp.Hover(lsp.MarkupContent(lsp.MarkupKind.Markdown, hover.markdown), part)
 
 
-def _completion(server: Server, params: lsp.CompletionParams) -> list[lsp.CompletionItem] | None:
-    place = server.place(params.text_document.uri, params.position)
-    if place is None:
-        return None
+def _completion(server: Server, params: lsp.CompletionParams, place: Place) -> list[lsp.CompletionItem]:
     return [_item(number, item) for number, item in enumerate(completions_at(*place))]
 
 
@@ -208,9 +214,8 @@ def _item(number: int, item: Item) -> lsp.CompletionItem:
     )
 
 
-def _definition(server: Server, params: lsp.DefinitionParams) -> lsp.Location | None:
-    place = server.place(params.text_document.uri, params.position)
-    target = definition_at(*place) if place else None
+def _definition(server: Server, params: lsp.DefinitionParams, place: Place) -> lsp.Location | None:
+    target = definition_at(*place)
     return None if target is None else server.location(target.path, target.range)
 
 
@@ -285,10 +290,7 @@ def _refresh_lenses(server: Server) -> None:
         server.workspace_code_lens_refresh(None)
 
 
-def _prepare_rename(server: Server, params: lsp.PrepareRenameParams) -> lsp.Range | None:
-    place = server.place(params.text_document.uri, params.position)
-    if place is None:
-        return None
+def _prepare_rename(server: Server, params: lsp.PrepareRenameParams, place: Place) -> lsp.Range:
     try:
         word = name_to_rename(*place)
     except SssgenError as error:
@@ -296,10 +298,7 @@ def _prepare_rename(server: Server, params: lsp.PrepareRenameParams) -> lsp.Rang
     return server.range_to_client(place[0].lines, Range(word.line, word.start, word.line, word.end))
 
 
-def _rename(server: Server, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
-    place = server.place(params.text_document.uri, params.position)
-    if place is None:
-        return None
+def _rename(server: Server, params: lsp.RenameParams, place: Place) -> lsp.WorkspaceEdit:
     try:
         edits = rename(place, params.new_name, server.documents.refresh, server.documents.paths)
     except SssgenError as error:
@@ -338,16 +337,16 @@ def make_server() -> Server:
     server.feature(lsp.TEXT_DOCUMENT_DID_CHANGE)(_on_change)
     server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)(_on_close)
     server.feature(lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES)(_on_file_changes)
-    server.feature(lsp.TEXT_DOCUMENT_HOVER)(_without_errors(_hover))
+    server.feature(lsp.TEXT_DOCUMENT_HOVER)(_without_errors(_at_place(_hover)))
     server.feature(lsp.TEXT_DOCUMENT_COMPLETION, lsp.CompletionOptions(trigger_characters=list(TRIGGERS)))(
-        _without_errors(_completion)
+        _without_errors(_at_place(_completion))
     )
-    server.feature(lsp.TEXT_DOCUMENT_DEFINITION)(_without_errors(_definition))
+    server.feature(lsp.TEXT_DOCUMENT_DEFINITION)(_without_errors(_at_place(_definition)))
     server.feature(
         lsp.TEXT_DOCUMENT_CODE_ACTION, lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix])
     )(_without_errors(_fixes))
     server.feature(lsp.TEXT_DOCUMENT_FORMATTING)(_without_errors(_format))
     server.feature(lsp.TEXT_DOCUMENT_CODE_LENS)(_lenses)
-    server.feature(lsp.TEXT_DOCUMENT_PREPARE_RENAME)(_prepare_rename)
-    server.feature(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))(_rename)
+    server.feature(lsp.TEXT_DOCUMENT_PREPARE_RENAME)(_at_place(_prepare_rename))
+    server.feature(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))(_at_place(_rename))
     return server

@@ -23,6 +23,8 @@ class Shader:
         self.graph, self.node, self.scope, self.report = graph, node, scope, report
         self.elements: dict[str, list[Element]] = {}
         """Field of the record → the inputs that it comes from"""
+        self.aliases: Mapping[str, str] = {}
+        """Name of an input for the methods below → its name in the shader, where that is another"""
         self._set = {part.getName() for part in node.getInputs()}
         self._reported: set[str] = set()
         self._estimated: set[str] = set()
@@ -33,6 +35,7 @@ class Shader:
 
     def value(self, name: str, field: str) -> Value:
         """The value of an input that becomes a field of the record."""
+        name = self.aliases.get(name, name)
         value = self.graph.input(self.node, name, self.scope)
         if name in self._set and name not in self._reported:
             self._reported.add(name)
@@ -85,6 +88,7 @@ class Shader:
 
     def normal(self, name: str, field: str) -> Quantity:
         """A normal map and its strength."""
+        name = self.aliases.get(name, name)
         value = self.graph.input(self.node, name, self.scope)
         is_map = isinstance(value, Normal) and not value.cause
         if name in self._set:
@@ -102,6 +106,7 @@ class Shader:
 
     def report_approximation(self, name: str, became: str, error: str = "") -> None:
         """Reports an input that the record keeps only in part, where the document sets it."""
+        name = self.aliases.get(name, name)
         if name not in self._set or name in self._estimated:
             return
         self._estimated.add(name)

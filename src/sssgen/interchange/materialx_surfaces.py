@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import NamedTuple
 
 from sssgen.interchange.albedo_inversion import subsurface_medium, transmission_medium
 from sssgen.interchange.graph_values import Constant, Value, mean
@@ -66,57 +65,32 @@ def _emission(shader: Shader, weight: str, color: str) -> Quantity:
 # OpenPBR and standard_surface
 
 
-class _Names(NamedTuple):
-    """The names of the inputs whose names differ between OpenPBR and standard_surface."""
-
-    base: str
-    metalness: str
-    ior: str
-    specular: str
-    normal: str
-    opacity: str
-    emission: str
-    coat: str
-    transmission: str
-    subsurface: str
-    subsurface_scale: str
-    subsurface_radii: str
-    subsurface_anisotropy: str
-    thin_walled: str
-
-
-_OPEN_PBR = _Names(
-    base="base_weight", metalness="base_metalness", ior="specular_ior", specular="specular_weight",
-    normal="geometry_normal", opacity="geometry_opacity", emission="emission_luminance", coat="coat_weight",
-    transmission="transmission_weight", subsurface="subsurface_weight", subsurface_scale="subsurface_radius",
-    subsurface_radii="subsurface_radius_scale", subsurface_anisotropy="subsurface_scatter_anisotropy",
-    thin_walled="geometry_thin_walled",
-)  # fmt: skip
-_STANDARD = _Names(
-    base="base", metalness="metalness", ior="specular_IOR", specular="specular", normal="normal", opacity="opacity",
-    emission="emission", coat="coat", transmission="transmission", subsurface="subsurface",
-    subsurface_scale="subsurface_scale", subsurface_radii="subsurface_radius",
-    subsurface_anisotropy="subsurface_anisotropy", thin_walled="thin_walled",
-)  # fmt: skip
+_STANDARD_NAMES = {
+    "base_weight": "base", "base_metalness": "metalness", "specular_ior": "specular_IOR", "specular_weight": "specular",
+    "geometry_normal": "normal", "geometry_opacity": "opacity", "emission_luminance": "emission", "coat_weight": "coat",
+    "transmission_weight": "transmission", "subsurface_weight": "subsurface", "subsurface_radius": "subsurface_scale",
+    "subsurface_radius_scale": "subsurface_radius", "subsurface_scatter_anisotropy": "subsurface_anisotropy",
+    "geometry_thin_walled": "thin_walled",
+}  # fmt: skip
+"""OpenPBR's name of an input → that of standard_surface, where they differ."""
 
 _SUBSURFACE_INPUTS = (
-    "subsurface_color", "subsurface_radius", "subsurface_radius_scale", "subsurface_scale",
-    "subsurface_scatter_anisotropy", "subsurface_anisotropy",
+    "subsurface_color", "subsurface_radius", "subsurface_radius_scale", "subsurface_scatter_anisotropy",
 )  # fmt: skip
 _TRANSMISSION_INPUTS = (
     "transmission_color", "transmission_depth", "transmission_scatter", "transmission_scatter_anisotropy",
 )  # fmt: skip
 
 
-def _add_interior(shader: Shader, model: SurfaceModel, base: Value, names: _Names) -> SurfaceModel:
+def _add_interior(shader: Shader, model: SurfaceModel, base: Value) -> SurfaceModel:
     """The record with what is below the surface: a sheet's two sides, or a body's medium."""
-    thin = bool(shader.number(names.thin_walled, "thin_walled"))
+    thin = bool(shader.number("geometry_thin_walled", "thin_walled"))
     model = replace(model, thin_walled=thin, two_sided=thin)
-    weight = shader.value(names.subsurface, "diffuse_transmission" if thin else "subsurface")
-    transmission = shader.quantity(names.transmission, "transmission")
+    weight = shader.value("subsurface_weight", "diffuse_transmission" if thin else "subsurface")
+    transmission = shader.quantity("transmission_weight", "transmission")
     scatters, transmits = any(part > 0.0 for part in mean(weight)), not transmission.is_zero
     if thin:
-        model = _sheet(shader, model, base, weight, names) if scatters else model
+        model = _sheet(shader, model, base, weight) if scatters else model
         if transmits:
             tint = shader.quantity("transmission_color", "transmission_tint", color=True)
             model = replace(model, transmission=transmission, transmission_tint=tint)
@@ -130,8 +104,8 @@ def _add_interior(shader: Shader, model: SurfaceModel, base: Value, names: _Name
         if depth <= 0.0:
             tint = shader.quantity("transmission_color", "transmission_tint", color=True)
             model = replace(model, transmission_tint=tint)
-            return _add_subsurface(shader, model, names) if scatters else model
-        if not scatters or mean(shader.value(names.transmission, "transmission"))[0] >= 0.5:
+            return _add_subsurface(shader, model) if scatters else model
+        if not scatters or mean(shader.value("transmission_weight", "transmission"))[0] >= 0.5:
             interior = transmission_medium(
                 shader.numbers("transmission_color", "interior"),
                 depth,
@@ -142,7 +116,7 @@ def _add_interior(shader: Shader, model: SurfaceModel, base: Value, names: _Name
                 _drop(shader, _SUBSURFACE_INPUTS, "the body has one medium: that of the transmission")
             return replace(model, interior=interior)
         _drop(shader, _TRANSMISSION_INPUTS, "the body has one medium: that of the subsurface")
-    return _add_subsurface(shader, model, names) if scatters else model
+    return _add_subsurface(shader, model) if scatters else model
 
 
 def _drop(shader: Shader, names: tuple[str, ...], reason: str) -> None:
@@ -150,18 +124,18 @@ def _drop(shader: Shader, names: tuple[str, ...], reason: str) -> None:
         shader.report_approximation(name, reason)
 
 
-def _add_subsurface(shader: Shader, model: SurfaceModel, names: _Names) -> SurfaceModel:
+def _add_subsurface(shader: Shader, model: SurfaceModel) -> SurfaceModel:
     color = shader.numbers("subsurface_color", "interior")
-    anisotropy = shader.number(names.subsurface_anisotropy, "interior")
-    scale = shader.number(names.subsurface_scale, "interior")
-    radii = tuple(scale * part for part in shader.numbers(names.subsurface_radii, "interior"))  # in metres
+    anisotropy = shader.number("subsurface_scatter_anisotropy", "interior")
+    scale = shader.number("subsurface_radius", "interior")
+    radii = tuple(scale * part for part in shader.numbers("subsurface_radius_scale", "interior"))  # in metres
     interior = subsurface_medium(color, radii, anisotropy)
     albedo = ", ".join(f"{part:.4g}" for part in interior.albedo)
     shader.report_approximation("subsurface_color", f"the scattering albedo {albedo}", _INVERSION)
     return replace(model, interior=interior)
 
 
-def _sheet(shader: Shader, model: SurfaceModel, base: Value, weight: Value, names: _Names) -> SurfaceModel:
+def _sheet(shader: Shader, model: SurfaceModel, base: Value, weight: Value) -> SurfaceModel:
     """A thin sheet: its subsurface reflects and transmits diffusely.
 
     With the share T of the sheet's light that is transmitted (OpenPBR: (1 + g) / 2; standard_surface: all), the weight
@@ -170,8 +144,8 @@ def _sheet(shader: Shader, model: SurfaceModel, base: Value, weight: Value, name
     """
     color = shader.value("subsurface_color", "diffuse_transmission_color")
     through = 1.0
-    if names is _OPEN_PBR:
-        through = 0.5 * (1.0 + shader.number(names.subsurface_anisotropy, "diffuse_transmission"))
+    if not shader.aliases:  # OpenPBR
+        through = 0.5 * (1.0 + shader.number("subsurface_scatter_anisotropy", "diffuse_transmission"))
     share = shader.compute("multiply", weight, Constant((through,)))
     back = shader.compute("multiply", color, shader.compute("multiply", weight, Constant((1.0 - through,))))
     front = shader.compute("multiply", base, _one_minus(shader, weight))
@@ -230,36 +204,37 @@ _STANDARD_LEFT_OUT: Reasons = {
 
 def open_pbr_surface(shader: Shader, name: str) -> SurfaceModel:
     """OpenPBR Surface 1.1."""
-    return _layered_surface(shader, name, _OPEN_PBR, _OPEN_PBR_LEFT_OUT)
+    return _layered_surface(shader, name, _OPEN_PBR_LEFT_OUT)
 
 
 def standard_surface(shader: Shader, name: str) -> SurfaceModel:
     """Autodesk's standard_surface 1.0.1."""
-    return _layered_surface(shader, name, _STANDARD, _STANDARD_LEFT_OUT)
+    shader.aliases = _STANDARD_NAMES
+    return _layered_surface(shader, name, _STANDARD_LEFT_OUT)
 
 
-def _layered_surface(shader: Shader, name: str, names: _Names, left_out: Reasons) -> SurfaceModel:
-    """A base with an interior, below a coat."""
+def _layered_surface(shader: Shader, name: str, left_out: Reasons) -> SurfaceModel:
+    """A base with an interior, below a coat; the inputs have OpenPBR's names."""
     base = _coat_attenuation(
-        shader, shader.weighted_value(names.base, "base_color", "base_color"), names.coat, "coat_color"
+        shader, shader.weighted_value("base_weight", "base_color", "base_color"), "coat_weight", "coat_color"
     )
-    opacity, alpha_mode = _opacity(shader, names.opacity)
+    opacity, alpha_mode = _opacity(shader, "geometry_opacity")
     model = SurfaceModel(
         name,
         alpha_mode=alpha_mode,
         base_color=shader.as_quantity(base, "base_color", color=True),
         opacity=opacity,
-        metalness=shader.quantity(names.metalness, "metalness"),
+        metalness=shader.quantity("base_metalness", "metalness"),
         roughness=shader.quantity("specular_roughness", "roughness"),
-        ior=shader.number(names.ior, "ior"),
-        specular=shader.quantity(names.specular, "specular"),
+        ior=shader.number("specular_ior", "ior"),
+        specular=shader.quantity("specular_weight", "specular"),
         specular_color=shader.quantity("specular_color", "specular_color", color=True),
-        normal=shader.normal(names.normal, "normal"),
-        emission=_emission(shader, names.emission, "emission_color"),
-        coat=shader.quantity(names.coat, "coat"),
+        normal=shader.normal("geometry_normal", "normal"),
+        emission=_emission(shader, "emission_luminance", "emission_color"),
+        coat=shader.quantity("coat_weight", "coat"),
         coat_roughness=shader.quantity("coat_roughness", "coat_roughness"),
     )
-    model = _add_interior(shader, model, base, names)
+    model = _add_interior(shader, model, base)
     shader.report_omissions(left_out)
     return model
 

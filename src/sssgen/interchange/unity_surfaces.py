@@ -34,6 +34,13 @@ def _scale_texels(image: Image, low: float, high: float) -> Image:
     return image._replace(scale=high - low, bias=low)
 
 
+def _complement(image: Image | None, factor: float) -> Quantity:
+    """One minus a factor times the texels of a picture, where there is one."""
+    if image is None:
+        return constant(1.0 - factor)
+    return Quantity((1.0,), _scale_texels(image, 1.0, 1.0 - factor))
+
+
 class _Surface:
     """What the shaders of URP and HDRP have in common: names of properties and how they are read."""
 
@@ -132,20 +139,17 @@ def _universal_roughness(material: UnityMaterial, surface: _Surface, gloss_map: 
     builtin = not material.has("_Smoothness") and material.has("_Glossiness")
     property_ = "_Smoothness" if not builtin else "_Glossiness" if image is None else "_GlossMapScale"
     smoothness = material.number(property_, 0.5, "roughness")
-    return (
-        constant(1.0 - smoothness) if image is None else Quantity((1.0,), _scale_texels(image, 1.0, 1.0 - smoothness))
-    )
+    return _complement(image, smoothness)
 
 
 def _universal_coat(material: UnityMaterial, surface: _Surface, model: SurfaceModel) -> SurfaceModel:
     weight = surface.image("_ClearCoatMap", "r", "coat")
     smooth = surface.image("_ClearCoatMap", "g", "coat_roughness")
     smoothness = material.number("_ClearCoatSmoothness", 0.0, "coat_roughness")
-    roughness = (
-        constant(1.0 - smoothness) if smooth is None else Quantity((1.0,), _scale_texels(smooth, 1.0, 1.0 - smoothness))
-    )
     return replace(
-        model, coat=Quantity((material.number("_ClearCoatMask", 0.0, "coat"),), weight), coat_roughness=roughness
+        model,
+        coat=Quantity((material.number("_ClearCoatMask", 0.0, "coat"),), weight),
+        coat_roughness=_complement(smooth, smoothness),
     )
 
 
@@ -321,9 +325,7 @@ def _sheet(material: UnityMaterial, model: SurfaceModel, profile: DiffusionProfi
 def _add_refraction(material: UnityMaterial, surface: _Surface, model: SurfaceModel, *, thin: bool) -> SurfaceModel:
     """A refracting body: its transparency is one minus the alpha; the light in it fades to the transmittance colour."""
     alpha = surface.alpha("transmission")
-    share = constant(1.0 - alpha.factor[0])
-    if alpha.image is not None:
-        share = Quantity((1.0,), _scale_texels(alpha.image, 1.0, 1.0 - alpha.factor[0]))
+    share = _complement(alpha.image, alpha.factor[0])
     color = material.color("_TransmittanceColor", _WHITE, "transmission_tint" if thin else "interior")[:3]
     model = replace(
         model,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from sssgen.cli.layout import wrap
@@ -16,10 +16,8 @@ from sssgen.pipeline.compiler import all_targets, compile
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import posix
 
-
-def names() -> Collection[str]:
-    """The example materials."""
-    return examples()
+names = examples
+"""The example materials."""
 
 
 def describe(name: str) -> dict[str, Any]:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from sssgen.cli.layout import wrap
 from sssgen.scene.measured import media
 from sssgen.support.diagnostics import did_you_mean, failure
 
-
-def names() -> Collection[str]:
-    """The media that are published."""
-    return media.media()
+names = media.media
+"""The media that are published."""
 
 
 def describe(name: str) -> dict[str, Any]:

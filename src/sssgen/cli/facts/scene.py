@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from sssgen.cli.layout import wrap
@@ -16,9 +16,8 @@ if TYPE_CHECKING:
     from sssgen.scene.scene import Light, Scene
 
 
-def names() -> Collection[str]:
-    """The example scenes, to draw and to measure."""
-    return all_scenes()
+names = all_scenes
+"""The example scenes, to draw and to measure."""
 
 
 def describe(name: str) -> dict[str, Any]:

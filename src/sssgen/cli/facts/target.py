@@ -25,9 +25,8 @@ FORMS = {
 """The forms in which a target is emitted, for people."""
 
 
-def names() -> Collection[str]:
-    """All targets, with those of plug-ins."""
-    return registry.names()
+names = registry.names
+"""All targets, with those of plug-ins."""
 
 
 def describe(name: str) -> dict[str, Any]:

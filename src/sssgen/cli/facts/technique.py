@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from sssgen.cli.layout import wrap
 from sssgen.material import library
 from sssgen.material.technique_facts import facts_of, uniform_text
 
-
-def names() -> Collection[str]:
-    """The techniques of the library."""
-    return library.index()
+names = library.index
+"""The techniques of the library."""
 
 
 def describe(name: str) -> dict[str, Any]:
