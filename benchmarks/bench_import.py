@@ -21,13 +21,13 @@ from pathlib import Path
 
 from sssgen.interchange import format_readers
 from sssgen.interchange.gltf_container import open_file
-from sssgen.interchange.gltf_materials import READ
+from sssgen.interchange.gltf_materials import EXTENSIONS
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.material_writer import WrittenMaterial, write_import
 from sssgen.run.check import compile_check, shader_files
 from sssgen.support.diagnostics import SssgenError
 
-EXTENSIONS = {*READ, "KHR_texture_transform"}
+READ_EXTENSIONS = {*EXTENSIONS, "KHR_texture_transform"}
 TARGETS = ("wgsl", "glsl-330")
 DRAWN = 4
 """Materials of an asset that are drawn."""
@@ -113,7 +113,7 @@ def run_imports(paths: Iterable[tuple[str, Path]], pictures: Path | None, root: 
 def chosen_assets(folder: Path, every: bool) -> Iterator[tuple[str, Path]]:
     """The assets of a folder that use the extensions."""
     for path in assets(folder):
-        if every or not EXTENSIONS.isdisjoint(used(path)):
+        if every or not READ_EXTENSIONS.isdisjoint(used(path)):
             yield path.relative_to(folder).parts[0], path
 
 

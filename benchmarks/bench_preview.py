@@ -28,8 +28,8 @@ from pathlib import Path
 from typing import Any
 
 from sssgen.material import library
+from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import PreviewServer
-from sssgen.preview.shown_picture import ShownPicture
 from sssgen.run.installed import chromium
 from sssgen.support.paths import folder
 
@@ -83,7 +83,7 @@ class Example:
     def __init__(self, root: Path, name: str) -> None:
         shutil.copytree(folder("examples") / name, root / name)
         self.file = root / name / f"{name}.toml"
-        self.shown = ShownPicture(str(self.file))
+        self.shown = Pane(str(self.file))
         self.control = next(
             control
             for control in self.shown.picture.head["controls"]
@@ -132,7 +132,7 @@ class Example:
 
 
 @contextlib.contextmanager
-def served(shown: ShownPicture) -> Iterator[str]:
+def served(shown: Pane) -> Iterator[str]:
     """The address of a server in a thread of its own."""
     server, started, loop = PreviewServer(shown), threading.Event(), asyncio.new_event_loop()
     task = loop.create_task(server.run(0, False, lambda _: started.set()))

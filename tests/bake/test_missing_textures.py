@@ -18,7 +18,7 @@ from sssgen.material import library
 from sssgen.material.attributes import Bake, read, sections
 from sssgen.material.requirements import baked_functions
 from sssgen.preview.page_messages import PageMessages
-from sssgen.preview.shown_picture import ShownPicture
+from sssgen.preview.pane import Pane
 from sssgen.scene.pictures import images
 from sssgen.support.diagnostics import SssgenError
 from sssgen.testing.project_run import Run, cases
@@ -137,7 +137,7 @@ def test_without_a_mesh_the_message_says_what_to_put_in(folder: Path, capsys: py
 
 def test_the_preview_says_it_and_shows_the_picture_when_the_file_comes(folder: Path) -> None:
     write("thickness")
-    talk = PageMessages(ShownPicture("scene.toml"))
+    talk = PageMessages(Pane("scene.toml"))
     (message,) = talk.messages()
     assert "run `sssgen bake thickness box.obj" in message["error"] and message["picture"]["missing"]
     assert main(["bake", "thickness", "box.obj", "-o", "t.png", *QUICK["thickness"]]) == 0
@@ -152,7 +152,7 @@ def test_the_preview_watches_a_file_that_a_material_names(folder: Path) -> None:
     write("thickness")
     material = Path("wax.toml").read_text(encoding="utf-8").replace('_map"', '_map"\nthickness_texture = "t.png"')
     Path("wax.toml").write_text(material, encoding="utf-8")
-    shown = ShownPicture("scene.toml")
+    shown = Pane("scene.toml")
     assert "-o t.png`" in shown.message()["error"] and str(Path("t.png").absolute()) in shown.files
     assert main(["bake", "thickness", "box.obj", "-o", "t.png", *QUICK["thickness"]]) == 0
     shown.renew()

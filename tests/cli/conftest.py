@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from command_line import WAX, FakeCompiler
-from sssgen.cli import listing, transpile
-from sssgen.cli.shown import shown_material  # noqa: F401 - before the fake compiler, which it would keep
+from sssgen.cli import list_names, transpile
+from sssgen.cli.facts import material  # noqa: F401 - before the fake compiler, which it would keep
 from sssgen.pipeline import emitted_cache
 from sssgen.scene import scene_loading  # noqa: F401 - the same
 
@@ -18,7 +18,7 @@ from sssgen.scene import scene_loading  # noqa: F401 - the same
 def compiler(monkeypatch: pytest.MonkeyPatch) -> FakeCompiler:
     fake = FakeCompiler()
     monkeypatch.setitem(sys.modules, "sssgen.pipeline.compiler", fake)
-    monkeypatch.setattr(listing, "all_targets", fake.all_targets)
+    monkeypatch.setattr(list_names, "all_targets", fake.all_targets)
     monkeypatch.setattr(transpile, "transpile", fake.transpile)
     monkeypatch.setattr(emitted_cache, "load", lambda *_: None)
     monkeypatch.setattr(emitted_cache, "store", lambda *_: None)

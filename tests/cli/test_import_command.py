@@ -10,7 +10,7 @@ import pytest
 
 from gltf_files import box, write_gltf
 from sssgen.cli.main import main
-from sssgen.interchange.mapping_report import shown
+from sssgen.interchange.mapping_report import short_text
 from sssgen.scene.scene_loading import load
 
 GLASS: dict[str, Any] = {
@@ -100,9 +100,9 @@ def test_a_bake_without_effect_says_why(
 def test_values_in_reports_have_no_words_of_python() -> None:
     import numpy as np
 
-    assert shown({"scale": [2, 2.0], "on": True, "off": None}) == "scale: 2, 2; on: true; off: null"
-    assert shown((np.float32(0.25), np.bool_(False))) == "0.25, false"
-    assert shown(np.array([1.0, 2.0])) == "1, 2"
+    assert short_text({"scale": [2, 2.0], "on": True, "off": None}) == "scale: 2, 2; on: true; off: null"
+    assert short_text((np.float32(0.25), np.bool_(False))) == "0.25, false"
+    assert short_text(np.array([1.0, 2.0])) == "1, 2"
 
 
 def test_a_file_that_is_no_glb(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -34,7 +34,7 @@ def test_every_name_of_a_kind(kind: str, run: Run) -> None:
         facts = json.loads(run("show", name, "--kind", kind, "--json").out)
         assert (facts["ok"], facts["kind"], facts["name"]) == (True, kind, name)
         assert kind != "technique" or (facts["summary"] and "source" in facts["doc"])
-        text = show.KINDS[kind].about().lines(facts, 80)
+        text = show.facts_module(kind).lines(facts, 80)
         assert text[0].startswith(name)
         assert all(len(line) <= 80 for line in text if line[:1] != " "), name
 
@@ -104,7 +104,7 @@ def test_tables_fit_a_terminal_and_stay_whole_in_a_pipe(run: Run, monkeypatch: p
     whole = run("list", "scenes").out.splitlines()
     assert len(whole) == len(show.names_of("scene"))
     monkeypatch.setattr(layout, "table_width", lambda: 50)
-    monkeypatch.setattr("sssgen.cli.listing.table_width", lambda: 50)
+    monkeypatch.setattr("sssgen.cli.list_names.table_width", lambda: 50)
     lines = run("list", "scenes").out.splitlines()
     assert len(lines) > len(whole)
     assert max(map(len, lines)) <= 50

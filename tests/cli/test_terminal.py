@@ -17,7 +17,7 @@ from sssgen.cli import check as check_command
 from sssgen.cli import eval as eval_command
 from sssgen.cli import main as cli
 from sssgen.cli import show
-from sssgen.cli.output import coloured
+from sssgen.cli.output import paint
 from sssgen.run.check.compile_check import Report, Result
 from sssgen.run.check.shader_files import Shader
 from sssgen.run.compilers import Message, Source
@@ -49,19 +49,19 @@ def terminal_in_place(monkeypatch: pytest.MonkeyPatch) -> Terminal:
 
 def test_colours(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal_in_place(monkeypatch)
-    assert coloured(TEXT) == SHOWN
+    assert paint(TEXT) == SHOWN
 
 
 @pytest.mark.parametrize(("variable", "value"), [("NO_COLOR", "1"), ("TERM", "dumb")])
 def test_no_colours_by_choice(variable: str, value: str, monkeypatch: pytest.MonkeyPatch) -> None:
     terminal_in_place(monkeypatch)
     monkeypatch.setenv(variable, value)
-    assert coloured(TEXT) == TEXT
+    assert paint(TEXT) == TEXT
 
 
 def test_no_colours_in_a_pipe(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stderr", io.StringIO())
-    assert coloured(TEXT) == TEXT
+    assert paint(TEXT) == TEXT
 
 
 def test_no_colours_in_json(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -161,7 +161,7 @@ def test_half_written_and_hostile_texts_raise_nothing(opened: Callable[..., Any]
                 definition_at(*place)
                 completions_at(*place)
                 with contextlib.suppress(SssgenError):
-                    rename(place, "other", shown.documents.opened, shown.documents.paths)
+                    rename(place, "other", shown.documents.refresh, shown.documents.paths)
             with contextlib.suppress(SssgenError):
                 lenses_of(*shown.place[:2])
 

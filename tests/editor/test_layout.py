@@ -11,7 +11,7 @@ import pytest
 
 from folders import ROOT
 from sssgen.cli.main import main
-from sssgen.editor.layout import laid_out, lay_out_file
+from sssgen.editor.layout import lay_out, lay_out_file
 from sssgen.editor.layout_code import code_layout
 from sssgen.editor.layout_toml import toml_layout
 from sssgen.ir.text import print_module
@@ -209,5 +209,5 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
 
 
 def test_texts_that_are_laid_out_alike() -> None:
-    assert laid_out("", "a.sss") == "" and laid_out("\n\n", "a.toml") == ""
-    assert laid_out("float a = 1.0;", "a.SSS").endswith(";\n")
+    assert lay_out("", "a.sss") == "" and lay_out("\n\n", "a.toml") == ""
+    assert lay_out("float a = 1.0;", "a.SSS").endswith(";\n")

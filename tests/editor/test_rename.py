@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from sssgen.editor.open_documents import OpenDocuments
-from sssgen.editor.rename import renamable_at, rename
+from sssgen.editor.rename import name_to_rename, rename
 from sssgen.support import unsaved
 from sssgen.support.diagnostics import SssgenError
 
@@ -75,9 +75,9 @@ class Folder:
         found = self.documents.get(path)
         assert found is not None
         place = (*found, before.count("\n"), len(before) - before.rfind("\n") - 1)
-        word = renamable_at(*place)
+        word = name_to_rename(*place)
         assert piece.startswith(word.text)
-        edits = rename(place, name, self.documents.opened, self.documents.paths)
+        edits = rename(place, name, self.documents.refresh, self.documents.paths)
         new = {}
         for changed, own in edits.items():
             lines = Path(changed).read_text("utf-8").split("\n")
@@ -132,7 +132,7 @@ def test_unsaved_texts_are_renamed_too(folder: Folder) -> None:
     folder.open("shared.sss")
     found = folder.documents.get(str(folder.folder / "shared.sss"))
     assert found is not None
-    edits = rename((*found, 0, 14), "strength", folder.documents.opened, folder.documents.paths)
+    edits = rename((*found, 0, 14), "strength", folder.documents.refresh, folder.documents.paths)
     assert len(edits[str(folder.folder / "own.sss")]) == 2
 
 

@@ -30,7 +30,7 @@ FILES = sorted(Path(place("examples")).rglob("*.toml"))
 
 @pytest.fixture(scope="module")
 def validators() -> dict[str, Draft7Validator]:
-    made = {MATERIAL: schemas.of_materials(), SCENE: schemas.of_scenes()}
+    made = {MATERIAL: schemas.material_schema(), SCENE: schemas.scene_schema()}
     for schema in made.values():
         Draft7Validator.check_schema(schema)
     return {kind: Draft7Validator(schema) for kind, schema in made.items()}
@@ -177,6 +177,6 @@ def test_the_tables_are_those_of_the_reader() -> None:
 def test_the_command_prints_and_writes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["schema", "scene"]) == 0
     printed = capsys.readouterr().out
-    assert json.loads(printed) == schemas.of_scenes()
+    assert json.loads(printed) == schemas.scene_schema()
     assert main(["schema", "scene", "-o", str(tmp_path / "scene.json")]) == 0
     assert (tmp_path / "scene.json").read_text("utf-8") == printed

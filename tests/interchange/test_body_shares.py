@@ -9,7 +9,7 @@ import pytest
 from PIL import Image as Pillow
 
 from sssgen.interchange.body_shares import shares_of
-from sssgen.interchange.imported import Notes
+from sssgen.interchange.imported_material import Notes
 from sssgen.interchange.scatter_color import albedo_of_multiscatter
 from sssgen.interchange.surface_model import Image, Picture, Quantity, SurfaceModel, medium
 from sssgen.interchange.technique_choice import Choice, choose

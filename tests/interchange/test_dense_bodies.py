@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sssgen.interchange.dense_bodies import DENSE, as_matte
-from sssgen.interchange.imported import Notes
+from sssgen.interchange.imported_material import Notes
 from sssgen.interchange.scene_text import ball_radius
 from sssgen.interchange.surface_model import Quantity, SurfaceModel, medium
 

@@ -11,7 +11,7 @@ import pytest
 
 from gltf_files import box, data_uri, png, write_gltf
 from sssgen.interchange.gltf_reader import read
-from sssgen.interchange.imported import Imported
+from sssgen.interchange.imported_material import ImportedMaterial
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.material_writer import identifiers, mean_chord, write_import
 from sssgen.interchange.scatter_color import albedo_of_multiscatter, multiscatter_of_albedo
@@ -22,7 +22,7 @@ from sssgen.scene.pictures import images
 GLASS = {"KHR_materials_transmission": {"transmissionFactor": 1.0}}
 
 
-def imported(tmp_path: Path, material: dict[str, Any], **more: Any) -> tuple[Imported, Report]:
+def imported(tmp_path: Path, material: dict[str, Any], **more: Any) -> tuple[ImportedMaterial, Report]:
     content, data = box(material)
     report = Report("box")
     (result,) = read(str(write_gltf(tmp_path / "box.gltf", {**content, **more}, data)), report)
@@ -172,7 +172,7 @@ def test_the_mesh_has_its_own_thickness(tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.setattr(thickness_bake, "SIDE", 32)
     monkeypatch.setattr(thickness_bake, "RAYS", 16)
     result, report = imported(tmp_path, volume(attenuationDistance=0.5, attenuationColor=[0.5, 0.5, 0.5]))
-    baked = thickness_bake.with_baked_thickness(result, report)
+    baked = thickness_bake.bake_thickness(result, report)
     image = baked.model.thickness.image
     assert image is not None and baked.baked_uv is not None and baked.mesh is not None
     assert len(baked.baked_uv) == len(baked.mesh.vertices)

@@ -105,8 +105,8 @@ def test_faulty_documents(
     with pytest.raises(SssgenError) as caught:
         materialx_reader.read(str(file), Report("document.mtlx"))
     diagnostic = caught.value.diagnostics[0]
-    shown = f"{diagnostic.message} {diagnostic.hint}"
-    assert message in shown and path in diagnostic.message
+    text = f"{diagnostic.message} {diagnostic.hint}"
+    assert message in text and path in diagnostic.message
     assert diagnostic.span.file.endswith("document.mtlx")
     assert diagnostic.span.line > 0 or not path, "an element has its line"
     assert main(["import", str(file), "-o", str(tmp_path / "out")]) != 0

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sssgen.interchange.imported import Imported
+from sssgen.interchange.imported_material import ImportedMaterial
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.surface_model import Image, Quantity, SurfaceModel
 from sssgen.interchange.texels import mean_of, texel_values
@@ -22,7 +22,9 @@ TEXELS = np.array([[[0.0, 0.25, 0.5, 1.0], [1.0, 0.75, 0.25, 0.0]], [[0.5, 0.5, 
 """Height, width, rgba: what the picture colors.png stores."""
 
 
-def read(folder: Path, content: str, attributes: str = "", version: str = "1.39") -> tuple[list[Imported], Report]:
+def read(
+    folder: Path, content: str, attributes: str = "", version: str = "1.39"
+) -> tuple[list[ImportedMaterial], Report]:
     """The materials of a document with this content, beside the picture colors.png."""
     write_png(folder / "colors.png", TEXELS)
     path = folder / "document.mtlx"

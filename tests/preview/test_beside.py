@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from sssgen.preview.page_messages import PageMessages
-from sssgen.preview.shown_picture import ShownPicture
+from sssgen.preview.pane import Pane
 from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("igl")
@@ -39,7 +39,7 @@ def tint(message: dict[str, Any]) -> list[float]:
 
 
 def test_without_guards_is_the_same_material_with_another_text() -> None:
-    talk = PageMessages(ShownPicture("ice"))
+    talk = PageMessages(Pane("ice"))
     assert [message["panes"] for message in talk.messages()] == [1]
     talk.answer({"kind": "beside", "beside": "guards"})
     first, second = talk.messages()
@@ -52,7 +52,7 @@ def test_without_guards_is_the_same_material_with_another_text() -> None:
 
 
 def test_the_material_as_it_was_stays_while_the_file_changes(stone: Path) -> None:
-    talk = PageMessages(ShownPicture(str(stone)))
+    talk = PageMessages(Pane(str(stone)))
     stone.write_text(stone.read_text(encoding="utf-8").replace("0.25, 0.5", "0.5, 0.5"), encoding="utf-8")
     talk.renew()
     talk.answer({"kind": "beside", "beside": "start"})
@@ -70,7 +70,7 @@ def test_the_material_as_it_was_stays_while_the_file_changes(stone: Path) -> Non
 
 def test_a_second_material_has_its_own_controls_and_files(stone: Path) -> None:
     other = stone.with_name("slate.toml")
-    talk = PageMessages(ShownPicture(str(stone)), ShownPicture(str(other)))
+    talk = PageMessages(Pane(str(stone)), Pane(str(other)))
     assert [message["label"] for message in talk.messages()] == ["Stone", "Slate"]
     assert {str(stone), str(other)} <= talk.files.keys()
     talk.answer({"kind": "save", "pane": 1, "values": {"tint": [1.0, 0.5, 0.75, 1.0]}})
@@ -85,4 +85,4 @@ def test_a_second_material_has_its_own_controls_and_files(stone: Path) -> None:
                                      {"kind": "save", "pane": 1, "values": {}}])  # fmt: skip
 def test_what_is_not_there_is_a_faulty_message(stone: Path, message: dict[str, Any]) -> None:
     with pytest.raises((ValueError, KeyError)):
-        PageMessages(ShownPicture(str(stone))).answer(message)
+        PageMessages(Pane(str(stone))).answer(message)

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from sssgen.preview import bodies
-from sssgen.preview.bodies import OWN_MESH, dropped_mesh, extent, fitted, framed
+from sssgen.preview.bodies import OWN_MESH, dropped_mesh, extent, fit, frame
 from sssgen.preview.body_triangles import body_triangles
-from sssgen.preview.page_messages import PageMessages, unpacked
-from sssgen.preview.shown_picture import ShownPicture
+from sssgen.preview.page_messages import PageMessages, unpack
+from sssgen.preview.pane import Pane
 from sssgen.scene.geometry import Ball, Box, Mesh
 from sssgen.support.diagnostics import SssgenError
 
@@ -37,7 +37,7 @@ MATERIAL = '[material]\nname = "stone"\nshading = "lit"\n[[surface]]\ntechnique 
 def talk(tmp_path: Path) -> PageMessages:
     path = tmp_path / "stone.toml"
     path.write_text(MATERIAL, encoding="utf-8")
-    return PageMessages(ShownPicture(str(path)))
+    return PageMessages(Pane(str(path)))
 
 
 def corners(talk: PageMessages) -> np.ndarray:
@@ -109,15 +109,15 @@ def test_too_many_triangles_are_refused(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_shapes_are_as_large_as_the_scenes_body_and_wholly_seen() -> None:
     own = Box(size=(1.0, 4.0, 1.0), position=(5.0, 0.0, 0.0))
-    shape = fitted(Ball(radius=1.0), own)
+    shape = fit(Ball(radius=1.0), own)
     assert extent(shape).size == pytest.approx(4.0, rel=1e-3) and extent(shape).center == pytest.approx([5, 0, 0])
-    eye, target = framed(shape, [0.0, 0.0, 3.0], 30.0)
+    eye, target = frame(shape, [0.0, 0.0, 3.0], 30.0)
     assert target == pytest.approx([5.0, 0.0, 0.0])
     assert np.degrees(np.arcsin(2.0 / (eye[2] - target[2]))) < 15.0 < np.degrees(np.arcsin(2.6 / eye[2]))
 
 
 def test_a_frame_is_a_line_of_json_and_the_file() -> None:
-    assert unpacked(b'{"kind": "mesh"}\na\nb') == ({"kind": "mesh"}, b"a\nb")
+    assert unpack(b'{"kind": "mesh"}\na\nb') == ({"kind": "mesh"}, b"a\nb")
     for faulty in (b"", b"[]\n", b"\xff\n", b"{" + b" " * (1 << 20) + b"}\n"):
         with pytest.raises(ValueError):
-            unpacked(faulty)
+            unpack(faulty)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from sssgen.preview.page_messages import PageMessages
-from sssgen.preview.shown_picture import ShownPicture
+from sssgen.preview.pane import Pane
 from sssgen.scene.pictures.images import png_bytes
 from sssgen.support.diagnostics import SssgenError
 
@@ -56,7 +56,7 @@ def texel(talk: PageMessages) -> list[float]:
 
 
 def test_a_chosen_picture_is_shown_and_given_up(folder: Path) -> None:
-    talk = PageMessages(ShownPicture(str(folder / "stone.toml")))
+    talk = PageMessages(Pane(str(folder / "stone.toml")))
     assert slot(talk)["chosen"] == ""
     choose(talk, "my red.png", RED)
     assert slot(talk)["chosen"] == "my_red.png" and slot(talk)["texels"]["levels"][0]["size"] == (4, 2)
@@ -69,13 +69,13 @@ def test_a_chosen_picture_is_shown_and_given_up(folder: Path) -> None:
 def test_a_jpeg_becomes_a_png(folder: Path) -> None:
     buffer = io.BytesIO()
     pillow.new("RGB", (8, 8), (0, 255, 0)).save(buffer, "JPEG")
-    talk = PageMessages(ShownPicture(str(folder / "stone.toml")))
+    talk = PageMessages(Pane(str(folder / "stone.toml")))
     choose(talk, "leaf.JPG", buffer.getvalue())
     assert slot(talk)["chosen"] == "leaf.png" and texel(talk)[1] == pytest.approx(1.0, abs=0.02)
 
 
 def test_a_picture_is_saved_beside_the_material(folder: Path) -> None:
-    talk = PageMessages(ShownPicture(str(folder / "stone.toml")))
+    talk = PageMessages(Pane(str(folder / "stone.toml")))
     choose(talk, "red.png", RED)
     said = talk.answer({"kind": "save", "values": {}})
     assert said == f"red.png is written, and {folder / 'stone.toml'} names it."
@@ -89,7 +89,7 @@ def test_a_picture_of_the_scene_is_saved_where_the_old_one_is_and_overwrites_non
     old = png_bytes(np.zeros((2, 2, 3)))
     (folder / "maps" / "old.png").write_bytes(old)
     (folder / "scene.toml").write_text(SCENE, encoding="utf-8")
-    talk = PageMessages(ShownPicture(str(folder / "scene.toml")))
+    talk = PageMessages(Pane(str(folder / "scene.toml")))
     choose(talk, "old.png", RED)
     assert slot(talk)["texels"]["wrap"] == "clamp"
     talk.answer({"kind": "save", "values": {}})
@@ -112,7 +112,7 @@ def test_a_picture_of_the_scene_is_saved_where_the_old_one_is_and_overwrites_non
 def test_a_faulty_picture_is_refused_and_the_slot_stays(
     folder: Path, slot_name: str, name: str, data: bytes, message: str
 ) -> None:
-    talk = PageMessages(ShownPicture(str(folder / "stone.toml")))
+    talk = PageMessages(Pane(str(folder / "stone.toml")))
     before = talk.messages()
     with pytest.raises(SssgenError, match=message):
         talk.answer({"kind": "texture", "slot": slot_name, "name": name}, data)
@@ -122,7 +122,7 @@ def test_a_faulty_picture_is_refused_and_the_slot_stays(
 def test_a_texture_that_the_page_draws_takes_no_picture(folder: Path) -> None:
     with (folder / "stone.toml").open("a", encoding="utf-8") as file:
         file.write('[[thickness]]\ntechnique = "depth_map_thickness"\n[translucency]\ntechnique = "absorption_tint"\n')
-    talk = PageMessages(ShownPicture(str(folder / "stone.toml")))
+    talk = PageMessages(Pane(str(folder / "stone.toml")))
     row = next(row for row in talk.messages()[0]["picture"]["textures"] if row["page_draws"])
     with pytest.raises(SssgenError, match="drawn for each frame"):
         talk.answer({"kind": "texture", "slot": row["property"], "name": "a.png"}, RED)

@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
-from sssgen.preview import shown_picture
+from sssgen.preview import pane
 from sssgen.preview.page_messages import PageMessages
-from sssgen.preview.shown_picture import ShownPicture
+from sssgen.preview.pane import Pane
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.targets import registry
 
@@ -32,7 +32,7 @@ def talk(tmp_path_factory: pytest.TempPathFactory) -> PageMessages:
     text = MATERIAL + '[[surface]]\ntechnique = "pbr_constants"\n'
     path.write_text(text, encoding="utf-8")
     (folder / "secret.txt").write_text("secret", encoding="utf-8")
-    return PageMessages(ShownPicture(str(path)))
+    return PageMessages(Pane(str(path)))
 
 
 def asked(talk: PageMessages, **message: str) -> dict[str, Any]:
@@ -70,7 +70,7 @@ def test_what_a_target_cannot_carry_is_the_answer(talk: PageMessages, monkeypatc
     def refused(*_: object, **__: object) -> None:
         raise failure("this target has no textures", "take another one")
 
-    monkeypatch.setattr(shown_picture, "compile", refused)
+    monkeypatch.setattr(pane, "compile", refused)
     reply = asked(talk, kind="text", target="wgsl", form="shader")
     assert "this target has no textures" in reply["error"] and not reply["files"]
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from sssgen.preview.page_messages import PageMessages
-from sssgen.preview.shown_picture import ShownPicture
+from sssgen.preview.pane import Pane
 from sssgen.support.diagnostics import SssgenError
 
 WHOLE = """#version 300 es
@@ -22,7 +22,7 @@ TOY = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy, sin(
 
 def head(tmp_path: Path, text: str, name: str = "waves.frag") -> dict[str, Any]:
     (tmp_path / name).write_text(text, encoding="utf-8")
-    picture: dict[str, Any] = ShownPicture(str(tmp_path / name)).picture.head
+    picture: dict[str, Any] = Pane(str(tmp_path / name)).picture.head
     return picture
 
 
@@ -71,14 +71,14 @@ def test_other_files_are_refused_with_a_reason(tmp_path: Path, text: str, messag
 
 def test_values_of_plain_glsl_are_not_saved(tmp_path: Path) -> None:
     (tmp_path / "waves.frag").write_text(WHOLE, encoding="utf-8")
-    talk = PageMessages(ShownPicture(str(tmp_path / "waves.frag")))
+    talk = PageMessages(Pane(str(tmp_path / "waves.frag")))
     with pytest.raises(SssgenError, match="nothing can be saved"):
         talk.answer({"kind": "save", "values": {"amount": [0.5]}})
     assert (tmp_path / "waves.frag").read_text(encoding="utf-8") == WHOLE
 
 
 def test_a_material_that_makes_its_own_rays_is_a_flat_picture() -> None:
-    picture = ShownPicture("jelly_cubes").picture.head
+    picture = Pane("jelly_cubes").picture.head
     assert picture["flat"]["given"] == {"aspect": "aspect", "time": "time"} and picture["flat"]["start"] > 1.0
     values = {control["property"]: control["value"] for control in picture["controls"]}
     assert values["orbit_radius"] == [pytest.approx(3.8)]
@@ -86,7 +86,7 @@ def test_a_material_that_makes_its_own_rays_is_a_flat_picture() -> None:
 
 def test_the_emitted_text_of_plain_glsl_is_that_of_transpile(tmp_path: Path) -> None:
     (tmp_path / "waves.frag").write_text(TOY, encoding="utf-8")
-    talk = PageMessages(ShownPicture(str(tmp_path / "waves.frag")))
+    talk = PageMessages(Pane(str(tmp_path / "waves.frag")))
     answer = talk.reply({"kind": "text", "target": "wgsl", "form": "shader"})
     assert answer is not None and not answer["error"]
     assert "@fragment" in answer["files"][0]["text"] and answer["files"][0]["sources"]

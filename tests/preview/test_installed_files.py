@@ -13,7 +13,7 @@ import pytest
 from sssgen.cli.main import main
 from sssgen.material.material_loading import examples, load_material
 from sssgen.preview.page_messages import PageMessages
-from sssgen.preview.shown_picture import ShownPicture
+from sssgen.preview.pane import Pane
 from sssgen.scene.pictures.images import png_bytes
 from sssgen.scene.preview_scene import scene_of
 from sssgen.scene.scene_loading import load
@@ -38,7 +38,7 @@ def installed(in_folder: Path) -> Iterator[None]:
 
 
 def save(name: str, **values: list[float]) -> str:
-    return PageMessages(ShownPicture(name)).answer({"kind": "save", "values": values})
+    return PageMessages(Pane(name)).answer({"kind": "save", "values": values})
 
 
 def test_a_copied_folder_is_shown_and_saved_in_itself() -> None:
@@ -46,7 +46,7 @@ def test_a_copied_folder_is_shown_and_saved_in_itself() -> None:
     shutil.copytree(folder("examples") / "surroundings", "surroundings")
     own = Path("ring/jade_ring.toml")
     own.write_text(own.read_text(encoding="utf-8").replace("[0.035, ", "[0.5, "), "utf-8")
-    shown = ShownPicture("ring/scene.toml")
+    shown = Pane("ring/scene.toml")
     values = {control["label"]: control["value"] for control in shown.picture.head["controls"]}
     assert load("ring/scene.toml").material == "ring/jade_ring.toml" and values["tint"][0] == 0.5
     assert shown.picture.head["saved_in"] == "Save writes ring/jade_ring.toml." and not shown.picture.head["saves"]
@@ -63,7 +63,7 @@ def test_the_file_beside_a_scene_is_found_when_it_is_made_and_lost_when_it_goes(
     assert load("scene.toml").material == "jade_ring.toml"
     Path("jade_ring.toml").write_text("[material\n", encoding="utf-8")
     with pytest.raises(SssgenError, match=r"jade_ring\.toml:1"):
-        ShownPicture("scene.toml")
+        Pane("scene.toml")
 
 
 def test_a_scene_with_a_materials_name_is_no_material() -> None:
@@ -85,7 +85,7 @@ def test_a_file_that_is_no_example_is_named_with_its_ending() -> None:
 
 @pytest.mark.parametrize("name", ["jade_ring", str(JADE), str(JADE.with_name("scene.toml"))])
 def test_an_installed_material_is_not_saved_and_the_page_says_what_to_do(name: str) -> None:
-    reason = ShownPicture(name).picture.head["saves"]
+    reason = Pane(name).picture.head["saves"]
     assert f"{JADE.name} comes with sssgen and is not changed" in reason
     assert "sssgen new jade_ring --copy jade_ring" in reason and "jade_ring/scene.toml" in reason
     with pytest.raises(SssgenError, match="nothing can be saved here"):
@@ -116,7 +116,7 @@ def test_every_example_can_be_copied_whole(name: str, capsys: pytest.CaptureFixt
 
 def test_the_scene_of_a_person_gets_the_changes_of_an_installed_material() -> None:
     Path("scene.toml").write_text(SCENE, encoding="utf-8")
-    talk = PageMessages(ShownPicture("scene.toml"))
+    talk = PageMessages(Pane("scene.toml"))
     head = talk.messages()[0]["picture"]
     assert head["saved_in"].startswith("Save writes scene.toml; ") and "comes with sssgen" in head["saved_in"]
     rows = [row for row in head["textures"] if row["type"] == "sampler2D" and not row["page_draws"]]
@@ -126,7 +126,7 @@ def test_the_scene_of_a_person_gets_the_changes_of_an_installed_material() -> No
     assert said == "Saved: surface_roughness in scene.toml. red.png is written, and scene.toml names it."
     scene = load("scene.toml")
     assert scene.parameters == {"surface_roughness": 0.7} and list(scene.textures) == [rows[0]["source_name"]]
-    assert not ShownPicture("scene.toml").error
+    assert not Pane("scene.toml").error
 
 
 @pytest.mark.parametrize(

@@ -13,8 +13,8 @@ import pytest
 
 from sssgen.preview import preview_server
 from sssgen.preview.page_library import Library
+from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import PreviewServer
-from sssgen.preview.shown_picture import ShownPicture
 
 aiohttp = pytest.importorskip("aiohttp")
 pytest.importorskip("watchfiles")
@@ -76,7 +76,7 @@ def watched(stone: Path, pages: int, work: Callable[..., Awaitable[None]], opene
     said: list[str] = []
 
     async def run() -> None:
-        server, ready = PreviewServer(ShownPicture(str(stone))), asyncio.Event()
+        server, ready = PreviewServer(Pane(str(stone))), asyncio.Event()
 
         def hear(line: str) -> None:
             said.append(line)

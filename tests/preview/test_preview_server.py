@@ -12,8 +12,8 @@ import pytest
 
 from sssgen.cli.main import main
 from sssgen.preview.page_library import Library
+from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import FILES, HOST, PAGE, PreviewServer
-from sssgen.preview.shown_picture import ShownPicture
 from sssgen.support.diagnostics import SssgenError
 
 aiohttp = pytest.importorskip("aiohttp")
@@ -27,7 +27,7 @@ MATERIAL = '[material]\nname = "stone"\nshading = "lit"\n[[surface]]\ntechnique 
 def server(tmp_path: Path) -> PreviewServer:
     path = tmp_path / "stone.toml"
     path.write_text(MATERIAL, encoding="utf-8")
-    return PreviewServer(ShownPicture(str(path)))
+    return PreviewServer(Pane(str(path)))
 
 
 def asked(server: PreviewServer, ask: Callable[[Any], Awaitable[Any]]) -> Any:

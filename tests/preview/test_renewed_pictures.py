@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from sssgen.preview import body_triangles
-from sssgen.preview.shown_picture import ShownPicture
+from sssgen.preview.pane import Pane
 from sssgen.run.render import scene_values
 from sssgen.support import cache
 
@@ -40,7 +40,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_an_edited_distance_function_is_another_body(folder: Path) -> None:
-    shown = ShownPicture(str(folder / "scene.toml"))
+    shown = Pane(str(folder / "scene.toml"))
     before = shown.picture.head["body"]
     (folder / "stone.toml").write_text(MATERIAL + "tint = [0.1, 0.2, 0.3, 1.0]\n", encoding="utf-8")
     shown.renew()

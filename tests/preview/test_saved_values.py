@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from sssgen.preview.shown_picture import ShownPicture
+from sssgen.preview.pane import Pane
 from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("tomlkit")
@@ -42,7 +42,7 @@ def stone(tmp_path: Path) -> Path:
 
 
 def test_comments_and_order_stay(stone: Path) -> None:
-    shown = ShownPicture(str(stone))
+    shown = Pane(str(stone))
     shown.save(
         {"thicknessFactor": [0.4], "tint": [0.1, 0.25, 0.3, 1.0], "surfaceRoughness": [0.7], "sssMetalness": [1.0]}
     )
@@ -54,7 +54,7 @@ def test_comments_and_order_stay(stone: Path) -> None:
 
 
 def test_numbers_are_the_shortest_of_float32(stone: Path) -> None:
-    ShownPicture(str(stone)).save({"thicknessFactor": [0.1 + 0.2]})
+    Pane(str(stone)).save({"thicknessFactor": [0.1 + 0.2]})
     assert "thickness_factor = 0.3  # metres" in stone.read_text(encoding="utf-8")
 
 
@@ -64,7 +64,7 @@ def test_a_value_of_the_scene_is_saved_in_the_scene(stone: Path) -> None:
         'material = "stone.toml"\n[geometry]\nkind = "ball"\n[parameters]\n# dull\nsurface_roughness = 0.7\n',
         encoding="utf-8",
     )
-    shown = ShownPicture(str(scene))
+    shown = Pane(str(scene))
     assert shown.picture.head["saved_in"] == f"Save writes {stone}, and {scene} for what the scene sets."
     assert shown.save({"surfaceRoughness": [0.9]}) == f"Saved: surface_roughness in {scene}."
     assert scene.read_text(encoding="utf-8").endswith("# dull\nsurface_roughness = 0.9\n")
@@ -74,12 +74,12 @@ def test_a_value_of_the_scene_is_saved_in_the_scene(stone: Path) -> None:
 @pytest.mark.parametrize("values", [{"nothing": [1.0]}, {"tint": [1.0]}, {"thicknessFactor": []}])
 def test_what_the_material_does_not_have_is_refused(stone: Path, values: dict[str, list[float]]) -> None:
     with pytest.raises(SssgenError, match="has no parameter"):
-        ShownPicture(str(stone)).save(values)
+        Pane(str(stone)).save(values)
     assert stone.read_text(encoding="utf-8") == TEXT
 
 
 def test_the_last_good_picture_stays_beside_errors(stone: Path) -> None:
-    shown = ShownPicture(str(stone))
+    shown = Pane(str(stone))
     module, version = shown.picture.head["module"], shown.version
     for broken in (TEXT[:60], TEXT.replace("base_color", "base_colour"), TEXT.replace("0.25", '"thick"'), "\udcff"):
         stone.write_bytes(broken.encode("utf-8", "surrogateescape"))

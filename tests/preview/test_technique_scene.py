@@ -11,8 +11,8 @@ from sssgen.ir.types import spell
 from sssgen.lab.measure.technique_chain import chain_of, is_drawn, textures_of
 from sssgen.material import library
 from sssgen.preview.page_messages import PageMessages
+from sssgen.preview.pane import Pane
 from sssgen.preview.picture import Chosen, picture_of
-from sssgen.preview.shown_picture import ShownPicture
 from sssgen.preview.technique_scene import scene_of_technique
 from sssgen.support.diagnostics import SssgenError
 
@@ -51,7 +51,7 @@ def test_a_file_is_shown_and_each_save_renews_it(tmp_path: Path) -> None:
     shutil.copy(library.index()["wrap_lighting"], file)
     text = file.read_text(encoding="utf-8").replace("wrap_lighting", "glowing")
     file.write_text(text, encoding="utf-8")
-    talk = PageMessages(ShownPicture(str(file)))
+    talk = PageMessages(Pane(str(file)))
     (message,) = talk.messages()
     assert message["picture"]["name"] == "glowing" and str(file) in talk.files
     assert "glowing" in {control["technique"] for control in message["picture"]["controls"]}

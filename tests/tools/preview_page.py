@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from sssgen.preview.page_library import library
+from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import PreviewServer
-from sssgen.preview.shown_picture import ShownPicture
 from sssgen.run.installed import chromium
 from sssgen.support.diagnostics import SssgenError
 
@@ -52,8 +52,8 @@ def browser() -> Iterator[Any]:
 class Shown:
     """A server in a thread of its own, and a page that shows it."""
 
-    def __init__(self, browser: Any, *names: str | ShownPicture, renderer: str = "webgl2") -> None:
-        shown = [ShownPicture(name) if isinstance(name, str) else name for name in names]
+    def __init__(self, browser: Any, *names: str | Pane, renderer: str = "webgl2") -> None:
+        shown = [Pane(name) if isinstance(name, str) else name for name in names]
         self.server = PreviewServer(*shown)
         started = threading.Event()
         self.loop = asyncio.new_event_loop()

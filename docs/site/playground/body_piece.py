@@ -20,7 +20,7 @@ Whole = npt.NDArray[np.int64]
 
 
 def packed_body(triangles: bytes) -> bytes:
-    """The file of a body from `BodyTriangles.packed()`: position, normal and uv of each corner as 8 float32."""
+    """The file of a body from `BodyTriangles.pack()`: position, normal and uv of each corner as 8 float32."""
     rows = np.frombuffer(triangles, "<f4").reshape(-1, 8).astype(np.float64)
     position, low, extent = _whole(rows[:, :3], POSITION_BITS)
     uv, uv_low, uv_extent = _whole(rows[:, 6:], UV_BITS)

@@ -17,7 +17,7 @@ from packed_file import write_packed
 from playground_session import texture_files
 from sssgen.material.material_loading import examples, load_material
 from sssgen.pipeline.compiler import compile
-from sssgen.preview.bodies import SHAPES, packed
+from sssgen.preview.bodies import SHAPES, packed_triangles
 from sssgen.preview.emitted_head import PARTS, TARGET
 from sssgen.preview.flat_picture import raymarched_picture
 from sssgen.preview.picture import Chosen, Picture, picture_of
@@ -97,7 +97,7 @@ def _scenes(folder: Path, scene: Scene, start: Start) -> dict[str, Any]:
             scenes[shape] = _scene(folder, picture_of(scene, material, Chosen(shape)), scene.parameters)
     assert scene.geometry is not None
     with noted_files() as read:
-        packed(scene.geometry)
+        packed_triangles(scene.geometry)
     body_files = {Path(file).name for file in read} & {file for file in start.files if file.endswith(".sss")}
     textures = texture_files(material, compile(material, TARGET))
     return {"scenes": scenes, "body_files": sorted(body_files), "texture_files": textures}

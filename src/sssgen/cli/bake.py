@@ -7,8 +7,8 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from sssgen.cli.options import add_json, add_seed, add_workers, given
-from sssgen.cli.output import OK, print_json
+from sssgen.cli.options import add_json, add_output, add_seed, add_workers
+from sssgen.cli.output import OK, print_result
 from sssgen.cli.sizes import pair, picture_size, whole_numbers
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
@@ -50,19 +50,13 @@ def add_options(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Bakes one texture, writes it with its JSON, and prints its properties."""
     paths, facts, lines = KINDS[arguments.TEXTURE].bake(arguments)
-    if arguments.json:
-        print_json({"ok": True, "files": paths, **facts})
-    else:
-        print("\n".join([f"wrote {', '.join(map(posix, paths))}", *(f"  {line}" for line in lines)]))
+    text = "\n".join([f"wrote {', '.join(map(posix, paths))}", *(f"  {line}" for line in lines)])
+    print_result(arguments.json, {"files": paths, **facts}, text)
     return OK
 
 
 def _add_mesh(parser: ArgumentParser) -> None:
     parser.add_argument("MESH", help="a file that ends in .obj, .ply, .stl, .glb or .gltf")
-
-
-def _add_output(parser: ArgumentParser, help: str) -> None:
-    parser.add_argument("-o", "--output", type=given, metavar="FILE", required=True, help=help)
 
 
 def _add_size(parser: ArgumentParser) -> None:
@@ -76,7 +70,7 @@ def _add_bits(parser: ArgumentParser) -> None:
 def _sdf_options(parser: ArgumentParser) -> None:
     add = parser.add_argument
     _add_mesh(parser)
-    _add_output(parser, "the texture's file")
+    add_output(parser, "FILE", "the texture's file", required=True)
     add("--resolution", default="64", metavar="N|X,Y,Z", help="texels along the longest side, or each (default: 64)")
     add(
         "--padding", type=float, default=0.05, metavar="P",
@@ -123,7 +117,7 @@ def _sdf(arguments: Namespace) -> Result:
 def _thickness_options(parser: ArgumentParser) -> None:
     add = parser.add_argument
     _add_mesh(parser)
-    _add_output(parser, "a .png (16 bit), .exr or .npy")
+    add_output(parser, "FILE", "a .png (16 bit), .exr or .npy", required=True)
     add(
         "--mode", choices=("mean", "chord", "transmittance"), default="mean",
         help="the mean length over inward directions, weighted by their cosine (default); the length along the "
@@ -172,7 +166,7 @@ def _thickness(arguments: Namespace) -> Result:
 
 def _depth_options(parser: ArgumentParser) -> None:
     _add_mesh(parser)
-    _add_output(parser, "an .exr or .npy")
+    add_output(parser, "FILE", "an .exr or .npy", required=True)
     help = "the light: a .json with direction or position, or X,Y,Z"
     parser.add_argument("--direction", metavar="LIGHT", required=True, help=help)
     _add_size(parser)
@@ -197,7 +191,7 @@ def _depth(arguments: Namespace) -> Result:
 def _fluence_options(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("BODY", metavar="SCENE|MESH", help="a scene with [medium], or a mesh, for which --medium names the medium")
-    _add_output(parser, "a .npy, .dds or .ktx2; the names of several files are made of it")
+    add_output(parser, "FILE", "a .npy, .dds or .ktx2; the names of several files are made of it", required=True)
     add("--medium", default="", metavar="NAME", help="the medium of a mesh: a name of `sssgen list media`")
     add("--unit-mm", type=float, default=10.0, metavar="U", help="millimetres in a unit of the mesh (default: 10)")
     add("--rank", type=int, default=8, metavar="K", help="numbers in a voxel, for any distant light: 4 or 8 (default)")
@@ -247,7 +241,9 @@ def _fluence(arguments: Namespace) -> Result:
 def _view_thickness_options(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("BODY", metavar="MESH|SCENE", help="a mesh, or a scene with [medium] whose body is a mesh")
-    _add_output(parser, "a .png (8 bit), .exr or .npy; the names of three pictures are made of it")
+    add_output(
+        parser, "FILE", "a .png (8 bit), .exr or .npy; the names of three pictures are made of it", required=True
+    )
     add("--mean-free-path", type=float, metavar="M", help="of the medium, in units of the mesh; lengths fade over it")
     add("--medium", default="", metavar="NAME", help="instead: the medium of a mesh, a name of `sssgen list media`")
     add("--unit-mm", type=float, default=10.0, metavar="U", help="millimetres in a unit of the mesh (default: 10)")
@@ -289,7 +285,7 @@ def _view_thickness(arguments: Namespace) -> Result:
 
 def _voronoi_options(parser: ArgumentParser) -> None:
     add = parser.add_argument
-    _add_output(parser, "a .png (16 bit), .exr or .npy")
+    add_output(parser, "FILE", "a .png (16 bit), .exr or .npy", required=True)
     _add_size(parser)
     add("--cells", default="8", metavar="N|X,Y", help="the number of cells along each side (default: 8)")
     add("--jitter", type=float, default=1.0, metavar="J", help="from 0, a grid, to 1 (default), anywhere")
@@ -334,7 +330,7 @@ def _voronoi(arguments: Namespace) -> Result:
 def _normal_options(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("HEIGHT", help="a .png, .exr or .npy; bright is high")
-    _add_output(parser, "a .png, .exr or .npy")
+    add_output(parser, "FILE", "a .png, .exr or .npy", required=True)
     add(
         "--strength", type=float, default=0.05, metavar="S",
         help="the height of white above black, relative to the picture's width (default: 0.05)",
@@ -368,7 +364,7 @@ def _normal(arguments: Namespace) -> Result:
 
 
 def _pack_options(parser: ArgumentParser) -> None:
-    _add_output(parser, "a .png, .exr or .npy")
+    add_output(parser, "FILE", "a .png, .exr or .npy", required=True)
     for channel in CHANNELS:
         parser.add_argument(f"--{channel}", metavar="SOURCE", help=f"the source of the {channel} channel")
     _add_bits(parser)
@@ -396,7 +392,7 @@ def _pack(arguments: Namespace) -> Result:
 
 def _environment_options(parser: ArgumentParser) -> None:
     parser.add_argument("SKY", help="an equirectangular .png, .exr or .npy; its top row is up, +y")
-    _add_output(parser, "a .dds: NAME.dds for reflection_map, and NAME_irradiance.dds")
+    add_output(parser, "FILE", "a .dds: NAME.dds for reflection_map, and NAME_irradiance.dds", required=True)
     parser.add_argument("--intensity", type=float, default=1.0, metavar="F", help="a factor of the light (default: 1)")
 
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from sssgen.cli.engine_options import add_condition_options, conditions_of, device_of
 from sssgen.cli.layout import table_rows, table_width
-from sssgen.cli.options import add_seed, add_workers, given
-from sssgen.cli.output import OK, print_json
+from sssgen.cli.options import add_output, add_seed, add_workers, check_samples
+from sssgen.cli.output import OK, print_result
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.progress import ProgressBar
 
@@ -30,7 +30,7 @@ def add_options(parser: ArgumentParser) -> None:
         "[medium] of a scene states the medium of its body. Without a scene, it charts all of examples/lab."
     )
     parser.add_argument("SCENE", nargs="*", help="a scene's .toml file, or one of examples/lab")
-    parser.add_argument("-o", "--output", type=given, metavar="DIR", help="the folder for PNG, SVG, HTML, CSV and JSON")
+    add_output(parser, "DIR", "the folder for PNG, SVG, HTML, CSV and JSON")
     parser.add_argument("--role", metavar="R,R", help="some of the charts, such as thickness,material (default: all)")
     parser.add_argument(
         "--cost", choices=("static", "gpu", "bytes"), default="static",
@@ -81,12 +81,8 @@ def run(arguments: Namespace) -> int:
     else:
         record = under(record, conditions)
     files = drawing.write(record, arguments.output) if arguments.output else []
-    if arguments.json:
-        print_json({"ok": True, "files": files, **record})
-        return OK
-    print(summary(record))
-    for file in files:
-        print(f"wrote {file}")
+    text = "\n".join([summary(record), *(f"wrote {file}" for file in files)])
+    print_result(arguments.json, {"files": files, **record}, text)
     return OK
 
 
@@ -105,10 +101,7 @@ def settings_of(arguments: Namespace) -> Settings:
     from sssgen.lab.chart.charting import Settings
     from sssgen.lab.measure import candidates
 
-    if not 2 <= arguments.samples <= MAX_SAMPLES:
-        raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 2 to {MAX_SAMPLES}")
-    if arguments.seed < 0:
-        raise failure(f"--seed {arguments.seed} is negative")
+    check_samples(arguments, MAX_SAMPLES, least=2)
     roles = tuple(arguments.role.split(",")) if getattr(arguments, "role", None) else candidates.ROLES
     for role in roles:
         if role not in candidates.ROLES:

@@ -5,17 +5,18 @@ from __future__ import annotations
 import os
 from argparse import ArgumentParser, Namespace
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from sssgen.cli.emit import chosen_targets
-from sssgen.cli.layout import table_rows, table_width, wrapped
+from sssgen.cli.layout import print_rows, table_width, wrap
+from sssgen.cli.options import unknown_name
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.ir.spans import Span
 from sssgen.run.check import compile_check as check
 from sssgen.run.check.compile_check import Report, Result
 from sssgen.run.check.shader_files import Shader, read
 from sssgen.run.compiler_registry import COMPILERS, readers
-from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure, visible
+from sssgen.support.diagnostics import Diagnostic, SssgenError, visible
 from sssgen.support.progress import ProgressBar
 
 LISTED = 200
@@ -53,22 +54,21 @@ def run(arguments: Namespace) -> int:
     with ProgressBar() as progress:
         report = check.run(shaders, compilers, arguments.unity_includes, progress)
     if arguments.json:
-        print_json(check.as_json(report) | {"not_compiled": _not_compiled(report, shaders)})
+        print_json(check.as_json(report) | {"not_compiled": _reasons_not_compiled(report, shaders)})
     else:
         _print(report, shaders, arguments.verbose)
-    return OK if _passed(report, shaders) else CHECK_FAILED
+    return OK if _passes(report, shaders) else CHECK_FAILED
 
 
 def _compilers(names: list[str], wrong: list[Diagnostic]) -> list[str]:
     compilers = [name.strip() for text in names for name in text.split(",")]
     for name in compilers:
         if name not in COMPILERS:
-            hint = did_you_mean(name, COMPILERS) or f"compilers: {', '.join(COMPILERS)}"
-            wrong += failure(f"unknown compiler '{name}'", hint).diagnostics
+            wrong += unknown_name("compiler", name, COMPILERS).diagnostics
     return compilers
 
 
-def _passed(report: Report, shaders: list[Shader]) -> bool:
+def _passes(report: Report, shaders: list[Shader]) -> bool:
     """Whether something was compiled without errors; in CI, no compiler may be missing that `make setup` installs."""
     in_ci = os.environ.get("CI", "") not in ("", "0", "false")
     missing = [name for name in report.missing if not COMPILERS[name].apart]
@@ -78,22 +78,22 @@ def _passed(report: Report, shaders: list[Shader]) -> bool:
 def _print(report: Report, shaders: list[Shader], verbose: bool) -> None:
     available = [(name, visible(version)) for name, version in report.versions.items()]
     missing = [(name, f"not found: {visible(instruction)}") for name, instruction in report.missing.items()]
-    _print_rows(available + missing, 7)
+    print_rows(available + missing, 7, 0)
     _print_engines()
     print()
     cells: dict[tuple[str, str], list[Result]] = {}
     for result in report.results:
         cells.setdefault((result.shader.name, result.compiler), []).append(result)
     width = max((len(shader.name) for shader in shaders), default=0)
-    not_compiled = _not_compiled(report, shaders)
+    not_compiled = _reasons_not_compiled(report, shaders)
     every = verbose or len(cells) + len(not_compiled) <= LISTED
     for (name, compiler), results in cells.items():
         passed = all(result.ok for result in results)
         if every or not passed:
-            _print_rows([(f"{'ok  ' if passed else 'FAIL'} {visible(name)}", compiler)], 5 + width)
+            print_rows([(f"{'ok  ' if passed else 'FAIL'} {visible(name)}", compiler)], 5 + width, 0)
             _print_messages(results)
     for name, why in not_compiled.items() if every else ():
-        _print_rows([(f"--   {visible(name)}", f"not compiled: {why}")], 5 + width)
+        print_rows([(f"--   {visible(name)}", f"not compiled: {why}")], 5 + width, 0)
     if not every:
         good = sum(all(result.ok for result in results) for results in cells.values())
         warned = sum(all(result.ok for result in results) and _has_messages(results) for results in cells.values())
@@ -115,22 +115,17 @@ def _print_not_compiled(report: Report, shaders: list[Shader], not_compiled: Map
             _print_text(f"to get {name}: {visible(instruction)}")
 
 
-def _print_rows(rows: Sequence[tuple[str, str]], first: int, indent: int = 0) -> None:
-    """Rows of a name and a text, wrapped on a terminal."""
-    print("\n".join(table_rows(rows, first, table_width(), indent)))
-
-
 def _print_text(text: str) -> None:
     """A text, indented, and wrapped on a terminal."""
     width = table_width()
-    print("\n".join(wrapped(text, width, "  ", "    ")) if width else f"  {text}")
+    print("\n".join(wrap(text, width, "  ", "    ")) if width else f"  {text}")
 
 
 def _has_messages(results: list[Result]) -> bool:
     return any(result.messages for result in results)
 
 
-def _not_compiled(report: Report, shaders: list[Shader]) -> dict[str, str]:
+def _reasons_not_compiled(report: Report, shaders: list[Shader]) -> dict[str, str]:
     """The files that no compiler compiled, with the reason."""
     done = {result.shader.name for result in report.results}
     left = [shader for shader in shaders if shader.name not in done]

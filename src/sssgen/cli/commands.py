@@ -8,7 +8,7 @@ from __future__ import annotations
 import importlib
 from typing import Any, NamedTuple
 
-from sssgen.cli.layout import help_width, table_rows, wrapped
+from sssgen.cli.layout import help_width, table_rows, wrap
 from sssgen.cli.options import add_json
 from sssgen.cli.parser import Parser
 from sssgen.version import VERSION
@@ -39,7 +39,7 @@ COMMANDS = {
     "emit": Command("emit", "make", "write the shaders of materials"),
     "watch": Command("watch", "make", "write the shaders of materials after every change", "preview"),
     "bake": Command("bake", "make", "bake textures: distances, thickness, depth, light, cells, normals", "bake"),
-    "list": Command("listing", "see", "list techniques, targets, materials, scenes, builtins and so on"),
+    "list": Command("list_names", "see", "list techniques, targets, materials, scenes, builtins and so on"),
     "show": Command("show", "see", "explain what a name stands for: a technique, a material, a target"),
     "preview": Command("preview", "see", "show a material in a browser while its files change", "preview"),
     "render": Command("render", "see", "render a scene, or compare two pictures", "render"),
@@ -54,8 +54,8 @@ COMMANDS = {
         "pick", "measure", "pick the cheapest techniques that are good enough for a scene", "chart,reference"
     ),
     "fit": Command("fit", "measure", "fit the parameters of techniques to a scene's medium", "chart,reference"),
-    "import": Command("importing", "import", "import materials of glTF, MaterialX and Unity files", "import"),
-    "export-gltf": Command("exporting", "import", "write a material as glTF, with Khronos' extensions", "import"),
+    "import": Command("import_materials", "import", "import materials of glTF, MaterialX and Unity files", "import"),
+    "export-gltf": Command("export_gltf", "import", "write a material as glTF, with Khronos' extensions", "import"),
     "transpile": Command("transpile", "import", "translate functions or whole shaders to a target's language"),
     "lsp": Command("lsp", "tool", "run the language server that an editor starts", "lsp"),
     "schema": Command("schema", "tool", "print the JSON schema of materials or scenes, for editors"),
@@ -97,7 +97,7 @@ class Overview(Parser):
 
     def format_help(self) -> str:
         longest, width = max(map(len, COMMANDS)), help_width()
-        lines = [f"usage: {self.usage}", "", *wrapped(self.description or "", width)]
+        lines = [f"usage: {self.usage}", "", *wrap(self.description or "", width)]
         for group, title in GROUPS.items():
             rows = [(name, command.help) for name, command in COMMANDS.items() if command.group == group]
             lines += ["", f"{title}:", *table_rows(rows, longest, width)]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 
-from sssgen.cli.output import OK, print_json
+from sssgen.cli.output import OK, print_result
 
 SHELLS = {
     "bash": 'eval "$(sssgen completion bash)"   # in ~/.bashrc',
@@ -32,8 +32,5 @@ def run(arguments: Namespace) -> int:
     from argcomplete.shell_integration import shellcode
 
     script = shellcode(["sssgen"], shell=arguments.SHELL)
-    if arguments.json:
-        print_json({"ok": True, "shell": arguments.SHELL, "script": script})
-    else:
-        print(script)
+    print_result(arguments.json, {"shell": arguments.SHELL, "script": script}, script)
     return OK

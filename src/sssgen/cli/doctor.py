@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 from collections.abc import Sequence
 
-from sssgen.cli.layout import table_rows, table_width
+from sssgen.cli.layout import print_rows
 from sssgen.cli.output import OK, print_json
 from sssgen.run.machine_facts import VARIABLES, Facts, Item, facts
 from sssgen.support.diagnostics import visible
@@ -67,5 +67,4 @@ def _state(item: Item) -> str:
 
 def _print_rows(rows: Sequence[tuple[str, str]], first: int | None = None) -> None:
     width = max(len(name) for name, _ in rows) if first is None else first
-    for line in table_rows([(visible(name), visible(text)) for name, text in rows], width, table_width()):
-        print(line)
+    print_rows([(visible(name), visible(text)) for name, text in rows], width)

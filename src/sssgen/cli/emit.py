@@ -7,7 +7,7 @@ import os
 import sys
 from typing import TYPE_CHECKING, Any
 
-from sssgen.cli.options import DEFAULT_TARGET, add_guards, add_optional_targets, given
+from sssgen.cli.options import DEFAULT_TARGET, add_guards, add_optional_targets, add_output, nonempty
 from sssgen.cli.output import CHECK_FAILED, OK, print_errors, print_json, print_warnings
 from sssgen.pipeline import emitted_cache
 from sssgen.pipeline.emitted_cache import EmittedFiles
@@ -35,14 +35,8 @@ def add_options(parser: ArgumentParser) -> None:
         "  sssgen emit ice -t wgsl -o -"
     )
     add_emission_options(parser)
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=given,
-        metavar="DIR",
-        default="out",
-        help="the folder to write to (default: out), or - to print the shaders and write nothing",
-    )
+    help = "the folder to write to (default: out), or - to print the shaders and write nothing"
+    add_output(parser, "DIR", help, default="out")
     parser.add_argument(
         "--trace", action="store_true", help="also write the IR after each pass to DIR/NAME.TARGET.trace/NN-PASS.ir"
     )
@@ -68,7 +62,7 @@ def add_emission_options(parser: ArgumentParser) -> None:
         "material's own (ROLE=none)",
     )
     parser.add_argument(
-        "--prefix", type=given, metavar="NAME", help="begin every global name with NAME, to fit in your own shader"
+        "--prefix", type=nonempty, metavar="NAME", help="begin every global name with NAME, to fit in your own shader"
     )
     parser.add_argument(
         "--standalone",
@@ -89,7 +83,7 @@ def run(arguments: Namespace) -> int:
         raise failure("--trace writes files", "name a folder with -o")
     traces: list[Trace] = []
     try:
-        emitted = _cached_or_compiled(arguments, traces)
+        emitted = _load_or_compile(arguments, traces)
     finally:
         for trace in traces:
             trace.write(arguments.output)
@@ -155,7 +149,7 @@ def _print_texts(files: dict[str, str]) -> None:
     sys.stdout.buffer.flush()
 
 
-def _cached_or_compiled(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
+def _load_or_compile(arguments: Namespace, traces: list[Trace]) -> EmittedFiles:
     """The cached result of the same command; with own templates or a trace it is compiled again."""
     if arguments.templates is not None or arguments.trace:
         return compile_all(arguments, traces if arguments.trace else None)
@@ -212,7 +206,7 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
                 )  # fmt: skip
             except SssgenError as error:
                 if every and isinstance(error, UnsupportedError):
-                    warnings += _left_out(error, material, name)
+                    warnings += _omission_warnings(error, material, name)
                 else:
                     errors += error.diagnostics
                     failed.add(material.name)
@@ -277,7 +271,7 @@ def _materials(arguments: list[str], shell: list[str], errors: list[Diagnostic])
     return [next(iter(of_one_name.values())) for of_one_name in named.values() if len(of_one_name) == 1]
 
 
-def _left_out(error: UnsupportedError, material: Material, target: str) -> list[Diagnostic]:
+def _omission_warnings(error: UnsupportedError, material: Material, target: str) -> list[Diagnostic]:
     """The warnings that `--target all` has no file of a material for a target."""
     left_out = f"{material.name} is not emitted for {target}: "
     return [entry._replace(severity="warning", message=left_out + entry.message) for entry in error.diagnostics]

@@ -6,8 +6,8 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from sssgen.cli.layout import table_rows, table_width
-from sssgen.cli.options import add_guards, add_seed
+from sssgen.cli.layout import print_rows
+from sssgen.cli.options import add_guards, add_seed, check_samples
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
 from sssgen.run.backend_registry import BACKENDS, FUNCTIONS, HALF, chosen, in_half
 from sssgen.support.diagnostics import failure
@@ -58,24 +58,16 @@ def run(arguments: Namespace) -> int:
     values = inputs.read(arguments.inputs, chosen) if arguments.inputs else {}
     sampled = arguments.samples is not None
     if sampled:
-        values = _sampled(chosen, arguments.samples, arguments.seed) | values
+        from sssgen.run.evaluate.random_inputs import samples
+
+        check_samples(arguments, MAX_SAMPLES)
+        values = samples(chosen, arguments.samples, arguments.seed) | values
     from sssgen.run.evaluate.evaluation import fitted
 
     fit = fitted(chosen, values)
     if len(names) == 1:
         return _report(chosen, fit, names[0], arguments.json, arguments.guards)
-    return _several(chosen, fit, names, arguments.json, not sampled, arguments.guards)
-
-
-def _sampled(chosen: Any, count: int, seed: int) -> dict[str, Any]:
-    """Random values for the inputs that the file does not set."""
-    if not 1 <= count <= MAX_SAMPLES:
-        raise failure(f"--samples {count} is not a number of samples", f"from 1 to {MAX_SAMPLES}")
-    if seed < 0:
-        raise failure(f"--seed {seed} is negative")
-    from sssgen.run.evaluate.random_inputs import samples
-
-    return samples(chosen, count, seed)
+    return _compare(chosen, fit, names, arguments.json, not sampled, arguments.guards)
 
 
 def _backends(text: str, precision: str | None) -> list[str]:
@@ -100,7 +92,7 @@ def _report(subject: Any, fit: Any, name: str, as_json: bool, guards: str) -> in
     backend = needed(name)
     outputs = evaluated(subject, fit, backend, guards)
     if as_json:
-        plain = {key: _plain(value) for key, value in outputs.items()}
+        plain = {key: _json_numbers(value) for key, value in outputs.items()}
         print_json({"ok": True, "backend": name, "device": backend.device(), "lanes": fit.lanes, "outputs": plain})
         return OK
     print(f"{subject.name} on {name} ({backend.device()}), {fit.lanes} lane{'s' * (fit.lanes != 1)}")
@@ -108,7 +100,7 @@ def _report(subject: Any, fit: Any, name: str, as_json: bool, guards: str) -> in
     return OK
 
 
-def _several(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bool, guards: str) -> int:
+def _compare(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bool, guards: str) -> int:
     from sssgen.run.evaluate.deviation import GOAL, compared
     from sssgen.support.progress import ProgressBar
 
@@ -119,7 +111,7 @@ def _several(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bo
     good = bool(here) and all(row.ok for row in here) and not (in_ci() and lacking)
     if as_json:
         deviations = [row.as_json() for row in rows]
-        plain = {key: _plain(value) for key, value in oracle.items()} if listed else {}
+        plain = {key: _json_numbers(value) for key, value in oracle.items()} if listed else {}
         print_json({"ok": good, "lanes": fit.lanes, "goal": GOAL, "backends": deviations, "outputs": plain})
         return OK if good else CHECK_FAILED
     print(f"{subject.name}, {fit.lanes} lane{'s' * (fit.lanes != 1)}, against the oracle in float64")
@@ -135,10 +127,10 @@ def _print_rows(rows: Sequence[Row]) -> None:
 
     width = max(len(row.name) for row in rows)
     print(f"\n{'':{width}}  largest deviation (goal: {GOAL:g})")
-    print("\n".join(table_rows([(row.name, row.text) for row in rows], width, table_width(), 0)))
+    print_rows([(row.name, row.text) for row in rows], width, 0)
 
 
-def _plain(value: Any) -> Any:
+def _json_numbers(value: Any) -> Any:
     """Numbers for JSON, which has no NaN."""
     import numpy as np
 

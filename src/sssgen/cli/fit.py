@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from sssgen.cli.chart import add_reference_options, settings_of
-from sssgen.cli.output import OK, print_json
-from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.cli.options import unknown_name
+from sssgen.cli.output import OK, print_result
+from sssgen.support.diagnostics import failure
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -29,25 +30,23 @@ def run(arguments: Namespace) -> int:
     wanted = set(arguments.TECHNIQUE)
     techniques = {technique.name for role in settings.roles for technique in candidates.of_role(role)}
     for name in sorted(wanted - techniques):
-        hint = did_you_mean(name, techniques) or f"techniques: {', '.join(sorted(techniques))}"
-        raise failure(f"unknown technique '{name}'", hint)
+        raise unknown_name("technique", name, sorted(techniques))
     points = chart.chart_record([scene], settings._replace(techniques=frozenset(wanted)))["points"]
     points = [point for point in points if point["name"] != "none"]
     if not points:
         names = ", ".join(sorted(wanted)) or "any technique"
         hint = "a technique needs light from afar, a boundary, or a body of a size that its parameters allow"
         raise failure(f"{names} cannot be fitted to '{scene.name}'", hint)
-    if arguments.json:
-        print_json({"ok": True, "scene": scene.name, "points": points})
-        return OK
-    print(f"{scene.title}: fitted with the exact thickness, on balls, bars and a slab of the same medium")
-    print("  fit: relative error on these; scene: on this scene, and from the side")
-    for point in sorted(points, key=lambda point: float(point["error"]["value"])):
-        print(_shown(point))
+    lines = [
+        f"{scene.title}: fitted with the exact thickness, on balls, bars and a slab of the same medium",
+        "  fit: relative error on these; scene: on this scene, and from the side",
+        *map(_point_text, sorted(points, key=lambda point: float(point["error"]["value"]))),
+    ]
+    print_result(arguments.json, {"scene": scene.name, "points": points}, "\n".join(lines))
     return OK
 
 
-def _shown(point: Mapping[str, Any]) -> str:
+def _point_text(point: Mapping[str, Any]) -> str:
     parameters = dict(point["parameters"])
     if point["factor"]:
         parameters[f"{point['factor']} ×"] = point["scale"]

@@ -7,8 +7,8 @@ import io
 from argparse import ArgumentParser, Namespace
 
 from sssgen.cli.commands import COMMANDS, Overview, command_parser
-from sssgen.cli.output import OK, print_json
-from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.cli.options import unknown_name
+from sssgen.cli.output import OK, print_result
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -19,23 +19,15 @@ def add_options(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Prints the help of the command; with `--json` the commands and their groups."""
     if not arguments.COMMAND:
-        if arguments.json:
-            rows = [
-                {"name": name, "group": command.group, "summary": command.help} for name, command in COMMANDS.items()
-            ]
-            print_json({"ok": True, "commands": rows})
-        else:
-            print(Overview().format_help(), end="")
+        rows = [{"name": name, "group": command.group, "summary": command.help} for name, command in COMMANDS.items()]
+        print_result(arguments.json, {"commands": rows}, Overview().format_help().rstrip("\n"))
         return OK
     name, *rest = arguments.COMMAND
     if name not in COMMANDS:
-        hint = did_you_mean(name, COMMANDS) or f"choose from: {', '.join(COMMANDS)}"
-        raise failure(f"unknown command '{name}'", hint)
+        raise unknown_name("command", name, COMMANDS)
     text = io.StringIO()
     with contextlib.redirect_stdout(text), contextlib.suppress(SystemExit):
         command_parser(name).parse_args([*rest, "--help"])
-    if arguments.json:
-        print_json({"ok": True, "command": " ".join(arguments.COMMAND), "help": text.getvalue()})
-    else:
-        print(text.getvalue(), end="")
+    facts = {"command": " ".join(arguments.COMMAND), "help": text.getvalue()}
+    print_result(arguments.json, facts, text.getvalue().rstrip("\n"))
     return OK

@@ -30,7 +30,7 @@ def text_width() -> int:
     return min(table_width() or WIDEST, WIDEST)
 
 
-def wrapped(text: str, width: int, first: str = "", rest: str = "") -> list[str]:
+def wrap(text: str, width: int, first: str = "", rest: str = "") -> list[str]:
     """The lines of a text; they begin with `first` and `rest`. Names with hyphens are not broken."""
     import textwrap
 
@@ -51,8 +51,13 @@ def table_rows(rows: Iterable[tuple[str, str]], first: int, width: int | None, i
             lines.append(f"{start}{text}".rstrip())
         elif len(start) + len(text.split(" ", 1)[0]) > width:
             below = " " * (2 * indent + 4)
-            lines += [start.rstrip(), *wrapped(text, width, below, below)]
+            lines += [start.rstrip(), *wrap(text, width, below, below)]
         else:
             rest = len(start) if width > 2 * len(start) else 2 * indent
-            lines += wrapped(text, width, start, " " * rest)
+            lines += wrap(text, width, start, " " * rest)
     return lines
+
+
+def print_rows(rows: Iterable[tuple[str, str]], first: int, indent: int = 2) -> None:
+    """Prints rows of a name and a text, wrapped on a terminal."""
+    print("\n".join(table_rows(rows, first, table_width(), indent)))

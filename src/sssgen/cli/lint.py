@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
 import sys
 from argparse import ArgumentParser, Namespace
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from sssgen.cli.output import CHECK_FAILED, OK, WRONG_INPUT, print_errors, print_json, print_warnings
+from sssgen.cli.output import CHECK_FAILED, OK, WRONG_INPUT, print_errors, print_json, print_warnings, write_text
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
 from sssgen.support.progress import ProgressBar
 
@@ -133,13 +132,11 @@ def _print(report: Report, new: set[int], proven: bool) -> None:
 
 
 def _write(path: str, text: str) -> None:
-    """Writes a report, whole or not at all; `-` is the standard output."""
-    from sssgen.support.file_writer import write_files
-
+    """Writes a report; `-` is the standard output."""
     if path == "-":
         print(text, end="")
-        return
-    write_files(os.path.dirname(path) or ".", {os.path.basename(path): text})
+    else:
+        write_text(path, text)
 
 
 def _warnings(reports: list[Report]) -> list[Diagnostic]:

@@ -42,7 +42,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except SssgenError as error:
         return _report(error, as_json, WRONG_INPUT)
     except BrokenPipeError:
-        return _pipe_closed()
+        return _silence_output()
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
@@ -88,11 +88,11 @@ def _report(error: SssgenError, as_json: bool, status: int) -> int:
         report_errors(error.diagnostics, as_json)
         sys.stdout.flush()
     except BrokenPipeError:
-        return _pipe_closed()
+        return _silence_output()
     return status
 
 
-def _pipe_closed() -> int:
+def _silence_output() -> int:
     """Redirects the output to nowhere, as Python would otherwise report the closed pipe when it ends."""
     with contextlib.suppress(OSError, ValueError):  # a stream without a file
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -6,10 +6,11 @@ import re
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from sssgen.cli.output import OK, print_json
+from sssgen.cli.options import unknown_name
+from sssgen.cli.output import OK, print_result
 from sssgen.material.material_loading import examples
 from sssgen.material.model import wrong_name
-from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.diagnostics import failure
 from sssgen.support.file_writer import write_files
 
 STARTER = """\
@@ -76,17 +77,15 @@ def run(arguments: Namespace) -> int:
     """Writes the starter, or copies an example; refuses to overwrite a file."""
     to, example = arguments.MATERIAL, arguments.copy
     written = _write_starter(to) if example is None else _copy(example, to)
-    if arguments.json:
-        print_json({"ok": True, "file": written[0], "files": written})
-    else:
-        print("\n".join(f"wrote {shown}" for shown in written))
+    text = "\n".join(f"wrote {file}" for file in written)
+    print_result(arguments.json, {"file": written[0], "files": written}, text)
     return OK
 
 
 def _copy(name: str, to: str) -> list[str]:
     """Copies the files of an example into a new folder; the first one is the material."""
     if name not in examples():
-        raise failure(f"unknown example '{name}'", did_you_mean(name, examples()) or f"one of: {', '.join(examples())}")
+        raise unknown_name("example", name, examples())
     folder, source = Path(to), Path(examples()[name]).parent
     if folder.exists():
         raise failure("the folder already exists", "choose another name, or remove it first", folder.as_posix())

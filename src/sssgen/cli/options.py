@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable
+
+from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 
 DEFAULT_TARGET = "glsl-330"
 """The target of a command that is called without one: plain text that the preferred back end draws."""
 
 
-def given(text: str) -> str:
+def unknown_name(kind: str, name: str, names: Iterable[str]) -> SssgenError:
+    """The error for a name that no thing of a kind has; the hint has the most similar name, or all."""
+    return failure(f"unknown {kind} '{name}'", did_you_mean(name, names) or f"{kind}s: {', '.join(names)}")
+
+
+def nonempty(text: str) -> str:
     """The value of an option that names something. Raises ArgumentTypeError for the empty text."""
     if not text.strip():
         raise argparse.ArgumentTypeError("the name is empty")
@@ -18,6 +26,13 @@ def given(text: str) -> str:
 def add_json(parser: argparse.ArgumentParser) -> None:
     """Every command has `--json`."""
     parser.add_argument("--json", action="store_true", help="print the result, or the errors, as JSON")
+
+
+def add_output(
+    parser: argparse.ArgumentParser, metavar: str, help: str, *, required: bool = False, default: str | None = None
+) -> None:
+    """The file or folder to write to: `-o`, `--output`."""
+    parser.add_argument("-o", "--output", type=nonempty, metavar=metavar, required=required, default=default, help=help)
 
 
 def add_targets(parser: argparse.ArgumentParser, required: bool = False, default: str | None = None) -> None:
@@ -48,6 +63,14 @@ def add_guards(parser: argparse.ArgumentParser, default: str = "auto") -> None:
 def add_seed(parser: argparse.ArgumentParser, help: str) -> None:
     """Which random numbers are used: `--seed`."""
     parser.add_argument("--seed", type=int, default=0, metavar="N", help=f"{help} (default: 0)")
+
+
+def check_samples(arguments: argparse.Namespace, most: int, least: int = 1) -> None:
+    """Raises SssgenError where `--samples` is out of its range, or `--seed` negative."""
+    if not least <= arguments.samples <= most:
+        raise failure(f"--samples {arguments.samples} is not a number of samples", f"from {least} to {most}")
+    if arguments.seed < 0:
+        raise failure(f"--seed {arguments.seed} is negative")
 
 
 def add_workers(parser: argparse.ArgumentParser) -> None:

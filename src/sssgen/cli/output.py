@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from sssgen.support.diagnostics import Diagnostic
 
@@ -20,14 +20,30 @@ def print_json(data: object) -> None:
     print(json.dumps(data, indent=2, ensure_ascii=False))
 
 
-def failed(errors: Iterable[Diagnostic]) -> dict[str, object]:
+def print_result(as_json: bool, facts: Mapping[str, object], text: str, ok: bool = True) -> None:
+    """Prints a command's result: its facts for programs, or its text for people."""
+    if as_json:
+        print_json({"ok": ok, **facts})
+    else:
+        print(text)
+
+
+def write_text(path: str, text: str) -> None:
+    """Writes a file, whole or not at all. Raises SssgenError where the system refuses."""
+    from sssgen.support.file_writer import write_files
+
+    folder, name = os.path.split(path)
+    write_files(folder or ".", {name: text})
+
+
+def failure_report(errors: Iterable[Diagnostic]) -> dict[str, object]:
     """The JSON report of a command that failed."""
     return {"ok": False, "diagnostics": [error.as_json() for error in errors]}
 
 
 def print_errors(errors: Sequence[Diagnostic]) -> None:
     """Prints errors to the standard error stream, and how many there are."""
-    print("\n\n".join(coloured(error.render()) for error in errors), file=sys.stderr)
+    print("\n\n".join(paint(error.render()) for error in errors), file=sys.stderr)
     if len(errors) > 1:
         print(f"\n{len(errors)} errors", file=sys.stderr)
 
@@ -35,7 +51,7 @@ def print_errors(errors: Sequence[Diagnostic]) -> None:
 def report_errors(errors: Sequence[Diagnostic], as_json: bool) -> None:
     """Prints errors, for people or as a command's result for programs."""
     if as_json:
-        print_json(failed(errors))
+        print_json(failure_report(errors))
     else:
         print_errors(errors)
 
@@ -43,14 +59,14 @@ def report_errors(errors: Sequence[Diagnostic], as_json: bool) -> None:
 def print_warnings(warnings: Iterable[Diagnostic]) -> None:
     """Prints warnings to the standard error stream, so that they are not part of the result."""
     for warning in warnings:
-        print(f"{coloured(warning.render())}\n", file=sys.stderr)
+        print(f"{paint(warning.render())}\n", file=sys.stderr)
 
 
 _COLOURS = {"error": "1;31", "warning": "1;33", "help": "1;36"}
 """The word that begins a line of a diagnostic → its colour."""
 
 
-def coloured(text: str) -> str:
+def paint(text: str) -> str:
     """A diagnostic's text for the standard error stream: error, warning and help are coloured on a terminal."""
     if not _shows_colours():
         return text

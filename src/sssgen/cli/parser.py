@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator
 from typing import Any, NoReturn
 
-from sssgen.cli.layout import help_width, wrapped
+from sssgen.cli.layout import help_width, wrap
 from sssgen.support.diagnostics import did_you_mean, failure
 
 
@@ -52,7 +52,7 @@ class HelpFormatter(argparse.HelpFormatter):
         super().__init__(prog, **{"width": help_width(), **settings})
 
     def _split_lines(self, text: str, width: int) -> list[str]:
-        return wrapped(" ".join(text.split()), max(width, 1))
+        return wrap(" ".join(text.split()), max(width, 1))
 
     def _fill_text(self, text: str, width: int, indent: str) -> str:
         if len(text) <= width and "\n" not in text:
@@ -62,7 +62,7 @@ class HelpFormatter(argparse.HelpFormatter):
             if command:
                 paragraphs.append("\n".join(_command_lines(line, width) for line in lines))
             else:
-                paragraphs.append("\n".join(wrapped(" ".join(lines), width)))
+                paragraphs.append("\n".join(wrap(" ".join(lines), width)))
         text = "\n\n".join(paragraphs)
         return re.sub(r"^(examples?:)\n\n", r"\1\n", text)
 
@@ -86,4 +86,4 @@ def _command_lines(line: str, width: int) -> str:
     """A command, continued on further lines if it is too long, so that it can still be copied."""
     if len(line) <= width:
         return line
-    return " \\\n".join(wrapped(line, max(width - 2, 20), rest="      "))
+    return " \\\n".join(wrap(line, max(width - 2, 20), rest="      "))

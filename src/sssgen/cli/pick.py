@@ -11,7 +11,7 @@ from sssgen.cli.chart import add_reference_options, announce, settings_of
 from sssgen.cli.emit import chosen_targets
 from sssgen.cli.engine_options import add_condition_options, conditions_of, device_of
 from sssgen.cli.options import DEFAULT_TARGET, add_targets
-from sssgen.cli.output import CHECK_FAILED, OK, print_json
+from sssgen.cli.output import CHECK_FAILED, OK, print_result
 from sssgen.material.material_loading import parse_material
 from sssgen.pipeline.compiler import compile
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
@@ -61,18 +61,15 @@ def run(arguments: Namespace) -> int:
 
         record = by_device(record, device)
     picked = pick(record, scene.name, arguments.max_error, arguments.max_cost, conditions)
-    files = _emitted(scene, picked, arguments.emit, arguments.target) if arguments.emit else []
-    if arguments.json:
-        fields = {**picked._asdict(), "roles": [role._asdict() for role in picked.roles]}
-        print_json({"ok": picked.met, "files": files, **fields})
-    else:
-        print(shown(scene, picked, arguments.max_error, arguments.max_cost, " ns" if device is not None else ""))
-        for file in files:
-            print(f"wrote {file}")
+    files = _emit(scene, picked, arguments.emit, arguments.target) if arguments.emit else []
+    fields = {**picked._asdict(), "roles": [role._asdict() for role in picked.roles]}
+    text = summary(scene, picked, arguments.max_error, arguments.max_cost, " ns" if device is not None else "")
+    text = "\n".join([text, *(f"wrote {file}" for file in files)])
+    print_result(arguments.json, {"files": files, **fields}, text, picked.met)
     return OK if picked.met else CHECK_FAILED
 
 
-def _emitted(scene: MeasuredScene, picked: Pick, folder: str, targets: str) -> list[str]:
+def _emit(scene: MeasuredScene, picked: Pick, folder: str, targets: str) -> list[str]:
     """Writes the material and its shaders. Raises SssgenError."""
     from sssgen.lab.chart.picked_material import material_files
 
@@ -91,7 +88,7 @@ def _emitted(scene: MeasuredScene, picked: Pick, folder: str, targets: str) -> l
     return [os.path.join(folder, file) for file in files]
 
 
-def shown(scene: MeasuredScene, picked: Pick, max_error: float | None, max_cost: float | None, unit: str = "") -> str:
+def summary(scene: MeasuredScene, picked: Pick, max_error: float | None, max_cost: float | None, unit: str = "") -> str:
     """The choice, as text; `unit` follows each cost."""
     limit = f"an error of at most {max_error:g}" if max_error is not None else f"a cost of at most {max_cost:g}{unit}"
     lines = [f"{scene.title}: {limit}" + ("" if picked.met else ", which no chain reaches; this is the nearest")]

@@ -26,8 +26,8 @@ def add_options(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Serves the page until Ctrl-C."""
     from sssgen.preview.bodies import checked_mesh
+    from sssgen.preview.pane import Pane
     from sssgen.preview.preview_server import PreviewServer
-    from sssgen.preview.shown_picture import ShownPicture
     from sssgen.scene.geometry import Mesh
 
     mesh = checked_mesh(Mesh(path=arguments.mesh)) if arguments.mesh else None
@@ -39,8 +39,8 @@ def run(arguments: Namespace) -> int:
             print(json.dumps({"ok": True, "address": line}), flush=True)
 
     async def serve() -> None:
-        other = ShownPicture(arguments.OTHER, mesh) if arguments.OTHER else None
-        server = PreviewServer(ShownPicture(arguments.NAME, mesh), other)
+        other = Pane(arguments.OTHER, mesh) if arguments.OTHER else None
+        server = PreviewServer(Pane(arguments.NAME, mesh), other)
         await server.run(arguments.port, not arguments.no_browser, announce)
 
     with contextlib.suppress(KeyboardInterrupt):

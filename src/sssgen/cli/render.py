@@ -7,8 +7,8 @@ import re
 from argparse import ArgumentParser, Namespace
 from time import perf_counter
 
-from sssgen.cli.options import add_guards, given
-from sssgen.cli.output import CHECK_FAILED, OK, print_json, report_errors
+from sssgen.cli.options import add_guards, add_output
+from sssgen.cli.output import CHECK_FAILED, OK, print_result, report_errors
 from sssgen.run.backend_registry import PREFERRED, SCENES
 from sssgen.support.diagnostics import failure
 from sssgen.support.progress import ProgressBar
@@ -25,7 +25,7 @@ def add_options(parser: ArgumentParser) -> None:
     )
     add = parser.add_argument
     add("SCENE", nargs="?", help="the .toml file of a scene or a material, or an example")
-    add("-o", "--output", type=given, metavar="FILE", help="a .png or .exr file (default: SCENE's name with .png)")
+    add_output(parser, "FILE", "a .png or .exr file (default: SCENE's name with .png)")
     add("--backend", "-b", metavar="NAME", default=PREFERRED, help=f"{', '.join(SCENES)} (default: {PREFERRED})")
     add_guards(parser)
     add("--size", metavar="WxH", help="the size in pixels (default: the scene's size)")
@@ -84,11 +84,9 @@ def _render(arguments: Namespace) -> int:
     }
     write[images.check_suffix(output)]()
     height, width = picture.linear.shape[:2]
-    if arguments.json:
-        facts = {"file": output, "size": [width, height], "backend": backend.name, "device": backend.device()}
-        print_json({"ok": True, **facts, "seconds": round(seconds, 3)})
-    else:
-        print(f"wrote {output}: {width} × {height} on {backend.name} ({backend.device()}) in {seconds:.2f} s")
+    facts = {"file": output, "size": [width, height], "backend": backend.name, "device": backend.device()}
+    text = f"wrote {output}: {width} × {height} on {backend.name} ({backend.device()}) in {seconds:.2f} s"
+    print_result(arguments.json, {**facts, "seconds": round(seconds, 3)}, text)
     return OK
 
 
@@ -112,13 +110,12 @@ def _compare(arguments: Namespace) -> int:
     if arguments.output:
         images.write_png(arguments.output, difference.picture)
     facts = {"flip": difference.flip, "relmse": difference.relmse, "p99": difference.p99, "max": difference.max}
-    if arguments.json:
-        print_json({"ok": True, **facts})
-    else:
-        print(f"FLIP   {difference.flip:.6f}  (mean; 0 is the same)")
-        print(f"relMSE {difference.relmse:.3e}")
-        print(f"p99    {difference.p99:.3f}/255")
-        print(f"max    {difference.max:.3f}/255")
-        if arguments.output:
-            print(f"wrote {arguments.output}: FLIP's map")
+    lines = [
+        f"FLIP   {difference.flip:.6f}  (mean; 0 is the same)",
+        f"relMSE {difference.relmse:.3e}",
+        f"p99    {difference.p99:.3f}/255",
+        f"max    {difference.max:.3f}/255",
+        *([f"wrote {arguments.output}: FLIP's map"] if arguments.output else []),
+    ]
+    print_result(arguments.json, facts, "\n".join(lines))
     return OK

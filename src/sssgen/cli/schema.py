@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import json
-import os
 from argparse import ArgumentParser, Namespace
 
-from sssgen.cli.options import given
-from sssgen.cli.output import OK
+from sssgen.cli.options import add_output
+from sssgen.cli.output import OK, write_text
 from sssgen.editor import schemas
-from sssgen.support.file_writer import write_files
 
 KINDS = ("material", "scene")
 
@@ -21,16 +19,15 @@ def add_options(parser: ArgumentParser) -> None:
         "checks more and needs no schema."
     )
     parser.add_argument("KIND", choices=KINDS, help="material or scene")
-    parser.add_argument("-o", "--output", type=given, metavar="FILE", help="write it to a file, and print nothing")
+    add_output(parser, "FILE", "write it to a file, and print nothing")
 
 
 def run(arguments: Namespace) -> int:
     """Prints or writes the schema."""
-    schema = schemas.of_materials() if arguments.KIND == "material" else schemas.of_scenes()
+    schema = schemas.material_schema() if arguments.KIND == "material" else schemas.scene_schema()
     text = json.dumps(schema, ensure_ascii=False, indent=1) + "\n"
     if arguments.output:
-        folder, name = os.path.split(arguments.output)
-        write_files(folder or ".", {name: text})
+        write_text(arguments.output, text)
     else:
         print(text, end="")
     return OK

@@ -6,37 +6,24 @@ import importlib
 import os
 from argparse import ArgumentParser, Namespace
 from collections.abc import Collection
-from typing import Any, NamedTuple
+from typing import Any
 
 from sssgen.cli.layout import text_width
-from sssgen.cli.output import OK, print_json
+from sssgen.cli.output import OK, print_result
 from sssgen.material import library
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.targets import registry
 
-
-class Kind(NamedTuple):
-    """A kind of thing with a name."""
-
-    title: str
-    module: str
-    """Of `sssgen.cli.shown`"""
-
-    def about(self) -> Any:
-        """The module that describes it."""
-        return importlib.import_module(f"sssgen.cli.shown.{self.module}")
-
-
 KINDS = {
-    "material": Kind("material", "shown_material"),
-    "technique": Kind("technique", "shown_technique"),
-    "target": Kind("target", "shown_target"),
-    "builtin": Kind("builtin function", "shown_builtin"),
-    "scene": Kind("scene", "shown_scene"),
-    "backend": Kind("back end", "shown_backend"),
-    "medium": Kind("medium", "shown_medium"),
+    "material": "material",
+    "technique": "technique",
+    "target": "target",
+    "builtin": "builtin function",
+    "scene": "scene",
+    "backend": "back end",
+    "medium": "medium",
 }
-"""The kinds: a name of several is shown as the first of them."""
+"""Kind, which is also the module of `cli/facts` → its title. A name of several kinds is shown as the first of them."""
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -61,21 +48,23 @@ def run(arguments: Namespace) -> int:
     """Prints the facts, and the other kinds that have the name."""
     name = arguments.NAME
     kinds = [arguments.kind] if arguments.kind else _kinds_of(name)
-    about = KINDS[kinds[0]].about()
-    facts = about.describe(name)
-    if arguments.json:
-        print_json({"ok": True, "kind": kinds[0], "other_kinds": kinds[1:], **facts})
-        return OK
-    text = about.lines(facts, text_width())
+    module = facts_module(kinds[0])
+    facts = module.describe(name)
+    text = module.lines(facts, text_width())
     if len(kinds) > 1:
-        text += ["", *(f"also a {KINDS[kind].title}: sssgen show --kind {kind} {name}" for kind in kinds[1:])]
-    print("\n".join(text))
+        text += ["", *(f"also a {KINDS[kind]}: sssgen show --kind {kind} {name}" for kind in kinds[1:])]
+    print_result(arguments.json, {"kind": kinds[0], "other_kinds": kinds[1:], **facts}, "\n".join(text))
     return OK
+
+
+def facts_module(kind: str) -> Any:
+    """The module of `cli/facts` that describes a kind."""
+    return importlib.import_module(f"sssgen.cli.facts.{kind}")
 
 
 def names_of(kind: str) -> Collection[str]:
     """The names of one kind."""
-    names: Collection[str] = KINDS[kind].about().names()
+    names: Collection[str] = facts_module(kind).names()
     return names
 
 

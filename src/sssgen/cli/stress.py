@@ -8,11 +8,10 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from sssgen.cli.options import add_guards, add_seed, add_workers, given
-from sssgen.cli.output import CHECK_FAILED, OK, print_json
+from sssgen.cli.options import add_guards, add_output, add_seed, add_workers, check_samples
+from sssgen.cli.output import CHECK_FAILED, OK, print_json, write_text
 from sssgen.run.backend_registry import DEFAULT, HALF, SINGLE, chosen, in_half
 from sssgen.support.diagnostics import failure
-from sssgen.support.file_writer import write_files
 from sssgen.testing.outcome import in_ci
 
 if TYPE_CHECKING:
@@ -44,7 +43,7 @@ def add_options(parser: ArgumentParser) -> None:
     )
     add("--precision", choices=("f32", "f16"), help="f16 runs numpy and webgpu in half precision (default: f32)")
     add_guards(parser)
-    add("-o", "--output", type=given, metavar="REPORT", help="a .md or .json file to write the report to")
+    add_output(parser, "REPORT", "a .md or .json file to write the report to")
     add_workers(parser)
 
 
@@ -55,10 +54,7 @@ def run(arguments: Namespace) -> int:
     from sssgen.analyse.stress.stress_run import Settings
     from sssgen.analyse.stress.subject import specimens
 
-    if not 1 <= arguments.samples <= MAX_SAMPLES:
-        raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 1 to {MAX_SAMPLES}")
-    if arguments.seed < 0:
-        raise failure(f"--seed {arguments.seed} is negative")
+    check_samples(arguments, MAX_SAMPLES)
     suffix = _suffix(arguments.output, report.SUFFIXES) if arguments.output else ""
     half = arguments.precision == "f16"
     rows = dangerous.chosen(arguments.row)
@@ -71,7 +67,7 @@ def run(arguments: Namespace) -> int:
 
         results = run_stress(subjects, names, settings, arguments.scheduler, arguments.processes)
     else:
-        results = _stressed(subjects, names, settings)
+        results = _stress_each(subjects, names, settings)
     if arguments.output:
         _write(arguments.output, suffix, results)
     if arguments.json:
@@ -104,7 +100,7 @@ def _backends(text: str, half: bool) -> list[str]:
     return list(HALF) if text == "all" else in_half(names)
 
 
-def _stressed(subjects: list[Specimen], names: list[str], settings: Settings) -> Report:
+def _stress_each(subjects: list[Specimen], names: list[str], settings: Settings) -> Report:
     """Stresses one technique after the other, each on all back ends, with a progress bar."""
     from sssgen.analyse.stress.stress_report import Report
     from sssgen.analyse.stress.stress_run import Machines, stress
@@ -141,8 +137,7 @@ def _write(path: str, suffix: str, results: Report) -> None:
     text = report.as_markdown(results)
     if suffix == ".json":
         text = json.dumps(report.as_json(results), indent=2, ensure_ascii=False) + "\n"
-    folder, name = os.path.split(path)
-    write_files(folder or ".", {name: text})
+    write_text(path, text)
 
 
 def _print(results: Report, written: str | None) -> None:

@@ -40,7 +40,7 @@ def macros(definitions: list[str]) -> dict[str, str]:
     return macros
 
 
-def explained_renames(
+def explain_renames(
     renames: Mapping[str, str], target: str, loaded: Loaded | None, files: dict[str, str]
 ) -> list[dict[str, str]]:
     """The renames that a user sees, each with its reason."""

@@ -7,9 +7,9 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
-from sssgen.cli.options import add_guards, add_seed, given
-from sssgen.cli.output import CHECK_FAILED, OK, print_json
-from sssgen.cli.translation import REFLECTION, explained_renames, macros, one_target, print_changes, title
+from sssgen.cli.options import add_guards, add_output, add_seed
+from sssgen.cli.output import CHECK_FAILED, OK, print_json, print_result
+from sssgen.cli.translation import REFLECTION, explain_renames, macros, one_target, print_changes, title
 from sssgen.ir.nodes import Module
 from sssgen.lang.loader import load_file
 from sssgen.lang.plain_glsl import Loaded, load_glsl
@@ -71,13 +71,8 @@ def add_options(parser: ArgumentParser) -> None:
     )
     add("--prune", action="store_true", help="omit functions that the file itself never calls")
     add_guards(parser, default="none")
-    add(
-        "-o",
-        "--output",
-        type=given,
-        metavar="FILE",
-        help="the file to write; its reflection is written next to it. For --stages: a folder, or folder/name",
-    )
+    help = "the file to write; its reflection is written next to it. For --stages: a folder, or folder/name"
+    add_output(parser, "FILE", help)
     add(
         "--trace",
         action="store_true",
@@ -187,7 +182,7 @@ def _translate(
     finally:
         if trace is not None:
             trace.write(os.path.dirname(arguments.output) or ".")
-    renamed = explained_renames(compiled.reflection.get("renames", {}), target, loaded, compiled.files)
+    renamed = explain_renames(compiled.reflection.get("renames", {}), target, loaded, compiled.files)
     warnings = [*(loaded.warnings if loaded else []), *compiled.warnings]
     _print(arguments, compiled.files, warnings, renamed, loaded.constants if loaded else [])
     return OK
@@ -245,11 +240,7 @@ def _verify(arguments: Namespace, path: Path, computes: bool) -> int:
                 arguments.samples, arguments.seed, arguments.entry, arguments.function, arguments.target or ""
             )
             report = transpiled.verify(text, path.as_posix(), options, progress=progress)
-    if arguments.json:
-        print_json({"ok": report.ok, **report.as_json()})
-    else:
-        for line in report.lines():
-            print(line)
+    print_result(arguments.json, report.as_json(), "\n".join(report.lines()), report.ok)
     return OK if report.ok else CHECK_FAILED
 
 
@@ -257,10 +248,7 @@ def _technique(arguments: Namespace, module: Module, path: Path) -> int:
     """Writes a function of the file as a technique's file, with a doc comment to be filled in."""
     name, text = technique_file(module, path.as_posix(), arguments.function)
     if arguments.output is None:
-        if arguments.json:
-            print_json({"ok": True, "texts": {f"{name}.sss": text}})
-        else:
-            print(text, end="")
+        print_result(arguments.json, {"texts": {f"{name}.sss": text}}, text.removesuffix("\n"))
         return OK
     target = Path(arguments.output)
     if target.is_dir():
@@ -268,8 +256,5 @@ def _technique(arguments: Namespace, module: Module, path: Path) -> int:
     if target.exists():
         raise failure("the file already exists", "choose another name, or remove it first", target.as_posix())
     write_files(os.fspath(target.parent), {target.name: text})
-    if arguments.json:
-        print_json({"ok": True, "file": target.as_posix()})
-    else:
-        print(f"wrote {target.as_posix()}")
+    print_result(arguments.json, {"file": target.as_posix()}, f"wrote {target.as_posix()}")
     return OK

@@ -6,7 +6,7 @@ import os
 from argparse import Namespace
 
 from sssgen.cli.output import OK, print_json
-from sssgen.cli.translation import explained_renames, macros, one_target, print_changes
+from sssgen.cli.translation import explain_renames, macros, one_target, print_changes
 from sssgen.lang.plain_glsl import Loaded, load_glsl
 from sssgen.passes.stage.stage_interface import entry_of
 from sssgen.pipeline.two_stages import Source, transpile_stages
@@ -22,7 +22,7 @@ LOADER = "webgl_program.js"
 
 def run(arguments: Namespace) -> int:
     """Writes the files of a program, or prints them as JSON. Raises SssgenError."""
-    wrong = _unfit(arguments)
+    wrong = _unfit_options(arguments)
     targets = one_target(arguments.target, wrong)
     loaded: list[Loaded] = []
     for file in arguments.stages:
@@ -50,7 +50,7 @@ def run(arguments: Namespace) -> int:
     renamed = [
         row
         for renames, each in zip(program.renames, loaded, strict=True)
-        for row in explained_renames(renames, targets[0], each, program.files)
+        for row in explain_renames(renames, targets[0], each, program.files)
     ]
     warnings = [*(warning for each in loaded for warning in each.warnings), *program.warnings]
     details = {"renamed": renamed, "diagnostics": [warning.as_json() for warning in warnings]}
@@ -67,7 +67,7 @@ def run(arguments: Namespace) -> int:
     return OK
 
 
-def _unfit(arguments: Namespace) -> list[Diagnostic]:
+def _unfit_options(arguments: Namespace) -> list[Diagnostic]:
     """The options that do not fit --stages."""
     unfit = {
         "FILE": arguments.FILE, "--with": arguments.partner, "--verify": arguments.verify, "--as": arguments.as_,

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from sssgen.cli.emit import add_emission_options, chosen_targets, compile_all, report, take_default_target, written_rows
-from sssgen.cli.options import given
-from sssgen.cli.output import OK, failed, print_errors, print_warnings
+from sssgen.cli.options import add_output
+from sssgen.cli.output import OK, failure_report, print_errors, print_warnings
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.support.file_changes import FolderMessages, changes
 from sssgen.support.file_memo import FileState, noted_files
@@ -32,9 +32,7 @@ def add_options(parser: ArgumentParser) -> None:
         "emission prints one line."
     )
     add_emission_options(parser)
-    parser.add_argument(
-        "-o", "--output", type=given, metavar="DIR", default="out", help="the folder to write to (default: out)"
-    )
+    add_output(parser, "DIR", "the folder to write to (default: out)", default="out")
 
 
 def run(arguments: Namespace) -> int:
@@ -66,7 +64,7 @@ class Watch:
 
     def emit(self, changed: set[str] | None = None) -> None:
         """Emits, and prints which files were written, or the errors; `changed` are the files that made it necessary."""
-        start = ", ".join(sorted(map(_shown, changed))) + " changed" if changed else ""
+        start = ", ".join(sorted(map(_display_path, changed))) + " changed" if changed else ""
         if start and not self.arguments.json:
             print(start, flush=True)
         try:
@@ -100,7 +98,7 @@ class Watch:
 
     def _print_errors(self, errors: Sequence[Diagnostic]) -> None:
         if self.arguments.json:
-            _print_line(failed(errors))
+            _print_line(failure_report(errors))
         else:
             print_errors(errors)
             sys.stderr.flush()
@@ -110,7 +108,7 @@ def _print_line(data: object) -> None:
     print(json.dumps(data, ensure_ascii=False), flush=True)
 
 
-def _shown(path: str) -> str:
+def _display_path(path: str) -> str:
     """A file as the user knows it: from the working folder, where it is in it."""
     shown = os.path.relpath(path) if os.path.splitdrive(path)[0] == os.path.splitdrive(os.getcwd())[0] else path
     return posix(path if shown.startswith(os.pardir) else shown)

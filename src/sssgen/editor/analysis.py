@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from sssgen.editor import scene_parameters
 from sssgen.editor.documents import GLSL, MATERIAL, SCENE, TECHNIQUE, Document
-from sssgen.ir.nodes import Module
+from sssgen.ir.nodes import Function, Module
 from sssgen.lang.assumption_comments import AssumedInput
 from sssgen.lang.loader import load_file
 from sssgen.lang.plain_glsl import load_glsl
@@ -65,7 +65,15 @@ def analyse(document: Document, before: Analysis | None = None) -> Analysis:
 
 def own_names(document: Document) -> tuple[str, ...]:
     """The names that messages may have for a document."""
-    return (document.shown, source_name(document.path), os.path.basename(document.path))
+    return (document.display_name, source_name(document.path), os.path.basename(document.path))
+
+
+def function_around(document: Document, module: Module, line: int) -> Function | None:
+    """The function of a document around a line from 0: the last one that begins at it or before it."""
+    own = own_names(document)
+    functions = [function for function in module.functions if function.span.file in own]
+    before = [function for function in functions if function.span.line <= line + 1]
+    return max(before, key=lambda function: function.span.line, default=None)
 
 
 def _technique(document: Document) -> Analysis:
@@ -80,17 +88,17 @@ def _technique(document: Document) -> Analysis:
 
 def _glsl(document: Document) -> Analysis:
     entry = "shadertoy" if _SHADERTOY.search(document.text) and not _MAIN.search(document.text) else ""
-    loaded = load_glsl(document.path, document.shown, entry=entry, assumptions=True)
+    loaded = load_glsl(document.path, document.display_name, entry=entry, assumptions=True)
     return Analysis(tuple(loaded.warnings), module=loaded.module, assumed=tuple(loaded.assumed))
 
 
 def _material(document: Document) -> Analysis:
-    text = read_text(document.path, document.shown)
+    text = read_text(document.path, document.display_name)
     return Analysis(material=parse_material(text, document.path))
 
 
 def _scene(document: Document) -> Analysis:
-    scene = parse_scene(read_text(document.path, document.shown), document.path)
+    scene = parse_scene(read_text(document.path, document.display_name), document.path)
     material = scene_parameters.material_of(scene)
     if material is not None:
         scene_parameters.check(scene, material)

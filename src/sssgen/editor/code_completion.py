@@ -6,13 +6,13 @@ import os
 import re
 
 from sssgen.editor import explanations
-from sssgen.editor.analysis import Analysis
-from sssgen.editor.completion_item import Item, plain
+from sssgen.editor.analysis import Analysis, function_around
+from sssgen.editor.completion_item import Item, items_of
 from sssgen.editor.documents import TECHNIQUE, Document
 from sssgen.editor.lookup import is_in_comment
 from sssgen.ir.drawn import DRAWN
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.nodes import Declare, Function
+from sssgen.ir.nodes import Declare
 from sssgen.ir.out_builtins import OUT_BUILTINS
 from sssgen.ir.types import spell
 from sssgen.ir.walk import statements
@@ -24,7 +24,7 @@ from sssgen.material.attributes import ATTRIBUTES, REQUIREMENTS, SHAPES
 from sssgen.material.library import ROLES
 from sssgen.material.slots import signature
 from sssgen.material.technique_facts import uniform_facts, uniform_text
-from sssgen.support.paths import posix, source_name
+from sssgen.support.paths import posix
 
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"[^"]*$')
 _ATTRIBUTE = re.compile(r"^[\s/*]*(?P<word>[a-z_]*)$")
@@ -35,42 +35,42 @@ _MEMBER = re.compile(r"\.\w*$")
 _OF_ATTRIBUTES = {"role": ROLES, "shape": SHAPES, "requires": REQUIREMENTS}
 
 
-def in_code(document: Document, analysis: Analysis, line: int, column: int) -> list[Item]:
+def code_items(document: Document, analysis: Analysis, line: int, column: int) -> list[Item]:
     """Completions in shader text."""
     before = document.line(line)[:column]
     technique = document.kind == TECHNIQUE
     if _INCLUDE.match(before):
-        return plain(_includable(document), "file") if technique else []
+        return items_of(_include_names(document), "file") if technique else []
     if is_in_comment(document, line, column):
-        return _in_comment(before) if technique else []
+        return _comment_items(before) if technique else []
     if _MEMBER.search(before):
         return []
     argument = _HINT_ARGUMENT.match(before) if technique else None
     if argument is not None:
-        return plain(DRAWN if argument["hint"] == "drawn" else SCALARS, "value")
+        return items_of(DRAWN if argument["hint"] == "drawn" else SCALARS, "value")
     if technique and _HINT.match(before):
-        return plain(HINTS, "keyword")
-    items = [*_locals(document, analysis, line), *_declared(analysis)]
+        return items_of(HINTS, "keyword")
+    items = [*_local_items(document, analysis, line), *_declared_items(analysis)]
     if technique:
-        items += [Item(name, "type", explanations.of_quantity(name).partition(": ")[2]) for name in QUANTITIES]
+        items += [Item(name, "type", explanations.explain_quantity(name).partition(": ")[2]) for name in QUANTITIES]
     items += [
         Item(row.name, "function", row.signatures[0].replace("(", f" {row.name}(", 1), row.doc, rank=1)
         for row in BUILTINS.values()
     ]
-    items += plain(OUT_BUILTINS, "function", rank=1)
+    items += items_of(OUT_BUILTINS, "function", rank=1)
     if technique:
         items.append(Item("assume", "keyword", "states a fact: assume(x > 0.0);", text="assume()", rank=2))
-    return items + plain(KEYWORDS, "keyword", rank=2)
+    return items + items_of(KEYWORDS, "keyword", rank=2)
 
 
-def _in_comment(before: str) -> list[Item]:
+def _comment_items(before: str) -> list[Item]:
     value = _ATTRIBUTE_VALUE.match(before)
     if value is not None:
-        return plain(_OF_ATTRIBUTES.get(value["key"], ()), "value")
+        return items_of(_OF_ATTRIBUTES.get(value["key"], ()), "value")
     return [Item(name, "keyword", text=f"{name}: ") for name in ATTRIBUTES] if _ATTRIBUTE.match(before) else []
 
 
-def _includable(document: Document) -> list[str]:
+def _include_names(document: Document) -> list[str]:
     """The files that `#include` finds: beside the document, and in the library."""
     names = []
     for root, folders in ((document.folder, ("",)), (library.TECHNIQUES, sorted(os.listdir(library.TECHNIQUES)))):
@@ -81,7 +81,7 @@ def _includable(document: Document) -> list[str]:
     return [name for name in dict.fromkeys(names) if name != os.path.basename(document.path)]
 
 
-def _declared(analysis: Analysis) -> list[Item]:
+def _declared_items(analysis: Analysis) -> list[Item]:
     module = analysis.module
     if module is None:
         return []
@@ -96,15 +96,9 @@ def _declared(analysis: Analysis) -> list[Item]:
     return list({item.label: item for item in items}.values())
 
 
-def _locals(document: Document, analysis: Analysis, line: int) -> list[Item]:
+def _local_items(document: Document, analysis: Analysis, line: int) -> list[Item]:
     """The parameters and variables of the function around a line, as it was when the text was last right."""
-    own = (document.shown, source_name(document.path))
-    functions = [
-        function
-        for function in (analysis.module.functions if analysis.module else ())
-        if function.span.file in own and function.span.line <= line + 1
-    ]
-    around: Function | None = max(functions, key=lambda function: function.span.line, default=None)
+    around = function_around(document, analysis.module, line) if analysis.module is not None else None
     if around is None:
         return []
     items = [Item(param.name, "parameter", param.quantity or spell(param.type)) for param in around.params]

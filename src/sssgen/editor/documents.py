@@ -48,7 +48,7 @@ class Document(NamedTuple):
         return kind_of(self.path, self.text)
 
     @property
-    def shown(self) -> str:
+    def display_name(self) -> str:
         """The file's name in messages."""
         return posix(self.path)
 

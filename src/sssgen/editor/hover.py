@@ -32,26 +32,26 @@ def hover_at(document: Document, analysis: Analysis, line: int, column: int) -> 
 def _text(document: Document, analysis: Analysis, meaning: Meaning, line: int, column: int) -> str:
     thing = meaning.thing
     if meaning.kind == "technique":
-        return explanations.of_technique(thing)
+        return explanations.explain_technique(thing)
     if meaning.kind == "uniform":
-        return explanations.of_uniform(thing, _value(document, analysis, thing.name, line, column))
+        return explanations.explain_uniform(thing, _value(document, analysis, thing.name, line, column))
     if meaning.kind == "function":
         technique = analysis.technique
         if technique is not None and technique.function.key == thing.key and thing.body is not None:
-            return explanations.of_technique(technique)
-        return explanations.of_function(thing)
+            return explanations.explain_technique(technique)
+        return explanations.explain_function(thing)
     if meaning.kind == "param":
-        return explanations.code(f"{thing.quantity or spell(thing.type)} {thing.name}")
+        return explanations.code_block(f"{thing.quantity or spell(thing.type)} {thing.name}")
     if meaning.kind == "value":
-        return explanations.code(f"{spell(thing[1])} {thing[0]}")
+        return explanations.code_block(f"{spell(thing[1])} {thing[0]}")
     if meaning.kind == "variable":
-        return "\n\n".join(filter(None, (explanations.code(f"{spell(thing.type)} {thing.name}"), thing.doc)))
+        return "\n\n".join(filter(None, (explanations.code_block(f"{spell(thing.type)} {thing.name}"), thing.doc)))
     if meaning.kind in ("constant", "struct"):
-        return explanations.code(source_line(thing.span).strip() or meaning.word.text)
+        return explanations.code_block(source_line(thing.span).strip() or meaning.word.text)
     if meaning.kind == "builtin":
-        return explanations.of_builtin(thing)
+        return explanations.explain_builtin(thing)
     if meaning.kind == "quantity":
-        return explanations.of_quantity(thing)
+        return explanations.explain_quantity(thing)
     if meaning.kind == "material" and thing is not None:
         return f"**{thing.title}**: {thing.doc}"
     return meaning.path
@@ -61,7 +61,7 @@ def _value(document: Document, analysis: Analysis, name: str, line: int, column:
     """The value that a material's stage gives to a parameter."""
     if document.kind != MATERIAL or analysis.material is None:
         return ""
-    first = toml_places.place_at(document, line, column).first_line
+    first = toml_places.place_at(document, line, column).table.first_line
     for stage in analysis.material.stages:
         if stage.span.line - 1 >= first and name in stage.values:
             return value_text(stage.values[name])

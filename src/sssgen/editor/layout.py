@@ -16,7 +16,7 @@ LAYOUTS = {".sss": code_layout, ".toml": toml_layout}
 """The suffixes of files that have a layout."""
 
 
-def laid_out(text: str, path: str) -> str:
+def lay_out(text: str, path: str) -> str:
     """The text of a file in its layout. Raises SssgenError with its syntax errors, or for a file of another kind."""
     layout = LAYOUTS.get(os.path.splitext(path)[1].lower())
     if layout is None:
@@ -30,7 +30,7 @@ def lay_out_file(path: str, write: bool = True) -> bool:
     Line ends stay those of the file, and a link stays a link.
     """
     text = read_text(path, posix(path))
-    result = laid_out(text, path)
+    result = lay_out(text, path)
     if result == text:
         return False
     if write:

@@ -34,7 +34,7 @@ class _Piece(NamedTuple):
 def code_layout(text: str, shown: str) -> str:
     """The text of a technique in this layout. Raises SssgenError with its syntax errors."""
     parse(text, shown)
-    result = _joined(_laid_out(list(_lines(text))))
+    result = _join_lines(_lay_out(list(_lines(text))))
     if _words(result) != _words(text):
         raise failure("the layout would change a token", "report this file as a bug of sssgen fmt", shown)
     return result
@@ -81,14 +81,14 @@ def _end_of_directive(text: str, start: int) -> int:
         end += 1
 
 
-def _laid_out(lines: Sequence[list[_Piece]]) -> Iterator[str]:
+def _lay_out(lines: Sequence[list[_Piece]]) -> Iterator[str]:
     """The lines with their indentation and blanks."""
     place = _Place()
     for line in lines:
         if line and line[0].text.startswith("#"):
             yield "\n".join(part.rstrip() for part in line[0].text.split("\n"))
         elif line:
-            yield _shifted(INDENT * place.depth(line[0].text), _spaced(line, place.last))
+            yield _indent(INDENT * place.depth(line[0].text), _space_tokens(line, place.last))
             for piece in line:
                 place.take(piece.text)
         else:
@@ -131,7 +131,7 @@ class _Place:
         self.last = text
 
 
-def _shifted(indent: str, text: str) -> str:
+def _indent(indent: str, text: str) -> str:
     """An indented line; the further lines of a comment move with the first."""
     first, *rest = text.split("\n")
     star = all(part.lstrip().startswith("*") for part in rest if part.strip())
@@ -139,7 +139,7 @@ def _shifted(indent: str, text: str) -> str:
     return "\n".join([indent + first.rstrip(), *moved])
 
 
-def _spaced(line: Sequence[_Piece], last: str) -> str:
+def _space_tokens(line: Sequence[_Piece], last: str) -> str:
     """The pieces of a line with the blanks between them; `last` is the token before the line."""
     text = line[0].text
     unary = _is_unary(last, line[0].text)
@@ -147,11 +147,11 @@ def _spaced(line: Sequence[_Piece], last: str) -> str:
         before, piece = line[index - 1].text, line[index]
         was_unary, unary = unary, _is_unary(before, piece.text)
         is_label = piece.text == ":" and line[0].text in ("case", "default")
-        text += ("" if is_label else _between(before, piece, was_unary, unary)) + piece.text
+        text += ("" if is_label else _blanks_between(before, piece, was_unary, unary)) + piece.text
     return text
 
 
-def _between(before: str, piece: _Piece, was_unary: bool, unary: bool) -> str:
+def _blanks_between(before: str, piece: _Piece, was_unary: bool, unary: bool) -> str:
     """The blanks between two pieces of a line."""
     token = piece.text
     if token.startswith("//"):
@@ -186,7 +186,7 @@ def _ends_an_operand(token: str) -> bool:
     return is_word and (token not in KEYWORDS or token in TYPES or token in ("true", "false"))
 
 
-def _joined(lines: Iterator[str]) -> str:
+def _join_lines(lines: Iterator[str]) -> str:
     """The lines with at most one blank line in a row, and one line end at the end."""
     kept: list[str] = []
     for line in lines:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
 
 from sssgen.support.diagnostics import failure
 from sssgen.support.toml_source import Token, all_tokens, parse
@@ -15,61 +14,55 @@ from sssgen.support.toml_source import Token, all_tokens, parse
 INDENT = "    "
 
 
-class _Line(NamedTuple):
-    """The tokens of one line, each with the blanks before it; a text of several lines is one token."""
-
-    tokens: tuple[tuple[Token, str], ...]
-
-    @property
-    def is_comment(self) -> bool:
-        return bool(self.tokens) and self.tokens[0][0].text.startswith("#")
+_Line = Sequence[tuple[Token, str]]
+"""The tokens of one line, each with the blanks before it; a text of several lines is one token."""
 
 
 def toml_layout(text: str, shown: str) -> str:
     """The text in this layout. Raises SssgenError with its syntax errors."""
     before = parse(text, shown).data
-    result = _joined(_laid_out(list(_lines(text))))
+    result = _join_lines(_lay_out(list(_lines(text))))
     if repr(tomllib.loads(result)) != repr(before):
         raise failure("the layout would change a value", "report this file as a bug of sssgen fmt", shown)
     return result
 
 
 def _lines(text: str) -> Iterator[_Line]:
-    tokens: list[tuple[Token, str]] = []
+    line: list[tuple[Token, str]] = []
     blanks = ""
     for token in all_tokens(text):
         if token.kind == "newline":
-            yield _Line(tuple(tokens))
-            tokens, blanks = [], ""
+            yield line
+            line, blanks = [], ""
         elif token.text.strip(" \t\r"):
-            tokens.append((token, blanks))
+            line.append((token, blanks))
             blanks = ""
         else:
             blanks = token.text
-    yield _Line(tuple(tokens))
+    yield line
 
 
-def _laid_out(lines: Sequence[_Line]) -> Iterator[str]:
+def _lay_out(lines: Sequence[_Line]) -> Iterator[str]:
     """The lines with their indentation and blanks."""
     brackets: list[str] = []
     for line in lines:
-        is_header = not brackets and bool(line.tokens) and line.tokens[0][0].text == "["
+        is_header = not brackets and bool(line) and line[0][0].text == "["
         closing = 0
-        while closing < len(line.tokens) and line.tokens[closing][0].text in ("]", "}"):
+        while closing < len(line) and line[closing][0].text in ("]", "}"):
             closing += 1
         depth = max(0, len(brackets) - closing)
-        yield INDENT * depth + _spaced(line, is_header, brackets)
+        yield INDENT * depth + _space_tokens(line, is_header, brackets)
         if is_header:
             brackets.clear()
 
 
-def _spaced(line: _Line, is_header: bool, brackets: list[str]) -> str:
+def _space_tokens(line: _Line, is_header: bool, brackets: list[str]) -> str:
     """A line's tokens with the blanks between them; `brackets` are those that are open, and are updated."""
     text = ""
     before: Token | None = None
-    for token, blanks in line.tokens:
+    for token, blanks in line:
         if before is not None:
-            text += _between(before, token, blanks, is_header, brackets)
+            text += _blanks_between(before, token, blanks, is_header, brackets)
         text += token.text.rstrip() if token.text.startswith("#") else token.text
         if token.kind == "mark" and token.text in "[{":
             brackets.append(token.text)
@@ -79,7 +72,7 @@ def _spaced(line: _Line, is_header: bool, brackets: list[str]) -> str:
     return text
 
 
-def _between(before: Token, token: Token, blanks: str, is_header: bool, brackets: Sequence[str]) -> str:
+def _blanks_between(before: Token, token: Token, blanks: str, is_header: bool, brackets: Sequence[str]) -> str:
     """The blanks between two tokens of a line."""
     if token.text.startswith("#"):
         return blanks.replace("\t", INDENT).replace("\r", "") or " "
@@ -98,7 +91,7 @@ def _between(before: Token, token: Token, blanks: str, is_header: bool, brackets
     return " " if blanks else ""
 
 
-def _joined(lines: Iterator[str]) -> str:
+def _join_lines(lines: Iterator[str]) -> str:
     """The lines with at most one blank line in a row, one before each section, and one line end at the end."""
     kept: list[str] = []
     for line in lines:

@@ -43,13 +43,13 @@ def lenses_of(document: Document, analysis: Analysis) -> list[Lens]:
     if any(problem.severity == "error" for problem in analysis.diagnostics) or len(document.lines) > MAX_LINES:
         return []
     if document.kind == MATERIAL and analysis.material is not None:
-        return _of_material(document, analysis.material)
+        return _material_lenses(document, analysis.material)
     if document.kind in (TECHNIQUE, GLSL) and analysis.module is not None:
-        return _of_functions(document, analysis, analysis.module)
+        return _function_lenses(document, analysis, analysis.module)
     return []
 
 
-def _of_functions(document: Document, analysis: Analysis, module: Module) -> list[Lens]:
+def _function_lenses(document: Document, analysis: Analysis, module: Module) -> list[Lens]:
     """Each function with a body. One that the technique calls is analysed for the arguments that it gets there."""
     own = own_names(document)
     functions = {f.span: f for f in module.functions if f.body is not None and f.span.file in own}
@@ -57,17 +57,17 @@ def _of_functions(document: Document, analysis: Analysis, module: Module) -> lis
     if analysis.technique is not None:
         chain = subject(document.path)
         sites = library_sites(chain.module, chain.called, chain.chained)
-        lenses = _above(functions, chain.module, sites)
+        lenses = _lenses_above(functions, chain.module, sites)
     if functions.keys() - lenses.keys():
         assumptions = Assumptions(
             rules_of_comments(analysis.assumed, input_names(module)), stage_kind(module) == "vertex"
         )
         sites, _ = traced_sites(module, assumed=assumptions.of, unguarded=document.kind == GLSL)
-        lenses = _above(functions, plain_module(module)[0], sites) | lenses
+        lenses = _lenses_above(functions, plain_module(module)[0], sites) | lenses
     return [lenses[span] for span in functions if span in lenses]
 
 
-def _above(functions: Iterable[Span], module: Module, sites: Sequence[Site]) -> dict[Span, Lens]:
+def _lenses_above(functions: Iterable[Span], module: Module, sites: Sequence[Site]) -> dict[Span, Lens]:
     keys = {function.span: function.key for function in module.functions}
     return {span: Lens(range_of(span), _text(module, keys[span], sites)) for span in functions if span in keys}
 
@@ -92,17 +92,17 @@ def _proof(sites: Sequence[Site]) -> str:
     return f"not proven safe: {len(unproven)} of {len(sites)} ({kinds})"
 
 
-def _of_material(document: Document, material: Material) -> list[Lens]:
+def _material_lenses(document: Document, material: Material) -> list[Lens]:
     """The chain above [material], and each stage above its table."""
     program = analysed(material, registry.load(PLAIN_TARGET), "shader")
     tables = tables_of(document)
     lenses = []
-    for line, section, _ in tables:
-        if section == "material":
+    for table in tables:
+        if table.section == "material":
             costs = [f"{kind}: {cost.text}" for kind, cost in program.costs.items()]
-            lenses.append(Lens(_line(document, line), " · ".join([*costs, _proof(program.sites)])))
+            lenses.append(Lens(_line(document, table.first_line), " · ".join([*costs, _proof(program.sites)])))
     for stage in material.stages:
-        line = max((first for first, _, _ in tables if first < stage.span.line), default=-1)
+        line = max(table.first_line for table in tables if table.first_line < stage.span.line)
         span = stage.technique.function.span
         keys = [function.key for function in program.module.functions if function.span == span]
         text = _text(program.module, keys[0], program.sites, program.slots) if keys else "no operation is left of it"

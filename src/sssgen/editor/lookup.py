@@ -6,7 +6,7 @@ import os
 from typing import Any, NamedTuple
 
 from sssgen.editor import toml_places
-from sssgen.editor.analysis import Analysis
+from sssgen.editor.analysis import Analysis, function_around
 from sssgen.editor.documents import MATERIAL, SCENE, TECHNIQUE, Document, Word
 from sssgen.editor.scene_parameters import uniforms_of
 from sssgen.editor.source_files import path_of
@@ -18,7 +18,6 @@ from sssgen.material.library import Technique
 from sssgen.material.material_loading import examples
 from sssgen.scene.scene_reader import material_beside
 from sssgen.support.diagnostics import SssgenError
-from sssgen.support.paths import source_name
 from sssgen.targets import builtin_facts
 
 
@@ -38,7 +37,7 @@ class Meaning(NamedTuple):
 def meaning_at(document: Document, analysis: Analysis, line: int, column: int) -> Meaning | None:
     """What is at a place of a document."""
     if document.kind in (MATERIAL, SCENE):
-        return _in_toml(document, analysis, line, column)
+        return _toml_meaning(document, analysis, line, column)
     include = document.include_at(line)
     if include is not None:
         path = path_of(include.text, document, analysis.files)
@@ -46,7 +45,7 @@ def meaning_at(document: Document, analysis: Analysis, line: int, column: int) -
     word = document.word_at(line, column)
     if word is None or is_in_comment(document, line, word.start):
         return None
-    return _in_code(document, analysis, word)
+    return _code_meaning(document, analysis, word)
 
 
 def is_in_comment(document: Document, line: int, column: int) -> bool:
@@ -59,10 +58,10 @@ def is_in_comment(document: Document, line: int, column: int) -> bool:
 # Shader text
 
 
-def _in_code(document: Document, analysis: Analysis, word: Word) -> Meaning | None:
+def _code_meaning(document: Document, analysis: Analysis, word: Word) -> Meaning | None:
     module = analysis.module
     if module is not None:
-        for meaning in (_local(document, module, word), _declared(document, analysis, module, word)):
+        for meaning in (_local_name(document, module, word), _declaration(document, analysis, module, word)):
             if meaning is not None:
                 return meaning
     if word.text in builtin_facts.names():
@@ -72,7 +71,7 @@ def _in_code(document: Document, analysis: Analysis, word: Word) -> Meaning | No
     return None
 
 
-def _declared(document: Document, analysis: Analysis, module: Module, word: Word) -> Meaning | None:
+def _declaration(document: Document, analysis: Analysis, module: Module, word: Word) -> Meaning | None:
     groups: tuple[tuple[str, Any], ...] = (
         ("function", module.functions),
         ("uniform", module.uniforms),
@@ -82,7 +81,7 @@ def _declared(document: Document, analysis: Analysis, module: Module, word: Word
     for kind, declarations in groups:
         named = [declaration for declaration in declarations if declaration.name == word.text]
         if named:
-            chosen = _called(document, module, word, named) if kind == "function" else named[-1]
+            chosen = _overload_at(document, module, word, named) if kind == "function" else named[-1]
             return Meaning(kind, chosen, word, path_of(chosen.span.file, document, analysis.files))
     for struct in module.structs:
         if getattr(struct.type, "name", "") == word.text:
@@ -90,7 +89,7 @@ def _declared(document: Document, analysis: Analysis, module: Module, word: Word
     return None
 
 
-def _called(document: Document, module: Module, word: Word, named: list[Function]) -> Function:
+def _overload_at(document: Document, module: Module, word: Word, named: list[Function]) -> Function:
     """The overload that is called, or declared, at a place; the last one where neither is found."""
     at = (word.line + 1, word.start + 1)
     for function in named:
@@ -104,20 +103,9 @@ def _called(document: Document, module: Module, word: Word, named: list[Function
     return named[-1]
 
 
-def _own_functions(document: Document, module: Module) -> list[Function]:
-    own = (document.shown, source_name(document.path))
-    return [function for function in module.functions if function.span.file in own]
-
-
-def _enclosing(document: Document, module: Module, word: Word) -> Function | None:
-    """The function around a word: the last one that begins before it."""
-    functions = [function for function in _own_functions(document, module) if function.span.line <= word.line + 1]
-    return max(functions, key=lambda function: function.span.line, default=None)
-
-
 def _expressions_at(document: Document, module: Module, word: Word) -> list[Any]:
     """The expressions that begin with a word, the smallest first."""
-    function = _enclosing(document, module, word)
+    function = function_around(document, module, word.line)
     if function is None:
         return []
     at = (word.line + 1, word.start + 1)
@@ -129,9 +117,9 @@ def _expressions_at(document: Document, module: Module, word: Word) -> list[Any]
     return sorted(found, key=lambda expr: (expr.span.end_line, expr.span.end_column))
 
 
-def _local(document: Document, module: Module, word: Word) -> Meaning | None:
+def _local_name(document: Document, module: Module, word: Word) -> Meaning | None:
     """A parameter of a function, or a local variable, with its type."""
-    enclosing = _enclosing(document, module, word)
+    enclosing = function_around(document, module, word.line)
     for param in enclosing.params if enclosing else ():
         if param.name == word.text:
             return Meaning("param", param, word, document.path)
@@ -148,31 +136,31 @@ def _local(document: Document, module: Module, word: Word) -> Meaning | None:
 # Materials and scenes
 
 
-def _in_toml(document: Document, analysis: Analysis, line: int, column: int) -> Meaning | None:
+def _toml_meaning(document: Document, analysis: Analysis, line: int, column: int) -> Meaning | None:
     place = toml_places.place_at(document, line, column)
     text, start, end = toml_places.text_at(document, line, column)
     key = place.inner_key or place.key
     if place.in_value and text:
-        return _of_text(document, analysis, key, place, Word(text, line, start, end))
+        return _text_meaning(document, analysis, key, place, Word(text, line, start, end))
     word = document.word_at(line, column)
     if word is None or place.in_header:
         return None
     if place.in_value and place.key == "bind":
-        return _slot(document, place.technique, word)
+        return _slot_meaning(document, place.table.technique, word)
     uniform = uniforms_at(document, analysis, place).get(word.text)
     if uniform is None:
         return None
     return Meaning("uniform", uniform, word, path_of(uniform.span.file, document, analysis.files))
 
 
-def _of_text(
+def _text_meaning(
     document: Document, analysis: Analysis, key: str, place: toml_places.TomlPlace, word: Word
 ) -> Meaning | None:
     if key == "technique" or place.section == "shell":
         technique = technique_named(word.text, document)
         return Meaning("technique", technique, word, technique.path) if technique else None
     if place.key == "bind":
-        return _bound(document, place.technique, key, word)
+        return _bound_function(document, place.table.technique, key, word)
     if key == "material" and not place.section:
         beside = material_beside(word.text, document.folder)
         path = beside or examples().get(word.text, os.path.join(document.folder, word.text))
@@ -198,7 +186,7 @@ def slots_of(technique: Technique) -> dict[str, Function]:
     return {slot.name: slot for slot in slots.needs(technique.module, technique.function)[1]}
 
 
-def _slot(document: Document, name: str, word: Word) -> Meaning | None:
+def _slot_meaning(document: Document, name: str, word: Word) -> Meaning | None:
     technique = technique_named(name, document)
     slot = slots_of(technique).get(word.text) if technique else None
     if technique is None or slot is None:
@@ -206,7 +194,7 @@ def _slot(document: Document, name: str, word: Word) -> Meaning | None:
     return Meaning("function", slot, word, path_of(slot.span.file, document, (technique.path,)))
 
 
-def _bound(document: Document, name: str, slot_name: str, word: Word) -> Meaning | None:
+def _bound_function(document: Document, name: str, slot_name: str, word: Word) -> Meaning | None:
     """The function that a slot is bound to."""
     technique = technique_named(name, document)
     slot = slots_of(technique).get(slot_name) if technique else None
@@ -225,7 +213,7 @@ def uniforms_at(document: Document, analysis: Analysis, place: toml_places.TomlP
         if place.section not in ("parameters", "textures") or not analysis.scene or not analysis.material:
             return {}
         return uniforms_of(analysis.scene, analysis.material)
-    technique = technique_named(place.technique, document)
+    technique = technique_named(place.table.technique, document)
     if technique is None:
         return {}
     modules = [(technique.module, technique.function), *_bound_functions(document, place, technique)]
@@ -246,7 +234,7 @@ def names_of(uniform: Uniform) -> list[str]:
 def _bound_functions(
     document: Document, place: toml_places.TomlPlace, technique: Technique
 ) -> list[tuple[Module, Function]]:
-    text = "\n".join(document.lines[place.first_line + 1 : place.last_line + 1])
+    text = "\n".join(document.lines[place.table.first_line + 1 : place.table.last_line + 1])
     found = []
     for name, slot in slots_of(technique).items():
         for bound in toml_places.bound_texts(text, name):

@@ -51,7 +51,7 @@ class OpenDocuments:
             self._analyses[path] = analyse(document)
         return document, self._analyses[path]
 
-    def opened(self, path: str) -> tuple[Document, Analysis] | None:
+    def refresh(self, path: str) -> tuple[Document, Analysis] | None:
         """As `get`, of the text as it is: where its analysis is of an older one, it is read again."""
         if path in self._documents:
             self.problems(path)

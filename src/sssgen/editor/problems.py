@@ -63,14 +63,14 @@ def problems_of(document: Document, analysis: Analysis) -> list[Problem]:
 def _problem(document: Document, analysis: Analysis, own: tuple[str, ...], diagnostic: Diagnostic) -> Problem:
     severity, message, span, hint, _ = diagnostic
     if not span.file or span.file in own:
-        return Problem(_within(document, range_of(span)), severity, message, hint)
+        return Problem(_visible_range(document, range_of(span)), severity, message, hint)
     shown = display_name(span.file, os.path.realpath(document.folder))
     place = f"{shown}:{span.line}:{span.column}: " if span.line else f"{shown}: "
     path = path_of(span.file, document, analysis.files)
-    return Problem(_naming(document, span.file), severity, place + message, hint, path, range_of(span), message)
+    return Problem(_mention(document, span.file), severity, place + message, hint, path, range_of(span), message)
 
 
-def _within(document: Document, range: Range) -> Range:
+def _visible_range(document: Document, range: Range) -> Range:
     """A range that is not empty: an error at the end of a line is shown on its last character."""
     if range[:2] != range[2:]:
         return range
@@ -79,7 +79,7 @@ def _within(document: Document, range: Range) -> Range:
     return Range(range.line, start, range.line, max(start + 1, min(width, start + 1)))
 
 
-def _naming(document: Document, file: str) -> Range:
+def _mention(document: Document, file: str) -> Range:
     """Where a document names a file, or the technique in it; its first line if it names neither itself."""
     base = os.path.basename(file)
     for name in (file, base, f'"{os.path.splitext(base)[0]}"'):

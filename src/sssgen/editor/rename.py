@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import NamedTuple
 
-from sssgen.editor.analysis import Analysis, analyse, own_names
+from sssgen.editor.analysis import Analysis, analyse, function_around, own_names
 from sssgen.editor.documents import GLSL, MATERIAL, SCENE, TECHNIQUE, Document, Word
 from sssgen.editor.lookup import Meaning, meaning_at
 from sssgen.editor.problems import Range
@@ -25,6 +25,7 @@ from sssgen.material import library
 from sssgen.material.library import Technique
 from sssgen.support import unsaved
 from sssgen.support.diagnostics import SssgenError, failure
+from sssgen.support.paths import stem
 from sssgen.support.text_files import read_text
 
 LOCAL, GLOBAL = ("param", "value"), ("uniform", "function", "constant", "variable")
@@ -48,7 +49,7 @@ class Edit(NamedTuple):
     text: str
 
 
-class _Renamed(NamedTuple):
+class _Declaration(NamedTuple):
     """What is renamed: a declaration of a file, with all its overloads."""
 
     kind: str
@@ -58,17 +59,17 @@ class _Renamed(NamedTuple):
     """The line and column of each; a file has several names in messages."""
 
 
-def renamable_at(document: Document, analysis: Analysis, line: int, column: int) -> Word:
+def name_to_rename(document: Document, analysis: Analysis, line: int, column: int) -> Word:
     """The name at a place that can be renamed. Raises SssgenError for what cannot."""
-    return _renamed_at(document, analysis, line, column)[1]
+    return _target_at(document, analysis, line, column)[1]
 
 
 def rename(
-    place: tuple[Document, Analysis, int, int], name: str, opened: Open, paths: Sequence[str]
+    place: tuple[Document, Analysis, int, int], name: str, refresh: Open, paths: Sequence[str]
 ) -> dict[str, list[Edit]]:
     """The edits of each file; `paths` are those of the open files. Raises SssgenError where the name cannot be used."""
     document, analysis, line, column = place
-    meaning, word = _renamed_at(document, analysis, line, column)
+    meaning, word = _target_at(document, analysis, line, column)
     if not _NAME.fullmatch(name) or "__" in name:
         raise failure(f"'{name}' is not a name", "a letter, then letters, digits and single underscores")
     if name == word.text:
@@ -77,12 +78,12 @@ def rename(
         edits = {document.path: _local_edits(document, analysis, word, name)}
         documents = {document.path: document}
     else:
-        edits, documents = _global_edits(_renamed(document, analysis, meaning, word), name, opened, paths)
+        edits, documents = _global_edits(_declaration_of(document, analysis, meaning, word), name, refresh, paths)
     _check(edits, documents, name)
     return edits
 
 
-def _renamed_at(document: Document, analysis: Analysis, line: int, column: int) -> tuple[Meaning, Word]:
+def _target_at(document: Document, analysis: Analysis, line: int, column: int) -> tuple[Meaning, Word]:
     """What is at a place, and its name there."""
     meaning = meaning_at(document, analysis, line, column)
     if meaning is None or meaning.kind not in LOCAL + GLOBAL or document.kind == GLSL:
@@ -99,7 +100,7 @@ def _renamed_at(document: Document, analysis: Analysis, line: int, column: int) 
     if meaning.path.startswith(library.TECHNIQUES + os.sep):
         raise failure(f"'{word.text}' is declared in the library", "copy the technique to change it")
     thing = meaning.thing
-    if meaning.kind == "function" and thing.name == _stem(meaning.path) and thing.body is not None:
+    if meaning.kind == "function" and thing.name == stem(meaning.path) and thing.body is not None:
         raise failure(f"'{word.text}' is the technique of its file", "rename the file and the function together")
     if document.kind in (MATERIAL, SCENE) and word.text != thing.name:
         raise failure(f"'{word.text}' is another name of '{thing.name}'", "rename it in the technique")
@@ -107,7 +108,7 @@ def _renamed_at(document: Document, analysis: Analysis, line: int, column: int) 
 
 
 def _check_not_of_technique(document: Document, technique: Technique, word: Word) -> None:
-    around = _function_around(document, technique.module, word.line + 1)
+    around = function_around(document, technique.module, word.line)
     if around is not None and around.key == technique.function.key:
         hint = f"'{technique.name}' reads it from the chain, or gives it to the chain, under this name"
         raise failure(f"'{word.text}' is a quantity of the chain", hint)
@@ -119,16 +120,12 @@ def _name_in(word: Word) -> Word:
     return Word(word.text.rpartition(":")[2], word.line, start, word.end)
 
 
-def _stem(path: str) -> str:
-    return os.path.splitext(os.path.basename(path))[0]
-
-
-def _renamed(document: Document, analysis: Analysis, meaning: Meaning, word: Word) -> _Renamed:
+def _declaration_of(document: Document, analysis: Analysis, meaning: Meaning, word: Word) -> _Declaration:
     span = meaning.thing.span
     functions = analysis.module.functions if analysis.module is not None and meaning.kind == "function" else ()
     same = [function.span for function in functions if (function.name, function.span.file) == (word.text, span.file)]
     places = frozenset((own.line, own.column) for own in (span, *same))
-    return _Renamed(meaning.kind, word.text, meaning.path, places)
+    return _Declaration(meaning.kind, word.text, meaning.path, places)
 
 
 # In one function
@@ -138,7 +135,7 @@ def _local_edits(document: Document, analysis: Analysis, word: Word, name: str) 
     """A parameter or variable of a function: every use of the name in the function."""
     tokens = _tokens(document)
     assert analysis.module is not None
-    around = _function_around(document, analysis.module, word.line + 1)
+    around = function_around(document, analysis.module, word.line)
     if around is None or _declarations(around, word.text) != 1 or _spans(analysis.module, word.text):
         raise failure(f"'{word.text}' is declared more than once here", "rename one of them by hand")
     first, last = around.span.line, _last_line(document, analysis.module, around)
@@ -147,11 +144,6 @@ def _local_edits(document: Document, analysis: Analysis, word: Word, name: str) 
     if name in inside:
         raise failure(f"'{around.name}' already has the name '{name}'")
     return [_edit(token, name) for token in uses]
-
-
-def _function_around(document: Document, module: Module, line: int) -> Function | None:
-    own = [f for f in module.functions if f.span.file in own_names(document) and f.span.line <= line]
-    return max(own, key=lambda function: function.span.line, default=None)
 
 
 def _last_line(document: Document, module: Module, function: Function) -> int:
@@ -171,31 +163,31 @@ def _declarations(function: Function, name: str) -> int:
 
 
 def _global_edits(
-    renamed: _Renamed, name: str, opened: Open, paths: Sequence[str]
+    declaration: _Declaration, name: str, refresh: Open, paths: Sequence[str]
 ) -> tuple[dict[str, list[Edit]], dict[str, Document]]:
     edits: dict[str, list[Edit]] = {}
     documents: dict[str, Document] = {}
-    for path in _files(renamed, paths):
-        entry = opened(path) or _read(path)
-        if entry is None or not re.search(rf"\b{renamed.name}\b", entry[0].text):
+    for path in _files(declaration, paths):
+        entry = refresh(path) or _read_document(path)
+        if entry is None or not re.search(rf"\b{declaration.name}\b", entry[0].text):
             continue
-        of_kind = {TECHNIQUE: _in_technique, MATERIAL: _in_toml, SCENE: _in_toml}.get(entry[0].kind)
-        own = of_kind(*entry, renamed, name) if of_kind else []
+        of_kind = {TECHNIQUE: _technique_edits, MATERIAL: _toml_edits, SCENE: _toml_edits}.get(entry[0].kind)
+        own = of_kind(*entry, declaration, name) if of_kind else []
         if own:
             edits[path], documents[path] = own, entry[0]
     return edits, documents
 
 
-def _files(renamed: _Renamed, paths: Sequence[str]) -> list[str]:
+def _files(declaration: _Declaration, paths: Sequence[str]) -> list[str]:
     """The open files and those of the declaration's folder."""
-    folder = os.path.dirname(renamed.path)
+    folder = os.path.dirname(declaration.path)
     beside = [os.path.join(folder, file) for file in sorted(os.listdir(folder)) if file.endswith((".sss", ".toml"))]
     if len(beside) > MAX_FILES:
         raise failure(f"{folder} has more than {MAX_FILES} files", "rename by hand")
     return list(dict.fromkeys([*paths, *beside]))
 
 
-def _read(path: str) -> tuple[Document, Analysis] | None:
+def _read_document(path: str) -> tuple[Document, Analysis] | None:
     try:
         document = Document(path, read_text(path, path).replace("\r\n", "\n"))
     except (SssgenError, OSError):
@@ -203,29 +195,29 @@ def _read(path: str) -> tuple[Document, Analysis] | None:
     return document, analyse(document)
 
 
-def _in_technique(document: Document, analysis: Analysis, renamed: _Renamed, name: str) -> list[Edit]:
+def _technique_edits(document: Document, analysis: Analysis, declaration: _Declaration, name: str) -> list[Edit]:
     """The uses in a file that declares or includes it."""
-    if renamed.path != document.path and renamed.path not in analysis.files:
+    if declaration.path != document.path and declaration.path not in analysis.files:
         return []
     module = analysis.module
     if module is None or any(problem.severity == "error" for problem in analysis.diagnostics):
         raise failure(f"{os.path.basename(document.path)} has errors", "mend them first")
     tokens = _tokens(document)
-    if not _declares(document, analysis, module, renamed):
+    if not _declares(document, analysis, module, declaration):
         return []
     for function in module.functions:
-        if function.span.file in own_names(document) and _declarations(function, renamed.name):
-            raise failure(f"'{function.name}' has a variable '{renamed.name}' of its own", "rename that one first")
-    uses = _uses(tokens, renamed.name)
+        if function.span.file in own_names(document) and _declarations(function, declaration.name):
+            raise failure(f"'{function.name}' has a variable '{declaration.name}' of its own", "rename that one first")
+    uses = _uses(tokens, declaration.name)
     if uses and any(token.text == name for token in tokens):
         raise failure(f"{os.path.basename(document.path)} already has the name '{name}'")
-    return [*(_edit(token, name) for token in uses), *_in_comments(document, renamed.name, name)]
+    return [*(_edit(token, name) for token in uses), *_comment_edits(document, declaration.name, name)]
 
 
-def _declares(document: Document, analysis: Analysis, module: Module, renamed: _Renamed) -> bool:
+def _declares(document: Document, analysis: Analysis, module: Module, declaration: _Declaration) -> bool:
     """Whether the name is that of the declaration in a file that may have others of the name."""
-    files = [span.file for span in _spans(module, renamed.name)]
-    return bool(files) and all(path_of(file, document, analysis.files) == renamed.path for file in files)
+    files = [span.file for span in _spans(module, declaration.name)]
+    return bool(files) and all(path_of(file, document, analysis.files) == declaration.path for file in files)
 
 
 def _spans(module: Module, name: str) -> list[Span]:
@@ -238,7 +230,7 @@ def _spans(module: Module, name: str) -> list[Span]:
 
 def _tokens(document: Document) -> list[Token]:
     """The tokens of a technique, without its `#include` lines."""
-    return scan(re.sub(r"^[ \t]*#.*", "", document.text, flags=re.MULTILINE), document.shown)[0]
+    return scan(re.sub(r"^[ \t]*#.*", "", document.text, flags=re.MULTILINE), document.display_name)[0]
 
 
 def _uses(tokens: Sequence[Token], name: str) -> list[Token]:
@@ -255,7 +247,7 @@ def _edit(token: Token, name: str) -> Edit:
     return Edit(Range(line, column, line, column + len(token.text)), name)
 
 
-def _in_comments(document: Document, old: str, name: str) -> Iterator[Edit]:
+def _comment_edits(document: Document, old: str, name: str) -> Iterator[Edit]:
     """The attributes that name parameters; all other words of comments are left as they are."""
     for number, line in enumerate(document.lines):
         if _NAMING.match(line):
@@ -264,23 +256,26 @@ def _in_comments(document: Document, old: str, name: str) -> Iterator[Edit]:
                 yield Edit(Range(number, start, number, start + len(old)), name)
 
 
-def _in_toml(document: Document, analysis: Analysis, renamed: _Renamed, name: str) -> list[Edit]:
+def _toml_edits(document: Document, analysis: Analysis, declaration: _Declaration, name: str) -> list[Edit]:
     """The keys and texts that name it."""
     edits = []
     for number, line in enumerate(document.lines):
-        for match in re.finditer(rf"\b{renamed.name}\b", line):
-            if _in_comment(line[: match.start()]):
+        for match in re.finditer(rf"\b{declaration.name}\b", line):
+            if _ends_in_comment(line[: match.start()]):
                 break
             meaning = meaning_at(document, analysis, number, match.start())
-            if meaning is None or (meaning.kind, meaning.path) != (renamed.kind, renamed.path):
+            if meaning is None or (meaning.kind, meaning.path) != (declaration.kind, declaration.path):
                 continue
             word, span = _name_in(meaning.word), meaning.thing.span
-            if (span.line, span.column) in renamed.places and (word.start, word.text) == (match.start(), renamed.name):
+            if (span.line, span.column) in declaration.places and (word.start, word.text) == (
+                match.start(),
+                declaration.name,
+            ):
                 edits.append(Edit(Range(number, word.start, number, word.end), name))
     return edits
 
 
-def _in_comment(before: str) -> bool:
+def _ends_in_comment(before: str) -> bool:
     return "#" in re.sub(r'"[^"]*"|\'[^\']*\'', "", before)
 
 
@@ -290,7 +285,7 @@ def _in_comment(before: str) -> bool:
 def _check(edits: Mapping[str, list[Edit]], documents: Mapping[str, Document], name: str) -> None:
     """Raises SssgenError where a changed file has errors that it did not have."""
     before = {path: _errors(documents[path]) for path in edits}
-    with _kept({path: _changed(documents[path].text, edits[path]) for path in edits}) as changed:
+    with _overlay({path: _apply_edits(documents[path].text, edits[path]) for path in edits}) as changed:
         for path, document in changed.items():
             new = [message for message in _errors(document) if message not in before[path]]
             if new and len(_errors(document)) > len(before[path]):
@@ -302,7 +297,7 @@ def _errors(document: Document) -> list[str]:
 
 
 @contextmanager
-def _kept(texts: Mapping[str, str]) -> Iterator[dict[str, Document]]:
+def _overlay(texts: Mapping[str, str]) -> Iterator[dict[str, Document]]:
     """Reads the texts in place of the files in the block."""
     before = {path: unsaved.text_of(path) for path in texts}
     try:
@@ -317,7 +312,7 @@ def _kept(texts: Mapping[str, str]) -> Iterator[dict[str, Document]]:
                 unsaved.keep(path, earlier)
 
 
-def _changed(text: str, edits: Sequence[Edit]) -> str:
+def _apply_edits(text: str, edits: Sequence[Edit]) -> str:
     lines = text.split("\n")
     for part, new in sorted(edits, reverse=True):
         line = lines[part.line]

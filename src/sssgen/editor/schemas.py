@@ -29,7 +29,7 @@ _TECHNIQUE_FILE = {"type": "string", "pattern": r"\.(sss|glsl)$"}
 _LINE: Schema = {"type": "string", "pattern": r"^[^\u0000-\u001f]*$"}
 
 
-def of_materials() -> Schema:
+def material_schema() -> Schema:
     """The schema of a material's TOML file."""
     techniques = list(library.load_all())
     return {
@@ -110,7 +110,7 @@ def _value(uniform: Uniform) -> Schema:
     return several[0] if len(several) == 1 else {"anyOf": several}
 
 
-def of_scenes() -> Schema:
+def scene_schema() -> Schema:
     """The schema of a scene's TOML file."""
     tables: dict[str, Schema] = {
         "material": {"anyOf": [{"enum": list(examples())}, {"type": "string", "pattern": r"\.toml$"}]},

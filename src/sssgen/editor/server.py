@@ -22,12 +22,12 @@ from sssgen.editor.completion_item import Item
 from sssgen.editor.definition import definition_at
 from sssgen.editor.documents import GLSL, Document
 from sssgen.editor.hover import hover_at
-from sssgen.editor.layout import laid_out
+from sssgen.editor.layout import lay_out
 from sssgen.editor.lenses import Lens, lenses_of
 from sssgen.editor.open_documents import OpenDocuments
 from sssgen.editor.preparation import prepare
 from sssgen.editor.problems import Problem, Range, fixes_of
-from sssgen.editor.rename import renamable_at, rename
+from sssgen.editor.rename import name_to_rename, rename
 from sssgen.support.diagnostics import SssgenError
 from sssgen.version import VERSION
 
@@ -81,6 +81,11 @@ class Server(LanguageServer):
         line = lines[place.line] if place.line < len(lines) else ""
         return lsp.Position(place.line, self.codec.client_num_units(line[: place.character]))
 
+    def location(self, path: str, part: Range) -> lsp.Location:
+        """A place in any file, in characters: the client knows no text of it."""
+        start, end = lsp.Position(part.line, part.column), lsp.Position(part.end_line, part.end_column)
+        return lsp.Location(from_fs_path(path) or "", lsp.Range(start, end))
+
     def place(self, uri: str, position: lsp.Position) -> Place | None:
         """A document, what it says, and a line and column in it."""
         entry = self.documents.get(path) if (path := self.path_of(uri)) else None
@@ -103,9 +108,7 @@ class Server(LanguageServer):
         """A problem as the protocol has it; the hint is part of the message."""
         related = None
         if problem.related_path:
-            place = problem.related_range
-            start, end = lsp.Position(place.line, place.column), lsp.Position(place.end_line, place.end_column)
-            location = lsp.Location(from_fs_path(problem.related_path) or "", lsp.Range(start, end))
+            location = self.location(problem.related_path, problem.related_range)
             related = [lsp.DiagnosticRelatedInformation(location, problem.related_message)]
         return lsp.Diagnostic(
             self.range_to_client(lines, problem.range),
@@ -116,13 +119,13 @@ class Server(LanguageServer):
         )
 
 
-async def _initialized(server: Server, params: lsp.InitializedParams) -> None:
+async def _on_initialized(server: Server, params: lsp.InitializedParams) -> None:
     """Reads what the first explanation needs, in steps between which requests are answered."""
     for _ in prepare():
         await asyncio.sleep(0)
 
 
-def _safe(handler: Callable[[Server, Any], _Result]) -> Callable[[Server, Any], _Result | None]:
+def _without_errors(handler: Callable[[Server, Any], _Result]) -> Callable[[Server, Any], _Result | None]:
     """A handler that answers nothing where a file that it needs has errors of its own, or has vanished."""
 
     @functools.wraps(handler)
@@ -135,14 +138,24 @@ def _safe(handler: Callable[[Server, Any], _Result]) -> Callable[[Server, Any], 
     return answer
 
 
-def _opened(server: Server, params: lsp.DidOpenTextDocumentParams) -> None:
+def _at_place(handler: Callable[[Server, Any, Place], _Result]) -> Callable[[Server, Any], _Result | None]:
+    """A handler that gets the place of the request; one in a document that is not open is answered with nothing."""
+
+    def answer(server: Server, params: Any) -> _Result | None:
+        place = server.place(params.text_document.uri, params.position)
+        return None if place is None else handler(server, params, place)
+
+    return answer
+
+
+def _on_open(server: Server, params: lsp.DidOpenTextDocumentParams) -> None:
     path = server.path_of(params.text_document.uri)
     if path:
         server.documents.change(path, params.text_document.text)
         server.publish(path, params.text_document.version)
 
 
-async def _changed(server: Server, params: lsp.DidChangeTextDocumentParams) -> None:
+async def _on_change(server: Server, params: lsp.DidChangeTextDocumentParams) -> None:
     uri, version = params.text_document.uri, params.text_document.version
     path = server.path_of(uri)
     if not path:
@@ -160,7 +173,7 @@ async def _changed(server: Server, params: lsp.DidChangeTextDocumentParams) -> N
         _refresh_lenses(server)
 
 
-def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:
+def _on_close(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:
     path = server.path_of(params.text_document.uri)
     if path:
         dependent = server.documents.depending_on(path)
@@ -171,26 +184,22 @@ def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:
             server.publish(other)
 
 
-def _files_changed(server: Server, params: lsp.DidChangeWatchedFilesParams) -> None:
+def _on_file_changes(server: Server, params: lsp.DidChangeWatchedFilesParams) -> None:
     paths = [path for change in params.changes if (path := server.path_of(change.uri))]
     for other in dict.fromkeys(other for path in paths for other in server.documents.depending_on(path)):
         server.publish(other)
 
 
-def _hover(server: Server, params: lsp.HoverParams) -> lsp.Hover | None:
-    place = server.place(params.text_document.uri, params.position)
-    hover = hover_at(*place) if place else None
-    if place is None or hover is None:
+def _hover(server: Server, params: lsp.HoverParams, place: Place) -> lsp.Hover | None:
+    hover = hover_at(*place)
+    if hover is None:
         return None
     word = hover.word
     part = server.range_to_client(place[0].lines, Range(word.line, word.start, word.line, word.end))
     return lsp.Hover(lsp.MarkupContent(lsp.MarkupKind.Markdown, hover.markdown), part)
 
 
-def _completion(server: Server, params: lsp.CompletionParams) -> list[lsp.CompletionItem] | None:
-    place = server.place(params.text_document.uri, params.position)
-    if place is None:
-        return None
+def _completion(server: Server, params: lsp.CompletionParams, place: Place) -> list[lsp.CompletionItem]:
     return [_item(number, item) for number, item in enumerate(completions_at(*place))]
 
 
@@ -205,14 +214,9 @@ def _item(number: int, item: Item) -> lsp.CompletionItem:
     )
 
 
-def _definition(server: Server, params: lsp.DefinitionParams) -> lsp.Location | None:
-    place = server.place(params.text_document.uri, params.position)
-    target = definition_at(*place) if place else None
-    if target is None:
-        return None
-    part = target.range
-    start, end = lsp.Position(part.line, part.column), lsp.Position(part.end_line, part.end_column)
-    return lsp.Location(from_fs_path(target.path) or "", lsp.Range(start, end))
+def _definition(server: Server, params: lsp.DefinitionParams, place: Place) -> lsp.Location | None:
+    target = definition_at(*place)
+    return None if target is None else server.location(target.path, target.range)
 
 
 def _fixes(server: Server, params: lsp.CodeActionParams) -> list[lsp.CodeAction] | None:
@@ -286,23 +290,17 @@ def _refresh_lenses(server: Server) -> None:
         server.workspace_code_lens_refresh(None)
 
 
-def _renamable(server: Server, params: lsp.PrepareRenameParams) -> lsp.Range | None:
-    place = server.place(params.text_document.uri, params.position)
-    if place is None:
-        return None
+def _prepare_rename(server: Server, params: lsp.PrepareRenameParams, place: Place) -> lsp.Range:
     try:
-        word = renamable_at(*place)
+        word = name_to_rename(*place)
     except SssgenError as error:
         raise _refusal(error) from None
     return server.range_to_client(place[0].lines, Range(word.line, word.start, word.line, word.end))
 
 
-def _rename(server: Server, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
-    place = server.place(params.text_document.uri, params.position)
-    if place is None:
-        return None
+def _rename(server: Server, params: lsp.RenameParams, place: Place) -> lsp.WorkspaceEdit:
     try:
-        edits = rename(place, params.new_name, server.documents.opened, server.documents.paths)
+        edits = rename(place, params.new_name, server.documents.refresh, server.documents.paths)
     except SssgenError as error:
         raise _refusal(error) from None
     changes = {}
@@ -321,12 +319,12 @@ def _refusal(error: SssgenError) -> JsonRpcException:
     return JsonRpcException(text, lsp.LSPErrorCodes.RequestFailed)
 
 
-def _formatting(server: Server, params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit] | None:
+def _format(server: Server, params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit] | None:
     place = server.place(params.text_document.uri, lsp.Position(0, 0))
     if place is None:
         return None
     document = place[0]
-    text = laid_out(document.text, document.path)
+    text = lay_out(document.text, document.path)
     whole = Range(0, 0, len(document.lines), 0)
     return [lsp.TextEdit(server.range_to_client(document.lines, whole), text)] if text != document.text else []
 
@@ -334,21 +332,21 @@ def _formatting(server: Server, params: lsp.DocumentFormattingParams) -> list[ls
 def make_server() -> Server:
     """A server that answers; `start_io` of it reads from standard input."""
     server = Server()
-    server.feature(lsp.INITIALIZED)(_initialized)
-    server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)(_opened)
-    server.feature(lsp.TEXT_DOCUMENT_DID_CHANGE)(_changed)
-    server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)(_closed)
-    server.feature(lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES)(_files_changed)
-    server.feature(lsp.TEXT_DOCUMENT_HOVER)(_safe(_hover))
+    server.feature(lsp.INITIALIZED)(_on_initialized)
+    server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)(_on_open)
+    server.feature(lsp.TEXT_DOCUMENT_DID_CHANGE)(_on_change)
+    server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)(_on_close)
+    server.feature(lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES)(_on_file_changes)
+    server.feature(lsp.TEXT_DOCUMENT_HOVER)(_without_errors(_at_place(_hover)))
     server.feature(lsp.TEXT_DOCUMENT_COMPLETION, lsp.CompletionOptions(trigger_characters=list(TRIGGERS)))(
-        _safe(_completion)
+        _without_errors(_at_place(_completion))
     )
-    server.feature(lsp.TEXT_DOCUMENT_DEFINITION)(_safe(_definition))
+    server.feature(lsp.TEXT_DOCUMENT_DEFINITION)(_without_errors(_at_place(_definition)))
     server.feature(
         lsp.TEXT_DOCUMENT_CODE_ACTION, lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix])
-    )(_safe(_fixes))
-    server.feature(lsp.TEXT_DOCUMENT_FORMATTING)(_safe(_formatting))
+    )(_without_errors(_fixes))
+    server.feature(lsp.TEXT_DOCUMENT_FORMATTING)(_without_errors(_format))
     server.feature(lsp.TEXT_DOCUMENT_CODE_LENS)(_lenses)
-    server.feature(lsp.TEXT_DOCUMENT_PREPARE_RENAME)(_renamable)
-    server.feature(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))(_rename)
+    server.feature(lsp.TEXT_DOCUMENT_PREPARE_RENAME)(_at_place(_prepare_rename))
+    server.feature(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))(_at_place(_rename))
     return server

@@ -12,7 +12,7 @@ from sssgen.support.paths import place, source_name
 
 def path_of(file: str, document: Document, files: Iterable[str] = ()) -> str:
     """The path of a file by its name in messages; '' where it is not found. `files` are those that were read."""
-    if file in (document.shown, source_name(document.path)):
+    if file in (document.display_name, source_name(document.path)):
         return document.path
     if os.path.isabs(file) and os.path.isfile(file):
         return file

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from sssgen.editor.analysis import Analysis
-from sssgen.editor.completion_item import Item, plain
+from sssgen.editor.completion_item import Item, items_of
 from sssgen.editor.documents import Document
 from sssgen.editor.lookup import names_of, slots_of, technique_named, uniforms_at
 from sssgen.editor.toml_places import TomlPlace, place_at, tables_of
@@ -26,31 +26,31 @@ _LISTS = ("light",)
 _TABLES = ("geometry", "camera", "light", "shell", "parameters", "textures")
 
 
-def in_material(document: Document, analysis: Analysis, line: int, column: int) -> list[Item]:
+def material_items(document: Document, analysis: Analysis, line: int, column: int) -> list[Item]:
     """Completions in a material."""
     place = place_at(document, line, column)
     if place.in_header:
-        return plain(("material", *roles.SECTIONS), "section")
+        return items_of(("material", *roles.SECTIONS), "section")
     if place.section == "material":
-        return _in_head(place)
+        return _head_items(place)
     if place.section not in roles.SECTIONS:
         return []
     if place.key == "bind" and place.in_value:
-        return _in_bind(document, place)
+        return _bind_items(document, place)
     if not place.in_value:
         uniforms = uniforms_at(document, analysis, place)
         return [*_keys(STAGE_KEYS, place), *_parameters(uniforms, place)]
     if place.key == "technique":
         return _techniques(document, place)
-    return _quoted(UV_SETS, place) if place.key == "uv" else []
+    return _quoted_items(UV_SETS, place) if place.key == "uv" else []
 
 
-def _in_head(place: TomlPlace) -> list[Item]:
+def _head_items(place: TomlPlace) -> list[Item]:
     if not place.in_value:
         return _keys(MATERIAL_KEYS, place)
     if place.key in CHOICES:
-        return _quoted(CHOICES[place.key][0], place)
-    return plain(("true", "false"), "value") if place.key == "two_sided" else []
+        return _quoted_items(CHOICES[place.key][0], place)
+    return items_of(("true", "false"), "value") if place.key == "two_sided" else []
 
 
 def _techniques(document: Document, place: TomlPlace) -> list[Item]:
@@ -62,7 +62,7 @@ def _techniques(document: Document, place: TomlPlace) -> list[Item]:
         technique = technique_named(name, document)
         if technique is None or technique.role not in allowed:
             continue
-        missing = _missing(before, technique)
+        missing = _missing_input(before, technique)
         detail = f"{technique.role}: {missing}" if missing else technique.role
         rank = (2 if missing else 0) + technique.baseline
         items.append(_technique_item(technique, detail, rank, place))
@@ -77,19 +77,15 @@ def _technique_item(technique: Technique, detail: str, rank: int, place: TomlPla
 def _links(document: Document, place: TomlPlace) -> Iterator[roles.Link]:
     """The stages that run before the place's section, and those above it in the same section."""
     order = list(roles.SECTIONS)
-    found = []
-    for number, (first, section, name) in enumerate(tables_of(document)):
-        technique = technique_named(name, document) if section in order and first != place.first_line else None
-        earlier = section in order and (
-            order.index(section) < order.index(place.section) or (section == place.section and first < place.first_line)
-        )
-        if technique is not None and earlier:
-            found.append((order.index(section), number, technique))
-    for _, _, technique in sorted(found, key=lambda row: row[:2]):
-        yield roles.Link(technique, technique.function.span)
+    here = order.index(place.section), place.table.first_line
+    tables = [table for table in tables_of(document) if table.section in order]
+    for section, line, name in sorted((order.index(part.section), part.first_line, part.technique) for part in tables):
+        technique = technique_named(name, document) if (section, line) < here else None
+        if technique is not None:
+            yield roles.Link(technique, technique.function.span)
 
 
-def _missing(before: Sequence[roles.Link], technique: Technique) -> str:
+def _missing_input(before: Sequence[roles.Link], technique: Technique) -> str:
     """What a technique reads that the stages before it do not give; '' where nothing is missing."""
     missing: list[str] = []
 
@@ -101,13 +97,13 @@ def _missing(before: Sequence[roles.Link], technique: Technique) -> str:
     return missing[0] if missing else ""
 
 
-def _in_bind(document: Document, place: TomlPlace) -> list[Item]:
-    technique = technique_named(place.technique, document)
+def _bind_items(document: Document, place: TomlPlace) -> list[Item]:
+    technique = technique_named(place.table.technique, document)
     if technique is None:
         return []
     known = slots_of(technique)
     if place.inner_key in known:
-        return _quoted(slots.candidates(known[place.inner_key]), place, "function")
+        return _quoted_items(slots.candidates(known[place.inner_key]), place, "function")
     if place.in_text or not place.in_table:
         return []
     return [Item(name, "function", slots.signature(slot), slot.doc, f'{name} = ""') for name, slot in known.items()]
@@ -137,23 +133,23 @@ def _keys(keys: Iterable[str], place: TomlPlace) -> list[Item]:
     return [Item(key, "keyword", text=f"{key} = ") for key in keys if key not in place.keys]
 
 
-def _quoted(values: Iterable[str], place: TomlPlace, kind: str = "value") -> list[Item]:
+def _quoted_items(values: Iterable[str], place: TomlPlace, kind: str = "value") -> list[Item]:
     return [Item(value, kind, text=value if place.in_text else f'"{value}"') for value in values]
 
 
-def in_scene(document: Document, analysis: Analysis, line: int, column: int) -> list[Item]:
+def scene_items(document: Document, analysis: Analysis, line: int, column: int) -> list[Item]:
     """Completions in a scene."""
     place = place_at(document, line, column)
     section = place.section
     if place.in_header:
-        return plain(_TABLES, "section")
+        return items_of(_TABLES, "section")
     if section in ("parameters", "textures") and not place.in_value:
         wanted = section == "textures"
         uniforms = uniforms_at(document, analysis, place)
         return _parameters({k: u for k, u in uniforms.items() if isinstance(u.type, Sampler) == wanted}, place)
     if section == "shell":
         if place.in_value:
-            return _quoted(choices(place.key), place, "technique") if place.key in OF_SHELLS else []
+            return _quoted_items(choices(place.key), place, "technique") if place.key in OF_SHELLS else []
         return _keys(OF_SHELLS, place)
     if place.in_value:
         return _scene_value(document, place)
@@ -169,10 +165,10 @@ def in_scene(document: Document, analysis: Analysis, line: int, column: int) -> 
 
 def _scene_value(document: Document, place: TomlPlace) -> list[Item]:
     if place.section == "" and place.key == "material":
-        return _quoted(examples(), place)
+        return _quoted_items(examples(), place)
     if place.section.startswith("geometry") and place.key == "kind":
-        return _quoted(SHAPES, place)
+        return _quoted_items(SHAPES, place)
     if place.section.startswith("geometry") and place.key == "technique":
         paths = {name: path for name, path in library.index().items() if library.folder_of(path) == "distance"}
-        return _quoted([f"{source_name(path)}:{name}" for name, path in paths.items()], place, "technique")
+        return _quoted_items([f"{source_name(path)}:{name}" for name, path in paths.items()], place, "technique")
     return []

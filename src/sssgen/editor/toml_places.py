@@ -1,6 +1,7 @@
 """Where a place in a material or scene is: its section, its key, and whether it is in a value.
 
-The text is read line by line, as it is half written while it is being completed.
+The text is read line by line, as it is half written while it is being completed: tomlkit and `support.toml_source` find
+places in texts without errors only.
 """
 
 from __future__ import annotations
@@ -16,15 +17,24 @@ _TEXT = re.compile(r"""["']([^"']*)["']?""")
 _INLINE = re.compile(r"([\w\-]+)[ \t]*=[ \t]*")
 
 
+class Table(NamedTuple):
+    """A table of a document, from its header to the next one."""
+
+    first_line: int
+    """The line of the header; -1 for the keys before the first header."""
+    last_line: int
+    section: str
+    """The name in the header; '' before the first."""
+    technique: str
+    """The technique that the table names."""
+
+
 class TomlPlace(NamedTuple):
     """A place in a document."""
 
-    section: str
-    """The name in the header above; '' before the first."""
+    table: Table
     keys: tuple[str, ...]
     """The keys of this table, without that of the place's own line."""
-    technique: str
-    """The technique that the table names."""
     key: str
     """The key of the line, or '' where none is written yet."""
     inner_key: str
@@ -36,26 +46,20 @@ class TomlPlace(NamedTuple):
     """Whether the place is between quotes."""
     in_table: bool
     """Whether the place is in an inline table, where a key can stand."""
-    first_line: int
-    """The line of the header; -1 before the first."""
-    last_line: int
-    """The last line of the table."""
+
+    @property
+    def section(self) -> str:
+        return self.table.section
 
 
 def place_at(document: Document, line: int, column: int) -> TomlPlace:
     """The place of a line and column."""
     lines = document.lines
-    header = next((number for number in range(min(line, len(lines) - 1), -1, -1) if _HEADER.match(lines[number])), -1)
-    following = (number for number in range(max(header + 1, 0), len(lines)) if _HEADER.match(lines[number]))
-    last = next(following, len(lines)) - 1
-    match = _HEADER.match(lines[header]) if header >= 0 else None
-    section = match.group(2) if match else ""
+    table = next(table for table in reversed(tables_of(document)) if table.first_line <= line)
+    header = table.first_line
     own = document.line(line)
-    keys = [
-        found.group(1)
-        for number in range(header + 1, last + 1)
-        if number != line and (found := _KEY.match(lines[number]))
-    ]
+    others = [lines[number] for number in range(header + 1, table.last_line + 1) if number != line]
+    keys = [match.group(1) for text in others if (match := _KEY.match(text))]
     key_match = _KEY.match(own)
     start = _start_of_value(lines, line, header) if key_match is None else line
     if key_match is None and start != line:
@@ -67,17 +71,14 @@ def place_at(document: Document, line: int, column: int) -> TomlPlace:
     inner = _INLINE.findall(value[value.rfind("{") + 1 :]) if in_table else []
     after_key = value[value.rfind(",") + 1 :] if "," in value and value.rfind(",") > value.rfind("{") else value
     return TomlPlace(
-        section,
+        table,
         tuple(keys),
-        technique_of(lines[header + 1 : last + 1]),
         key_match.group(1) if key_match else "",
         inner[-1] if inner and "=" in after_key[after_key.rfind("{") + 1 :] else "",
         in_value,
         header == line,
         in_value and (value.count('"') % 2 == 1 or (value.count('"') == 0 and value.count("'") % 2 == 1)),
         in_table,
-        header,
-        last,
     )
 
 
@@ -92,7 +93,7 @@ def _start_of_value(lines: list[str], line: int, header: int) -> int:
     return line
 
 
-def technique_of(lines: list[str]) -> str:
+def _technique_of(lines: list[str]) -> str:
     """The technique that the lines of a table name."""
     for text in lines:
         match = _KEY.match(text)
@@ -115,13 +116,13 @@ def bound_texts(text: str, slot: str) -> list[str]:
     return re.findall(rf"""\b{re.escape(slot)}[ \t]*=[ \t]*["']([^"'\n]*)["']""", text)
 
 
-def tables_of(document: Document) -> list[tuple[int, str, str]]:
-    """Each table's first line, section and technique."""
+def tables_of(document: Document) -> list[Table]:
+    """The tables of a document; the first is what stands before the first header."""
     lines = document.lines
-    starts = [number for number, text in enumerate(lines) if _HEADER.match(text)]
+    starts = [-1, *(number for number, text in enumerate(lines) if _HEADER.match(text))]
     tables = []
-    for number, start in enumerate(starts):
-        end = starts[number + 1] if number + 1 < len(starts) else len(lines)
-        match = _HEADER.match(lines[start])
-        tables.append((start, match.group(2) if match else "", technique_of(lines[start + 1 : end])))
+    for start, following in zip(starts, [*starts[1:], len(lines)], strict=True):
+        match = _HEADER.match(lines[start]) if start >= 0 else None
+        section = match.group(2) if match else ""
+        tables.append(Table(start, following - 1, section, _technique_of(lines[start + 1 : following])))
     return tables

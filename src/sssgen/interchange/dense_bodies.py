@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sssgen.interchange.imported import Notes
+from sssgen.interchange.imported_material import Notes
 from sssgen.interchange.scatter_color import multiscatter_of_albedo
 from sssgen.interchange.surface_model import ZERO, Quantity, SurfaceModel
 from sssgen.interchange.texels import mean_of
@@ -26,7 +26,7 @@ def weight_inside(model: SurfaceModel) -> float:
     return (1.0 - mean_of(model.metalness)[0]) * min(sum(mean_of(share)[0] for share in shares), 1.0)
 
 
-def reduced(medium: Medium) -> Medium:
+def isotropic_medium(medium: Medium) -> Medium:
     """A medium with isotropic scattering that looks the same from afar: the similarity relation."""
     red, green, blue = ((1.0 - medium.anisotropy) * part for part in medium.scattering)
     return replace(medium, scattering=(red, green, blue), anisotropy=0.0)
@@ -42,14 +42,14 @@ def as_matte(model: SurfaceModel, notes: Notes, mean_chord: float) -> SurfaceMod
         return model
     interior = model.interior
     assert interior is not None
-    depth = min(reduced(interior).extinction) * mean_chord
+    depth = min(isotropic_medium(interior).extinction) * mean_chord
     if depth < DENSE:
         return model
     through = 4.0 / (3.0 * depth + 4.0)
     reason = f"the matte colour of the medium: the body is {depth:.3g} mean free paths thick"
     error = f"at most {through:.1%} of the light would come through"
     for field in ("interior", "subsurface", "transmission", "diffuse_transmission"):
-        notes.approximated(field, reason, error)
+        notes.add_approximation(field, reason, error)
     weight = weight_inside(model)
     base, color = mean_of(model.base_color), multiscatter_of_albedo(interior.albedo, interior.anisotropy)
     mixed = [(1.0 - weight) * b + weight * c for b, c in zip(base, color, strict=True)]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from sssgen.interchange.albedo_inversion import subsurface_medium
 from sssgen.interchange.unity_project import UnityProject
-from sssgen.interchange.unity_yaml import UnityFile, Value
+from sssgen.interchange.unity_yaml import Value, objects
 from sssgen.scene.measured.media import Medium
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.paths import posix
@@ -57,7 +57,7 @@ def shape(albedo: float) -> float:
 
 def read_profile(path: str) -> DiffusionProfile:
     """The profile of an .asset file. Raises SssgenError where it has none, or a value is wrong."""
-    for body in UnityFile(path).of_kind("MonoBehaviour"):
+    for body in objects(path, "MonoBehaviour"):
         if "profile" in body.mapping and "scatteringDistance" in body.mapping["profile"].mapping:
             name = body.mapping["m_Name"].text if "m_Name" in body.mapping else ""
             return _profile(body.mapping["profile"], name or os.path.splitext(os.path.basename(path))[0])
@@ -69,9 +69,9 @@ def _profile(body: Value, name: str) -> DiffusionProfile:
         return body.mapping[key].number if key in body.mapping else default
 
     multiplier = number("scatteringDistanceMultiplier", 1.0)
-    distances = [_MM * multiplier * part for part in body.required("scatteringDistance").numbers("rgb")]
+    distances = [_MM * multiplier * part for part in body.require("scatteringDistance").numbers("rgb")]
     if min(distances) < 0.0:
-        raise body.required("scatteringDistance").error("a scattering distance is below 0")
+        raise body.require("scatteringDistance").error("a scattering distance is below 0")
     red, green, blue = (max(part, 1e-9) for part in distances)
     tint = body.mapping["transmissionTint"].numbers("rgb") if "transmissionTint" in body.mapping else (1.0, 1.0, 1.0)
     remap = body.mapping["thicknessRemap"].numbers("xy") if "thicknessRemap" in body.mapping else (0.0, 5.0)

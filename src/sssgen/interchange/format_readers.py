@@ -6,13 +6,13 @@ import os
 from collections.abc import Callable, Mapping
 
 from sssgen.interchange import gltf_reader, materialx_reader, unity_reader
-from sssgen.interchange.imported import Imported
+from sssgen.interchange.imported_material import ImportedMaterial
 from sssgen.interchange.mapping_report import Report
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
 from sssgen.support.text_files import refuse_folder
 
-READERS: Mapping[str, Callable[[str, Report, str, str], list[Imported]]] = {
+READERS: Mapping[str, Callable[[str, Report, str, str], list[ImportedMaterial]]] = {
     ".glb": gltf_reader.read,
     ".gltf": gltf_reader.read,
     ".mtlx": materialx_reader.read,
@@ -22,7 +22,7 @@ READERS: Mapping[str, Callable[[str, Report, str, str], list[Imported]]] = {
 """Suffix → the reader: of a path, the report, the name of a material or '', and the folder of all files or ''."""
 
 
-def read(path: str, report: Report, name: str = "", top: str = "") -> list[Imported]:
+def read(path: str, report: Report, name: str = "", top: str = "") -> list[ImportedMaterial]:
     """The materials of a file; with `name`, that one alone. Adds to the report what is left out. Raises SssgenError.
 
     `top` is the folder that has all files of the material; by default that of the file or, for Unity, the project.

@@ -1,4 +1,8 @@
-"""The numbers in a glTF file: buffers, views and accessors, also sparse and normalised ones."""
+"""The numbers in a glTF file: buffers, views and accessors, also sparse and normalised ones.
+
+trimesh, with which `scene.mesh_files` reads meshes, has no second set of texture coordinates and does not keep the
+numbers of materials; its errors do not name an element.
+"""
 
 from __future__ import annotations
 
@@ -71,7 +75,7 @@ class Buffers:
             raise accessor.fault(f"it has {count * components} numbers; at most {MOST_NUMBERS} are read")
         stored = np.zeros((count, components), dtype)
         if accessor.has("bufferView"):
-            stored = self._strided(accessor, accessor, dtype, count, components)
+            stored = self._view_array(accessor, accessor, dtype, count, components)
         if (sparse := accessor.child("sparse")) is not None:
             stored = stored.copy()
             self._replace(stored, sparse, dtype, components)
@@ -88,7 +92,7 @@ class Buffers:
             raise element.fault(f"unknown component type {number}")
         return np.dtype(_TYPES[number])
 
-    def _strided(
+    def _view_array(
         self, element: JsonElement, place: JsonElement, dtype: np.dtype[Any], count: int, components: int
     ) -> np.ndarray[tuple[int, int], np.dtype[Any]]:
         view = element.reference("bufferView", self.views, "buffer view")
@@ -110,13 +114,13 @@ class Buffers:
         indices, values = sparse.child("indices"), sparse.child("values")
         if indices is None or values is None:
             raise sparse.fault("'indices' or 'values' is missing")
-        places = self._strided(indices, sparse, self._dtype(indices), count, 1)[:, 0].astype(np.int64)
+        places = self._view_array(indices, sparse, self._dtype(indices), count, 1)[:, 0].astype(np.int64)
         if places.max() >= len(stored) or places.min() < 0:
             raise indices.fault("an index is beyond the accessor's values")
-        stored[places] = self._strided(values, sparse, dtype, count, components)
+        stored[places] = self._view_array(values, sparse, dtype, count, components)
 
 
-def optional(element: JsonElement, key: str, buffers: Buffers, components: int) -> Array | None:
+def read_attribute(element: JsonElement, key: str, buffers: Buffers, components: int) -> Array | None:
     """The values of an optional attribute, or None without it. Raises SssgenError."""
     if not element.has(key):
         return None

@@ -1,4 +1,8 @@
-"""Opens glTF files: the JSON, the binary chunk, and files beside it. Nothing outside one folder is read."""
+"""Opens glTF files: the JSON, the binary chunk, and files beside it. Nothing outside one folder is read.
+
+pygltflib would replace the 25 lines that split a file into chunks, and none of the checks: it takes truncated files,
+adds a missing `asset`, accepts any index, and gives the numbers of an accessor as bytes.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +49,7 @@ class Container:
     def resource(self, element: JsonElement) -> bytes:
         """The bytes of an element's `uri`. Raises SssgenError for a URI that is not allowed, missing or faulty."""
         uri = element.text("uri")
-        place = element.required("uri")
+        place = element.require("uri")
         if uri.startswith("data:"):
             return _data_uri(uri, place)
         path = self._path(uri, place)
@@ -76,59 +80,59 @@ def open_file(path: str, top: str = "") -> Container:
 
     Raises SssgenError for a file that is missing, too large, truncated or no glTF.
     """
-    shown = posix(path)
+    file_name = posix(path)
     refuse_folder(path, SUFFIXES)
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in SUFFIXES:
-        raise failure(f"'{suffix}' is not the suffix of a glTF file", f"they end in {' or '.join(SUFFIXES)}", shown)
+        raise failure(f"'{suffix}' is not the suffix of a glTF file", f"they end in {' or '.join(SUFFIXES)}", file_name)
     note(path)
     try:
-        refuse_special(path, shown)
+        refuse_special(path, file_name)
         size = os.path.getsize(path)
         with open(path, "rb") as file:
             head = file.read(20)
             binary_format = head[:4] == _MAGIC
-            _check_size(size, head if binary_format else b"", shown)
+            _check_size(size, head if binary_format else b"", file_name)
             data = head + file.read()
     except FileNotFoundError:
-        raise failure("no such file", file=shown) from None
+        raise failure("no such file", file=file_name) from None
     except OSError as error:
-        raise failure(f"cannot read the file: {error.strerror}", file=shown) from None
+        raise failure(f"cannot read the file: {error.strerror}", file=file_name) from None
     except ValueError:  # a zero byte or a lone surrogate in its name
-        raise failure("this is not a valid file name", file=shown) from None
+        raise failure("this is not a valid file name", file=file_name) from None
     if not data:
-        raise failure("the file is empty", "copy or export it again", shown)
+        raise failure("the file is empty", "copy or export it again", file_name)
     if suffix == ".glb" and not binary_format and data.lstrip()[:1] != b"{":
-        raise failure("this is not a GLB file: it does not begin with 'glTF'", "copy or export it again", shown)
-    text, binary = _chunks(data, shown) if binary_format else (data, None)
-    root = _document(text, shown)
+        raise failure("this is not a GLB file: it does not begin with 'glTF'", "copy or export it again", file_name)
+    text, binary = _chunks(data, file_name) if binary_format else (data, None)
+    root = _document(text, file_name)
     folder = os.path.dirname(path) or "."
     return Container(root, folder, binary, top or folder)
 
 
-def _check_size(size: int, head: bytes, shown: str) -> None:
+def _check_size(size: int, head: bytes, file_name: str) -> None:
     """Refuses a file by its size, and a GLB file by its header, before it is read."""
     declared = struct.unpack_from("<I", head, 8)[0] if len(head) >= 12 else 0
     largest = LARGEST_FILE if head else LARGEST_JSON
     if max(size, declared) > largest:
         message = f"the file is too large: {max(size, declared)} bytes; at most {largest} are read"
-        raise failure(message, "reduce its meshes or pictures, or export its parts", shown)
+        raise failure(message, "reduce its meshes or pictures, or export its parts", file_name)
     if head and declared > size:
-        raise failure(f"the file is truncated: it has {size} of {declared} bytes", "copy or export it again", shown)
+        raise failure(f"the file is truncated: it has {size} of {declared} bytes", "copy or export it again", file_name)
 
 
-def _chunks(data: bytes, shown: str) -> tuple[bytes, bytes | None]:
+def _chunks(data: bytes, file_name: str) -> tuple[bytes, bytes | None]:
     """The JSON and the binary chunk of a GLB file (glTF 2.0, section 4.4)."""
     if len(data) < 20:
-        raise failure(f"the file is truncated: it has {len(data)} bytes", "copy or export it again", shown)
+        raise failure(f"the file is truncated: it has {len(data)} bytes", "copy or export it again", file_name)
     version, length = struct.unpack_from("<II", data, 4)
     if version != 2:
-        raise failure(f"this is glTF {version}, not glTF 2", "export it again as glTF 2.0", shown)
+        raise failure(f"this is glTF {version}, not glTF 2", "export it again as glTF 2.0", file_name)
     text, binary, start = None, None, 12
     while start + 8 <= length:
         size, kind = struct.unpack_from("<II", data, start)
         if start + 8 + size > length:
-            raise failure(f"the chunk at byte {start} is longer than the file", "copy or export it again", shown)
+            raise failure(f"the chunk at byte {start} is longer than the file", "copy or export it again", file_name)
         chunk = data[start + 8 : start + 8 + size]
         if kind == _JSON and text is None:
             text = chunk
@@ -136,22 +140,22 @@ def _chunks(data: bytes, shown: str) -> tuple[bytes, bytes | None]:
             binary = chunk
         start += 8 + size + (-size % 4)
     if text is None:
-        raise failure("the file has no JSON chunk", "copy or export it again", shown)
+        raise failure("the file has no JSON chunk", "copy or export it again", file_name)
     if len(text) > LARGEST_JSON:
-        raise failure(f"the JSON is too large: {len(text)} bytes; at most {LARGEST_JSON} are read", "", shown)
+        raise failure(f"the JSON is too large: {len(text)} bytes; at most {LARGEST_JSON} are read", "", file_name)
     return text, binary
 
 
-def _document(text: bytes, shown: str) -> JsonElement:
+def _document(text: bytes, file_name: str) -> JsonElement:
     try:
-        content = parse(text.decode("utf-8-sig"), shown)
+        content = parse(text.decode("utf-8-sig"), file_name)
     except UnicodeDecodeError as error:
-        raise failure(f"the JSON is not UTF-8 text: byte {error.start}", "export the file again", shown) from None
+        raise failure(f"the JSON is not UTF-8 text: byte {error.start}", "export the file again", file_name) from None
     if not isinstance(content, dict):
-        raise failure("the JSON of a glTF file is an object", "", shown)
+        raise failure("the JSON of a glTF file is an object", "", file_name)
     if _SURROGATE.search(text) and not _is_text(content):
-        raise failure("the JSON has half of a character: a lone surrogate", "export the file again", shown)
-    root = JsonElement(content, "", shown)
+        raise failure("the JSON has half of a character: a lone surrogate", "export the file again", file_name)
+    root = JsonElement(content, "", file_name)
     asset = root.child("asset")
     if asset is None:
         raise root.fault("'asset' is missing: this is not a glTF file")
@@ -159,7 +163,7 @@ def _document(text: bytes, shown: str) -> JsonElement:
     if version.split(".")[0] != "2":
         raise asset.fault(f"this is glTF {version}, not glTF 2", "export it again as glTF 2.0")
     if (needed := asset.text("minVersion", "2.0")) != "2.0":
-        raise asset.required("minVersion").fault(f"it needs glTF {needed}; 2.0 is read", "export it again as glTF 2.0")
+        raise asset.require("minVersion").fault(f"it needs glTF {needed}; 2.0 is read", "export it again as glTF 2.0")
     return root
 
 

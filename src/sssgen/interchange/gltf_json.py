@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
-from sssgen.interchange.mapping_report import shown
+from sssgen.interchange.mapping_report import short_text
 from sssgen.support.diagnostics import SssgenError, failure
 
 
@@ -25,7 +25,7 @@ class JsonElement(NamedTuple):
         """The object of a key, or None without it. Raises SssgenError for another kind of value."""
         return self._of(key, dict, "an object")
 
-    def required(self, key: str) -> JsonElement:
+    def require(self, key: str) -> JsonElement:
         """The value of a key that must be there. Raises SssgenError."""
         if key not in self.value:
             raise self.fault(f"'{key}' is missing")
@@ -45,7 +45,7 @@ class JsonElement(NamedTuple):
         elements = self.items(key)
         for element in elements:
             if not isinstance(element.value, dict):
-                raise element.fault(f"an object is needed, not {shown(element.value)}")
+                raise element.fault(f"an object is needed, not {short_text(element.value)}")
         return elements
 
     def members(self, key: str) -> Iterator[JsonElement]:
@@ -85,7 +85,7 @@ class JsonElement(NamedTuple):
     def as_number(self, low: float = -math.inf, high: float = math.inf) -> float:
         """The element as a number in a range. Raises SssgenError."""
         if isinstance(self.value, bool) or not isinstance(self.value, int | float):
-            raise self.fault(f"a number is needed, not {shown(self.value)}")
+            raise self.fault(f"a number is needed, not {short_text(self.value)}")
         try:
             number = float(self.value)
         except OverflowError:
@@ -101,11 +101,11 @@ class JsonElement(NamedTuple):
         """An integer in a range; `default` without the key. Raises SssgenError for another value."""
         if key not in self.value and default is not None:
             return default
-        element = self.required(key)
+        element = self.require(key)
         if isinstance(element.value, bool) or not isinstance(element.value, int):
-            raise element.fault(f"an integer is needed, not {shown(element.value)}")
+            raise element.fault(f"an integer is needed, not {short_text(element.value)}")
         if not low <= element.value <= high:
-            raise element.fault(f"{shown(element.value)} is out of range", f"{low} to {high}")
+            raise element.fault(f"{short_text(element.value)} is out of range", f"{low} to {high}")
         return element.value
 
     def reference(self, key: str, table: Sequence[JsonElement], kind: str) -> JsonElement:
@@ -132,5 +132,5 @@ class JsonElement(NamedTuple):
             return None
         element = self._child(key)
         if not isinstance(element.value, kind):
-            raise element.fault(f"{words} is needed, not {shown(element.value)}")
+            raise element.fault(f"{words} is needed, not {short_text(element.value)}")
         return element

@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
-from sssgen.interchange import imported
 from sssgen.interchange.gltf_json import JsonElement
 from sssgen.interchange.gltf_textures import Textures
+from sssgen.interchange.imported_material import Element, ImportedMaterial
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.scatter_color import albedo_of_multiscatter
 from sssgen.interchange.surface_model import ONE, Quantity, SurfaceModel, extinction_of_color, medium
 
 Channels = Literal["rgb", "r", "g", "b", "a"]
 
-READ = (
+EXTENSIONS = (
     "KHR_materials_unlit",
     "KHR_materials_ior",
     "KHR_materials_specular",
@@ -27,7 +27,7 @@ READ = (
     "KHR_materials_scatter",
 )
 """The extensions of materials that are read."""
-_OTHERS = {
+_OMISSIONS = {
     "KHR_materials_sheen": "no technique has a sheen",
     "KHR_materials_iridescence": "no technique has thin-film interference",
     "KHR_materials_anisotropy": "highlights are isotropic",
@@ -50,7 +50,7 @@ class MaterialReader:
     scale: float
     """Lengths of mesh space times this are lengths in world space"""
     fields: dict[str, Any] = field(default_factory=dict)
-    elements: dict[str, list[imported.Element]] = field(default_factory=dict)
+    elements: dict[str, list[Element]] = field(default_factory=dict)
 
     def extension(self, name: str) -> JsonElement | None:
         """An extension of the material."""
@@ -58,7 +58,7 @@ class MaterialReader:
 
     def source(self, name: str, parent: JsonElement, key: str, value: object) -> None:
         """Records that a field comes from an element."""
-        self.elements.setdefault(name, []).append(imported.Element(f"{parent.path}/{key}", value))
+        self.elements.setdefault(name, []).append(Element(f"{parent.path}/{key}", value))
 
     def quantity(
         self, name: str, parent: JsonElement, factor_key: str, default: tuple[float, ...], texture_key: str = "",
@@ -80,7 +80,7 @@ class MaterialReader:
         self.fields[name] = Quantity(factor, image)
         return Quantity(factor, image)
 
-    def read(self) -> imported.Imported:
+    def read(self) -> ImportedMaterial:
         """The record of the material. Raises SssgenError."""
         self.surface()
         self.core()
@@ -90,7 +90,7 @@ class MaterialReader:
         self.reflection()
         self.transmission()
         self.other_extensions()
-        return imported.Imported(SurfaceModel(**self.fields), self.elements)
+        return ImportedMaterial(SurfaceModel(**self.fields), self.elements)
 
     def surface(self) -> None:
         material = self.material
@@ -98,7 +98,7 @@ class MaterialReader:
         self.fields["two_sided"] = material.flag("doubleSided")
         mode = material.text("alphaMode", "OPAQUE")
         if mode not in ("OPAQUE", "MASK", "BLEND"):
-            raise material.required("alphaMode").fault(f"unknown mode '{mode[:20]}'", "OPAQUE, MASK or BLEND")
+            raise material.require("alphaMode").fault(f"unknown mode '{mode[:20]}'", "OPAQUE, MASK or BLEND")
         self.fields["alpha_mode"] = mode.lower()
         self.fields["alpha_cutoff"] = material.number("alphaCutoff", 0.5, 0.0)
         for key, name in (("doubleSided", "two_sided"), ("alphaMode", "alpha_mode"), ("alphaCutoff", "alpha_cutoff")):
@@ -136,7 +136,7 @@ class MaterialReader:
         if (ior := self.extension("ior")) is not None:
             index = ior.number("ior", 1.5, 0.0)
             if 0.0 < index < 1.0:
-                raise ior.required("ior").fault(f"{index:g} is out of range", "at least 1, or 0")
+                raise ior.require("ior").fault(f"{index:g} is out of range", "at least 1, or 0")
             self.fields["ior"] = index
             self.source("ior", ior, "ior", index)
         if (specular := self.extension("specular")) is not None:
@@ -150,7 +150,7 @@ class MaterialReader:
             self.quantity("coat_roughness", coat, "clearcoatRoughnessFactor", (0.0,), "clearcoatRoughnessTexture", "g")
             if coat.has("clearcoatNormalTexture"):
                 path = f"{coat.path}/clearcoatNormalTexture"
-                self.report.left_out(path, "a texture", "the coat has the normal of the surface")
+                self.report.add_omission(path, "a texture", "the coat has the normal of the surface")
 
     def transmission(self) -> None:
         if (transmission := self.extension("transmission")) is not None:
@@ -178,7 +178,7 @@ class MaterialReader:
         distance = volume.number("attenuationDistance", _INFINITE, 0.0)
         color = volume.vector("attenuationColor", (1.0, 1.0, 1.0), 0.0, 1.0)
         if volume.has("attenuationDistance") and distance == 0.0:
-            raise volume.required("attenuationDistance").fault("0 is out of range", "it is above 0")
+            raise volume.require("attenuationDistance").fault("0 is out of range", "it is above 0")
         for key, value in (("attenuationDistance", distance), ("attenuationColor", color)):
             if volume.has(key):
                 self.source("interior", volume, key, value)
@@ -189,7 +189,7 @@ class MaterialReader:
         ):
             for name in ("thickness", "interior"):
                 for element in self.elements.pop(name, []):
-                    self.report.left_out(element.path, element.value, "no light enters the body")
+                    self.report.add_omission(element.path, element.value, "no light enters the body")
 
     def scattering(self) -> tuple[tuple[float, ...], float]:
         """The single-scattering albedo and the anisotropy of both drafts."""
@@ -210,7 +210,7 @@ class MaterialReader:
         self.source("interior", scatter, "scatterStrengthFactor", strength)
         for key in ("scatterStrengthTexture", "multiscatterColorTexture"):
             if scatter.has(key):
-                self.report.left_out(f"{scatter.path}/{key}", "a texture", "the medium is the same everywhere")
+                self.report.add_omission(f"{scatter.path}/{key}", "a texture", "the medium is the same everywhere")
         return albedo_of_multiscatter(tuple(strength * part for part in color), anisotropy), anisotropy
 
     def anisotropy(self, draft: JsonElement) -> float:
@@ -243,7 +243,7 @@ class MaterialReader:
         left = 1.0 - first - scattered
         if base.image is not None or color.image is not None or kept <= 0.0:
             path = f"{scatter.path}/multiscatterColorFactor"
-            self.report.approximated(path, color.factor, "the half that is scattered back has the base colour")
+            self.report.add_approximation(path, color.factor, "the half that is scattered back has the base colour")
             return
         mixed = [(left * b + reflected * c) / kept for b, c in zip(base.factor, color.factor, strict=True)]
         self.fields["base_color"] = replace_factor(base, mixed)
@@ -251,8 +251,8 @@ class MaterialReader:
     def other_extensions(self) -> None:
         for extension in self.material.members("extensions"):
             name = extension.path.rpartition("/")[2]
-            if name not in READ:
-                self.report.left_out(extension.path, name, _OTHERS.get(name, "this extension is not read"))
+            if name not in EXTENSIONS:
+                self.report.add_omission(extension.path, name, _OMISSIONS.get(name, "this extension is not read"))
 
 
 def replace_factor(quantity: Quantity, factor: list[float]) -> Quantity:
@@ -260,7 +260,7 @@ def replace_factor(quantity: Quantity, factor: list[float]) -> Quantity:
     return quantity._replace(factor=tuple(min(part, 1.0) for part in factor))
 
 
-def default_material(file: str) -> imported.Imported:
+def default_material(file: str) -> ImportedMaterial:
     """The material of primitives without one (glTF 2.0, section 3.7.2.1)."""
     model = SurfaceModel("default", metalness=ONE, roughness=ONE)
-    return imported.Imported(replace(model, doc="The default material of glTF."), {})
+    return ImportedMaterial(replace(model, doc="The default material of glTF."), {})

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.interchange.gltf_buffers import Buffers, optional
+from sssgen.interchange.gltf_buffers import Buffers, read_attribute
 from sssgen.interchange.gltf_json import JsonElement
 from sssgen.interchange.mapping_report import Report
 from sssgen.scene.mesh import FARTHEST, SMALLEST
@@ -38,7 +38,7 @@ def meshes(buffers: Buffers, report: Report) -> dict[int, list[Part]]:
     contents: dict[str, FileContent | None] = {}
     materials = root.objects("materials")
     count = 0
-    for node, matrix in _placed_nodes(root):
+    for node, matrix in _node_transforms(root):
         if not node.has("mesh"):
             continue
         mesh = node.reference("mesh", all_meshes, "mesh")
@@ -55,15 +55,15 @@ def meshes(buffers: Buffers, report: Report) -> dict[int, list[Part]]:
             if primitive.has("material"):
                 primitive.reference("material", materials, "material")
                 index = primitive.whole("material")
-            part = _moved(content, matrix)
-            if reason := _undrawable(part.content):
-                report.left_out(node.path, mesh.path, reason)
+            part = _move(content, matrix)
+            if reason := _omission_reason(part.content):
+                report.add_omission(node.path, mesh.path, reason)
             else:
                 parts[index].append(part)
     return parts
 
 
-def _undrawable(content: FileContent) -> str:
+def _omission_reason(content: FileContent) -> str:
     """Why a scene cannot have these triangles, or ''."""
     if not (np.abs(content.vertices) <= FARTHEST).all():
         return f"with the node's transform, it reaches beyond {FARTHEST:g} m"
@@ -72,7 +72,7 @@ def _undrawable(content: FileContent) -> str:
     return ""
 
 
-def joined(parts: list[Part]) -> tuple[FileContent, float, float]:
+def join_parts(parts: list[Part]) -> tuple[FileContent, float, float]:
     """The parts as one mesh, the mean of their scales by area, and the relative spread of the scales."""
     contents = [part.content for part in parts]
     starts = np.cumsum([0] + [len(content.vertices) for content in contents])
@@ -80,8 +80,8 @@ def joined(parts: list[Part]) -> tuple[FileContent, float, float]:
     content = FileContent(
         np.concatenate([content.vertices for content in contents]),
         np.concatenate([content.faces + start for content, start in zip(contents, starts, strict=False)]),
-        _of_any([content.uv for content in contents], contents),
-        _of_any([content.uv2 for content in contents], contents),
+        _join_coordinates([content.uv for content in contents], contents),
+        _join_coordinates([content.uv2 for content in contents], contents),
         np.concatenate(white) if any(content.color is not None for content in contents) else None,
         np.concatenate([content.normals for content in contents if content.normals is not None]),
     )
@@ -91,7 +91,7 @@ def joined(parts: list[Part]) -> tuple[FileContent, float, float]:
     return content, mean, float(np.ptp(scales) / mean) if mean > 0.0 else 0.0
 
 
-def _of_any(sets: list[Array | None], contents: list[FileContent]) -> Array | None:
+def _join_coordinates(sets: list[Array | None], contents: list[FileContent]) -> Array | None:
     """The texture coordinates of all parts, 0 where a part has none; None where no part has any."""
     if all(uv is None for uv in sets):
         return None
@@ -105,7 +105,7 @@ def _area(content: FileContent) -> float:
     return 0.5 * float(np.linalg.norm(np.cross(second - first, third - first), axis=1).sum())
 
 
-def _placed_nodes(root: JsonElement) -> list[tuple[JsonElement, Array]]:
+def _node_transforms(root: JsonElement) -> list[tuple[JsonElement, Array]]:
     """The nodes of the file's scene with their transforms to world space."""
     nodes = root.objects("nodes")
     scenes = root.objects("scenes")
@@ -155,7 +155,7 @@ def _local(node: JsonElement) -> Array:
     return matrix
 
 
-def _moved(content: FileContent, matrix: Array) -> Part:
+def _move(content: FileContent, matrix: Array) -> Part:
     volume = float(np.linalg.det(matrix[:3, :3]))
     faces = content.faces[:, ::-1] if volume < 0.0 else content.faces
     vertices = content.vertices @ matrix[:3, :3].T + matrix[:3, 3]
@@ -167,16 +167,16 @@ def _primitive(primitive: JsonElement, buffers: Buffers, report: Report) -> File
     """The triangles of a primitive in mesh space; None for points and lines."""
     mode = primitive.whole("mode", _TRIANGLES, 0, 6)
     if mode < _TRIANGLES:
-        report.left_out(f"{primitive.path}/mode", mode, "points and lines have no surface")
+        report.add_omission(f"{primitive.path}/mode", mode, "points and lines have no surface")
         return None
     for name in _PACKED[:1]:
         if primitive.extension(name) is not None and not _has_data(primitive, buffers):
             raise primitive.fault(f"its data are compressed with {name}", "export the file without compression")
     if primitive.has("targets"):
-        report.left_out(f"{primitive.path}/targets", "morph targets", "the mesh is taken as it is without them")
+        report.add_omission(f"{primitive.path}/targets", "morph targets", "the mesh is taken as it is without them")
     attributes = primitive.child("attributes")
     if attributes is None or not attributes.has("POSITION"):
-        report.left_out(primitive.path, "no POSITION", "a primitive without positions is not drawn")
+        report.add_omission(primitive.path, "no POSITION", "a primitive without positions is not drawn")
         return None
     vertices = buffers.numbers(attributes.reference("POSITION", buffers.accessors, "accessor"), 3)
     if primitive.has("indices"):
@@ -186,10 +186,10 @@ def _primitive(primitive: JsonElement, buffers: Buffers, report: Report) -> File
             raise accessor.fault(f"the index {indices.max()} is beyond the {len(vertices)} vertices")
     else:
         indices = np.arange(len(vertices))
-    uv, uv2 = (_upwards(optional(attributes, f"TEXCOORD_{index}", buffers, 2), vertices) for index in (0, 1))
-    color = optional(attributes, "COLOR_0", buffers, 4)
+    uv, uv2 = (_flip_v(read_attribute(attributes, f"TEXCOORD_{index}", buffers, 2), vertices) for index in (0, 1))
+    color = read_attribute(attributes, "COLOR_0", buffers, 4)
     color = None if color is None or len(color) != len(vertices) else color
-    normals = optional(attributes, "NORMAL", buffers, 3)
+    normals = read_attribute(attributes, "NORMAL", buffers, 3)
     content = FileContent(vertices, _faces(indices, mode), uv, uv2, color, normals)
     return content if normals is not None and len(normals) == len(vertices) else _with_flat_normals(content)
 
@@ -212,7 +212,7 @@ def _has_data(primitive: JsonElement, buffers: Buffers) -> bool:
     return attributes.reference("POSITION", buffers.accessors, "accessor").has("bufferView")
 
 
-def _upwards(uv: Array | None, vertices: Array) -> Array | None:
+def _flip_v(uv: Array | None, vertices: Array) -> Array | None:
     """Texture coordinates with v up."""
     if uv is None or len(uv) != len(vertices):
         return None

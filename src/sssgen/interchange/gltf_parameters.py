@@ -9,7 +9,7 @@ from typing import NamedTuple
 from sssgen.ir.types import Sampler
 from sssgen.material.model import Material, TechniqueUse
 
-PLACED = ("uv_tiling", "uv_offset", "uv_rotation")
+TRANSFORM_PARAMETERS = ("uv_tiling", "uv_offset", "uv_rotation")
 """The parameters of a transform of texture coordinates."""
 
 
@@ -37,15 +37,15 @@ class Parameters:
         self.values: dict[str, Parameter] = {}
         self.textures: dict[str, Texture] = {}
         self.transforms: dict[str, dict[str, tuple[float, ...]]] = {}
-        """Set of texture coordinates → the values of `PLACED`"""
-        self.read: set[int] = set()
+        """Set of texture coordinates → the values of `TRANSFORM_PARAMETERS`"""
+        self.used_stages: set[int] = set()
         """The stages that were asked for"""
         folder = os.path.dirname(material.file)
         for number, stage in enumerate(material.stages):
             own = {name: value for name, value, _ in _values(stage)}
-            if set(PLACED) <= own.keys():
-                self.transforms[stage.uv] = {name: own[name] for name in PLACED}
-                self.read.add(number)
+            if set(TRANSFORM_PARAMETERS) <= own.keys():
+                self.transforms[stage.uv] = {name: own[name] for name in TRANSFORM_PARAMETERS}
+                self.used_stages.add(number)
             for name, value, aliases in _values(stage):
                 for known in (name, *aliases):
                     self.values.setdefault(known, Parameter(value, number))
@@ -60,14 +60,14 @@ class Parameters:
         parameter = self.values.get(name)
         if parameter is None or len(parameter.value) != components:
             return None
-        self.read.add(parameter.stage)
+        self.used_stages.add(parameter.stage)
         return parameter.value
 
     def texture(self, *names: str) -> Texture | None:
         """A texture by one of its names."""
         for name in names:
             if name in self.textures:
-                self.read.add(self.textures[name].stage)
+                self.used_stages.add(self.textures[name].stage)
                 return self.textures[name]
         return None
 

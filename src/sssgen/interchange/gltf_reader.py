@@ -7,15 +7,15 @@ from dataclasses import replace
 from sssgen.interchange.gltf_buffers import Buffers
 from sssgen.interchange.gltf_container import open_file
 from sssgen.interchange.gltf_json import JsonElement
-from sssgen.interchange.gltf_materials import READ, MaterialReader, default_material
-from sssgen.interchange.gltf_meshes import joined, meshes
+from sssgen.interchange.gltf_materials import EXTENSIONS, MaterialReader, default_material
+from sssgen.interchange.gltf_meshes import join_parts, meshes
 from sssgen.interchange.gltf_textures import Textures
-from sssgen.interchange.imported import Imported, check_name
-from sssgen.interchange.mapping_report import Report, shown
+from sssgen.interchange.imported_material import ImportedMaterial, check_name
+from sssgen.interchange.mapping_report import Report, short_text
 from sssgen.scene.mesh_files import FileContent
 
-_ALSO_READ = ("KHR_texture_transform", "EXT_texture_webp", "KHR_mesh_quantization")
-_WITHOUT_EFFECT = (
+_OTHER_EXTENSIONS = ("KHR_texture_transform", "EXT_texture_webp", "KHR_mesh_quantization")
+_HARMLESS_EXTENSIONS = (
     "KHR_materials_sheen",
     "KHR_materials_iridescence",
     "KHR_materials_anisotropy",
@@ -29,10 +29,10 @@ _WITHOUT_EFFECT = (
     "MSFT_lod",
 )
 """Extensions that a file may require: without them it is still read rightly, except for what the report names."""
-_ANIMATED = {"animations": "a material does not move", "skins": "the mesh is taken in its rest pose"}
+_MOTIONS = {"animations": "a material does not move", "skins": "the mesh is taken in its rest pose"}
 
 
-def read(path: str, report: Report, name: str = "", top: str = "") -> list[Imported]:
+def read(path: str, report: Report, name: str = "", top: str = "") -> list[ImportedMaterial]:
     """The materials of a glTF file that its scene shows, and those that no mesh uses.
 
     With `name`, that material alone. Buffers and pictures lie in the folder `top`, by default that of the file. Adds to
@@ -41,43 +41,45 @@ def read(path: str, report: Report, name: str = "", top: str = "") -> list[Impor
     """
     container = open_file(path, top)
     root = container.root
-    _check_required(root)
+    _check_extensions(root)
     buffers = Buffers(container)
     textures = Textures(buffers, report)
     elements = root.objects("materials")
     check_name(name, [element.text("name") for element in elements], root.file)
-    for key, reason in _ANIMATED.items():
+    for key, reason in _MOTIONS.items():
         if root.items(key):
-            report.left_out(f"/{key}", len(root.items(key)), reason)
+            report.add_omission(f"/{key}", len(root.items(key)), reason)
     parts = meshes(buffers, report)
     result = []
     for index, element in enumerate(elements):
         if name in ("", element.text("name"), str(index)):
-            mesh, scale, spread = joined(parts[index]) if index in parts else (None, 1.0, 0.0)
+            mesh, scale, spread = join_parts(parts[index]) if index in parts else (None, 1.0, 0.0)
             material = MaterialReader(element, textures, report, scale).read()
             if spread > 1e-3 and "thickness" in material.elements:
                 became = f"the mean scale {scale:.4g} of its nodes"
-                report.approximated(f"{element.path} at nodes of different scales", spread, became, f"{spread:.1%}")
+                report.add_approximation(
+                    f"{element.path} at nodes of different scales", spread, became, f"{spread:.1%}"
+                )
             if mesh is not None and mesh.color is not None:
-                report.mapped(f"{element.path}: COLOR_0", "colours of vertices", "a factor of the base colour")
+                report.add_mapping(f"{element.path}: COLOR_0", "colours of vertices", "a factor of the base colour")
             result.append(_with_mesh(material, mesh))
     if -1 in parts and not name:
-        result.append(_with_mesh(default_material(root.file), joined(parts[-1])[0]))
+        result.append(_with_mesh(default_material(root.file), join_parts(parts[-1])[0]))
     if not result:
         raise root.fault("the file has neither materials nor triangles")
     return result
 
 
-def _with_mesh(material: Imported, mesh: FileContent | None) -> Imported:
+def _with_mesh(material: ImportedMaterial, mesh: FileContent | None) -> ImportedMaterial:
     colored = mesh is not None and mesh.color is not None
     return material._replace(model=replace(material.model, vertex_colors=colored), mesh=mesh)
 
 
-def _check_required(root: JsonElement) -> None:
-    supported = {*READ, *_ALSO_READ, *_WITHOUT_EFFECT}
+def _check_extensions(root: JsonElement) -> None:
+    supported = {*EXTENSIONS, *_OTHER_EXTENSIONS, *_HARMLESS_EXTENSIONS}
     for element in root.items("extensionsRequired"):
         if not isinstance(element.value, str):
-            raise element.fault(f"a string is needed, not {shown(element.value)}")
+            raise element.fault(f"a string is needed, not {short_text(element.value)}")
         if element.value not in supported:
             hint = "export the file without this extension: it says that the file is wrong without it"
             raise element.fault(f"the file requires '{element.value[:60]}', which is not read", hint)

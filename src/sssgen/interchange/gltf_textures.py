@@ -31,16 +31,16 @@ class Textures:
         texture = info.reference("index", self.textures, "texture")
         source = self._source(texture)
         if source is None:
-            self.report.left_out(info.path, texture.path, "its only picture has a format that is not read")
+            self.report.add_omission(info.path, texture.path, "its only picture has a format that is not read")
             return None
         uv_set = info.whole("texCoord", 0, 0, 31)
         transform = UvTransform()
         if (extension := info.extension(_TRANSFORM)) is not None:
             uv_set = extension.whole("texCoord", uv_set, 0, 31)
             transform = _transform(extension)
-            self.report.mapped(extension.path, extension.value, "uv_transform")
+            self.report.add_mapping(extension.path, extension.value, "uv_transform")
         if uv_set > 1:
-            self.report.approximated(f"{info.path}/texCoord", uv_set, "the second set: sssgen reads two")
+            self.report.add_approximation(f"{info.path}/texCoord", uv_set, "the second set: sssgen reads two")
             uv_set = 1
         return Image(self._picture(source), channels, srgb, uv_set, transform, self._wrap(texture))
 
@@ -76,9 +76,9 @@ class Textures:
         modes = {key: sampler.whole(key, _REPEAT) for key in ("wrapS", "wrapT")}
         for key, mode in modes.items():
             if mode == _MIRROR:
-                self.report.approximated(f"{sampler.path}/{key}", "mirrored", "repeated without mirroring")
+                self.report.add_approximation(f"{sampler.path}/{key}", "mirrored", "repeated without mirroring")
         if len(set(modes.values())) > 1:
-            self.report.approximated(sampler.path, "different along u and v", "the same along both")
+            self.report.add_approximation(sampler.path, "different along u and v", "the same along both")
         return "clamp" if set(modes.values()) == {_CLAMP} else "repeat"
 
 

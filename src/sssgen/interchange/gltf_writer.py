@@ -15,7 +15,7 @@ from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.mesh_glb import Buffer, document, glb, primitive
 from sssgen.interchange.scatter_color import multiscatter_of_albedo
 from sssgen.interchange.surface_model import Picture
-from sssgen.interchange.texels import stored
+from sssgen.interchange.texels import read_texels
 from sssgen.material.model import Material
 from sssgen.scene.mesh_files import FileContent
 from sssgen.scene.pictures import images
@@ -52,9 +52,9 @@ class GltfWriter:
         for number, stage in enumerate(self.material.stages):
             inputs = {param.name for param in stage.technique.function.params}
             if "vertex_color" in inputs:
-                self.report.mapped(stage.technique.name, "a stage", "COLOR_0, where the mesh has colours")
-            elif number not in self.parameters.read and inputs:
-                self.report.left_out(stage.technique.name, "a stage", "glTF has nothing for it")
+                self.report.add_mapping(stage.technique.name, "a stage", "COLOR_0, where the mesh has colours")
+            elif number not in self.parameters.used_stages and inputs:
+                self.report.add_omission(stage.technique.name, "a stage", "glTF has nothing for it")
         return self.json
 
     def set(self, target: dict[str, Any], key: str, value: Any, default: Any, source: str, error: str = "") -> None:
@@ -63,9 +63,9 @@ class GltfWriter:
         if plain != default:
             target[key] = plain
         if error:
-            self.report.approximated(source, value, key, error)
+            self.report.add_approximation(source, value, key, error)
         else:
-            self.report.mapped(source, value, key)
+            self.report.add_mapping(source, value, key)
 
     def extension(self, name: str) -> dict[str, Any]:
         """An extension of the material, which is added."""
@@ -98,7 +98,7 @@ class GltfWriter:
         total = [a + b for a, b in zip(tint, entering, strict=False)]
         share = min(max(entering) / max(*total, 1e-9), 1.0)
         if second is not None and texture is not None:
-            texture, share = self.unmixed(tint, entering, texture, second), 1.0
+            texture, share = self.unmix(tint, entering, texture, second), 1.0
             total = [1.0, 1.0, 1.0]
             extension["transmissionTexture"] = {"index": len(self.textures) - 1}
         elif second is not None:
@@ -106,11 +106,11 @@ class GltfWriter:
         self.set(extension, "transmissionFactor", share, 0.0, "entering color")
         return (*(min(part, 1.0) for part in total), tint[3]), texture
 
-    def unmixed(
+    def unmix(
         self, tint: tuple[float, ...], entering: tuple[float, ...], reflected: Texture, entered: Texture
     ) -> Texture:
         """The texture of the base colour from those of both shares; also adds the texture of the transmission."""
-        texels = [stored(Picture(texture.file, _png(texture.file))) for texture in (reflected, entered)]
+        texels = [read_texels(Picture(texture.file, _png(texture.file))) for texture in (reflected, entered)]
         first = images.decode_srgb(texels[0][..., :3]) * tint[:3]
         second = images.decode_srgb(texels[1][..., :3]) * entering
         if first.shape != second.shape:
@@ -190,7 +190,7 @@ class GltfWriter:
         parameters = self.parameters
         if (entering := parameters.value("transmissionFactor")) is not None:
             self.set(self.extension("transmission"), "transmissionFactor", entering[0], 0.0, "transmission factor")
-        self.diffuse()
+        self.diffuse_transmission()
         extinction = parameters.value("extinction", 3)
         color = parameters.value("attenuationColor", 3)
         distance = parameters.value("attenuationDistance")
@@ -210,12 +210,12 @@ class GltfWriter:
         depth = 1.0 if thickness is None else thickness[0]
         note = "the program measures it: 1 m stands for it" if unknown else ""
         self.set(volume, "thicknessFactor", depth, 0.0, "thickness", note)
-        self.texture(volume, "thicknessTexture", texture, _to_green)
+        self.texture(volume, "thicknessTexture", texture, _green_picture)
         if distance is not None and color is not None and any(part < 1.0 for part in color):
             self.set(volume, "attenuationDistance", distance[0], None, "extinction")
             self.set(volume, "attenuationColor", color, [1.0, 1.0, 1.0], "extinction")
 
-    def diffuse(self) -> None:
+    def diffuse_transmission(self) -> None:
         parameters = self.parameters
         color = parameters.value("diffuseTransmissionColorFactor", 3)
         if color is None:
@@ -256,9 +256,9 @@ class GltfWriter:
             info["texCoord"] = 1
         if (transform := self.parameters.transforms.get(texture.uv)) is not None:
             self.used.add("KHR_texture_transform")
-            info["extensions"] = {"KHR_texture_transform": _downwards(transform)}
+            info["extensions"] = {"KHR_texture_transform": _flip_transform(transform)}
         target[key] = info
-        self.report.mapped(key, name, key)
+        self.report.add_mapping(key, name, key)
 
     def add(self, name: str, picture: bytes, texture: Texture) -> None:
         """Appends a texture with a picture."""
@@ -305,7 +305,7 @@ def _color_of_extinction(extinction: Sequence[float]) -> tuple[tuple[float], tup
     return (distance,), tuple(math.exp(-part * distance) for part in extinction)
 
 
-def _downwards(transform: dict[str, tuple[float, ...]]) -> dict[str, Any]:
+def _flip_transform(transform: dict[str, tuple[float, ...]]) -> dict[str, Any]:
     """KHR_texture_transform of a transform with v up."""
     (s, t), (u, v) = transform["uv_tiling"], transform["uv_offset"]
     rotation = math.radians(transform["uv_rotation"][0])
@@ -322,6 +322,6 @@ def _png(path: str) -> bytes:
     return images.png_bytes(images.encode_srgb(images.upright(path)))
 
 
-def _to_green(picture: bytes) -> bytes:
+def _green_picture(picture: bytes) -> bytes:
     """The red channel in all channels: glTF reads the green one."""
-    return images.png_bytes(stored(Picture("thickness", picture))[..., :1].repeat(3, axis=-1))
+    return images.png_bytes(read_texels(Picture("thickness", picture))[..., :1].repeat(3, axis=-1))

@@ -53,7 +53,7 @@ def _luminance(a: Array, weights: Array) -> Array:
     return np.concatenate([luminance, a[..., 3:]], axis=-1)
 
 
-def _transformed(a: Array, matrix: Array) -> Array:
+def _matrix_product(a: Array, matrix: Array) -> Array:
     return np.asarray(a @ matrix.reshape(a.shape[-1], a.shape[-1]))
 
 
@@ -76,7 +76,7 @@ def _rgb_of_hsv(a: Array) -> Array:
     return np.concatenate([value * (1.0 + saturation * (wheel - 1.0)), a[..., 3:]], axis=-1)
 
 
-def _blended(blend: Callable[[Array, Array], Array]) -> Callable[..., Array]:
+def _blend(blend: Callable[[Array, Array], Array]) -> Callable[..., Array]:
     """A blend of foreground and background, with the share `mix` of it."""
     return lambda fg, bg, mix: mix * blend(fg, bg) + (1.0 - mix) * bg
 
@@ -101,12 +101,12 @@ OPERATIONS: Mapping[str, Operation] = {
     ),
     **_rows(
         ("fg", "bg", "mix"),
-        plus=_blended(np.add),
-        minus=_blended(lambda fg, bg: bg - fg),
-        difference=_blended(lambda fg, bg: np.abs(bg - fg)),
-        screen=_blended(lambda fg, bg: 1.0 - (1.0 - fg) * (1.0 - bg)),
-        burn=_blended(lambda fg, bg: 1.0 - (1.0 - bg) / np.maximum(fg, _EPSILON)),
-        dodge=_blended(lambda fg, bg: bg / np.maximum(1.0 - fg, _EPSILON)),
+        plus=_blend(np.add),
+        minus=_blend(lambda fg, bg: bg - fg),
+        difference=_blend(lambda fg, bg: np.abs(bg - fg)),
+        screen=_blend(lambda fg, bg: 1.0 - (1.0 - fg) * (1.0 - bg)),
+        burn=_blend(lambda fg, bg: 1.0 - (1.0 - bg) / np.maximum(fg, _EPSILON)),
+        dodge=_blend(lambda fg, bg: bg / np.maximum(1.0 - fg, _EPSILON)),
     ),
     "atan2": Operation(("iny", "inx"), np.arctan2),
     "invert": Operation(("amount", "in"), np.subtract),
@@ -115,7 +115,7 @@ OPERATIONS: Mapping[str, Operation] = {
     "remap": Operation(("in", "inlow", "inhigh", "outlow", "outhigh"), _remap),
     "smoothstep": Operation(("in", "low", "high"), _smoothstep),
     "luminance": Operation(("in", "lumacoeffs"), _luminance),
-    "transformmatrix": Operation(("in", "mat"), _transformed),
+    "transformmatrix": Operation(("in", "mat"), _matrix_product),
     "inside": Operation(("in", "mask"), np.multiply),
     "outside": Operation(("in", "mask"), lambda a, mask: a * (1.0 - mask)),
 }  # fmt: skip

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.interchange.surface_model import Image, Picture, Quantity, UvTransform, Wrap
-from sssgen.interchange.texels import Texels, resized, stored, values_on
+from sssgen.interchange.texels import Texels, read_texels, resize, values_on
 from sssgen.scene.pictures.images import encode_srgb, png_bytes
 
 MAX_SIDE = 2048
@@ -60,7 +60,7 @@ class Texture:
 
 
 @dataclass(frozen=True)
-class Computed:
+class TexelGrid:
     """Texels that nodes computed, linear, (height, width, components)."""
 
     texels: Texels
@@ -91,7 +91,7 @@ class Coordinates:
 class Normal:
     """The surface's normal; with the texels of a normal map, times its strength, where there is one."""
 
-    texels: Texture | Computed | None = None
+    texels: Texture | TexelGrid | None = None
     strength: float = 1.0
     cause: str = ""
 
@@ -105,15 +105,15 @@ class Words:
     cause: str = ""
 
 
-Value: TypeAlias = Constant | Texture | Computed | Coordinates | Normal | Words
-Textured: TypeAlias = Texture | Computed
+Value: TypeAlias = Constant | Texture | TexelGrid | Coordinates | Normal | Words
+Textured: TypeAlias = Texture | TexelGrid
 
 
 def mean(value: Value) -> tuple[float, ...]:
     """The mean of a value, one number per component."""
     if isinstance(value, Constant):
         return value.values
-    if isinstance(value, Texture | Computed):
+    if isinstance(value, Texture | TexelGrid):
         texels = _texels(value, _size([value]))
         return tuple(texels.reshape(-1, texels.shape[-1]).mean(axis=0, dtype=np.float64).tolist())
     return (0.0, 0.0, 1.0) if isinstance(value, Normal) else (0.5, 0.5)
@@ -124,11 +124,11 @@ def estimate(value: Value, cause: str) -> Constant:
     return Constant(mean(value), value.cause or cause)
 
 
-def pointwise(function: Callable[..., Array], operands: Sequence[Value], node: str) -> Constant | Computed:
+def pointwise(function: Callable[..., Array], operands: Sequence[Value], node: str) -> Constant | TexelGrid:
     """A function of arrays, whose last axis are the components, on each texel. `node` is named where it is a mean."""
     cause = next((operand.cause for operand in operands if operand.cause), "")
-    textures = [operand for operand in operands if isinstance(operand, Texture | Computed)]
-    if any(not isinstance(operand, Constant | Texture | Computed) for operand in operands):
+    textures = [operand for operand in operands if isinstance(operand, Texture | TexelGrid)]
+    if any(not isinstance(operand, Constant | Texture | TexelGrid) for operand in operands):
         textures, cause = [], cause or node
     if len({texture.placement for texture in textures}) > 1:
         textures, cause = [], cause or node
@@ -138,14 +138,16 @@ def pointwise(function: Callable[..., Array], operands: Sequence[Value], node: s
             return Constant(tuple(np.nan_to_num(np.atleast_1d(result)).tolist()), cause)
         size = _size(textures)
         arrays = [
-            _texels(operand, size) if isinstance(operand, Texture | Computed) else np.asarray(mean(operand), np.float32)
+            _texels(operand, size)
+            if isinstance(operand, Texture | TexelGrid)
+            else np.asarray(mean(operand), np.float32)
             for operand in operands
         ]
         texels = np.nan_to_num(np.asarray(function(*arrays), np.float32))
-    return Computed(texels, textures[0].placement, cause)
+    return TexelGrid(texels, textures[0].placement, cause)
 
 
-def scaled(texture: Texture, factors: Sequence[float], cause: str = "") -> Texture:
+def scale_texture(texture: Texture, factors: Sequence[float], cause: str = "") -> Texture:
     """A picture times constants, one or one for each component."""
     factor = texture.quantity.factor
     each = tuple(factors) if len(factors) > 1 else tuple(factors) * len(factor)
@@ -153,7 +155,7 @@ def scaled(texture: Texture, factors: Sequence[float], cause: str = "") -> Textu
     return Texture(texture.quantity._replace(factor=product), texture.cause or cause)
 
 
-def selected(value: Value, places: Sequence[int], node: str) -> Value:
+def select_components(value: Value, places: Sequence[int], node: str) -> Value:
     """Some components of a value, in another order or repeated."""
     if isinstance(value, Texture) and max(places) < len(value.image.channels):
         channels = "".join(value.image.channels[place] for place in places)
@@ -162,7 +164,7 @@ def selected(value: Value, places: Sequence[int], node: str) -> Value:
     return pointwise(lambda array: array[..., [min(place, array.shape[-1] - 1) for place in places]], [value], node)
 
 
-def joined(values: Sequence[Value], node: str) -> Value:
+def join_components(values: Sequence[Value], node: str) -> Value:
     """The components of several values, one after the other."""
     first = values[0]
     if isinstance(first, Texture):
@@ -173,7 +175,7 @@ def joined(values: Sequence[Value], node: str) -> Value:
             factor = tuple(part for value in same for part in value.quantity.factor)
             cause = next((value.cause for value in same if value.cause), "")
             return Texture(Quantity(factor, first.image._replace(channels=channels)), cause)
-    return pointwise(_concatenated, values, node)
+    return pointwise(_concatenate, values, node)
 
 
 def quantity_of(value: Value, name: str, color: bool, most: float = 1.0) -> Quantity:
@@ -183,7 +185,7 @@ def quantity_of(value: Value, name: str, color: bool, most: float = 1.0) -> Quan
     """
     if isinstance(value, Texture):
         return value.quantity
-    if isinstance(value, Computed):
+    if isinstance(value, TexelGrid):
         components = value.texels.shape[-1]
         largest = min(max(float(value.texels.max()), 1.0), most)
         texels = np.clip(value.texels / largest, 0.0, 1.0)
@@ -199,7 +201,7 @@ def with_cause(value: Value, cause: str) -> Value:
     return replace(value, cause=value.cause or cause)
 
 
-def _concatenated(*arrays: Array) -> Array:
+def _concatenate(*arrays: Array) -> Array:
     shape = np.broadcast_shapes(*(array.shape[:-1] for array in arrays))
     return np.concatenate([np.broadcast_to(array, (*shape, array.shape[-1])) for array in arrays], axis=-1)
 
@@ -207,7 +209,7 @@ def _concatenated(*arrays: Array) -> Array:
 def _size(textures: Sequence[Textured]) -> tuple[int, int]:
     """The width and height on which texels are computed."""
     shapes = [
-        value.texels.shape[:2] if isinstance(value, Computed) else stored(value.image.picture).shape[:2]
+        value.texels.shape[:2] if isinstance(value, TexelGrid) else read_texels(value.image.picture).shape[:2]
         for value in textures
     ]
     heights, widths = zip(*shapes, strict=True)
@@ -215,6 +217,6 @@ def _size(textures: Sequence[Textured]) -> tuple[int, int]:
 
 
 def _texels(value: Textured, size: tuple[int, int]) -> Texels:
-    if isinstance(value, Computed):
-        return resized(value.texels, size)
+    if isinstance(value, TexelGrid):
+        return resize(value.texels, size)
     return values_on(value.quantity, size)

@@ -34,22 +34,26 @@ class Report:
         self.source = source
         self.rows: list[Row] = []
 
-    def mapped(self, element: str, value: object, became: str) -> None:
+    def add_mapping(self, element: str, value: object, became: str) -> None:
         """Records an element whose meaning is kept."""
-        self.rows.append(Row(element, shown(value), "mapped", became))
+        self.rows.append(Row(element, short_text(value), "mapped", became))
 
-    def approximated(self, element: str, value: object, became: str, error: str = "") -> None:
+    def add_approximation(self, element: str, value: object, became: str, error: str = "") -> None:
         """Records an element whose meaning changes a little."""
-        self.rows.append(Row(element, shown(value), "approximated", became, error))
+        self.rows.append(Row(element, short_text(value), "approximated", became, error))
 
-    def left_out(self, element: str, value: object, reason: str) -> None:
+    def add_omission(self, element: str, value: object, reason: str) -> None:
         """Records an element that has no effect on the material."""
-        self.rows.append(Row(element, shown(value), "left out", reason))
+        self.rows.append(Row(element, short_text(value), "left out", reason))
 
     def counts(self) -> dict[str, int]:
         """Outcome → number of rows, for all outcomes."""
         counted = Counter(row.outcome for row in self.rows)
         return {outcome: counted[outcome] for outcome in OUTCOMES}
+
+    def summary(self) -> str:
+        """The number of rows of each outcome, as text."""
+        return ", ".join(f"{number} {outcome}" for outcome, number in self.counts().items())
 
     def as_json(self) -> dict[str, Any]:
         """The report for programs."""
@@ -61,8 +65,7 @@ class Report:
 
     def markdown(self) -> str:
         """The text of report.md: a table for each outcome."""
-        counts = self.counts()
-        lines = [f"# {self.source}", "", ", ".join(f"{counts[outcome]} {outcome}" for outcome in OUTCOMES) + "."]
+        lines = [f"# {self.source}", "", f"{self.summary()}."]
         for outcome in OUTCOMES:
             if rows := [row for row in self.rows if row.outcome == outcome]:
                 lines += ["", f"## {outcome.capitalize()}", "", *_table(rows, outcome)]
@@ -79,16 +82,16 @@ def _table(rows: Sequence[Row], outcome: Outcome) -> Iterable[str]:
         yield f"| {' | '.join(cell.replace('|', chr(92) + '|').replace(chr(10), ' ') for cell in cells)} |"
 
 
-def shown(value: object, length: int = 60) -> str:
+def short_text(value: object, length: int = 60) -> str:
     """A value as short text, in the words of JSON: numbers with 6 digits, `true`, `null`, `scale: 2, 2`."""
     if value is None or isinstance(value, bool | np.bool_):
         text = {None: "null", True: "true", False: "false"}[value if value is None else bool(value)]
     elif isinstance(value, float | np.floating):
         text = f"{value:.6g}"
     elif isinstance(value, Mapping):
-        text = "; ".join(f"{key}: {shown(part)}" for key, part in value.items())
+        text = "; ".join(f"{key}: {short_text(part)}" for key, part in value.items())
     elif isinstance(value, list | tuple | np.ndarray):
-        text = ", ".join(shown(part) for part in value)
+        text = ", ".join(short_text(part) for part in value)
     else:
         text = str(value)
     return text if len(text) <= length else f"{text[: length - 1]}…"

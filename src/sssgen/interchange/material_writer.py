@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from sssgen.interchange.imported import BAKED_SET, Imported, Notes, report_fields
+from sssgen.interchange.imported_material import BAKED_SET, ImportedMaterial, Notes, report_fields
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.mesh_glb import mesh_file
 from sssgen.interchange.scene_text import ball_radius, scene_text
@@ -40,7 +40,12 @@ class WrittenMaterial:
 
 
 def write_import(
-    folder: str, materials: Sequence[Imported], report: Report, *, force: bool = False, progress: Progress = silent
+    folder: str,
+    materials: Sequence[ImportedMaterial],
+    report: Report,
+    *,
+    force: bool = False,
+    progress: Progress = silent,
 ) -> list[WrittenMaterial]:
     """Writes the materials of a file to sub-folders of `folder`, all files atomically and together.
 
@@ -79,7 +84,7 @@ def _check_unchanged(folder: str, files: Mapping[str, str | bytes]) -> None:
             raise failure("the file already exists, with another content", hint, posix(path))
 
 
-def _material_files(imported: Imported, choice: Choice, name: str) -> dict[str, str | bytes]:
+def _material_files(imported: ImportedMaterial, choice: Choice, name: str) -> dict[str, str | bytes]:
     model = imported.model
     title = " ".join(re.findall(r"\w+", model.name)) or name
     doc = model.doc or f"Imported: {title}."
@@ -87,12 +92,12 @@ def _material_files(imported: Imported, choice: Choice, name: str) -> dict[str, 
     files |= choice.files
     mesh = imported.mesh
     if mesh is not None:
-        files["mesh.glb"] = mesh_file(_placed(imported, mesh, choice.coordinates))
+        files["mesh.glb"] = mesh_file(_scene_mesh(imported, mesh, choice.coordinates))
     files["scene.toml"] = scene_text(model, choice, name, mesh, SURROUNDINGS)
     return files
 
 
-def _placed(imported: Imported, mesh: FileContent, coordinates: Sequence[Coordinates]) -> FileContent:
+def _scene_mesh(imported: ImportedMaterial, mesh: FileContent, coordinates: Sequence[Coordinates]) -> FileContent:
     """The mesh with the sets of texture coordinates that the material reads as `uv` and `uv2`."""
     sets = {0: mesh.uv, 1: mesh.uv2, BAKED_SET: imported.baked_uv}
     chosen = [sets.get(place.uv_set) for place in coordinates]

@@ -66,10 +66,10 @@ class MaterialXDocument:
         folder = os.path.dirname(element.getActiveSourceUri()) or self.folder
         return self._inside(folder, name, self.place(element.getNamePath()), element.getNamePath())
 
-    def _read(self, path: str, shown: str, parents: tuple[str, ...]) -> Any:
-        text = read_text(path, shown)
-        self._texts[shown] = text
-        scan = _Scan(text, shown)
+    def _read(self, path: str, file_name: str, parents: tuple[str, ...]) -> Any:
+        text = read_text(path, file_name)
+        self._texts[file_name] = text
+        scan = _Scan(text, file_name)
         for name, place in scan.places.items():
             self.places.setdefault(name, place)
         options = self.module.XmlReadOptions()
@@ -78,8 +78,8 @@ class MaterialXDocument:
         try:
             self.module.readFromXmlString(document, text, self.module.FileSearchPath(), options)
         except Exception as error:  # MaterialX has its own classes of errors
-            raise failure(f"MaterialX cannot read the document: {error}", file=shown) from None
-        self._check_version(document, shown)
+            raise failure(f"MaterialX cannot read the document: {error}", file=file_name) from None
+        self._check_version(document, file_name)
         document.setSourceUri(os.path.abspath(path))
         chain = (*parents, os.path.realpath(path))
         for include in scan.includes:
@@ -105,12 +105,12 @@ class MaterialXDocument:
             raise self._error_at(place, f"'{name}' leaves the folder {posix(self.root)}{element}", hint)
         return target
 
-    def _check_version(self, document: Any, shown: str) -> None:
+    def _check_version(self, document: Any, file_name: str) -> None:
         wanted = tuple(document.getVersionIntegers())
         newest = tuple(self.module.getVersionIntegers()[:2])
         if not (1, 22) <= wanted <= newest:
             message = f"the version '{document.getVersionString()}' of MaterialX cannot be read"
-            raise failure(message, f"versions 1.22 to {newest[0]}.{newest[1]} are read", shown)
+            raise failure(message, f"versions 1.22 to {newest[0]}.{newest[1]} are read", file_name)
 
     def _error_at(self, place: Span, message: str, hint: str = "") -> SssgenError:
         text = self._texts.get(place.file, "")
@@ -138,10 +138,10 @@ class _Scan:
     Raises SssgenError for text that is no XML, entities, elements that nest too deeply, two elements of one name.
     """
 
-    def __init__(self, text: str, shown: str) -> None:
+    def __init__(self, text: str, file_name: str) -> None:
         self.places: dict[str, Span] = {}
         self.includes: list[Include] = []
-        self._shown, self._lines = shown, text.split("\n")
+        self._file_name, self._lines = file_name, text.split("\n")
         self._path: list[str] = []
         self._parser = parser = expat.ParserCreate()
         parser.StartElementHandler = self._start
@@ -152,7 +152,7 @@ class _Scan:
         except expat.ExpatError as error:
             line, column = error.lineno, error.offset + 1
             message = f"this is not XML: {expat.ErrorString(error.code)}"
-            raise self._error(message, Span(shown, line, column, line, column + 1)) from None
+            raise self._error(message, Span(file_name, line, column, line, column + 1)) from None
 
     def _start(self, tag: str, attributes: Mapping[str, str]) -> None:
         place = self._place()
@@ -181,7 +181,7 @@ class _Scan:
         line, column = self._parser.CurrentLineNumber, self._parser.CurrentColumnNumber + 1
         text = self._lines[line - 1]
         end = text.find(">", column - 1)
-        return Span(self._shown, line, column, line, end + 2 if end >= 0 else len(text) + 1)
+        return Span(self._file_name, line, column, line, end + 2 if end >= 0 else len(text) + 1)
 
     def _error(self, message: str, place: Span, hint: str = "") -> SssgenError:
         line = self._lines[place.line - 1] if place.line <= len(self._lines) else ""

@@ -8,19 +8,19 @@ from typing import Any, NamedTuple, TypeAlias
 
 from sssgen.interchange.graph_operations import COMPARISONS, MEANS, OPERATIONS
 from sssgen.interchange.graph_values import (
-    Computed,
     Constant,
     Coordinates,
     Normal,
+    TexelGrid,
     Texture,
     Value,
     Words,
     estimate,
-    joined,
+    join_components,
     mean,
     pointwise,
-    scaled,
-    selected,
+    scale_texture,
+    select_components,
     with_cause,
 )
 from sssgen.interchange.materialx_document import MaterialXDocument
@@ -83,7 +83,7 @@ class Graph:
         if interface := element.getInterfaceName():
             return self._interface(element, interface, scope)
         if element.getNodeGraphString() or element.getNodeName():
-            return self._connected(element, scope)
+            return self._connection(element, scope)
         if element.hasValueString():
             return self._literal(element)
         return self._default(element.getParent(), element.getName())
@@ -119,7 +119,7 @@ class Graph:
             return child, scope
         return self.node_of(self._graph_port(child, element.getOutputString(), element), Scope(child, scope))
 
-    def _connected(self, element: Any, scope: Scope | None) -> Value:
+    def _connection(self, element: Any, scope: Scope | None) -> Value:
         child, output = self._child(element), element.getOutputString()
         if child.isA(self.source.module.Node):
             return self._node(child, output, scope, element)
@@ -154,7 +154,9 @@ class Graph:
         if len(scope.key) > _MAX_GRAPHS:
             raise self.source.error(element, "the graphs are nested too deeply: one contains itself")
         port = self._graph_port(graph, output, element)
-        return self._entered((graph.getNamePath(), port.getName(), scope.key), element, lambda: self._port(port, scope))
+        return self._compute_once(
+            (graph.getNamePath(), port.getName(), scope.key), element, lambda: self._port(port, scope)
+        )
 
     def _node(self, node: Any, output: str, scope: Scope | None, element: Any) -> Value:
         definition = node.getNodeDef()
@@ -167,9 +169,9 @@ class Graph:
             raise self.source.error(element, f"the node '{node.getName()}' has no output '{output}'", hint)
         self._check_type(element, port.getType(), f"the node '{node.getName()}'")
         key = (node.getNamePath(), port.getName(), scope.key if scope else ())
-        return self._entered(key, element, lambda: self._evaluated(node, port, scope))
+        return self._compute_once(key, element, lambda: self._node_value(node, port, scope))
 
-    def _entered(self, key: Key, element: Any, compute: Callable[[], Value]) -> Value:
+    def _compute_once(self, key: Key, element: Any, compute: Callable[[], Value]) -> Value:
         """A value that is computed once. Raises SssgenError where its computation needs itself."""
         if key not in self._ready:
             if key in self._active:
@@ -254,20 +256,20 @@ class Graph:
 
     # Nodes
 
-    def _evaluated(self, node: Any, port: Any, scope: Scope | None) -> Value:
+    def _node_value(self, node: Any, port: Any, scope: Scope | None) -> Value:
         category, path = node.getCategory(), node.getNamePath()
         if special := _SPECIAL.get(category):
             return special(self, node, port, scope)
         if category.startswith("separate"):
             index = [output.getName() for output in node.getNodeDef().getActiveOutputs()].index(port.getName())
-            return selected(self.input(node, "in", scope), [index], path)
+            return select_components(self.input(node, "in", scope), [index], path)
         if category.startswith("combine"):
             names = [declared.getName() for declared in node.getNodeDef().getActiveInputs()]
-            return joined([self.input(node, name, scope) for name in names], path)
+            return join_components([self.input(node, name, scope) for name in names], path)
         if category in COMPARISONS:
             return self._comparison(node, scope)
         if operation := OPERATIONS.get(category):
-            return applied(category, [self.input(node, name, scope) for name in operation.inputs], path)
+            return apply_node(category, [self.input(node, name, scope) for name in operation.inputs], path)
         implementation = node.getNodeDef().getImplementation()
         if implementation is not None and implementation.isA(self.source.module.NodeGraph):
             return self._graph_output(implementation, port.getName(), Scope(node, scope), port)
@@ -297,7 +299,7 @@ class Graph:
             return estimate(self.input(node, "pivot", scope), path)
         return Constant((MEANS.get(node.getCategory(), 0.0),) * COMPONENTS[kind], path)
 
-    def _two_ends(self, node: Any, port: Any, scope: Scope | None) -> Value:
+    def _ramp(self, node: Any, port: Any, scope: Scope | None) -> Value:
         """The middle of a ramp."""
         names = [part.getName() for part in node.getNodeDef().getActiveInputs() if part.getName().startswith("value")]
         ends = [self.input(node, name, scope) for name in names]
@@ -307,7 +309,7 @@ class Graph:
     def _constant(self, node: Any, port: Any, scope: Scope | None) -> Value:
         return self.input(node, "value", scope)
 
-    def _passed(self, node: Any, port: Any, scope: Scope | None) -> Value:
+    def _pass_through(self, node: Any, port: Any, scope: Scope | None) -> Value:
         return self.input(node, "in", scope)
 
     def _extract(self, node: Any, port: Any, scope: Scope | None) -> Value:
@@ -315,7 +317,7 @@ class Graph:
         count = COMPONENTS.get(node.getInput("in").getType() if node.getInput("in") else "color3", 1)
         if not 0 <= index < count:
             raise self.source.error(node, f"the index {index} is not below {count}")
-        return selected(self.input(node, "in", scope), [index], node.getNamePath())
+        return select_components(self.input(node, "in", scope), [index], node.getNamePath())
 
     def _texcoord(self, node: Any, port: Any, scope: Scope | None) -> Value:
         return Coordinates(int(mean(self.input(node, "index", scope))[0]))
@@ -334,17 +336,17 @@ class Graph:
         strength = self.input(node, "scale", scope)
         path = node.getNamePath()
         cause = strength.cause if isinstance(strength, Constant) else path
-        if isinstance(texels, Texture | Computed):
+        if isinstance(texels, Texture | TexelGrid):
             return Normal(texels, mean(strength)[0], texels.cause or cause)
         return Normal(cause=texels.cause or path)
 
-    def _rotated(self, node: Any, port: Any, scope: Scope | None) -> Value:
+    def _rotation(self, node: Any, port: Any, scope: Scope | None) -> Value:
         place, angle = self.input(node, "in", scope), self.input(node, "amount", scope)
         radians = math.radians(mean(angle)[0])
         cosine, sine = math.cos(radians), math.sin(radians)
         turned = ((cosine, sine), (-sine, cosine))
         if isinstance(place, Coordinates):
-            return _transformed(place, turned, angle.cause)
+            return _transform_coordinates(place, turned, angle.cause)
         return estimate(place, node.getNamePath()) if not isinstance(place, Constant) else place
 
     # Pictures
@@ -370,12 +372,12 @@ class Graph:
         texture = Texture(Quantity((1.0,) * len(channels), image), place.cause or cause)
         return texture if image.srgb else self._linear(texture, space, kind, file.element)
 
-    def _hex_tiled(self, node: Any, port: Any, scope: Scope | None) -> Value:
+    def _hexagon_tiles(self, node: Any, port: Any, scope: Scope | None) -> Value:
         """The picture, tiled in a grid in place of turned hexagons."""
         value = self._image(node, port, scope)
         tiling = mean(self.input(node, "tiling", scope))
         if isinstance(value, Texture) and isinstance(place := self.input(node, "texcoord", scope), Coordinates):
-            tiled = _transformed(place, ((tiling[0], 0.0), (0.0, tiling[1])), node.getNamePath())
+            tiled = _transform_coordinates(place, ((tiling[0], 0.0), (0.0, tiling[1])), node.getNamePath())
             if tiled.transform is not None:
                 image = value.image._replace(transform=tiled.transform)
                 return Texture(value.quantity._replace(image=image), value.cause)
@@ -413,31 +415,31 @@ class Graph:
 
 _SPECIAL: dict[str, Callable[[Graph, Any, Any, Scope | None], Value]] = {
     "constant": Graph._constant,
-    "dot": Graph._passed,
+    "dot": Graph._pass_through,
     "extract": Graph._extract,
     "texcoord": Graph._texcoord,
     "geompropvalue": Graph._property,
     "geompropvalueuniform": Graph._property,
     "normal": Graph._normal,
     "normalmap": Graph._normal_map,
-    "rotate2d": Graph._rotated,
+    "rotate2d": Graph._rotation,
     "image": Graph._image,
-    "hextiledimage": Graph._hex_tiled,
-    "ramplr": Graph._two_ends,
-    "ramptb": Graph._two_ends,
-    "splitlr": Graph._two_ends,
-    "splittb": Graph._two_ends,
+    "hextiledimage": Graph._hexagon_tiles,
+    "ramplr": Graph._ramp,
+    "ramptb": Graph._ramp,
+    "splitlr": Graph._ramp,
+    "splittb": Graph._ramp,
 }
 
 
-def applied(category: str, operands: Sequence[Value], path: str) -> Value:
+def apply_node(category: str, operands: Sequence[Value], path: str) -> Value:
     """The result of a node of `OPERATIONS`; `path` is named where it is a mean."""
-    if (simple := _simple(category, operands)) is not None:
+    if (simple := _direct_result(category, operands)) is not None:
         return simple
     return pointwise(OPERATIONS[category].function, operands, path)
 
 
-def _simple(category: str, operands: Sequence[Value]) -> Value | None:
+def _direct_result(category: str, operands: Sequence[Value]) -> Value | None:
     """The result of a node that keeps the form of its operand: a picture times constants, moved coordinates."""
     first = operands[0]
     if category == "multiply" and isinstance(operands[-1], Texture | Coordinates):
@@ -452,7 +454,7 @@ def _simple(category: str, operands: Sequence[Value]) -> Value | None:
             if 0.0 in numbers:
                 return None
             numbers = tuple(1.0 / number for number in numbers)
-        return scaled(first, numbers, second.cause)
+        return scale_texture(first, numbers, second.cause)
     if not isinstance(first, Coordinates) or len(numbers) > 2:
         return None
     x, y = numbers if len(numbers) == 2 else numbers * 2
@@ -461,7 +463,7 @@ def _simple(category: str, operands: Sequence[Value]) -> Value | None:
             if 0.0 in (x, y):
                 return None
             x, y = 1.0 / x, 1.0 / y
-        return _transformed(first, ((x, 0.0), (0.0, y)), second.cause)
+        return _transform_coordinates(first, ((x, 0.0), (0.0, y)), second.cause)
     if category in ("add", "subtract"):
         sign = 1.0 if category == "add" else -1.0
         offset = (first.offset[0] + sign * x, first.offset[1] + sign * y)
@@ -469,7 +471,9 @@ def _simple(category: str, operands: Sequence[Value]) -> Value | None:
     return None
 
 
-def _transformed(place: Coordinates, by: tuple[tuple[float, float], tuple[float, float]], cause: str) -> Coordinates:
+def _transform_coordinates(
+    place: Coordinates, by: tuple[tuple[float, float], tuple[float, float]], cause: str
+) -> Coordinates:
     """Texture coordinates times a matrix from the left."""
     (a, b), (c, d) = by
     (e, f), (g, h) = place.matrix

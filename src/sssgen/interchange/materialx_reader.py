@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from sssgen.interchange.imported import Imported, check_name
+from sssgen.interchange.imported_material import ImportedMaterial, check_name
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.materialx_document import MaterialXDocument
 from sssgen.interchange.materialx_graph import Graph, Scope
@@ -15,7 +15,7 @@ from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
 
 
-def read(path: str, report: Report, name: str = "", top: str = "") -> list[Imported]:
+def read(path: str, report: Report, name: str = "", top: str = "") -> list[ImportedMaterial]:
     """The materials of a document; with `name`, that one alone.
 
     Includes and pictures lie in the folder `top`, by default that of the document. Adds to the report what is left out.
@@ -25,19 +25,19 @@ def read(path: str, report: Report, name: str = "", top: str = "") -> list[Impor
     graph = Graph(source)
     shaders = list(_shaders(source, graph))
     check_name(name, [title for title, _, _ in shaders], posix(path))
-    result: list[Imported] = []
+    result: list[ImportedMaterial] = []
     for index, (title, node, scope) in enumerate(shaders):
         if name not in ("", title, str(index)):
             continue
         if node.getCategory() not in SURFACES:
             reason = f"the shader '{node.getCategory()}' is not read: {', '.join(SURFACES)} are"
-            report.left_out(f"/{node.getNamePath()}", node.getCategory(), reason)
+            report.add_omission(f"/{node.getNamePath()}", node.getCategory(), reason)
             continue
         if node.getNodeDef() is None:
             raise graph.unknown(node)
         shader = Shader(graph, node, scope, report)
         model = SURFACES[node.getCategory()](shader, title)
-        result.append(Imported(model, {field: parts for field, parts in shader.elements.items() if parts}))
+        result.append(ImportedMaterial(model, {field: parts for field, parts in shader.elements.items() if parts}))
     if not result:
         refused = sorted({row.value for row in report.rows})
         hint = f"{'its shaders are ' + ', '.join(refused) + '; ' if refused else ''}read are {', '.join(SURFACES)}"

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from sssgen.interchange.graph_values import Computed, Constant, Normal, Texture, Value, mean, quantity_of
-from sssgen.interchange.imported import Element
+from sssgen.interchange.graph_values import Constant, Normal, TexelGrid, Texture, Value, mean, quantity_of
+from sssgen.interchange.imported_material import Element
 from sssgen.interchange.mapping_report import Report
-from sssgen.interchange.materialx_graph import Graph, Scope, applied
+from sssgen.interchange.materialx_graph import Graph, Scope, apply_node
 from sssgen.interchange.record_limits import BRIGHTEST
 from sssgen.interchange.surface_model import Quantity
 
@@ -23,6 +23,8 @@ class Shader:
         self.graph, self.node, self.scope, self.report = graph, node, scope, report
         self.elements: dict[str, list[Element]] = {}
         """Field of the record → the inputs that it comes from"""
+        self.aliases: Mapping[str, str] = {}
+        """Name of an input for the methods below → its name in the shader, where that is another"""
         self._set = {part.getName() for part in node.getInputs()}
         self._reported: set[str] = set()
         self._estimated: set[str] = set()
@@ -33,30 +35,31 @@ class Shader:
 
     def value(self, name: str, field: str) -> Value:
         """The value of an input that becomes a field of the record."""
+        name = self.aliases.get(name, name)
         value = self.graph.input(self.node, name, self.scope)
         if name in self._set and name not in self._reported:
             self._reported.add(name)
             if value.cause:
                 self._report_estimate(name, value)
             else:
-                self.elements.setdefault(field, []).append(Element(self.path(name), _shown(value)))
+                self.elements.setdefault(field, []).append(Element(self.path(name), _value_text(value)))
         return value
 
     def _report_estimate(self, name: str, value: Value) -> None:
         self._estimated.add(name)
         driver = f"graph with {value.cause}"
-        if isinstance(value, Texture | Computed):
-            text = f"{value.cause} is estimated: {_shown(value)}"
-            self.report.approximated(self.path(name), driver, text)
+        if isinstance(value, Texture | TexelGrid):
+            text = f"{value.cause} is estimated: {_value_text(value)}"
+            self.report.add_approximation(self.path(name), driver, text)
         else:
-            text = f"{value.cause} has no form in a material; the mean takes its place: {_shown(value)}"
-            self.report.left_out(self.path(name), driver, text)
+            text = f"{value.cause} has no form in a material; the mean takes its place: {_value_text(value)}"
+            self.report.add_omission(self.path(name), driver, text)
 
     def numbers(self, name: str, field: str) -> tuple[float, ...]:
         """An input that the record has without a picture: of a picture, the mean."""
         value = self.value(name, field)
-        if isinstance(value, Texture | Computed):
-            self.approximated(name, f"the mean of the picture, {_numbers(value)}")
+        if isinstance(value, Texture | TexelGrid):
+            self.report_approximation(name, f"the mean of the picture, {_numbers(value)}")
         return mean(value)
 
     def number(self, name: str, field: str) -> float:
@@ -69,15 +72,15 @@ class Shader:
 
     def product(self, weight: str, name: str, field: str, *, color: bool = True) -> Quantity:
         """An input times the input that is its weight."""
-        return self.as_quantity(self.weighted(weight, name, field), field, color=color)
+        return self.as_quantity(self.weighted_value(weight, name, field), field, color=color)
 
-    def weighted(self, weight: str, name: str, field: str) -> Value:
+    def weighted_value(self, weight: str, name: str, field: str) -> Value:
         """The value of an input times that of its weight."""
-        return self.combined("multiply", self.value(name, field), self.value(weight, field))
+        return self.compute("multiply", self.value(name, field), self.value(weight, field))
 
-    def combined(self, category: str, *values: Value) -> Value:
+    def compute(self, category: str, *values: Value) -> Value:
         """The result of a node that computes with values."""
-        return applied(category, values, self.node.getNamePath())
+        return apply_node(category, values, self.node.getNamePath())
 
     def as_quantity(self, value: Value, field: str, *, color: bool = False) -> Quantity:
         """A value as a quantity; `field` names the picture that is written for it."""
@@ -85,32 +88,34 @@ class Shader:
 
     def normal(self, name: str, field: str) -> Quantity:
         """A normal map and its strength."""
+        name = self.aliases.get(name, name)
         value = self.graph.input(self.node, name, self.scope)
         is_map = isinstance(value, Normal) and not value.cause
         if name in self._set:
             self._reported.add(name)
             if is_map:
-                self.elements.setdefault(field, []).append(Element(self.path(name), _shown(value)))
+                self.elements.setdefault(field, []).append(Element(self.path(name), _value_text(value)))
             else:
                 cause = value.cause or self.node.getNamePath()
                 text = f"{cause} is not a normal map; bake one"
-                self.report.left_out(self.path(name), f"graph with {cause}", text)
+                self.report.add_omission(self.path(name), f"graph with {cause}", text)
         if not isinstance(value, Normal) or value.texels is None or not is_map:
             return Quantity((1.0,))
         quantity = quantity_of(value.texels, f"{self.node.getName()}_{field}", False)
         return Quantity((value.strength,), quantity.image)
 
-    def approximated(self, name: str, became: str, error: str = "") -> None:
+    def report_approximation(self, name: str, became: str, error: str = "") -> None:
         """Reports an input that the record keeps only in part, where the document sets it."""
+        name = self.aliases.get(name, name)
         if name not in self._set or name in self._estimated:
             return
         self._estimated.add(name)
         self._reported.add(name)
         path = self.path(name)
         self.elements = {field: [part for part in parts if part.path != path] for field, parts in self.elements.items()}
-        self.report.approximated(path, self._text(name), became, error)
+        self.report.add_approximation(path, self._text(name), became, error)
 
-    def left_out(self, reasons: Mapping[str, tuple[str, str]]) -> None:
+    def report_omissions(self, reasons: Mapping[str, tuple[str, str]]) -> None:
         """Reports the inputs that have not been read: input → the input that is its weight, and the reason."""
         for element in self.node.getInputs():
             name = element.getName()
@@ -120,12 +125,12 @@ class Shader:
             weight, reason = reasons.get(name, (name, "no technique has this"))
             zero = next((part for part in (weight, name) if self._is_zero(part)), "")
             if zero:
-                self.report.mapped(self.path(name), self._text(name), f"nothing: {zero} is 0")
+                self.report.add_mapping(self.path(name), self._text(name), f"nothing: {zero} is 0")
             else:
-                self.report.left_out(self.path(name), self._text(name), reason)
+                self.report.add_omission(self.path(name), self._text(name), reason)
 
     def _text(self, name: str) -> str:
-        return _shown(self.graph.input(self.node, name, self.scope))
+        return _value_text(self.graph.input(self.node, name, self.scope))
 
     def _is_zero(self, name: str) -> bool:
         value = self.graph.input(self.node, name, self.scope)
@@ -136,15 +141,15 @@ def _numbers(value: Value) -> str:
     return ", ".join(f"{part:.4g}" for part in mean(value))
 
 
-def _shown(value: Value) -> str:
+def _value_text(value: Value) -> str:
     """A value for the report."""
     if isinstance(value, Texture):
         factor = value.quantity.factor
         times = "" if set(factor) == {1.0} else f" × {_numbers(Constant(factor))}"
         return f"{value.image.picture.name} {value.image.channels}{times}"
-    if isinstance(value, Computed):
+    if isinstance(value, TexelGrid):
         height, width = value.texels.shape[:2]
         return f"{width} × {height} texels"
     if isinstance(value, Normal):
-        return "the surface's normal" if value.texels is None else _shown(value.texels)
+        return "the surface's normal" if value.texels is None else _value_text(value.texels)
     return _numbers(value)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import NamedTuple
 
 from sssgen.interchange.albedo_inversion import subsurface_medium, transmission_medium
 from sssgen.interchange.graph_values import Constant, Value, mean
@@ -29,7 +28,7 @@ def _group(weight: str, reason: str, *names: str) -> Reasons:
 
 
 def _one_minus(shader: Shader, value: Value) -> Value:
-    return shader.combined("subtract", Constant((1.0,)), value)
+    return shader.compute("subtract", Constant((1.0,)), value)
 
 
 def _opacity(shader: Shader, name: str) -> tuple[Quantity, AlphaMode]:
@@ -38,8 +37,8 @@ def _opacity(shader: Shader, name: str) -> tuple[Quantity, AlphaMode]:
     if len(mean(value)) == 3:
         weights = Constant((0.2126, 0.7152, 0.0722))
         if len(set(mean(value))) > 1:
-            shader.approximated(name, "its luminance: opacity has no colour")
-        value = shader.combined("dotproduct", value, weights)
+            shader.report_approximation(name, "its luminance: opacity has no colour")
+        value = shader.compute("dotproduct", value, weights)
     quantity = shader.as_quantity(value, "opacity")
     return quantity, "opaque" if quantity == Quantity((1.0,)) else "blend"
 
@@ -50,73 +49,48 @@ def _coat_attenuation(shader: Shader, base: Value, weight: str, color: str) -> V
     if mean(tint) == (1.0, 1.0, 1.0):
         return base
     if any(mean(shader.value(weight, "coat"))):
-        shader.approximated(color, "multiplied to the base colour, for light along the normal")
+        shader.report_approximation(color, "multiplied to the base colour, for light along the normal")
     white = Constant((1.0, 1.0, 1.0))
-    return shader.combined("multiply", base, shader.combined("mix", white, tint, shader.value(weight, "coat")))
+    return shader.compute("multiply", base, shader.compute("mix", white, tint, shader.value(weight, "coat")))
 
 
 def _emission(shader: Shader, weight: str, color: str) -> Quantity:
     """The emitted radiance: the number of the weight is taken as it is."""
     quantity = shader.product(weight, color, "emission")
     if max(quantity.factor) >= BRIGHTEST:
-        shader.approximated(weight, f"{BRIGHTEST:g}, the brightest emission of a material")
+        shader.report_approximation(weight, f"{BRIGHTEST:g}, the brightest emission of a material")
     return quantity
 
 
 # OpenPBR and standard_surface
 
 
-class _Names(NamedTuple):
-    """The names of the inputs whose names differ between OpenPBR and standard_surface."""
-
-    base: str
-    metalness: str
-    ior: str
-    specular: str
-    normal: str
-    opacity: str
-    emission: str
-    coat: str
-    transmission: str
-    subsurface: str
-    subsurface_scale: str
-    subsurface_radii: str
-    subsurface_anisotropy: str
-    thin_walled: str
-
-
-_OPEN_PBR = _Names(
-    base="base_weight", metalness="base_metalness", ior="specular_ior", specular="specular_weight",
-    normal="geometry_normal", opacity="geometry_opacity", emission="emission_luminance", coat="coat_weight",
-    transmission="transmission_weight", subsurface="subsurface_weight", subsurface_scale="subsurface_radius",
-    subsurface_radii="subsurface_radius_scale", subsurface_anisotropy="subsurface_scatter_anisotropy",
-    thin_walled="geometry_thin_walled",
-)  # fmt: skip
-_STANDARD = _Names(
-    base="base", metalness="metalness", ior="specular_IOR", specular="specular", normal="normal", opacity="opacity",
-    emission="emission", coat="coat", transmission="transmission", subsurface="subsurface",
-    subsurface_scale="subsurface_scale", subsurface_radii="subsurface_radius",
-    subsurface_anisotropy="subsurface_anisotropy", thin_walled="thin_walled",
-)  # fmt: skip
+_STANDARD_NAMES = {
+    "base_weight": "base", "base_metalness": "metalness", "specular_ior": "specular_IOR", "specular_weight": "specular",
+    "geometry_normal": "normal", "geometry_opacity": "opacity", "emission_luminance": "emission", "coat_weight": "coat",
+    "transmission_weight": "transmission", "subsurface_weight": "subsurface", "subsurface_radius": "subsurface_scale",
+    "subsurface_radius_scale": "subsurface_radius", "subsurface_scatter_anisotropy": "subsurface_anisotropy",
+    "geometry_thin_walled": "thin_walled",
+}  # fmt: skip
+"""OpenPBR's name of an input → that of standard_surface, where they differ."""
 
 _SUBSURFACE_INPUTS = (
-    "subsurface_color", "subsurface_radius", "subsurface_radius_scale", "subsurface_scale",
-    "subsurface_scatter_anisotropy", "subsurface_anisotropy",
+    "subsurface_color", "subsurface_radius", "subsurface_radius_scale", "subsurface_scatter_anisotropy",
 )  # fmt: skip
 _TRANSMISSION_INPUTS = (
     "transmission_color", "transmission_depth", "transmission_scatter", "transmission_scatter_anisotropy",
 )  # fmt: skip
 
 
-def _with_interior(shader: Shader, model: SurfaceModel, base: Value, names: _Names) -> SurfaceModel:
+def _add_interior(shader: Shader, model: SurfaceModel, base: Value) -> SurfaceModel:
     """The record with what is below the surface: a sheet's two sides, or a body's medium."""
-    thin = bool(shader.number(names.thin_walled, "thin_walled"))
+    thin = bool(shader.number("geometry_thin_walled", "thin_walled"))
     model = replace(model, thin_walled=thin, two_sided=thin)
-    weight = shader.value(names.subsurface, "diffuse_transmission" if thin else "subsurface")
-    transmission = shader.quantity(names.transmission, "transmission")
+    weight = shader.value("subsurface_weight", "diffuse_transmission" if thin else "subsurface")
+    transmission = shader.quantity("transmission_weight", "transmission")
     scatters, transmits = any(part > 0.0 for part in mean(weight)), not transmission.is_zero
     if thin:
-        model = _sheet(shader, model, base, weight, names) if scatters else model
+        model = _sheet(shader, model, base, weight) if scatters else model
         if transmits:
             tint = shader.quantity("transmission_color", "transmission_tint", color=True)
             model = replace(model, transmission=transmission, transmission_tint=tint)
@@ -130,8 +104,8 @@ def _with_interior(shader: Shader, model: SurfaceModel, base: Value, names: _Nam
         if depth <= 0.0:
             tint = shader.quantity("transmission_color", "transmission_tint", color=True)
             model = replace(model, transmission_tint=tint)
-            return _with_subsurface(shader, model, names) if scatters else model
-        if not scatters or mean(shader.value(names.transmission, "transmission"))[0] >= 0.5:
+            return _add_subsurface(shader, model) if scatters else model
+        if not scatters or mean(shader.value("transmission_weight", "transmission"))[0] >= 0.5:
             interior = transmission_medium(
                 shader.numbers("transmission_color", "interior"),
                 depth,
@@ -142,26 +116,26 @@ def _with_interior(shader: Shader, model: SurfaceModel, base: Value, names: _Nam
                 _drop(shader, _SUBSURFACE_INPUTS, "the body has one medium: that of the transmission")
             return replace(model, interior=interior)
         _drop(shader, _TRANSMISSION_INPUTS, "the body has one medium: that of the subsurface")
-    return _with_subsurface(shader, model, names) if scatters else model
+    return _add_subsurface(shader, model) if scatters else model
 
 
 def _drop(shader: Shader, names: tuple[str, ...], reason: str) -> None:
     for name in names:
-        shader.approximated(name, reason)
+        shader.report_approximation(name, reason)
 
 
-def _with_subsurface(shader: Shader, model: SurfaceModel, names: _Names) -> SurfaceModel:
+def _add_subsurface(shader: Shader, model: SurfaceModel) -> SurfaceModel:
     color = shader.numbers("subsurface_color", "interior")
-    anisotropy = shader.number(names.subsurface_anisotropy, "interior")
-    scale = shader.number(names.subsurface_scale, "interior")
-    radii = tuple(scale * part for part in shader.numbers(names.subsurface_radii, "interior"))  # in metres
+    anisotropy = shader.number("subsurface_scatter_anisotropy", "interior")
+    scale = shader.number("subsurface_radius", "interior")
+    radii = tuple(scale * part for part in shader.numbers("subsurface_radius_scale", "interior"))  # in metres
     interior = subsurface_medium(color, radii, anisotropy)
     albedo = ", ".join(f"{part:.4g}" for part in interior.albedo)
-    shader.approximated("subsurface_color", f"the scattering albedo {albedo}", _INVERSION)
+    shader.report_approximation("subsurface_color", f"the scattering albedo {albedo}", _INVERSION)
     return replace(model, interior=interior)
 
 
-def _sheet(shader: Shader, model: SurfaceModel, base: Value, weight: Value, names: _Names) -> SurfaceModel:
+def _sheet(shader: Shader, model: SurfaceModel, base: Value, weight: Value) -> SurfaceModel:
     """A thin sheet: its subsurface reflects and transmits diffusely.
 
     With the share T of the sheet's light that is transmitted (OpenPBR: (1 + g) / 2; standard_surface: all), the weight
@@ -170,13 +144,13 @@ def _sheet(shader: Shader, model: SurfaceModel, base: Value, weight: Value, name
     """
     color = shader.value("subsurface_color", "diffuse_transmission_color")
     through = 1.0
-    if names is _OPEN_PBR:
-        through = 0.5 * (1.0 + shader.number(names.subsurface_anisotropy, "diffuse_transmission"))
-    share = shader.combined("multiply", weight, Constant((through,)))
-    back = shader.combined("multiply", color, shader.combined("multiply", weight, Constant((1.0 - through,))))
-    front = shader.combined("multiply", base, _one_minus(shader, weight))
-    kept = shader.combined("max", _one_minus(shader, share), Constant((1e-3,)))
-    reflected = shader.combined("divide", shader.combined("add", front, back), kept)
+    if not shader.aliases:  # OpenPBR
+        through = 0.5 * (1.0 + shader.number("subsurface_scatter_anisotropy", "diffuse_transmission"))
+    share = shader.compute("multiply", weight, Constant((through,)))
+    back = shader.compute("multiply", color, shader.compute("multiply", weight, Constant((1.0 - through,))))
+    front = shader.compute("multiply", base, _one_minus(shader, weight))
+    kept = shader.compute("max", _one_minus(shader, share), Constant((1e-3,)))
+    reflected = shader.compute("divide", shader.compute("add", front, back), kept)
     return replace(
         model,
         base_color=shader.as_quantity(reflected, "base_color", color=True),
@@ -230,35 +204,38 @@ _STANDARD_LEFT_OUT: Reasons = {
 
 def open_pbr_surface(shader: Shader, name: str) -> SurfaceModel:
     """OpenPBR Surface 1.1."""
-    return _layered(shader, name, _OPEN_PBR, _OPEN_PBR_LEFT_OUT)
+    return _layered_surface(shader, name, _OPEN_PBR_LEFT_OUT)
 
 
 def standard_surface(shader: Shader, name: str) -> SurfaceModel:
     """Autodesk's standard_surface 1.0.1."""
-    return _layered(shader, name, _STANDARD, _STANDARD_LEFT_OUT)
+    shader.aliases = _STANDARD_NAMES
+    return _layered_surface(shader, name, _STANDARD_LEFT_OUT)
 
 
-def _layered(shader: Shader, name: str, names: _Names, left_out: Reasons) -> SurfaceModel:
-    """A base with an interior, below a coat."""
-    base = _coat_attenuation(shader, shader.weighted(names.base, "base_color", "base_color"), names.coat, "coat_color")
-    opacity, alpha_mode = _opacity(shader, names.opacity)
+def _layered_surface(shader: Shader, name: str, left_out: Reasons) -> SurfaceModel:
+    """A base with an interior, below a coat; the inputs have OpenPBR's names."""
+    base = _coat_attenuation(
+        shader, shader.weighted_value("base_weight", "base_color", "base_color"), "coat_weight", "coat_color"
+    )
+    opacity, alpha_mode = _opacity(shader, "geometry_opacity")
     model = SurfaceModel(
         name,
         alpha_mode=alpha_mode,
         base_color=shader.as_quantity(base, "base_color", color=True),
         opacity=opacity,
-        metalness=shader.quantity(names.metalness, "metalness"),
+        metalness=shader.quantity("base_metalness", "metalness"),
         roughness=shader.quantity("specular_roughness", "roughness"),
-        ior=shader.number(names.ior, "ior"),
-        specular=shader.quantity(names.specular, "specular"),
+        ior=shader.number("specular_ior", "ior"),
+        specular=shader.quantity("specular_weight", "specular"),
         specular_color=shader.quantity("specular_color", "specular_color", color=True),
-        normal=shader.normal(names.normal, "normal"),
-        emission=_emission(shader, names.emission, "emission_color"),
-        coat=shader.quantity(names.coat, "coat"),
+        normal=shader.normal("geometry_normal", "normal"),
+        emission=_emission(shader, "emission_luminance", "emission_color"),
+        coat=shader.quantity("coat_weight", "coat"),
         coat_roughness=shader.quantity("coat_roughness", "coat_roughness"),
     )
-    model = _with_interior(shader, model, base, names)
-    shader.left_out(left_out)
+    model = _add_interior(shader, model, base)
+    shader.report_omissions(left_out)
     return model
 
 
@@ -307,7 +284,7 @@ def gltf_pbr(shader: Shader, name: str) -> SurfaceModel:
             extinction = extinction_of_color(shader.numbers("attenuation_color", "interior"), distance)
             model = replace(model, interior=medium(extinction, (0.0, 0.0, 0.0)))
         model = replace(model, thickness=thickness, thin_walled=thickness.is_zero)
-    shader.left_out(_GLTF_LEFT_OUT)
+    shader.report_omissions(_GLTF_LEFT_OUT)
     return model
 
 
@@ -324,7 +301,7 @@ def usd_preview_surface(shader: Shader, name: str) -> SurfaceModel:
     if threshold > 0.0 and alpha_mode == "blend":
         alpha_mode = "mask"
     if shader.number("useSpecularWorkflow", "metalness"):
-        shader.approximated("useSpecularWorkflow", "the workflow with metalness: specularColor is not read")
+        shader.report_approximation("useSpecularWorkflow", "the workflow with metalness: specularColor is not read")
     model = SurfaceModel(
         name,
         alpha_mode=alpha_mode,
@@ -340,9 +317,11 @@ def usd_preview_surface(shader: Shader, name: str) -> SurfaceModel:
         coat=shader.quantity("clearcoat", "coat"),
         coat_roughness=shader.quantity("clearcoatRoughness", "coat_roughness"),
     )
-    shader.left_out(_PREVIEW_LEFT_OUT)
+    shader.report_omissions(_PREVIEW_LEFT_OUT)
     if model.alpha_mode == "blend" and opacity.image is None:  # UsdPreviewSurface 2.6: what is clear still reflects
-        shader.approximated("opacity", "light that comes through without refraction: the surface still reflects")
+        shader.report_approximation(
+            "opacity", "light that comes through without refraction: the surface still reflects"
+        )
         through, white = Quantity((1.0 - opacity.factor[0],)), Quantity((1.0, 1.0, 1.0))
         model = replace(
             model, alpha_mode="opaque", opacity=Quantity((1.0,)), transmission=through, transmission_tint=white,

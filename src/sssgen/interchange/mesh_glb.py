@@ -1,4 +1,8 @@
-"""Writes triangles as binary glTF (GLB), with texture coordinates, colours of vertices and a material."""
+"""Writes triangles as binary glTF (GLB), with texture coordinates, colours of vertices and a material.
+
+trimesh's exporter has one set of texture coordinates; pygltflib would write the header that `glb` writes, and leaves
+the views and accessors to its caller.
+"""
 
 from __future__ import annotations
 

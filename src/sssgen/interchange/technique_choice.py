@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.interchange.body_shares import Shares, shares_of
-from sssgen.interchange.dense_bodies import as_matte, reduced, scatters_inside, weight_inside
-from sssgen.interchange.imported import Notes
-from sssgen.interchange.record_limits import limited
+from sssgen.interchange.dense_bodies import as_matte, isotropic_medium, scatters_inside, weight_inside
+from sssgen.interchange.imported_material import Notes
+from sssgen.interchange.record_limits import limit_numbers
 from sssgen.interchange.surface_model import ONE, WHITE, Quantity, SurfaceModel, UvTransform
 from sssgen.interchange.texels import mean_of
-from sssgen.interchange.texture_composer import Composer, Coordinates, Written, coordinates
+from sssgen.interchange.texture_composer import ComposedTexture, Composer, Coordinates, coordinates
 from sssgen.lab.measure.measured_chain import MaterialSection
 
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
@@ -56,10 +56,10 @@ class _Chooser:
         self.metres = _unit(model)
 
     def add(self, section: str, technique: str, bind: dict[str, str] | None = None, **values: object) -> None:
-        """Adds a stage; a `Written` texture also sets the stage's set of coordinates."""
+        """Adds a stage; a `ComposedTexture` also sets the stage's set of coordinates."""
         plain: dict[str, object] = {}
         for key, value in values.items():
-            if isinstance(value, Written):
+            if isinstance(value, ComposedTexture):
                 plain[key] = value.file
                 if value.uv == "uv2":
                     plain["uv"] = "uv2"
@@ -69,7 +69,7 @@ class _Chooser:
                 plain[key] = value
         self.stages.append(MaterialSection(section, technique, tuple(plain.items()), (), tuple((bind or {}).items())))
 
-    def all(self) -> Choice:
+    def choose(self) -> Choice:
         model = self.model
         self.coordinates()
         self.thickness()
@@ -84,29 +84,31 @@ class _Chooser:
             settings["alpha_mode"] = model.alpha_mode
         if model.two_sided:
             settings["two_sided"] = True
-        for field, reason in self.composer.replaced.items():
-            self.notes.approximated(field, reason)
+        for field, reason in self.composer.substitutions.items():
+            self.notes.add_approximation(field, reason)
         return Choice(self.stages, settings, self.composer.files, self.clamped, self.composer.sets, self.metres)
 
     def coordinates(self) -> None:
         for name, placed in zip(("uv", "uv2"), self.composer.sets, strict=False):
-            tiling, offset, rotation = self.limited(placed)
+            tiling, offset, rotation = self.limit_transform(placed)
             if placed.transform != Coordinates().transform:
                 self.add(
                     "coordinates", "uv_transform", uv=name if name == "uv2" else None,
                     uv_tiling=tiling, uv_offset=offset, uv_rotation=float(np.fmod(rotation, 360.0)),
                 )  # fmt: skip
 
-    def limited(self, placed: Coordinates) -> UvTransform:
+    def limit_transform(self, placed: Coordinates) -> UvTransform:
         """The transform in the ranges of `uv_transform`: of an offset whole repetitions go first."""
         tiling, offset, rotation = placed.transform
         placed_images = {image: field for image, field in self.composer.fields.items() if coordinates(image) == placed}
-        if _within(offset) != offset and all(image.wrap == "repeat" for image in placed_images):
+        if _limit_pair(offset) != offset and all(image.wrap == "repeat" for image in placed_images):
             offset = offset[0] % 1.0, offset[1] % 1.0
-        within = UvTransform(_within(tiling), _within(offset), rotation)
+        within = UvTransform(_limit_pair(tiling), _limit_pair(offset), rotation)
         if within.tiling != tiling or within.offset != offset:
             for field in placed_images.values():
-                self.notes.approximated(field, f"its picture with a tiling and an offset of at most {_MOST_TILED:g}")
+                self.notes.add_approximation(
+                    field, f"its picture with a tiling and an offset of at most {_MOST_TILED:g}"
+                )
         return within
 
     def thickness(self) -> None:
@@ -120,9 +122,9 @@ class _Chooser:
 
     def thickness_of_absorption(self) -> None:
         model = self.model
-        quantity = self.composer.usable(model.thickness)
+        quantity = self.composer.usable_quantity(model.thickness)
         factor = quantity.factor[0] / self.metres
-        texture = self.composer.packed("thickness", [quantity])
+        texture = self.composer.pack("thickness", [quantity])
         if model.thin_walled or model.interior is None:
             self.add("thickness", "constant_thickness", thickness_factor=0.0)
         elif texture is not None and factor > 0.0:
@@ -131,33 +133,33 @@ class _Chooser:
             if factor == 0.0:
                 factor = self.mean_chord / self.metres
                 became = f"{self.mean_chord:.4g} m everywhere, the mean chord of the body"
-                self.notes.approximated("thickness", became, "not known: it differs from place to place")
+                self.notes.add_approximation("thickness", became, "not known: it differs from place to place")
             self.add("thickness", "constant_thickness", thickness_factor=factor)
 
     def colors(self) -> None:
         model = self.model
-        base, opacity = self.composer.together(model.base_color, model.opacity)
+        base, opacity = self.composer.align(model.base_color, model.opacity)
         base, matte = self.with_matte_share(base)
         cutoff = 0.5 / max(model.alpha_cutoff, 1e-3) if model.alpha_mode == "mask" else 1.0
-        shares = self.composer.together(
+        shares = self.composer.align(
             base, model.metalness, model.transmission, model.diffuse_transmission, model.subsurface
         )
         removed = any(not share.is_zero for share in shares[2:])
-        kept = _kept(*(np.array(share.factor) for share in shares[1:])) + matte
-        computed = removed and (any(share.image is not None for share in shares[1:]) or _exceeds_one(base, kept))
+        kept = _reflected_share(*(np.array(share.factor) for share in shares[1:])) + matte
+        computed = removed and (any(share.image is not None for share in shares[1:]) or _tint_exceeds_one(base, kept))
         if not removed and cutoff == 1.0:
-            texture = self.composer.packed("base_color", [base, opacity], srgb=True)
+            texture = self.composer.pack("base_color", [base, opacity], srgb=True)
             tint = (*base.factor, *opacity.factor)
         elif not computed and cutoff == 1.0:
-            texture = self.composer.packed("base_color", [base, opacity], srgb=True)
+            texture = self.composer.pack("base_color", [base, opacity], srgb=True)
             tint = (*(np.array(base.factor) * kept).tolist(), *opacity.factor)
         else:
             grid = self.composer.grid(*shares, opacity)
             values = [np.array(share.factor) for share in (*shares, opacity)] if grid is None else grid[0]
-            rgb = values[0] * (_kept(*values[1:5]) + matte)
+            rgb = values[0] * (_reflected_share(*values[1:5]) + matte)
             alpha = np.clip(values[5] * cutoff, 0.0, 1.0)
             rgba = np.concatenate([np.clip(rgb, 0.0, 1.0), alpha], axis=-1)
-            texture = None if grid is None else self.composer.computed("base_color", rgba, grid[1], srgb=True)
+            texture = None if grid is None else self.composer.write_values("base_color", rgba, grid[1], srgb=True)
             tint = (1.0, 1.0, 1.0, 1.0) if grid else tuple(rgba.tolist())
         self.add("surface", "base_color", base_color_texture=texture, tint=tint)
         if model.vertex_colors:
@@ -176,29 +178,29 @@ class _Chooser:
 
     def relief(self) -> None:
         model = self.model
-        normal = self.composer.usable(model.normal)
-        if (texture := self.composer.packed("normal", [normal])) is not None:
+        normal = self.composer.usable_quantity(model.normal)
+        if (texture := self.composer.pack("normal", [normal])) is not None:
             name = "normal_map_directx" if model.normal_down else "normal_map"
             self.add("surface", name, normal_texture=texture, normal_scale=min(normal.factor[0], 4.0))
 
     def reflection(self) -> None:
         model = self.model
-        roughness, metalness = self.composer.together(model.roughness, model.metalness)
-        texture = self.composer.packed("metallic_roughness", [ONE, roughness, metalness])
+        roughness, metalness = self.composer.align(model.roughness, model.metalness)
+        texture = self.composer.pack("metallic_roughness", [ONE, roughness, metalness])
         values: dict[str, Any] = {"metalness": metalness.factor[0], "surface_roughness": roughness.factor[0]}
         if texture is None:
             self.add("surface", "pbr_constants", **values)
         else:
             self.add("surface", "metallic_roughness_map", metallic_roughness_texture=texture, **values)
-        occlusion = self.composer.usable(model.occlusion)
-        if (texture := self.composer.packed("occlusion", [occlusion])) is not None:
+        occlusion = self.composer.usable_quantity(model.occlusion)
+        if (texture := self.composer.pack("occlusion", [occlusion])) is not None:
             self.add(
                 "surface", "occlusion_map", occlusion_texture=texture, occlusion_strength=min(occlusion.factor[0], 1.0)
             )
         self.specular()
-        coat, coat_roughness = self.composer.together(model.coat, model.coat_roughness)
+        coat, coat_roughness = self.composer.align(model.coat, model.coat_roughness)
         if not coat.is_zero:
-            texture = self.composer.packed("coat", [coat, coat_roughness])
+            texture = self.composer.pack("coat", [coat, coat_roughness])
             name = "clearcoat_constants" if texture is None else "clearcoat_map"
             self.add(
                 "surface", name, clearcoat_texture=texture,
@@ -210,23 +212,23 @@ class _Chooser:
         tint = mean_of(model.specular_color)
         luminance = sum(weight * part for weight, part in zip(_LUMINANCE, tint, strict=True))
         if max(tint) - min(tint) > 1e-3:
-            self.notes.approximated("specular_color", f"its luminance {luminance:.3g}: reflection has no tint")
-        specular = self.composer.usable(model.specular)
+            self.notes.add_approximation("specular_color", f"its luminance {luminance:.3g}: reflection has no tint")
+        specular = self.composer.usable_quantity(model.specular)
         reflected = model.reflectance * specular.factor[0] * luminance
         if reflected > _MOST_REFLECTED:
             reason = f"{_MOST_REFLECTED:.0%} are reflected in place of {reflected:.1%}: the largest value"
-            self.notes.approximated("ior" if model.reflectance > _MOST_REFLECTED else "specular", reason)
+            self.notes.add_approximation("ior" if model.reflectance > _MOST_REFLECTED else "specular", reason)
         level = min(reflected / _MOST_REFLECTED, 1.0)
-        texture = self.composer.packed("specular", [WHITE, specular])
+        texture = self.composer.pack("specular", [WHITE, specular])
         if texture is not None:
             self.add("surface", "specular_map", specular_texture=texture, specular_strength=level)
         elif abs(reflected - _USUAL_REFLECTED) > 1e-6:
             self.add("surface", "specular_level", dielectric_specular=level)
 
     def emission(self) -> None:
-        emission = self.composer.usable(self.model.emission)
+        emission = self.composer.usable_quantity(self.model.emission)
         if not emission.is_zero:
-            texture = self.composer.packed("emission", [emission], srgb=True)
+            texture = self.composer.pack("emission", [emission], srgb=True)
             strength = max(max(emission.factor), 1.0)
             color = [part / strength for part in emission.factor]
             self.add(
@@ -257,23 +259,23 @@ class _Chooser:
                 diffuse_transmission_tint=color, extinction=extinction,
             )  # fmt: skip
 
-    def product(self, name: str, color: Quantity, share: Quantity) -> tuple[Written | None, list[float]]:
+    def product(self, name: str, color: Quantity, share: Quantity) -> tuple[ComposedTexture | None, list[float]]:
         """The texture and the constant of a colour times the share of dielectric light that it has."""
-        color, share, metalness = self.composer.together(color, share, self.model.metalness)
+        color, share, metalness = self.composer.align(color, share, self.model.metalness)
         grid = self.composer.grid(color, share, metalness)
         if grid is None:
             dielectric = 1.0 - metalness.factor[0]
             return None, [part * share.factor[0] * dielectric for part in color.factor]
         values = np.clip(grid[0][0] * grid[0][1] * (1.0 - grid[0][2]), 0.0, 1.0)
-        return self.composer.computed(name, values, grid[1], srgb=True), [1.0, 1.0, 1.0]
+        return self.composer.write_values(name, values, grid[1], srgb=True), [1.0, 1.0, 1.0]
 
     def interior(self) -> None:
         """Light that is scattered inside; anisotropic scattering by the similarity relation."""
         assert self.model.interior is not None
-        medium, weight = reduced(self.model.interior), weight_inside(self.model)
+        medium, weight = isotropic_medium(self.model.interior), weight_inside(self.model)
         extinction = ", ".join(f"{part:.4g}" for part in medium.extinction)
         became = f"four exponentials and a matte share in place of light transport; extinction {extinction} per metre"
-        self.notes.approximated("interior", became)
+        self.notes.add_approximation("interior", became)
         self.add(
             "translucency", "interior_octaves", {"light_path": "depth_map_path"},
             extinction=[min(part * self.metres, _DENSEST) for part in medium.extinction],
@@ -286,7 +288,7 @@ class _Chooser:
     def shares(self) -> Shares:
         """How the light in the body is divided."""
         assert self.model.interior is not None
-        medium = reduced(self.model.interior)
+        medium = isotropic_medium(self.model.interior)
         return shares_of([part * self.mean_chord for part in medium.extinction], medium.albedo)
 
 
@@ -295,22 +297,22 @@ def choose(model: SurfaceModel, notes: Notes, mean_chord: float) -> Choice:
 
     `notes` gets what the stages cannot express.
     """
-    return _Chooser(as_matte(limited(model, notes), notes, mean_chord), notes, mean_chord).all()
+    return _Chooser(as_matte(limit_numbers(model, notes), notes, mean_chord), notes, mean_chord).choose()
 
 
-def _within(pair: tuple[float, float]) -> tuple[float, float]:
+def _limit_pair(pair: tuple[float, float]) -> tuple[float, float]:
     """The numbers, none beyond the largest tiling."""
     first, second = (min(max(part, -_MOST_TILED), _MOST_TILED) for part in pair)
     return first, second
 
 
-def _kept(metalness: Any, transmission: Any, diffuse: Any, subsurface: Any) -> Any:
+def _reflected_share(metalness: Any, transmission: Any, diffuse: Any, subsurface: Any) -> Any:
     """The share of the base colour that is left for the reflection: metals keep all, as it is their mirror's colour."""
     m, t, d, s = (np.asarray(share) for share in (metalness, transmission, diffuse, subsurface))
     return 1.0 - (1.0 - m) * (1.0 - (1.0 - t) * (1.0 - d) * (1.0 - s))
 
 
-def _exceeds_one(base: Quantity, kept: Any) -> bool:
+def _tint_exceeds_one(base: Quantity, kept: Any) -> bool:
     """Whether the factor of a picture would be larger than a tint can be."""
     return base.image is not None and bool((np.array(base.factor) * kept > 1.0).any())
 

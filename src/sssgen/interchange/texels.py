@@ -21,7 +21,7 @@ _FORMATS = ["PNG", "JPEG", "WEBP", "TIFF", "TGA", "BMP"]
 
 
 @lru_cache(maxsize=4)
-def stored(picture: Picture) -> Texels:
+def read_texels(picture: Picture) -> Texels:
     """The stored values 0..1 of a picture, (height, width, 4), row 0 at the top. A missing alpha is 1.
 
     Raises SssgenError for a picture that cannot be read or is too large.
@@ -53,7 +53,7 @@ def _as_four(image: Any) -> Texels:
 def texel_values(image: Image) -> Texels:
     """What an image contributes to its quantity, (height, width, components): decoded, inverted, scaled and moved."""
     places = ["rgba".index(channel) for channel in image.channels]
-    values = stored(image.picture)[..., places]
+    values = read_texels(image.picture)[..., places]
     if image.srgb:
         color = np.array([channel != "a" for channel in image.channels])
         values = np.where(color, decode_srgb(values), values)
@@ -68,10 +68,10 @@ def values_on(quantity: Quantity, size: tuple[int, int]) -> Texels:
     factor = np.asarray(quantity.factor, np.float32)
     if quantity.image is None:
         return np.broadcast_to(factor, (height, width, len(factor)))
-    return factor * resized(texel_values(quantity.image), size)
+    return factor * resize(texel_values(quantity.image), size)
 
 
-def resized(values: Texels, size: tuple[int, int]) -> Texels:
+def resize(values: Texels, size: tuple[int, int]) -> Texels:
     """The values on another grid, by bilinear interpolation."""
     width, height = size
     if values.shape[:2] == (height, width):

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sssgen.interchange.surface_model import Image, Quantity, SurfaceModel, UvTransform, Wrap
-from sssgen.interchange.texels import Texels, mean_of, resized, stored, texel_values, values_on
+from sssgen.interchange.texels import Texels, mean_of, read_texels, resize, texel_values, values_on
 from sssgen.scene.pictures.images import encode_srgb, png_bytes
 
 FOLDER = "textures"
@@ -24,7 +24,7 @@ class Coordinates(NamedTuple):
     transform: UvTransform = UvTransform()
 
 
-class Written(NamedTuple):
+class ComposedTexture(NamedTuple):
     """A texture that was composed."""
 
     file: str
@@ -47,31 +47,33 @@ class Composer:
         self.sets = [pair for pair, _ in counted.most_common(2)] or [Coordinates()]
         """The coordinates that `uv` and `uv2` have"""
         self.files: dict[str, bytes] = {}
-        self.replaced: dict[str, str] = {}
+        self.substitutions: dict[str, str] = {}
         """Field of the model → why its image is replaced by a mean"""
         self.fields = {image: field for field, image in images.items()}
 
-    def usable(self, quantity: Quantity) -> Quantity:
+    def usable_quantity(self, quantity: Quantity) -> Quantity:
         """The quantity; with its mean where its image has a third pair of set and transform."""
         if quantity.image is None or coordinates(quantity.image) in self.sets:
             return quantity
-        self.replaced[self.fields[quantity.image]] = "the mean of its picture: a material has two sets of coordinates"
+        self.substitutions[self.fields[quantity.image]] = (
+            "the mean of its picture: a material has two sets of coordinates"
+        )
         return Quantity(mean_of(quantity))
 
-    def together(self, *quantities: Quantity) -> list[Quantity]:
+    def align(self, *quantities: Quantity) -> list[Quantity]:
         """The quantities for one texture: those whose image is placed like the first one's, and means of the others."""
-        usable = [self.usable(quantity) for quantity in quantities]
+        usable = [self.usable_quantity(quantity) for quantity in quantities]
         first = next((coordinates(quantity.image) for quantity in usable if quantity.image), None)
         result = []
         for quantity in usable:
             if quantity.image is not None and coordinates(quantity.image) != first:
                 reason = "the mean of its picture: it is combined with a picture that has other coordinates"
-                self.replaced[self.fields[quantity.image]] = reason
+                self.substitutions[self.fields[quantity.image]] = reason
                 quantity = Quantity(mean_of(quantity))
             result.append(quantity)
         return result
 
-    def packed(self, name: str, quantities: Sequence[Quantity], srgb: bool = False) -> Written | None:
+    def pack(self, name: str, quantities: Sequence[Quantity], srgb: bool = False) -> ComposedTexture | None:
         """A texture whose channels are the quantities' components in turn, without their factors.
 
         None where no quantity has an image. `srgb`: the first three channels are encoded.
@@ -86,10 +88,10 @@ class Composer:
                 layers.append(np.ones((size[1], size[0], len(quantity.factor)), np.float32))
             else:
                 encode = srgb and not layers
-                layers.append(resized(_encoded(quantity.image) if encode else texel_values(quantity.image), size))
+                layers.append(resize(_encode(quantity.image) if encode else texel_values(quantity.image), size))
         return self._write(name, np.concatenate(layers, axis=-1), images[0])
 
-    def computed(self, name: str, values: Texels, like: Image, srgb: bool = False) -> Written:
+    def write_values(self, name: str, values: Texels, like: Image, srgb: bool = False) -> ComposedTexture:
         """A texture of computed linear values, (height, width, channels), placed like an image."""
         stored_values = values
         if srgb:
@@ -101,22 +103,22 @@ class Composer:
         images = [quantity.image for quantity in quantities if quantity.image is not None]
         return ([values_on(quantity, _size(images)) for quantity in quantities], images[0]) if images else None
 
-    def _write(self, name: str, values: Texels, like: Image) -> Written:
+    def _write(self, name: str, values: Texels, like: Image) -> ComposedTexture:
         file = f"{FOLDER}/{name}.png"
         self.files[file] = png_bytes(values, level=_QUICKLY)
-        return Written(file, "uv" if coordinates(like) == self.sets[0] else "uv2", like.wrap)
+        return ComposedTexture(file, "uv" if coordinates(like) == self.sets[0] else "uv2", like.wrap)
 
 
-def _encoded(image: Image) -> Texels:
+def _encode(image: Image) -> Texels:
     """The values of a texture that is encoded as sRGB; unchanged where the picture has exactly these."""
     if image.srgb and not image.inverted and (image.scale, image.bias) == (1.0, 0.0):
-        return stored(image.picture)[..., ["rgba".index(channel) for channel in image.channels]]
+        return read_texels(image.picture)[..., ["rgba".index(channel) for channel in image.channels]]
     return encode_srgb(texel_values(image)).astype(np.float32)
 
 
 def _size(images: Sequence[Image]) -> tuple[int, int]:
     """The width and height of a grid that has the detail of all images."""
-    heights, widths = zip(*(stored(image.picture).shape[:2] for image in images), strict=True)
+    heights, widths = zip(*(read_texels(image.picture).shape[:2] for image in images), strict=True)
     return max(widths), max(heights)
 
 

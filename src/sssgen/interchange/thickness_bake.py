@@ -12,7 +12,7 @@ import numpy as np
 
 from sssgen.bake.texture_unwrap import unwrapped
 from sssgen.bake.thickness_map import Request, thickness_map
-from sssgen.interchange.imported import BAKED_SET, Imported
+from sssgen.interchange.imported_material import BAKED_SET, ImportedMaterial
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.mesh_glb import mesh_file
 from sssgen.interchange.surface_model import Image, Picture, Quantity
@@ -31,16 +31,18 @@ OPTION = "--bake"
 """The value of the report's rows about what was not baked."""
 
 
-def baked_materials(materials: Sequence[Imported], report: Report, progress: Progress = silent) -> list[Imported]:
+def bake_materials(
+    materials: Sequence[ImportedMaterial], report: Report, progress: Progress = silent
+) -> list[ImportedMaterial]:
     """The materials with the thicknesses of their meshes; the report says where it has no effect, and why."""
     before = len(report.rows)
-    result = [with_baked_thickness(material, report, progress) for material in materials]
+    result = [bake_thickness(material, report, progress) for material in materials]
     if all(old is new for old, new in zip(materials, result, strict=True)) and len(report.rows) == before:
-        report.left_out("the materials", OPTION, "none has a medium that light enters, a volume or a subsurface")
+        report.add_omission("the materials", OPTION, "none has a medium that light enters, a volume or a subsurface")
     return result
 
 
-def with_baked_thickness(imported: Imported, report: Report, progress: Progress = silent) -> Imported:
+def bake_thickness(imported: ImportedMaterial, report: Report, progress: Progress = silent) -> ImportedMaterial:
     """The material with the thickness of its mesh, in texture coordinates of their own.
 
     It stays as it is without a medium, and where nothing is transmitted. Without a mesh, with a texture of the
@@ -51,7 +53,7 @@ def with_baked_thickness(imported: Imported, report: Report, progress: Progress 
         return imported
     if mesh is None or model.thickness.image is not None:
         reason = "the material has no mesh" if mesh is None else "the thickness in the file is a texture"
-        report.left_out(f"{model.name}: thickness", OPTION, reason)
+        report.add_omission(f"{model.name}: thickness", OPTION, reason)
         return imported
     elements = imported.elements.get("thickness", ())
     path = elements[0].path if elements else f"{model.name}: thickness"
@@ -59,11 +61,11 @@ def with_baked_thickness(imported: Imported, report: Report, progress: Progress 
     try:
         baked, picture, facts = _bake(mesh, progress)
     except SssgenError as error:
-        report.left_out(path, OPTION, f"{error.diagnostics[0].message}; the thickness stays as it is in the file")
+        report.add_omission(path, OPTION, f"{error.diagnostics[0].message}; the thickness stays as it is in the file")
         return imported
     error_of_mean = facts["error"]["mean_standard_error"]
     became = f"the mesh's own, baked: 0 to {facts['range'][1]:.4g} m, mean {facts['mean']:.4g} m"
-    report.approximated(path, value, became, f"{error_of_mean:.2g} m, the mean standard error of the rays")
+    report.add_approximation(path, value, became, f"{error_of_mean:.2g} m, the mean standard error of the rays")
     image = Image(Picture("baked thickness", picture), "r", uv_set=BAKED_SET, wrap="clamp")
     return imported._replace(
         model=replace(model, thickness=Quantity((facts["range"][1],), image), thin_walled=False),
@@ -79,14 +81,14 @@ def _bake(mesh: FileContent, progress: Progress) -> tuple[tuple[FileContent, Arr
         path = os.path.join(folder, "mesh.glb")
         triangles = Mesh(path=path, data=mesh_file(mesh)).triangles
         uv = unwrapped(triangles, progress)
-        corners = _by_corner(triangles)
+        corners = _split_corners(triangles)
         with open(path, "wb") as file:
             file.write(mesh_file(corners._replace(uv=uv.reshape(-1, 2), uv2=None)))
         baked = thickness_map(path, (SIDE, SIDE), Request(rays=RAYS), processes=0, progress=progress)
     return (corners, uv.reshape(-1, 2)), png_bytes(baked.values, bits=16), baked.facts
 
 
-def _by_corner(triangles: Any) -> FileContent:
+def _split_corners(triangles: Any) -> FileContent:
     """The triangles with a vertex for each corner."""
     count = len(triangles.corners)
 

@@ -6,12 +6,12 @@ import os
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from sssgen.interchange.imported import Element
+from sssgen.interchange.imported_material import Element
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.surface_model import Image, Picture, Quantity, UvTransform, Wrap
 from sssgen.interchange.texture_files import read_picture
 from sssgen.interchange.unity_project import UnityProject
-from sssgen.interchange.unity_yaml import UnityFile, Value, read_plain
+from sssgen.interchange.unity_yaml import Value, objects, read_plain
 from sssgen.scene.pictures.images import decode_srgb
 from sssgen.support.diagnostics import failure
 
@@ -30,7 +30,7 @@ class ImportSettings(NamedTuple):
     wrap: Wrap
     from_height: bool
     """Whether Unity makes a normal map of a height map"""
-    green_flipped: bool
+    flips_green: bool
 
 
 class UnityMaterial:
@@ -54,7 +54,7 @@ class UnityMaterial:
         """The material, its parent, and so on."""
         chain, paths = [self.body], [os.path.realpath(self.path)]
         while (parent := _reference(chain[-1], "m_Parent")) is not None:
-            guid = parent.required("guid").text.lower()
+            guid = parent.require("guid").text.lower()
             path = self.project.file(guid)
             if not path:
                 raise parent.error(f"the parent material with the GUID {guid} is not in the project")
@@ -62,7 +62,7 @@ class UnityMaterial:
                 raise parent.error("the material is its own ancestor", "choose another parent in Unity")
             if len(paths) > _MAX_PARENTS:
                 raise parent.error(f"the material has more than {_MAX_PARENTS} ancestors")
-            bodies = UnityFile(path).of_kind("Material")
+            bodies = objects(path, "Material")
             if not bodies:
                 raise parent.error("the parent is not a material")
             chain.append(bodies[0])
@@ -73,7 +73,7 @@ class UnityMaterial:
         """Takes over what a material of the ancestry sets."""
         if (shader := _reference(body, "m_Shader", with_file=True)) is not None:
             guid = shader.mapping["guid"].text.lower() if "guid" in shader.mapping else ""
-            self.shader = (guid, int(shader.required("fileID").number))
+            self.shader = (guid, int(shader.require("fileID").number))
         if "m_ShaderKeywords" in body.mapping:
             self.keywords |= set(body.mapping["m_ShaderKeywords"].text.split())
         if "m_ValidKeywords" in body.mapping:
@@ -125,7 +125,7 @@ class UnityMaterial:
         value = self.properties["m_TexEnvs"].get(name)
         if value is None:
             return UvTransform()
-        scale, offset = (value.required(key).numbers("xy") for key in ("m_Scale", "m_Offset"))
+        scale, offset = (value.require(key).numbers("xy") for key in ("m_Scale", "m_Offset"))
         return UvTransform((scale[0], scale[1]), (offset[0], offset[1]))
 
     def has_texture(self, name: str) -> bool:
@@ -139,61 +139,63 @@ class UnityMaterial:
         texture = self._texture(name)
         if texture is None:
             return None
-        guid = texture.required("guid").text.lower()
+        guid = texture.require("guid").text.lower()
         path = self.project.file(guid)
         if not path:
             if name not in self.used:
-                self.report.left_out(self._shown(texture), guid, "no file of the project has this GUID")
+                self.report.add_omission(self._report_path(texture), guid, "no file of the project has this GUID")
             self.used.add(name)
             return None
         if path not in self._pictures:
             self._pictures[path] = read_picture(path, texture.span)
         settings = import_settings(f"{path}.meta", color)
         if settings.from_height:
-            self.report.left_out(self._shown(texture), os.path.basename(path), "a height map; bake a normal map of it")
+            self.report.add_omission(
+                self._report_path(texture), os.path.basename(path), "a height map; bake a normal map of it"
+            )
             return None
         self._record(field, texture, os.path.basename(path))
         return Image(self._pictures[path], channels, settings.srgb, 0, transform, settings.wrap)
 
-    def green_flipped(self, name: str) -> bool:
+    def flips_green(self, name: str) -> bool:
         """Whether Unity flips the green channel of a normal map."""
         texture = self._texture(name)
-        path = self.project.file(texture.required("guid").text) if texture is not None else ""
-        return bool(path) and import_settings(f"{path}.meta", False).green_flipped
+        path = self.project.file(texture.require("guid").text) if texture is not None else ""
+        return bool(path) and import_settings(f"{path}.meta", False).flips_green
 
-    def left_out(self, reasons: Mapping[str, str]) -> None:
+    def report_omissions(self, reasons: Mapping[str, str]) -> None:
         """Reports textures that are set and numbers that are not 0, and that no field has: name → reason."""
         for name, reason in reasons.items():
             if self.has_texture(name):
                 texture = self._texture(name)
                 assert texture is not None
-                path = self.project.file(texture.required("guid").text)
-                self.report.left_out(self._shown(texture), os.path.basename(path) or "a texture", reason)
+                path = self.project.file(texture.require("guid").text)
+                self.report.add_omission(self._report_path(texture), os.path.basename(path) or "a texture", reason)
             elif number := self.number(name, 0.0):
                 value = self.properties["m_Floats"].get(name) or self.properties["m_Ints"][name]
-                self.report.left_out(self._shown(value), number, reason)
+                self.report.add_omission(self._report_path(value), number, reason)
 
-    def approximated(self, name: str, value: object, became: str, error: str = "") -> None:
+    def report_approximation(self, name: str, value: object, became: str, error: str = "") -> None:
         """Reports a property that the record keeps only in part."""
         written = next((group[name] for group in self.properties.values() if name in group), None)
         if written is not None:
-            path = self._shown(written)
+            path = self._report_path(written)
             for elements in self.elements.values():
                 elements[:] = [element for element in elements if element.path != path]
-            self.report.approximated(path, value, became, error)
+            self.report.add_approximation(path, value, became, error)
 
     def _texture(self, name: str) -> Value | None:
         value = self.properties["m_TexEnvs"].get(name)
         return None if value is None else _reference(value, "m_Texture")
 
-    def _record(self, field: str, value: Value, shown: object) -> None:
+    def _record(self, field: str, value: Value, text: object) -> None:
         if field:
             elements = self.elements.setdefault(field, [])
-            path = self._shown(value)
+            path = self._report_path(value)
             if path not in [element.path for element in elements]:
-                elements.append(Element(path, shown))
+                elements.append(Element(path, text))
 
-    def _shown(self, value: Value) -> str:
+    def _report_path(self, value: Value) -> str:
         """The path of a property for the report, without the numbers of list items."""
         parts = [part for part in value.path.split("/") if part and not part.isdigit()]
         return f"{self.name}/{'/'.join(part for part in parts if part not in ('Material', 'm_SavedProperties'))}"
@@ -238,7 +240,7 @@ def _reference(body: Value, key: str, *, with_file: bool = False) -> Value | Non
 
 def material_of(path: str, project: UnityProject, report: Report) -> UnityMaterial:
     """The material of a .mat file. Raises SssgenError where it has none."""
-    bodies = UnityFile(path).of_kind("Material")
+    bodies = objects(path, "Material")
     if not bodies:
         raise failure("the file has no material", "name a .mat file or a diffusion profile (.asset)", path)
     return UnityMaterial(path, bodies[0], project, report)

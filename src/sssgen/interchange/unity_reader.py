@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from sssgen.interchange.diffusion_profile import read_profile
-from sssgen.interchange.imported import Element, Imported, check_name
+from sssgen.interchange.imported_material import Element, ImportedMaterial, check_name
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.surface_model import SurfaceModel
 from sssgen.interchange.unity_material import UnityMaterial, constant, material_of
@@ -33,7 +33,7 @@ _PROFILE_COLOR = (0.8, 0.8, 0.8)
 """The base colour of a profile that is imported without a material."""
 
 
-def read(path: str, report: Report, name: str = "", top: str = "") -> list[Imported]:
+def read(path: str, report: Report, name: str = "", top: str = "") -> list[ImportedMaterial]:
     """The material or the diffusion profile of a file; `name` is '' or that of the material.
 
     Textures, parents and profiles are searched in the project or, where it is given, in the folder `top`. Adds to the
@@ -45,7 +45,7 @@ def read(path: str, report: Report, name: str = "", top: str = "") -> list[Impor
         material = material_of(path, UnityProject(path, top), report)
         model = _reader_of(material)(material)
         material.check_complete()
-        imported = Imported(model, {field: parts for field, parts in material.elements.items() if parts})
+        imported = ImportedMaterial(model, {field: parts for field, parts in material.elements.items() if parts})
     check_name(name, [imported.model.name], posix(path))
     return [imported]
 
@@ -62,13 +62,13 @@ def _reader_of(material: UnityMaterial) -> _Reader:
     if material.has("_BaseColor") and (material.has("_BaseColorMap") or material.has("_BaseMap")):
         report_path = f"{material.name}/m_Shader"
         text = f"read by the names of its properties, as {_NAMES} have them"
-        material.report.approximated(report_path, guid or file_id, text)
+        material.report.add_approximation(report_path, guid or file_id, text)
         return lit
     shader = material.body.mapping.get("m_Shader", material.body)
     raise shader.error(f"the shader {guid or file_id} is not read", f"read are {_NAMES}")
 
 
-def _profile(path: str, report: Report) -> Imported:
+def _profile(path: str, report: Report) -> ImportedMaterial:
     """A diffusion profile as a body of its medium."""
     profile = read_profile(path)
     name = profile.name
@@ -82,14 +82,14 @@ def _profile(path: str, report: Report) -> Imported:
         thickness=constant(profile.thickness[1]),
     )
     distances = tuple(1e3 * part for part in profile.distance)
-    report.approximated(
+    report.add_approximation(
         f"{name}/profile/scatteringDistance", distances, "the medium of a base colour of 0.8, as the profile has none"
     )
-    report.left_out(f"{name}/profile/transmissionTint", profile.tint, "the colour follows from the medium")
+    report.add_omission(f"{name}/profile/transmissionTint", profile.tint, "the colour follows from the medium")
     if profile.unit != 1.0:
-        report.mapped(f"{name}/profile/worldScale", profile.unit, "nothing: lengths are metres")
+        report.add_mapping(f"{name}/profile/worldScale", profile.unit, "nothing: lengths are metres")
     elements = {
         "ior": [Element(f"{name}/profile/ior", profile.ior)],
         "thickness": [Element(f"{name}/profile/thicknessRemap", tuple(1e3 * part for part in profile.thickness))],
     }
-    return Imported(model, elements)
+    return ImportedMaterial(model, elements)

@@ -29,9 +29,16 @@ _METAL_REFLECTANCE = 0.25
 _INVERSION = "at most 0.006 of the light that a thick body reflects, and Burley's fit"
 
 
-def _lerp(image: Image, low: float, high: float) -> Image:
+def _scale_texels(image: Image, low: float, high: float) -> Image:
     """An image whose texels 0 and 1 are two numbers."""
     return image._replace(scale=high - low, bias=low)
+
+
+def _complement(image: Image | None, factor: float) -> Quantity:
+    """One minus a factor times the texels of a picture, where there is one."""
+    if image is None:
+        return constant(1.0 - factor)
+    return Quantity((1.0,), _scale_texels(image, 1.0, 1.0 - factor))
 
 
 class _Surface:
@@ -88,7 +95,7 @@ def universal_lit(material: UnityMaterial) -> SurfaceModel:
         base_color=surface.base_quantity(),
         opacity=constant(1.0) if alpha_mode == "opaque" else surface.alpha(),
         normal=surface.normal("_BumpMap", "_BumpScale"),
-        normal_down=material.green_flipped("_BumpMap"),
+        normal_down=material.flips_green("_BumpMap"),
         roughness=_universal_roughness(material, surface, gloss_map),
     )
     occlusion = surface.image("_OcclusionMap", "g", "occlusion")
@@ -110,7 +117,7 @@ def universal_lit(material: UnityMaterial) -> SurfaceModel:
         model = replace(model, metalness=Quantity((factor,), image))
     if {"_CLEARCOAT", "_CLEARCOATMAP"} & material.keywords:
         model = _universal_coat(material, surface, model)
-    material.left_out(
+    material.report_omissions(
         {"_ParallaxMap": _PARALLAX, "_DetailAlbedoMap": _DETAIL, "_DetailNormalMap": _DETAIL, "_DetailMask": _DETAIL}
     )
     return model
@@ -132,16 +139,17 @@ def _universal_roughness(material: UnityMaterial, surface: _Surface, gloss_map: 
     builtin = not material.has("_Smoothness") and material.has("_Glossiness")
     property_ = "_Smoothness" if not builtin else "_Glossiness" if image is None else "_GlossMapScale"
     smoothness = material.number(property_, 0.5, "roughness")
-    return constant(1.0 - smoothness) if image is None else Quantity((1.0,), _lerp(image, 1.0, 1.0 - smoothness))
+    return _complement(image, smoothness)
 
 
 def _universal_coat(material: UnityMaterial, surface: _Surface, model: SurfaceModel) -> SurfaceModel:
     weight = surface.image("_ClearCoatMap", "r", "coat")
     smooth = surface.image("_ClearCoatMap", "g", "coat_roughness")
     smoothness = material.number("_ClearCoatSmoothness", 0.0, "coat_roughness")
-    roughness = constant(1.0 - smoothness) if smooth is None else Quantity((1.0,), _lerp(smooth, 1.0, 1.0 - smoothness))
     return replace(
-        model, coat=Quantity((material.number("_ClearCoatMask", 0.0, "coat"),), weight), coat_roughness=roughness
+        model,
+        coat=Quantity((material.number("_ClearCoatMask", 0.0, "coat"),), weight),
+        coat_roughness=_complement(smooth, smoothness),
     )
 
 
@@ -194,14 +202,14 @@ def high_definition_lit(material: UnityMaterial) -> SurfaceModel:
         base_color=surface.base_quantity(),
         opacity=constant(1.0) if alpha_mode == "opaque" else surface.alpha(),
         normal=surface.normal("_NormalMap", "_NormalScale"),
-        normal_down=material.green_flipped("_NormalMap"),
+        normal_down=material.flips_green("_NormalMap"),
     )
-    model = _masked(material, surface, model)
+    model = _read_mask_map(material, surface, model)
     emission = material.color("_EmissiveColor", (0.0, 0.0, 0.0, 1.0), "emission", hdr=True)
     if any(emission[:3]):
         image = surface.image("_EmissiveColorMap", "rgb", "emission", color=True)
         model = replace(model, emission=Quantity(emission[:3], image))
-        material.approximated("_EmissiveColor", emission[:3], "linear radiance: HDRP's exposure is not applied")
+        material.report_approximation("_EmissiveColor", emission[:3], "linear radiance: HDRP's exposure is not applied")
     if coat := material.number("_CoatMask", 0.0, "coat"):
         image = surface.image("_CoatMaskMap", "r", "coat")
         model = replace(model, coat=Quantity((coat,), image), coat_roughness=constant(_COAT_ROUGHNESS))
@@ -210,19 +218,19 @@ def high_definition_lit(material: UnityMaterial) -> SurfaceModel:
         image = surface.image("_SpecularColorMap", "rgb", "specular_color", color=True)
         model = surface.with_specular_color(model, Quantity(color[:3], image))
     if kind in (_SUBSURFACE, _TRANSLUCENT):
-        model = _scattering(material, surface, model, kind)
+        model = _add_scattering(material, surface, model, kind)
     if refraction:
-        model = _refracting(material, surface, model, thin=refraction == _THIN_REFRACTION)
+        model = _add_refraction(material, surface, model, thin=refraction == _THIN_REFRACTION)
     left_out = dict(_HD_LEFT_OUT)
     if kind == 2:
         left_out["_Anisotropy"] = _ANISOTROPIC
     if kind == 3:
         left_out["_IridescenceMask"] = _FILM
-    material.left_out(left_out)
+    material.report_omissions(left_out)
     return model
 
 
-def _masked(material: UnityMaterial, surface: _Surface, model: SurfaceModel) -> SurfaceModel:
+def _read_mask_map(material: UnityMaterial, surface: _Surface, model: SurfaceModel) -> SurfaceModel:
     """Metalness, occlusion and smoothness: the red, green and alpha of the mask map, each in its range."""
     metal = surface.image("_MaskMap", "r", "metalness")
     occlusion = surface.image("_MaskMap", "g", "occlusion")
@@ -240,9 +248,9 @@ def _masked(material: UnityMaterial, surface: _Surface, model: SurfaceModel) -> 
     low, high = ends("_SmoothnessRemap", "roughness")
     return replace(
         model,
-        metalness=Quantity((1.0,), _lerp(metal, *ends("_MetallicRemap", "metalness"))),
-        occlusion=Quantity((1.0,), _lerp(occlusion, *ends("_AORemap", "occlusion"))),
-        roughness=Quantity((1.0,), _lerp(smooth, 1.0 - low, 1.0 - high)),
+        metalness=Quantity((1.0,), _scale_texels(metal, *ends("_MetallicRemap", "metalness"))),
+        occlusion=Quantity((1.0,), _scale_texels(occlusion, *ends("_AORemap", "occlusion"))),
+        roughness=Quantity((1.0,), _scale_texels(smooth, 1.0 - low, 1.0 - high)),
     )
 
 
@@ -255,10 +263,10 @@ def _thickness(material: UnityMaterial, surface: _Surface, ends: tuple[float, fl
     first, span, *_ = material.vector("_ThicknessRemap", (0.0, 1.0, 0.0, 0.0), "thickness")
     start, end = low + (high - low) * first, low + (high - low) * (first + span)
     largest = max(abs(start), abs(end)) or 1.0
-    return Quantity((largest,), _lerp(image, start / largest, end / largest))
+    return Quantity((largest,), _scale_texels(image, start / largest, end / largest))
 
 
-def _scattering(material: UnityMaterial, surface: _Surface, model: SurfaceModel, kind: int) -> SurfaceModel:
+def _add_scattering(material: UnityMaterial, surface: _Surface, model: SurfaceModel, kind: int) -> SurfaceModel:
     """Scattering below the surface as the material's diffusion profile has it."""
     asset = guid_of_vector(material.vector("_DiffusionProfileAsset", (0.0,) * 4))
     stored_hash = hash_of_number(material.number("_DiffusionProfileHash", 0.0))
@@ -266,7 +274,7 @@ def _scattering(material: UnityMaterial, surface: _Surface, model: SurfaceModel,
     if profile is None:
         if asset or stored_hash:
             reason = "no diffusion profile of the project has this GUID or hash; light is not scattered"
-            material.report.left_out(f"{material.name}/_DiffusionProfileAsset", asset or stored_hash, reason)
+            material.report.add_omission(f"{material.name}/_DiffusionProfileAsset", asset or stored_hash, reason)
         return model
     albedo = mean_of(model.base_color)
     thickness = _thickness(material, surface, profile.thickness)
@@ -277,10 +285,10 @@ def _scattering(material: UnityMaterial, surface: _Surface, model: SurfaceModel,
     mask = surface.image("_SubsurfaceMaskMap", "r", "subsurface")
     weight = material.number("_SubsurfaceMask", 1.0, "subsurface") if kind == _SUBSURFACE else 1.0
     interior = profile.interior(albedo)
-    shown = ", ".join(f"{1e3 * part:.3g}" for part in profile.distance)
-    material.approximated(
+    numbers = ", ".join(f"{1e3 * part:.3g}" for part in profile.distance)
+    material.report_approximation(
         "_DiffusionProfileAsset", profile.name,
-        f"a medium for the scattering distances {shown} mm and the mean base colour", _INVERSION,
+        f"a medium for the scattering distances {numbers} mm and the mean base colour", _INVERSION,
     )  # fmt: skip
     return replace(model, subsurface=Quantity((weight,), mask), interior=interior, thickness=thickness)
 
@@ -297,10 +305,10 @@ def _sheet(material: UnityMaterial, model: SurfaceModel, profile: DiffusionProfi
     share = through / max(reflected + through, 1e-6)
     kept = 1.0 - share
     color = tuple(t / max(share, 1e-6) for t in transmittance)
-    shown = ", ".join(f"{part:.3g}" for part in transmittance)
-    material.approximated(
+    numbers = ", ".join(f"{part:.3g}" for part in transmittance)
+    material.report_approximation(
         "_DiffusionProfileAsset", profile.name,
-        f"a sheet that transmits {shown} of the base colour: the profile at {1e3 * thickness:.3g} mm",
+        f"a sheet that transmits {numbers} of the base colour: the profile at {1e3 * thickness:.3g} mm",
     )  # fmt: skip
     times = tuple(part / kept for part in model.base_color.factor)
     product = tuple(a * b for a, b in zip(model.base_color.factor, color, strict=True))
@@ -314,12 +322,10 @@ def _sheet(material: UnityMaterial, model: SurfaceModel, profile: DiffusionProfi
     )
 
 
-def _refracting(material: UnityMaterial, surface: _Surface, model: SurfaceModel, *, thin: bool) -> SurfaceModel:
+def _add_refraction(material: UnityMaterial, surface: _Surface, model: SurfaceModel, *, thin: bool) -> SurfaceModel:
     """A refracting body: its transparency is one minus the alpha; the light in it fades to the transmittance colour."""
     alpha = surface.alpha("transmission")
-    share = constant(1.0 - alpha.factor[0])
-    if alpha.image is not None:
-        share = Quantity((1.0,), _lerp(alpha.image, 1.0, 1.0 - alpha.factor[0]))
+    share = _complement(alpha.image, alpha.factor[0])
     color = material.color("_TransmittanceColor", _WHITE, "transmission_tint" if thin else "interior")[:3]
     model = replace(
         model,

@@ -1,7 +1,7 @@
 """Reads Unity's text files: YAML with a header and a tag of Unity for each document. Values keep their places.
 
-Only what Unity writes is read: plain mappings, lists and scalars. Other tags are errors, and so are aliases, which
-could make a small file endless.
+PyYAML's parser gives events with their places. Its composer, which would give nodes, resolves aliases and nests as
+deeply as the file; here both are errors, as are tags: Unity writes plain mappings, lists and scalars.
 """
 
 from __future__ import annotations
@@ -10,10 +10,10 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 from sssgen.ir.spans import Span
-from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError
+from sssgen.support.diagnostics import Reporter, SssgenError
 from sssgen.support.extras import need
 from sssgen.support.paths import posix
 from sssgen.support.text_files import read_text
@@ -28,7 +28,7 @@ class Value:
     """A mapping, a list or the text of a scalar, with its place and its path in the file."""
 
     content: dict[str, Value] | list[Value] | str
-    file: UnityFile
+    source: UnityText
     path: str
     line: int
     column: int
@@ -36,13 +36,11 @@ class Value:
     @property
     def span(self) -> Span:
         """Where the value begins."""
-        return Span(self.file.shown, self.line, self.column, self.line, self.column + 1)
+        return self.source.span(self.line, self.column)
 
     def error(self, message: str, hint: str = "") -> SssgenError:
         """The error at this value; the message gets its path."""
-        reporter = Reporter(self.file.shown, self.file.text)
-        reporter.error(self.span, f"{message} ({self.path})", hint)
-        return SssgenError(reporter.diagnostics)
+        return self.source.error(self.span, f"{message} ({self.path})", hint)
 
     @property
     def mapping(self) -> Mapping[str, Value]:
@@ -82,9 +80,9 @@ class Value:
 
     def numbers(self, keys: str) -> tuple[float, ...]:
         """The numbers of a mapping such as {x: 0, y: 1}; `keys` has a letter for each."""
-        return tuple(self.required(key).number for key in keys)
+        return tuple(self.require(key).number for key in keys)
 
-    def required(self, key: str) -> Value:
+    def require(self, key: str) -> Value:
         """The value of a key of a mapping. Raises SssgenError where it is missing."""
         if key not in self.mapping:
             raise self.error(f"the key '{key}' is missing")
@@ -96,69 +94,70 @@ class Value:
             yield from item.mapping.items()
 
 
-class UnityDocument(NamedTuple):
-    """An object of a file: `kind` is Unity's number of its class, `name` the class."""
-
-    kind: int
-    name: str
-    body: Value
-
-
-class UnityFile:
-    """The documents of a text file of Unity."""
+class UnityText:
+    """The text of a file, and its name in messages."""
 
     def __init__(self, path: str) -> None:
-        """Reads a file. Raises SssgenError with the place of what is not Unity's YAML."""
-        self.path, self.shown = path, posix(path)
-        self.text = read_text(path, self.shown)
-        self.documents: list[UnityDocument] = []
-        yaml = need("yaml", "pyyaml", "import")
-        heads = list(_HEAD.finditer(self.text))
-        if not heads:
-            place = Span(self.shown, 1, 1, 1, 2)
-            hint = "in Unity, set Asset Serialization to Force Text"
-            first = self.text.partition("\n")[0]
-            raise SssgenError([Diagnostic("error", "this is not a text file of Unity", place, hint, first)])
-        ends = [head.start() for head in heads[1:]] + [len(self.text)]
-        for head, end in zip(heads, ends, strict=True):
-            line = self.text.count("\n", 0, head.end())
-            body = _Composer(self, yaml, self.text[head.end() : end], line).document()
-            self.documents += [UnityDocument(int(head[1]), name, value) for name, value in body.mapping.items()]
+        self.name = posix(path)
+        self.text = read_text(path, self.name)
 
-    def of_kind(self, name: str) -> list[Value]:
-        """The objects of a class, such as `Material`."""
-        return [document.body for document in self.documents if document.name == name]
+    def span(self, line: int, column: int) -> Span:
+        """The place of a character."""
+        return Span(self.name, line, column, line, column + 1)
+
+    def error(self, span: Span, message: str, hint: str = "") -> SssgenError:
+        """The error at a place."""
+        reporter = Reporter(self.name, self.text)
+        reporter.error(span, message, hint)
+        return SssgenError(reporter.diagnostics)
+
+
+def objects(path: str, kind: str) -> list[Value]:
+    """The objects of a class, such as `Material`, in a file.
+
+    Raises SssgenError with the place of what is not Unity's YAML.
+    """
+    source = UnityText(path)
+    heads = list(_HEAD.finditer(source.text))
+    if not heads:
+        hint = "in Unity, set Asset Serialization to Force Text"
+        raise source.error(source.span(1, 1), "this is not a text file of Unity", hint)
+    ends = [head.start() for head in heads[1:]] + [len(source.text)]
+    values = []
+    for head, end in zip(heads, ends, strict=True):
+        line = source.text.count("\n", 0, head.end())
+        body = _Composer(source, source.text[head.end() : end], line).document()
+        values += [value for name, value in body.mapping.items() if name == kind]
+    return values
 
 
 def read_plain(path: str) -> Value:
     """The one mapping of a file without documents, such as a .meta file."""
-    file = UnityFile.__new__(UnityFile)
-    file.path, file.shown = path, posix(path)
-    file.text = read_text(path, file.shown)
-    return _Composer(file, need("yaml", "pyyaml", "import"), _TAGS.sub("", file.text), 0).document()
+    source = UnityText(path)
+    return _Composer(source, _TAGS.sub("", source.text), 0).document()
 
 
 class _Composer:
     """Makes values of the events of PyYAML's parser."""
 
-    def __init__(self, file: UnityFile, yaml: Any, text: str, first_line: int) -> None:
-        self.file, self.yaml, self.first_line = file, yaml, first_line
+    def __init__(self, source: UnityText, text: str, first_line: int) -> None:
+        self.source, self.first_line = source, first_line
+        self.yaml = yaml = need("yaml", "pyyaml", "import")
         self.events = yaml.parse(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
 
     def document(self) -> Value:
+        """The value of the first document; an empty text where there is none."""
         yaml = self.yaml
         try:
             for event in self.events:
-                if isinstance(event, yaml.StreamEndEvent):
-                    break
-                if not isinstance(event, yaml.StreamStartEvent | yaml.DocumentStartEvent | yaml.DocumentEndEvent):
+                if not isinstance(event, yaml.StreamStartEvent | yaml.DocumentStartEvent | yaml.StreamEndEvent):
                     return self.value(event, "", 0)
         except yaml.MarkedYAMLError as error:
             mark = error.problem_mark or error.context_mark
             raise self.failure(f"this is not YAML: {error.problem or error.context}", mark) from None
         except yaml.YAMLError as error:
             raise self.failure(f"this is not YAML: {error}", None) from None
-        return Value("", self.file, "", self.first_line + 1, 1)
+        return Value("", self.source, "", self.first_line + 1, 1)
 
     def value(self, event: Any, path: str, depth: int) -> Value:
         yaml = self.yaml
@@ -183,15 +182,12 @@ class _Composer:
                     raise key.error(f"the key '{key.text[:40]}' is there twice")
                 content[key.text] = self.value(next(self.events), f"{path}/{key.text}", depth + 1)
         line, column = self.place(event.start_mark)
-        return Value(content, self.file, path or "/", line, column)
+        return Value(content, self.source, path or "/", line, column)
 
     def place(self, mark: Any) -> tuple[int, int]:
         if mark is None:
             return self.first_line + 1, 1
-        return min(self.first_line + mark.line, self.file.text.count("\n")) + 1, mark.column + 1
+        return min(self.first_line + mark.line, self.source.text.count("\n")) + 1, mark.column + 1
 
     def failure(self, message: str, mark: Any, hint: str = "") -> SssgenError:
-        line, column = self.place(mark)
-        reporter = Reporter(self.file.shown, self.file.text)
-        reporter.error(Span(self.file.shown, line, column, line, column + 1), message, hint)
-        return SssgenError(reporter.diagnostics)
+        return self.source.error(self.source.span(*self.place(mark)), message, hint)

@@ -57,7 +57,7 @@ def checked_mesh(mesh: Mesh) -> Mesh:
     return mesh
 
 
-def fitted(geometry: Geometry, own: Geometry) -> Geometry:
+def fit(geometry: Geometry, own: Geometry) -> Geometry:
     """A shape at the place of the scene's own body, and as large: lengths in the material keep their meaning."""
     place, shape = extent(own), extent(geometry)
     scale = place.size / shape.size
@@ -66,7 +66,7 @@ def fitted(geometry: Geometry, own: Geometry) -> Geometry:
 
 def extent(geometry: Geometry) -> Extent:
     """The box around a body."""
-    corners = np.frombuffer(packed(geometry), "<f4").reshape(-1, 8)[:, :3]
+    corners = np.frombuffer(packed_triangles(geometry), "<f4").reshape(-1, 8)[:, :3]
     matrix = geometry.to_world()
     places = corners @ matrix[:3, :3].T + matrix[:3, 3]
     low, high = places.min(axis=0), places.max(axis=0)
@@ -74,7 +74,7 @@ def extent(geometry: Geometry) -> Extent:
     return Extent(center, float((high - low).max()), float(np.linalg.norm(places - center, axis=1).max()))
 
 
-def framed(geometry: Geometry, towards: npt.ArrayLike, field_of_view: float) -> tuple[list[float], list[float]]:
+def frame(geometry: Geometry, towards: npt.ArrayLike, field_of_view: float) -> tuple[list[float], list[float]]:
     """The eye that sees the whole body from the direction `towards`, and the point that it looks at."""
     box = extent(geometry)
     direction = np.asarray(towards, float) / np.linalg.norm(towards)
@@ -82,7 +82,7 @@ def framed(geometry: Geometry, towards: npt.ArrayLike, field_of_view: float) -> 
     return (box.center + away * direction).tolist(), box.center.tolist()
 
 
-def packed(geometry: Geometry) -> bytes:
+def packed_triangles(geometry: Geometry) -> bytes:
     """The packed triangles; those of the last bodies are kept until a file of theirs changes.
 
     The triangles of the shapes that are distance functions, which take seconds, are in the cache folder, too.
@@ -91,8 +91,8 @@ def packed(geometry: Geometry) -> bytes:
     content = hashlib.sha256(geometry.data).hexdigest() if isinstance(geometry, Mesh) and geometry.data else ""
     key = repr(at_origin) + content
     if isinstance(at_origin, Distance) and at_origin in SHAPES.values():
-        return remembered(_bodies, key, lambda: _stored(at_origin, key), MOST_BODIES)
-    return remembered(_bodies, key, lambda: body_triangles(copy.deepcopy(at_origin)).packed(), MOST_BODIES)
+        return remembered(_bodies, key, lambda: _load_triangles(at_origin, key), MOST_BODIES)
+    return remembered(_bodies, key, lambda: body_triangles(copy.deepcopy(at_origin)).pack(), MOST_BODIES)
 
 
 MOST_BODIES = 6
@@ -100,11 +100,11 @@ MOST_BODIES = 6
 _bodies: dict[str, CachedResult] = {}
 
 
-def _stored(geometry: Distance, key: str) -> bytes:
+def _load_triangles(geometry: Distance, key: str) -> bytes:
     """The packed triangles of a distance function, from the cache folder if its files are as they were."""
     with noted_files() as read:
         _ = geometry.function
     stamp = sorted((path, state.modified, state.size) for path, state in read.items())
     name = f"body_{hashlib.sha256(key.encode()).hexdigest()[:24]}"
-    result: bytes = cache.load_or_make(name, stamp, lambda: body_triangles(geometry).packed())
+    result: bytes = cache.load_or_make(name, stamp, lambda: body_triangles(geometry).pack())
     return result

@@ -33,7 +33,7 @@ class BodyTriangles(NamedTuple):
     uv: Array
     """(f, 3, 2), v up"""
 
-    def packed(self) -> bytes:
+    def pack(self) -> bytes:
         """Position, normal and uv of each corner as 8 float32, little-endian."""
         rows = np.concatenate([self.position, self.normal, self.uv], axis=2)
         return np.ascontiguousarray(rows, "<f4").tobytes()
@@ -42,21 +42,21 @@ class BodyTriangles(NamedTuple):
 def body_triangles(geometry: Geometry) -> BodyTriangles:
     """The triangles of a body, without its transform. Raises SssgenError as `mesh_of` does."""
     if isinstance(geometry, Mesh):
-        return _of_file(geometry)
+        return _file_triangles(geometry)
     at_origin = dataclasses.replace(geometry, position=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0), scale=1.0)
     if isinstance(at_origin, Ball):
-        return _of_ball(at_origin.radius)
+        return _ball_triangles(at_origin.radius)
     vertices, faces = mesh_of(at_origin, RESOLUTION)
     position = vertices[faces]
     flat = unit(np.cross(position[:, 1] - position[:, 0], position[:, 2] - position[:, 0]))
     if isinstance(geometry, Box | Slab | Union):
         normal = np.repeat(flat[:, None], 3, axis=1)
     else:
-        normal = _smooth(at_origin, vertices)[faces]
+        normal = _gradient_normals(at_origin, vertices)[faces]
     return BodyTriangles(position, normal, _coordinates(at_origin, position, flat))
 
 
-def _of_ball(radius: float) -> BodyTriangles:
+def _ball_triangles(radius: float) -> BodyTriangles:
     """A ball of quads between meridians and parallels, with a whole turn of u and no triangle without area."""
     u, v = np.arange(2 * PARALLELS + 1) / (2 * PARALLELS), np.arange(PARALLELS + 1) / PARALLELS
     longitude, latitude = np.meshgrid((u - 0.5) * 2.0 * np.pi, (v - 0.5) * np.pi)
@@ -72,17 +72,17 @@ def _of_ball(radius: float) -> BodyTriangles:
     return BodyTriangles(radius * triangles[..., :3], triangles[..., :3], triangles[..., 3:])
 
 
-def _of_file(mesh: Mesh) -> BodyTriangles:
+def _file_triangles(mesh: Mesh) -> BodyTriangles:
     triangles = mesh.triangles
     position, normal = triangles.places[triangles.corners], triangles.corner_normals(np.arange(len(triangles.corners)))
     normal = np.where((np.abs(normal) > 0.0).any(axis=2, keepdims=True), normal, triangles.flat[:, None])
     if triangles.uv is not None:
         return BodyTriangles(position, normal, triangles.uv)
     low, high = mesh.bounds()
-    return BodyTriangles(position, normal, _around(position - 0.5 * (low + high)))
+    return BodyTriangles(position, normal, _spherical_coordinates(position - 0.5 * (low + high)))
 
 
-def _smooth(geometry: Geometry, points: Array) -> Array:
+def _gradient_normals(geometry: Geometry, points: Array) -> Array:
     """The gradient of the distance."""
     step = 1e-4 * float(np.ptp(points, axis=0).max())
     slopes = [geometry.distance(points + step * axis) - geometry.distance(points - step * axis) for axis in np.eye(3)]
@@ -107,19 +107,19 @@ def _coordinates(geometry: Geometry, position: Array, flat: Array) -> Array:
     if isinstance(geometry, Torus):
         x, y, z = np.moveaxis(position, 2, 0)
         turns = np.stack([np.arctan2(x, z), np.arctan2(y, np.hypot(x, z) - geometry.major)], axis=2)
-        return _without_seam(0.5 + turns / (2.0 * np.pi))
+        return _cross_seam(0.5 + turns / (2.0 * np.pi))
     if isinstance(geometry, Distance) and geometry.projection != "spherical":
         points = position.reshape(-1, 3)
         return PROJECTIONS[geometry.projection](points)[0].reshape(*position.shape[:2], 2)
-    return _around(position)
+    return _spherical_coordinates(position)
 
 
-def _around(position: Array) -> Array:
+def _spherical_coordinates(position: Array) -> Array:
     """Longitude and latitude about the origin."""
-    return _without_seam(spherical(position.reshape(-1, 3))[0].reshape(*position.shape[:2], 2))
+    return _cross_seam(spherical(position.reshape(-1, 3))[0].reshape(*position.shape[:2], 2))
 
 
-def _without_seam(uv: Array) -> Array:
+def _cross_seam(uv: Array) -> Array:
     """Coordinates whose triangles at the seam go beyond 1, in place of back across the whole texture."""
     for axis in (0, 1):
         values = uv[..., axis]

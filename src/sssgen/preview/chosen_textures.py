@@ -9,9 +9,9 @@ import shutil
 import tempfile
 import warnings
 import weakref
-from collections.abc import Mapping
-from typing import Any
 
+from sssgen.material.model import Material
+from sssgen.preview.emitted_head import Slot
 from sssgen.preview.saved_values import is_saved_in_scene, save_to_material, save_to_scene
 from sssgen.scene.pictures import images
 from sssgen.scene.scene import Picture, Scene
@@ -32,7 +32,7 @@ class ChosenTextures:
     def __init__(self) -> None:
         self._folder = ""
 
-    def added(self, row: Mapping[str, Any], name: str, data: bytes) -> str:
+    def add(self, row: Slot, name: str, data: bytes) -> str:
         """The file with the bytes of a picture for a texture's row of the picture's head.
 
         A JPEG becomes a PNG, which scenes and engines read. Raises SssgenError for a texture that takes no picture, and
@@ -62,12 +62,12 @@ class ChosenTextures:
         return path
 
 
-def saved(row: Mapping[str, Any], file: str, scene: Scene, material: Any) -> str:
+def save_texture(row: Slot, file: str, scene: Scene, material: Material) -> str:
     """Copies a chosen picture beside the file that names the texture, and writes its name there; says what it did.
 
     `saved_values` says which file names it. Raises SssgenError where a file cannot be written.
     """
-    name = str(row["source_name"])
+    name = row["source_name"]
     in_scene = is_saved_in_scene(scene, material, name)
     toml = scene.document.reporter.file if in_scene else material.file
     before = scene.textures.get(name)
@@ -76,17 +76,17 @@ def saved(row: Mapping[str, Any], file: str, scene: Scene, material: Any) -> str
     target = os.path.dirname(before.file) if isinstance(before, Picture) else usual if os.path.isdir(usual) else folder
     with open(file, "rb") as chosen:
         data = chosen.read()
-    path = _free(os.path.join(target, os.path.basename(file)), data)
+    path = _unused_path(os.path.join(target, os.path.basename(file)), data)
     write_files(os.path.dirname(path), {os.path.basename(path): data})
     relative = posix(os.path.relpath(path, folder))
     if in_scene:
         save_to_scene(toml, {name: relative}, "textures")
     else:
-        save_to_material(material, {(str(row["technique"]), str(row["name"])): relative})
+        save_to_material(material, {(row["technique"], row["name"]): relative})
     return f"{relative} is written, and {posix(toml)} names it."
 
 
-def _free(path: str, data: bytes) -> str:
+def _unused_path(path: str, data: bytes) -> str:
     """The path, or one with a number where a file with another content has the name."""
     base, suffix = os.path.splitext(path)
     number = 1

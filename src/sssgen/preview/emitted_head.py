@@ -6,7 +6,7 @@ It needs no NumPy, so that it is made anew for each edit, also where a browser r
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import Any
+from typing import Any, NotRequired, TypedDict
 
 from sssgen.ir.drawn import BACK_FACES, DISTANT, LIGHT
 from sssgen.material.model import Material
@@ -17,6 +17,43 @@ DRAWN_BY_PAGE = (BACK_FACES, LIGHT, DISTANT)
 """The textures that the page draws for each frame; the others are made once, for the scene's own light."""
 PARTS = ("name", "title", "module", "controls", "textures", "two_sided", "cost")
 """The parts of a head that `emitted_head` makes."""
+
+
+class Control(TypedDict):
+    """A parameter that a person may change, with what a control needs to know; it is JSON for the page."""
+
+    property: str
+    technique: str
+    name: str
+    label: str
+    doc: str
+    type: str
+    range: list[float] | None
+    unit: str
+    color: bool
+    default: list[float]
+    value: list[float]
+    drawn: str | None
+    in_scene: bool
+
+
+class Slot(TypedDict):
+    """A texture that a person may replace; it is JSON for the page."""
+
+    property: str
+    source_name: str
+    technique: str
+    name: str
+    type: str
+    color: bool
+    doc: str
+    drawn: str
+    page_draws: bool
+    """Whether the page draws it for each frame"""
+    chosen: NotRequired[str]
+    """The name of the file that a person chose, or ''"""
+    texels: NotRequired[dict[str, Any]]
+    """The levels, as `picture.texels_of` gives them"""
 
 
 def emitted_head(
@@ -33,29 +70,31 @@ def emitted_head(
         "title": material.title,
         "module": next(text for name, text in compiled.files.items() if name.endswith(".js")),
         "controls": controls(reflection, values, in_scene),
-        "textures": [
-            {
-                "property": texture["property"],
-                "source_name": texture["source_name"],
-                "technique": texture["technique"],
-                "name": texture["technique_name"],
-                "type": texture["type"],
-                "color": texture["color"],
-                "doc": texture["doc"],
-                "drawn": texture["drawn"] or "",
-                "page_draws": texture["drawn"] in DRAWN_BY_PAGE,
-            }
-            for texture in reflection["textures"]
-        ],
+        "textures": [slot(texture, texture["property"], texture["drawn"] or "") for texture in reflection["textures"]],
         "two_sided": reflection["two_sided"],
         "cost": {kind: entry["cost"] for kind, entry in reflection["entries"].items() if "cost" in entry},
     }
 
 
+def slot(texture: Mapping[str, Any], name: str, drawn: str = "") -> Slot:
+    """A texture of a reflection, without its texels; `name` is its property on the page."""
+    return {
+        "property": name,
+        "source_name": texture["source_name"],
+        "technique": texture["technique"],
+        "name": texture["technique_name"],
+        "type": texture["type"],
+        "color": texture["color"],
+        "doc": texture["doc"],
+        "drawn": drawn,
+        "page_draws": drawn in DRAWN_BY_PAGE,
+    }
+
+
 def controls(
     reflection: Mapping[str, Any], values: Mapping[str, Sequence[float]], in_scene: Collection[str]
-) -> list[dict[str, Any]]:
-    """The parameters that a person may change, with what a control needs to know."""
+) -> list[Control]:
+    """The parameters that a person may change."""
     return [
         {
             "property": uniform["property"],

@@ -6,10 +6,9 @@ import os
 from collections.abc import Callable, Collection
 from typing import Any
 
-from sssgen.material import library
 from sssgen.pipeline.compiler import FORMS, Compiled
 from sssgen.support.diagnostics import SssgenError, failure
-from sssgen.support.paths import posix
+from sssgen.support.paths import PACKAGE, TECHNIQUES, posix, source_name
 from sssgen.support.text_files import read_text
 from sssgen.targets import registry
 
@@ -61,10 +60,12 @@ def source_of(name: str, folder: str, read: Collection[str]) -> dict[str, Any]:
 
 
 def _path(name: str, folder: str, read: Collection[str]) -> str:
-    """The path of a file as places name it: relative to the folder, or below the library; '' for others."""
+    """The path of a file as places name it: relative to the folder, or as `source_name` has it; '' for others."""
     own = os.path.realpath(os.path.join(folder, name))
     if own in map(os.path.realpath, read):
         return own
-    known = os.path.normpath(os.path.join(library.TECHNIQUES, name))
-    below = known.startswith(os.path.join(os.path.normpath(library.TECHNIQUES), ""))
-    return known if below and known.endswith(".sss") and os.path.isfile(known) else ""
+    for root in (TECHNIQUES, PACKAGE):  # the library's techniques, and the shells
+        path = os.path.normpath(os.path.join(root, name))
+        if source_name(path) == name and path.endswith(".sss") and os.path.isfile(path):
+            return path
+    return ""

@@ -15,7 +15,7 @@ from sssgen.ir.types import spell
 from sssgen.lang.plain_glsl import Loaded, load_glsl_text
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled, transpile
-from sssgen.preview.emitted_head import controls
+from sssgen.preview.emitted_head import controls, slot
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix, stem
 from sssgen.support.text_files import read_text
@@ -23,7 +23,7 @@ from sssgen.support.text_files import read_text
 TARGET = "glsl-es-300"
 PLAIN = (".glsl", ".frag", ".fs")
 """The suffixes of plain GLSL."""
-GIVEN: Mapping[str, tuple[str, ...]] = {
+PAGE_INPUTS: Mapping[str, tuple[str, ...]] = {
     "time": ("time", "iTime", "u_time", "uTime", "iGlobalTime"),
     "resolution": ("resolution", "iResolution", "u_resolution", "uResolution"),
     "mouse": ("mouse", "iMouse", "u_mouse", "uMouse"),
@@ -63,20 +63,20 @@ def plain_head(path: str, guards: str) -> dict[str, Any]:
 
     Raises SssgenError for a faulty file, and for a kind of shader that needs more than one triangle.
     """
-    shown = posix(path)
-    compiled, note = _transpiled(path, TARGET, guards)
+    file_name = posix(path)
+    compiled, note = _transpile(path, TARGET, guards)
     reflection = compiled.reflection
     if reflection["form"] != "fragment":
-        raise failure(f"this is a {reflection['form']} shader", "the page draws fragment shaders", shown)
+        raise failure(f"this is a {reflection['form']} shader", "the page draws fragment shaders", file_name)
     for row in reflection["textures"]:
         if row["type"] != "sampler2D":
             raise failure(f"the shader reads '{row['name']}', a {row['type']}", "the page gives sampler2D only")
     head = _head(compiled, {}, ()) | {
-        "name": stem(shown),
+        "name": stem(file_name),
         "title": note or os.path.basename(path),
         "saves": "the values are not part of a GLSL file: write them there as `uniform float x = 0.5;`",
     }
-    head["flat"] |= {"vertex": _vertex(reflection, shown), "start": 0.0, "plays": True}
+    head["flat"] |= {"vertex": _vertex(reflection, file_name), "start": 0.0, "plays": True}
     return head
 
 
@@ -91,21 +91,21 @@ def raymarched_head(
 
 def plain_text(path: str, target: str, guards: str) -> Compiled:
     """The text of plain GLSL for a target, as its picture is drawn. Raises SssgenError."""
-    return _transpiled(path, target, guards)[0]
+    return _transpile(path, target, guards)[0]
 
 
-def _transpiled(path: str, target: str, guards: str) -> tuple[Compiled, str]:
+def _transpile(path: str, target: str, guards: str) -> tuple[Compiled, str]:
     """The file as a whole shader for a target, and what a wrapped function is."""
-    shown = posix(path)
-    loaded, note = _loaded(read_text(path, shown), path, shown)
-    name = re.sub(r"\W", "_", stem(shown), flags=re.ASCII)
+    file_name = posix(path)
+    loaded, note = _load(read_text(path, file_name), path, file_name)
+    name = re.sub(r"\W", "_", stem(file_name), flags=re.ASCII)
     return transpile(loaded.module, target, f"file_{name}", guards, keep=True, head=loaded.head), note
 
 
 def _head(compiled: Compiled, values: Mapping[str, Sequence[float]], in_scene: Collection[str]) -> dict[str, Any]:
     """The part of the head that both kinds have."""
     reflection = compiled.reflection
-    given = {uniform["name"]: what for uniform in reflection["uniforms"] if (what := _given(uniform))}
+    given = {uniform["name"]: what for uniform in reflection["uniforms"] if (what := _page_input(uniform))}
     fragment = next(text for name, text in compiled.files.items() if name.endswith(".frag"))
     if "uniform float time;" in fragment:  # of the shell
         given["time"] = "time"
@@ -120,7 +120,7 @@ def _head(compiled: Compiled, values: Mapping[str, Sequence[float]], in_scene: C
         "mesh": "",
         "flat": {"fragment": fragment, "given": given},
         "controls": controls({"uniforms": rows}, values, in_scene),
-        "textures": [_slot(texture) for texture in reflection["textures"]],
+        "textures": [slot(texture, texture["name"]) for texture in reflection["textures"]],
         "background": BACKGROUND,
         "exposure": 1.0,
         "lights": [],
@@ -129,12 +129,12 @@ def _head(compiled: Compiled, values: Mapping[str, Sequence[float]], in_scene: C
     }
 
 
-def _given(uniform: Mapping[str, Any]) -> str:
+def _page_input(uniform: Mapping[str, Any]) -> str:
     """What the page gives for a uniform of plain GLSL; '' for nothing."""
     if uniform["technique"]:
         return ""
     return next(
-        (what for what, names in GIVEN.items() if uniform["name"] in names and uniform["type"] in TYPES[what]), ""
+        (what for what, names in PAGE_INPUTS.items() if uniform["name"] in names and uniform["type"] in TYPES[what]), ""
     )
 
 
@@ -142,22 +142,22 @@ def _settable(type_: str) -> bool:
     return type_.partition("[")[0] == type_ and not type_.startswith("mat")
 
 
-def _loaded(text: str, path: str, shown: str) -> tuple[Loaded, str]:
+def _load(text: str, path: str, file_name: str) -> tuple[Loaded, str]:
     """The module as a whole shader, and what a wrapped function is."""
     roots = (os.path.dirname(path) or ".",)
     if _ENTRY.search(text):
-        return load_glsl_text(text, shown, roots, entry="shadertoy"), ""
-    loaded = load_glsl_text(text, shown, roots)
+        return load_glsl_text(text, file_name, roots, entry="shadertoy"), ""
+    loaded = load_glsl_text(text, file_name, roots)
     if any(function.name == "main" for function in loaded.module.functions):
         return loaded, ""
-    called = [(one, call) for one in loaded.module.functions if one.span.file == shown and (call := _call(one))]
+    called = [(one, call) for one in loaded.module.functions if one.span.file == file_name and (call := _call(one))]
     if not called:
         hint = "write void main() or void mainImage(out vec4, in vec2), or a function such as float noise(vec2 p)"
-        raise failure("nothing in the file can be shown as a picture", hint, shown)
+        raise failure("nothing in the file can be shown as a picture", hint, file_name)
     function, call = called[-1]
     wrapped = text.rstrip("\n") + "\n" + _WRAPPED.format(color=_COLORS[spell(function.result)].format(call))
     note = f"{function.name}({', '.join(spell(param.type) for param in function.params)}) around 0, ±2 high"
-    return load_glsl_text(wrapped, shown, roots, entry="shadertoy"), note
+    return load_glsl_text(wrapped, file_name, roots, entry="shadertoy"), note
 
 
 def _call(function: Function) -> str:
@@ -171,28 +171,13 @@ def _call(function: Function) -> str:
     return f"{function.name}({', '.join(arguments)})"
 
 
-def _vertex(reflection: Mapping[str, Any], shown: str) -> str:
+def _vertex(reflection: Mapping[str, Any], file_name: str) -> str:
     """A vertex shader for one triangle that gives each two-component input the place in the picture."""
     inputs = [row for row in reflection["stage_inputs"] if not row["builtin"]]
     for row in inputs:
         if row["type"] != "vec2":
             hint = "the page gives a fragment shader a vec2 with the place in the picture, 0 to 1; no mesh is drawn"
-            raise failure(f"the shader reads '{row['name']}', a {row['type']}", hint, shown)
+            raise failure(f"the shader reads '{row['name']}', a {row['type']}", hint, file_name)
     outputs = "\n".join(f"out vec2 {row['name']};" for row in inputs)
     values = "\n".join(f"    {row['name']} = 0.5 * corner + 0.5;" for row in inputs)
     return _VERTEX.format(outputs=outputs, values=values)
-
-
-def _slot(texture: Mapping[str, Any]) -> dict[str, Any]:
-    """A texture, without its texels."""
-    return {
-        "property": texture["name"],
-        "source_name": texture["source_name"],
-        "technique": texture["technique"],
-        "name": texture["technique_name"],
-        "doc": texture["doc"],
-        "type": texture["type"],
-        "color": texture["color"],
-        "drawn": "",
-        "page_draws": False,
-    }

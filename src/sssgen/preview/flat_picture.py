@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile
+from sssgen.preview.emitted_head import Slot
 from sssgen.preview.flat_head import TARGET, plain_head, raymarched_head
 from sssgen.preview.picture import Chosen, Picture, Pieces, missing_text, texels_of
 from sssgen.run.evaluate import input_files
@@ -23,7 +23,7 @@ def plain_picture(path: str, chosen: Chosen) -> Picture:
     """The picture of plain GLSL. Raises SssgenError as `plain_head` does."""
     pieces = Pieces()
     head = plain_head(path, chosen.guards)
-    head["textures"] = [_filled(row, chosen, pieces) for row in head["textures"]]
+    head["textures"] = [_fill_slot(row, chosen, pieces) for row in head["textures"]]
     return Picture(head, pieces.data, None)
 
 
@@ -44,7 +44,7 @@ def raymarched_picture(scene: Scene, material: Material, chosen: Chosen) -> Pict
     return Picture(head, pieces.data, material, shell.parameters)
 
 
-def _filled(row: Mapping[str, Any], chosen: Chosen, pieces: Pieces) -> dict[str, Any]:
+def _fill_slot(row: Slot, chosen: Chosen, pieces: Pieces) -> Slot:
     """A texture of plain GLSL with its texels: the chosen picture, or a checker."""
     file = chosen.textures.get(row["property"], "")
     values = input_files.texture(file) if file else Texture(_checker())

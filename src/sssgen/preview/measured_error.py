@@ -28,11 +28,11 @@ def measured_error(scene: Scene, material: Material) -> str:
     record = cached(measured_scene.load(file), Settings())
     if record is None:
         return f"Error: no chart of this scene is in the cache. It takes minutes: sssgen chart {shell_word(file)}"
-    names = _names(material)
+    names = _techniques_of_material(material)
     point = nearest(record["points"], names)
     if point is None:
         return "Error: the chart of this scene has no complete chain."
-    same = "this chain" if _named(point) == names else "the nearest chain"
+    same = "this chain" if _techniques_of_point(point) == names else "the nearest chain"
     error, highest = measures(point)[1], limit_of(point)
     numbers = f"{error:.3g}, at most {highest:.3g}; its cost {cost_of(point):g}"
     return f"Error of {same} in the chart, {point['label']}: {numbers}."
@@ -46,15 +46,15 @@ def _is_clear(medium: Any) -> bool:
 def nearest(points: Sequence[Mapping[str, Any]], names: frozenset[str]) -> Mapping[str, Any] | None:
     """The complete chain with the fewest other techniques than these; of several the one with the least error."""
     whole = [point for point in points if point["role"] in ("material", "coordinates") and not point.get("failed")]
-    return min(whole, key=lambda point: (len(_named(point) ^ names), limit_of(point)), default=None)
+    return min(whole, key=lambda point: (len(_techniques_of_point(point) ^ names), limit_of(point)), default=None)
 
 
-def _named(point: Mapping[str, Any]) -> frozenset[str]:
+def _techniques_of_point(point: Mapping[str, Any]) -> frozenset[str]:
     """The techniques of a chart's point."""
     return frozenset(filter(None, (*point["chain"], point.get("path", ""))))
 
 
-def _names(material: Material) -> frozenset[str]:
+def _techniques_of_material(material: Material) -> frozenset[str]:
     """The techniques of a material that a chart compares, with the functions of lengths inside the body."""
     stages = [stage for stage in material.stages if stage.technique.role in _MEASURED]
     paths = [

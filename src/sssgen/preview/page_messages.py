@@ -20,7 +20,7 @@ from typing import Any
 from sssgen.preview.bodies import OWN_MESH, SHAPES, dropped_mesh
 from sssgen.preview.emitted_text import source_of, text_of
 from sssgen.preview.measured_error import measured_error
-from sssgen.preview.shown_picture import EarlierPicture, ShownPicture
+from sssgen.preview.pane import Pane, StartPane
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import FileState
 
@@ -30,13 +30,13 @@ MOST_TEXT = 1 << 20
 """The largest message besides its file."""
 
 
-def unpacked(frame: bytes) -> tuple[dict[str, Any], bytes]:
+def unpack(frame: bytes) -> tuple[dict[str, Any], bytes]:
     """The message and the file in a binary frame: JSON in one line, then the bytes. Raises ValueError."""
     line, _, data = frame.partition(b"\n")
-    return parsed(line), data
+    return parse(line), data
 
 
-def parsed(text: str | bytes) -> dict[str, Any]:
+def parse(text: str | bytes) -> dict[str, Any]:
     """The message in a JSON text. Raises ValueError."""
     if len(text) > MOST_TEXT:
         raise ValueError("too long")
@@ -55,8 +55,8 @@ OTHER = "other"
 class PageMessages:
     """The panes of the pages, and what the pages may ask."""
 
-    def __init__(self, shown: ShownPicture, other: ShownPicture | None = None) -> None:
-        self.panes = [shown] if other is None else [shown, other]
+    def __init__(self, pane: Pane, other: Pane | None = None) -> None:
+        self.panes = [pane] if other is None else [pane, other]
         self._other, self._beside = other, "" if other is None else OTHER
         self._answers: Mapping[str, Callable[[dict[str, Any], bytes], str]] = {
             "shape": self._shape,
@@ -68,7 +68,7 @@ class PageMessages:
         self._questions: Mapping[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
             "text": self._text,
             "source": self._source,
-            "measured": self._measured,
+            "measured": self._measured_error,
         }
 
     @property
@@ -113,7 +113,7 @@ class PageMessages:
         for pane in self.panes:
             pane.renew()
 
-    def _pane(self, message: Mapping[str, Any]) -> ShownPicture:
+    def _pane(self, message: Mapping[str, Any]) -> Pane:
         number = int(message.get("pane", 0))
         if number not in range(len(self.panes)):
             raise ValueError(number)
@@ -128,7 +128,7 @@ class PageMessages:
         folder = os.path.dirname(material.file) if material is not None else ""
         return source_of(str(message["name"]), folder, self.files)
 
-    def _measured(self, message: dict[str, Any]) -> dict[str, Any]:
+    def _measured_error(self, message: dict[str, Any]) -> dict[str, Any]:
         pane = self._pane(message)
         scene, material = pane.scene, pane.picture.material
         return {"kind": "measured", "text": measured_error(scene, material) if scene and material else ""}
@@ -147,9 +147,9 @@ class PageMessages:
         if what == OTHER and self._other is not None:
             beside = [self._other]
         elif what == "guards":
-            beside = [ShownPicture(first.name, chosen=first.chosen._replace(guards="none"))]
+            beside = [Pane(first.name, chosen=first.chosen._replace(guards="none"))]
         else:
-            beside = [] if BESIDE[what] == BESIDE[""] else [EarlierPicture(first)]
+            beside = [] if BESIDE[what] == BESIDE[""] else [StartPane(first)]
         self.panes[1:], self._beside = beside, what
         return ""
 

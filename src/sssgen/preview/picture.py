@@ -15,8 +15,8 @@ import numpy as np
 from sssgen.material.model import Material
 from sssgen.material.requirements import bodies
 from sssgen.pipeline.compiler import compile
-from sssgen.preview.bodies import OWN_MESH, SHAPES, fitted, framed, packed
-from sssgen.preview.emitted_head import DRAWN_BY_PAGE, TARGET, emitted_head
+from sssgen.preview.bodies import OWN_MESH, SHAPES, fit, frame, packed_triangles
+from sssgen.preview.emitted_head import DRAWN_BY_PAGE, TARGET, Slot, emitted_head
 from sssgen.run.render.missing_textures import missing_textures
 from sssgen.run.render.scene_values import shell_of
 from sssgen.run.render.shell_values import Shell
@@ -88,7 +88,7 @@ def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
         "note": _note(material, chosen.shape),
         "missing": missing_text(drawn, material, reflection, shell),
         "mesh": os.path.basename(chosen.mesh.path) if chosen.mesh is not None else "",
-        "body": pieces.add(packed(scene.geometry)),
+        "body": pieces.add(packed_triangles(scene.geometry)),
         "model": scene.geometry.to_world().T.ravel().tolist(),
         "textures": [_with_texels(row, shell, chosen, pieces) for row in head["textures"]],
         "lights": [
@@ -122,7 +122,7 @@ def _on_shape(scene: Scene, chosen: Chosen) -> Scene:
     shape = chosen.mesh if chosen.shape == OWN_MESH else SHAPES.get(chosen.shape)
     if shape is None or scene.geometry is None:
         return scene
-    return dataclasses.replace(scene, geometry=fitted(shape, scene.geometry))
+    return dataclasses.replace(scene, geometry=fit(shape, scene.geometry))
 
 
 def _camera(scene: Scene, shape: str) -> dict[str, Any]:
@@ -130,7 +130,7 @@ def _camera(scene: Scene, shape: str) -> dict[str, Any]:
     position, target = list(scene.camera.position), list(scene.camera.target)
     if shape and scene.geometry is not None:
         towards = np.subtract(position, target)
-        position, target = framed(scene.geometry, towards, scene.camera.field_of_view)
+        position, target = frame(scene.geometry, towards, scene.camera.field_of_view)
     return {"position": position, "target": target, "field_of_view": scene.camera.field_of_view}
 
 
@@ -145,7 +145,7 @@ def _without_views(reflection: Mapping[str, Any]) -> dict[str, Any]:
     return {**reflection, "textures": textures}
 
 
-def _with_texels(row: Mapping[str, Any], shell: Shell, chosen: Chosen, pieces: Pieces) -> dict[str, Any]:
+def _with_texels(row: Slot, shell: Shell, chosen: Chosen, pieces: Pieces) -> Slot:
     """The row of a texture with its texels; one that the page draws itself has none."""
     row = {**row, "chosen": os.path.basename(chosen.textures.get(row["property"], ""))}
     bound = shell.textures.get(row["source_name"])

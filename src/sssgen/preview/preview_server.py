@@ -19,8 +19,8 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from sssgen.preview.page_library import Library, library
-from sssgen.preview.page_messages import MOST_BYTES, MOST_TEXT, PageMessages, parsed, unpacked
-from sssgen.preview.shown_picture import ShownPicture
+from sssgen.preview.page_messages import MOST_BYTES, MOST_TEXT, PageMessages, parse, unpack
+from sssgen.preview.pane import Pane
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.extras import need
 from sssgen.support.file_changes import changes
@@ -43,9 +43,9 @@ IMPORT_MAP = '{"imports": {}}'
 class PreviewServer:
     """The pages of one preview, and the pictures that they show."""
 
-    def __init__(self, shown: ShownPicture, other: ShownPicture | None = None) -> None:
+    def __init__(self, pane: Pane, other: Pane | None = None) -> None:
         self.web = need("aiohttp.web", "aiohttp", "preview")
-        self.talk, self.token, self.port = PageMessages(shown, other), secrets.token_urlsafe(16), 0
+        self.talk, self.token, self.port = PageMessages(pane, other), secrets.token_urlsafe(16), 0
         self.pages: dict[Any, asyncio.Event] = {}
         """Each page, with the event that it has not got the newest pictures."""
         self.library = Library({}, {})
@@ -59,7 +59,7 @@ class PreviewServer:
         """The aiohttp application."""
 
         async def guarded(request: Any, handler: Callable[[Any], Awaitable[Any]]) -> Any:
-            return await self._guarded(request, handler)
+            return await self._check_request(request, handler)
 
         application = self.web.Application(middlewares=[self.web.middleware(guarded)])
         application.router.add_get("/{token}/", self._index)
@@ -98,7 +98,7 @@ class PreviewServer:
 
     # Requests
 
-    async def _guarded(self, request: Any, handler: Callable[[Any], Awaitable[Any]]) -> Any:
+    async def _check_request(self, request: Any, handler: Callable[[Any], Awaitable[Any]]) -> Any:
         """Refuses what does not come from this page: another host, another origin, another token."""
         own = {f"{HOST}:{self.port}", f"localhost:{self.port}"}
         origin = request.headers.get("Origin")
@@ -158,7 +158,7 @@ class PreviewServer:
         try:
             async for frame in page:
                 try:
-                    message, data = unpacked(frame.data) if isinstance(frame.data, bytes) else (parsed(frame.data), b"")
+                    message, data = unpack(frame.data) if isinstance(frame.data, bytes) else (parse(frame.data), b"")
                     if reply := await self._reply(message):
                         await page.send_json(reply)
                     elif text := await self._change(functools.partial(self.talk.answer, message, data)):

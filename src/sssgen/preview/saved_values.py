@@ -52,7 +52,7 @@ def save_to_material(material: Material, changes: Mapping[tuple[str, str], Seque
     It is written at every stage of that technique that sets it, or, where none does, at its first stage; one that a
     stage fixes keeps `fixed`. Raises SssgenError for a file that cannot be read or written, or a stage that is gone.
     """
-    document = _parsed(material.file)
+    document = _parse(material.file)
     stages = [(stage.technique.role, stage.technique.name) for stage in material.stages]
     for (technique, parameter), value in changes.items():
         tables = [
@@ -75,7 +75,7 @@ def save_to_material(material: Material, changes: Mapping[tuple[str, str], Seque
 
 def save_to_scene(path: str, changes: Mapping[str, Sequence[float] | str], section: str = "parameters") -> None:
     """Writes parameter or texture → value into that section of a scene's file. Raises SssgenError."""
-    document = _parsed(path)
+    document = _parse(path)
     table = document.setdefault(section, need("tomlkit", "tomlkit", "preview").table())
     for name, value in changes.items():
         old = table.get(name)
@@ -86,7 +86,7 @@ def save_to_scene(path: str, changes: Mapping[str, Sequence[float] | str], secti
     _write(path, document)
 
 
-def _parsed(path: str) -> Any:
+def _parse(path: str) -> Any:
     return need("tomlkit", "tomlkit", "preview").parse(read_text(path, posix(path)))
 
 

@@ -51,7 +51,7 @@ def _function(name: str) -> str:
 
 
 @functools.cache
-def _kept() -> tempfile.TemporaryDirectory[str]:
+def _temporary_folder() -> tempfile.TemporaryDirectory[str]:
     folder = tempfile.TemporaryDirectory(prefix="sssgen_preview_")
     write_pictures(folder.name)
     return folder
@@ -59,4 +59,4 @@ def _kept() -> tempfile.TemporaryDirectory[str]:
 
 def _folder() -> str:
     """The folder of these materials, with the pictures that they read; it is removed at the end of the process."""
-    return os.path.abspath(_kept().name)
+    return os.path.abspath(_temporary_folder().name)

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import Any
 
-from sssgen.cli.layout import wrapped
+from sssgen.cli.layout import wrap
 from sssgen.material import library
 from sssgen.material.technique_facts import facts_of, uniform_text
 
-
-def names() -> Collection[str]:
-    """The techniques of the library."""
-    return library.index()
+names = library.index
+"""The techniques of the library."""
 
 
 def describe(name: str) -> dict[str, Any]:
@@ -23,12 +21,12 @@ def describe(name: str) -> dict[str, Any]:
 def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     """The facts as text."""
 
-    def indented(text: str, indent: str) -> list[str]:
-        return wrapped(text, width, indent, indent)
+    def indent(text: str, blanks: str) -> list[str]:
+        return wrap(text, width, blanks, blanks)
 
     text = [
         f"{facts['name']} ({facts['role']})",
-        *indented(facts["summary"], "  "),
+        *indent(facts["summary"], "  "),
         "",
         f"  {facts['signature']}",
     ]
@@ -37,13 +35,13 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
             text += ["", f"{kind}:"]
             for uniform in facts[kind]:
                 text.append(f"  {uniform['name']}: {uniform_text(uniform)}")
-                text += indented(uniform["doc"], "      ")
+                text += indent(uniform["doc"], "      ")
     if facts["slots"]:
         text += ["", "slots, to be bound by the material:"]
         for slot in facts["slots"]:
-            text += [f"  {slot['signature']}", *indented(slot["doc"], "      ")]
-            text += indented(f"functions that fit: {', '.join(slot['functions']) or 'none in the library'}", "      ")
+            text += [f"  {slot['signature']}", *indent(slot["doc"], "      ")]
+            text += indent(f"functions that fit: {', '.join(slot['functions']) or 'none in the library'}", "      ")
     text.append("")
     for key, entry in facts["doc"].items():
-        text += [f"{key}:", *indented(entry, "  ")]
+        text += [f"{key}:", *indent(entry, "  ")]
     return [*text, "", f"file: {facts['file']}"]

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import Any
 
-from sssgen.cli.layout import wrapped
+from sssgen.cli.layout import wrap
 from sssgen.scene.measured import media
 from sssgen.support.diagnostics import did_you_mean, failure
 
-
-def names() -> Collection[str]:
-    """The media that are published."""
-    return media.media()
+names = media.media
+"""The media that are published."""
 
 
 def describe(name: str) -> dict[str, Any]:
@@ -37,4 +35,4 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     for title, key in (("reduced scattering", "reduced_scattering"), ("absorption", "absorption")):
         text.append(f"{title}: {', '.join(f'{value:g}' for value in facts[key])} per mm, red, green, blue")
     text.append(f"refractive index: {facts['ior']:g}")
-    return [*text, *wrapped(f"source: {facts['source']}", width, "", "  ")]
+    return [*text, *wrap(f"source: {facts['source']}", width, "", "  ")]

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import Any
 
-from sssgen.cli.layout import wrapped
+from sssgen.cli.layout import wrap
 from sssgen.ir.types import Sampler
 from sssgen.material.material_loading import examples, load_material
 from sssgen.material.model import Material, TechniqueUse
@@ -16,16 +16,14 @@ from sssgen.pipeline.compiler import all_targets, compile
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import posix
 
-
-def names() -> Collection[str]:
-    """The example materials."""
-    return examples()
+names = examples
+"""The example materials."""
 
 
 def describe(name: str) -> dict[str, Any]:
     """Everything about an example material, or about that of a .toml file. Raises SssgenError."""
     material = load_material(name)
-    refused, reflection = _compiled(material)
+    refused, reflection = _compile_for_all(material)
     values = {uniform["source_name"]: uniform["default"] for uniform in reflection.get("uniforms", ())}
     costs = {entry["function"]: _cost(Cost(**entry["cost"])) for entry in reflection.get("entries", {}).values()}
     return {
@@ -68,7 +66,7 @@ def _stage(use: TechniqueUse, values: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _compiled(material: Material) -> tuple[dict[str, dict[str, str]], dict[str, Any]]:
+def _compile_for_all(material: Material) -> tuple[dict[str, dict[str, str]], dict[str, Any]]:
     """The targets that refuse the material, with the reason and the hint; and the reflection of the first other target.
 
     The values and the cost in it are the same for all: they are counted before the program is rewritten for one target.
@@ -95,7 +93,7 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     sides = "front and back faces" if facts["two_sided"] else "front faces"
     text = [
         f"{facts['name']} (material): {facts['title']}",
-        *wrapped(facts["summary"], width, "  ", "  "),
+        *wrap(facts["summary"], width, "  ", "  "),
         "",
         f"  {facts['shading']}, alpha: {facts['alpha_mode']}, {sides}",
         "",
@@ -103,12 +101,12 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     ]
     column = max(len(stage["role"]) for stage in facts["stages"])
     for stage in facts["stages"]:
-        text.append(f"  {stage['role']:{column}}  {stage['technique']}" + _second_uv(stage))
+        text.append(f"  {stage['role']:{column}}  {stage['technique']}" + _uv_note(stage))
         for row in (*map(_parameter, stage["parameters"]), *map(_texture, stage["textures"])):
-            text += wrapped(row, width, "      ", "          ")
+            text += wrap(row, width, "      ", "          ")
         text += [f"      {slot} = {function}" for slot, function in stage["slots"].items()]
     needed = [f"{name} ({DESCRIPTIONS[name]})" for name in facts["requires"]]
-    text += ["", *wrapped(f"requires: {', '.join(needed) or 'nothing besides its parameters'}", width, "", "  ")]
+    text += ["", *wrap(f"requires: {', '.join(needed) or 'nothing besides its parameters'}", width, "", "  ")]
     if facts["cost"]:
         text += ["", "cost, in operations, counted before the target's compiler optimises:"]
         longest = max(map(len, facts["cost"]))
@@ -120,11 +118,11 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     text += ["", f"targets: {count}" + (", all but:" if facts["refused"] else ", which are all")]
     for target, why in facts["refused"].items():
         reason = why["message"] + (f" ({why['help']})" if why["help"] else "")
-        text += wrapped(f"{target}: {reason}", width, "  ", "      ")
+        text += wrap(f"{target}: {reason}", width, "  ", "      ")
     return [*text, "", f"file: {facts['file']}", "a technique in detail: sssgen show TECHNIQUE"]
 
 
-def _second_uv(stage: Mapping[str, Any]) -> str:
+def _uv_note(stage: Mapping[str, Any]) -> str:
     return "" if stage["uv"] == "uv" else f", with {stage['uv']}"
 
 

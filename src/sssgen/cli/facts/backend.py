@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from sssgen.cli.layout import wrapped
+from sssgen.cli.layout import wrap
 from sssgen.run.backend_registry import BACKENDS, unknown
 
 
@@ -35,13 +35,13 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     """The facts as text."""
     uses = ["evaluates functions (sssgen eval, stress)"] if facts["evaluates"] else []
     uses += ["draws scenes (sssgen render, ci)"] if facts["draws"] else []
-    text = [*wrapped(f"{facts['name']} (back end): {facts['summary']}", width, "", "  "), ""]
+    text = [*wrap(f"{facts['name']} (back end): {facts['summary']}", width, "", "  "), ""]
     for sentence in (
         f"runs the text of the target {facts['target']}, in floats of {facts['bits']} bits",
         " and ".join(uses),
     ):
-        text += wrapped(sentence, width, "", "  ")
+        text += wrap(sentence, width, "", "  ")
     if facts["half"]:
         text.append(f"in half precision: {facts['half']}")
     needs = facts["needs"].replace("`", "")
-    return [*text, *wrapped(f"needs: {needs}", width, "", "  "), "what this machine has: sssgen doctor"]
+    return [*text, *wrap(f"needs: {needs}", width, "", "  "), "what this machine has: sssgen doctor"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 from argparse import ArgumentParser, Namespace
 
-from sssgen.cli.options import given
-from sssgen.cli.output import OK, print_json
+from sssgen.cli.options import add_output, nonempty
+from sssgen.cli.output import OK, print_result
 from sssgen.material.material_loading import load_material
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_writer import write_files
@@ -22,15 +22,8 @@ def add_options(parser: ArgumentParser) -> None:
     )
     add = parser.add_argument
     add("MATERIAL", help="an example's name, or a material file")
-    add("--mesh", type=given, metavar="FILE", help="the mesh; by default that of the scene beside the material")
-    add(
-        "-o",
-        "--output",
-        type=given,
-        metavar="FILE",
-        required=True,
-        help="a .glb, or a .gltf with pictures beside it",
-    )
+    add("--mesh", type=nonempty, metavar="FILE", help="the mesh; by default that of the scene beside the material")
+    add_output(parser, "FILE", "a .glb, or a .gltf with pictures beside it", required=True)
 
 
 def run(arguments: Namespace) -> int:
@@ -49,15 +42,12 @@ def run(arguments: Namespace) -> int:
     report = Report(material.name)
     files = export(material, mesh_files.read(mesh) if mesh else None, path, report)
     written = write_files(os.path.dirname(path) or ".", files)
-    if arguments.json:
-        listed = [posix(file.path) for file in written]
-        print_json({"ok": True, "files": listed, "mesh": posix(mesh) if mesh else None, "report": report.as_json()})
-        return OK
-    print("\n".join([f"wrote {posix(file.path)}" for file in written]))
+    paths = [posix(file.path) for file in written]
+    lines = [f"wrote {path}" for path in paths]
     if not mesh:
-        print("the file has the material alone: there is no mesh beside it; name one with --mesh")
-    print(", ".join(f"{number} {outcome}" for outcome, number in report.counts().items()))
-    for row in report.rows:
-        if row.outcome != "mapped":
-            print(f"  {row.outcome}: {row.element}: {row.error or row.became}")
+        lines.append("the file has the material alone: there is no mesh beside it; name one with --mesh")
+    losses = [row for row in report.rows if row.outcome != "mapped"]
+    lines += [report.summary(), *(f"  {row.outcome}: {row.element}: {row.error or row.became}" for row in losses)]
+    facts = {"files": paths, "mesh": posix(mesh) if mesh else None, "report": report.as_json()}
+    print_result(arguments.json, facts, "\n".join(lines))
     return OK

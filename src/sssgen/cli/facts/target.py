@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from sssgen.cli.layout import wrapped
+from sssgen.cli.layout import wrap
 from sssgen.ir import signatures
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.surface_fields import OPTIONAL
@@ -25,9 +25,8 @@ FORMS = {
 """The forms in which a target is emitted, for people."""
 
 
-def names() -> Collection[str]:
-    """All targets, with those of plug-ins."""
-    return registry.names()
+names = registry.names
+"""All targets, with those of plug-ins."""
 
 
 def describe(name: str) -> dict[str, Any]:
@@ -89,16 +88,16 @@ def _others(types: Collection[str], allowed: Collection[str], texture: bool) -> 
 def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     """The facts as text."""
     language = facts["language"] + (f", {facts['version']}" if facts["version"] else "")
-    text = [*wrapped(f"{facts['name']} (target): {facts['title']}", width, "", "  "), "", f"language: {language}"]
+    text = [*wrap(f"{facts['name']} (target): {facts['title']}", width, "", "  "), "", f"language: {language}"]
     for form, files in facts["files"].items():
         listed = ", ".join(_file_text(file) for file in files)
-        text += wrapped(f"{FORMS.get(form, form)}: {listed}", width, "", "  ")
+        text += wrap(f"{FORMS.get(form, form)}: {listed}", width, "", "  ")
     lighting = f"the technique {facts['lighting']}" if facts["lighting"] else "the engine's own"
     text.append(f"light of lit materials: {lighting}")
     if facts["prefix"]:
         text.append(f"names begin with: {facts['prefix']}")
     for title, key in (("compilers that read it", "compilers"), ("back ends that run it", "backends")):
-        text += wrapped(f"{title}: {', '.join(facts[key]) or 'none'}", width, "", "  ")
+        text += wrap(f"{title}: {', '.join(facts[key]) or 'none'}", width, "", "  ")
     return [
         *text,
         "",
@@ -128,4 +127,4 @@ def _lacks_lines(lacks: Mapping[str, Any], width: int) -> list[str]:
     rows += [f"{title}: {', '.join(lacks[key])}" for key, title in titles.items() if lacks[key]]
     if not rows:
         return ["lacks: nothing that a material may have"]
-    return ["lacks:", *(line for row in rows for line in wrapped(row, width, "  ", "      "))]
+    return ["lacks:", *(line for row in rows for line in wrap(row, width, "  ", "      "))]

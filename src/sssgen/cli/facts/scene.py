@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from sssgen.cli.layout import wrapped
+from sssgen.cli.layout import wrap
 from sssgen.material.material_loading import examples
 from sssgen.scene.example_scenes import all_scenes, summary
 from sssgen.support.diagnostics import did_you_mean, failure
@@ -16,9 +16,8 @@ if TYPE_CHECKING:
     from sssgen.scene.scene import Light, Scene
 
 
-def names() -> Collection[str]:
-    """The example scenes, to draw and to measure."""
-    return all_scenes()
+names = all_scenes
+"""The example scenes, to draw and to measure."""
 
 
 def describe(name: str) -> dict[str, Any]:
@@ -51,7 +50,7 @@ def describe(name: str) -> dict[str, Any]:
         "lights": [_light(light) for light in scene.lights],
         "background": [list(color) for color in scene.background],
         "ambient": list(scene.ambient),
-        **_measured(scene),
+        **_measured_sections(scene),
         "parameters": dict(scene.parameters),
         "textures": {
             name: "distances of the geometry" if isinstance(texture, DistanceTexture) else posix(texture.file)
@@ -66,7 +65,7 @@ def _light(light: Light) -> dict[str, Any]:
     return {key: list(place or ()), "color": list(light.color)}
 
 
-def _measured(scene: Scene) -> dict[str, Any]:
+def _measured_sections(scene: Scene) -> dict[str, Any]:
     return {key: scene.measured.get(key) for key in ("medium", "inlay", "environment")}
 
 
@@ -75,13 +74,13 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     columns, rows = facts["size"]
     camera = facts["camera"]
     text = [f"{facts['name']} (scene)" + (f": {facts['title']}" if facts["title"] else "")]
-    text += [*wrapped(facts["summary"], width, "  ", "  "), ""]
+    text += [*wrap(facts["summary"], width, "  ", "  "), ""]
     text.append(f"material: {facts['material_file'] or 'none: the scene describes what is measured'}")
     geometry = facts["geometry"]
-    text += wrapped(f"geometry: {_table(geometry) if geometry else 'none: the material marches rays'}", width, "", "  ")
+    text += wrap(f"geometry: {_table(geometry) if geometry else 'none: the material marches rays'}", width, "", "  ")
     for key in ("medium", "inlay", "environment"):
         if facts[key] is not None:
-            text += wrapped(f"{key}: {_table(facts[key])}", width, "", "  ")
+            text += wrap(f"{key}: {_table(facts[key])}", width, "", "  ")
     text.append(f"lights: {len(facts['lights']) or 'none'}")
     for light in facts["lights"]:
         where = f"at {_value(light['position'])}" if "position" in light else f"from {_value(light['direction'])}"
@@ -100,7 +99,7 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
 
 
 def _entry(name: str, value: object, width: int) -> list[str]:
-    return wrapped(f"{name}: {_value(value)}", width, "  ", "      ")
+    return wrap(f"{name}: {_value(value)}", width, "  ", "      ")
 
 
 def _table(content: Mapping[str, Any]) -> str:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from argparse import ArgumentParser, Namespace
 from typing import Any
 
-from sssgen.cli.layout import table_rows, table_width
+from sssgen.cli.layout import print_rows
+from sssgen.cli.options import unknown_name
 from sssgen.cli.output import OK, print_json
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.material import library
@@ -14,7 +15,7 @@ from sssgen.material.requirements import requirements
 from sssgen.pipeline.compiler import all_targets
 from sssgen.run.backend_registry import BACKENDS
 from sssgen.scene.example_scenes import all_scenes, summary
-from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.diagnostics import failure
 from sssgen.support.paths import display_name, posix, source_name
 
 LISTS = ("techniques", "targets", "materials", "scenes", "media", "builtins", "backends")
@@ -37,8 +38,7 @@ def run(arguments: Namespace) -> int:
         if kind != "techniques":
             raise failure(f"{kind} have no role", "write: sssgen list techniques --role R")
         if arguments.role not in library.ROLES:
-            hint = did_you_mean(arguments.role, library.ROLES) or f"roles: {', '.join(library.ROLES)}"
-            raise failure(f"unknown role '{arguments.role}'", hint)
+            raise unknown_name("role", arguments.role, library.ROLES)
     rows = {
         "techniques": _techniques, "targets": _targets, "materials": _materials, "scenes": _scenes, "media": _media,
         "builtins": _builtins, "backends": _backends,
@@ -48,14 +48,14 @@ def run(arguments: Namespace) -> int:
     if arguments.json:
         print_json({"ok": True, kind: rows})
         return OK
-    longest, width = max((len(row["name"]) for row in rows), default=0), table_width()
+    longest = max((len(row["name"]) for row in rows), default=0)
     role = ""
     for row in rows:
         if row.get("role", "") != role:
             print(f"{chr(10) if role else ''}{row['role']}")
             role = row["role"]
         required = f" Requires: {', '.join(row['requires'])}." if row.get("requires") else ""
-        print("\n".join(table_rows([(row["name"], row["summary"] + required)], longest, width)))
+        print_rows([(row["name"], row["summary"] + required)], longest)
     return OK
 
 

@@ -23,7 +23,7 @@ class Element(NamedTuple):
     value: object
 
 
-class Imported(NamedTuple):
+class ImportedMaterial(NamedTuple):
     """One material of a file."""
 
     model: SurfaceModel
@@ -50,20 +50,20 @@ class Notes:
     def __init__(self) -> None:
         self.by_field: dict[str, tuple[str, str]] = {}
 
-    def approximated(self, field: str, became: str, error: str = "") -> None:
+    def add_approximation(self, field: str, became: str, error: str = "") -> None:
         """Notes that a field is approximated; the first note of a field is kept."""
         self.by_field.setdefault(field, (became, error))
 
 
-def report_fields(imported: Imported, notes: Notes, report: Report) -> None:
+def report_fields(imported: ImportedMaterial, notes: Notes, report: Report) -> None:
     """Adds a row for each element of the material, and for each note of a field that no element gives."""
     for field, elements in imported.elements.items():
         for element in elements:
             if field in notes.by_field:
-                report.approximated(element.path, element.value, *notes.by_field[field])
+                report.add_approximation(element.path, element.value, *notes.by_field[field])
             else:
-                report.mapped(element.path, element.value, field.replace("_", " "))
+                report.add_mapping(element.path, element.value, field.replace("_", " "))
     for field in notes.by_field.keys() - imported.elements.keys():
-        report.approximated(
+        report.add_approximation(
             f"{imported.model.name}: {field.replace('_', ' ')}", "not in the file", *notes.by_field[field]
         )

@@ -6,8 +6,8 @@ import os
 import shlex
 from argparse import ArgumentParser, Namespace
 
-from sssgen.cli.options import given
-from sssgen.cli.output import OK, print_json
+from sssgen.cli.options import add_output, nonempty
+from sssgen.cli.output import OK, print_result
 from sssgen.support.paths import posix
 from sssgen.support.progress import ProgressBar
 
@@ -24,10 +24,10 @@ def add_options(parser: ArgumentParser) -> None:
     )
     add = parser.add_argument
     add("FILE", help="a .gltf, .glb, .mtlx (MaterialX), .mat or .asset (Unity) file")
-    add("-o", "--output", type=given, metavar="DIR", required=True, help="the folder to write to")
+    add_output(parser, "DIR", "the folder to write to", required=True)
     add("--material", metavar="NAME", default="", help="import this material alone, by its name or number in the file")
     add(
-        "--root", type=given, metavar="DIR",
+        "--root", type=nonempty, metavar="DIR",
         help="the folder with all files of the material (default: that of FILE or, for Unity, the project)",
     )  # fmt: skip
     add(
@@ -44,33 +44,30 @@ def run(arguments: Namespace) -> int:
     from sssgen.interchange.mapping_report import Report
     from sssgen.interchange.material_writer import write_import
     from sssgen.interchange.thickness_bake import OPTION as BAKE_OPTION
-    from sssgen.interchange.thickness_bake import baked_materials
+    from sssgen.interchange.thickness_bake import bake_materials
 
     path = arguments.FILE
     report = Report(os.path.basename(path))
     with ProgressBar() as bar:
         bar(0, 1, f"reading {report.source}")
-        materials = format_readers.read(path, report, arguments.material, arguments.root or "")
+        imports = format_readers.read(path, report, arguments.material, arguments.root or "")
         if arguments.bake:
-            materials = baked_materials(materials, report, bar)
-        written = write_import(arguments.output, materials, report, force=arguments.force, progress=bar)
+            imports = bake_materials(imports, report, bar)
+        written = write_import(arguments.output, imports, report, force=arguments.force, progress=bar)
     folder = posix(arguments.output)
-    if arguments.json:
-        listed = [
-            {"name": part.name, "material": f"{folder}/{part.material}", "scene": f"{folder}/{part.scene}"}
-            for part in written
-        ]
-        print_json({"ok": True, "materials": listed, "report": report.as_json()})
-        return OK
-    for part in written:
-        print(f"wrote {folder}/{part.material} and its scene")
-    for row in report.rows:
-        if row.value == BAKE_OPTION:
-            print(f"{BAKE_OPTION} has no effect on {row.element}: {row.became}")
-    summary = ", ".join(f"{number} {outcome}" for outcome, number in report.counts().items())
-    print(f"{summary}: {folder}/report.md")
+    materials = [
+        {"name": part.name, "material": f"{folder}/{part.material}", "scene": f"{folder}/{part.scene}"}
+        for part in written
+    ]
     first = next((part for part in written if part.transmits), written[0])
     scene = shlex.quote(f"{folder}/{first.scene}")
-    print(f"draw it: sssgen render {scene} -o {first.name}.png")
-    print(f"change it: sssgen preview {scene}")
+    no_effect = [row for row in report.rows if row.value == BAKE_OPTION]
+    lines = [
+        *(f"wrote {part['material']} and its scene" for part in materials),
+        *(f"{BAKE_OPTION} has no effect on {row.element}: {row.became}" for row in no_effect),
+        f"{report.summary()}: {folder}/report.md",
+        f"draw it: sssgen render {scene} -o {first.name}.png",
+        f"change it: sssgen preview {scene}",
+    ]
+    print_result(arguments.json, {"materials": materials, "report": report.as_json()}, "\n".join(lines))
     return OK

@@ -9,7 +9,8 @@ from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.preview.bodies import OWN_MESH
-from sssgen.preview.chosen_textures import ChosenTextures, saved
+from sssgen.preview.chosen_textures import ChosenTextures, save_texture
+from sssgen.preview.emitted_head import Control, Slot
 from sssgen.preview.flat_head import is_plain, plain_text
 from sssgen.preview.flat_picture import plain_picture, raymarched_picture
 from sssgen.preview.picture import Chosen, Picture, picture_of
@@ -23,7 +24,7 @@ from sssgen.support.file_memo import FileState, noted_files
 from sssgen.support.paths import posix
 
 
-class ShownPicture:
+class Pane:
     """The picture of a material or scene; `renew` makes it again from the files."""
 
     def __init__(self, name: str, mesh: Mesh | None = None, chosen: Chosen | None = None) -> None:
@@ -100,27 +101,27 @@ class ShownPicture:
         row = self._row(slot)
         chosen = {one: file for one, file in self.chosen.textures.items() if one != slot}
         if data:
-            chosen[slot] = self._textures.added(row, name, data)
+            chosen[slot] = self._textures.add(row, name, data)
         self.choose(self.chosen._replace(textures=chosen))
 
     def save_textures(self) -> str:
         """Writes the chosen pictures beside the file that names the texture; says what it did. Raises SssgenError."""
         if not self.chosen.textures:
             return ""
-        scene, material = self._written()
-        reports = [saved(self._row(slot), file, scene, material) for slot, file in self.chosen.textures.items()]
+        scene, material = self._save_files()
+        reports = [save_texture(self._row(slot), file, scene, material) for slot, file in self.chosen.textures.items()]
         self.chosen = self.chosen._replace(textures={})
         return " ".join(reports)
 
-    def _row(self, slot: str) -> dict[str, Any]:
+    def _row(self, slot: str) -> Slot:
         """The texture of that property. Raises SssgenError."""
-        for row in self.picture.head["textures"]:
+        rows: list[Slot] = self.picture.head["textures"]
+        for row in rows:
             if row["property"] == slot:
-                texture: dict[str, Any] = row
-                return texture
+                return row
         raise failure(f"{self.picture.head['name']} has no texture '{slot}'")
 
-    def _written(self) -> tuple[Scene, Material]:
+    def _save_files(self) -> tuple[Scene, Material]:
         """The scene and the material whose files hold the values. Raises SssgenError where there are none."""
         if self.scene is None or self.picture.material is None or self.picture.head["saves"]:
             raise failure("nothing can be saved here", self.picture.head["saves"])
@@ -132,29 +133,30 @@ class ShownPicture:
         Returns what was written and where, for a person. Raises SssgenError for a property that the material does not
         have.
         """
-        controls = {control["property"]: control for control in self.picture.head["controls"]}
-        scene, material = self._written()
+        rows: list[Control] = self.picture.head["controls"]
+        controls = {control["property"]: control for control in rows}
+        scene, material = self._save_files()
         for name, numbers in values.items():
             if name not in controls or len(numbers) != len(controls[name]["default"]):
                 raise failure(f"{material.name} has no parameter '{name}' of {len(numbers)} numbers")
-        in_scene = [name for name in values if is_saved_in_scene(scene, material, str(controls[name]["label"]))]
+        in_scene = [name for name in values if is_saved_in_scene(scene, material, controls[name]["label"])]
         written = []
         if in_scene:
-            own = {str(controls[name]["label"]): values[name] for name in in_scene}
+            own = {controls[name]["label"]: values[name] for name in in_scene}
             save_to_scene(scene.document.reporter.file, own)
             written.append(f"{', '.join(own)} in {posix(scene.document.reporter.file)}")
         if others := {name: values[name] for name in values if name not in in_scene}:
             changes = {(controls[name]["technique"], controls[name]["name"]): value for name, value in others.items()}
             save_to_material(material, changes)
-            labels = [str(controls[name]["label"]) for name in others]
-            written.append(f"{', '.join(labels)} in {posix(material.file)}")
+            labels = ", ".join(controls[name]["label"] for name in others)
+            written.append(f"{labels} in {posix(material.file)}")
         return f"Saved: {'; '.join(written)}." if written else ""
 
 
-class EarlierPicture(ShownPicture):
+class StartPane(Pane):
     """Material and scene as they were when the preview started; textures and meshes are read as they are now."""
 
-    def __init__(self, now: ShownPicture) -> None:
+    def __init__(self, now: Pane) -> None:
         self._then = now.first
         super().__init__(now.name, chosen=now.chosen._replace(guards="auto", textures={}))
 
