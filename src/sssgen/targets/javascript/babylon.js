@@ -38,7 +38,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {string} functions
  * @property {string} vertex the varyings' values
  * @property {string} begin the variables' values, and the surface
- * @property {string} [through] the share of a light that comes through
+ * @property {string} [translucency] the share of a light that comes through
  * @property {Record<string, string>} places place in Babylon's fragment shader → the way of the surface into it
  */
 
@@ -72,10 +72,10 @@ const ARGUMENTS = {
 };
 
 /** The places of the light that comes through: where Babylon begins a light, the one before it is complete. */
-function lightPlaces(through, uniform) {
+function lightPlaces(translucency, uniform) {
   const add = `
 if (sss_pending) {
-  sss_lights += sss_light_color * preInfo.attenuation * ${through};
+  sss_lights += sss_light_color * preInfo.attenuation * ${translucency};
 }`;
   return {
     // without the light's shadow: light that comes through entered on the far side
@@ -101,11 +101,11 @@ finalDiffuse += sss_lights * ${uniform}vLightingIntensity.x / 3.14159265;
 
 /** What goes into Babylon's shaders in one language: place → text. */
 function placesOf({ textures, varyings, variables, shells }, language) {
-  const { functions, vertex, begin, through, places } = shells[language];
+  const { functions, vertex, begin, translucency, places } = shells[language];
   const { texture, varying, variable } = DECLARATIONS[language];
   const samplers = Object.fromEntries(Object.values(textures).map(({ name, type }) => [name, type]));
   const passed = declared(varying, varyings);
-  const lights = through ? lightPlaces(through, ['', 'uniforms.'][language]) : {};
+  const lights = translucency ? lightPlaces(translucency, ['', 'uniforms.'][language]) : {};
   const fragment = {
     CUSTOM_FRAGMENT_DEFINITIONS: declared(texture, samplers) + passed + functions + declared(variable, variables),
     CUSTOM_FRAGMENT_MAIN_BEGIN: begin,

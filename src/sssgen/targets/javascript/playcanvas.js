@@ -6,13 +6,12 @@ import { Properties, TEXELS } from './values.js';
 
 /**
  * A material's text in one language: what it adds to PlayCanvas's chunks.
- * @typedef {object} Chunks
+ * @typedef {object} Shell
  * @property {string} functions
  * @property {string} vertex the values of varyings without an attribute
  * @property {string} begin the variables' values, and the surface
- * @property {string} front the surface's way into PlayCanvas's arguments of the light
- * @property {string} opacity
- * @property {string} ambient what becomes of the ambient light
+ * @property {{ front?: string, opacity?: string, ambient?: string }} places the surface's way into PlayCanvas's arguments of
+ *   the light, into its opacity, and into the ambient light
  * @property {string} [translucency] the share of a light that comes through
  * @property {string} [lighting] the reflected light
  */
@@ -41,8 +40,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {Record<string, import('./values.js').TextureParameter>} textures
  * @property {Record<string, Varying>} varyings
  * @property {Record<string, string>} variables of the fragment shader: name → type
- * @property {Chunks} glsl
- * @property {Chunks} wgsl
+ * @property {Shell[]} shells in GLSL and in WGSL
  */
 
 // Chunks: PlayCanvas's own text stays, and the material's text is added.
@@ -91,7 +89,7 @@ const LIGHT = { sss_L: 'vec3', sss_light_color: 'vec3', sss_light_nearness: 'flo
 
 /** What is added to PlayCanvas's chunks as it is: the declarations, and the varyings' values. */
 function additions(description, properties, gpu) {
-  const own = gpu ? description.wgsl : description.glsl;
+  const own = description.shells[Number(gpu)];
   const { declared, variable } = LANGUAGES[Number(gpu)];
   const varyings = Object.entries(description.varyings);
   const attributes = varyings.filter(([, { attribute }]) => attribute);
@@ -127,8 +125,9 @@ ${out}${name} = ${type}(${other}.0);
 }
 
 /** Changes of PlayCanvas's chunks: a chunk, what is sought in it, what it becomes, and what follows the chunk. */
-function changes({ lit, glsl, wgsl }, gpu) {
-  const own = gpu ? wgsl : glsl;
+function changes({ lit, shells }, gpu) {
+  const own = shells[Number(gpu)];
+  const { front = '', opacity = '', ambient = '' } = own.places;
   const { head } = LANGUAGES[Number(gpu)];
   return [
     ['stdFrontEndPS', /evaluateFrontend/, 'sss_engine_front', `
@@ -137,20 +136,20 @@ ${lit ? 'sss_light_sum = vec3(0.0);' : ''}
 ${own.begin}
   sss_engine_front();
 #ifdef FORWARD_PASS
-${own.front}
+${front}
 #endif
 }
 ${lit ? lightFunctions(own, head) : ''}`],
     ['opacityPS', /getOpacity/, 'sss_engine_opacity', `
 ${head('void getOpacity()')} {
   sss_engine_opacity();
-${own.opacity}
+${opacity}
 }
 `],
     ['combinePS', /combineColor/, 'sss_engine_combine', `
 ${lit && !gpu ? AMBIENT_DECLARATION : ''}
 ${head('vec3 combineColor(vec3 albedo, vec3 sheenSpecularity, float clearcoatSpecularity)')} {
-${lit ? lightSum(own) : 'return vec3(0.0);'}
+${lit ? lightSum(ambient) : 'return vec3(0.0);'}
 }
 `],
     ...(lit ? lightChanges(gpu, head) : []),
@@ -162,7 +161,7 @@ const AMBIENT_DECLARATION = `
 void addAmbient(vec3 worldNormal);
 #endif`;
 
-const lightSum = ({ ambient }) => `
+const lightSum = (ambient) => `
 #ifdef SSS_OWN_LIGHT
 #ifdef LIT_ADD_AMBIENT
 dDiffuseLight = vec3(0.0);
