@@ -32,8 +32,8 @@ VERTEX = "vertex"
 SURFACE = "surface"
 """The stage of a function that computes the surface, where several passes of an engine call it."""
 LIBRARY = "library"
-"""The place of what the compiler's own text mentions: functions and types that the language does not have. It is the only
-place in which names of this text are looked up."""
+"""The place of what the compiler's own text mentions: functions and types that the language does not have. Names of
+this text are looked up here alone."""
 VARYINGS = "varyings"
 """The place of what the vertex shader passes on: parts of the same names in its places compute it."""
 

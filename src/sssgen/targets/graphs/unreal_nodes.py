@@ -21,7 +21,7 @@ _PICTURES = {
     ("white", "Color"): "EngineResources/WhiteSquareTexture.WhiteSquareTexture",
     ("bump", "Normal"): "EngineMaterials/DefaultNormal.DefaultNormal",
 }
-"""A texture's default and sampler type → the engine's picture. Unreal refuses one whose sRGB differs from the type's."""
+"""A texture's default and sampler type → Unreal's picture. One whose sRGB differs from the type's is refused."""
 
 
 class Pin(NamedTuple):
