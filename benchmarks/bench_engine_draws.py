@@ -26,7 +26,7 @@ from sssgen.pipeline.two_stages import Source, transpile_stages
 from sssgen.run.backends.browser_page import START, WEBGL, WEBGPU, Page
 from sssgen.run.installed import all_lacks, chromium, node_modules
 from sssgen.support.diagnostics import SssgenError
-from sssgen.support.paths import folder
+from sssgen.targets.javascript_runtime import FOLDER
 from sssgen.targets.program_reflection import ROWS
 
 HERE = Path(__file__).parent / "engine_draws"
@@ -40,7 +40,7 @@ RASTERISED = {"lines": 0.01}
 def open_page(engine: str = "three") -> tuple[Page, dict[str, Any]]:
     """The page, and its engine, its scenes and the size of its pictures."""
     modules = {
-        "loader": folder("templates") / "wgsl" / "webgl_program.js",
+        "loader": Path(FOLDER) / "webgl_program.js",
         **{name: HERE / f"{name}.js" for name in ("record", "replay")},
     }
     script = (HERE / "page.js").read_text(encoding="utf-8")

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
+from jinja2 import Environment, nodes
 
 import sssgen
 from sssgen.ir.surface_fields import NAMES, OPTIONAL
@@ -18,10 +20,21 @@ from sssgen.support.paths import folder
 from sssgen.targets.frame import Variant, used_parts
 from sssgen.targets.used_frame import with_names
 
-CONDITION = re.compile(r"\{%-?\s*(?:if|elif|for|set)\b[^%]*")
-"""A control line of a template."""
-OF_VALUES = re.compile(r"\b(?:inputs|fields|surface_fields|surface_reads|light_reads|reads|needs)\b")
-"""What a condition on the use of an input or of a value of the surface mentions."""
+TEMPLATES = sorted(folder("templates").rglob("*.j2"))
+OF_VALUES = {
+    "inputs",
+    "fields",
+    "surface_fields",
+    "light_fields",
+    "surface_reads",
+    "light_reads",
+    "all",
+    "reads",
+    "needs",
+}
+"""The variables of templates that list inputs, or values of the surface."""
+ENGINES = ("bevy", "unreal", "godot", "threejs", "babylonjs", "playcanvas", "unity-urp", "unity-builtin")
+SELECTING = {"select", "reject", "selectattr", "rejectattr"}
 
 SHEEN = """
 [material]
@@ -36,17 +49,59 @@ sheen_tint = [0.9, 0.4, 0.5]
 """
 
 
-FRAMED = {name for name, target in all_targets().items() if target.frame}
-"""The targets whose shells are data: their own templates are in the folders of these names."""
-TEMPLATES = [path for path in sorted(folder("templates").rglob("*.j2")) if path.parent.name in FRAMED]
+def questions(text: str) -> list[int]:
+    """The lines of a template that ask which inputs or values of the surface a program uses."""
+    tree = Environment().parse(text)
+    asked: list[nodes.Node | None] = [node.test for node in tree.find_all((nodes.If, nodes.CondExpr, nodes.For))]
+    asked += [*tree.find_all((nodes.Compare, nodes.Test))]
+    asked += [node for node in tree.find_all(nodes.Filter) if node.name in SELECTING]
+    asked += [node.iter for node in tree.find_all(nodes.For) if node.test is not None]
+    names = [name for node in asked if node is not None for name in (node, *node.find_all(nodes.Name))]
+    return sorted({name.lineno for name in names if isinstance(name, nodes.Name) and name.name in OF_VALUES})
 
 
 @pytest.mark.parametrize("path", TEMPLATES, ids=lambda path: f"{path.parent.name}/{path.name}")
-def test_no_template_asks_which_values_a_program_reads(path: Path) -> None:
-    lines = path.read_text("utf-8").splitlines()
-    conditions = [line for line in lines for part in CONDITION.findall(line) if OF_VALUES.search(part)]
-    inline = [line for line in lines if re.search(r"\{\{[^}]*\bif\b[^}]*\b(?:inputs|fields|surface_fields)\b", line)]
-    assert conditions + inline == []
+def test_no_template_asks_which_values_a_program_uses(path: Path) -> None:
+    """The frame of its target answers that: [inputs] and [frame] for inputs, [surface] for values of the surface."""
+    place = f"{path.parent.name}/{path.name}"
+    assert [f"{place}:{line}" for line in questions(path.read_text("utf-8"))] == []
+
+
+@pytest.mark.parametrize(
+    "question",
+    [
+        '{% if "V" in inputs %}{% endif %}',
+        '{% set lit = "albedo" in fields or "alpha" in fields %}',
+        '{{ "a" if fields }}',
+        '{% for field in inputs if field == "V" %}{% endfor %}',
+        '{{ surface_fields | selectattr("name", "equalto", "normal") | list }}',
+        '{{ light_reads | select("in", ["L"]) | list | length }}',
+    ],
+)
+def test_such_a_question_is_found(question: str) -> None:
+    assert questions(f"\n{question}") == [2]
+
+
+def test_what_a_template_lists_is_no_question() -> None:
+    assert (
+        questions("{{ inputs | sort }}{% for field in light_fields %}{% endfor %}{% if frame.vertex %}{% endif %}")
+        == []
+    )
+
+
+def lines_of(paths: Iterable[Path]) -> int:
+    return sum(len(path.read_text("utf-8").splitlines()) for path in paths)
+
+
+def test_the_templates_are_small() -> None:
+    """What is a program is in another file: a frame, a function of `shells/`, a runtime, a graph."""
+    assert lines_of(path for path in folder("templates").rglob("*") if path.is_file()) <= 3000
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_engine_is_small(engine: str) -> None:
+    """Its descriptor and its own templates."""
+    assert lines_of([folder("targets") / f"{engine}.toml", *(folder("templates") / engine).iterdir()]) <= 300
 
 
 def test_a_part_pulls_in_what_it_mentions() -> None:

@@ -12,8 +12,9 @@ from sssgen.passes.stage.stage_interface import entry_of
 from sssgen.pipeline.two_stages import Source, transpile_stages
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_writer import write_files
-from sssgen.support.paths import place, posix, stem
+from sssgen.support.paths import posix, stem
 from sssgen.support.text_files import read_text
+from sssgen.targets.javascript_runtime import FOLDER
 from sssgen.targets.registry import load
 
 LOADER = "webgl_program.js"
@@ -40,7 +41,7 @@ def run(arguments: Namespace) -> int:
     program = transpile_stages(first, second, targets[0], name, arguments.guards, arguments.rows)
     files = dict(program.files)
     if targets[0] == "wgsl":
-        files[LOADER] = read_text(os.path.join(place("templates"), "wgsl", LOADER), LOADER)
+        files[LOADER] = read_text(os.path.join(FOLDER, LOADER), LOADER)
     inputs = {os.path.realpath(path): path for path in (*arguments.stages, *(p for each in loaded for p in each.paths))}
     for file in files:
         path = inputs.get(os.path.realpath(os.path.join(folder, file)))

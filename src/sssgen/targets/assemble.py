@@ -20,6 +20,7 @@ from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.targets.descriptor import OutputFile, Target
+from sssgen.targets.frame import LIBRARY, library
 from sssgen.targets.javascript_runtime import inlined_text, runtime_text
 from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text
 from sssgen.targets.printers.printer import Comments, Printer
@@ -259,6 +260,7 @@ def _printed(
         "shell": _text(program.parts["shell"], marks),
         "imports": _text(program.parts["imports"], marks),
     }
+    used = used._replace(frame={**used.frame, LIBRARY: library(used.target.frame, code.values())})
     bindings = [printer.binding(index) for index in range(len(textures))] if declares else []
     context = _context(used, fields, inputs, program, printer, form, code) | {"padding": padding(members)}
     return context, members, size, [place for place in bindings if place]

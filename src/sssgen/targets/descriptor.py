@@ -244,8 +244,8 @@ class Target(NamedTuple):
     material_group: int = 0
     """WGSL: the group of the material's uniform block, textures and samplers."""
     ports: Mapping[str, Port] = {}
-    """Shader Graph, Unreal: chain input, or the side of the face → its port, in the order of the node. The names of those that the
-    program reads are the place `ports` of the frame."""
+    """Shader Graph, Unreal: chain input, or the side of the face → its port, in the order of the node. The names of
+    those that the program reads are the place `ports` of the frame."""
     embedded: Mapping[str, Embedded] = {}
     """Name in the templates → the functions of another target that the files contain, too."""
     properties: Properties = Properties()

@@ -31,6 +31,9 @@ VERTEX = "vertex"
 """The stage of the vertices, likewise. Texts of all three stages see their own places first, then those outside."""
 SURFACE = "surface"
 """The stage of a function that computes the surface, where several passes of an engine call it."""
+LIBRARY = "library"
+"""The place of what the compiler's own text mentions: functions and types that the language does not have. Names of
+this text are looked up here alone."""
 VARYINGS = "varyings"
 """The place of what the vertex shader passes on: parts of the same names in its places compute it."""
 
@@ -95,6 +98,11 @@ def used_parts(parts: Parts, reads: Iterable[str], texts: Iterable[tuple[str, st
         place: "\n".join([text for names, text in texts_of_place.items() if text and (place, names) in used])
         for place, texts_of_place in parts.items()
     }
+
+
+def library(parts: Parts, printed: Iterable[str]) -> str:
+    """The parts of the place `library` that the compiler's own texts mention."""
+    return used_parts({LIBRARY: parts.get(LIBRARY, {})}, (), [("", text) for text in printed])[LIBRARY]
 
 
 def _mentioned(named: Mapping[str, list[tuple[str, str]]], text: str, stage: str) -> Iterator[tuple[str, str]]:

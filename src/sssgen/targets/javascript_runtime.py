@@ -12,7 +12,8 @@ import re
 
 from sssgen.support.diagnostics import failure
 
-_FOLDER = os.path.join(os.path.dirname(__file__), "javascript")
+FOLDER = os.path.join(os.path.dirname(__file__), "javascript")
+"""The folder of the project's own sources."""
 _IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
 _TYPE = re.compile(r"import\('\./[^']*'\)\.")
 _EXPORT = re.compile(r"^export (?!default|\{|\*)", re.MULTILINE)
@@ -41,7 +42,7 @@ def inlined_text(sources: tuple[str, ...], folder: str) -> str:
 def _read(name: str, folder: str) -> str:
     own = os.path.join(folder, name)
     try:
-        with open(own if os.path.isfile(own) else os.path.join(_FOLDER, name), encoding="utf-8") as file:
+        with open(own if os.path.isfile(own) else os.path.join(FOLDER, name), encoding="utf-8") as file:
             return file.read()
     except (OSError, ValueError) as error:
         raise failure(f"cannot read '{name}', a source of a target's descriptor: {error}") from None

@@ -1,1 +1,1 @@
-"""The graphs of nodes that an engine pastes or imports: records, which a template lays out as the engine writes them."""
+"""The graphs of nodes that an engine pastes or imports: records that a template lays out."""

@@ -1,7 +1,7 @@
 """The nodes that Unreal's material editor pastes: a Custom node with one wire for each value that its code passes on.
 
-What the engine supplies comes from the nodes that the descriptor lists for a pin; a parameter has a node of its own. Lengths
-are in centimetres.
+What the engine supplies comes from the nodes that the descriptor lists for a pin; a parameter has a node of its own.
+Lengths are in centimetres.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _PICTURES = {
     ("white", "Color"): "EngineResources/WhiteSquareTexture.WhiteSquareTexture",
     ("bump", "Normal"): "EngineMaterials/DefaultNormal.DefaultNormal",
 }
-"""A texture's default and its sampler type → the engine's picture. Unreal refuses one whose sRGB differs from the type's."""
+"""A texture's default and sampler type → Unreal's picture. One whose sRGB differs from the type's is refused."""
 
 
 class Pin(NamedTuple):
@@ -154,7 +154,7 @@ class _Graph:
         return self.add(kind, [f"ParameterName={_quoted(name)}", *properties, *group])
 
     def complete(self, name: str, outs: Sequence[Sequence[str]]) -> None:
-        """Adds the properties of the Custom node and the pins; `outs` are its outputs beside the result: type and name."""
+        """Adds the properties of the Custom node and the pins; `outs` are its other outputs: type and name."""
         call = f"sssgen_{name}::evaluate_material({', '.join([*self.arguments, *(out for _, out in outs)])})"
         self.custom.outputs = ["return", *(out for _, out in outs)] if outs else ["Output"]
         self.custom.properties = [
