@@ -16,6 +16,7 @@ from sssgen.lang.check.quantities import QUANTITIES
 from sssgen.material import library, slots
 from sssgen.material.library import Technique
 from sssgen.material.material_loading import examples
+from sssgen.material.material_reader import parameter_names
 from sssgen.scene.scene_reader import material_beside
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import builtin_facts
@@ -223,12 +224,7 @@ def uniforms_at(document: Document, analysis: Analysis, place: toml_places.TomlP
         for uniform in module.uniforms
         if uniform.name in slots.needs(module, function)[0]
     }
-    return {name: uniform for uniform in found.values() for name in names_of(uniform)}
-
-
-def names_of(uniform: Uniform) -> list[str]:
-    """A parameter's name, then its aliases."""
-    return [uniform.name, *(str(name) for hint, names in uniform.hints if hint == "alias" for name in names)]
+    return {name: uniform for uniform in found.values() for name in parameter_names(uniform)}
 
 
 def _bound_functions(

@@ -71,11 +71,11 @@ def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
         raise failure(f"{material.name} makes its own rays: it is a flat picture, not a material of a body")
     scene = _on_shape(scene, chosen)
     named = {texture["property"]: texture["source_name"] for texture in compiled.reflection["textures"]}
-    given = {
-        named[name]: _with_file(scene, named[name], file) for name, file in chosen.textures.items() if name in named
-    }
-    own = {**scene.textures, **given}
-    drawn = dataclasses.replace(scene, textures=own)
+    textures = dict(scene.textures)
+    for name, file in chosen.textures.items():
+        if name in named:  # it continues at its edges as the scene's own does
+            textures[named[name]] = PictureFile(file, getattr(scene.textures.get(named[name]), "wrap", ""))
+    drawn = dataclasses.replace(scene, textures=textures)
     reflection = _without_views(compiled.reflection)
     shell = shell_of(drawn, material, reflection)
     pieces = Pieces()
@@ -132,11 +132,6 @@ def _camera(scene: Scene, shape: str) -> dict[str, Any]:
         towards = np.subtract(position, target)
         position, target = frame(scene.geometry, towards, scene.camera.field_of_view)
     return {"position": position, "target": target, "field_of_view": scene.camera.field_of_view}
-
-
-def _with_file(scene: Scene, name: str, file: str) -> PictureFile:
-    """A texture from a chosen file, which continues at its edges as the scene's own does."""
-    return PictureFile(file, getattr(scene.textures.get(name), "wrap", ""))
 
 
 def _without_views(reflection: Mapping[str, Any]) -> dict[str, Any]:
