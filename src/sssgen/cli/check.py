@@ -37,7 +37,7 @@ def add_options(parser: ArgumentParser) -> None:
         action="append",
         help="check only these targets; also the language of a shader whose file name does not determine it",
     )
-    parser.add_argument("--compiler", metavar="NAME", action="append", help="use only this compiler; repeatable")
+    parser.add_argument("--compiler", metavar="NAME", action="append", help="use only this compiler; may be repeated")
     help = f"list every file and compiler, where more than {LISTED} are compiled, too; else only failures"
     parser.add_argument("-v", "--verbose", action="store_true", help=help)
     parser.add_argument("--unity-includes", metavar="DIR", help="the folder of Unity's own headers")

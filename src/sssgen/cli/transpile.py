@@ -46,9 +46,9 @@ def add_options(parser: ArgumentParser) -> None:
         metavar="DIR",
         action="append",
         default=[],
-        help="search this folder for #include; repeatable",
+        help="search this folder for #include; may be repeated",
     )
-    add("--define", "-D", metavar="NAME[=VALUE]", action="append", default=[], help="define a macro; repeatable")
+    add("--define", "-D", metavar="NAME[=VALUE]", action="append", default=[], help="define a macro; may be repeated")
     add("--entry", choices=("shadertoy",), default="", help="the file's entry point: mainImage instead of main")
     add(
         "--with",
