@@ -13,7 +13,7 @@ from sssgen.interchange.record_limits import limit_numbers
 from sssgen.interchange.surface_model import ONE, WHITE, Quantity, SurfaceModel, UvTransform
 from sssgen.interchange.texels import mean_of
 from sssgen.interchange.texture_composer import ComposedTexture, Composer, Coordinates, coordinates
-from sssgen.lab.measure.measured_chain import MaterialSection
+from sssgen.material.material_text import MaterialSection
 
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
 """Of linear sRGB (ITU-R BT.709)."""

@@ -8,10 +8,10 @@ import json
 import os
 import tempfile
 
-from sssgen.lab.measure.measured_chain import material_text
 from sssgen.lab.measure.technique_chain import BODY, chain_of, named, write_pictures
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
+from sssgen.material.material_text import material_text
 from sssgen.material.model import Material
 from sssgen.scene.preview_scene import BALL, plain_scene
 from sssgen.scene.scene import Light, Scene
