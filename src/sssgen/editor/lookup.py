@@ -11,19 +11,8 @@ from sssgen.editor.analysis import Analysis, function_around
 from sssgen.editor.documents import MATERIAL, SCENE, TECHNIQUE, Document, Word
 from sssgen.editor.scene_parameters import uniforms_of
 from sssgen.editor.source_files import path_of
-from sssgen.ir.nodes import (
-    Constant,
-    Declare,
-    Expr,
-    Function,
-    Local,
-    Module,
-    Param,
-    Span,
-    StructDecl,
-    Uniform,
-    Variable,
-)
+from sssgen.ir.nodes import Constant, Declare, Expr, Function, Local, Module, Param, StructDecl, Uniform, Variable
+from sssgen.ir.spans import Span
 from sssgen.ir.types import Type, spell
 from sssgen.ir.walk import all_expressions, statements
 from sssgen.lang.check.quantities import QUANTITIES

@@ -58,10 +58,10 @@ class PreviewServer:
     def application(self) -> Any:
         """The aiohttp application."""
 
-        async def guarded(request: Any, handler: Callable[[Any], Awaitable[Any]]) -> Any:
+        async def check_request(request: Any, handler: Callable[[Any], Awaitable[Any]]) -> Any:
             return await self._check_request(request, handler)
 
-        application = self.web.Application(middlewares=[self.web.middleware(guarded)])
+        application = self.web.Application(middlewares=[self.web.middleware(check_request)])
         application.router.add_get("/{token}/", self._index)
         application.router.add_get("/{token}/page/{name}", self._page_file)
         application.router.add_get("/{token}/library/{name:.+}", self._library_file)
