@@ -11,7 +11,7 @@ from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.preview.bodies import OWN_MESH
 from sssgen.preview.chosen_textures import ChosenTextures, save_texture
 from sssgen.preview.emitted_head import Control, Slot
-from sssgen.preview.flat_head import is_plain, plain_text
+from sssgen.preview.flat_head import is_plain, transpile_plain
 from sssgen.preview.flat_picture import plain_picture, raymarched_picture
 from sssgen.preview.picture import Choices, Picture, picture_of
 from sssgen.preview.saved_values import is_saved_in_scene, save_to_material, save_to_scene, saves_where
@@ -93,7 +93,7 @@ class Pane:
     def emit(self, target: str, form: str) -> Compiled:
         """The text of a target. Raises SssgenError where the target cannot carry the material."""
         if self.picture.material is None:
-            return plain_text(self.name, target, self.choices.guards)
+            return transpile_plain(self.name, target, self.choices.guards)[0]
         return compile(self.picture.material, target, form, guards=self.choices.guards)
 
     def choose_texture(self, slot: str, name: str, data: bytes) -> None:
