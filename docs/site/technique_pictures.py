@@ -19,7 +19,6 @@ import numpy as np
 from picture import Picture
 from records import Point, best_point
 from sssgen.lab.chart.picked_material import stages_of
-from sssgen.lab.measure.measured_chain import MaterialSection, material_text
 from sssgen.lab.measure.technique_chain import (
     BODY,
     is_drawn,
@@ -30,6 +29,7 @@ from sssgen.lab.measure.technique_chain import (
 )
 from sssgen.material import library
 from sssgen.material.library import Technique
+from sssgen.material.material_text import MaterialSection, material_text
 from sssgen.material.technique_facts import facts_of
 from sssgen.run.backends import Array, Backend
 from sssgen.run.render.scene_render import Rendered, render

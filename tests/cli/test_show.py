@@ -104,7 +104,6 @@ def test_tables_fit_a_terminal_and_stay_whole_in_a_pipe(run: Run, monkeypatch: p
     whole = run("list", "scenes").out.splitlines()
     assert len(whole) == len(show.names_of("scene"))
     monkeypatch.setattr(layout, "table_width", lambda: 50)
-    monkeypatch.setattr("sssgen.cli.list_names.table_width", lambda: 50)
     lines = run("list", "scenes").out.splitlines()
     assert len(lines) > len(whole)
     assert max(map(len, lines)) <= 50

@@ -29,10 +29,11 @@ from sssgen.lab.measure import (
     scene_references as references,
 )
 from sssgen.lab.measure.fitting import Fitted
-from sssgen.lab.measure.measured_chain import Chain, MaterialSection, material_of, material_text
+from sssgen.lab.measure.measured_chain import Chain, material_of
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.measure.problem import Problem
 from sssgen.lab.reference.inside_lengths import thickness
+from sssgen.material.material_text import MaterialSection, material_text
 from sssgen.scene.camera import Camera
 from sssgen.scene.environment import Environment
 from sssgen.scene.geometry import Ball, Box, Union

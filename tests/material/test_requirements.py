@@ -10,9 +10,9 @@ from sssgen.pipeline.compiler import compile
 
 REQUIRED = {
     "ice": [],
-    "wax_mouse": ["a texture that is baked from the body (distance_map)", "a body that keeps its shape"],
-    "jelly": ["a body that keeps its shape (cubes)"],
-    "leaves": ["a body that keeps its shape"],
+    "wax_mouse": ["a texture that is baked from the body (distance_map)", "a rigid mesh"],
+    "jelly": ["a rigid mesh (cubes)"],
+    "leaves": ["a rigid mesh"],
     "jade_ring": ["the light's depth map", "a picture of the body's back faces"],
 }
 

@@ -12,7 +12,7 @@ from sssgen.lab.measure.technique_chain import chain_of, is_drawn, textures_of
 from sssgen.material import library
 from sssgen.preview.page_messages import PageMessages
 from sssgen.preview.pane import Pane
-from sssgen.preview.picture import Chosen, picture_of
+from sssgen.preview.picture import Choices, picture_of
 from sssgen.preview.technique_scene import scene_of_technique
 from sssgen.support.diagnostics import SssgenError
 
@@ -35,7 +35,7 @@ def test_each_technique_of_a_body_is_shown_and_the_others_say_why_not(name: str)
     volume = any(spell(texture.type) != "sampler2D" and not is_drawn(texture) for texture in textures_of(technique))
     if technique.role in OF_BODIES and not volume:
         scene, material = scene_of_technique(technique.path)
-        picture = picture_of(scene, material, Chosen())
+        picture = picture_of(scene, material, Choices())
         stages = [stage.technique.name for stage in material.stages]
         assert technique.role == "distance" or name in stages
         assert picture.pieces[picture.head["body"]]

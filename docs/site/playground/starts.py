@@ -20,7 +20,7 @@ from sssgen.pipeline.compiler import compile
 from sssgen.preview.bodies import SHAPES, packed_triangles
 from sssgen.preview.emitted_head import PARTS, TARGET
 from sssgen.preview.flat_picture import raymarched_picture
-from sssgen.preview.picture import Chosen, Picture, picture_of
+from sssgen.preview.picture import Choices, Picture, picture_of
 from sssgen.scene.preview_scene import scene_of
 from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import SssgenError
@@ -90,11 +90,11 @@ def _scenes(folder: Path, scene: Scene, start: Start) -> dict[str, Any]:
     """The scene on its own body and on each shape, and which files of the start these depend on."""
     material = load_material(scene.material)
     if material.makes_rays:
-        return {"scenes": {"": _scene(folder, raymarched_picture(scene, material, Chosen()), scene.parameters)}}
-    scenes = {"": _scene(folder, picture_of(scene, material, Chosen()), scene.parameters)}
+        return {"scenes": {"": _scene(folder, raymarched_picture(scene, material, Choices()), scene.parameters)}}
+    scenes = {"": _scene(folder, picture_of(scene, material, Choices()), scene.parameters)}
     for shape in SHAPES:
         with contextlib.suppress(SssgenError):  # what is baked for a body is for no other one
-            scenes[shape] = _scene(folder, picture_of(scene, material, Chosen(shape)), scene.parameters)
+            scenes[shape] = _scene(folder, picture_of(scene, material, Choices(shape)), scene.parameters)
     assert scene.geometry is not None
     with noted_files() as read:
         packed_triangles(scene.geometry)

@@ -455,7 +455,7 @@ KINDS = {
         _fluence,
     ),
     "view_thickness": Kind(
-        "the length inside a body along any ray of the eye, below each texel of its texture coordinates",
+        "the length inside a body along any view ray, below each texel of its texture coordinates",
         "bunny.glb --medium marble -o bunny_view.png",
         "Bind the pictures to view_harmonics_1, _2 and _3 of the technique view_thickness_map.",
         _view_thickness_options,

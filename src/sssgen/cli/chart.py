@@ -67,19 +67,17 @@ def run(arguments: Namespace) -> int:
                 f"two scenes are called '{name}'", "a scene has the name of its file: rename one of the files"
             )
     announce(scenes, settings)
-    record = chart.chart_record(scenes, settings)
+    record = under(chart.chart_record(scenes, settings), conditions)
     if device is not None:
         from sssgen.lab.gpu.device_costs import by_device
 
-        record = by_device(under(record, conditions), device)
+        record = by_device(record, device)
     elif arguments.cost == "gpu":
         from sssgen.lab.gpu.chart_times import by_gpu, with_gpu_cost
 
-        record = by_gpu(with_gpu_cost(under(record, conditions), scenes))
+        record = by_gpu(with_gpu_cost(record, scenes))
     elif arguments.cost == "bytes":
-        record = by_bytes(under(record, conditions))
-    else:
-        record = under(record, conditions)
+        record = by_bytes(record)
     files = drawing.write(record, arguments.output) if arguments.output else []
     text = "\n".join([summary(record), *(f"wrote {file}" for file in files)])
     print_result(arguments.json, {"files": files, **record}, text)

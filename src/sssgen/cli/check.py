@@ -37,7 +37,7 @@ def add_options(parser: ArgumentParser) -> None:
         action="append",
         help="check only these targets; also the language of a shader whose file name does not determine it",
     )
-    parser.add_argument("--compiler", metavar="NAME", action="append", help="use only this compiler; repeatable")
+    parser.add_argument("--compiler", metavar="NAME", action="append", help="use only this compiler; may be repeated")
     help = f"list every file and compiler, where more than {LISTED} are compiled, too; else only failures"
     parser.add_argument("-v", "--verbose", action="store_true", help=help)
     parser.add_argument("--unity-includes", metavar="DIR", help="the folder of Unity's own headers")
@@ -95,9 +95,10 @@ def _print(report: Report, shaders: list[Shader], verbose: bool) -> None:
     for name, why in not_compiled.items() if every else ():
         print_rows([(f"--   {visible(name)}", f"not compiled: {why}")], 5 + width, 0)
     if not every:
-        good = sum(all(result.ok for result in results) for results in cells.values())
-        warned = sum(all(result.ok for result in results) and _has_messages(results) for results in cells.values())
-        print(f"{good} of {len(cells)} are ok{f', {warned} with warnings' if warned else ''}; --verbose lists them")
+        good = [results for results in cells.values() if all(result.ok for result in results)]
+        warned = sum(any(result.messages for result in results) for results in good)
+        warnings = f", {warned} with warnings" if warned else ""
+        print(f"{len(good)} of {len(cells)} are ok{warnings}; --verbose lists them")
     failed = sum(not result.ok for result in report.results)
     last = f"{len(shaders)} files, {len(report.results)} compilations, {failed} failed"
     print(f"\n{last}{f', {len(not_compiled)} not compiled' if not_compiled else ''}")
@@ -119,10 +120,6 @@ def _print_text(text: str) -> None:
     """A text, indented, and wrapped on a terminal."""
     width = table_width()
     print("\n".join(wrap(text, width, "  ", "    ")) if width else f"  {text}")
-
-
-def _has_messages(results: list[Result]) -> bool:
-    return any(result.messages for result in results)
 
 
 def _reasons_not_compiled(report: Report, shaders: list[Shader]) -> dict[str, str]:

@@ -38,14 +38,22 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Checks all cases and prints a line for each; returns 0 if none failed and one passed."""
-    cases = ci.cases(arguments.DIR, _backends(arguments.backend))
-    flip = _limit(arguments.flip)
+    backends: list[str] = []
+    if arguments.backend is not None:
+        from sssgen.run.backends import chosen
+
+        backends = chosen(arguments.backend)
+    cases = ci.cases(arguments.DIR, backends)
+    if arguments.flip is not None:
+        from sssgen.testing.golden import check_limit
+
+        check_limit(arguments.flip)
     if arguments.junit:
         junit.write(arguments.junit, [])  # an error here is reported before the run, which takes minutes
     width = max(len(case.name) for case in cases)
     results: list[CaseResult] = []
     try:
-        with ci.Run(arguments.update, flip) as check, ProgressBar() as progress:
+        with ci.Run(arguments.update, arguments.flip) as check, ProgressBar() as progress:
             for case in cases:
                 progress(len(results), len(cases), f"{case.kind} {case.name}")
                 results.append(check(case))
@@ -65,22 +73,6 @@ def run(arguments: Namespace) -> int:
         if not good and not count["failed"]:
             print("nothing was checked")
     return OK if good else CHECK_FAILED
-
-
-def _backends(text: str | None) -> list[str]:
-    if text is None:
-        return []
-    from sssgen.run.backends import chosen
-
-    return chosen(text)
-
-
-def _limit(flip: float | None) -> float | None:
-    if flip is None:
-        return None
-    from sssgen.testing.golden import check_limit
-
-    return check_limit(flip)
 
 
 def _print(result: CaseResult, width: int) -> None:

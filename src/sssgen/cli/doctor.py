@@ -39,7 +39,7 @@ def run(arguments: Namespace) -> int:
     _print_rows([("", ", ".join(f"{name} {version}" for name, version in machine.packages.items()) or "none")], first=0)
     for title, items in (("Extras", machine.extras), ("Compilers", machine.compilers), ("Back ends", machine.backends)):
         print(f"\n{title}:")
-        _print_items(items)
+        _print_rows([(item.name, _state(item)) for item in items])
     if not arguments.run:
         print("\nfound: its programs and packages are there; sssgen doctor --run starts it, too")
     return OK
@@ -51,10 +51,6 @@ def _variables(machine: Facts) -> list[tuple[str, str]]:
         (name, f"{value!r}: {VARIABLES[name]}" if name in VARIABLES else unknown[name])
         for name, value in machine.variables.items()
     ]
-
-
-def _print_items(items: Sequence[Item]) -> None:
-    _print_rows([(item.name, _state(item)) for item in items])
 
 
 def _state(item: Item) -> str:

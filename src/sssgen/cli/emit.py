@@ -180,7 +180,10 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
     failed: set[str] = set()
     names = chosen_targets(arguments.target, wrong)
     every = "all" in arguments.target.split(",")
-    templates = _templates(arguments.templates, wrong)
+    templates = arguments.templates
+    if templates is not None and not os.path.isdir(templates):
+        hint = "give the folder that holds TARGET/*.j2"
+        wrong += failure("no such folder of templates", hint, posix(templates)).diagnostics
     materials = _materials(arguments.MATERIAL, arguments.shell, errors)
     files: dict[str, str] = {}
     sources: dict[str, tuple[str, str]] = {}
@@ -237,16 +240,6 @@ def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:
             )
             wrong += failure(f"unknown target '{name}'", hint).diagnostics
     return targets if "all" in names else [name for name in dict.fromkeys(names) if name in targets]
-
-
-def _templates(folder: str | None, wrong: list[Diagnostic]) -> str | None:
-    if folder is None:
-        return None
-    if not os.path.isdir(folder):
-        wrong += failure(
-            "no such folder of templates", "give the folder that holds TARGET/*.j2", posix(folder)
-        ).diagnostics
-    return folder
 
 
 def _materials(arguments: list[str], shell: list[str], errors: list[Diagnostic]) -> list[Material]:

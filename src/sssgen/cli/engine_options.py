@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 def add_condition_options(parser: ArgumentParser) -> None:
     """The options; by default the engine has everything, the light is fixed and the body is rigid."""
     add = parser.add_argument
-    add("--max-bytes", type=int, metavar="N", help="the largest sum of the baked textures of a chain")
+    add("--max-bytes", type=int, metavar="N", help="the most bytes of all baked textures of a chain")
     add(
         "--light", choices=("fixed", "moving"), default="fixed",
         help="whether the light moves relative to the body (default: fixed)",
     )  # fmt: skip
     add(
         "--body", choices=("rigid", "deforming"), default="rigid",
-        help="whether the body keeps its shape (default: rigid)",
+        help="a rigid mesh (default), or one that deforms, for which nothing baked is right",
     )  # fmt: skip
     add(
         "--without", choices=OMISSIONS, action="append", default=[],

@@ -15,6 +15,8 @@ from sssgen.testing.outcome import in_ci
 
 if TYPE_CHECKING:
     from sssgen.run.evaluate.deviation import Row
+    from sssgen.run.evaluate.evaluation import Inputs
+    from sssgen.run.evaluate.probes import Subject
 
 SHOWN = 12
 """The number of lanes that are printed."""
@@ -85,7 +87,7 @@ def _backends(text: str, precision: str | None) -> list[str]:
     return names
 
 
-def _report(subject: Any, fit: Any, name: str, as_json: bool, guards: str) -> int:
+def _report(subject: Subject, fit: Inputs, name: str, as_json: bool, guards: str) -> int:
     from sssgen.run.backends import needed
     from sssgen.run.evaluate.evaluation import run as evaluated
 
@@ -100,7 +102,7 @@ def _report(subject: Any, fit: Any, name: str, as_json: bool, guards: str) -> in
     return OK
 
 
-def _compare(subject: Any, fit: Any, names: list[str], as_json: bool, listed: bool, guards: str) -> int:
+def _compare(subject: Subject, fit: Inputs, names: list[str], as_json: bool, listed: bool, guards: str) -> int:
     from sssgen.run.evaluate.deviation import GOAL, compared
     from sssgen.support.progress import ProgressBar
 

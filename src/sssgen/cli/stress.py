@@ -39,7 +39,7 @@ def add_options(parser: ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME",
-        help="run only this row of the table of dangerous inputs; repeatable",
+        help="run only this row of the table of dangerous inputs; may be repeated",
     )
     add("--precision", choices=("f32", "f16"), help="f16 runs numpy and webgpu in half precision (default: f32)")
     add_guards(parser)

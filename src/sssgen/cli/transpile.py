@@ -46,9 +46,9 @@ def add_options(parser: ArgumentParser) -> None:
         metavar="DIR",
         action="append",
         default=[],
-        help="search this folder for #include; repeatable",
+        help="search this folder for #include; may be repeated",
     )
-    add("--define", "-D", metavar="NAME[=VALUE]", action="append", default=[], help="define a macro; repeatable")
+    add("--define", "-D", metavar="NAME[=VALUE]", action="append", default=[], help="define a macro; may be repeated")
     add("--entry", choices=("shadertoy",), default="", help="the file's entry point: mainImage instead of main")
     add(
         "--with",
@@ -118,10 +118,11 @@ def run(arguments: Namespace) -> int:
         if path.suffix == ".sss":
             module = load_file(path, (TECHNIQUES,))
         else:
-            loaded = load_glsl(path, path.as_posix(), arguments.include, macros(arguments.define), arguments.entry)
+            options = arguments.include, macros(arguments.define), arguments.entry
+            loaded = load_glsl(path, path.as_posix(), *options)
             module = loaded.module
             if arguments.partner is not None:
-                partner = _other_stage(arguments)
+                partner = load_glsl(arguments.partner, posix(arguments.partner), *options).module
     except SssgenError as error:
         wrong += error.diagnostics
     inputs = [path, *map(Path, loaded.paths if loaded is not None else ())]
@@ -138,12 +139,6 @@ def run(arguments: Namespace) -> int:
     if arguments.as_ == "technique":
         return _technique(arguments, module, path)
     return _translate(arguments, module, loaded, names[0], path, partner)
-
-
-def _other_stage(arguments: Namespace) -> Module:
-    """The module of `--with FILE`. Raises SssgenError."""
-    path = Path(arguments.partner)
-    return load_glsl(path, path.as_posix(), arguments.include, macros(arguments.define), arguments.entry).module
 
 
 def _wanted_target(arguments: Namespace, wrong: list[Diagnostic]) -> list[str]:

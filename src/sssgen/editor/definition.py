@@ -22,7 +22,4 @@ def definition_at(document: Document, analysis: Analysis, line: int, column: int
     meaning = meaning_at(document, analysis, line, column)
     if meaning is None or not meaning.path:
         return None
-    if meaning.kind == "technique":
-        return Target(meaning.path, range_of(meaning.thing.function.span))
-    span = getattr(meaning.thing, "span", None)
-    return Target(meaning.path, range_of(span) if span is not None else Range(0, 0, 0, 0))
+    return Target(meaning.path, range_of(meaning.span) if meaning.span is not None else Range(0, 0, 0, 0))

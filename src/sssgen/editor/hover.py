@@ -7,9 +7,12 @@ from typing import NamedTuple
 from sssgen.editor import explanations, toml_places
 from sssgen.editor.analysis import Analysis
 from sssgen.editor.documents import MATERIAL, Document, Word
-from sssgen.editor.lookup import Meaning, meaning_at
+from sssgen.editor.lookup import LocalName, Meaning, meaning_at
+from sssgen.ir.nodes import Constant, Function, Param, StructDecl, Uniform, Variable
 from sssgen.ir.types import spell
 from sssgen.lang.source_lines import source_line
+from sssgen.material.library import Technique
+from sssgen.material.model import Material
 from sssgen.material.technique_facts import value_text
 from sssgen.support.paths import posix
 
@@ -31,29 +34,29 @@ def hover_at(document: Document, analysis: Analysis, line: int, column: int) -> 
 
 def _text(document: Document, analysis: Analysis, meaning: Meaning, line: int, column: int) -> str:
     thing = meaning.thing
-    if meaning.kind == "technique":
+    if isinstance(thing, Technique):
         return explanations.explain_technique(thing)
-    if meaning.kind == "uniform":
+    if isinstance(thing, Uniform):
         return explanations.explain_uniform(thing, _value(document, analysis, thing.name, line, column))
-    if meaning.kind == "function":
+    if isinstance(thing, Function):
         technique = analysis.technique
         if technique is not None and technique.function.key == thing.key and thing.body is not None:
             return explanations.explain_technique(technique)
         return explanations.explain_function(thing)
-    if meaning.kind == "param":
+    if isinstance(thing, Param):
         return explanations.code_block(f"{thing.quantity or spell(thing.type)} {thing.name}")
-    if meaning.kind == "value":
-        return explanations.code_block(f"{spell(thing[1])} {thing[0]}")
-    if meaning.kind == "variable":
+    if isinstance(thing, LocalName):
+        return explanations.code_block(f"{spell(thing.type)} {thing.name}")
+    if isinstance(thing, Variable):
         return "\n\n".join(filter(None, (explanations.code_block(f"{spell(thing.type)} {thing.name}"), thing.doc)))
-    if meaning.kind in ("constant", "struct"):
+    if isinstance(thing, Constant | StructDecl):
         return explanations.code_block(source_line(thing.span).strip() or meaning.word.text)
-    if meaning.kind == "builtin":
-        return explanations.explain_builtin(thing)
-    if meaning.kind == "quantity":
-        return explanations.explain_quantity(thing)
-    if meaning.kind == "material" and thing is not None:
+    if isinstance(thing, Material):
         return f"**{thing.title}**: {thing.doc}"
+    if meaning.kind == "builtin":
+        return explanations.explain_builtin(meaning.word.text)
+    if meaning.kind == "quantity":
+        return explanations.explain_quantity(meaning.word.text)
     return meaning.path
 
 

@@ -34,7 +34,7 @@ class _Piece(NamedTuple):
 def code_layout(text: str, shown: str) -> str:
     """The text of a technique in this layout. Raises SssgenError with its syntax errors."""
     parse(text, shown)
-    result = _join_lines(_lay_out(list(_lines(text))))
+    result = join_lines(_lay_out(list(_lines(text))))
     if _words(result) != _words(text):
         raise failure("the layout would change a token", "report this file as a bug of sssgen fmt", shown)
     return result
@@ -186,7 +186,7 @@ def _ends_an_operand(token: str) -> bool:
     return is_word and (token not in KEYWORDS or token in TYPES or token in ("true", "false"))
 
 
-def _join_lines(lines: Iterator[str]) -> str:
+def join_lines(lines: Iterator[str]) -> str:
     """The lines with at most one blank line in a row, and one line end at the end."""
     kept: list[str] = []
     for line in lines:

@@ -8,11 +8,9 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterator, Sequence
 
+from sssgen.editor.layout_code import INDENT, join_lines
 from sssgen.support.diagnostics import failure
 from sssgen.support.toml_source import Token, all_tokens, parse
-
-INDENT = "    "
-
 
 _Line = Sequence[tuple[Token, str]]
 """The tokens of one line, each with the blanks before it; a text of several lines is one token."""
@@ -21,7 +19,7 @@ _Line = Sequence[tuple[Token, str]]
 def toml_layout(text: str, shown: str) -> str:
     """The text in this layout. Raises SssgenError with its syntax errors."""
     before = parse(text, shown).data
-    result = _join_lines(_lay_out(list(_lines(text))))
+    result = join_lines(_separate_sections(_lay_out(list(_lines(text)))))
     if repr(tomllib.loads(result)) != repr(before):
         raise failure("the layout would change a value", "report this file as a bug of sssgen fmt", shown)
     return result
@@ -91,17 +89,11 @@ def _blanks_between(before: Token, token: Token, blanks: str, is_header: bool, b
     return " " if blanks else ""
 
 
-def _join_lines(lines: Iterator[str]) -> str:
-    """The lines with at most one blank line in a row, one before each section, and one line end at the end."""
-    kept: list[str] = []
+def _separate_sections(lines: Iterator[str]) -> Iterator[str]:
+    """The lines with a blank line before each section; one below a comment belongs to it."""
+    before = ""
     for line in lines:
-        if not line.strip():
-            if kept and kept[-1]:
-                kept.append("")
-            continue
-        if line.startswith("[") and kept and kept[-1] and not kept[-1].startswith("#"):
-            kept.append("")
-        kept.append(line)
-    while kept and not kept[-1]:
-        kept.pop()
-    return "\n".join(kept) + "\n" if kept else ""
+        if line.startswith("[") and before.strip() and not before.startswith("#"):
+            yield ""
+        yield line
+        before = line

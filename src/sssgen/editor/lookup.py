@@ -3,35 +3,57 @@
 from __future__ import annotations
 
 import os
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple, TypeAlias
 
 from sssgen.editor import toml_places
 from sssgen.editor.analysis import Analysis, function_around
 from sssgen.editor.documents import MATERIAL, SCENE, TECHNIQUE, Document, Word
 from sssgen.editor.scene_parameters import uniforms_of
 from sssgen.editor.source_files import path_of
-from sssgen.ir.nodes import Declare, Function, Module, Uniform
+from sssgen.ir.nodes import Constant, Declare, Expr, Function, Local, Module, Param, StructDecl, Uniform, Variable
+from sssgen.ir.spans import Span
+from sssgen.ir.types import Type, spell
 from sssgen.ir.walk import all_expressions, statements
 from sssgen.lang.check.quantities import QUANTITIES
 from sssgen.material import library, slots
 from sssgen.material.library import Technique
 from sssgen.material.material_loading import examples
+from sssgen.material.material_reader import parameter_names
+from sssgen.material.model import Material
 from sssgen.scene.scene_reader import material_beside
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import builtin_facts
 
 
+class LocalName(NamedTuple):
+    """A local variable, or the use of a parameter."""
+
+    name: str
+    type: Type
+
+
+Thing: TypeAlias = (
+    Technique | Material | Function | Uniform | Constant | Variable | StructDecl | Param | LocalName | None
+)
+
+
 class Meaning(NamedTuple):
-    """What a name stands for. `thing` is a node of the IR, a Technique, a Material, a Type, a builtin's or a quantity's
-    name, or the path of a file.
-    """
+    """What a name stands for."""
 
     kind: str
     """technique, uniform, function, constant, struct, variable, value, builtin, quantity, material, or file."""
-    thing: Any
+    thing: Thing
+    """None for a builtin, a quantity and a file, which the word and the path name."""
     word: Word
     path: str = ""
     """The file that declares it; '' for what no file declares."""
+
+    @property
+    def span(self) -> Span | None:
+        """The place of the declaration; None where it is no place of a text."""
+        thing = self.thing.function if isinstance(self.thing, Technique) else self.thing
+        return None if thing is None or isinstance(thing, Material | LocalName) else thing.span
 
 
 def meaning_at(document: Document, analysis: Analysis, line: int, column: int) -> Meaning | None:
@@ -41,7 +63,7 @@ def meaning_at(document: Document, analysis: Analysis, line: int, column: int) -
     include = document.include_at(line)
     if include is not None:
         path = path_of(include.text, document, analysis.files)
-        return Meaning("file", path, include, path) if path else None
+        return Meaning("file", None, include, path) if path else None
     word = document.word_at(line, column)
     if word is None or is_in_comment(document, line, word.start):
         return None
@@ -65,27 +87,27 @@ def _code_meaning(document: Document, analysis: Analysis, word: Word) -> Meaning
             if meaning is not None:
                 return meaning
     if word.text in builtin_facts.names():
-        return Meaning("builtin", word.text, word)
+        return Meaning("builtin", None, word)
     if document.kind == TECHNIQUE and word.text in QUANTITIES:
-        return Meaning("quantity", word.text, word)
+        return Meaning("quantity", None, word)
     return None
 
 
 def _declaration(document: Document, analysis: Analysis, module: Module, word: Word) -> Meaning | None:
-    groups: tuple[tuple[str, Any], ...] = (
-        ("function", module.functions),
-        ("uniform", module.uniforms),
-        ("constant", module.constants),
-        ("variable", module.variables),
+    functions = [function for function in module.functions if function.name == word.text]
+    if functions:
+        overload = _overload_at(document, module, word, functions)
+        return Meaning("function", overload, word, path_of(overload.span.file, document, analysis.files))
+    groups: tuple[tuple[str, Sequence[Uniform | Constant | Variable | StructDecl]], ...] = (
+        ("uniform", module.uniforms[::-1]),
+        ("constant", module.constants[::-1]),
+        ("variable", module.variables[::-1]),
+        ("struct", module.structs),
     )
     for kind, declarations in groups:
-        named = [declaration for declaration in declarations if declaration.name == word.text]
-        if named:
-            chosen = _overload_at(document, module, word, named) if kind == "function" else named[-1]
-            return Meaning(kind, chosen, word, path_of(chosen.span.file, document, analysis.files))
-    for struct in module.structs:
-        if getattr(struct.type, "name", "") == word.text:
-            return Meaning("struct", struct, word, path_of(struct.span.file, document, analysis.files))
+        for thing in declarations:
+            if (spell(thing.type) if isinstance(thing, StructDecl) else thing.name) == word.text:
+                return Meaning(kind, thing, word, path_of(thing.span.file, document, analysis.files))
     return None
 
 
@@ -103,7 +125,7 @@ def _overload_at(document: Document, module: Module, word: Word, named: list[Fun
     return named[-1]
 
 
-def _expressions_at(document: Document, module: Module, word: Word) -> list[Any]:
+def _expressions_at(document: Document, module: Module, word: Word) -> list[Expr]:
     """The expressions that begin with a word, the smallest first."""
     function = function_around(document, module, word.line)
     if function is None:
@@ -124,12 +146,12 @@ def _local_name(document: Document, module: Module, word: Word) -> Meaning | Non
         if param.name == word.text:
             return Meaning("param", param, word, document.path)
     for expr in _expressions_at(document, module, word):
-        if type(expr).__name__ == "Local" and expr.name == word.text:
-            return Meaning("value", (word.text, expr.type), word)
+        if isinstance(expr, Local) and expr.name == word.text:
+            return Meaning("value", LocalName(word.text, expr.type), word)
     end = (word.line + 1, word.end + 1)
     for statement in statements(enclosing.body or ()) if enclosing else ():
         if isinstance(statement, Declare) and (statement.span.end_line, statement.span.end_column) == end:
-            return Meaning("value", (word.text, statement.type), word)
+            return Meaning("value", LocalName(word.text, statement.type), word)
     return None
 
 
@@ -167,7 +189,7 @@ def _text_meaning(
         known = analysis.material if analysis.material and analysis.scene else None
         return Meaning("material", known, word, path) if os.path.isfile(path) else None
     path = os.path.join(document.folder, word.text)
-    return Meaning("file", path, word, path) if os.path.isfile(path) else None
+    return Meaning("file", None, word, path) if os.path.isfile(path) else None
 
 
 def technique_named(name: str, document: Document) -> Technique | None:
@@ -223,12 +245,7 @@ def uniforms_at(document: Document, analysis: Analysis, place: toml_places.TomlP
         for uniform in module.uniforms
         if uniform.name in slots.needs(module, function)[0]
     }
-    return {name: uniform for uniform in found.values() for name in names_of(uniform)}
-
-
-def names_of(uniform: Uniform) -> list[str]:
-    """A parameter's name, then its aliases."""
-    return [uniform.name, *(str(name) for hint, names in uniform.hints if hint == "alias" for name in names)]
+    return {name: uniform for uniform in found.values() for name in parameter_names(uniform)}
 
 
 def _bound_functions(

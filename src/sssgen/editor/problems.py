@@ -13,8 +13,7 @@ from sssgen.ir.spans import Span
 from sssgen.support.diagnostics import Diagnostic
 from sssgen.support.paths import display_name
 
-_SUGGESTED = re.compile(r"'([^']+)'")
-_WRONG = re.compile(r"'([^']+)'")
+_QUOTED = re.compile(r"'([^']+)'")
 
 
 class Range(NamedTuple):
@@ -97,11 +96,11 @@ def fixes_of(document: Document, problem: Problem) -> list[Fix]:
     line = document.line(problem.range.line)
     end = problem.range.end_column if problem.range.end_line == problem.range.line else len(line)
     text = line[problem.range.column : end]
-    for wrong in _WRONG.findall(problem.message):
+    for wrong in _QUOTED.findall(problem.message):
         match = re.search(rf"(?<!\w){re.escape(wrong)}(?!\w)", text)
         if match:
             start = problem.range.column + match.start()
             place = Range(problem.range.line, start, problem.range.line, start + len(wrong))
-            names = [name.removeprefix("the file ") for name in _SUGGESTED.findall(problem.hint)]
+            names = [name.removeprefix("the file ") for name in _QUOTED.findall(problem.hint)]
             return [Fix(f"Change '{wrong}' to '{name}'", place, name) for name in names]
     return []

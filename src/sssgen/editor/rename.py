@@ -100,9 +100,9 @@ def _target_at(document: Document, analysis: Analysis, line: int, column: int) -
     if meaning.path.startswith(library.TECHNIQUES + os.sep):
         raise failure(f"'{word.text}' is declared in the library", "copy the technique to change it")
     thing = meaning.thing
-    if meaning.kind == "function" and thing.name == stem(meaning.path) and thing.body is not None:
+    if isinstance(thing, Function) and thing.name == stem(meaning.path) and thing.body is not None:
         raise failure(f"'{word.text}' is the technique of its file", "rename the file and the function together")
-    if document.kind in (MATERIAL, SCENE) and word.text != thing.name:
+    if isinstance(thing, Uniform | Function) and document.kind in (MATERIAL, SCENE) and word.text != thing.name:
         raise failure(f"'{word.text}' is another name of '{thing.name}'", "rename it in the technique")
     return meaning, word
 
@@ -121,7 +121,8 @@ def _name_in(word: Word) -> Word:
 
 
 def _declaration_of(document: Document, analysis: Analysis, meaning: Meaning, word: Word) -> _Declaration:
-    span = meaning.thing.span
+    span = meaning.span
+    assert span is not None  # of a name that can be renamed
     functions = analysis.module.functions if analysis.module is not None and meaning.kind == "function" else ()
     same = [function.span for function in functions if (function.name, function.span.file) == (word.text, span.file)]
     places = frozenset((own.line, own.column) for own in (span, *same))
@@ -266,10 +267,15 @@ def _toml_edits(document: Document, analysis: Analysis, declaration: _Declaratio
             meaning = meaning_at(document, analysis, number, match.start())
             if meaning is None or (meaning.kind, meaning.path) != (declaration.kind, declaration.path):
                 continue
-            word, span = _name_in(meaning.word), meaning.thing.span
-            if (span.line, span.column) in declaration.places and (word.start, word.text) == (
-                match.start(),
-                declaration.name,
+            word, span = _name_in(meaning.word), meaning.span
+            if (
+                span
+                and (span.line, span.column) in declaration.places
+                and (word.start, word.text)
+                == (
+                    match.start(),
+                    declaration.name,
+                )
             ):
                 edits.append(Edit(Range(number, word.start, number, word.end), name))
     return edits

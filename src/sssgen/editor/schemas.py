@@ -13,7 +13,7 @@ from sssgen.ir.types import Array, Matrix, Sampler, components, kind_of
 from sssgen.material import library, roles, slots
 from sssgen.material.library import Technique
 from sssgen.material.material_loading import examples
-from sssgen.material.material_reader import CHOICES, MATERIAL_KEYS, STAGE_KEYS
+from sssgen.material.material_reader import CHOICES, MATERIAL_KEYS, STAGE_KEYS, parameter_names
 from sssgen.material.model import NAME, UV_SETS
 from sssgen.material.shell_stages import choices
 from sssgen.material.technique_facts import uniform_facts, uniform_text
@@ -76,8 +76,7 @@ def _parameters(technique: Technique) -> Schema:
     keys: dict[str, Schema] = {key: {} for key in STAGE_KEYS}
     for uniform in technique.uniforms:
         if uniform.name in read:
-            aliases = [str(name) for hint, names in uniform.hints if hint == "alias" for name in names]
-            keys |= dict.fromkeys((uniform.name, *aliases), _parameter(uniform))
+            keys |= dict.fromkeys(parameter_names(uniform), _parameter(uniform))
     schema: Schema = {"description": technique.doc.get("summary", ""), "properties": keys}
     return schema | ({"required": ["bind"]} if needed else {"additionalProperties": False})
 

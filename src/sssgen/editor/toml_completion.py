@@ -7,14 +7,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from sssgen.editor.analysis import Analysis
 from sssgen.editor.completion_item import Item, items_of
 from sssgen.editor.documents import Document
-from sssgen.editor.lookup import names_of, slots_of, technique_named, uniforms_at
+from sssgen.editor.lookup import slots_of, technique_named, uniforms_at
 from sssgen.editor.toml_places import TomlPlace, place_at, tables_of
 from sssgen.ir.nodes import Span, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import library, roles, slots
 from sssgen.material.library import OF_SHELLS, Technique
 from sssgen.material.material_loading import examples
-from sssgen.material.material_reader import CHOICES, MATERIAL_KEYS, STAGE_KEYS
+from sssgen.material.material_reader import CHOICES, MATERIAL_KEYS, STAGE_KEYS, parameter_names
 from sssgen.material.model import UV_SETS
 from sssgen.material.shell_stages import choices
 from sssgen.material.technique_facts import uniform_facts, uniform_text
@@ -112,7 +112,7 @@ def _bind_items(document: Document, place: TomlPlace) -> list[Item]:
 def _parameters(uniforms: dict[str, Uniform], place: TomlPlace) -> list[Item]:
     items = []
     for name, uniform in uniforms.items():
-        if name != uniform.name or any(given in place.keys for given in names_of(uniform)):
+        if name != uniform.name or any(alias in place.keys for alias in parameter_names(uniform)):
             continue
         facts = uniform_facts(uniform)
         kind = "texture" if isinstance(uniform.type, Sampler) else "parameter"

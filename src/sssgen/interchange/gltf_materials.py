@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from sssgen.interchange.gltf_json import JsonElement
@@ -246,7 +246,7 @@ class MaterialReader:
             self.report.add_approximation(path, color.factor, "the half that is scattered back has the base colour")
             return
         mixed = [(left * b + reflected * c) / kept for b, c in zip(base.factor, color.factor, strict=True)]
-        self.fields["base_color"] = replace_factor(base, mixed)
+        self.fields["base_color"] = base._replace(factor=tuple(min(part, 1.0) for part in mixed))
 
     def other_extensions(self) -> None:
         for extension in self.material.members("extensions"):
@@ -255,12 +255,7 @@ class MaterialReader:
                 self.report.add_omission(extension.path, name, _OMISSIONS.get(name, "this extension is not read"))
 
 
-def replace_factor(quantity: Quantity, factor: list[float]) -> Quantity:
-    """The quantity with another factor, limited to 1."""
-    return quantity._replace(factor=tuple(min(part, 1.0) for part in factor))
-
-
 def default_material(file: str) -> ImportedMaterial:
     """The material of primitives without one (glTF 2.0, section 3.7.2.1)."""
-    model = SurfaceModel("default", metalness=ONE, roughness=ONE)
-    return ImportedMaterial(replace(model, doc="The default material of glTF."), {})
+    model = SurfaceModel("default", "The default material of glTF.", metalness=ONE, roughness=ONE)
+    return ImportedMaterial(model, {})

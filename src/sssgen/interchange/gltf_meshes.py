@@ -16,7 +16,7 @@ from sssgen.scene.placed import Array, unit
 
 MOST_TRIANGLES = 20_000_000
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
-_PACKED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
+_DRACO = "KHR_draco_mesh_compression"
 
 
 class Part(NamedTuple):
@@ -169,16 +169,18 @@ def _primitive(primitive: JsonElement, buffers: Buffers, report: Report) -> File
     if mode < _TRIANGLES:
         report.add_omission(f"{primitive.path}/mode", mode, "points and lines have no surface")
         return None
-    for name in _PACKED[:1]:
-        if primitive.extension(name) is not None and not _has_data(primitive, buffers):
-            raise primitive.fault(f"its data are compressed with {name}", "export the file without compression")
+    attributes = primitive.child("attributes")
+    position = None
+    if attributes is not None and attributes.has("POSITION"):
+        position = attributes.reference("POSITION", buffers.accessors, "accessor")
+    if primitive.extension(_DRACO) is not None and (position is None or not position.has("bufferView")):
+        raise primitive.fault(f"its data are compressed with {_DRACO}", "export the file without compression")
     if primitive.has("targets"):
         report.add_omission(f"{primitive.path}/targets", "morph targets", "the mesh is taken as it is without them")
-    attributes = primitive.child("attributes")
-    if attributes is None or not attributes.has("POSITION"):
+    if attributes is None or position is None:
         report.add_omission(primitive.path, "no POSITION", "a primitive without positions is not drawn")
         return None
-    vertices = buffers.numbers(attributes.reference("POSITION", buffers.accessors, "accessor"), 3)
+    vertices = buffers.numbers(position, 3)
     if primitive.has("indices"):
         accessor = primitive.reference("indices", buffers.accessors, "accessor")
         indices = buffers.numbers(accessor, 1)[:, 0].astype(np.int64)
@@ -202,14 +204,6 @@ def _with_flat_normals(content: FileContent) -> FileContent:
     uv, uv2, color = (None if values is None else values[order] for values in (content.uv, content.uv2, content.color))
     faces = np.arange(len(order)).reshape(-1, 3)
     return FileContent(content.vertices[order], faces, uv, uv2, color, np.repeat(unit(across), 3, axis=0))
-
-
-def _has_data(primitive: JsonElement, buffers: Buffers) -> bool:
-    """Whether the attributes have data that are not compressed, too."""
-    attributes = primitive.child("attributes")
-    if attributes is None or not attributes.has("POSITION"):
-        return False
-    return attributes.reference("POSITION", buffers.accessors, "accessor").has("bufferView")
 
 
 def _flip_v(uv: Array | None, vertices: Array) -> Array | None:

@@ -14,7 +14,7 @@ from sssgen.interchange.mesh_glb import mesh_file
 from sssgen.interchange.scene_text import ball_radius, scene_text
 from sssgen.interchange.technique_choice import Choice, choose
 from sssgen.interchange.texture_composer import Coordinates
-from sssgen.lab.measure.measured_chain import material_text
+from sssgen.material.material_text import material_text
 from sssgen.material.model import wrong_name
 from sssgen.scene.mesh_files import FileContent
 from sssgen.support.diagnostics import failure

@@ -141,13 +141,18 @@ class Graph:
 
     def _graph_port(self, graph: Any, output: str, element: Any) -> Any:
         """An output of a graph; without a name, its only one."""
-        outputs = {port.getName(): port for port in graph.getOutputs()}
-        if not outputs or (output and output not in outputs):
-            hint = did_you_mean(output, outputs) or f"outputs: {', '.join(outputs) or 'none'}"
-            raise self.source.error(element, f"the graph '{graph.getName()}' has no output '{output}'", hint)
-        port = outputs[output] if output else next(iter(outputs.values()))
+        port = self._output(graph.getOutputs(), output, element, f"the graph '{graph.getName()}'")
         if element.getType() != "multioutput":
             self._check_type(element, port.getType(), f"the output '{port.getName()}'")
+        return port
+
+    def _output(self, ports: Sequence[Any], name: str, element: Any, owner: str) -> Any:
+        """The output of a name; without a name, the first."""
+        outputs = {port.getName(): port for port in ports}
+        port = outputs.get(name) if name else next(iter(outputs.values()), None)
+        if port is None:
+            hint = did_you_mean(name, outputs) or f"outputs: {', '.join(outputs) or 'none'}"
+            raise self.source.error(element, f"{owner} has no output '{name}'", hint)
         return port
 
     def _graph_output(self, graph: Any, output: str, scope: Scope, element: Any) -> Value:
@@ -162,12 +167,9 @@ class Graph:
         definition = node.getNodeDef()
         if definition is None:
             raise self.unknown(node)
-        outputs = {port.getName(): port for port in definition.getActiveOutputs()}
-        port = outputs.get(output) if output else next(iter(outputs.values()), None)
-        if port is None:
-            hint = did_you_mean(output, outputs) or f"outputs: {', '.join(outputs)}"
-            raise self.source.error(element, f"the node '{node.getName()}' has no output '{output}'", hint)
-        self._check_type(element, port.getType(), f"the node '{node.getName()}'")
+        owner = f"the node '{node.getName()}'"
+        port = self._output(definition.getActiveOutputs(), output, element, owner)
+        self._check_type(element, port.getType(), owner)
         key = (node.getNamePath(), port.getName(), scope.key if scope else ())
         return self._compute_once(key, element, lambda: self._node_value(node, port, scope))
 
@@ -306,12 +308,6 @@ class Graph:
         path = node.getNamePath()
         return estimate(pointwise(lambda *parts: sum(parts) / len(parts), ends, path), path)
 
-    def _constant(self, node: Any, port: Any, scope: Scope | None) -> Value:
-        return self.input(node, "value", scope)
-
-    def _pass_through(self, node: Any, port: Any, scope: Scope | None) -> Value:
-        return self.input(node, "in", scope)
-
     def _extract(self, node: Any, port: Any, scope: Scope | None) -> Value:
         index = int(mean(self.input(node, "index", scope))[0])
         count = COMPONENTS.get(node.getInput("in").getType() if node.getInput("in") else "color3", 1)
@@ -327,9 +323,6 @@ class Graph:
         if port.getType() == "vector2" and isinstance(name, Words) and name.text in _UV_NAMES:
             return Coordinates(_UV_NAMES[name.text])
         return estimate(self.input(node, "default", scope), node.getNamePath())
-
-    def _normal(self, node: Any, port: Any, scope: Scope | None) -> Value:
-        return Normal()
 
     def _normal_map(self, node: Any, port: Any, scope: Scope | None) -> Value:
         texels = self.input(node, "in", scope)
@@ -414,13 +407,13 @@ class Graph:
 
 
 _SPECIAL: dict[str, Callable[[Graph, Any, Any, Scope | None], Value]] = {
-    "constant": Graph._constant,
-    "dot": Graph._pass_through,
+    "constant": lambda graph, node, port, scope: graph.input(node, "value", scope),
+    "dot": lambda graph, node, port, scope: graph.input(node, "in", scope),
     "extract": Graph._extract,
     "texcoord": Graph._texcoord,
     "geompropvalue": Graph._property,
     "geompropvalueuniform": Graph._property,
-    "normal": Graph._normal,
+    "normal": lambda graph, node, port, scope: Normal(),
     "normalmap": Graph._normal_map,
     "rotate2d": Graph._rotation,
     "image": Graph._image,

@@ -8,7 +8,7 @@ import numpy as np
 
 from sssgen.interchange.surface_model import SurfaceModel
 from sssgen.interchange.technique_choice import Choice
-from sssgen.lab.measure.measured_chain import toml_value
+from sssgen.material.material_text import toml_value
 from sssgen.scene.mesh_files import FileContent
 from sssgen.scene.placed import Array
 

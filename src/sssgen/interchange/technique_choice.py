@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from sssgen.interchange.body_shares import Shares, shares_of
 from sssgen.interchange.dense_bodies import as_matte, isotropic_medium, scatters_inside, weight_inside
@@ -13,7 +14,8 @@ from sssgen.interchange.record_limits import limit_numbers
 from sssgen.interchange.surface_model import ONE, WHITE, Quantity, SurfaceModel, UvTransform
 from sssgen.interchange.texels import mean_of
 from sssgen.interchange.texture_composer import ComposedTexture, Composer, Coordinates, coordinates
-from sssgen.lab.measure.measured_chain import MaterialSection
+from sssgen.material.material_text import MaterialSection
+from sssgen.scene.placed import Array
 
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
 """Of linear sRGB (ITU-R BT.709)."""
@@ -167,7 +169,7 @@ class _Chooser:
         if model.unlit:
             self.add("lighting", "base_color_alone")
 
-    def with_matte_share(self, base: Quantity) -> tuple[Quantity, Any]:
+    def with_matte_share(self, base: Quantity) -> tuple[Quantity, Array | float]:
         """The base colour, and the factor of it that is the matte share of a body with light inside: 0 for others."""
         if not scatters_inside(self.model):
             return base, 0.0
@@ -187,11 +189,10 @@ class _Chooser:
         model = self.model
         roughness, metalness = self.composer.align(model.roughness, model.metalness)
         texture = self.composer.pack("metallic_roughness", [ONE, roughness, metalness])
-        values: dict[str, Any] = {"metalness": metalness.factor[0], "surface_roughness": roughness.factor[0]}
-        if texture is None:
-            self.add("surface", "pbr_constants", **values)
-        else:
-            self.add("surface", "metallic_roughness_map", metallic_roughness_texture=texture, **values)
+        self.add(
+            "surface", "pbr_constants" if texture is None else "metallic_roughness_map",
+            metallic_roughness_texture=texture, metalness=metalness.factor[0], surface_roughness=roughness.factor[0],
+        )  # fmt: skip
         occlusion = self.composer.usable_quantity(model.occlusion)
         if (texture := self.composer.pack("occlusion", [occlusion])) is not None:
             self.add(
@@ -306,13 +307,13 @@ def _limit_pair(pair: tuple[float, float]) -> tuple[float, float]:
     return first, second
 
 
-def _reflected_share(metalness: Any, transmission: Any, diffuse: Any, subsurface: Any) -> Any:
+def _reflected_share(metalness: ArrayLike, transmission: ArrayLike, diffuse: ArrayLike, subsurface: ArrayLike) -> Array:
     """The share of the base colour that is left for the reflection: metals keep all, as it is their mirror's colour."""
     m, t, d, s = (np.asarray(share) for share in (metalness, transmission, diffuse, subsurface))
     return 1.0 - (1.0 - m) * (1.0 - (1.0 - t) * (1.0 - d) * (1.0 - s))
 
 
-def _tint_exceeds_one(base: Quantity, kept: Any) -> bool:
+def _tint_exceeds_one(base: Quantity, kept: Array) -> bool:
     """Whether the factor of a picture would be larger than a tint can be."""
     return base.image is not None and bool((np.array(base.factor) * kept > 1.0).any())
 

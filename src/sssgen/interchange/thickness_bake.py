@@ -16,7 +16,7 @@ from sssgen.interchange.imported_material import BAKED_SET, ImportedMaterial
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.mesh_glb import mesh_file
 from sssgen.interchange.surface_model import Image, Picture, Quantity
-from sssgen.scene.mesh import Mesh
+from sssgen.scene.mesh import Mesh, Triangles
 from sssgen.scene.mesh_files import FileContent
 from sssgen.scene.pictures.images import png_bytes
 from sssgen.scene.placed import Array
@@ -88,7 +88,7 @@ def _bake(mesh: FileContent, progress: Progress) -> tuple[tuple[FileContent, Arr
     return (corners, uv.reshape(-1, 2)), png_bytes(baked.values, bits=16), baked.facts
 
 
-def _split_corners(triangles: Any) -> FileContent:
+def _split_corners(triangles: Triangles) -> FileContent:
     """The triangles with a vertex for each corner."""
     count = len(triangles.corners)
 

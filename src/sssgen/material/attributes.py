@@ -35,7 +35,7 @@ SHAPES = ("box", "sphere", "torus", "texture")
 
 REQUIREMENTS = ("bake", "depth-map", "depth-layers", "back-faces", "rigid", "fixed-light")
 """What `requires` can name: a texture baked from the body; the light's depth map; that map with further layers; a
-picture of the body's back faces from the eye; a body that keeps its shape; a light that does not move relative to the
+picture of the body's back faces from the eye; a rigid mesh; a light that does not move relative to the
 body."""
 
 OMISSIONS = REQUIREMENTS[:4]

@@ -178,7 +178,7 @@ class _Reader:
         for key, raw in table.items():
             if key in STAGE_KEYS:
                 continue
-            matches = [uniform for uniform in uniforms.values() if key in _names(uniform)]
+            matches = [uniform for uniform in uniforms.values() if key in parameter_names(uniform)]
             if not matches:
                 self.unknown_parameter(technique, list(uniforms.values()), (*path, key))
             for uniform in matches:
@@ -249,7 +249,7 @@ class _Reader:
     def unknown_parameter(self, technique: Technique, uniforms: list[Uniform], path: tuple[str | int, ...]) -> None:
         key = str(path[-1])
         names = [uniform.name for uniform in uniforms]
-        hint = did_you_mean(key, names, [name for uniform in uniforms for name in _names(uniform)[1:]])
+        hint = did_you_mean(key, names, [name for uniform in uniforms for name in parameter_names(uniform)[1:]])
         if any(slot.name == key for slot in technique.slots):
             hint = f"'{key}' is a slot: write bind = {{ {key} = … }}"
         if not hint:
@@ -305,7 +305,7 @@ class _Reader:
         for uniform in uniforms:
             if uniform.name not in stage.textures:
                 continue
-            key = next(name for name in _names(uniform) if name in table)
+            key = next(name for name in parameter_names(uniform) if name in table)
             span = self.document.place(*path, key).value
             file = os.path.join(os.path.dirname(self.path), stage.textures[uniform.name])
             try:
@@ -320,7 +320,7 @@ class _Reader:
                     self.document.error(span, diagnostic.message, diagnostic.hint)
                 continue
             for other in uniforms:
-                own_values = [table[name] for name in _names(other) if name in table]
+                own_values = [table[name] for name in parameter_names(other) if name in table]
                 if other.name in texture.parameters and all(
                     isinstance(raw, dict) and "value" not in raw for raw in own_values
                 ):
@@ -408,7 +408,7 @@ class _Reader:
             return None
 
 
-def _names(uniform: Uniform) -> list[str]:
+def parameter_names(uniform: Uniform) -> list[str]:
     """A uniform's name and its aliases."""
     return [uniform.name, *(str(name) for hint, names in uniform.hints if hint == "alias" for name in names)]
 

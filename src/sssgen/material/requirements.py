@@ -1,8 +1,8 @@
 """What a technique requires besides its parameters: a bake, the light's depth map, back faces, a rigid body.
 
 Most of it follows from declarations: a texture that `holds` a quantity or has `texel_bytes` is baked; a volume is baked
-for a body that keeps its shape, and a distance function describes such a body; `drawn` names a picture that the engine
-draws. A technique states the rest: `requires: fixed-light`.
+for a rigid mesh, and a distance function describes a rigid body; `drawn` names a picture that the engine draws. A
+technique states the rest: `requires: fixed-light`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ DESCRIPTIONS = {
     "depth-map": "the light's depth map",
     "depth-layers": "a depth map with further layers",
     "back-faces": "a picture of the body's back faces",
-    "rigid": "a body that keeps its shape",
+    "rigid": "a rigid mesh",
     "fixed-light": "a light that does not move relative to the body",
 }
 """The requirements, for people."""

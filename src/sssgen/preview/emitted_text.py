@@ -17,10 +17,10 @@ _GUARDS = "guards/safe_"
 """What the places of a builtin's guard begin with, which is in no file."""
 
 
-def text_of(emitted: Callable[[str, str], Compiled], target: str, form: str) -> dict[str, Any]:
+def text_of(emit: Callable[[str, str], Compiled], target: str, form: str) -> dict[str, Any]:
     """The message with the files of a target; where it cannot carry the material, with the error.
 
-    `emitted` gives the files of a target and a form. The first file is the one with the most lines that have a source.
+    `emit` gives the files of a target and a form. The first file is the one with the most lines that have a source.
     Raises ValueError for a target or a form that does not exist.
     """
     names = registry.names()
@@ -30,7 +30,7 @@ def text_of(emitted: Callable[[str, str], Compiled], target: str, form: str) -> 
     message: dict[str, Any] = {"kind": "text"}
     message |= {"target": target, "form": form, "targets": list(names), "error": "", "files": []}
     try:
-        compiled = emitted(target, form)
+        compiled = emit(target, form)
     except SssgenError as error:
         return {**message, "error": str(error)}
     reflection = compiled.reflection

@@ -64,7 +64,7 @@ def plain_head(path: str, guards: str) -> dict[str, Any]:
     Raises SssgenError for a faulty file, and for a kind of shader that needs more than one triangle.
     """
     file_name = posix(path)
-    compiled, note = _transpile(path, TARGET, guards)
+    compiled, note = transpile_plain(path, TARGET, guards)
     reflection = compiled.reflection
     if reflection["form"] != "fragment":
         raise failure(f"this is a {reflection['form']} shader", "the page draws fragment shaders", file_name)
@@ -89,13 +89,8 @@ def raymarched_head(
     return head
 
 
-def plain_text(path: str, target: str, guards: str) -> Compiled:
-    """The text of plain GLSL for a target, as its picture is drawn. Raises SssgenError."""
-    return _transpile(path, target, guards)[0]
-
-
-def _transpile(path: str, target: str, guards: str) -> tuple[Compiled, str]:
-    """The file as a whole shader for a target, and what a wrapped function is."""
+def transpile_plain(path: str, target: str, guards: str) -> tuple[Compiled, str]:
+    """A file of plain GLSL as a whole shader for a target, and what a wrapped function is. Raises SssgenError."""
     file_name = posix(path)
     loaded, note = _load(read_text(path, file_name), path, file_name)
     name = re.sub(r"\W", "_", stem(file_name), flags=re.ASCII)

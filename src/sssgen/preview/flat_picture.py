@@ -11,7 +11,7 @@ from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile
 from sssgen.preview.emitted_head import Slot
 from sssgen.preview.flat_head import TARGET, plain_head, raymarched_head
-from sssgen.preview.picture import Chosen, Picture, Pieces, missing_text, texels_of
+from sssgen.preview.picture import Choices, Picture, Pieces, missing_text, texels_of
 from sssgen.run.evaluate import input_files
 from sssgen.run.evaluate.evaluation import half
 from sssgen.run.render.scene_values import shell_of
@@ -19,17 +19,17 @@ from sssgen.scene.scene import Scene
 from sssgen.targets.runtime.numpy_textures import Texture
 
 
-def plain_picture(path: str, chosen: Chosen) -> Picture:
+def plain_picture(path: str, choices: Choices) -> Picture:
     """The picture of plain GLSL. Raises SssgenError as `plain_head` does."""
     pieces = Pieces()
-    head = plain_head(path, chosen.guards)
-    head["textures"] = [_fill_slot(row, chosen, pieces) for row in head["textures"]]
+    head = plain_head(path, choices.guards)
+    head["textures"] = [_fill_slot(row, choices, pieces) for row in head["textures"]]
     return Picture(head, pieces.data, None)
 
 
-def raymarched_picture(scene: Scene, material: Material, chosen: Chosen) -> Picture:
+def raymarched_picture(scene: Scene, material: Material, choices: Choices) -> Picture:
     """The picture of a material that makes its own rays. Raises SssgenError."""
-    compiled = compile(material, TARGET, guards=chosen.guards)
+    compiled = compile(material, TARGET, guards=choices.guards)
     shell = shell_of(scene, material, compiled.reflection)
     pieces = Pieces()
     head = raymarched_head(material, compiled, shell.parameters, scene.parameters)
@@ -44,9 +44,9 @@ def raymarched_picture(scene: Scene, material: Material, chosen: Chosen) -> Pict
     return Picture(head, pieces.data, material, shell.parameters)
 
 
-def _fill_slot(row: Slot, chosen: Chosen, pieces: Pieces) -> Slot:
+def _fill_slot(row: Slot, choices: Choices, pieces: Pieces) -> Slot:
     """A texture of plain GLSL with its texels: the chosen picture, or a checker."""
-    file = chosen.textures.get(row["property"], "")
+    file = choices.textures.get(row["property"], "")
     values = input_files.texture(file) if file else Texture(_checker())
     return {**row, "chosen": os.path.basename(file), "texels": texels_of(half(values), pieces.add)}
 

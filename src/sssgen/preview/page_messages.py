@@ -121,7 +121,7 @@ class PageMessages:
 
     def _text(self, message: dict[str, Any]) -> dict[str, Any]:
         pane = self._pane(message)
-        return text_of(pane.emitted, str(message["target"]), str(message["form"]))
+        return text_of(pane.emit, str(message["target"]), str(message["form"]))
 
     def _source(self, message: dict[str, Any]) -> dict[str, Any]:
         material = self._pane(message).picture.material
@@ -138,8 +138,8 @@ class PageMessages:
         if shape not in ("", *SHAPES, OWN_MESH):
             raise ValueError(shape)
         for pane in self.panes:
-            if shape != OWN_MESH or pane.chosen.mesh is not None:
-                pane.choose(pane.chosen._replace(shape=shape))
+            if shape != OWN_MESH or pane.choices.mesh is not None:
+                pane.choose(pane.choices._replace(shape=shape))
         return ""
 
     def _place_beside(self, message: dict[str, Any], _: bytes) -> str:
@@ -147,7 +147,7 @@ class PageMessages:
         if what == OTHER and self._other is not None:
             beside = [self._other]
         elif what == "guards":
-            beside = [Pane(first.name, chosen=first.chosen._replace(guards="none"))]
+            beside = [Pane(first.name, choices=first.choices._replace(guards="none"))]
         else:
             beside = [] if BESIDE[what] == BESIDE[""] else [StartPane(first)]
         self.panes[1:], self._beside = beside, what
@@ -156,7 +156,7 @@ class PageMessages:
     def _mesh(self, message: dict[str, Any], data: bytes) -> str:
         mesh = dropped_mesh(str(message["name"]), data)
         for pane in self.panes:
-            pane.choose(pane.chosen._replace(shape=OWN_MESH, mesh=mesh))
+            pane.choose(pane.choices._replace(shape=OWN_MESH, mesh=mesh))
         return ""
 
     def _texture(self, message: dict[str, Any], data: bytes) -> str:

@@ -11,9 +11,9 @@ from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.preview.bodies import OWN_MESH
 from sssgen.preview.chosen_textures import ChosenTextures, save_texture
 from sssgen.preview.emitted_head import Control, Slot
-from sssgen.preview.flat_head import is_plain, plain_text
+from sssgen.preview.flat_head import is_plain, transpile_plain
 from sssgen.preview.flat_picture import plain_picture, raymarched_picture
-from sssgen.preview.picture import Chosen, Picture, picture_of
+from sssgen.preview.picture import Choices, Picture, picture_of
 from sssgen.preview.saved_values import is_saved_in_scene, save_to_material, save_to_scene, saves_where
 from sssgen.preview.technique_scene import SAVES, is_technique, scene_of_technique
 from sssgen.scene.geometry import Mesh
@@ -27,10 +27,10 @@ from sssgen.support.paths import posix
 class Pane:
     """The picture of a material or scene; `renew` makes it again from the files."""
 
-    def __init__(self, name: str, mesh: Mesh | None = None, chosen: Chosen | None = None) -> None:
+    def __init__(self, name: str, mesh: Mesh | None = None, choices: Choices | None = None) -> None:
         """Raises SssgenError for a name that stands for nothing."""
         self.name, self.version, self.error = name, 0, ""
-        self.chosen = chosen or (Chosen() if mesh is None else Chosen(OWN_MESH, mesh))
+        self.choices = choices or (Choices() if mesh is None else Choices(OWN_MESH, mesh))
         self.files: dict[str, FileState] = {}
         self._textures = ChosenTextures()
         self._make()
@@ -52,7 +52,7 @@ class Pane:
         self.version += 1
 
     def _new_picture(self) -> tuple[Scene | None, Picture]:
-        return _picture(self.name, self.chosen)
+        return _picture(self.name, self.choices)
 
     def renew(self) -> None:
         """Makes the picture again. Where the files have errors, the last good one stays, beside the errors."""
@@ -64,21 +64,21 @@ class Pane:
         except OSError as error:  # a file that vanishes while it is read
             self.error = f"error: {error.strerror}: {error.filename}"
 
-    def choose(self, chosen: Chosen) -> None:
+    def choose(self, choices: Choices) -> None:
         """Shows what a person chose. Raises SssgenError where that cannot be shown; then the picture stays."""
-        before, self.chosen = self.chosen, chosen
+        before, self.choices = self.choices, choices
         try:
             self._make()
         except SssgenError:
             if not self.error:  # the files are right: the choice is not
-                self.chosen = before
+                self.choices = before
                 raise
 
     @property
     def label(self) -> str:
         """What tells this picture from one beside it."""
         title: str = self.picture.head["title"]
-        return f"{title}, without guards" if self.chosen.guards == "none" else title
+        return f"{title}, without guards" if self.choices.guards == "none" else title
 
     def message(self) -> dict[str, Any]:
         """What a page gets: the picture, and the errors or ''. A picture whose textures are missing is not drawn."""
@@ -90,27 +90,27 @@ class Pane:
             "picture": self.picture.head,
         }
 
-    def emitted(self, target: str, form: str) -> Compiled:
+    def emit(self, target: str, form: str) -> Compiled:
         """The text of a target. Raises SssgenError where the target cannot carry the material."""
         if self.picture.material is None:
-            return plain_text(self.name, target, self.chosen.guards)
-        return compile(self.picture.material, target, form, guards=self.chosen.guards)
+            return transpile_plain(self.name, target, self.choices.guards)[0]
+        return compile(self.picture.material, target, form, guards=self.choices.guards)
 
     def choose_texture(self, slot: str, name: str, data: bytes) -> None:
         """Shows a picture in the slot of that property, or for no bytes the file's own. Raises SssgenError."""
         row = self._row(slot)
-        chosen = {one: file for one, file in self.chosen.textures.items() if one != slot}
+        textures = {one: file for one, file in self.choices.textures.items() if one != slot}
         if data:
-            chosen[slot] = self._textures.add(row, name, data)
-        self.choose(self.chosen._replace(textures=chosen))
+            textures[slot] = self._textures.add(row, name, data)
+        self.choose(self.choices._replace(textures=textures))
 
     def save_textures(self) -> str:
         """Writes the chosen pictures beside the file that names the texture; says what it did. Raises SssgenError."""
-        if not self.chosen.textures:
+        if not self.choices.textures:
             return ""
         scene, material = self._save_files()
-        reports = [save_texture(self._row(slot), file, scene, material) for slot, file in self.chosen.textures.items()]
-        self.chosen = self.chosen._replace(textures={})
+        reports = [save_texture(self._row(slot), file, scene, material) for slot, file in self.choices.textures.items()]
+        self.choices = self.choices._replace(textures={})
         return " ".join(reports)
 
     def _row(self, slot: str) -> Slot:
@@ -158,7 +158,7 @@ class StartPane(Pane):
 
     def __init__(self, now: Pane) -> None:
         self._then = now.first
-        super().__init__(now.name, chosen=now.chosen._replace(guards="auto", textures={}))
+        super().__init__(now.name, choices=now.choices._replace(guards="auto", textures={}))
 
     @property
     def label(self) -> str:
@@ -167,23 +167,23 @@ class StartPane(Pane):
     def _new_picture(self) -> tuple[Scene | None, Picture]:
         scene, picture = self._then
         head = picture.head
-        if "flat" in head or (self.chosen.shape, self.chosen.textures) == (head["shape"], {}):
+        if "flat" in head or (self.choices.shape, self.choices.textures) == (head["shape"], {}):
             changed = picture
         else:
             assert scene is not None and picture.material is not None  # only plain GLSL has none
-            changed = picture_of(scene, picture.material, self.chosen)
+            changed = picture_of(scene, picture.material, self.choices)
         return scene, changed._replace(head={**changed.head, "saves": "this is the material as it was"})
 
 
-def _picture(name: str, chosen: Chosen) -> tuple[Scene | None, Picture]:
+def _picture(name: str, choices: Choices) -> tuple[Scene | None, Picture]:
     """The scene and the picture of what a name stands for. Raises SssgenError."""
     if is_plain(name):
-        return None, plain_picture(name, chosen)
+        return None, plain_picture(name, choices)
     if is_technique(name):
         scene, material = scene_of_technique(name)
-        picture = picture_of(scene, material, chosen)
+        picture = picture_of(scene, material, choices)
         return scene, picture._replace(head={**picture.head, "saves": SAVES})
     scene = scene_of(name)
     material = load_material(scene.material)
-    picture = (raymarched_picture if material.makes_rays else picture_of)(scene, material, chosen)
+    picture = (raymarched_picture if material.makes_rays else picture_of)(scene, material, choices)
     return scene, picture._replace(head={**picture.head, **saves_where(scene, material)})

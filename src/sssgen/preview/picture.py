@@ -53,7 +53,7 @@ class Pieces:
         return digest
 
 
-class Chosen(NamedTuple):
+class Choices(NamedTuple):
     """What a person chose on the page; it is in no file."""
 
     shape: str = ""
@@ -64,33 +64,33 @@ class Chosen(NamedTuple):
     """A texture's property → its file"""
 
 
-def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
+def picture_of(scene: Scene, material: Material, choices: Choices) -> Picture:
     """The picture of a material in a scene. Raises SssgenError."""
-    compiled = compile(material, TARGET, guards=chosen.guards, standalone=True)
+    compiled = compile(material, TARGET, guards=choices.guards, standalone=True)
     if scene.geometry is None:
         raise failure(f"{material.name} makes its own rays: it is a flat picture, not a material of a body")
-    scene = _on_shape(scene, chosen)
+    scene = _on_shape(scene, choices)
     named = {texture["property"]: texture["source_name"] for texture in compiled.reflection["textures"]}
-    given = {
-        named[name]: _with_file(scene, named[name], file) for name, file in chosen.textures.items() if name in named
-    }
-    own = {**scene.textures, **given}
-    drawn = dataclasses.replace(scene, textures=own)
+    textures = dict(scene.textures)
+    for name, file in choices.textures.items():
+        if name in named:  # it continues at its edges as the scene's own does
+            textures[named[name]] = PictureFile(file, getattr(scene.textures.get(named[name]), "wrap", ""))
+    drawn = dataclasses.replace(scene, textures=textures)
     reflection = _without_views(compiled.reflection)
     shell = shell_of(drawn, material, reflection)
     pieces = Pieces()
     assert scene.geometry is not None  # `_on_shape` keeps one
     head = emitted_head(material, compiled, shell.parameters, scene.parameters)
     head |= {
-        "shape": chosen.shape,
-        "shapes": ["", *SHAPES, *([OWN_MESH] if chosen.mesh is not None else [])],
+        "shape": choices.shape,
+        "shapes": ["", *SHAPES, *([OWN_MESH] if choices.mesh is not None else [])],
         "saves": "",
-        "note": _note(material, chosen.shape),
+        "note": _note(material, choices.shape),
         "missing": missing_text(drawn, material, reflection, shell),
-        "mesh": os.path.basename(chosen.mesh.path) if chosen.mesh is not None else "",
+        "mesh": os.path.basename(choices.mesh.path) if choices.mesh is not None else "",
         "body": pieces.add(packed_triangles(scene.geometry)),
         "model": scene.geometry.to_world().T.ravel().tolist(),
-        "textures": [_with_texels(row, shell, chosen, pieces) for row in head["textures"]],
+        "textures": [_with_texels(row, shell, choices, pieces) for row in head["textures"]],
         "lights": [
             {"position": position.tolist(), "color": color.tolist()}
             for position, color in zip(shell.light_positions, shell.light_colors, strict=True)
@@ -100,7 +100,7 @@ def picture_of(scene: Scene, material: Material, chosen: Chosen) -> Picture:
         "exposure": scene.exposure,
         "shadows": "shadow" in scene.shell,
         "tone_mapping": scene.shell.get("tone_mapping", ""),
-        "camera": _camera(scene, chosen.shape),
+        "camera": _camera(scene, choices.shape),
     }
     return Picture(head, pieces.data, material, shell.parameters)
 
@@ -117,9 +117,9 @@ def _note(material: Material, shape: str) -> str:
     return f"It is made for the body of {', '.join(own)}: on this shape the light inside is wrong." if own else ""
 
 
-def _on_shape(scene: Scene, chosen: Chosen) -> Scene:
+def _on_shape(scene: Scene, choices: Choices) -> Scene:
     """The scene with the chosen body, which is as large as its own."""
-    shape = chosen.mesh if chosen.shape == OWN_MESH else SHAPES.get(chosen.shape)
+    shape = choices.mesh if choices.shape == OWN_MESH else SHAPES.get(choices.shape)
     if shape is None or scene.geometry is None:
         return scene
     return dataclasses.replace(scene, geometry=fit(shape, scene.geometry))
@@ -134,20 +134,15 @@ def _camera(scene: Scene, shape: str) -> dict[str, Any]:
     return {"position": position, "target": target, "field_of_view": scene.camera.field_of_view}
 
 
-def _with_file(scene: Scene, name: str, file: str) -> PictureFile:
-    """A texture from a chosen file, which continues at its edges as the scene's own does."""
-    return PictureFile(file, getattr(scene.textures.get(name), "wrap", ""))
-
-
 def _without_views(reflection: Mapping[str, Any]) -> dict[str, Any]:
     """The reflection without the textures that the page draws, so that nothing else draws them."""
     textures = [texture for texture in reflection["textures"] if texture["drawn"] not in DRAWN_BY_PAGE]
     return {**reflection, "textures": textures}
 
 
-def _with_texels(row: Slot, shell: Shell, chosen: Chosen, pieces: Pieces) -> Slot:
+def _with_texels(row: Slot, shell: Shell, choices: Choices, pieces: Pieces) -> Slot:
     """The row of a texture with its texels; one that the page draws itself has none."""
-    row = {**row, "chosen": os.path.basename(chosen.textures.get(row["property"], ""))}
+    row = {**row, "chosen": os.path.basename(choices.textures.get(row["property"], ""))}
     bound = shell.textures.get(row["source_name"])
     return {**row, "texels": texels_of(bound, pieces.add)} if bound is not None and not row["page_draws"] else row
 

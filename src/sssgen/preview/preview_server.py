@@ -58,10 +58,10 @@ class PreviewServer:
     def application(self) -> Any:
         """The aiohttp application."""
 
-        async def guarded(request: Any, handler: Callable[[Any], Awaitable[Any]]) -> Any:
+        async def check_request(request: Any, handler: Callable[[Any], Awaitable[Any]]) -> Any:
             return await self._check_request(request, handler)
 
-        application = self.web.Application(middlewares=[self.web.middleware(guarded)])
+        application = self.web.Application(middlewares=[self.web.middleware(check_request)])
         application.router.add_get("/{token}/", self._index)
         application.router.add_get("/{token}/page/{name}", self._page_file)
         application.router.add_get("/{token}/library/{name:.+}", self._library_file)
@@ -159,7 +159,9 @@ class PreviewServer:
             async for frame in page:
                 try:
                     message, data = unpack(frame.data) if isinstance(frame.data, bytes) else (parse(frame.data), b"")
-                    if reply := await self._reply(message):
+                    async with self._making:
+                        reply = await asyncio.to_thread(self.talk.reply, message)
+                    if reply:
                         await page.send_json(reply)
                     elif text := await self._change(functools.partial(self.talk.answer, message, data)):
                         await page.send_json({"kind": "said", "text": text})
@@ -181,11 +183,6 @@ class PreviewServer:
                     messages = self.talk.messages()
                 for message in messages:
                     await page.send_json(message)
-
-    async def _reply(self, message: dict[str, Any]) -> dict[str, Any] | None:
-        """The answer to a question of a page."""
-        async with self._making:
-            return await asyncio.to_thread(self.talk.reply, message)
 
     # Changes
 

@@ -8,10 +8,10 @@ import json
 import os
 import tempfile
 
-from sssgen.lab.measure.measured_chain import material_text
 from sssgen.lab.measure.technique_chain import BODY, chain_of, named, write_pictures
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
+from sssgen.material.material_text import material_text
 from sssgen.material.model import Material
 from sssgen.scene.preview_scene import BALL, plain_scene
 from sssgen.scene.scene import Light, Scene
@@ -32,9 +32,9 @@ def scene_of_technique(name: str) -> tuple[Scene, Material]:
     """The scene and the material that show a technique. Raises SssgenError."""
     technique = library.load(name)
     stages = chain_of(technique)
-    file = f"{technique.name}.toml"
-    write_files(_folder(), {file: material_text(technique.name, stages)})
-    material = load_material(os.path.join(_folder(), file))
+    folder, file = os.path.abspath(_temporary_folder().name), f"{technique.name}.toml"
+    write_files(folder, {file: material_text(technique.name, stages)})
+    material = load_material(os.path.join(folder, file))
     if technique.role == "distance":
         return plain_scene(material, _function(named(technique))), material
     in_slots = {to for stage in stages for _, to in stage.bind}
@@ -52,11 +52,7 @@ def _function(name: str) -> str:
 
 @functools.cache
 def _temporary_folder() -> tempfile.TemporaryDirectory[str]:
+    """The folder of these materials, with the pictures that they read; it is removed at the end of the process."""
     folder = tempfile.TemporaryDirectory(prefix="sssgen_preview_")
     write_pictures(folder.name)
     return folder
-
-
-def _folder() -> str:
-    """The folder of these materials, with the pictures that they read; it is removed at the end of the process."""
-    return os.path.abspath(_temporary_folder().name)

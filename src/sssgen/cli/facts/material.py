@@ -101,7 +101,8 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     ]
     column = max(len(stage["role"]) for stage in facts["stages"])
     for stage in facts["stages"]:
-        text.append(f"  {stage['role']:{column}}  {stage['technique']}" + _uv_note(stage))
+        uv = "" if stage["uv"] == "uv" else f", with {stage['uv']}"
+        text.append(f"  {stage['role']:{column}}  {stage['technique']}{uv}")
         for row in (*map(_parameter, stage["parameters"]), *map(_texture, stage["textures"])):
             text += wrap(row, width, "      ", "          ")
         text += [f"      {slot} = {function}" for slot, function in stage["slots"].items()]
@@ -120,10 +121,6 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
         reason = why["message"] + (f" ({why['help']})" if why["help"] else "")
         text += wrap(f"{target}: {reason}", width, "  ", "      ")
     return [*text, "", f"file: {facts['file']}", "a technique in detail: sssgen show TECHNIQUE"]
-
-
-def _uv_note(stage: Mapping[str, Any]) -> str:
-    return "" if stage["uv"] == "uv" else f", with {stage['uv']}"
 
 
 def _parameter(parameter: Mapping[str, Any]) -> str:

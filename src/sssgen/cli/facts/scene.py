@@ -13,8 +13,11 @@ from sssgen.support.paths import posix
 from sssgen.support.text_files import refuse_folder
 
 if TYPE_CHECKING:
-    from sssgen.scene.scene import Light, Scene
+    from sssgen.scene.scene import Light
 
+
+MEASURED = ("medium", "inlay", "environment")
+"""The sections with physical data."""
 
 names = all_scenes
 """The example scenes, to draw and to measure."""
@@ -50,7 +53,7 @@ def describe(name: str) -> dict[str, Any]:
         "lights": [_light(light) for light in scene.lights],
         "background": [list(color) for color in scene.background],
         "ambient": list(scene.ambient),
-        **_measured_sections(scene),
+        **{key: scene.measured.get(key) for key in MEASURED},
         "parameters": dict(scene.parameters),
         "textures": {
             name: "distances of the geometry" if isinstance(texture, DistanceTexture) else posix(texture.file)
@@ -65,10 +68,6 @@ def _light(light: Light) -> dict[str, Any]:
     return {key: list(place or ()), "color": list(light.color)}
 
 
-def _measured_sections(scene: Scene) -> dict[str, Any]:
-    return {key: scene.measured.get(key) for key in ("medium", "inlay", "environment")}
-
-
 def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     """The facts as text."""
     columns, rows = facts["size"]
@@ -78,7 +77,7 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     text.append(f"material: {facts['material_file'] or 'none: the scene describes what is measured'}")
     geometry = facts["geometry"]
     text += wrap(f"geometry: {_table(geometry) if geometry else 'none: the material marches rays'}", width, "", "  ")
-    for key in ("medium", "inlay", "environment"):
+    for key in MEASURED:
         if facts[key] is not None:
             text += wrap(f"{key}: {_table(facts[key])}", width, "", "  ")
     text.append(f"lights: {len(facts['lights']) or 'none'}")

@@ -12,8 +12,8 @@ from sssgen.ir.types import components, kind_of
 from sssgen.lab.chart.charting import candidate_of
 from sssgen.lab.chart.picking import Pick
 from sssgen.lab.measure.candidates import load
-from sssgen.lab.measure.measured_chain import MaterialSection, material_text
 from sssgen.material import library
+from sssgen.material.material_text import MaterialSection, material_text
 from sssgen.material.slots import needs
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.measured.media import Medium

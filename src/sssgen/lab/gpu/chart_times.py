@@ -17,8 +17,9 @@ from sssgen.lab.chart.picked_material import stages_of
 from sssgen.lab.gpu import gpu_timing as gpu_cost
 from sssgen.lab.gpu import timed_programs as gpu_programs
 from sssgen.lab.gpu.gpu_timing import ProgramTimes
-from sssgen.lab.measure.measured_chain import MaterialSection, material_of
+from sssgen.lab.measure.measured_chain import material_of
 from sssgen.material import library
+from sssgen.material.material_text import MaterialSection
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import compile
 from sssgen.scene.measured import scene_body as body

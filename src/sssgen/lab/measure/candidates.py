@@ -16,10 +16,10 @@ from sssgen.ir.drawn import DISTANT_VIEWS
 from sssgen.ir.nodes import Function, Uniform
 from sssgen.ir.types import Sampler, kind_of
 from sssgen.lab.measure.fluence_inputs import PREFIX
-from sssgen.lab.measure.measured_chain import MaterialSection
 from sssgen.lang.check.quantities import SCALARS
 from sssgen.material import library, slots
 from sssgen.material.library import Technique
+from sssgen.material.material_text import MaterialSection
 from sssgen.scene.measured.scene_body import Body
 
 ROLES = ("coordinates", "thickness", "view_thickness", "translucency", "material")

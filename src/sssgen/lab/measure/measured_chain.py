@@ -1,4 +1,4 @@
-"""Measured chains: a material's text from stages, and its emitted NumPy functions, run on a scene's points.
+"""Measured chains: the emitted NumPy functions of a material, run on a scene's points.
 
 A point of a chart is an ordinary material, so the measured code is the emitted code.
 """
@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from sssgen.ir.types import BY_NAME, Matrix, Vector, kind_of
 from sssgen.material.material_loading import parse_material
+from sssgen.material.material_text import MaterialSection, material_text
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.run.backends import Array
@@ -20,57 +21,6 @@ from sssgen.targets.runtime.numpy_textures import Texture
 from sssgen.targets.runtime.numpy_values import grid, precision
 
 NAME = "measured"
-
-
-class MaterialSection(NamedTuple):
-    """A stage of a chain, as a section of a material file."""
-
-    section: str
-    technique: str
-    values: tuple[tuple[str, object], ...] = ()
-    """Its parameters"""
-    fixed: tuple[str, ...] = ()
-    """The parameters that are constants in the emitted text"""
-    bind: tuple[tuple[str, str], ...] = ()
-    """Slot → function"""
-    comment: str = ""
-    """A line above the section"""
-
-
-def material_text(
-    name: str,
-    stages: Sequence[MaterialSection],
-    title: str = "",
-    doc: str = "",
-    settings: Mapping[str, object] | None = None,
-) -> str:
-    """The material file of a chain; `settings` are further keys of its section [material]."""
-    keys = {"name": name, "title": title, "doc": doc, **(settings or {})}
-    lines = ["[material]", *(f"{key} = {toml_value(value)}" for key, value in keys.items() if value != "")]
-    for stage in stages:
-        lines += ["", *([f"# {stage.comment}"] if stage.comment else [])]
-        lines += [f"[[{stage.section}]]", f"technique = {toml_value(stage.technique)}"]
-        if stage.bind:
-            lines.append(f"bind = {{ {', '.join(f'{slot} = {toml_value(to)}' for slot, to in stage.bind)} }}")
-        for key, value in stage.values:
-            text = toml_value(value)
-            lines.append(f"{key} = {{ value = {text}, fixed = true }}" if key in stage.fixed else f"{key} = {text}")
-    return "\n".join(lines) + "\n"
-
-
-def toml_value(value: Any) -> str:
-    """A value in TOML."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", " ")
-        return f'"{escaped}"'
-    if isinstance(value, int | np.integer):
-        return str(int(value))
-    if isinstance(value, float | np.floating):
-        text = f"{float(value):.6g}"
-        return text if any(mark in text for mark in ".en") else f"{text}.0"
-    return f"[{', '.join(toml_value(part) for part in value)}]"
 
 
 class Chain:

@@ -10,9 +10,9 @@ import numpy as np
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, spell
 from sssgen.lab.measure.candidates import PROBES
-from sssgen.lab.measure.measured_chain import MaterialSection
 from sssgen.material import library
 from sssgen.material.library import Technique
+from sssgen.material.material_text import MaterialSection
 from sssgen.material.technique_facts import facts_of
 from sssgen.run.backends import Array
 from sssgen.scene.pictures.images import write_png
