@@ -68,6 +68,12 @@ technique = "clearcoat_constants"
 coat_weight = 0.7
 coat_roughness = 0.2
 """
+SHEEN = """
+[[surface]]
+technique = "sheen_constants"
+sheen_tint = [0.5, 0.5, 0.5]
+sheen_spread = 0.3
+"""
 THROUGH = """
 [translucency]
 technique = "wrap_lighting"
@@ -105,9 +111,16 @@ def test_specular_level_in_the_built_in_pipeline(
         assert np.abs(drawn("unity", stages) - drawn("numpy", stages)).max() < 1.0 / 255.0
 
 
-def test_three_draws_them_as_its_own_material(tmp_path: Path) -> None:
+OF_THREE: Mapping[str, Mapping[str, float]] = {
+    SPECULAR + COAT: {"clearcoat": 0.7, "clearcoatRoughness": 0.2, "specularColor": 0.5},
+    SHEEN: {"sheen": 1.0, "sheenColor": 0.5, "sheenRoughness": 0.3},
+}
+"""Stages → the properties of three's own material that do the same."""
+
+
+@pytest.mark.parametrize("stages", OF_THREE, ids=["coat", "sheen"])
+def test_three_draws_them_as_its_own_material(stages: str, tmp_path: Path) -> None:
     """The same picture as without the stages, with three's properties in their place."""
-    own = {"clearcoat": 0.7, "clearcoatRoughness": 0.2, "specularColor": 0.5}
     (tmp_path / "ball.toml").write_text(BALL, encoding="utf-8")
     (tmp_path / "scene.toml").write_text(SCENE, encoding="utf-8")
     scene = dataclasses.replace(load(str(tmp_path / "scene.toml")), size=SIZE)
@@ -118,8 +131,8 @@ def test_three_draws_them_as_its_own_material(tmp_path: Path) -> None:
         page: Any = or_skip(partial(EnginePage, THREE), renderer)
         try:
             pictures = []
-            for stages, properties in ((SPECULAR + COAT, {}), ("", own), ("", {})):
-                material = parse_material(BALL + stages, str(tmp_path / "ball.toml"))
+            for given, properties in ((stages, {}), ("", OF_THREE[stages]), ("", {})):
+                material = parse_material(BALL + given, str(tmp_path / "ball.toml"))
                 compiled = compile(material, "threejs")
                 pictures.append(page_values.shade(compiled, mesh.shell, page, mesh.size, mesh.points, properties))
         finally:

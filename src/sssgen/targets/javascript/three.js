@@ -12,7 +12,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {string} name
  * @property {number} version
  * @property {boolean} [lit] whether three lights it
- * @property {boolean} [raymarched] whether its position is that of the camera
+ * @property {boolean} [screen] whether it makes a picture of its own: the position of the mesh means nothing
  * @property {boolean} [twoSided]
  * @property {'mask' | 'blend'} [alphaMode] opaque, if it has none
  * @property {string[]} [fields] the members of its surface
@@ -21,7 +21,19 @@ import { Properties, TEXELS } from './values.js';
  * @property {string} glsl functions
  * @property {string} wgsl the same
  * @property {Record<string, import('./three_nodes.js').Call>} calls `color` of an unlit material; `surface` and `translucency` of a lit one
- * @property {{ vertexShader: Record<string, string>, fragmentShader: Record<string, string> }} patches
+ * @property {WebglTexts} webgl
+ */
+
+/**
+ * What goes into the shaders of WebGLRenderer.
+ * @typedef {object} WebglTexts
+ * @property {string} varyings
+ * @property {string} vertex_attributes
+ * @property {string} vertex statements of the vertex shader
+ * @property {string} variables
+ * @property {string} fragment statements of the fragment shader
+ * @property {string} [light] statements for each light, where light comes through
+ * @property {Record<string, string>} includes three's include → the statements behind it
  */
 
 // WebGLRenderer: the functions go into three's own shader, at its includes.
@@ -33,20 +45,46 @@ const OWN_UNIFORMS = {
   lightRadiance: { type: 'vec3', name: 'sss_light_radiance' },
 };
 
-/** Adds a material's text to a shader of three. */
-function patch(shader, { name, parameters, textures, patches, glsl }, uniforms) {
+/**
+ * What three calls for each light: its own reflection, then the light that comes through. The macros remember the light's
+ * colour before its shadow: light that comes through entered on the far side.
+ */
+const lightFunction = (statements) => /* glsl */ `
+vec3 sss_light_color;
+float sss_light_nearness;
+#define SSS_LIGHT(direct, nearness) sss_light_color = direct.color; sss_light_nearness = nearness
+#define getPointLightInfo(light, at, direct) getPointLightInfo(light, at, direct); SSS_LIGHT(direct, 1.0 / max(length(light.position - at), 0.01))
+#define getSpotLightInfo(light, at, direct) getSpotLightInfo(light, at, direct); SSS_LIGHT(direct, 1.0 / max(length(light.position - at), 0.01))
+#define getDirectionalLightInfo(light, direct) getDirectionalLightInfo(light, direct); SSS_LIGHT(direct, 0.0)
+#define getSunLightInfo(light, direct) getSunLightInfo(light, direct); SSS_LIGHT(direct, 0.0)
+
+void sss_direct(const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight) {
+  RE_Direct_Physical(directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight);
+${statements}}
+#undef RE_Direct
+#define RE_Direct sss_direct
+`;
+
+/** Adds a material's text to a shader of three: behind its includes. */
+function patch(shader, { name, parameters, textures, webgl, glsl }, uniforms) {
   const declarations = [];
   for (const [property, declared] of Object.entries({ ...parameters, ...textures, ...OWN_UNIFORMS })) {
     if (!uniforms[property]) continue;
     declarations.push(`uniform ${declared.type} ${declared.name};`);
     shader.uniforms[declared.name] = uniforms[property];
   }
-  for (const stage of ['vertexShader', 'fragmentShader']) {
-    for (const [file, text] of Object.entries(patches[stage])) {
+  const texts = {
+    vertexShader: { common: webgl.varyings + webgl.vertex_attributes, project_vertex: webgl.vertex },
+    fragmentShader: {
+      common: declarations.join('\n') + webgl.varyings + glsl + webgl.variables, map_fragment: webgl.fragment, ...webgl.includes,
+    },
+  };
+  if (webgl.light) texts.fragmentShader.lights_physical_pars_fragment = lightFunction(webgl.light);
+  for (const [stage, behind] of Object.entries(texts)) {
+    for (const [file, text] of Object.entries(behind)) {
       const include = `#include <${file}>`;
       if (!shader[stage].includes(include)) throw new Error(`${name}: this version of three.js has no ${include}`);
-      const whole = stage === 'fragmentShader' && file === 'common' ? `${declarations.join('\n')}${text}${glsl}` : text;
-      shader[stage] = shader[stage].replace(include, () => `${include}\n${whole}`);
+      shader[stage] = shader[stage].replace(include, () => `${include}\n${text}`);
     }
   }
 }
@@ -105,7 +143,7 @@ export function materialClass(description) {
   const { moves, takesLight } = properties;
   const texts = { glsl: TSL.glsl(description.glsl), wgsl: TSL.wgsl(description.wgsl) };
   // three keeps one program per key
-  const key = `sssgen ${name} ${Properties.hashOf(JSON.stringify([description.glsl, description.patches]))}`;
+  const key = `sssgen ${name} ${Properties.hashOf(JSON.stringify([description.glsl, description.webgl]))}`;
 
   return class extends THREE[base] {
     #uniforms = uniformsOf(description, moves, takesLight);
@@ -115,6 +153,7 @@ export function materialClass(description) {
       this.name = name;
       if (lit) this.roughness = 1;
       if (fields.includes('clearcoat')) this.clearcoat = 1; // three has none at 0; the surface has its weight
+      if (fields.includes('sheen_color')) Object.assign(this, { sheen: 1, sheenColor: new THREE.Color(1, 1, 1) }); // likewise
       if (description.twoSided) this.side = THREE.DoubleSide;
       if (description.alphaMode === 'mask') this.alphaTest = 0.5;
       if (description.alphaMode === 'blend') this.transparent = true;

@@ -162,6 +162,8 @@ const FIELDS = {
   specular: ['float', 'specularColorNode', (specular) => TSL.materialSpecularColor.mul(specular.mul(25))],
   clearcoat: ['float', 'clearcoatNode', (clearcoat) => TSL.materialClearcoat.mul(clearcoat)],
   clearcoat_roughness: ['float', 'clearcoatRoughnessNode'],
+  sheen_color: ['vec3', 'sheenNode', (color) => TSL.materialSheen.mul(color)],
+  sheen_roughness: ['float', 'sheenRoughnessNode', (roughness) => roughness.max(1e-4)],
   normal: ['vec3', 'normalNode', ({ x, y, z }) => turned(
     TSL.cameraViewMatrix, tangent.mul(x).add(bitangent.mul(y)).mul(side).add(geometryNormal.mul(z)),
   )],
@@ -173,14 +175,13 @@ const FIELDS = {
  * @param {{ glsl: THREE.Node, wgsl: THREE.Node }} texts nodes of the functions
  * @param {Record<string, any>} uniforms nodes by their properties
  */
-export function nodesOf({ calls, parameters, textures, fields = [], raymarched }, texts, uniforms) {
+export function nodesOf({ calls, parameters, textures, fields = [], screen }, texts, uniforms) {
   const argumentsOf = ({ inputs, values }, given) => [
     ...inputs.map((name) => given[name]), ...values.map((name) => [uniforms[name], (parameters[name] ?? textures[name]).type]),
   ];
   const point = { ...INPUTS, time: [uniforms.time, 'float'] };
   if (calls.color) {
-    const onScreen = raymarched || calls.color.inputs.some((name) => name.startsWith('ray_'));
-    const given = uniforms.lightPlace ? { ...point, ...ownLight(uniforms.lightPlace, uniforms.lightRadiance, onScreen) } : point;
+    const given = uniforms.lightPlace ? { ...point, ...ownLight(uniforms.lightPlace, uniforms.lightRadiance, screen) } : point;
     return { colorNode: new CallNode('vec4', calls.color.name, texts, argumentsOf(calls.color, given)) };
   }
   const surface = new SurfaceNode('void', calls.surface.name, texts, argumentsOf(calls.surface, point));

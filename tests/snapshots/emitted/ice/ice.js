@@ -101,12 +101,35 @@ const float sss_ENDLESS = 10000.0;
 const float sss_OPAQUE_DEPTH = 80.0;
 
 // The direction of \`x\`; of a zero vector, 0.
-vec2 sss_safe_normalize(vec2 x) {
+vec3 sss_safe_normalize(vec3 x) {
     return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
 }
 
+// The tangent, the bitangent and the normal as columns. \`tangent\` is that of the mesh, with the handedness as
+// w; where it is 0, both come from the derivatives of \`uv\`, and the longer one has the length 1.
+mat3 sss_tangent_frame(vec3 P, vec3 V, vec3 N, float side, vec2 uv, vec4 tangent) {
+    vec3 across = dFdx(P);
+    vec3 up = dFdy(P);
+    vec2 uv_across = dFdx(uv);
+    vec2 uv_up = dFdy(uv);
+    // the rows of some render targets count downwards
+    float upwards = dot(cross(across, up), V) < 0.0 ? -1.0 : 1.0;
+    vec3 first = cross(up, N) * upwards;
+    vec3 second = cross(N, across) * upwards;
+    vec3 T = first * uv_across.x + second * uv_up.x;
+    vec3 B = first * uv_across.y + second * uv_up.y;
+    float scale = inversesqrt(max(max(dot(T, T), dot(B, B)), 1.0e-30));
+    T *= scale;
+    B *= scale;
+    if (dot(tangent.xyz, tangent.xyz) > 0.0) {
+        T = sss_safe_normalize(tangent.xyz);
+        B = cross(N * side, T) * tangent.w;
+    }
+    return mat3(T, B, N);
+}
+
 // The direction of \`x\`; of a zero vector, 0.
-vec3 sss_safe_normalize(vec3 x) {
+vec2 sss_safe_normalize(vec2 x) {
     return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
 }
 
@@ -551,18 +574,19 @@ fn sss_evaluate_translucency(surface: sss_Surface, V: vec3f, N: vec3f, L: vec3f,
 var<private> sss_surface: sss_Surface;
 `;
 
-/** WebGLRenderer: what goes into three's shaders, behind which of their includes. */
-const PATCHES = {
-  vertexShader: {
-    common: /* glsl */ `
+/** WebGLRenderer: what goes into three's shaders: `light` for each light, and the others once. */
+const WEBGL = {
+  varyings: /* glsl */ `
 varying vec3 sss_view_position;
 varying vec2 sss_uv;
 varying vec4 sss_tangent;
+`,
+  vertex_attributes: /* glsl */ `
 #ifndef USE_TANGENT
 attribute vec4 tangent;
 #endif
 `,
-    project_vertex: /* glsl */ `
+  vertex: /* glsl */ `
 sss_view_position = mvPosition.xyz;
 sss_uv = uv;
 #ifdef USE_SKINNING
@@ -571,81 +595,51 @@ sss_tangent = vec4(0.0);
 sss_tangent = vec4((modelMatrix * vec4(tangent.xyz, 0.0)).xyz, tangent.w * sign(determinant(mat3(modelMatrix))));
 #endif
 `,
-  },
-  fragmentShader: {
-    common: /* glsl */ `
-varying vec3 sss_view_position;
-varying vec2 sss_uv;
-varying vec4 sss_tangent;
-vec3 sss_P, sss_N, sss_V, sss_T, sss_B;
+  variables: /* glsl */ `
+#define sss_normal vNormal
+vec3 sss_P;
+vec3 sss_N;
 float sss_side = 1.0;
-
-vec3 sss_unit(vec3 v) {
-  float square = dot(v, v);
-  return square > 1e-30 ? v * inversesqrt(square) : vec3(0.0);
-}
-
-vec3 sss_to_world(vec3 v) {
-  return sss_unit((vec4(v, 0.0) * viewMatrix).xyz);
-}
-
-// The tangent and the bitangent: those of the geometry, else from the derivatives of uv.
-void sss_frame() {
-  vec3 across = dFdx(sss_P), up = dFdy(sss_P);
-  vec2 a = dFdx(sss_uv), b = dFdy(sss_uv);
-  vec3 first = cross(up, sss_N), second = cross(sss_N, across);
-  sss_T = first * a.x + second * b.x;
-  sss_B = first * a.y + second * b.y;
-  float longest = inversesqrt(max(max(dot(sss_T, sss_T), dot(sss_B, sss_B)), 1e-30));
-  sss_T *= longest;
-  sss_B *= longest;
-  if (dot(sss_tangent.xyz, sss_tangent.xyz) > 0.0) {
-    sss_T = sss_unit(sss_tangent.xyz);
-    sss_B = cross(sss_N * sss_side, sss_T) * sss_tangent.w;
-  }
-}
+vec3 sss_V;
+mat3 sss_frame;
 `,
-    map_fragment: /* glsl */ `
+  fragment: /* glsl */ `
 #if defined(FLAT_SHADED)
 sss_N = cross(dFdx(sss_view_position), dFdy(sss_view_position));
 #else
-sss_N = vNormal;
+sss_N = sss_normal;
 #if defined(DOUBLE_SIDED)
 sss_side = gl_FrontFacing ? 1.0 : -1.0;
 sss_N *= sss_side;
 #endif
 #endif
-sss_N = sss_to_world(sss_N);
-sss_V = isOrthographic ? sss_to_world(vec3(0.0, 0.0, 1.0)) : sss_to_world(-sss_view_position);
-sss_P = cameraPosition + (vec4(sss_view_position, 0.0) * viewMatrix).xyz;
-sss_frame();
+sss_N = sss_safe_normalize(sss_N * mat3(viewMatrix));
+sss_V = sss_safe_normalize((isOrthographic ? vec3(0.0, 0.0, 1.0) : -sss_view_position) * mat3(viewMatrix));
+sss_P = cameraPosition + sss_view_position * mat3(viewMatrix);
+sss_frame = sss_tangent_frame(sss_P, sss_V, sss_N, sss_side, sss_uv, sss_tangent);
 sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count, sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint, sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief, sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture, sss_red_speed, sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color, sss_texel_size, sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height);
+`,
+  light: /* glsl */ `
+vec3 L = sss_safe_normalize(directLight.direction * mat3(viewMatrix));
+vec3 N = sss_safe_normalize(geometryNormal * mat3(viewMatrix));
+reflectedLight.directDiffuse += RECIPROCAL_PI * sss_light_color * sss_evaluate_translucency(sss_surface, sss_V, N, L, sss_distortion, sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power);
+`,
+  includes: {
+    color_fragment: /* glsl */ `
 diffuseColor.rgb *= sss_surface.albedo;
 diffuseColor.a *= sss_surface.alpha;
 `,
-    roughnessmap_fragment: 'roughnessFactor = sss_surface.roughness;',
-    metalnessmap_fragment: 'metalnessFactor = sss_surface.metallic;',
-    normal_fragment_maps: 'normal = sss_unit((viewMatrix * vec4(mat3(sss_T * sss_side, sss_B * sss_side, sss_N) * sss_surface.normal, 0.0)).xyz);',
-    emissivemap_fragment: 'totalEmissiveRadiance += sss_surface.emission;',
-    // What three calls for each light: its own reflection, then the light that comes through. The macros remember the
-    // light's colour before its shadow: light that comes through entered on the far side.
-    lights_physical_pars_fragment: /* glsl */ `
-vec3 sss_light_color;
-float sss_light_nearness;
-#define SSS_LIGHT(direct, nearness) sss_light_color = direct.color; sss_light_nearness = nearness
-#define getPointLightInfo(light, at, direct) getPointLightInfo(light, at, direct); SSS_LIGHT(direct, 1.0 / max(length(light.position - at), 0.01))
-#define getSpotLightInfo(light, at, direct) getSpotLightInfo(light, at, direct); SSS_LIGHT(direct, 1.0 / max(length(light.position - at), 0.01))
-#define getDirectionalLightInfo(light, direct) getDirectionalLightInfo(light, direct); SSS_LIGHT(direct, 0.0)
-#define getSunLightInfo(light, direct) getSunLightInfo(light, direct); SSS_LIGHT(direct, 0.0)
-
-void sss_direct(const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight) {
-  RE_Direct_Physical(directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight);
-  vec3 L = sss_to_world(directLight.direction);
-  vec3 N = sss_to_world(geometryNormal);
-  reflectedLight.directDiffuse += RECIPROCAL_PI * sss_light_color * sss_evaluate_translucency(sss_surface, sss_V, N, L, sss_distortion, sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power);
-}
-#undef RE_Direct
-#define RE_Direct sss_direct
+    roughnessmap_fragment: /* glsl */ `
+roughnessFactor = sss_surface.roughness;
+`,
+    metalnessmap_fragment: /* glsl */ `
+metalnessFactor = sss_surface.metallic;
+`,
+    normal_fragment_maps: /* glsl */ `
+normal = sss_safe_normalize(mat3(viewMatrix) * (sss_frame * (sss_surface.normal * vec3(sss_side, sss_side, 1.0))));
+`,
+    emissivemap_fragment: /* glsl */ `
+totalEmissiveRadiance += sss_surface.emission;
 `,
   },
 };
@@ -654,7 +648,7 @@ void sss_direct(const in IncidentLight directLight, const in vec3 geometryPositi
 export class IceMaterial extends materialClass({
   name: 'ice', version: 1, lit: true, alphaMode: 'mask',
   fields: ['albedo', 'alpha', 'normal', 'metallic', 'roughness', 'emission', 'transmittance'],
-  parameters, textures, glsl: GLSL, wgsl: WGSL, patches: PATCHES,
+  parameters, textures, glsl: GLSL, wgsl: WGSL, webgl: WEBGL,
   calls: {
     surface: {
       name: 'sss_evaluate_surface',
