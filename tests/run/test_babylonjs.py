@@ -202,17 +202,22 @@ def test_numbers_of_every_type_and_names_of_defines(babylon: EnginePage, tmp_pat
 
 
 @pytest.mark.slow
-def test_specular_level_and_clear_coat_are_those_of_babylon(babylon: EnginePage) -> None:
+def test_layers_are_those_of_babylon(babylon: EnginePage) -> None:
     """The same picture as without the stages, with Babylon's properties in their place."""
     mesh = mesh_of("wax_mouse")
     surface = '[material]\nname = "ball"\n[[surface]]\ntechnique = "pbr_constants"\nsurface_roughness = 0.6\n'
     layers = '[[surface]]\ntechnique = "specular_level"\ndielectric_specular = 1.0\n'
     layers += '[[surface]]\ntechnique = "clearcoat_constants"\ncoat_weight = 0.7\ncoat_roughness = 0.2\n'
+    layers += '[[surface]]\ntechnique = "sheen_constants"\nsheen_tint = [0.5, 0.5, 0.5]\nsheen_spread = 0.3\n'
     own = {
         "clearCoat.isEnabled": True,
         "clearCoat.intensity": 0.7,
         "clearCoat.roughness": 0.2,
         "indexOfRefraction": 1.78885438,  # it reflects 0.08
+        "sheen.isEnabled": True,
+        "sheen.color": 0.5,
+        "sheen.roughness": 0.3,
+        "sheen.albedoScaling": True,
     }
     bare = dataclasses.replace(mesh.shell, parameters={}, textures={})
     ours, theirs, none = (

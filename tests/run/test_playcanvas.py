@@ -246,6 +246,10 @@ dielectric_specular = 0.25
 technique = "clearcoat_constants"
 coat_weight = 0.7
 coat_roughness = 0.2
+[[surface]]
+technique = "sheen_constants"
+sheen_tint = [0.5, 0.5, 0.5]
+sheen_spread = 0.3
 """
 BASE = '[material]\nname = "made"\n[[surface]]\ntechnique = "pbr_constants"\nsurface_roughness = 0.6\n'
 
@@ -253,7 +257,10 @@ BASE = '[material]\nname = "made"\n[[surface]]\ntechnique = "pbr_constants"\nsur
 @SLOW
 def test_layers_are_those_of_its_own_material(playcanvas: EnginePage, tmp_path: Path) -> None:
     """The same picture as without the stages, with PlayCanvas's properties in their place."""
-    own = {"clearCoat": 0.7, "clearCoatGloss": 0.8, "useMetalnessSpecularColor": True, "specular": 0.5 ** (1 / 2.2)}
+    own = {
+        "clearCoat": 0.7, "clearCoatGloss": 0.8, "useMetalnessSpecularColor": True, "specular": 0.5 ** (1 / 2.2),
+        "useSheen": True, "sheen": 0.5 ** (1 / 2.2), "sheenGloss": 0.7,
+    }  # fmt: skip
     mesh = mesh_of("wax_mouse")
     pictures: list[Array] = []
     for stages, properties in ((LAYERS, {}), ("", own), ("", {})):

@@ -68,6 +68,8 @@ const ARGUMENTS = {
   sss_reflectivity: [
     '!reflectivityOut=reflectivityBlock\\(\\s*(?:uniforms\\.)?vReflectivityColor', 'reflectivityOut=reflectivityBlock(\nsss_reflectivity',
   ],
+  sss_sheen: ['!sheenOut=sheenBlock\\(\\s*(?:uniforms\\.)?vSheenColor', 'sheenOut=sheenBlock(\nsss_sheen'],
+  sss_sheen_roughness: ['!,(?:uniforms\\.)?vSheenRoughness(?!\\w|:)', ',sss_sheen_roughness'],
   sss_coat: ['!,viewDirectionW\\s*,(?:uniforms\\.)?vClearCoatParams', ',viewDirectionW\n,sss_coat'],
 };
 
@@ -276,6 +278,11 @@ export function materialClass(description) {
       this.roughness = 1;
       if (!lit) this.unlit = true;
       if (fields.includes('clearcoat')) this.clearCoat.isEnabled = true; // the surface has its weight
+      if (fields.includes('sheen_color')) {
+        this.sheen.isEnabled = true;
+        this.sheen.roughness = 0; // apart from the intensity
+        this.sheen.albedoScaling = true; // what the fibres reflect does not reach the surface below
+      }
       if (twoSided) this.backFaceCulling = false;
       if (twoSided) this.twoSidedLighting = true;
       if (alphaMode === 'mask') this.transparencyMode = PBRMaterial.PBRMATERIAL_ALPHATEST;

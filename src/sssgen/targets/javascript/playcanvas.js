@@ -124,7 +124,10 @@ ${out}${name} = ${type}(${other}.0);
   return Object.entries(texts).map(([chunk, lines]) => [chunk, `\n${lines.join('\n')}\n`]);
 }
 
-/** Changes of PlayCanvas's chunks: a chunk, what is sought in it, what it becomes, and what follows the chunk. */
+/**
+ * Changes of PlayCanvas's chunks: a chunk, what is sought in it, what it becomes, and what follows the chunk.
+ * @returns {[string, RegExp, string, string][]}
+ */
 function changes({ lit, shells }, gpu) {
   const own = shells[Number(gpu)];
   const { front = '', opacity = '', ambient = '' } = own.places;
@@ -190,6 +193,10 @@ ${head('void sss_light_reflected(vec3 color)')} {
 #endif
 `;
 
+/**
+ * Those of a lit material.
+ * @returns {[string, RegExp, string, string][]}
+ */
 const lightChanges = (gpu, head) => [
   ['lightDiffuseLambertPS', /getLightDiffuse/, 'sss_engine_lambert', `
 ${head('float getLightDiffuse(vec3 worldNormal, vec3 viewDir, vec3 lightDirNorm)')} {
@@ -311,6 +318,7 @@ export function materialClass(description) {
         this.useSkybox = false;
       }
       if (fields.includes('clearcoat')) this.clearCoat = 1; // PlayCanvas has none at 0; the surface has its weight
+      if (fields.includes('sheen_color')) this.useSheen = true;
       if (twoSided) this.cull = pc.CULLFACE_NONE;
       if (twoSided) this.twoSidedLighting = true;
       if (alphaMode === 'mask') this.alphaTest = 0.5;
