@@ -18,7 +18,9 @@ from sssgen.support.paths import place, posix
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-_REMOVED = ("common/needs.j2", "common/unit_vector.j2")
+_REMOVED = (
+    "common/needs.j2", "common/unit_vector.j2", "godot/functions.j2", "unreal/interface.j2", "unreal/sources.j2",
+)  # fmt: skip
 """Templates of earlier versions, which a user's own template may import."""
 
 NO_LINES = "\x04"
