@@ -115,7 +115,7 @@ def _environment(templates: str | None, folder: str) -> Environment:
             bytecode_cache=FileSystemBytecodeCache(cached, pattern) if cached else None,
             auto_reload=False,
         )
-        environment.filters["digest"] = _digest
+        environment.filters["digest"] = digest
         environment.filters["lines"] = _lines
         _environments[key] = environment
     return _environments[key]
@@ -128,7 +128,7 @@ def _lines(text: str, width: int = 0) -> str:
     return indent(text.strip("\n"), " " * width) or NO_LINES
 
 
-def _digest(text: str) -> str:
+def digest(text: str) -> str:
     """32 hexadecimal digits that follow from a text: an identifier that is the same each time."""
     from hashlib import blake2b
 
