@@ -18,7 +18,9 @@ from sssgen.support.paths import place, posix
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-_REMOVED = ("common/needs.j2", "common/unit_vector.j2")
+_REMOVED = (
+    "common/needs.j2", "common/unit_vector.j2", "godot/functions.j2", "unreal/interface.j2", "unreal/sources.j2",
+)  # fmt: skip
 """Templates of earlier versions, which a user's own template may import."""
 
 NO_LINES = "\x04"
@@ -113,7 +115,7 @@ def _environment(templates: str | None, folder: str) -> Environment:
             bytecode_cache=FileSystemBytecodeCache(cached, pattern) if cached else None,
             auto_reload=False,
         )
-        environment.filters["digest"] = _digest
+        environment.filters["digest"] = digest
         environment.filters["lines"] = _lines
         _environments[key] = environment
     return _environments[key]
@@ -126,7 +128,7 @@ def _lines(text: str, width: int = 0) -> str:
     return indent(text.strip("\n"), " " * width) or NO_LINES
 
 
-def _digest(text: str) -> str:
+def digest(text: str) -> str:
     """32 hexadecimal digits that follow from a text: an identifier that is the same each time."""
     from hashlib import blake2b
 

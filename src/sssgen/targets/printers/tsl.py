@@ -50,8 +50,10 @@ class TslPrinter(Printer):
         """A number of a literal converted to a kind, as JavaScript writes it."""
         if kind == "float":
             return float_text(float(literal.value), self.kept)
-        value = int(literal.value) & (0xFFFFFFFF if kind == "uint" else -1)
-        return f"{value:#x}" if kind == "uint" and value >= 1 << 16 else str(value)
+        value = int(literal.value) & 0xFFFFFFFF
+        if kind == "uint":
+            return f"{value:#x}" if value >= 1 << 16 else str(value)
+        return str(value - (1 << 32) if value >> 31 else value)
 
     def bound(self, expr: ir.Expr) -> tuple[str, int]:
         if isinstance(expr, ir.Member):
@@ -82,14 +84,22 @@ class TslPrinter(Printer):
         if isinstance(type_, Matrix) and len(args) > type_.columns:  # numbers alone would be its rows
             rows, starts = type_.rows, range(0, len(args), type_.rows)
             args = tuple([ir.Construct(Vector("float", rows), args[start : start + rows], span) for start in starts])
-        return f"{self.type(type_)}({', '.join([self.part(kind_of(type_), arg) for arg in args])})", PRIMARY
+        beside_nodes = not all(isinstance(arg, ir.Literal) for arg in args)
+        parts = [self.part(kind_of(type_), arg, beside_nodes) for arg in args]
+        return f"{self.type(type_)}({', '.join(parts)})", PRIMARY
 
-    def part(self, kind: str, arg: ir.Expr) -> str:
-        """An argument that becomes a number of a kind, or several: of a literal, a plain number."""
+    def part(self, kind: str, arg: ir.Expr, beside_nodes: bool = False) -> str:
+        """An argument that becomes a number of a kind, or several: of a literal, a plain number.
+
+        three makes floats of plain numbers beside nodes: there, integers of more than 24 bits are nodes, too.
+        """
         if isinstance(arg, ir.Unary) and arg.op == "-" and isinstance(arg.operand, ir.Literal):
             arg = arg.operand._replace(value=-arg.operand.value)
-        is_number = isinstance(arg, ir.Literal) and "bool" not in (kind, kind_of(arg.type))
-        return self.number(kind, arg) if is_number else self.expr(arg)  # type: ignore[arg-type]  # a literal
+        if not isinstance(arg, ir.Literal) or "bool" in (kind, kind_of(arg.type)):
+            return self.expr(arg)
+        text = self.number(kind, arg)
+        is_exact = kind == "float" or abs(int(text, 0)) <= 1 << 24
+        return text if is_exact or not beside_nodes else f"{kind}({text})"
 
     # Statements
 
