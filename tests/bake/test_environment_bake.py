@@ -66,7 +66,7 @@ def test_the_json_has_the_parameter(baked: Path) -> None:
     ("options", "message"),
     [
         (["-o", "cube.png"], "'.png' is not the suffix of a cube map's file"),
-        (["-o", "cube.dds", "--intensity", "0"], "the intensity 0 is no factor of light"),
+        (["-o", "cube.dds", "--intensity", "0"], "the intensity 0 is not a factor of light"),
     ],
 )
 def test_wrong_options(

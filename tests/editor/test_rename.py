@@ -177,5 +177,5 @@ def test_refusals(folder: Folder, file: str, piece: str, name: str, message: str
 def test_a_file_with_errors_is_named(folder: Folder) -> None:
     folder.open("shared.sss")
     (folder.folder / "own.sss").write_text(OWN.replace("return gained", "return gaind"), encoding="utf-8")
-    with pytest.raises(SssgenError, match=r"own.sss has errors: mend them first|own.sss has errors"):
+    with pytest.raises(SssgenError, match=r"own.sss has errors: correct them first|own.sss has errors"):
         folder.renamed("shared.sss", "gain", "strength")

@@ -77,8 +77,8 @@ def picture(name: str) -> str:
         (document(graph_input('value="1, 1, 1"', "color3")), "is float, not color3", "S/specular_roughness"),
         (document(graph_input('nodegraph="G"'), UNBOUND), "no interface input 'x'", "G/c/value"),
         (document(graph_input('interfacename="x"')), "used outside a graph", "S/specular_roughness"),
-        (document(graph_input('value="much"')), "'much' is no value of the type float", "S/specular_roughness"),
-        (document(graph_input('value="inf"')), "'inf' is no value", "S/specular_roughness"),
+        (document(graph_input('value="much"')), "'much' is not a value of the type float", "S/specular_roughness"),
+        (document(graph_input('value="inf"')), "'inf' is not a value", "S/specular_roughness"),
         (document('<input name="base_color" type="color3" value="1, 2"/>'), "3 numbers", "S/base_color"),
         (
             document('<input name="base_color" type="color3" value="1, 1, 1" colorspace="foo"/>'),

@@ -86,7 +86,7 @@ def test_a_faulty_question(talk: PageMessages, message: dict[str, str]) -> None:
 def test_no_other_file_is_shown(talk: PageMessages) -> None:
     folder = Path(talk.panes[0].picture.material.file).parent
     for name in (str(folder / "secret.txt"), "/etc/passwd", "../../version.py", "secret.txt", "", "..", "common"):
-        with pytest.raises(SssgenError, match="no file that this picture depends on"):
+        with pytest.raises(SssgenError, match="is not a file that this picture depends on"):
             talk.reply({"kind": "source", "name": name})
 
 

@@ -406,7 +406,7 @@ def _environment(arguments: Namespace) -> Result:
     output.check_cube_path(arguments.output)
     output.check_apart(arguments.output, [arguments.SKY])
     if not 0.0 < arguments.intensity < float("inf"):
-        raise failure(f"the intensity {arguments.intensity:g} is no factor of light", "give a number above 0")
+        raise failure(f"the intensity {arguments.intensity:g} is not a factor of light", "give a number above 0")
     environment = Environment((arguments.intensity,) * 3, arguments.SKY, digest(arguments.SKY))
     with ProgressBar() as bar:
         bar(0, 2, "reflections")

@@ -30,8 +30,8 @@ def run(arguments: Namespace) -> int:
         ("sssgen", f"{machine.sssgen}, {machine.source}"),
         ("Python", machine.python),
         ("platform", machine.platform),
+        ("cache", machine.cache or "none: nothing is cached"),
     ]
-    rows.append(("cache", machine.cache or "none: nothing is cached"))
     _print_rows(rows)
     print("\nEnvironment variables:")
     _print_rows(_variables(machine) or [("none is set", "")])
@@ -46,9 +46,8 @@ def run(arguments: Namespace) -> int:
 
 
 def _variables(machine: Facts) -> list[tuple[str, str]]:
-    unknown = {name: f"{value}  (sssgen reads no such variable)" for name, value in machine.variables.items()}
     return [
-        (name, f"{value!r}: {VARIABLES[name]}" if name in VARIABLES else unknown[name])
+        (name, f"{value!r}: {VARIABLES[name]}" if name in VARIABLES else f"{value}  (sssgen reads no such variable)")
         for name, value in machine.variables.items()
     ]
 

@@ -7,7 +7,7 @@ import os
 import sys
 from typing import TYPE_CHECKING, Any
 
-from sssgen.cli.options import DEFAULT_TARGET, add_guards, add_optional_targets, add_output, nonempty
+from sssgen.cli.options import DEFAULT_TARGET, add_guards, add_output, add_targets, nonempty
 from sssgen.cli.output import CHECK_FAILED, OK, print_errors, print_json, print_warnings
 from sssgen.pipeline import emitted_cache
 from sssgen.pipeline.emitted_cache import EmittedFiles
@@ -45,7 +45,7 @@ def add_options(parser: ArgumentParser) -> None:
 def add_emission_options(parser: ArgumentParser) -> None:
     """What is emitted, and how: the options of `emit` and `watch`."""
     parser.add_argument("MATERIAL", nargs="+", help="a .toml file, or an example from `sssgen list materials`")
-    add_optional_targets(parser)
+    add_targets(parser, default=None)
     parser.add_argument(
         "--form",
         choices=("shader", "functions"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
+from string import Template
 
 from sssgen.cli.options import unknown_name
 from sssgen.cli.output import OK, print_result
@@ -13,52 +14,8 @@ from sssgen.material.model import wrong_name
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_writer import write_files
 
-STARTER = """\
-# A material for sssgen. Write its shaders with:
-#     sssgen emit {file} --target all -o out
-# All techniques: sssgen list techniques
-# What a technique does, and its parameters: sssgen show beer_lambert
-
-[material]
-name = "{name}"
-title = "{title}"
-doc = "What it is, in one or two sentences."
-shading = "lit"  # lit: the engine lights it; unlit: a [lighting] stage gives the color
-
-# The position of the textures: here below a refracting surface, as if embedded.
-# [coordinates]
-# technique = "parallax_refracted"
-# depth = 0.02
-# ior = 1.5
-
-# The thickness that the light has to pass: a constant here; thickness_map reads it from a map that is baked from the
-# body (sssgen bake thickness), and march_light measures it in a distance function.
-[[thickness]]
-technique = "constant_thickness"
-thickness_factor = 0.3  # a parameter: a uniform of the shader, and this is its default
-
-# The share of the light that is transmitted. The translucency stage needs it, so the thickness is converted.
-[[thickness]]
-technique = "beer_lambert"
-attenuation_distance = 0.2
-
-# The appearance of the surface. A section with several stages has double brackets; they run in order.
-[[surface]]
-technique = "base_color"
-
-[[surface]]
-technique = "pbr_constants"
-surface_roughness = 0.4
-metalness = {{ value = 0.0, fixed = true }}  # folded into the text: no uniform
-
-# The transmitted light, for each light.
-[translucency]
-technique = "lobe_normalized"
-distortion = 0.2
-power = 6.0
-subsurface_color = "#ffb36b"  # sRGB, as color pickers show it; a list [1.0, 0.45, 0.15] is linear RGB
-"""
-
+STARTER = Path(__file__).with_name("starter.toml")
+"""The material to start from, with `$file`, `$name` and `$title`."""
 
 _ELSEWHERE = re.compile(r'"(\.\./\w+/)([\w./]+)"')
 """The name of a file in the folder of another example, in two parts: a copy has the file at the second part."""
@@ -107,7 +64,8 @@ def _write_starter(argument: str) -> list[str]:
     name, shown = path.stem, path.as_posix()
     if problem := wrong_name(name):
         raise failure(*problem)
-    text = STARTER.format(file=shown, name=name, title=name.replace("_", " ").capitalize())
+    starter = Template(STARTER.read_text(encoding="utf-8"))
+    text = starter.substitute(file=shown, name=name, title=name.replace("_", " ").capitalize())
     try:
         with path.open("x", encoding="utf-8", newline="\n") as file:
             file.write(text)

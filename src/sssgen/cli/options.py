@@ -35,22 +35,10 @@ def add_output(
     parser.add_argument("-o", "--output", type=nonempty, metavar=metavar, required=required, default=default, help=help)
 
 
-def add_targets(parser: argparse.ArgumentParser, required: bool = False, default: str | None = None) -> None:
-    """The targets to emit for: `--target`. Without a default it is required, or None."""
-    _add_targets(parser, default, required=required, value=default)
-
-
-def add_optional_targets(parser: argparse.ArgumentParser) -> None:
-    """The same; None where it is not given, as the command then says which target it takes."""
-    _add_targets(parser, DEFAULT_TARGET)
-
-
-def _add_targets(
-    parser: argparse.ArgumentParser, default: str | None, required: bool = False, value: str | None = None
-) -> None:
-    """`default` is what the help tells, `value` what the arguments then have."""
-    help = "targets from `sssgen list targets`, or all" + (f" (default: {default})" if default else "")
-    parser.add_argument("--target", "-t", metavar="T,T|all", help=help, required=required, default=value)
+def add_targets(parser: argparse.ArgumentParser, default: str | None = DEFAULT_TARGET) -> None:
+    """The targets to emit for: `--target`. With None as the default, the command says which target it takes."""
+    help = f"targets from `sssgen list targets`, or all (default: {DEFAULT_TARGET})"
+    parser.add_argument("--target", "-t", metavar="T,T|all", help=help, default=default)
 
 
 def add_guards(parser: argparse.ArgumentParser, default: str = "auto") -> None:

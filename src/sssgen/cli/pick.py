@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from sssgen.cli.chart import add_reference_options, announce, settings_of
 from sssgen.cli.emit import chosen_targets
 from sssgen.cli.engine_options import add_condition_options, conditions_of, device_of
-from sssgen.cli.options import DEFAULT_TARGET, add_targets
+from sssgen.cli.options import add_targets
 from sssgen.cli.output import CHECK_FAILED, OK, print_result
 from sssgen.material.material_loading import parse_material
 from sssgen.pipeline.compiler import compile
@@ -38,7 +38,7 @@ def add_options(parser: ArgumentParser) -> None:
     )
     parser.add_argument("--emit", metavar="DIR", help="write the material and its shaders to this folder")
     add_condition_options(parser)
-    add_targets(parser, default=DEFAULT_TARGET)
+    add_targets(parser)
     add_reference_options(parser)
 
 

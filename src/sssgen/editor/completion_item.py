@@ -20,6 +20,6 @@ class Item(NamedTuple):
     """Lower ones are shown first; among equals, the order of the list holds."""
 
 
-def items_of(labels: Iterable[str], kind: str, detail: str = "", rank: int = 0) -> list[Item]:
+def items_of(labels: Iterable[str], kind: str, rank: int = 0) -> list[Item]:
     """Items without explanations."""
-    return [Item(label, kind, detail, rank=rank) for label in labels]
+    return [Item(label, kind, rank=rank) for label in labels]

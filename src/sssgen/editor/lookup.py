@@ -51,7 +51,7 @@ class Meaning(NamedTuple):
 
     @property
     def span(self) -> Span | None:
-        """The place of the declaration; None where it is no place of a text."""
+        """The place of the declaration; None where the declaration has no place in a text."""
         thing = self.thing.function if isinstance(self.thing, Technique) else self.thing
         return None if thing is None or isinstance(thing, Material | LocalName) else thing.span
 

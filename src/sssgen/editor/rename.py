@@ -202,7 +202,7 @@ def _technique_edits(document: Document, analysis: Analysis, declaration: _Decla
         return []
     module = analysis.module
     if module is None or any(problem.severity == "error" for problem in analysis.diagnostics):
-        raise failure(f"{os.path.basename(document.path)} has errors", "mend them first")
+        raise failure(f"{os.path.basename(document.path)} has errors", "correct them first")
     tokens = _tokens(document)
     if not _declares(document, analysis, module, declaration):
         return []

@@ -65,13 +65,9 @@ def _techniques(document: Document, place: TomlPlace) -> list[Item]:
         missing = _missing_input(before, technique)
         detail = f"{technique.role}: {missing}" if missing else technique.role
         rank = (2 if missing else 0) + technique.baseline
-        items.append(_technique_item(technique, detail, rank, place))
+        text = name if place.in_text else f'"{name}"'
+        items.append(Item(name, "technique", detail, technique.doc.get("summary", ""), text, rank))
     return sorted(items, key=lambda item: item.rank)
-
-
-def _technique_item(technique: Technique, detail: str, rank: int, place: TomlPlace) -> Item:
-    text = technique.name if place.in_text else f'"{technique.name}"'
-    return Item(technique.name, "technique", detail, technique.doc.get("summary", ""), text, rank)
 
 
 def _links(document: Document, place: TomlPlace) -> Iterator[roles.Link]:

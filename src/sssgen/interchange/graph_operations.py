@@ -35,14 +35,6 @@ def _dot(a: Array, b: Array) -> Array:
     return np.asarray((a * b).sum(axis=-1, keepdims=True))
 
 
-def _safe_power(a: Array, b: Array) -> Array:
-    return np.asarray(np.sign(a) * np.power(np.abs(a), b))
-
-
-def _remap(a: Array, in_low: Array, in_high: Array, out_low: Array, out_high: Array) -> Array:
-    return np.asarray(out_low + (a - in_low) * (out_high - out_low) / (in_high - in_low))
-
-
 def _smoothstep(a: Array, low: Array, high: Array) -> Array:
     t = np.clip((a - low) / (high - low), 0.0, 1.0)
     return np.asarray(t * t * (3.0 - 2.0 * t))
@@ -51,10 +43,6 @@ def _smoothstep(a: Array, low: Array, high: Array) -> Array:
 def _luminance(a: Array, weights: Array) -> Array:
     luminance = np.broadcast_to((a[..., :3] * weights[..., :3]).sum(axis=-1, keepdims=True), a[..., :3].shape)
     return np.concatenate([luminance, a[..., 3:]], axis=-1)
-
-
-def _matrix_product(a: Array, matrix: Array) -> Array:
-    return np.asarray(a @ matrix.reshape(a.shape[-1], a.shape[-1]))
 
 
 def _hsv_of_rgb(a: Array) -> Array:
@@ -86,7 +74,8 @@ _EPSILON = 1e-8
 OPERATIONS: Mapping[str, Operation] = {
     **_rows(
         ("in1", "in2"),
-        add=np.add, subtract=np.subtract, multiply=np.multiply, divide=np.divide, modulo=np.mod, power=_safe_power,
+        add=np.add, subtract=np.subtract, multiply=np.multiply, divide=np.divide, modulo=np.mod,
+        power=lambda a, b: np.sign(a) * np.power(np.abs(a), b),
         min=np.minimum, max=np.maximum, dotproduct=_dot,
     ),
     **_rows(
@@ -112,10 +101,13 @@ OPERATIONS: Mapping[str, Operation] = {
     "invert": Operation(("amount", "in"), np.subtract),
     "clamp": Operation(("in", "low", "high"), np.clip),
     "mix": Operation(("bg", "fg", "mix"), lambda bg, fg, share: bg + (fg - bg) * share),
-    "remap": Operation(("in", "inlow", "inhigh", "outlow", "outhigh"), _remap),
+    "remap": Operation(
+        ("in", "inlow", "inhigh", "outlow", "outhigh"),
+        lambda a, low, high, out_low, out_high: out_low + (a - low) * (out_high - out_low) / (high - low),
+    ),
     "smoothstep": Operation(("in", "low", "high"), _smoothstep),
     "luminance": Operation(("in", "lumacoeffs"), _luminance),
-    "transformmatrix": Operation(("in", "mat"), _matrix_product),
+    "transformmatrix": Operation(("in", "mat"), lambda a, matrix: a @ matrix.reshape(a.shape[-1], a.shape[-1])),
     "inside": Operation(("in", "mask"), np.multiply),
     "outside": Operation(("in", "mask"), lambda a, mask: a * (1.0 - mask)),
 }  # fmt: skip

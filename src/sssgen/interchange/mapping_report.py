@@ -11,6 +11,8 @@ import numpy as np
 
 Outcome: TypeAlias = Literal["mapped", "approximated", "left out"]
 OUTCOMES: tuple[Outcome, ...] = ("mapped", "approximated", "left out")
+_LONGEST = 60
+"""Characters of a value."""
 
 
 class Row(NamedTuple):
@@ -82,7 +84,7 @@ def _table(rows: Sequence[Row], outcome: Outcome) -> Iterable[str]:
         yield f"| {' | '.join(cell.replace('|', chr(92) + '|').replace(chr(10), ' ') for cell in cells)} |"
 
 
-def short_text(value: object, length: int = 60) -> str:
+def short_text(value: object) -> str:
     """A value as short text, in the words of JSON: numbers with 6 digits, `true`, `null`, `scale: 2, 2`."""
     if value is None or isinstance(value, bool | np.bool_):
         text = {None: "null", True: "true", False: "false"}[value if value is None else bool(value)]
@@ -94,4 +96,4 @@ def short_text(value: object, length: int = 60) -> str:
         text = ", ".join(short_text(part) for part in value)
     else:
         text = str(value)
-    return text if len(text) <= length else f"{text[: length - 1]}…"
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"

@@ -224,7 +224,7 @@ class Graph:
             values = ()
         if len(values) != COMPONENTS[kind] or not all(map(math.isfinite, values)):
             expected = "a number" if COMPONENTS[kind] == 1 else f"{COMPONENTS[kind]} numbers with commas"
-            raise self.source.error(element, f"'{text}' is no value of the type {kind}", f"it is {expected}")
+            raise self.source.error(element, f"'{text}' is not a value of the type {kind}", f"it is {expected}")
         value = self._with_unit(element, values)
         if kind in ("color3", "color4"):
             return self._linear(value, element.getActiveColorSpace(), kind, element)

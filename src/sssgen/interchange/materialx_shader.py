@@ -70,9 +70,9 @@ class Shader:
         """An input as a quantity of the record."""
         return self.as_quantity(self.value(name, field), field, color=color)
 
-    def product(self, weight: str, name: str, field: str, *, color: bool = True) -> Quantity:
-        """An input times the input that is its weight."""
-        return self.as_quantity(self.weighted_value(weight, name, field), field, color=color)
+    def product(self, weight: str, name: str, field: str) -> Quantity:
+        """A colour times the input that is its weight."""
+        return self.as_quantity(self.weighted_value(weight, name, field), field, color=True)
 
     def weighted_value(self, weight: str, name: str, field: str) -> Value:
         """The value of an input times that of its weight."""

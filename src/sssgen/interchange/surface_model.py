@@ -44,12 +44,10 @@ class Image(NamedTuple):
     uv_set: int = 0
     transform: UvTransform = UvTransform()
     wrap: Wrap = "repeat"
-    inverted: bool = False
-    """Whether the quantity is 1 - texel, as for a smoothness that is read as roughness"""
     scale: float = 1.0
     """Multiplies the texel"""
     bias: float = 0.0
-    """Is added to the scaled texel; with `inverted` both are applied to 1 - texel"""
+    """Is added to the scaled texel"""
 
 
 class Quantity(NamedTuple):
@@ -132,15 +130,11 @@ class SurfaceModel:
         return ((self.ior - 1.0) / (self.ior + 1.0)) ** 2
 
 
-def medium(
-    extinction: tuple[float, ...], albedo: tuple[float, ...], anisotropy: float = 0.0, name: str = "interior"
-) -> Medium:
+def medium(extinction: tuple[float, ...], albedo: tuple[float, ...], anisotropy: float = 0.0) -> Medium:
     """The medium of an extinction per metre and a single-scattering albedo, each of three components."""
-    scattering = [t * a for t, a in zip(extinction, albedo, strict=True)]
-    absorption = [t - s for t, s in zip(extinction, scattering, strict=True)]
-    return Medium(
-        name, (absorption[0], absorption[1], absorption[2]), (scattering[0], scattering[1], scattering[2]), anisotropy
-    )
+    red, green, blue = (t * a for t, a in zip(extinction, albedo, strict=True))
+    absorption = (extinction[0] - red, extinction[1] - green, extinction[2] - blue)
+    return Medium("interior", absorption, (red, green, blue), anisotropy)
 
 
 def extinction_of_color(color: tuple[float, ...], distance: float) -> tuple[float, ...]:

@@ -51,14 +51,12 @@ def _as_four(image: Any) -> Texels:
 
 
 def texel_values(image: Image) -> Texels:
-    """What an image contributes to its quantity, (height, width, components): decoded, inverted, scaled and moved."""
+    """What an image contributes to its quantity, (height, width, components): decoded, scaled and moved."""
     places = ["rgba".index(channel) for channel in image.channels]
     values = read_texels(image.picture)[..., places]
     if image.srgb:
         color = np.array([channel != "a" for channel in image.channels])
         values = np.where(color, decode_srgb(values), values)
-    if image.inverted:
-        values = 1.0 - values
     return np.asarray(image.scale * values + image.bias, np.float32)
 
 

@@ -111,7 +111,7 @@ class Composer:
 
 def _encode(image: Image) -> Texels:
     """The values of a texture that is encoded as sRGB; unchanged where the picture has exactly these."""
-    if image.srgb and not image.inverted and (image.scale, image.bias) == (1.0, 0.0):
+    if image.srgb and (image.scale, image.bias) == (1.0, 0.0):
         return read_texels(image.picture)[..., ["rgba".index(channel) for channel in image.channels]]
     return encode_srgb(texel_values(image)).astype(np.float32)
 

@@ -97,7 +97,7 @@ class UnityMaterial:
 
     def number(self, name: str, default: float, field: str = "") -> float:
         """A float or an integer; `field` is that of the record which gets it."""
-        value = self.properties["m_Floats"].get(name) or self.properties["m_Ints"].get(name)
+        value = self._number(name)
         if value is None:
             return default
         self._record(field, value, value.text)
@@ -166,14 +166,12 @@ class UnityMaterial:
     def report_omissions(self, reasons: Mapping[str, str]) -> None:
         """Reports textures that are set and numbers that are not 0, and that no field has: name → reason."""
         for name, reason in reasons.items():
-            if self.has_texture(name):
-                texture = self._texture(name)
-                assert texture is not None
+            texture, value = self._texture(name), self._number(name)
+            if texture is not None:
                 path = self.project.file(texture.require("guid").text)
                 self.report.add_omission(self._report_path(texture), os.path.basename(path) or "a texture", reason)
-            elif number := self.number(name, 0.0):
-                value = self.properties["m_Floats"].get(name) or self.properties["m_Ints"][name]
-                self.report.add_omission(self._report_path(value), number, reason)
+            elif value is not None and value.number:
+                self.report.add_omission(self._report_path(value), value.number, reason)
 
     def report_approximation(self, name: str, value: object, became: str, error: str = "") -> None:
         """Reports a property that the record keeps only in part."""
@@ -183,6 +181,9 @@ class UnityMaterial:
             for elements in self.elements.values():
                 elements[:] = [element for element in elements if element.path != path]
             self.report.add_approximation(path, value, became, error)
+
+    def _number(self, name: str) -> Value | None:
+        return self.properties["m_Floats"].get(name) or self.properties["m_Ints"].get(name)
 
     def _texture(self, name: str) -> Value | None:
         value = self.properties["m_TexEnvs"].get(name)

@@ -55,7 +55,7 @@ def source_of(name: str, folder: str, read: Collection[str]) -> dict[str, Any]:
         return {"kind": "source", "name": name, "text": "", "note": note}
     path = _path(name, folder, read)
     if not path:
-        raise failure(f"'{name}' is no file that this picture depends on", "it may have been renamed: save it again")
+        raise failure(f"'{name}' is not a file that this picture depends on", "it may have been renamed: save it again")
     return {"kind": "source", "name": name, "text": read_text(path, posix(path)), "note": ""}
 
 
