@@ -14,7 +14,7 @@ from sssgen.harness import compilers
 from sssgen.harness.check.handwritten import hand_written
 from sssgen.harness.compilers import errors
 from sssgen.harness.verify.verification import Machines, Options, start_machines, verify
-from sssgen.lang.plain_glsl import load_glsl, preprocessed
+from sssgen.lang.plain_glsl import load_glsl, preprocess_text
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.text_files import read_text
 
@@ -25,7 +25,7 @@ Question = tuple[str, tuple[object, ...]]
 
 def digest(path: Path) -> str:
     """The hash of the tokens after the preprocessor: stages that differ in comments or unused macros are equal."""
-    tokens = preprocessed(read_text(path, path.name), path.name).tokens
+    tokens = preprocess_text(read_text(path, path.name), path.name).tokens
     words = [path.suffix, *(token.text for token in tokens)]
     return hashlib.sha256("\n".join(words).encode()).hexdigest()[:20]
 

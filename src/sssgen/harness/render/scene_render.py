@@ -29,7 +29,7 @@ from sssgen.harness.scenes.drawn_views import back_faces
 from sssgen.harness.scenes.geometry import Geometry, Hits
 from sssgen.harness.scenes.scene import Scene
 from sssgen.harness.scenes.scene_reader import MAX_COUNT
-from sssgen.ir.drawn import BACK_FACES
+from sssgen.ir.view_textures import BACK_FACES
 from sssgen.material.material_loading import load_material
 from sssgen.material.shell_stages import with_shell
 from sssgen.pipeline.compiler import Compiled, compile

@@ -19,9 +19,9 @@ from sssgen.harness.scenes.environment import read_environment
 from sssgen.harness.scenes.geometry import Distance, Geometry
 from sssgen.harness.scenes.light_view import LightView
 from sssgen.harness.scenes.scene import DistanceTexture, Picture, Scene, placement
-from sssgen.ir.drawn import CUBES, DISTANT_VIEWS, IRRADIANCE, LAYERS, LIGHT_VIEWS, REFLECTIONS
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import with_article
+from sssgen.ir.view_textures import CUBES, DISTANT_VIEWS, IRRADIANCE, LAYERS, LIGHT_VIEWS, REFLECTIONS
 from sssgen.material import baked
 from sssgen.material.baked import Baked
 from sssgen.material.model import Material

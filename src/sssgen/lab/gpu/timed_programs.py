@@ -30,8 +30,8 @@ from sssgen.harness.scenes.camera import Camera
 from sssgen.harness.scenes.drawn_views import back_faces
 from sssgen.harness.scenes.geometry import Ball, Geometry
 from sssgen.harness.scenes.scene import Scene
-from sssgen.ir.drawn import BACK_FACES
 from sssgen.ir.types import Sampler
+from sssgen.ir.view_textures import BACK_FACES
 from sssgen.lab.gpu.gpu_timing import ROUNDS, SIZE, Program, ProgramTimes, measure
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
