@@ -11,7 +11,7 @@ from typing import Any
 from public_code import READ, reason_of
 
 from sssgen.analyse.verify.verification import Machines, Options, start_machines, verify
-from sssgen.lang.plain_glsl import load_glsl, preprocessed
+from sssgen.lang.plain_glsl import load_glsl, preprocess_text
 from sssgen.pipeline.compiler import transpile
 from sssgen.run import compilers
 from sssgen.run.check.handwritten import hand_written
@@ -25,7 +25,7 @@ Question = tuple[str, tuple[object, ...]]
 
 def digest(path: Path) -> str:
     """The hash of the tokens after the preprocessor: stages that differ in comments or unused macros are equal."""
-    tokens = preprocessed(read_text(path, path.name), path.name).tokens
+    tokens = preprocess_text(read_text(path, path.name), path.name).tokens
     words = [path.suffix, *(token.text for token in tokens)]
     return hashlib.sha256("\n".join(words).encode()).hexdigest()[:20]
 

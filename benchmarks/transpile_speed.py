@@ -13,7 +13,7 @@ from functools import partial
 from typing import TypeVar
 
 from sssgen.lang.check.module_checker import check_plain
-from sssgen.lang.plain_glsl import preprocessed
+from sssgen.lang.plain_glsl import preprocess_text
 from sssgen.lang.syntax.parser import parse_tokens
 from sssgen.pipeline.compiler import transpile
 from sssgen.support.diagnostics import Reporter
@@ -84,7 +84,7 @@ def stages(text: str, targets: Sequence[str]) -> dict[str, float]:
         return result
 
     for _ in range(ROUNDS):
-        words = timed("lex and preprocess", partial(preprocessed, text, FILE))
+        words = timed("lex and preprocess", partial(preprocess_text, text, FILE))
         reporter = Reporter(FILE, text, words.texts)
         tree = timed("parse", partial(parse_tokens, words.tokens, words.comments, reporter, plain=True))
         module = timed("check", partial(check_plain, tree, reporter, False))

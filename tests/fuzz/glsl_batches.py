@@ -20,7 +20,7 @@ from hlsl_in_vulkan import HLSLInVulkan
 from sssgen.ir.nodes import Module
 from sssgen.ir.types import BY_NAME
 from sssgen.lang.plain_glsl import load_glsl_text
-from sssgen.passes.reachable import only
+from sssgen.passes.reachable import keep_reachable
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.pipeline.compiler import transpile
@@ -241,9 +241,9 @@ class Runner:
             return [self.results(target, module, [case])[0] for case in cases]
         keys = {function.name: function.key for function in module.functions}
         called = [keys[case.program.entry] for case in cases]
-        module = only(module, called)
+        module = keep_reachable(module, called)
         if target == "numpy" and module.variables:
-            module = variables_to_parameters(module, called[0]).module
+            module = variables_to_parameters(module, called[0])
         closed = {function.name: function.params for function in uniforms_to_parameters(module).functions}
         compiled = self.timed(
             f"transpile {target}", lambda: transpile(module, backend.target.name, "fuzzed", keep=True, called=called)

@@ -17,7 +17,7 @@ from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.lang.polyfills import guard as guard_source
 from sssgen.lang.polyfills import polyfill
 from sssgen.material import library
-from sssgen.passes.guards import Guarded, guard
+from sssgen.passes.guards import GuardedModule, guard
 from sssgen.pipeline.compiler import GUARDS, transpile
 from sssgen.run.backends import Backend, Call, Text
 from sssgen.run.compilers import Source, errors
@@ -26,7 +26,7 @@ from sssgen.run.evaluate.probes import subject
 NAMES = sorted(library.index())
 
 
-def guarded(source: str, mode: str = "auto") -> Guarded:
+def guarded(source: str, mode: str = "auto") -> GuardedModule:
     """The module of a source; its last function is the entry point."""
     module = module_of(source)
     result = guard(module, [module.functions[-1].key], mode, guard_source, polyfill)

@@ -146,7 +146,8 @@ def test_numpy_results_are_equal_without_module_variables(random: Random, keep: 
     functions: dict[str, Any] = {}
     exec(compile(text, "numpy", "exec"), functions)
     a, b = np.array([-2.0, 0.0, 0.75, 4.0]), np.array([-1.0, 2.5, 0.0, 2.5])
-    added = variables_to_parameters(module if keep else plain_module(module)[0]).added.get(KEY, ())
+    functions_of_numpy = variables_to_parameters(module if keep else plain_module(module)[0]).functions
+    added = [param for function in functions_of_numpy if function.name == "f" for param in function.params[2:]]
     lanes = {"g": np.ones(4), "h": np.array([[2.0], [3.0]]) * np.ones(4), "k": np.zeros(4, np.int32)}
     with rt.precision(np.float64):
         result = functions["f"](a, b, *[lanes[param.name] for param in added])

@@ -42,7 +42,7 @@ def called_all(text: str, backend: Backend, names: tuple[str, ...], *args: Array
     module = module_of(text)
     keys = [function_of(module, name).key for name in names]
     if backend.target.name == "numpy" and module.variables:
-        module = variables_to_parameters(module, keys[0]).module
+        module = variables_to_parameters(module, keys[0])
     closed = uniforms_to_parameters(module)
     compiled = transpile(module, backend.target.name, "case", "none", keys, keep=True)
     text = "\n".join([text for name, text in compiled.files.items() if not name.endswith(".json")])

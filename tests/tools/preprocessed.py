@@ -7,13 +7,13 @@ from collections.abc import Mapping
 import pytest
 
 from sssgen.ir.spans import Span
-from sssgen.lang.preprocess.preprocessor import Preprocessed, preprocess
+from sssgen.lang.preprocess.preprocessor import PreprocessedText, preprocess
 from sssgen.lang.syntax.lexer import scan
 from sssgen.support.diagnostics import SssgenError, failure
 from watchdog import bounded
 
 
-def run(text: str, files: Mapping[str, str] | None = None, **defines: str) -> Preprocessed:
+def run(text: str, files: Mapping[str, str] | None = None, **defines: str) -> PreprocessedText:
     def find(name: str, place: Span, angled: bool) -> tuple[str, str]:
         key = f"<{name}>" if angled else name
         if key not in (files or {}):

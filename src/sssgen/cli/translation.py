@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 from sssgen.cli.emit import chosen_targets
 from sssgen.cli.output import print_warnings
-from sssgen.lang.plain_glsl import Loaded
+from sssgen.lang.plain_glsl import GlslFile
 from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.targets.registry import load, names
 
@@ -41,7 +41,7 @@ def macros(definitions: list[str]) -> dict[str, str]:
 
 
 def explain_renames(
-    renames: Mapping[str, str], target: str, loaded: Loaded | None, files: dict[str, str]
+    renames: Mapping[str, str], target: str, loaded: GlslFile | None, files: dict[str, str]
 ) -> list[dict[str, str]]:
     """The renames that a user sees, each with its reason."""
     return [
@@ -57,7 +57,7 @@ def title(stem: str) -> str:
     return name if name[:1].isalpha() else f"file_{name}"
 
 
-def _concerns(old: str, new: str, loaded: Loaded | None, files: dict[str, str]) -> bool:
+def _concerns(old: str, new: str, loaded: GlslFile | None, files: dict[str, str]) -> bool:
     """Whether the author wrote the name, and the output contains the new one."""
     bare = _bare(old)
     if bare in ("main", "mainImage") or bare.startswith("gl_"):

@@ -12,7 +12,7 @@ from sssgen.cli.output import CHECK_FAILED, OK, print_json, print_result
 from sssgen.cli.translation import REFLECTION, explain_renames, macros, one_target, print_changes, title
 from sssgen.ir.nodes import Module
 from sssgen.lang.loader import load_file
-from sssgen.lang.plain_glsl import Loaded, load_glsl
+from sssgen.lang.plain_glsl import GlslFile, load_glsl
 from sssgen.material.library import TECHNIQUES
 from sssgen.pipeline.as_technique import technique_file
 from sssgen.pipeline.compiler import transpile
@@ -159,7 +159,7 @@ def _wanted_target(arguments: Namespace, wrong: list[Diagnostic]) -> list[str]:
 
 
 def _translate(
-    arguments: Namespace, module: Module, loaded: Loaded | None, target: str, path: Path, partner: Module | None
+    arguments: Namespace, module: Module, loaded: GlslFile | None, target: str, path: Path, partner: Module | None
 ) -> int:
     called = None
     if arguments.prune:

@@ -7,7 +7,7 @@ from argparse import Namespace
 
 from sssgen.cli.output import OK, print_json
 from sssgen.cli.translation import explain_renames, macros, one_target, print_changes
-from sssgen.lang.plain_glsl import Loaded, load_glsl
+from sssgen.lang.plain_glsl import GlslFile, load_glsl
 from sssgen.passes.stage.stage_interface import entry_of
 from sssgen.pipeline.two_stages import Source, transpile_stages
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
@@ -25,7 +25,7 @@ def run(arguments: Namespace) -> int:
     """Writes the files of a program, or prints them as JSON. Raises SssgenError."""
     wrong = _unfit_options(arguments)
     targets = one_target(arguments.target, wrong)
-    loaded: list[Loaded] = []
+    loaded: list[GlslFile] = []
     for file in arguments.stages:
         try:
             loaded.append(load_glsl(file, posix(file), arguments.include, macros(arguments.define)))

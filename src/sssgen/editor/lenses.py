@@ -17,9 +17,9 @@ from sssgen.ir.walk import all_expressions
 from sssgen.material.model import Material
 from sssgen.passes.cost import cost_of
 from sssgen.passes.ranges.sites import Site
-from sssgen.passes.reachable import only
+from sssgen.passes.reachable import keep_reachable
 from sssgen.passes.stage.stage_interface import stage_kind
-from sssgen.pipeline.programs import analysed, library_sites, plain_module, traced_sites
+from sssgen.pipeline.programs import analyse_material, library_sites, plain_module, traced_sites
 from sssgen.run.evaluate.probes import subject
 from sssgen.targets import registry
 
@@ -74,7 +74,7 @@ def _lenses_above(functions: Iterable[Span], module: Module, sites: Sequence[Sit
 
 def _text(module: Module, key: str, sites: Sequence[Site], slots: frozenset[str] = frozenset()) -> str:
     """The cost of a function with those that it calls, and the proofs of their operations."""
-    called = only(module, [key]).functions
+    called = keep_reachable(module, [key]).functions
     places = {expr.span for function in called for expr in all_expressions(function.body or ())}
     own = [site for site in sites if site.node.span in places]
     return f"{cost_of(module, key, slots).text} · {_proof(own)}"
@@ -94,7 +94,7 @@ def _proof(sites: Sequence[Site]) -> str:
 
 def _material_lenses(document: Document, material: Material) -> list[Lens]:
     """The chain above [material], and each stage above its table."""
-    program = analysed(material, registry.load(PLAIN_TARGET), "shader")
+    program = analyse_material(material, registry.load(PLAIN_TARGET), "shader")
     tables = tables_of(document)
     lenses = []
     for table in tables:

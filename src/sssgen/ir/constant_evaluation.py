@@ -19,10 +19,10 @@ Value: TypeAlias = tuple[Any, ...]
 """The numbers of a scalar, vector or matrix (column after column); the values of an array's or struct's parts."""
 
 
-def combined(expr: ir.Expr, values: Sequence[Value]) -> Value | None:
+def combine(expr: ir.Expr, values: Sequence[Value]) -> Value | None:
     """The value of an expression of constants; None where it is not constant, or not defined."""
     if isinstance(expr, ir.Construct):
-        return tuple(values) if isinstance(expr.type, Array | Struct) else _constructed(expr, values)
+        return tuple(values) if isinstance(expr.type, Array | Struct) else _construct(expr, values)
     if isinstance(expr, ir.Unary):
         return arithmetic.unary(expr.op, values[0], kind_of(expr.type))
     if isinstance(expr, ir.Binary):
@@ -81,7 +81,7 @@ def _part(expr: ir.Expr, values: Sequence[Value]) -> Value | None:
     return part
 
 
-def _constructed(construct: ir.Construct, values: Sequence[Value]) -> Value | None:
+def _construct(construct: ir.Construct, values: Sequence[Value]) -> Value | None:
     """A scalar, vector or matrix made of these values."""
     type_, numbers = construct.type, [number for value in values for number in value]
     converted = [arithmetic.converted(number, kind_of(type_)) for number in numbers]

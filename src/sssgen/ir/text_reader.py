@@ -351,14 +351,14 @@ class _Reader:
         elif text in ("true", "false"):
             expr = ir.Literal(BOOL, text == "true", ir.NOWHERE)
         elif text == "(":
-            expr = self.parenthesized()
+            expr = self.operation()
         elif kind == "name" and text.startswith("$"):
             expr = self.of_module(text[1:])
         elif kind == "name" and (self.peek() == "{" or (self.peek() == "[" and self.peek(3) == "{")):
             self.next -= 1
             expr = ir.Construct(self.type(), self.list("{", "}"), ir.NOWHERE)
         elif kind == "name" and self.peek() == "(":
-            expr = self.inferred(ir.Intrinsic(VOID, text, self.list("(", ")"), ir.NOWHERE), text)
+            expr = self.infer(ir.Intrinsic(VOID, text, self.list("(", ")"), ir.NOWHERE), text)
         elif kind == "name":
             expr = ir.Local(self.type_of(self.locals, text), text, ir.NOWHERE)
         else:
@@ -369,10 +369,10 @@ class _Reader:
                 name = self.name()
                 is_struct = isinstance(expr.type, Struct)
                 expr = (ir.Member if is_struct else ir.Swizzle)(VOID, expr, name, ir.NOWHERE)
-                expr = self.inferred(expr, f".{name}")
+                expr = self.infer(expr, f".{name}")
             else:
                 self.expect("[")
-                expr = self.inferred(ir.Index(VOID, expr, self.expr(), ir.NOWHERE), "an index")
+                expr = self.infer(ir.Index(VOID, expr, self.expr(), ir.NOWHERE), "an index")
                 self.expect("]")
             expr = expr._replace(span=self.span())
         return expr
@@ -387,21 +387,21 @@ class _Reader:
     def no_number(self, text: str) -> ir.Literal:
         raise self.fail(f"{text} is not a number", 1)
 
-    def parenthesized(self) -> ir.Expr:
+    def operation(self) -> ir.Expr:
         """The expression after an opening parenthesis: a negation, a binary operator, or a choice."""
         if self.peek() in ("-", "!", "~"):
             op = self.kind("op")
-            return self.closed(ir.Unary(VOID, op, self.expr(), ir.NOWHERE), op)
+            return self.close(ir.Unary(VOID, op, self.expr(), ir.NOWHERE), op)
         left = self.expr()
         op = self.kind("op")
         if op == "?":
             yes = self.expr()
             self.expect(":")
-            return self.closed(ir.Select(VOID, left, yes, self.expr(), ir.NOWHERE), op)
-        return self.closed(ir.Binary(VOID, op, left, self.expr(), ir.NOWHERE), op)
+            return self.close(ir.Select(VOID, left, yes, self.expr(), ir.NOWHERE), op)
+        return self.close(ir.Binary(VOID, op, left, self.expr(), ir.NOWHERE), op)
 
-    def closed(self, expr: ir.Expr, op: str) -> ir.Expr:
-        expr = self.inferred(expr, f"'{op}'")
+    def close(self, expr: ir.Expr, op: str) -> ir.Expr:
+        expr = self.infer(expr, f"'{op}'")
         self.expect(")")
         return expr
 
@@ -417,7 +417,7 @@ class _Reader:
             raise self.fail(f"'{name}' is not declared", 1)
         return among[name]
 
-    def inferred(self, expr: ir.Expr, subject: str) -> ir.Expr:
+    def infer(self, expr: ir.Expr, subject: str) -> ir.Expr:
         """The expression with the type that follows from its operands."""
         type_ = inferred(expr)
         if type_ is None:

@@ -38,7 +38,7 @@ class LoadedModule(Module):
     key: str = ""
 
 
-Loaded = dict[str, LoadedModule]
+LoadedModules = dict[str, LoadedModule]
 """The files included so far, by their names: a file is read once per load."""
 
 
@@ -78,7 +78,7 @@ def _folders(roots: Sequence[str | os.PathLike[str]]) -> tuple[str, ...]:
 
 
 def _load(
-    text: str, name: str, folder: str, roots: tuple[str, ...], within: tuple[str, ...], loaded: Loaded
+    text: str, name: str, folder: str, roots: tuple[str, ...], within: tuple[str, ...], loaded: LoadedModules
 ) -> LoadedModule:
     """The module of a text in a folder ('' for none). `within` are the files that include it."""
     keep_lines({name: text})
@@ -88,14 +88,14 @@ def _load(
         included = merge(included, part)
         parts.append(part.key)
     key = cache.digest("\0".join(parts))
-    module = _modules.pop(key, None) or _loaded(text, name, included, key)
+    module = _modules.pop(key, None) or _cached_module(text, name, included, key)
     _modules[key] = module
     if len(_modules) > MAX_MODULES:
         _modules.pop(next(iter(_modules)))
     return module
 
 
-def _loaded(text: str, name: str, included: Module, key: str) -> LoadedModule:
+def _cached_module(text: str, name: str, included: Module, key: str) -> LoadedModule:
     """The module with this key, from the cache folder or from its text."""
     module = cache.unpickled(cache.read(f"{key}.ir"))
     if not isinstance(module, Module):
@@ -122,7 +122,7 @@ def _includes(text: str, file: str) -> dict[str, Span]:
 
 
 def _include(
-    included: str, span: Span, folder: str, roots: tuple[str, ...], within: tuple[str, ...], loaded: Loaded
+    included: str, span: Span, folder: str, roots: tuple[str, ...], within: tuple[str, ...], loaded: LoadedModules
 ) -> LoadedModule:
     """The module of a file that one in this folder includes."""
     line = source_line(span)

@@ -12,7 +12,7 @@ from sssgen.ir.spans import Span
 from sssgen.lang import shadertoy
 from sssgen.lang.assumption_comments import AssumedInput, with_assumptions
 from sssgen.lang.check.module_checker import check_plain
-from sssgen.lang.preprocess.preprocessor import Preprocessed, preprocess
+from sssgen.lang.preprocess.preprocessor import PreprocessedText, preprocess
 from sssgen.lang.source_lines import keep_lines
 from sssgen.lang.syntax.doc_comments import words_of
 from sssgen.lang.syntax.parser import parse_tokens
@@ -28,7 +28,7 @@ _GENERATED = re.compile("Made by sssgen for |Paste it below the #version")
 """The lines of a generated file comment. In a text that was translated before, the author's comment is between them."""
 
 
-class Loaded(NamedTuple):
+class GlslFile(NamedTuple):
     """A loaded file of plain GLSL."""
 
     module: Module
@@ -51,20 +51,20 @@ class Loaded(NamedTuple):
 
 def load_glsl(
     path: str | os.PathLike[str],
-    shown: str = "",
+    label: str = "",
     roots: Sequence[str | os.PathLike[str]] = (),
     defines: Mapping[str, str] | None = None,
     entry: str = "",
     assumptions: bool = False,
-) -> Loaded:
+) -> GlslFile:
     """The checked module of a GLSL file and all it includes.
 
-    `shown` is the file's name in messages; `roots` are the folders in which included files are looked for after the
+    `label` is the file's name in messages; `roots` are the folders in which included files are looked for after the
     one that they are included from; `defines` are macros; `entry` is '' or `shadertoy`; `assumptions`: comments with
     `sssgen: assume` count.
     Raises SssgenError for a missing, unreadable, too large or faulty file.
     """
-    name = shown or os.fspath(path)
+    name = label or os.fspath(path)
     return load_glsl_text(
         read_code(path, name), name, (os.path.dirname(path) or ".", *roots), defines, entry, assumptions
     )
@@ -72,49 +72,49 @@ def load_glsl(
 
 def load_glsl_text(
     text: str,
-    shown: str,
+    label: str,
     roots: Sequence[str | os.PathLike[str]] = (),
     defines: Mapping[str, str] | None = None,
     entry: str = "",
     assumptions: bool = False,
-) -> Loaded:
+) -> GlslFile:
     """The checked module of a GLSL text; see `load_glsl`."""
     if entry and entry not in ENTRIES:
         raise failure(f"unknown entry '{entry}'", did_you_mean(entry, ENTRIES) or f"entries: {', '.join(ENTRIES)}")
     finder = _Finder(roots)
     with paused():
-        loaded = _loaded(text, shown, preprocess(text, shown, finder.find, defines), entry, assumptions)
+        loaded = _load(text, label, preprocess(text, label, finder.find, defines), entry, assumptions)
     return loaded._replace(paths=finder.paths)
 
 
-def _loaded(text: str, shown: str, source: Preprocessed, entry: str, assumptions: bool) -> Loaded:
+def _load(text: str, label: str, source: PreprocessedText, entry: str, assumptions: bool) -> GlslFile:
     """Parses and checks a preprocessed text."""
     tokens = source.tokens
     assumed: list[AssumedInput] = []
     if assumptions:
-        tokens, assumed = with_assumptions(tokens, source.comments, {shown: text, **source.texts})
+        tokens, assumed = with_assumptions(tokens, source.comments, {label: text, **source.texts})
     texts = dict(source.texts)
-    texts.setdefault(shown, text)
+    texts.setdefault(label, text)
     if entry == "shadertoy":
-        tokens, added = shadertoy.with_entry(tokens, shown)
+        tokens, added = shadertoy.with_entry(tokens, label)
         texts[shadertoy.FILE] = added
     keep_lines(texts)
-    reporter = Reporter(shown, text, texts)
+    reporter = Reporter(label, text, texts)
     reporter.macros = source.expanded
-    head, rest, is_generated = _head(source, shown)
-    comments = source.comments | {shown: rest} if is_generated else source.comments
+    head, rest, is_generated = _head(source, label)
+    comments = source.comments | {label: rest} if is_generated else source.comments
     file = parse_tokens(tokens, comments, reporter, plain=True)
     if not is_generated and any("\n".join(head) in external.doc for external in file.externals):
         head = []  # it documents a declaration
-    module = check_plain(file, reporter, _is_vertex(tokens, shown))
+    module = check_plain(file, reporter, _is_vertex(tokens, label))
     ignored = [f"#extension {name}" for name in source.extensions] + [f"#pragma {name}" for name in source.pragmas]
-    return Loaded(module, source.version, texts, source.macros, ignored, reporter.warnings, [], head, assumed)
+    return GlslFile(module, source.version, texts, source.macros, ignored, reporter.warnings, [], head, assumed)
 
 
-def _head(source: Preprocessed, shown: str) -> tuple[list[str], list[Comment], bool]:
+def _head(source: PreprocessedText, label: str) -> tuple[list[str], list[Comment], bool]:
     """The text of the comments at the top of a file, the other comments, and whether the first are generated."""
-    comments = source.comments.get(shown, [])
-    above = source.texts[shown].split("\n")[: comments[0].first - 1] if comments else []
+    comments = source.comments.get(label, [])
+    above = source.texts[label].split("\n")[: comments[0].first - 1] if comments else []
     count = 0
     while count < len(comments) and not any(line.strip() for line in above):
         if count and comments[count].first > comments[count - 1].last + 1:
@@ -128,14 +128,14 @@ def _head(source: Preprocessed, shown: str) -> tuple[list[str], list[Comment], b
     return (text.split("\n") if text else []), comments[count:], bool(generated)
 
 
-def preprocessed(text: str, shown: str, roots: Sequence[str | os.PathLike[str]] = ()) -> Preprocessed:
+def preprocess_text(text: str, label: str, roots: Sequence[str | os.PathLike[str]] = ()) -> PreprocessedText:
     """The tokens of a text and of what it includes; see `load_glsl`."""
-    return preprocess(text, shown, _Finder(roots).find)
+    return preprocess(text, label, _Finder(roots).find)
 
 
-def _is_vertex(tokens: Sequence[Token], shown: str) -> bool:
+def _is_vertex(tokens: Sequence[Token], label: str) -> bool:
     """Whether a file is a vertex shader: by its name, else by variables that only vertex shaders have."""
-    suffix = os.path.splitext(shown)[1]
+    suffix = os.path.splitext(label)[1]
     if suffix in (".vert", ".vs", ".frag", ".fs"):
         return suffix in (".vert", ".vs")
     return any(token.text == "gl_Position" or token.type == "ATTRIBUTE" for token in tokens)
@@ -155,10 +155,10 @@ class _Finder:
         for root in dict.fromkeys((own, *self.roots)):
             path = os.path.join(root, name)
             if os.path.isfile(path):
-                shown = os.path.normpath(os.path.relpath(path, self.roots[0])) if self.roots else name
-                shown = shown.replace(os.sep, "/")
-                self.folders[shown] = os.path.dirname(path)
+                label = os.path.normpath(os.path.relpath(path, self.roots[0])) if self.roots else name
+                label = label.replace(os.sep, "/")
+                self.folders[label] = os.path.dirname(path)
                 self.paths.append(path)
-                return shown, read_code(path, shown)
+                return label, read_code(path, label)
         hint = "it is searched for next to the file and in the folders of -I"
         raise SssgenError([Diagnostic("error", f"cannot find '{name}' to include", place, hint)])

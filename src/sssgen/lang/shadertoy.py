@@ -35,7 +35,7 @@ void main() {
 """
 
 
-def with_entry(tokens: Sequence[Token], shown: str) -> tuple[list[Token], str]:
+def with_entry(tokens: Sequence[Token], label: str) -> tuple[list[Token], str]:
     """A file's tokens between its uniforms and its `main()`, and the text that was added.
 
     Raises SssgenError for a file without a mainImage.
@@ -43,7 +43,7 @@ def with_entry(tokens: Sequence[Token], shown: str) -> tuple[list[Token], str]:
     names = {token.text for token in tokens if token.type == "NAME"}
     if "mainImage" not in names:
         hint = "write void mainImage(out vec4 color, in vec2 coordinates) { … }"
-        raise failure("there is no mainImage in this file", hint, shown)
+        raise failure("there is no mainImage in this file", hint, label)
     own = {
         tokens[index + 2].text
         for index, token in enumerate(tokens[:-2])

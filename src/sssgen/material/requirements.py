@@ -11,9 +11,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from sssgen.ir.baked_textures import is_baked, is_volume
-from sssgen.ir.drawn import BACK_FACES, CUBES, DISTANT, LAYERS, LIGHT, SHADOW
 from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.ir.types import Sampler
+from sssgen.ir.view_textures import BACK_FACES, CUBES, DISTANT, LAYERS, LIGHT, SHADOW
 from sssgen.material import attributes
 from sssgen.material.attributes import REQUIREMENTS, Attributes, Bake
 from sssgen.material.model import TechniqueUse

@@ -7,9 +7,8 @@ Place: after `conversions` and `prune`, which leave them; before `guards`, whose
 from __future__ import annotations
 
 from collections import Counter
-from typing import Any
 
-from sssgen.ir.nodes import Block, Declare, Local, Module, Stmt
+from sssgen.ir.nodes import Block, Declare, Expr, Local, Module, Stmt
 from sssgen.ir.transform import Transformer
 from sssgen.passes.scopes import assigned, declared, outs_of
 
@@ -56,7 +55,7 @@ class _Finder(Transformer):
                 self.last[first] = stmt.name
         return stmt
 
-    def expression(self, expr: Any) -> Any:
+    def expression(self, expr: Expr) -> Expr:
         return expr
 
 
@@ -72,8 +71,8 @@ class _Merger(Transformer):
             return None
         return super().declare(stmt._replace(name=self.aliases.last.get(stmt.name, stmt.name)))
 
-    def expression(self, expr: Any) -> Any:
-        if type(expr) is not Local:
+    def expression(self, expr: Expr) -> Expr:
+        if not isinstance(expr, Local):
             return super().expression(expr)
         first = self.aliases.first.get(expr.name, expr.name)
         return expr._replace(name=self.aliases.last.get(first, first))

@@ -19,7 +19,7 @@ def only_argument(value: Construct, index: int) -> Expr | None:
     return None if dropped else value.args[index]
 
 
-def picked(value: Construct, indices: list[int], type: Type, span: Span) -> Expr | None:
+def pick_components(value: Construct, indices: list[int], type: Type, span: Span) -> Expr | None:
     """Components of an assembled vector, without assembling it; None where that is not simpler."""
     constant = constant_numbers(value)
     if constant is not None:
@@ -41,11 +41,11 @@ def picked(value: Construct, indices: list[int], type: Type, span: Span) -> Expr
         repeated = used.count(number) > 1 and not isinstance(arg, Local | Global | Literal)
         if repeated or (number not in used and calls(arg)):
             return None
-    pieces = [_piece(value.args[number], parts, span) for number, parts in groups]
+    pieces = [components_at(value.args[number], parts, span) for number, parts in groups]
     return pieces[0] if len(pieces) == 1 else Construct(type, tuple(pieces), span)
 
 
-def _piece(arg: Expr, parts: list[int], span: Span) -> Expr:
+def components_at(arg: Expr, parts: list[int], span: Span) -> Expr:
     """Some components of a vector, or the scalar itself."""
     if not isinstance(arg.type, Vector) or parts == list(range(arg.type.size)):
         return arg

@@ -14,7 +14,9 @@ from sssgen.passes.constructed_parts import calls
 def drop_conversions(module: Module) -> Module:
     """The module with the argument in place of each call of a conversion. The functions themselves remain."""
     converted = {
-        function.key: position for function in module.functions if (position := _converted(function)) is not None
+        function.key: position
+        for function in module.functions
+        if (position := _returned_position(function)) is not None
     }
     if not converted:
         return module
@@ -29,7 +31,7 @@ def drop_conversions(module: Module) -> Module:
     return rewrite_module(module, change, _without_idle_calls)
 
 
-def _converted(function: Function) -> int | None:
+def _returned_position(function: Function) -> int | None:
     """The position of the parameter that a conversion returns; None for any other function."""
     body = function.body or ()
     value = body[0].value if len(body) == 1 and isinstance(body[0], Return) else None

@@ -42,12 +42,7 @@ class Cost(NamedTuple):
         return ", ".join(f"{n} {one if n == 1 else many}" for one, many, n in kinds if n or many == "operations")
 
     def plus(self, other: Cost, times: int = 1) -> Cost:
-        return Cost(
-            self.operations + times * other.operations,
-            self.transcendentals + times * other.transcendentals,
-            self.fetches + times * other.fetches,
-            self.distance_evaluations + times * other.distance_evaluations,
-        )
+        return Cost(*[own + times * more for own, more in zip(self, other, strict=True)])
 
 
 _NOTHING = Cost()

@@ -24,7 +24,7 @@ class Needs(NamedTuple):
     types: set[Type]
 
 
-class Cleaned(NamedTuple):
+class CleanFunction(NamedTuple):
     function: ir.Function
     needs: Needs
     acts: bool
@@ -55,27 +55,27 @@ class Cleaner:
 
     def __init__(self, module: ir.Module) -> None:
         self.functions = {function.key: function for function in module.functions}
-        self.done: dict[str, Cleaned] = {}
+        self.results: dict[str, CleanFunction] = {}
         self.outs = outs_of(module.functions)
 
-    def cleaned(self, key: str) -> Cleaned:
-        cleaned = self.done.get(key)
+    def clean(self, key: str) -> CleanFunction:
+        cleaned = self.results.get(key)
         if cleaned is None:
             function = self.functions[key]
-            self.done[key] = Cleaned(function, Needs({}, set(), set()), True)
-            cleaned = self.done[key] = FunctionCleaner(self, function).run()
+            self.results[key] = CleanFunction(function, Needs({}, set(), set()), True)
+            cleaned = self.results[key] = FunctionCleaner(self, function).run()
         return cleaned
 
     def reads(self, key: str) -> set[str]:
         """The uniforms, textures and constants that a function and its callees read."""
         if key not in self.functions:
             return set()
-        needs = self.cleaned(key).needs
+        needs = self.clean(key).needs
         return needs.globals.union(*(self.reads(callee) for callee in needs.calls))
 
     def acts(self, key: str) -> bool:
         """Whether a call may drop the fragment or write a module variable; so may an unknown function."""
-        return key not in self.functions or self.cleaned(key).acts
+        return key not in self.functions or self.clean(key).acts
 
 
 class FunctionCleaner:
@@ -97,7 +97,7 @@ class FunctionCleaner:
         self.units: list[Unit] = []
         self.acts = function.body is None
 
-    def run(self) -> Cleaned:
+    def run(self) -> CleanFunction:
         function = self.function
         for param in function.params:
             self.number(param.name, param.direction != "in")
@@ -110,7 +110,7 @@ class FunctionCleaner:
         body = self.rebuild(units, function.body or (), needs)
         if function.body is not None and body is not function.body:
             function = function._replace(body=body)
-        return Cleaned(function, needs, self.acts)
+        return CleanFunction(function, needs, self.acts)
 
     def keep_assumptions(self) -> None:
         """Keeps the assumptions about values that are live without them."""
@@ -257,7 +257,7 @@ class FunctionCleaner:
                 then = self.rebuild(unit.then, stmt.then, needs)
                 otherwise = self.rebuild(unit.otherwise, stmt.otherwise, needs)
                 if otherwise and not then:
-                    new = ir.If(_negated(stmt.condition), otherwise, (), stmt.span)
+                    new = ir.If(_negate(stmt.condition), otherwise, (), stmt.span)
                 elif then is not stmt.then or otherwise is not stmt.otherwise:
                     new = ir.If(stmt.condition, then, otherwise, stmt.span)
             elif isinstance(stmt, ir.For):
@@ -278,7 +278,7 @@ class FunctionCleaner:
 _OPPOSITE = {"==": "!=", "!=": "=="}
 
 
-def _negated(condition: ir.Expr) -> ir.Expr:
+def _negate(condition: ir.Expr) -> ir.Expr:
     """The opposite of a condition. `<` has none among the operators, because of NaN."""
     if isinstance(condition, ir.Unary) and condition.op == "!":
         return condition.operand

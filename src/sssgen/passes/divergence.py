@@ -101,7 +101,7 @@ class CallContext(NamedTuple):
     """The parameters that vary."""
 
 
-def joined(first: CallContext | None, second: CallContext) -> CallContext:
+def join(first: CallContext | None, second: CallContext) -> CallContext:
     """Both sites taken together."""
     return second if first is None else CallContext(first.uniform and second.uniform, first.varying | second.varying)
 
@@ -241,10 +241,10 @@ class Divergence:
             return expr.name in self.shared
         if isinstance(expr, ir.Binary) and expr.op in ("&&", "||"):
             left = self.varies(expr.left)
-            return self.apart(left, (expr.right,)) or left
+            return self.visit_arms(left, (expr.right,)) or left
         if isinstance(expr, ir.Select):
             condition = self.varies(expr.condition)
-            return self.apart(condition, (expr.yes, expr.no)) or condition
+            return self.visit_arms(condition, (expr.yes, expr.no)) or condition
         parts = [self.varies(operand) for operand in operands(expr)]
         if isinstance(expr, ir.Intrinsic):
             if expr.name in implicit():
@@ -260,7 +260,7 @@ class Divergence:
             self.misplaced.add(id(expr))
             self.hits += 1
 
-    def apart(self, condition: bool, exprs: Iterable[ir.Expr]) -> bool:
+    def visit_arms(self, condition: bool, exprs: Iterable[ir.Expr]) -> bool:
         """Looks at expressions that are evaluated on a condition."""
         before, escapes = self.flow, self.escapes
         self.flow = before and not condition
@@ -275,7 +275,7 @@ class Divergence:
             self.compare(expr)
             params = self.functions[expr.function].params
             site = CallContext(self.flow, frozenset(param.name for param, arg in zip(params, args, strict=True) if arg))
-            self.sites[expr.function] = joined(self.sites.get(expr.function), site)
+            self.sites[expr.function] = join(self.sites.get(expr.function), site)
         for index in summary.outs:
             target = root(expr.args[index])
             if target is not None:

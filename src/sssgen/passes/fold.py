@@ -22,7 +22,7 @@ from sssgen.ir.rules import element_type
 from sssgen.ir.transform import Transformer, rewrite
 from sssgen.ir.types import BOOL, Matrix, Scalar, Struct, Vector, kind_of
 from sssgen.ir.walk import operands
-from sssgen.passes.constructed_parts import calls, only_argument, picked
+from sssgen.passes.constructed_parts import calls, only_argument, pick_components
 from sssgen.passes.scopes import separate
 
 
@@ -149,18 +149,18 @@ class _Folder(Transformer):
 
     def condition(self, condition: ir.Expr) -> ir.Expr:
         """A condition, as a literal where the module's constants decide it."""
-        return self.settled(self.expression(condition))
+        return self.decide(self.expression(condition))
 
-    def settled(self, condition: ir.Expr) -> ir.Expr:
+    def decide(self, condition: ir.Expr) -> ir.Expr:
         if isinstance(condition, ir.Literal) or not self.constants:
             return condition
         substituted = self.with_constants(condition)
         if substituted is condition or isinstance(substituted, ir.Literal):
             return substituted
         if isinstance(condition, ir.Binary) and condition.op in ("&&", "||"):
-            left, right = self.settled(condition.left), self.settled(condition.right)
+            left, right = self.decide(condition.left), self.decide(condition.right)
             if left is not condition.left or right is not condition.right:
-                return self.simplified(condition._replace(left=left, right=right))
+                return self.simplify(condition._replace(left=left, right=right))
         return condition
 
     # Expressions
@@ -189,10 +189,10 @@ class _Folder(Transformer):
             or left_kind is ir.Construct
             or right_kind is ir.Construct
         ):
-            return self.simplified(expr)
+            return self.simplify(expr)
         return expr
 
-    def simplified(self, expr: ir.Binary) -> ir.Expr:
+    def simplify(self, expr: ir.Binary) -> ir.Expr:
         """The value of an operator with a constant operand or two, where that is simpler."""
         op, left, right = expr.op, expr.left, expr.right
         x, y = constant_numbers(left), constant_numbers(right)
@@ -277,7 +277,7 @@ class _Folder(Transformer):
         if value.type == expr.type and letters == "xyzw"[: len(letters)]:
             return value
         if isinstance(value, ir.Construct):
-            parts = picked(value, ["xyzw".index(letter) for letter in letters], expr.type, expr.span)
+            parts = pick_components(value, ["xyzw".index(letter) for letter in letters], expr.type, expr.span)
             if parts is not None:
                 return parts
         if value is expr.value and letters == expr.components:
@@ -298,7 +298,7 @@ class _Folder(Transformer):
         if isinstance(value, ir.Construct):
             place = int(index.value)
             if isinstance(value.type, Vector):
-                return picked(value, [place], expr.type, expr.span) or new
+                return pick_components(value, [place], expr.type, expr.span) or new
             if len(value.args) == last + 1 and all(arg.type == expr.type for arg in value.args):
                 return only_argument(value, place) or new
         return new

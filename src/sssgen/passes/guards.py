@@ -19,14 +19,14 @@ from sssgen.ir.types import BOOL, FLOAT, UINT, Matrix, Type, components, kind_of
 from sssgen.ir.walk import operands, subexpressions, with_operands
 from sssgen.passes.ranges.range_pass import Findings, analyse
 from sssgen.passes.ranges.sites import DIVISION, ELEMENT, WHOLE_DIVISION, Site
-from sssgen.passes.substitute import inlined, with_larger_bound
+from sssgen.passes.substitute import inline, with_larger_bound
 
 Source = Callable[[Guard, str, Sequence[Type], Type, Format, tuple[float, float]], tuple[ir.Module, str]]
 """Returns the module of a guard's function, and the letters of the arguments that it takes."""
 Polyfill = Callable[[str, Sequence[Type]], ir.Module]
 
 
-class Guarded(NamedTuple):
+class GuardedModule(NamedTuple):
     """A module with its guards."""
 
     module: ir.Module
@@ -39,22 +39,22 @@ class Guarded(NamedTuple):
 def guard(
     module: ir.Module, roots: Iterable[str], mode: str, source: Source, polyfill: Polyfill, format: Format = FLOAT32,
     at: Callable[[Site], str] | None = None, chained: bool = True,
-) -> Guarded:  # fmt: skip
+) -> GuardedModule:  # fmt: skip
     """The module with guards where `mode` wants them: `auto` those that are needed, `all` everywhere, `none`.
 
     `roots` are the keys of the functions called from outside. `at` decides about each guard: `keep`, `drop`, or
     `poison`: NaN wherever the guard would change anything, which shows whether that is reached.
     """
     if mode == "none":
-        return Guarded(_without_assumptions(module), [], [])
+        return GuardedModule(_without_assumptions(module), [], [])
     findings = analyse(module, roots, format, chained)
     chosen = [site for site in findings.sites if mode == "all" or not site.proven]
     poisoned = {id(site) for site in chosen if at is not None and at(site) == "poison"}
     chosen = [site for site in chosen if at is None or at(site) != "drop"]
     if not chosen:
-        return Guarded(_without_assumptions(module), findings.sites, [])
+        return GuardedModule(_without_assumptions(module), findings.sites, [])
     guarder = _Guarder(module, findings, chosen, poisoned, source, polyfill, format)
-    return Guarded(guarder.run(), findings.sites, chosen)
+    return GuardedModule(guarder.run(), findings.sites, chosen)
 
 
 def _without_assumptions(module: ir.Module) -> ir.Module:
@@ -127,7 +127,7 @@ class _Guarder(Transformer):
         types = [arg.type for arg in args]
         module, letters = self.source(guard, name, types, node.type, self.format, site.limits)
         passed = (node,) if guard.replaces == "result" else tuple([args["xyz".index(letter)] for letter in letters])
-        safe = with_larger_bound(module, passed) or inlined(module, passed, node.span, may_repeat=bool(guard.replaces))
+        safe = with_larger_bound(module, passed) or inline(module, passed, node.span, may_repeat=bool(guard.replaces))
         if safe is None:
             function = self.helper(module.functions[-1])
             safe = ir.Call(function.result, function.key, passed, node.span)

@@ -28,7 +28,7 @@ from sssgen.ir.walk import (
     with_operands,
     written_root,
 )
-from sssgen.passes.divergence import CallContext, Divergence, Summary, implicit, joined, summaries
+from sssgen.passes.divergence import CallContext, Divergence, Summary, implicit, join, summaries
 from sssgen.passes.explicit_levels import at_level
 from sssgen.passes.scopes import claim, declared, qualified_name
 from sssgen.passes.unsupported import Note
@@ -58,7 +58,7 @@ def hoist(module: ir.Module, entries: Iterable[str]) -> tuple[ir.Module, list[No
             functions[key] = function = _Hoister(function, sites[key], flow, summary_of, notes).run()
             flow = Divergence(function, sites[key], summary_of, functions)
         for callee, site in flow.sites.items():
-            sites[callee] = joined(sites.get(callee), site)
+            sites[callee] = join(sites.get(callee), site)
     changed = any(functions[function.key] is not function for function in module.functions)
     if changed:
         module = module._replace(functions=tuple([functions[function.key] for function in module.functions]))
@@ -142,16 +142,16 @@ class _Hoister(Transformer):
         out: list[ir.Stmt] = []
         for index, stmt in enumerate(block):
             if self.region is not None:
-                out.append(self.rewritten(stmt))
+                out.append(self.rewrite_statement(stmt))
                 continue
             region = _Region(self.scope)
             if id(stmt) in self.flow.inside:
                 self.region = region
-                new = self.rewritten(stmt)
+                new = self.rewrite_statement(stmt)
                 self.region = None
             else:
-                new = self.rewritten(stmt)
-                region.change(self.assigned((stmt,)))
+                new = self.rewrite_statement(stmt)
+                region.change(self.changes_of((stmt,)))
             if id(stmt) in self.flow.after:
                 self.region = region
                 rest = self.sequence(block[index + 1 :])
@@ -160,7 +160,7 @@ class _Hoister(Transformer):
             out += [*region.hoisted, new]
         return out
 
-    def rewritten(self, stmt: ir.Stmt) -> ir.Stmt:
+    def rewrite_statement(self, stmt: ir.Stmt) -> ir.Stmt:
         new = self.statement(stmt)
         assert new is not None
         return new
@@ -171,7 +171,7 @@ class _Hoister(Transformer):
         self.depths[stmt.name] = self.depth
         if self.region is not None:
             self.region.starts.pop(stmt.name, None)
-            earlier = self.before(new.value) if new.value is not None else None
+            earlier = self.earlier_value(new.value) if new.value is not None else None
             self.define(stmt.name, earlier)
             if earlier is not None:
                 self.region.starts[stmt.name] = earlier
@@ -185,12 +185,12 @@ class _Hoister(Transformer):
 
     def for_loop(self, stmt: ir.For) -> ir.Stmt | None:
         if self.region is not None:
-            self.region.change(self.assigned((stmt,)))
+            self.region.change(self.changes_of((stmt,)))
         return super().for_loop(stmt)
 
     def while_loop(self, stmt: ir.While) -> ir.Stmt | None:
         if self.region is not None:
-            self.region.change(self.assigned((stmt,)))
+            self.region.change(self.changes_of((stmt,)))
         return super().while_loop(stmt)
 
     def header(self, stmt: ir.Stmt | None) -> ir.Stmt | None:
@@ -219,13 +219,13 @@ class _Hoister(Transformer):
         elif target is variable and self.depths.get(variable.name, 0) == self.depth:
             if op:
                 value = ir.Binary(target.type, op, target, value, target.span)
-            earlier = self.before(value)
+            earlier = self.earlier_value(value)
             self.region.change((variable.name,))
             self.define(variable.name, earlier)
         else:
             self.region.change((variable.name,))
 
-    def assigned(self, block: ir.Block) -> set[str]:
+    def changes_of(self, block: ir.Block) -> set[str]:
         """The variables that a block may change."""
         names = set()
         for stmt in statements(block):
@@ -234,10 +234,10 @@ class _Hoister(Transformer):
                 names.add(qualified_name(target))
         for expr in all_expressions(block):
             if isinstance(expr, ir.Call):
-                names |= self.written(expr)
+                names |= self.writes_of(expr)
         return names
 
-    def written(self, call: ir.Call) -> set[str]:
+    def writes_of(self, call: ir.Call) -> set[str]:
         summary = self.summaries[call.function]
         targets = [written_root(call.args[index]) for index in summary.outs]
         return {qualified_name(target) for target in targets if target is not None}.union(
@@ -251,16 +251,16 @@ class _Hoister(Transformer):
         changed = super().expression(expr)
         if id(expr) in self.flow.misplaced:
             assert isinstance(changed, ir.Call | ir.Intrinsic)
-            earlier = self.before(changed)
+            earlier = self.earlier_value(changed)
             if earlier is not None:
                 return self.hoisted(earlier, _base_name(changed), expr.span)
             if isinstance(changed, ir.Intrinsic):
-                return self.explicit(changed)
+                return self.with_level(changed)
         if self.region is not None and isinstance(expr, ir.Call):
-            self.region.change(self.written(expr))
+            self.region.change(self.writes_of(expr))
         return changed
 
-    def before(self, expr: ir.Expr) -> ir.Expr | None:
+    def earlier_value(self, expr: ir.Expr) -> ir.Expr | None:
         """An expression with the same value before the region, or None if there is none."""
         region = self.region
         if region is None or not region.reachable:
@@ -275,9 +275,9 @@ class _Hoister(Transformer):
             called = self.summaries[expr.function]
             if not called.pure or not region.changed.isdisjoint(map("${}".format, called.reads)):
                 return None
-        return self.over(expr, [self.before(operand) for operand in operands(expr)])
+        return self.rebuild(expr, [self.earlier_value(operand) for operand in operands(expr)])
 
-    def over(self, expr: ir.Expr, new: list[ir.Expr | None]) -> ir.Expr | None:
+    def rebuild(self, expr: ir.Expr, new: list[ir.Expr | None]) -> ir.Expr | None:
         """`expr` with other operands, or None where one is missing."""
         if not new:
             return expr
@@ -300,7 +300,7 @@ class _Hoister(Transformer):
 
     # The level made explicit
 
-    def explicit(self, expr: ir.Intrinsic) -> ir.Expr:
+    def with_level(self, expr: ir.Intrinsic) -> ir.Expr:
         """A builtin that cannot be moved, without the comparison of neighbours."""
         row = BUILTINS[expr.name]
         if row.kind == "derivative":
@@ -311,7 +311,7 @@ class _Hoister(Transformer):
         if row.with_level is None or not row.with_gradients:
             return expr  # no such builtin has an explicit level
         offset, bias = others[: len(row.constant)], others[len(row.constant) :]
-        coordinates = self.start(coordinate) if not map_.type.shadow else None
+        coordinates = self.start_value(coordinate) if not map_.type.shadow else None
         if coordinates is None or not any(map(self.may_vary, subexpressions(coordinates))):
             read = at_level(expr, bias[0] if bias else ir.Literal(FLOAT, 0.0, expr.span))
             if read is None:
@@ -336,7 +336,7 @@ class _Hoister(Transformer):
         """Whether it is a variable, of the function or of the module."""
         return isinstance(part, ir.Local) or (isinstance(part, ir.Global) and part.name in self.shared)
 
-    def start(self, expr: ir.Expr) -> ir.Expr | None:
+    def start_value(self, expr: ir.Expr) -> ir.Expr | None:
         """The value that coordinates have before the region; unknown terms of a sum are omitted."""
         region = self.region
         if region is None or not region.reachable:
@@ -345,13 +345,13 @@ class _Hoister(Transformer):
             return expr if expr.name in region.available else region.starts.get(expr.name)
         if isinstance(expr, ir.Call) and not self.summaries[expr.function].pure:
             return None
-        parts = [self.start(operand) for operand in operands(expr)]
+        parts = [self.start_value(operand) for operand in operands(expr)]
         if isinstance(expr, ir.Binary) and expr.op in ("+", "-"):
             left, right = parts
             if left is None or right is None:
                 term = left if left is not None else right
                 return term if term is not None and term.type == expr.type else None
-        return self.over(expr, parts)
+        return self.rebuild(expr, parts)
 
     def note(self, message: str, span: ir.Span) -> None:
         reason = "neighbouring pixels may take another branch"

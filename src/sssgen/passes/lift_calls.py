@@ -75,7 +75,7 @@ def lift(function: ir.Function, calls: Calls) -> ir.Function:
     return _Lifter(function, calls).run()
 
 
-def awkward(function: ir.Function, calls: Calls) -> list[ir.Stmt]:
+def order_conflicts(function: ir.Function, calls: Calls) -> list[ir.Stmt]:
     """The statements in which a writing call is inside a larger expression, or is passed one variable twice.
 
     Languages differ there in the order of evaluation, and in whether the right side of `&&` and both arms of a choice
@@ -101,7 +101,7 @@ def reads_too_late(function: ir.Function, calls: Calls) -> bool:
     lifter = _Lifter(function, calls)
     return any(
         (isinstance(stmt, ir.Assign) and bool(stmt.op) and lifter.meets(stmt))
-        or any(map(lifter.late, expressions(stmt)))
+        or any(map(lifter.reads_late, expressions(stmt)))
         for stmt in statements(function.body or ())
     )
 
@@ -131,7 +131,7 @@ def _announce_discard(function: ir.Function, functions: Functions, taken: set[st
     return new
 
 
-def _read(expr: ir.Expr) -> list[str]:
+def _variables_in(expr: ir.Expr) -> list[str]:
     """The variables that an expression mentions."""
     return [qualified_name(part) for part in subexpressions(expr) if isinstance(part, ir.Local | ir.Global)]
 
@@ -178,8 +178,8 @@ class _Lifter(Transformer):
         value = stmt.value
         if not self.writes(value) and not self.writes(stmt.target):
             return stmt
-        pinned = any(map(self.written(value).__contains__, _read(stmt.target)))
-        target = self.expression(self.pinned(stmt.target) if pinned else stmt.target)
+        pinned = any(map(self.writes_of(value).__contains__, _variables_in(stmt.target)))
+        target = self.expression(self.pin(stmt.target) if pinned else stmt.target)
         if stmt.op and self.meets(stmt):  # the old value is read before the calls change it
             value = ir.Binary(target.type, stmt.op, target, value, stmt.span)
             return ir.Assign(target, "", self.expression(value), stmt.span)
@@ -220,7 +220,7 @@ class _Lifter(Transformer):
         params = self.functions[call.function].params
         return [arg for arg, param in zip(call.args, params, strict=False) if param.direction != "in"]
 
-    def written_places(self, call: ir.Call) -> set[str]:
+    def out_variables(self, call: ir.Call) -> set[str]:
         """The variables that the out arguments of a call are parts of, the module's as `$name`."""
         return {qualified_name(place) for place in map(written_root, self.places(call)) if place is not None}
 
@@ -235,12 +235,12 @@ class _Lifter(Transformer):
             return False
         effect = self.shared.get(call.function, NONE)
         used = {f"${name}" for name in effect.reads | effect.writes}
-        return self.meet_each_other(call) or not used.isdisjoint(self.written_places(call) if used else ())
+        return self.meet_each_other(call) or not used.isdisjoint(self.out_variables(call) if used else ())
 
     def meets(self, stmt: ir.Assign) -> bool:
         """Whether an assignment's value also writes what the assignment writes."""
         target = written_root(stmt.target)
-        return target is not None and qualified_name(target) in self.written(stmt.value)
+        return target is not None and qualified_name(target) in self.writes_of(stmt.value)
 
     def expression(self, expr: ir.Expr) -> ir.Expr:
         """The expression without its writing calls, which are executed before it."""
@@ -259,18 +259,18 @@ class _Lifter(Transformer):
             return result
         return with_operands(expr, tuple(self.in_order(operands(expr))))
 
-    def written(self, expr: ir.Expr) -> set[str]:
+    def writes_of(self, expr: ir.Expr) -> set[str]:
         """The variables that the calls in an expression change, the module's as `$name`."""
         names: set[str] = set()
         for part in subexpressions(expr) if self.writes(expr) else ():
             if isinstance(part, ir.Call):
-                names.update(self.written_places(part))
+                names.update(self.out_variables(part))
                 names.update(map("${}".format, self.shared.get(part.function, NONE).writes))
         return names
 
-    def read(self, expr: ir.Expr) -> set[str]:
+    def reads_of(self, expr: ir.Expr) -> set[str]:
         """The variables that an expression and its calls read, the module's as `$name`."""
-        names = set(_read(expr))
+        names = set(_variables_in(expr))
         for part in subexpressions(expr):
             if isinstance(part, ir.Call):
                 names.update(map("${}".format, self.shared.get(part.function, NONE).reads))
@@ -278,26 +278,26 @@ class _Lifter(Transformer):
 
     def in_order(self, exprs: tuple[ir.Expr, ...]) -> list[ir.Expr]:
         """Expressions evaluated from left to right: a variable that a later one changes is read before."""
-        return [self.before(expr, exprs[index + 1 :]) for index, expr in enumerate(exprs)]
+        return [self.read_before(expr, exprs[index + 1 :]) for index, expr in enumerate(exprs)]
 
-    def before(self, expr: ir.Expr, others: tuple[ir.Expr, ...]) -> ir.Expr:
+    def read_before(self, expr: ir.Expr, others: tuple[ir.Expr, ...]) -> ir.Expr:
         """An expression's value, read before those that are evaluated later can change it."""
-        later = {name for other in others if self.writes(other) for name in self.written(other)}
+        later = {name for other in others if self.writes(other) for name in self.writes_of(other)}
         value = self.expression(expr)
-        if later and later & self.read(value):
+        if later and later & self.reads_of(value):
             kept = self.local(value.type, "before", value.span)
             self.out.append(ir.Declare(kept.name, kept.type, value, value.span))
             value = kept
         return value
 
-    def late(self, expr: ir.Expr) -> bool:
+    def reads_late(self, expr: ir.Expr) -> bool:
         """Whether an operand inside the expression reads a variable that a call to its right writes."""
         if not self.writes(expr):
             return False
         parts = operands(expr)
         return any(
-            self.late(part)
-            or not self.written(part).isdisjoint(name for earlier in parts[:index] for name in _read(earlier))
+            self.reads_late(part)
+            or not self.writes_of(part).isdisjoint(name for earlier in parts[:index] for name in _variables_in(earlier))
             for index, part in enumerate(parts)
         )
 
@@ -320,9 +320,9 @@ class _Lifter(Transformer):
         copied = self.meet_each_other(call)
         for index, (arg, param) in enumerate(zip(call.args, function.params, strict=False)):
             if param.direction == "in":
-                arg = self.before(arg, call.args[index + 1 :])
+                arg = self.read_before(arg, call.args[index + 1 :])
             elif copied or not isinstance(arg, ir.Local):
-                place = self.expression(self.pinned(arg))
+                place = self.expression(self.pin(arg))
                 arg = self.local(arg.type, param.name, arg.span)
                 value = place if param.direction == "inout" else None
                 copies.append(ir.Declare(arg.name, arg.type, value, arg.span))
@@ -336,15 +336,15 @@ class _Lifter(Transformer):
             after.append(ir.If(discarded, (ir.Discard(call.span),), (), call.span))
         return ir.Call(call.type, function.key, tuple(args), call.span), after
 
-    def pinned(self, place: ir.Expr) -> ir.Expr:
+    def pin(self, place: ir.Expr) -> ir.Expr:
         """A place to write to, with its indices computed now, as the call may change their values."""
         if isinstance(place, ir.Swizzle | ir.Member):
-            return place._replace(value=self.pinned(place.value))
+            return place._replace(value=self.pin(place.value))
         if isinstance(place, ir.Index):
             index = self.expression(place.index)
             if not isinstance(index, ir.Literal):
                 copy = self.local(index.type, "place", index.span)
                 self.out.append(ir.Declare(copy.name, copy.type, index, index.span))
                 index = copy
-            return place._replace(value=self.pinned(place.value), index=index)
+            return place._replace(value=self.pin(place.value), index=index)
         return place

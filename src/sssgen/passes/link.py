@@ -36,7 +36,7 @@ class LinkInput(NamedTuple):
     """Uniforms that the material folds into the text."""
 
 
-class Linked(NamedTuple):
+class LinkedModule(NamedTuple):
     """One module for all stages."""
 
     module: Module
@@ -58,7 +58,7 @@ class LinkError(Exception):
         self.message, self.span, self.hint = message, span, hint
 
 
-def link(stages: Sequence[LinkInput], taken: Collection[str] = ()) -> Linked:
+def link(stages: Sequence[LinkInput], taken: Collection[str] = ()) -> LinkedModule:
     """Links the stages; no struct, uniform, constant or function gets a name that is `taken`.
 
     Raises LinkError for an unbound slot or two structs of one name.
@@ -71,7 +71,7 @@ def link(stages: Sequence[LinkInput], taken: Collection[str] = ()) -> Linked:
         tuple(linker.uniforms.values()),
         tuple(linker.functions.values()),
     )
-    return Linked(module, functions, linker.fixed, linker.owners, linker.settings)
+    return LinkedModule(module, functions, linker.fixed, linker.owners, linker.settings)
 
 
 class _Linker:

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.transform import rewrite
-from sssgen.ir.types import VEC4, Array, Field, Matrix, Struct, Type, spell
+from sssgen.ir.types import VEC4, Field, Matrix, Struct, Type, spell, unnested
 from sssgen.ir.walk import all_expressions, statements, subexpressions
 from sssgen.passes.capabilities import Capabilities
 from sssgen.passes.scopes import Renamer, declared, rename_locals
@@ -55,7 +55,7 @@ def rename(module: ir.Module, rules: Rules) -> tuple[ir.Module, dict[str, str]]:
     return _Namer(module, rules).run()
 
 
-def checked_prefix(prefix: str, reserved: tuple[str, ...]) -> str:
+def check_prefix(prefix: str, reserved: tuple[str, ...]) -> str:
     """The prefix, if global names can begin with it. Raises SssgenError."""
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", prefix) or "__" in prefix:
         hint = "letters, digits and single underscores, after a letter: --prefix wax_"
@@ -151,7 +151,7 @@ class _Namer:
         wanted |= {("global", constant.name): constant.name for constant in module.constants}
         wanted |= {("global", uniform.name): self.rules.uniform_name(uniform.name) for uniform in module.uniforms}
         wanted |= {("global", variable.name): variable.name for variable in module.variables}
-        mangled = self.mangled()
+        mangled = self.overload_names()
         for key, function in self.keyed:
             if key in mangled:
                 wanted["key", key] = mangled[key]
@@ -187,7 +187,7 @@ class _Namer:
                 types = [self.retyper.type(param.type) for param in function.params]
                 self.keys[key] = ir.function_key(new, types)
 
-    def mangled(self) -> dict[str, str]:
+    def overload_names(self) -> dict[str, str]:
         """Names for overloads: the fewest parameter types that distinguish them."""
         overloads: dict[str, list[tuple[str, ir.Function]]] = {}
         for key, function in self.keyed:
@@ -195,7 +195,7 @@ class _Namer:
         result: dict[str, str] = {}
         for name, functions in overloads.items():
             if len(functions) > 1 and (
-                not self.rules.capabilities.overloads or self.confused([function for _, function in functions])
+                not self.rules.capabilities.overloads or self.is_ambiguous([function for _, function in functions])
             ):
                 types = [[_word(param.type) for param in function.params] for _, function in functions]
                 for count in range(1, max(map(len, types)) + 1):
@@ -205,7 +205,7 @@ class _Namer:
                 result |= {key: word for (key, _), word in zip(functions, spelled, strict=True)}
         return result
 
-    def confused(self, overloads: list[ir.Function]) -> bool:
+    def is_ambiguous(self, overloads: list[ir.Function]) -> bool:
         """Whether the target cannot distinguish these: HLSL a vec4 from a mat2."""
         if self.rules.capabilities.matrix_overloads:
             return False
@@ -265,7 +265,7 @@ class _Namer:
         name = self.function_names[key]
         names = set(declared(function))
         bad = [local for local in names if not self.legal(local)]
-        bad += self.hidden(function, names) | (names & self.values)
+        bad += self.clashes(function, names) | (names & self.values)
         if self.structs:
             function = self.retyper.function(function)
         new, renamed = rename_locals(
@@ -278,30 +278,30 @@ class _Namer:
             new = new._replace(params=tuple(passed))
         return new if name == new.name else new._replace(name=name)
 
-    def hidden(self, function: ir.Function, names: set[str]) -> set[str]:
+    def clashes(self, function: ir.Function, names: set[str]) -> set[str]:
         """The names of a function's variables that are also those of declarations or builtins it uses."""
         names = {name for name in names if name in self.taken or name in BUILTINS}
-        return names & self.used(function) if names else names
+        return names & self.names_in(function) if names else names
 
-    def used_by(self, name: str) -> set[str]:
+    def names_behind(self, name: str) -> set[str]:
         """The new names of a declaration and of what a constant's value uses, as a function may compute it (NumPy)."""
         if name not in self.uses:
             self.uses[name] = {self.globals.get(name, name)}
             if name in self.constant_values:
                 for part in subexpressions(self.constant_values[name]):
                     if isinstance(part, ir.Global):
-                        self.uses[name] |= self.used_by(part.name)
+                        self.uses[name] |= self.names_behind(part.name)
                     elif isinstance(part, ir.Intrinsic):
                         self.uses[name].add(part.name)
         return self.uses[name]
 
-    def used(self, function: ir.Function) -> set[str]:
+    def names_in(self, function: ir.Function) -> set[str]:
         """The new names of what a function uses of the module, and of the builtins it calls."""
         used: set[str] = set()
         types = [function.result, *(param.type for param in function.params)]
         for expr in all_expressions(function.body or ()):
             if isinstance(expr, ir.Global):
-                used |= self.used_by(expr.name)
+                used |= self.names_behind(expr.name)
             elif isinstance(expr, ir.Call):
                 used.add(self.function_names[expr.function])
             elif isinstance(expr, ir.Intrinsic):
@@ -309,11 +309,8 @@ class _Namer:
             elif isinstance(expr, ir.Construct):
                 types.append(expr.type)
         types += [stmt.type for stmt in statements(function.body or ()) if isinstance(stmt, ir.Declare)]
-        for type_ in types:
-            while isinstance(type_, Array):
-                type_ = type_.element
-            if isinstance(type_, Struct):
-                used.add(spell(self.retyper.type(type_)))
+        structs = [inner for inner, _ in map(unnested, types) if isinstance(inner, Struct)]
+        used.update(spell(self.retyper.type(struct)) for struct in structs)
         return used
 
 

@@ -12,7 +12,7 @@ from typing import TypeVar
 
 from sssgen.ir.nodes import Module
 from sssgen.ir.types import Type
-from sssgen.passes.dead_statements import Cleaned, Cleaner, needs_of
+from sssgen.passes.dead_statements import Cleaner, CleanFunction, needs_of
 from sssgen.passes.reachable import structs_in
 
 _T = TypeVar("_T")
@@ -30,11 +30,11 @@ def prune(module: Module, roots: Iterable[str]) -> Module:
     reached = set(roots)
     pending = list(reached)
     while pending:
-        for callee in cleaner.cleaned(pending.pop()).needs.calls:
+        for callee in cleaner.clean(pending.pop()).needs.calls:
             if callee not in reached and callee in cleaner.functions:
                 reached.add(callee)
                 pending.append(callee)
-    kept: dict[str, Cleaned] = {}
+    kept: dict[str, CleanFunction] = {}
     for key in cleaner.functions:
         if key in reached:
             _place(key, cleaner, kept)
@@ -73,11 +73,11 @@ def _same(old: tuple[_T, ...], new: list[_T]) -> tuple[_T, ...]:
     return old if same else tuple(new)
 
 
-def _place(key: str, cleaner: Cleaner, kept: dict[str, Cleaned]) -> None:
+def _place(key: str, cleaner: Cleaner, kept: dict[str, CleanFunction]) -> None:
     """Adds a function after those it calls."""
     if key in kept or key not in cleaner.functions:
         return
-    cleaned = cleaner.cleaned(key)
+    cleaned = cleaner.clean(key)
     callees = cleaned.needs.calls
     if not all(callee in kept for callee in callees):
         for callee in cleaner.functions:

@@ -9,7 +9,7 @@ from sssgen.ir.types import Array, Struct, Type
 from sssgen.ir.walk import all_expressions, callees, statements, subexpressions
 
 
-def only(module: Module, roots: Iterable[str]) -> Module:
+def keep_reachable(module: Module, roots: Iterable[str]) -> Module:
     """The module with only the functions that `roots` call, directly or indirectly; the other declarations remain.
 
     Raises KeyError for a root that the module does not have.
@@ -25,7 +25,7 @@ def only(module: Module, roots: Iterable[str]) -> Module:
     return module._replace(functions=tuple([function for key, function in functions.items() if key in reached]))
 
 
-def used(module: Module, is_stage: bool) -> Module:
+def drop_unused(module: Module, is_stage: bool) -> Module:
     """The module with only the declarations that its functions mention, directly or indirectly.
 
     A stage keeps its inputs and outputs: other stages depend on them.
@@ -46,17 +46,12 @@ def used(module: Module, is_stage: bool) -> Module:
             if expr.name in values:
                 pending += subexpressions(values[expr.name])
     structs = set(structs_in(types))
+    names |= {variable.name for variable in module.variables if is_stage and variable.storage != "private"}
     return module._replace(
         structs=tuple([struct for struct in module.structs if struct.type in structs]),
         constants=tuple([constant for constant in module.constants if constant.name in names]),
         uniforms=tuple([uniform for uniform in module.uniforms if uniform.name in names]),
-        variables=tuple(
-            [
-                variable
-                for variable in module.variables
-                if variable.name in names or (is_stage and variable.storage != "private")
-            ]
-        ),
+        variables=tuple([variable for variable in module.variables if variable.name in names]),
     )
 
 

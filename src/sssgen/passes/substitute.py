@@ -20,7 +20,7 @@ def is_cheap(expr: ir.Expr) -> bool:
     return isinstance(expr, ir.Local | ir.Global | ir.Literal)
 
 
-def returned(module: ir.Module) -> ir.Expr | None:
+def return_expression(module: ir.Module) -> ir.Expr | None:
     """The expression that the module's only function returns; None where it is not a single expression."""
     body = module.functions[-1].body or ()
     if len(module.functions) != 1 or len(body) != 1 or not isinstance(body[0], ir.Return):
@@ -28,13 +28,13 @@ def returned(module: ir.Module) -> ir.Expr | None:
     return body[0].value
 
 
-def inlined(module: ir.Module, args: Sequence[ir.Expr], span: ir.Span, may_repeat: bool = True) -> ir.Expr | None:
+def inline(module: ir.Module, args: Sequence[ir.Expr], span: ir.Span, may_repeat: bool = True) -> ir.Expr | None:
     """The expression that the module's only function returns for these arguments; None where a call is better.
 
     A call is better if the function is not a single expression, or if it would repeat an argument: an expensive one,
     or, unless `may_repeat`, any.
     """
-    function, value = module.functions[-1], returned(module)
+    function, value = module.functions[-1], return_expression(module)
     if value is None:
         return None
     uses: dict[str, int] = {}

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from sssgen.ir import constant_arithmetic as arithmetic
 from sssgen.ir import nodes as ir
 from sssgen.ir.constant_arithmetic import Numbers
-from sssgen.ir.constant_evaluation import Value, combined
+from sssgen.ir.constant_evaluation import Value, combine
 from sssgen.ir.constant_expressions import constant_numbers
 from sssgen.ir.rules import FLOAT_MAX
 from sssgen.ir.types import Matrix, kind_of, with_article
@@ -69,7 +69,7 @@ class _Checker:
             return None
         if isinstance(expr, ir.Intrinsic):
             return self.builtin(expr, constants)
-        value = combined(expr, constants) if constants else None
+        value = combine(expr, constants) if constants else None
         if value is None and isinstance(expr, ir.Construct) and kind_of(expr.type) in ("int", "uint"):
             return self.wrong(f"this constant does not fit in {with_article(kind_of(expr.type))}", expr)
         return value
@@ -84,7 +84,7 @@ class _Checker:
             return self.wrong("a shift by as many bits as there are, or more, is undefined", expr)
         if left is None:
             return None
-        result = combined(expr, (left, right))
+        result = combine(expr, (left, right))
         if result is not None or Matrix in (type(expr.left.type), type(expr.right.type)):
             return result
         if op == "/" and kind == "float" and 0.0 in right:

@@ -49,7 +49,7 @@ def read(value: ir.Global, capabilities: Capabilities) -> ir.Expr:
     if isinstance(type_, Array):
         places = [ir.Literal(INT, number, span) for number in range(type_.length)]
         return ir.Construct(type_, tuple([_element(value, type_, place, capabilities) for place in places]), span)
-    return _restored(type_, stored, None, span)
+    return _restore(type_, stored, None, span)
 
 
 def element(index: ir.Index, capabilities: Capabilities) -> ir.Expr:
@@ -68,10 +68,10 @@ def element(index: ir.Index, capabilities: Capabilities) -> ir.Expr:
 
 def _element(value: ir.Global, type_: Array, place: ir.Expr, capabilities: Capabilities) -> ir.Expr:
     stored = value._replace(type=block_type(type_, capabilities))
-    return _restored(type_.element, stored, place, value.span)
+    return _restore(type_.element, stored, place, value.span)
 
 
-def _restored(type_: Type, stored: ir.Global, place: ir.Expr | None, span: ir.Span) -> ir.Expr:
+def _restore(type_: Type, stored: ir.Global, place: ir.Expr | None, span: ir.Span) -> ir.Expr:
     """A value of `type_` from its stored form."""
     if isinstance(type_, Matrix):
         count, rows = type_.columns, type_.rows

@@ -54,9 +54,9 @@ class Closer:
         self.keys: dict[str, str] = {}
         taken = set[str]()
         # unchanged functions come first, so that the others avoid their names
-        for key, function in sorted(self.functions.items(), key=lambda item: bool(self.read(item[0]))):
+        for key, function in sorted(self.functions.items(), key=lambda item: bool(self.uses(item[0]))):
             types = [param.type for param in function.params]
-            types += [parameters[name].type for name in self.read(key)]
+            types += [parameters[name].type for name in self.uses(key)]
             name, count = function.name, 2
             while function_key(name, types) in taken:
                 name, count = f"{function.name}_{count}", count + 1
@@ -67,19 +67,19 @@ class Closer:
         """The functions with their new parameters, in the order they had."""
         return tuple([self.function(key, function) for key, function in self.functions.items()])
 
-    def read(self, key: str) -> list[str]:
+    def uses(self, key: str) -> list[str]:
         """The globals that a function uses, in the order of their declaration."""
         ordered = self.reads.get(key)
         if ordered is None:
             names, self.reads[key] = set[str](), []
             if key in self.functions:
                 names = globals_of(self.functions[key]) & self.parameters.keys()
-                names.update(*map(self.read, callees(self.functions[key])))
+                names.update(*map(self.uses, callees(self.functions[key])))
             ordered = self.reads[key] = sorted(names, key=self.order.__getitem__)
         return ordered
 
     def function(self, key: str, function: Function) -> Function:
-        names = self.read(key)
+        names = self.uses(key)
         if not names:
             return function
         hidden = set(names) & set(declared(function))
@@ -90,7 +90,7 @@ class Closer:
             if type(node) is Global and node.name in self.parameters:
                 return Local(node.type, node.name, node.span)
             if type(node) is Call and self.reads.get(node.function):
-                extra = [Local(self.parameters[name].type, name, node.span) for name in self.read(node.function)]
+                extra = [Local(self.parameters[name].type, name, node.span) for name in self.uses(node.function)]
                 return Call(node.type, self.keys[node.function], (*node.args, *extra), node.span)
             return node
 

@@ -20,19 +20,19 @@ _ROLES: dict[Type, str] = {VEC2: "coordinates", FLOAT: "thickness", VEC3: "trans
 """The likely role of a function, by its result type."""
 
 
-def technique_file(module: Module, shown: str, wanted: str = "") -> tuple[str, str]:
+def technique_file(module: Module, label: str, wanted: str = "") -> tuple[str, str]:
     """The name of the technique and the text of its file.
 
-    `wanted` is the function's name; '' means the last one of the file `shown`. Raises SssgenError where there is none,
+    `wanted` is the function's name; '' means the last one of the file `label`. Raises SssgenError where there is none,
     and where a technique cannot have the function: its loops must be provably bounded, and it cannot use module
     variables.
     """
-    function = _chosen(module, shown, wanted)
+    function = _select_function(module, label, wanted)
     program = make_library(module, registry.load(_LANGUAGE)._replace(parameters=()), "none", [function.key], keep=True)
     if program.module.variables:
         name = program.module.variables[0].name
         hint = "pass it to the function as a parameter"
-        raise failure(f"'{name}' is a module variable, which a technique cannot have", hint, shown)
+        raise failure(f"'{name}' is a module variable, which a technique cannot have", hint, label)
     name = program.module.functions[-1].name  # its callees come first; GLSL may reserve its original name
     parts = {kind: [[line.text for line in block] for block in blocks] for kind, blocks in program.parts.items()}
     own = "\n".join(dropwhile(lambda line: line.startswith("//"), parts["functions"].pop()))
@@ -44,18 +44,18 @@ def technique_file(module: Module, shown: str, wanted: str = "") -> tuple[str, s
     return name, text
 
 
-def _chosen(module: Module, shown: str, wanted: str) -> Function:
+def _select_function(module: Module, label: str, wanted: str) -> Function:
     functions = [
         function
         for function in module.functions
-        if function.body is not None and function.span.file == shown and function.name != "main"
+        if function.body is not None and function.span.file == label and function.name != "main"
     ]
     if wanted:
         functions = [function for function in functions if function.name == wanted]
     if not functions:
         names = [function.name for function in module.functions]
         message = f"there is no function '{wanted}' in this file" if wanted else "there is no function in this file"
-        raise failure(message, did_you_mean(wanted, names), shown)
+        raise failure(message, did_you_mean(wanted, names), label)
     return functions[-1]
 
 

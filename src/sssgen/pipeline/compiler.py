@@ -16,7 +16,7 @@ from sssgen.lang.loader import key_of
 from sssgen.material import library
 from sssgen.material.model import Material, TechniqueUse
 from sssgen.material.requirements import bodies
-from sssgen.passes.names import checked_prefix
+from sssgen.passes.names import check_prefix
 from sssgen.pipeline.emitted_cache import installation
 from sssgen.pipeline.material_facts import facts_of
 from sssgen.support import cache
@@ -98,7 +98,7 @@ def compile(
         raise failure(f"unknown form '{form}'", did_you_mean(form, FORMS) or "forms: shader, functions")
     _check_guards(guards)
     facts = facts_of(material)
-    chosen = _prefixed(registry.load(target).for_material(facts), prefix, form, material.name)
+    chosen = _with_prefix(registry.load(target).for_material(facts), prefix, form, material.name)
     if form not in chosen.files:
         hint = f"its forms: {', '.join([one for one in FORMS if one in chosen.files])}"
         raise UnsupportedError(failure(f"{chosen.title} has no form '{form}'", hint).diagnostics)
@@ -111,7 +111,7 @@ def compile(
         inner = {name: _inner(chosen, embedded) for name, embedded in chosen.embedded.items()}
         others = {name: (one, _program_of(material, one, form, guards, None)) for name, one in inner.items()}
         program = program._replace(embedded=others)
-    compiled = finish(program, chosen, form, os.fspath(templates) if templates else None, standalone)
+    compiled = emit_program(program, chosen, form, os.fspath(templates) if templates else None, standalone)
     if templates is None:
         if len(_compiled) >= _CACHE_SIZE:
             _compiled.clear()
@@ -119,7 +119,7 @@ def compile(
     return _copy(compiled)
 
 
-def _prefixed(target: Target, prefix: str, form: str, material: str) -> Target:
+def _with_prefix(target: Target, prefix: str, form: str, material: str) -> Target:
     """The target with that prefix of global names. Raises SssgenError for a prefix that cannot be."""
     if not prefix and "{material}" in target.prefix:
         return target._replace(prefix=target.prefix.format(material=material) if form == "shader" else "")
@@ -127,7 +127,7 @@ def _prefixed(target: Target, prefix: str, form: str, material: str) -> Target:
         return target
     if form != "functions" and not target.prefix:
         raise without_prefix([target.name])
-    return target._replace(prefix=checked_prefix(prefix, registry.reserved_everywhere().prefixes))
+    return target._replace(prefix=check_prefix(prefix, registry.reserved_everywhere().prefixes))
 
 
 def without_prefix(targets: Sequence[str]) -> SssgenError:
@@ -180,7 +180,7 @@ def transpile(
             name: (one, make_library(module, one, guards, called, at, chained, keep)) for name, one in inner.items()
         }
         program = program._replace(embedded=others)
-        return finish(program, chosen, program.stage.kind if program.stage else "functions", None)
+        return emit_program(program, chosen, program.stage.kind if program.stage else "functions", None)
 
 
 def guarded_sites(material: Material, target: str = "glsl-330", form: str = "shader") -> list[Site]:
@@ -188,9 +188,9 @@ def guarded_sites(material: Material, target: str = "glsl-330", form: str = "sha
 
     Raises SssgenError.
     """
-    from sssgen.pipeline.programs import analysed
+    from sssgen.pipeline.programs import analyse_material
 
-    return list(analysed(material, registry.load(target), form).sites)
+    return list(analyse_material(material, registry.load(target), form).sites)
 
 
 def _check_guards(guards: str) -> None:
@@ -208,7 +208,7 @@ def _program_of(material: Material, target: Target, form: str, guards: str, trac
     key = (structure, target.name, form, guards, target.prefix)
     program = _programs.get(key) if structure else None
     if program is None:
-        program = _stored_program(structural, structure, target, form, guards, trace)
+        program = _cached_program(structural, structure, target, form, guards, trace)
         if len(_programs) >= _CACHE_SIZE:
             _programs.clear()
         _programs[key] = program
@@ -216,7 +216,7 @@ def _program_of(material: Material, target: Target, form: str, guards: str, trac
     return program._replace(module=program.module._replace(uniforms=uniforms))
 
 
-def _stored_program(
+def _cached_program(
     structural: Material, structure: str, target: Target, form: str, guards: str, trace: Trace | None
 ) -> Program:
     """A program from the cache folder, or a new one. One entry per material file, target, form and guards is kept."""
@@ -278,7 +278,7 @@ def _about(material: Material) -> About:
     )
 
 
-def finish(
+def emit_program(
     program: Program, target: Target, form: str, templates: str | None = None, standalone: bool = False
 ) -> Compiled:
     """The files of a program."""

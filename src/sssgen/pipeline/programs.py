@@ -16,10 +16,11 @@ from sssgen.lang.source_lines import comment_behind, comments_before, source_lin
 from sssgen.material.chain_assembly import Entry
 from sssgen.material.model import Material
 from sssgen.passes.cost import Cost
+from sssgen.passes.ranges.guard_report import GuardReport
 from sssgen.passes.ranges.origins import Origins, RangeTrace
 from sssgen.passes.ranges.range_pass import analyse
 from sssgen.passes.ranges.sites import Site, report
-from sssgen.passes.reachable import only
+from sssgen.passes.reachable import keep_reachable
 from sssgen.passes.stage.stage_interface import entry_of, stage_kind
 from sssgen.passes.unsupported import Note
 from sssgen.pipeline import pass_list
@@ -48,7 +49,7 @@ def make(
     check_shell(material, target)
     check_values(material, target)
     state = _material_program(material, structure if trace is None else "", target, form, guards, trace)
-    return finish_program(replace(state, chosen=target, frame_functions={}), trace)
+    return target_program(replace(state, chosen=target, frame_functions={}), trace)
 
 
 def make_library(
@@ -72,7 +73,7 @@ def make_library(
     if trace is not None:
         trace.start(module)
     pass_list.run(pass_list.KEPT if keep else pass_list.PLAIN, state, trace)
-    return finish_program(state, trace)
+    return target_program(state, trace)
 
 
 def _check_compute(target: Target, form: str, guards: str) -> None:
@@ -94,7 +95,7 @@ def check_partner(kind: str, other: str) -> None:
         raise failure(f"these are not two stages of one program: {kinds[0]} and {kinds[1]}", hint)
 
 
-class Analysed(NamedTuple):
+class MaterialAnalysis(NamedTuple):
     """A program of a material, and what the passes found in it."""
 
     module: Module
@@ -106,10 +107,10 @@ class Analysed(NamedTuple):
     """The keys of the functions that are bound to slots."""
 
 
-def analysed(material: Material, target: Target, form: str) -> Analysed:
+def analyse_material(material: Material, target: Target, form: str) -> MaterialAnalysis:
     """The program of a material before the passes for a target. Raises SssgenError."""
     state = _material_program(material, "", target, form, "auto", None)
-    return Analysed(state.module, state.costs, state.guarded.sites if state.guarded else (), state.slots)
+    return MaterialAnalysis(state.module, state.costs, state.guarded.sites if state.guarded else (), state.slots)
 
 
 def library_sites(module: Module, called: Sequence[str] | None = None, chained: bool = False) -> list[Site]:
@@ -117,7 +118,7 @@ def library_sites(module: Module, called: Sequence[str] | None = None, chained: 
 
     Raises SssgenError.
     """
-    module, roots = _analysed_part(module, called)
+    module, roots = _program_part(module, called)
     return analyse(module, roots, FLOAT32, chained).sites
 
 
@@ -126,14 +127,14 @@ def traced_sites(
     unguarded: bool = False,
 ) -> tuple[list[Site], Origins]:  # fmt: skip
     """The same, and where the ranges come from; `assumed` and `unguarded` are those of the analysis."""
-    module, roots = _analysed_part(module, called)
+    module, roots = _program_part(module, called)
     trace = RangeTrace(module, chained, assumed, unguarded)
     for key in roots:
         trace.root(key)
     return list(trace.sites.values()), Origins(module, trace)
 
 
-def _analysed_part(module: Module, called: Sequence[str] | None) -> tuple[Module, Sequence[str]]:
+def _program_part(module: Module, called: Sequence[str] | None) -> tuple[Module, Sequence[str]]:
     """A module of plain functions before guards, and the keys of what is called from outside."""
     module, _, roots = plain_module(module)
     entry = entry_of(module)
@@ -163,7 +164,7 @@ def _material_program(
     return state
 
 
-def finish_program(state: State, trace: Trace | None = None) -> Program:
+def target_program(state: State, trace: Trace | None = None) -> Program:
     """Runs the passes for the target, and prints the result."""
     pass_list.run(pass_list.TARGET, state, trace)
     module, target, material = state.module, state.target, state.material
@@ -182,7 +183,7 @@ def finish_program(state: State, trace: Trace | None = None) -> Program:
     )  # fmt: skip
     unlit = material is not None and material.shading != "lit"
     encoded = unlit and any(stage.link.role == "output" for stage in state.stages)
-    reached = _reached(state, module) if any(file.without for file in target.files.get(state.form, ())) else {}
+    reached = _reachable(state, module) if any(file.without for file in target.files.get(state.form, ())) else {}
     entries = {kind: final(entry) for kind, entry in state.entries.items()}
     name = state.renames.get("Surface", "Surface")
     surface = next((s.type for s in module.structs if isinstance(s.type, Struct) and s.type.name == name), None)
@@ -194,7 +195,7 @@ def finish_program(state: State, trace: Trace | None = None) -> Program:
     return Program(
         module, entries, surface, state.source_names, About("", ""), encoded, parts, state.owners, state.renames,
         {kind: cost._asdict() for kind, cost in state.costs.items()}, warnings, state.settings,
-        report(state.guarded.sites, state.guarded.guarded, folder) if state.guarded else {}, state.stage,
+        report(state.guarded.sites, state.guarded.guarded, folder) if state.guarded else GuardReport(), state.stage,
         reached=reached, shell=shell, frame_functions=state.frame_names, folder=folder, surface_reads=surface_reads,
     )  # fmt: skip
 
@@ -205,12 +206,12 @@ def _members_read(function: Function, surface: Struct | None) -> frozenset[str]:
     return frozenset(expr.field for expr in expressions if type(expr) is Member and expr.value.type == surface)
 
 
-def _reached(state: State, module: Module) -> dict[str, frozenset[str]]:
+def _reachable(state: State, module: Module) -> dict[str, frozenset[str]]:
     """Entry kind, or function of the frame → the names of the functions that it calls, its own among them."""
     keys = {function.name: function.key for function in module.functions}
     entries = {kind: entry.function.name for kind, entry in state.entries.items()}
     names = {**{kind: state.renames.get(name, name) for kind, name in entries.items()}, **state.frame_names}
     return {
-        root: frozenset(function.name for function in only(module, [keys[name]]).functions)
+        root: frozenset(function.name for function in keep_reachable(module, [keys[name]]).functions)
         for root, name in names.items()
     }

@@ -11,7 +11,7 @@ from sssgen.ir.types import Struct
 from sssgen.material.chain_assembly import Entry
 from sssgen.material.model import Material
 from sssgen.passes.cost import Cost
-from sssgen.passes.guards import Guarded
+from sssgen.passes.guards import GuardedModule
 from sssgen.passes.ranges.sites import Site
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.passes.unsupported import Note
@@ -67,7 +67,7 @@ class State:
     frame_names: Mapping[str, str] = field(default_factory=dict)
     """Their names there → their names in the text."""
     notes: list[Note] = field(default_factory=list)
-    guarded: Guarded | None = None
+    guarded: GuardedModule | None = None
     costs: Mapping[str, Cost] = field(default_factory=dict)
     source_names: Mapping[str, str] = field(default_factory=dict)
     """A uniform's final name → its name before."""

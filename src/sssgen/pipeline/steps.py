@@ -19,7 +19,7 @@ from sssgen.passes.legal.legalise import legalise
 from sssgen.passes.link import link
 from sssgen.passes.names import Rules, rename
 from sssgen.passes.prune import prune
-from sssgen.passes.reachable import only, used
+from sssgen.passes.reachable import drop_unused, keep_reachable
 from sssgen.passes.stage.atomic_places import check_atomics
 from sssgen.passes.stage.host_uniforms import group_count_to_uniform, lengths_to_uniforms
 from sssgen.passes.stage.initial_values import set_at_start, set_in_functions
@@ -124,7 +124,7 @@ def note_differences(state: State) -> Module:
 
 
 def drop_uncalled(state: State) -> Module:
-    return used(only(state.module, state.called or ()), state.whole_shader)
+    return drop_unused(keep_reachable(state.module, state.called or ()), state.whole_shader)
 
 
 def find_roots(state: State) -> Module:
@@ -169,7 +169,7 @@ def _called_from_outside(module: Module, roots: list[str]) -> list[str]:
     entry = entry_of(module)
     if entry is None:
         return roots
-    reached = {function.key for function in only(module, [entry.key]).functions}
+    reached = {function.key for function in keep_reachable(module, [entry.key]).functions}
     return [entry.key, *(key for key in roots if key not in reached)]
 
 
@@ -241,7 +241,7 @@ def make_names_legal(state: State) -> Module:
     others = registry.reserved_of(target.language) if state.keep else registry.reserved_everywhere()
     local = target.names.local | BUILTINS.keys() if target.names.builtins else target.names.local
     rules = Rules(
-        reserved=_reserved(state, others),
+        reserved=_reserved_names(state, others),
         reserved_folded=others.folded | target.names.folded,
         reserved_at_file_scope=local,
         capabilities=target.capabilities,
@@ -261,7 +261,7 @@ def make_names_legal(state: State) -> Module:
     return module
 
 
-def _reserved(state: State, others: Names) -> ReservedNames:
+def _reserved_names(state: State, others: Names) -> ReservedNames:
     """The names that are not free: those of the target and of `others`, whose names its texts avoid, too.
 
     A shader whose entry is the author's `main` has that name, without a shell around it.

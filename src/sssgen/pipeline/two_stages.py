@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 from sssgen.ir.nodes import Module
 from sssgen.lang.source_lines import source_line
-from sssgen.passes.reachable import only, used
+from sssgen.passes.reachable import drop_unused, keep_reachable
 from sssgen.passes.stage.linked_stages import (
     disagreements,
-    linked,
+    link_program,
     passed_textures,
     sampled_textures,
     unlike_blocks,
@@ -18,8 +18,8 @@ from sssgen.passes.stage.linked_stages import (
 )
 from sssgen.passes.stage.stage_interface import ENTRY, stage_kind
 from sssgen.pipeline import pass_list
-from sssgen.pipeline.compiler import finish
-from sssgen.pipeline.programs import check_partner, finish_program
+from sssgen.pipeline.compiler import emit_program
+from sssgen.pipeline.programs import check_partner, target_program
 from sssgen.pipeline.state import State
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.gc_pause import paused
@@ -67,14 +67,14 @@ def transpile_stages(
         raise failure(f"{target} has no whole shaders of plain GLSL", f"they go to {', '.join(able)}")
     with paused():
         blocks = {kind: block_members(source.module) for kind, source in sources.items()}
-        modules = {kind: used(only(source.module, [ENTRY]), True) for kind, source in sources.items()}
+        modules = {kind: drop_unused(keep_reachable(source.module, [ENTRY]), True) for kind, source in sources.items()}
         wrong = disagreements(modules["vertex"], modules["fragment"])
         wrong += unlike_blocks(sources["vertex"].module, sources["fragment"].module)
         if wrong:
             raise SssgenError(
                 [Diagnostic("error", each.message, each.span, each.hint, source_line(each.span)) for each in wrong]
             )
-        modules["vertex"], modules["fragment"] = linked(modules["vertex"], modules["fragment"])
+        modules["vertex"], modules["fragment"] = link_program(modules["vertex"], modules["fragment"])
         states = _states(modules, guards, chosen, rows)
         own = {kind: {uniform.name for uniform in state.module.uniforms} for kind, state in states.items()}
         sampled = {kind: sampled_textures(state.module) for kind, state in states.items()}
@@ -88,11 +88,11 @@ def transpile_stages(
             if chosen.layout:
                 state.module = module
             about = About(name, name, head=tuple(sources[kind].head))
-            program = finish_program(state)._replace(about=about)
+            program = target_program(state)._replace(about=about)
             given = passed_textures(state.module)  # the target's passes make functions, too
             final = zip(uniforms[kind], state.module.uniforms, strict=True) if chosen.layout else ()
             passed = {uniform.name for uniform, named in final if named.name in given}
-            compiled = finish(program, chosen, kind)
+            compiled = emit_program(program, chosen, kind)
             reflection = compiled.reflection
             *texts, _ = compiled.files.items()
             files |= dict(texts)
@@ -128,7 +128,7 @@ def _states(modules: Mapping[str, Module], guards: str, target: Target, rows: st
         except SssgenError as error:
             errors += error.diagnostics
         else:
-            state.module = used(state.module, True)  # members of structs became uniforms
+            state.module = drop_unused(state.module, True)  # members of structs became uniforms
     if errors:
         raise SssgenError(errors)
     return states

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NotRequired, TypedDict
 
-from sssgen.ir.drawn import BACK_FACES, DISTANT, LIGHT
+from sssgen.ir.view_textures import BACK_FACES, DISTANT, LIGHT
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled
 

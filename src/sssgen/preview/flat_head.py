@@ -12,7 +12,7 @@ from typing import Any
 
 from sssgen.ir.nodes import Function
 from sssgen.ir.types import spell
-from sssgen.lang.plain_glsl import Loaded, load_glsl_text
+from sssgen.lang.plain_glsl import GlslFile, load_glsl_text
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled, transpile
 from sssgen.preview.emitted_head import controls, slot
@@ -137,7 +137,7 @@ def _settable(type_: str) -> bool:
     return type_.partition("[")[0] == type_ and not type_.startswith("mat")
 
 
-def _load(text: str, path: str, file_name: str) -> tuple[Loaded, str]:
+def _load(text: str, path: str, file_name: str) -> tuple[GlslFile, str]:
     """The module as a whole shader, and what a wrapped function is."""
     roots = (os.path.dirname(path) or ".",)
     if _ENTRY.search(text):

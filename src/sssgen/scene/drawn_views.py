@@ -1,4 +1,4 @@
-"""The textures that a program draws of the body (ir/drawn.py), cast on the CPU."""
+"""The textures that a program draws of the body (ir/view_textures.py), cast on the CPU."""
 
 from __future__ import annotations
 

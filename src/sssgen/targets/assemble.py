@@ -13,10 +13,11 @@ from typing import Any, NamedTuple
 
 from sssgen.ir.baked_textures import is_baked
 from sssgen.ir.constant_expressions import literal
-from sssgen.ir.drawn import DRAWN
 from sssgen.ir.nodes import NOWHERE, Function, Local, Module, Param, Span, Uniform
 from sssgen.ir.surface_fields import FIELDS
 from sssgen.ir.types import Sampler, Struct, spell
+from sssgen.ir.view_textures import VIEW_TEXTURES
+from sssgen.passes.ranges.guard_report import GuardReport
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.targets.descriptor import OutputFile, Target
@@ -75,8 +76,7 @@ class Program(NamedTuple):
     warnings: list[Diagnostic]
     settings: Mapping[str, list[tuple[int, str]]]
     """A uniform's source name → the material's stages that may give it a value, and its name there."""
-    guards: Mapping[str, Any]
-    """How many operations with a domain are proven safe, and each guarded one with its place, operation and reason."""
+    guards: GuardReport
     stage: Stage | None = None
     """The interface, where the module is a whole shader."""
     embedded: Mapping[str, tuple[Target, Program]] = {}
@@ -158,9 +158,9 @@ def print_parts(
     """
     printer = printer_for(target, module)
     printer.comments = comments
-    printer.stage, printer.kept = stage, kept
+    printer.stage, printer.keeps_text = stage, kept
     if behind is not None:
-        printer.behind = behind
+        printer.comment_behind = behind
     if source is not None:
         printer.source = source
     inlined = shell[0] if shell is not None and target.fragment_result else None
@@ -367,7 +367,7 @@ def _supplied(target: Target, program: Program, uniform: Uniform) -> str:
     name = uniform.name
     if target.properties.style != "plain":  # its user sees the property only
         name = property_name(target, program.source_names.get(name, name))
-    return f"{name}: {DRAWN[views[0]]}." if views else f"{name}: bake it from the body (sssgen bake)."
+    return f"{name}: {VIEW_TEXTURES[views[0]]}." if views else f"{name}: bake it from the body (sssgen bake)."
 
 
 def _entry(
@@ -409,7 +409,7 @@ def _passed(printer: Printer, param: Param, uniform: str) -> str:
     for types, text in printer.target.arguments.items():
         if spell(param.type) in types.split():
             return with_names(text, {"name": uniform, "type": printer.type(param.type)})
-    return printer.passed(Local(param.type, uniform, param.span), param)
+    return printer.shell_argument(Local(param.type, uniform, param.span), param)
 
 
 def _hint(uniform: Uniform, *names: str) -> tuple[str, tuple[Any, ...]]:

@@ -81,8 +81,8 @@ def reflect(
             for kind, (function, inputs) in program.entries.items()
         },
         **_shell(program),
-        "proven_safe": program.guards.get("proven", 0),
-        "guards": program.guards.get("guarded", []),
+        "proven_safe": program.guards.proven,
+        "guards": list(program.guards.rows),
         "renames": dict(program.renames),
         "conventions": _conventions(target),
         "source_map": {

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from sssgen.ir import nodes as ir
 from sssgen.targets.printers.glsl import GlslPrinter
-from sssgen.targets.printers.printed_lines import Line, documented
+from sssgen.targets.printers.printed_lines import Line, with_doc
 from sssgen.targets.uniform_layout import Member
 
 DESCRIPTOR = Path(__file__).with_name("vulkan.toml")
@@ -23,7 +23,7 @@ class VulkanPrinter(GlslPrinter):
         lines = [Line("layout(std140, set = 1, binding = 0) uniform Material {")]
         for member in members:
             text = f"    {self.variable(member.uniform.type, member.uniform.name)};"
-            lines.append(documented(text, member.uniform))
+            lines.append(with_doc(text, member.uniform))
         return [*lines, Line("};")]
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:

@@ -27,8 +27,8 @@ from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
 from sssgen.passes.guards import remedy
 from sssgen.passes.ranges.origins import Origins, Step
-from sssgen.passes.ranges.sites import Site, shown
-from sssgen.passes.reachable import only, used
+from sssgen.passes.ranges.sites import Site, spell_range
+from sssgen.passes.reachable import drop_unused, keep_reachable
 from sssgen.passes.stage.stage_interface import stage_kind
 from sssgen.pipeline.compiler import guarded_sites
 from sssgen.pipeline.programs import traced_sites
@@ -177,7 +177,7 @@ def _text_of(node: Expr) -> str:
 def explanation(step: Step) -> str:
     """A step on the way from an input to an operation, in words, with its place."""
     code = (excerpt(step.span, LONGEST) if step.node is None else _text_of(step.node)) or "a part of a macro"
-    where = f"{'of length ' if step.is_length else 'in '}{shown(step.range)}, line {step.span.line}"
+    where = f"{'of length ' if step.is_length else 'in '}{spell_range(step.range)}, line {step.span.line}"
     if step.what in ("uniform", "input", "parameter"):
         return f"{step.what} {step.name} is {where}"
     if step.what == "definition" and not re.match(r"(\+\+|--)|[\w.\[\] ]+([-+*/]=|\+\+|--)", code):
@@ -262,7 +262,7 @@ def _plain(path: str, with_examples: bool, kinds: Collection[Kind], assumed: Seq
 
 def _is_restricted(module: Module, function: Function, names: Collection[str]) -> bool:
     """Whether something is assumed where a function runs, so that an input that is drawn for it may not occur."""
-    part = used(only(module, [function.key]), False)
+    part = drop_unused(keep_reachable(module, [function.key]), False)
     inputs = {param.name for param in function.params} | {uniform.name for uniform in part.uniforms}
     return not inputs.isdisjoint(names) or any(
         isinstance(stmt, Assume) for each in part.functions for stmt in statements(each.body or ())

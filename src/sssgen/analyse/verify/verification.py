@@ -48,7 +48,7 @@ from sssgen.ir.types import Sampler, spell, with_article
 from sssgen.lang import shadertoy
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.passes.prune import prune
-from sssgen.passes.reachable import only
+from sssgen.passes.reachable import keep_reachable
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.pipeline.compiler import transpile
@@ -212,7 +212,7 @@ class Case:
         names = {probe.name for probe in case.probes}
         self.keys = {function.name: function.key for function in module.functions if function.name in names}
         self.written_names = {function.name for function in module.functions if function.name not in names}
-        module = only(module, list(self.keys.values()))
+        module = keep_reachable(module, list(self.keys.values()))
         # probes set the variables that are read; their initial values might need a main() that is not there
         variables = tuple([variable._replace(value=None) for variable in module.variables])
         self.module = module._replace(variables=variables)
@@ -471,7 +471,7 @@ class Case:
     def translation(self, target: str, probes: Sequence[Probe]) -> _Emitted:
         """One text with these probes; only one, where module variables become its parameters."""
         keys = [self.keys[probe.name] for probe in probes]
-        module = only(self.module, keys)
+        module = keep_reachable(self.module, keys)
         if self.passes_variables(target):
             module = variables_to_parameters(module, keys[0])
         compiled = transpile(module, target, "verified", "none", keys, keep=True)

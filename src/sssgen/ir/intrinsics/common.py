@@ -16,7 +16,7 @@ from sssgen.ir.component_ranges import (
     within,
 )
 from sssgen.ir.intervals import INF, Range, absolute, clip, fraction, maximum, minimum, rising, signs
-from sssgen.ir.intrinsics.table import F1, LARGEST, NAN, NONZERO, NOT_FINITE_BITS, Builtin, Guard, Samples, checked
+from sssgen.ir.intrinsics.table import F1, LARGEST, NAN, NONZERO, NOT_FINITE_BITS, Builtin, Guard, Samples, check_domain
 
 _PLAIN = F1[0], "genI(genI)"
 _ONES = ("float", "int", "uint")
@@ -29,7 +29,7 @@ def _blend(x: float, y: float, z: float | bool) -> float:
 
 def _smoothstep(x: float, y: float, z: float) -> float:
     t = min(max((z - x) / (y - x), 0.0), 1.0)
-    return float(checked(x < y, t * t * (3.0 - 2.0 * t)))
+    return float(check_domain(x < y, t * t * (3.0 - 2.0 * t)))
 
 
 _POWER = "clamp(ldexp(x, clamp(y, -126, 127)), -LARGEST, LARGEST)"
@@ -179,7 +179,7 @@ vecF fmod(vecF x, float y) { return x - y * trunc(x / y); }
     Builtin("clamp",
         tuple(f"gen{k}(gen{k}, {bound}, {bound})" for k, one in zip("FIU", _ONES) for bound in (f"gen{k}", one)),
         "min(max(x, y), z).",
-        fold=lambda x, y, z: checked(y <= z, min(max(x, y), z)), same_quantity=3, quantity="argument",
+        fold=lambda x, y, z: check_domain(y <= z, min(max(x, y), z)), same_quantity=3, quantity="argument",
         range=lambda F, x, y, z: clip(x, y, z),
         guards=(Guard(lambda F, x, y, z: y.high <= z.low, "undefined", "the lower bound above the upper one", "min(max(x, y), z)", ordered=(1, 2)),),
         defined=lambda rt, x, y, z: y <= z,

@@ -7,7 +7,7 @@ import math
 from sssgen.ir.component_ranges import logarithm_error, positive_power
 from sssgen.ir.formats import Format
 from sssgen.ir.intervals import INF, Range, clip, falling, maximum, rising
-from sssgen.ir.intrinsics.table import F1, F2, LARGEST, Builtin, Guard, Samples, checked
+from sssgen.ir.intrinsics.table import F1, F2, LARGEST, Builtin, Guard, Samples, check_domain
 
 _LOG = "WGSL, Vulkan: 3 ulp, but an absolute error of 2^-21 for x in [0.5, 2]"
 _EXP = "WGSL, Vulkan: 3 + 2·|x| ulp; taken at |x| = 88"
@@ -29,7 +29,7 @@ def _power_is_finite(F: Format, x: Range, y: Range) -> bool:
 # fmt: off
 ROWS = (
     Builtin("pow", F2, "x to the power y.",
-        fold=lambda x, y: checked(x > 0.0 or (x == 0.0 and y > 0.0), math.pow(x, y)),
+        fold=lambda x, y: check_domain(x > 0.0 or (x == 0.0 and y > 0.0), math.pow(x, y)),
         samples=Samples(floats=((0.0, LARGEST), (-64.0, 64.0))), exact_bounds=(0.0, INF), range=positive_power,
         guards=(
             Guard(_power_is_finite, "overflow", "a power that overflows", "exp2(min(y * log2(max(x, TINY)), EXPONENT))", result=_below_overflow),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sssgen.ir.component_ranges import any_number, within
-from sssgen.ir.intrinsics.table import Builtin, Samples, checked
+from sssgen.ir.intrinsics.table import Builtin, Samples, check_domain
 
 _BOTH = ("genI(genI)", "genI(genU)")
 _MOST = 0xFFFFFFFF
@@ -19,7 +19,7 @@ def _of_both(definition: str) -> str:
 
 def _extracted(x: int, y: int, z: int) -> int:
     """The bits of a field."""
-    bits: int = checked(y >= 0 and z >= 0 and y + z <= 32, (x & _MOST) >> y & ((1 << z) - 1))
+    bits: int = check_domain(y >= 0 and z >= 0 and y + z <= 32, (x & _MOST) >> y & ((1 << z) - 1))
     return bits
 
 
@@ -30,7 +30,7 @@ def _extracted_sign(x: int, y: int, z: int) -> int:
 
 
 def _inserted(x: int, y: int, z: int, w: int) -> int:
-    mask: int = checked(z >= 0 and w >= 0 and z + w <= 32, ((1 << w) - 1) << z)
+    mask: int = check_domain(z >= 0 and w >= 0 and z + w <= 32, ((1 << w) - 1) << z)
     return (x & ~mask) | ((y << z) & mask)
 
 

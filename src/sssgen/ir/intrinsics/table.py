@@ -260,7 +260,7 @@ LARGEST = 2.0**128 - 2.0**104
 """The largest float32."""
 
 
-def checked(condition: bool, value: Any) -> Any:
+def check_domain(condition: bool, value: Any) -> Any:
     """For `fold`: the value; ValueError where a condition of the domain does not hold."""
     if not condition:
         raise ValueError

@@ -8,7 +8,7 @@ from typing import Any
 from sssgen.ir.component_ranges import inverse_hyperbolic_tangent, scaled, within
 from sssgen.ir.formats import Format
 from sssgen.ir.intervals import Range, absolute, clip, maximum, rising
-from sssgen.ir.intrinsics.table import F1, HALF_PI, PI, Builtin, Guard, Samples, checked
+from sssgen.ir.intrinsics.table import F1, HALF_PI, PI, Builtin, Guard, Samples, check_domain
 
 _PI32 = 3.1415927410125732
 """pi in float32."""
@@ -85,7 +85,7 @@ ROWS = (
     ),
     Builtin("atan", ("genF(genF)", "genF(genF, genF)"),
         "Arc tangent: of x, in [-pi/2, pi/2]; of x/y in the quadrant of (y, x), in [-pi, pi].",
-        fold=lambda x, y=None: math.atan(x) if y is None else checked(x != 0.0 or y != 0.0, math.atan2(x, y)),
+        fold=lambda x, y=None: math.atan(x) if y is None else check_domain(x != 0.0 or y != 0.0, math.atan2(x, y)),
         range=lambda F, x, y=None: Range(-3.1416, 3.1416) if y else Range(-1.5708, 1.5708),
         guards=(Guard(lambda F, x, y: not x.has_zero() or not y.has_zero(), "undefined", "the angle of (0, 0)", "y + step(abs(x) + abs(y), genF(0.0))", "y"),),
         domain="with two arguments: x != 0 or y != 0, and x != -0, whose sign may be lost; accurate for y != 0 and |y| < 2^126",

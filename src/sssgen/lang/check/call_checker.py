@@ -22,7 +22,7 @@ from sssgen.lang.check.expression_checker import ExpressionChecker
 from sssgen.lang.check.implicit_conversions import as_kind, converts
 from sssgen.lang.check.memory_checker import MemoryChecker
 from sssgen.lang.check.name_scope import Signature
-from sssgen.lang.check.wording import a_type, declared, overload_hint
+from sssgen.lang.check.wording import a_type, overload_hint, signature_text
 from sssgen.lang.syntax import tree as s
 
 
@@ -134,13 +134,13 @@ class CallChecker:
             count = len(only.types)
             if count != len(args):
                 message = f"{name} takes {count} argument{'s' if count != 1 else ''}, but gets {len(args)}"
-                raise self.context.fail(call.span, message, f"it is declared as {declared(name, only)}")
+                raise self.context.fail(call.span, message, f"it is declared as {signature_text(name, only)}")
             return only
         if self.context.plain:
             viable = [signature for signature in overloads if _is_viable(signature, types)]
             if viable:
                 return min(viable, key=lambda signature: _conversion_cost(signature, types))
-        listed = ", ".join(declared(name, signature) for signature in overloads)
+        listed = ", ".join(signature_text(name, signature) for signature in overloads)
         shown = ", ".join(map(spell, types))
         raise self.context.fail(call.span, f"no overload of {name} takes ({shown})", f"its overloads are: {listed}")
 

@@ -7,7 +7,7 @@ or swizzle of constants.
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.constant_evaluation import Value, combined
+from sssgen.ir.constant_evaluation import Value, combine
 from sssgen.ir.types import INT, UINT
 from sssgen.ir.walk import operands
 from sssgen.lang.check.context import CheckContext
@@ -42,7 +42,7 @@ def constant_value(context: CheckContext, expr: ir.Expr) -> Value | None:
         if value is None:
             return None
         values.append(value)
-    return combined(expr, values) if values else None
+    return combine(expr, values) if values else None
 
 
 def integer_value(text: str) -> int | None:

@@ -83,9 +83,9 @@ class ConstructorChecker:
         if isinstance(type_, Array):
             quantities = {arg.quantity for arg in args}
             return Typed(ir.Construct(type_, values, call.span), quantities.pop() if len(quantities) == 1 else "")
-        return self.converted(type_, quantity, values, call.span)
+        return self.convert(type_, quantity, values, call.span)
 
-    def converted(self, type_: Type, quantity: str, values: tuple[ir.Expr, ...], span: ir.Span) -> Typed:
+    def convert(self, type_: Type, quantity: str, values: tuple[ir.Expr, ...], span: ir.Span) -> Typed:
         """A constructor of numbers; of a literal, or a value of this type, it is that value."""
         kind, first = kind_of(type_), values[0].type
         if isinstance(type_, Scalar) and isinstance(values[0], ir.Literal):

@@ -136,7 +136,7 @@ def _split(statements: list[ir.Stmt], counters: set[str]) -> tuple[list[ir.Stmt]
         return statements, None
     for stmt in simple:
         others = [other for other in statements if other is not stmt]
-        if _written(stmt) & counters and not any(_conflict(stmt, other) for other in others):
+        if _writes(stmt) & counters and not any(_conflict(stmt, other) for other in others):
             return others, stmt
     if statements[-1] in simple:
         return statements[:-1], statements[-1]
@@ -145,20 +145,20 @@ def _split(statements: list[ir.Stmt], counters: set[str]) -> tuple[list[ir.Stmt]
 
 def _conflict(one: ir.Stmt, other: ir.Stmt) -> bool:
     """Whether the order of two statements matters. A call may read and write any module variable."""
-    if _written(one) & _used(other) or _written(other) & _used(one):
+    if _writes(one) & _uses(other) or _writes(other) & _uses(one):
         return True
     kinds = [{type(part) for part in all_expressions((stmt,))} & {ir.Call, ir.Global} for stmt in (one, other)]
     return all(kinds) and ir.Call in kinds[0] | kinds[1]
 
 
-def _written(stmt: ir.Stmt) -> set[str]:
+def _writes(stmt: ir.Stmt) -> set[str]:
     """The variables that a statement writes."""
     if isinstance(stmt, ir.Declare):
         return {stmt.name}
     return writes_of([stmt], lambda call: call.args)[0]
 
 
-def _used(stmt: ir.Stmt) -> set[str]:
+def _uses(stmt: ir.Stmt) -> set[str]:
     """The variables that a statement reads or writes."""
     names = {part.name for part in all_expressions((stmt,)) if isinstance(part, ir.Local | ir.Global)}
-    return names | _written(stmt)
+    return names | _writes(stmt)

@@ -35,7 +35,7 @@ def cases_of(context: CheckContext, switch: s.SwitchStatement) -> list[Case]:
             groups[-1][1].append(statement)
     cases, default = list[Case](), None
     for index, (labels, _) in enumerate(groups):
-        body = _executed([statements for _, statements in groups[index:]])
+        body = _statements_of([statements for _, statements in groups[index:]])
         context.function.case_statements += len(body)
         if context.function.case_statements > MAX_STATEMENTS:
             hint = "end the cases with break"
@@ -50,7 +50,7 @@ def cases_of(context: CheckContext, switch: s.SwitchStatement) -> list[Case]:
     return [*cases, default] if default is not None else cases
 
 
-def _executed(groups: list[list[s.Statement]]) -> tuple[s.Statement, ...]:
+def _statements_of(groups: list[list[s.Statement]]) -> tuple[s.Statement, ...]:
     """The statements from a case to the statement that leaves the switch."""
     body: list[s.Statement] = []
     for statements in groups:

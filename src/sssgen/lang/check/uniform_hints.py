@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from sssgen.ir.drawn import CUBES, DRAWN
 from sssgen.ir.nodes import Span
 from sssgen.ir.rules import FLOAT_MAX
 from sssgen.ir.types import FLOAT, VEC3, VEC4, Matrix, Sampler, Type, kind_of
+from sssgen.ir.view_textures import CUBES, VIEW_TEXTURES
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.context import CheckContext
 from sssgen.lang.syntax import tree as s
@@ -73,9 +73,11 @@ def check_hints(
 
 
 def _check_drawn(context: CheckContext, span: Span, view: str, type_: Type) -> None:
-    if view not in DRAWN:
+    if view not in VIEW_TEXTURES:
         raise context.fail(
-            span, f"a program cannot draw '{view}'", did_you_mean(view, DRAWN) or f"one of: {', '.join(DRAWN)}"
+            span,
+            f"a program cannot draw '{view}'",
+            did_you_mean(view, VIEW_TEXTURES) or f"one of: {', '.join(VIEW_TEXTURES)}",
         )
     dim = "Cube" if view in CUBES else "2D"
     if type_ not in (Matrix(4, 4), FLOAT) and not (isinstance(type_, Sampler) and type_.dim == dim):
@@ -92,11 +94,7 @@ def _check_range(
     default: tuple[float, ...],
     written: bool,
 ) -> None:
-    low, high = float(args[0]), float(args[1])
-    if kind_of(type_) not in ("float", "int", "uint"):
-        raise context.fail(span, "hint_range is for numbers only")
-    if not low < high:
-        raise context.fail(span, f"the range {low:g} to {high:g} is empty")
+    low, high = _ends(context, "hint_range", span, args, type_)
     if not all(float(step) > 0.0 for step in args[2:]):
         raise context.fail(span, "the step of a range must be above 0")
     for value in default:
@@ -114,13 +112,21 @@ def _check_part(
     whole: tuple[float | str, ...] | None,
 ) -> None:
     """Checks a part of the range: of numbers, not empty, and within the `hint_range` that stands before it."""
+    low, high = _ends(context, name, span, args, type_)
+    if whole is not None and not float(whole[0]) <= low < high <= float(whole[1]):
+        raise context.fail(span, f"{name} goes beyond hint_range")
+
+
+def _ends(
+    context: CheckContext, name: str, span: Span, args: tuple[float | str, ...], type_: Type
+) -> tuple[float, float]:
+    """The ends of a range of numbers that is not empty."""
     low, high = float(args[0]), float(args[1])
     if kind_of(type_) not in ("float", "int", "uint"):
         raise context.fail(span, f"{name} is for numbers only")
     if not low < high:
         raise context.fail(span, f"the range {low:g} to {high:g} is empty")
-    if whole is not None and not float(whole[0]) <= low < high <= float(whole[1]):
-        raise context.fail(span, f"{name} goes beyond hint_range")
+    return low, high
 
 
 def _arguments(fewest: int, most: int, kind: type) -> str:

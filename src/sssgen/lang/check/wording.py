@@ -27,7 +27,7 @@ def a_type(type_: Type) -> str:
     return with_article(spell(type_))
 
 
-def declared(name: str, signature: Signature) -> str:
+def signature_text(name: str, signature: Signature) -> str:
     """A function as it was declared."""
     return f"{name}({', '.join(map(spell, signature.types))})"
 

@@ -66,9 +66,9 @@ class Branch:
 class SourceFile:
     """A file that is being read: the position, and the open #if."""
 
-    def __init__(self, text: str, shown: str) -> None:
+    def __init__(self, text: str, label: str) -> None:
         self.text = text
-        self.shown = shown
+        self.label = label
         self.position = 0
         self.line = 1
         self.branches: list[Branch] = []
@@ -80,7 +80,7 @@ class SourceFile:
         column = start - self.text.rfind("\n", 0, start)
         lines = self.text.count("\n", start, end)
         end_column = end - self.text.rfind("\n", start, end) if lines else column + end - start
-        return Span(self.shown, self.line, column, self.line + lines, end_column)
+        return Span(self.label, self.line, column, self.line + lines, end_column)
 
     @property
     def live(self) -> bool:

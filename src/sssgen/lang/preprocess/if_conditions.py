@@ -93,7 +93,7 @@ class _Reader:
 
         def reduce() -> None:
             right, left = operands.pop(), operands.pop()
-            operands.append(_combined(operators.pop(), left, right))
+            operands.append(_combine(operators.pop(), left, right))
 
         while self.text in PRECEDENCE and self.text != "^^":
             operator = self.take()
@@ -162,7 +162,7 @@ def _wrapped(value: int) -> int:
     return ((value + half) & (2 * half - 1)) - half
 
 
-def _combined(operator: Token, left: _Value, right: _Value) -> _Value:
+def _combine(operator: Token, left: _Value, right: _Value) -> _Value:
     sign = operator.text
     if isinstance(left, Fault):
         return left

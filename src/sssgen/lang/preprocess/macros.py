@@ -104,13 +104,13 @@ class TooMuch(Fault):
 class Expander:
     """The macros at one point of a text, and their expansion.
 
-    `join` makes the token that `##` joins, `report` reports errors. `kept` are the names of macros that are not
+    `join` makes the token that `##` joins, `report` reports errors. `constants` are the names of macros that are not
     expanded in code; `used` are those of them that were found, `joined` those that `##` joined with another token.
     """
 
     def __init__(self, join: Callable[[str, Span], Token], report: Callable[[Span, str, str], None]) -> None:
         self.macros: dict[str, Macro] = {}
-        self.kept: set[str] = set()
+        self.constants: set[str] = set()
         self.used: set[str] = set()
         self.joined: set[str] = set()
         self.join = join
@@ -148,7 +148,7 @@ class Expander:
         return [pending[0]] if pending is not None else []
 
     def condition(self, tokens: Sequence[Token]) -> list[Token]:
-        """The tokens of an #if: the operand of `defined` is not expanded, and `kept` is expanded, too."""
+        """The tokens of an #if: the operand of `defined` is not expanded, and `constants` are, too."""
         self.limit = self.count + MAX_EXPANSION
         return [item[0] for item in self._run(_Stream([(token, _NONE) for token in reversed(tokens)]), 0, True)]
 
@@ -181,7 +181,7 @@ class Expander:
             if macro is None or name in hidden:
                 out.append(item)
                 continue
-            if name in self.kept and not condition:
+            if name in self.constants and not condition:
                 self.used.add(name)
                 out.append((token, hidden | {name}))  # as if it had been expanded
                 continue
@@ -197,7 +197,7 @@ class Expander:
             hidden |= {name}
             if len(hidden) > MAX_NESTED or depth > MAX_NESTED:
                 raise TooMuch(token.span, f"macros nest more than {MAX_NESTED} levels deep")
-            body = self._substituted(macro, arguments, hidden, token.span, depth)
+            body = self._substitute(macro, arguments, hidden, token.span, depth)
             self._add(len(body) + 1, token.span)
             back += reversed(body)
         return out
@@ -244,7 +244,7 @@ class Expander:
             return None
         return arguments, item[1]
 
-    def _substituted(
+    def _substitute(
         self, macro: Macro, arguments: list[list[_Item]], hidden: frozenset[str], place: Span, depth: int
     ) -> list[_Item]:
         """The body with its arguments, which are expanded on their own, except next to `##`."""
@@ -277,7 +277,7 @@ class Expander:
                 (left, left_hidden), (right, right_hidden) = result.pop(), items[0]
                 if len(left.text) + len(right.text) > MAX_JOINED:
                     raise TooMuch(place, f"'##' makes a token of more than {MAX_JOINED} characters")
-                self.joined |= self.kept & ({left.text} & left_hidden | {right.text} & right_hidden)
+                self.joined |= self.constants & ({left.text} & left_hidden | {right.text} & right_hidden)
                 joined = self.join(left.text + right.text, place)
                 result.append((joined, (left_hidden & right_hidden) | hidden))
                 items = items[1:]

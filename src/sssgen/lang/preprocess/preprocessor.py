@@ -17,7 +17,7 @@ from typing import NamedTuple
 from sssgen.ir.spans import Span
 from sssgen.lang.preprocess.directives import BLANK, Branch, SourceFile, directives, plain, with_whole_tokens
 from sssgen.lang.preprocess.if_conditions import Fault, evaluate
-from sssgen.lang.preprocess.kept_constants import KeptConstants
+from sssgen.lang.preprocess.macro_constants import MacroConstants
 from sssgen.lang.preprocess.macros import MAX_TOKENS, Expander, Numbering, TooMuch, builtin_macros, definition
 from sssgen.lang.syntax.lexer import KEYWORDS, Lexer
 from sssgen.lang.syntax.tokens import Comment, Token
@@ -40,7 +40,7 @@ Find = Callable[[str, Span, bool], tuple[str, str]]
 Raises SssgenError where there is none."""
 
 
-class Preprocessed(NamedTuple):
+class PreprocessedText(NamedTuple):
     """A text and all that it includes after preprocessing, for the parser."""
 
     tokens: list[Token]
@@ -61,12 +61,12 @@ class Preprocessed(NamedTuple):
     """The macros that were expanded, if they are still defined at the end."""
 
 
-def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | None = None) -> Preprocessed:
+def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | None = None) -> PreprocessedText:
     """Executes the directives of a text and of all that it includes, and expands its macros.
 
     `defines` are macros without parameters, defined before the first line. A token has the place where it is written; a
     token from a macro's body has the place of the macro's use. `#line` sets `__LINE__` and `__FILE__` alone: messages
-    show the real lines. Macros that are names of numbers become constants (kept_constants.py).
+    show the real lines. Macros that are names of numbers become constants (macro_constants.py).
 
     Without #version, a text that sets a precision outside of any #if is GLSL ES 1.00: the GLSL 1.10 of desktops, the
     other language without a version, has no precision. Engines rely on its `GL_ES`.
@@ -76,7 +76,7 @@ def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | No
     language = (100, "es") if _sets_precision(text) else (0, "")
     barred: frozenset[str] = frozenset()
     for keep in (True, True, False):
-        run = _Run(find, defines or {}, KeptConstants(barred) if keep else None, language)
+        run = _Run(find, defines or {}, MacroConstants(barred) if keep else None, language)
         run.read(text, file)
         run.finish()
         if run.constants is None:
@@ -84,7 +84,7 @@ def preprocess(text: str, file: str, find: Find, defines: Mapping[str, str] | No
         names = run.constants.in_use(run.tokens) if run.constants.values else []
         conflicts = run.expander.joined | run.constants.conflicts(names, run.tokens)
         if not conflicts:
-            return run.result(run.constants.declared(names, run.tokens), names)
+            return run.result(run.constants.with_declarations(names, run.tokens), names)
         barred |= conflicts  # they are expanded everywhere; repeat, as macros that use them are then expanded, too
     return run.result(run.tokens, [])
 
@@ -119,7 +119,7 @@ class _Run:
     """One run over a text and all that it includes."""
 
     def __init__(
-        self, find: Find, defines: Mapping[str, str], constants: KeptConstants | None, language: tuple[int, str]
+        self, find: Find, defines: Mapping[str, str], constants: MacroConstants | None, language: tuple[int, str]
     ) -> None:
         self.find = find
         self.constants = constants
@@ -140,9 +140,9 @@ class _Run:
         self.reporters: dict[str, Reporter] = {}
         self.expander.macros |= builtin_macros(*language)
         for name, value in defines.items():
-            shown = f"the definition of {name}"
-            tokens = self.split(self.directive_lexer, f"{name} {value}", shown, 1, 1)
-            self.define(tokens, Span(shown, 1, 1, 1, 1), keep=False)
+            label = f"the definition of {name}"
+            tokens = self.split(self.directive_lexer, f"{name} {value}", label, 1, 1)
+            self.define(tokens, Span(label, 1, 1, 1, 1), keep=False)
 
     # Errors
 
@@ -167,13 +167,13 @@ class _Run:
 
     # Files
 
-    def read(self, text: str, shown: str) -> None:
+    def read(self, text: str, label: str) -> None:
         """Reads a file to its end."""
-        if shown in self.texts:
-            self.repeated.add(shown)
-        self.texts[shown] = text
+        if label in self.texts:
+            self.repeated.add(label)
+        self.texts[label] = text
         text = with_whole_tokens(text)
-        file = SourceFile(text, shown)
+        file = SourceFile(text, label)
         self.characters += len(text)
         self.chain.append(file)
         outer, self.expander.numbering = self.expander.numbering, Numbering()
@@ -195,7 +195,7 @@ class _Run:
         if start == end:
             return
         line, column = file.place(start, start)[1:3]
-        tokens = self.split(self.lexer, file.text[start:end], file.shown, line, column)
+        tokens = self.split(self.lexer, file.text[start:end], file.label, line, column)
         try:
             self.tokens += self.expander.expand(tokens)
         except TooMuch as fault:
@@ -203,10 +203,10 @@ class _Run:
         if len(self.tokens) > MAX_TOKENS:
             self.stop(tokens[-1].span, f"more than {MAX_TOKENS} tokens, with all included files")
 
-    def split(self, lexer: Lexer, text: str, shown: str, line: int, column: int) -> list[Token]:
-        tokens, comments = lexer.scan(text, shown, line, column, self.error)
+    def split(self, lexer: Lexer, text: str, label: str, line: int, column: int) -> list[Token]:
+        tokens, comments = lexer.scan(text, label, line, column, self.error)
         if comments:
-            self.comments.setdefault(shown, []).extend(comments)
+            self.comments.setdefault(label, []).extend(comments)
         return tokens
 
     def finish(self) -> None:
@@ -214,11 +214,11 @@ class _Run:
         self.tokens += self.expander.rest()
         self.check()
 
-    def result(self, tokens: list[Token], constants: list[str]) -> Preprocessed:
+    def result(self, tokens: list[Token], constants: list[str]) -> PreprocessedText:
         comments = self.comments
-        for shown in self.repeated & comments.keys():
-            comments[shown] = sorted(dict.fromkeys(comments[shown]), key=lambda comment: comment.first)
-        return Preprocessed(
+        for label in self.repeated & comments.keys():
+            comments[label] = sorted(dict.fromkeys(comments[label]), key=lambda comment: comment.first)
+        return PreprocessedText(
             tokens, comments, self.version, self.profile, self.texts, self.extensions, constants, self.pragmas,
             frozenset(self.expander.macros) - set(constants),
         )  # fmt: skip
@@ -254,12 +254,12 @@ class _Run:
         elif name == "pragma":
             self.pragmas.append(plain(rest))
             if self.pragmas[-1] == "once":
-                self.once.add(file.shown)
+                self.once.add(file.label)
         elif name or plain(rest):
             self.error(place, f"there is no directive '#{name}'", did_you_mean(name, _KNOWN))
 
     def tokens_of(self, file: SourceFile, rest: str, place: Span) -> list[Token]:
-        return self.split(self.directive_lexer, rest, file.shown, place.end_line, place.end_column)
+        return self.split(self.directive_lexer, rest, file.label, place.end_line, place.end_column)
 
     def macro_name(self, tokens: list[Token], place: Span, directive: str) -> Token | None:
         """The macro's name that must be the only argument of a directive."""
@@ -321,24 +321,24 @@ class _Run:
         group = "angled" if angled else "quoted"
         where = file.place(start + match.start(group), start + match.end(group))
         try:
-            shown, text = self.find(match[group], where, angled)
+            label, text = self.find(match[group], where, angled)
         except SssgenError as error:
             for diagnostic in error.diagnostics:
                 self.error(diagnostic.span, diagnostic.message, diagnostic.hint)
             return
-        if shown in self.once:
+        if label in self.once:
             return
         self.included += 1
-        chain = [including.shown for including in self.chain]
+        chain = [including.label for including in self.chain]
         if len(chain) > MAX_INCLUDED:
             message = f"files include files more than {MAX_INCLUDED} deep"
-            if shown in chain:
-                circle = " → ".join([*chain[len(chain) - 1 - chain[::-1].index(shown) :], shown])
-                message = f"'{shown}' includes itself: {circle}"
+            if label in chain:
+                circle = " → ".join([*chain[len(chain) - 1 - chain[::-1].index(label) :], label])
+                message = f"'{label}' includes itself: {circle}"
             self.stop(where, message, "write #pragma once in a file to include it only once")
         if self.included > MAX_INCLUDES or self.characters + len(text) > MAX_CHARACTERS:
             self.stop(where, "too much is included", "write #pragma once in a file to include it only once")
-        self.read(text, shown)
+        self.read(text, label)
 
     def set_line(self, tokens: list[Token], place: Span, following: int) -> None:
         """Executes `#line LINE` or `#line LINE TEXT`, whose next line is `following` in the file."""
@@ -393,11 +393,11 @@ class _Run:
         self.undefine(macro.name)
         macros[macro.name] = macro
         if keep and constants is not None and self.between_declarations():
-            constants.add(macro, tokens[0], self.expander.kept, len(self.tokens))
+            constants.add(macro, tokens[0], self.expander.constants, len(self.tokens))
 
     def undefine(self, name: str) -> None:
         if self.constants is not None:
-            self.constants.end(name, self.expander.kept, self.expander.used, len(self.tokens))
+            self.constants.end(name, self.expander.constants, self.expander.used, len(self.tokens))
         self.expander.macros.pop(name, None)
 
     def between_declarations(self) -> bool:

@@ -25,7 +25,7 @@ def by_out_parameter(function: Function) -> Function:
     return function._replace(params=(*function.params, result), result=VOID, quantity="", body=body)
 
 
-def filling(call: Call, function: Function, place: Local) -> Call:
+def call_into(call: Call, function: Function, place: Local) -> Call:
     """A call of such a function that puts the result into a variable."""
     assert isinstance(function.result, Array)
     key = function_key(function.name, [*(param.type for param in function.params), function.result])

@@ -17,13 +17,13 @@ LegalBuiltin = Callable[[Intrinsic], Expr]
 
 def by_comparisons(construct: Construct, legal: LegalBuiltin) -> Expr:
     """A constructor of bools without conversions of numbers."""
-    args = tuple([_compared(arg, legal) for arg in construct.args])
+    args = tuple([_compare_with_zero(arg, legal) for arg in construct.args])
     if len(args) == 1 and args[0].type == construct.type:
         return args[0]
     return construct._replace(args=args)
 
 
-def _compared(value: Expr, legal: LegalBuiltin) -> Expr:
+def _compare_with_zero(value: Expr, legal: LegalBuiltin) -> Expr:
     """The bools of numbers; bools themselves."""
     type_, span = value.type, value.span
     if kind_of(type_) == "bool" or not isinstance(type_, Scalar | Vector):

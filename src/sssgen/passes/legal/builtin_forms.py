@@ -9,7 +9,7 @@ from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Binary, Construct, Expr, Intrinsic, Module, Unary
 from sssgen.ir.types import Sampler, Scalar, Type, Vector, kind_of
 from sssgen.passes.legal.part_stores import Keep
-from sssgen.passes.substitute import inlined, returned
+from sssgen.passes.substitute import inline, return_expression
 from sssgen.passes.unsupported import MissingBuiltin
 
 Polyfill = Callable[[str, Sequence[Type]], Module]
@@ -36,7 +36,7 @@ class BuiltinForms:
         """Whether every compiler of the language computes it in a constant at file scope."""
         return self.language not in BUILTINS[name].not_constant
 
-    def written(self, call: Intrinsic, text: str) -> Expr:
+    def spell_call(self, call: Intrinsic, text: str) -> Expr:
         """A call of a builtin that has this text: as an operator, or with the arguments that the function takes."""
         if text.startswith("op:"):
             if len(call.args) == 1:
@@ -63,7 +63,7 @@ class BuiltinForms:
         """A call whose polyfill can be inlined, if it is an expression and an argument has to be constant: those of
         functions are not."""
         constants = BUILTINS[call.name].constants([arg.type for arg in call.args])
-        if not constants or returned(module) is None or inlined(module, call.args, call.span) is not None:
+        if not constants or return_expression(module) is None or inline(module, call.args, call.span) is not None:
             return call
         fixed = [isinstance(arg.type, Sampler) or index in constants for index, arg in enumerate(call.args)]
         kept = [arg if skip else keep(arg, "place") for arg, skip in zip(call.args, fixed, strict=True)]

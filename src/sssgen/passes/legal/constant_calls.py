@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.constant_evaluation import Value, combined
+from sssgen.ir.constant_evaluation import Value, combine
 from sssgen.ir.constant_expressions import constant_numbers, literal
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import Array, Matrix, Scalar, Struct, Type, Vector, components, kind_of
@@ -36,7 +36,7 @@ class ConstantCalls:
     def value(self, expr: ir.Expr) -> Value | None:
         """The value of an expression; None where it is not constant."""
         try:
-            return self.evaluated(expr, {}, {})
+            return self.evaluate(expr, {}, {})
         except (_NotConstant, KeyError):
             return None
 
@@ -45,47 +45,47 @@ class ConstantCalls:
         value = self.value(expr)
         return None if value is None else _as_literals(expr.type, value, expr.span)
 
-    def evaluated(self, expr: ir.Expr, local: Mapping[str, Value], functions: Mapping[str, ir.Function]) -> Value:
+    def evaluate(self, expr: ir.Expr, local: Mapping[str, Value], functions: Mapping[str, ir.Function]) -> Value:
         """The value with these values of variables and these functions. Raises _NotConstant, KeyError."""
         if isinstance(expr, ir.Literal):
-            return _known(constant_numbers(expr))
+            return _require(constant_numbers(expr))
         if isinstance(expr, ir.Local):
             return local[expr.name]
         if isinstance(expr, ir.Global):
             return self.globals[expr.name]
         if isinstance(expr, ir.Select):
-            condition = self.evaluated(expr.condition, local, functions)
-            return self.evaluated(expr.yes if condition[0] else expr.no, local, functions)
-        values = [self.evaluated(operand, local, functions) for operand in operands(expr)]
+            condition = self.evaluate(expr.condition, local, functions)
+            return self.evaluate(expr.yes if condition[0] else expr.no, local, functions)
+        values = [self.evaluate(operand, local, functions) for operand in operands(expr)]
         if isinstance(expr, ir.Call):
-            return self.called(functions[expr.function], values, functions)
+            return self.call(functions[expr.function], values, functions)
         if isinstance(expr, ir.Intrinsic) and BUILTINS[expr.name].fold is None:
             module = self.polyfill(expr.name, [arg.type for arg in expr.args])
             helpers = {function.key: function for function in module.functions}
-            return self.called(module.functions[-1], values, helpers)
-        return _known(combined(expr, values))
+            return self.call(module.functions[-1], values, helpers)
+        return _require(combine(expr, values))
 
-    def called(self, function: ir.Function, values: Sequence[Value], functions: Mapping[str, ir.Function]) -> Value:
+    def call(self, function: ir.Function, values: Sequence[Value], functions: Mapping[str, ir.Function]) -> Value:
         local = {param.name: value for param, value in zip(function.params, values, strict=True)}
-        return _known(self.executed(function.body or (), local, functions))
+        return _require(self.execute(function.body or (), local, functions))
 
-    def executed(self, block: ir.Block, local: dict[str, Value], functions: Mapping[str, ir.Function]) -> Value | None:
+    def execute(self, block: ir.Block, local: dict[str, Value], functions: Mapping[str, ir.Function]) -> Value | None:
         """The returned value; None where the statements end without one."""
         for stmt in block:
             if isinstance(stmt, ir.Return) and stmt.value is not None:
-                return self.evaluated(stmt.value, local, functions)
+                return self.evaluate(stmt.value, local, functions)
             if isinstance(stmt, ir.If):
-                chosen = stmt.then if self.evaluated(stmt.condition, local, functions)[0] else stmt.otherwise
-                returned = self.executed(chosen, local, functions)
+                chosen = stmt.then if self.evaluate(stmt.condition, local, functions)[0] else stmt.otherwise
+                returned = self.execute(chosen, local, functions)
                 if returned is not None:
                     return returned
             elif isinstance(stmt, ir.Declare) and stmt.value is not None:
-                local[stmt.name] = self.evaluated(stmt.value, local, functions)
+                local[stmt.name] = self.evaluate(stmt.value, local, functions)
             elif isinstance(stmt, ir.Assign) and isinstance(stmt.target, ir.Local):
                 value = stmt.value
                 if stmt.op:
                     value = ir.Binary(stmt.target.type, stmt.op, stmt.target, value, stmt.span)
-                local[stmt.target.name] = self.evaluated(value, local, functions)
+                local[stmt.target.name] = self.evaluate(value, local, functions)
             else:
                 raise _NotConstant
         return None
@@ -105,7 +105,7 @@ def _as_literals(type_: Type, value: Value, span: ir.Span) -> ir.Expr:
     return literal(type_, numbers, span)
 
 
-def _known(value: Value | None) -> Value:
+def _require(value: Value | None) -> Value:
     if value is None:
         raise _NotConstant
     return value

@@ -5,25 +5,25 @@ from __future__ import annotations
 import functools
 
 from sssgen.ir import nodes as ir
-from sssgen.ir.constant_evaluation import combined
+from sssgen.ir.constant_evaluation import combine
 from sssgen.ir.constant_expressions import literal
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.transform import Transformer, rewrite
 from sssgen.ir.types import FLOAT, UINT, Array, Matrix, Scalar, Struct, Vector, components, kind_of
 from sssgen.passes import uniform_blocks as blocks
 from sssgen.passes.capabilities import Capabilities
-from sssgen.passes.legal.array_results import filling
+from sssgen.passes.legal.array_results import call_into
 from sssgen.passes.legal.bool_conversions import by_comparisons
 from sssgen.passes.legal.builtin_forms import BuiltinForms, Polyfill
 from sssgen.passes.legal.choices import calls_or_samples, chooses_nested, is_expression
 from sssgen.passes.legal.constant_calls import ConstantCalls
 from sssgen.passes.legal.integer_operators import with_result
-from sssgen.passes.legal.legal_operators import is_integer_division, legal_operator, widened
+from sssgen.passes.legal.legal_operators import is_integer_division, legal_operator, widen
 from sssgen.passes.legal.matrix_columns import by_whole_columns, matrix_from, needs_columns
 from sssgen.passes.legal.wide_constants import ConstantIntegers, is_wider
 from sssgen.passes.lift_calls import Calls
 from sssgen.passes.scopes import claim, declared, outs_of
-from sssgen.passes.substitute import inlined, is_cheap
+from sssgen.passes.substitute import inline, is_cheap
 from sssgen.passes.unsupported import MissingBuiltin, Unsupported
 from sssgen.passes.variable_effects import effects
 
@@ -81,7 +81,7 @@ class LegalExpressions(Transformer):
     def keep_expensive(self, value: ir.Expr, name: str) -> ir.Expr:
         return value if is_cheap(value) else self.keep(value, name)
 
-    def apart(self, expr: ir.Expr) -> tuple[ir.Expr, list[ir.Stmt]]:
+    def detach(self, expr: ir.Expr) -> tuple[ir.Expr, list[ir.Stmt]]:
         """An expression, and the statements to be executed before it, which are not in `out`."""
         outer, self.out = self.out, []
         new = self.expression(expr)
@@ -108,7 +108,7 @@ class LegalExpressions(Transformer):
         if isinstance(new, ir.Call) and isinstance(new.type, Array) and not self.capabilities.array_constructors:
             place = ir.Local(new.type, self.new_name("values"), new.span)
             self.out.append(ir.Declare(place.name, new.type, None, new.span))
-            self.out.append(ir.Evaluate(filling(new, self.functions[new.function], place), new.span))
+            self.out.append(ir.Evaluate(call_into(new, self.functions[new.function], place), new.span))
             return place
         return self.legal(new)
 
@@ -118,7 +118,7 @@ class LegalExpressions(Transformer):
         if self.integers is None or not (nested or kind_of(expr.type) in ("int", "uint")):
             return self.expressible(expr)
         parts = self.integers.parts(expr)
-        numbers = combined(expr, parts) if parts else None
+        numbers = combine(expr, parts) if parts else None
         if numbers is None:
             return self.expressible(expr)
         computed = nested or (not self.capabilities.wrapping_constants and is_wider(expr, parts, numbers))
@@ -150,7 +150,7 @@ class LegalExpressions(Transformer):
             and kind_of(expr.type) == "uint"
             and not self.capabilities.uint_minus
         ):
-            zero = widened(ir.Literal(UINT, 0, expr.span), components(expr.type))
+            zero = widen(ir.Literal(UINT, 0, expr.span), components(expr.type))
             return ir.Binary(expr.type, "-", zero, expr.operand, expr.span)
         if (
             isinstance(expr, ir.Unary)
@@ -209,9 +209,9 @@ class LegalExpressions(Transformer):
             number = self.constant_calls.literals(call)
             if number is not None:
                 return number
-        return self.builtins.written(call, text) if text else self.polyfilled(call)
+        return self.builtins.spell_call(call, text) if text else self.replace_builtin(call)
 
-    def polyfilled(self, call: ir.Intrinsic) -> ir.Expr:
+    def replace_builtin(self, call: ir.Intrinsic) -> ir.Expr:
         """A builtin that the target has by a polyfill."""
         module = self.builtins.module(call)
         try:
@@ -223,7 +223,7 @@ class LegalExpressions(Transformer):
         """The polyfill's expression where it is short and its arguments are cheap, else a call of the polyfill."""
         function = module.functions[-1]
         writes = self.writing and any(map(self.calls.writing, call.args))  # each is evaluated once, in this order
-        placed = inlined(module, call.args, call.span) if not writes else None
+        placed = inline(module, call.args, call.span) if not writes else None
         if placed is not None:
             return self.expression(placed)
         if self.current is None:
@@ -255,7 +255,7 @@ class LegalExpressions(Transformer):
             return self.legal(ir.Select(select.type, condition, yes, no, span))
         arms = (select.yes, select.no)
         if not self.branches(select):
-            (yes, before_yes), (no, before_no) = self.apart(select.yes), self.apart(select.no)
+            (yes, before_yes), (no, before_no) = self.detach(select.yes), self.detach(select.no)
             if not before_yes and not before_no:
                 return self.legal(ir.Select(select.type, condition, yes, no, span))
         if place is None:

@@ -42,8 +42,8 @@ def legal_operator(binary: ir.Binary, capabilities: Capabilities, keep: Keep) ->
         return _equality(binary, capabilities, keep) if not capabilities.whole_equality else binary
     if op in ("<<", ">>", "&", "|", "^") and not capabilities.mixed_bits:
         size = max(components(left.type), components(right.type))
-        right = _amount(right, size) if op in ("<<", ">>") else widened(right, size)
-        return binary._replace(left=widened(left, size), right=right)
+        right = _amount(right, size) if op in ("<<", ">>") else widen(right, size)
+        return binary._replace(left=widen(left, size), right=right)
     if not capabilities.matrix_scalar_arithmetic:
         if isinstance(left.type, Matrix) and isinstance(right.type, Scalar) and op == "/":
             inverse = ir.Binary(FLOAT, "/", ir.Literal(FLOAT, 1.0, span), right, span)
@@ -90,10 +90,10 @@ def _amount(amount: ir.Expr, size: int) -> ir.Expr:
         amount = ir.Literal(UINT, amount.value, amount.span)
     elif kind_of(amount.type) == "int":
         amount = ir.Construct(vector_of("uint", components(amount.type)), (amount,), amount.span)
-    return widened(amount, size)
+    return widen(amount, size)
 
 
-def widened(value: ir.Expr, size: int) -> ir.Expr:
+def widen(value: ir.Expr, size: int) -> ir.Expr:
     """A scalar as a vector of this size, if that is more than one."""
     if components(value.type) == size:
         return value

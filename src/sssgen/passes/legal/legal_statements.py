@@ -52,13 +52,13 @@ class LegalStatements(LegalExpressions):
                 self.out.insert(-1, stmt._replace(value=None))
                 return None
             return stmt._replace(value=value)
-        begin = self.initial(value)
+        begin = self.initial_value(value)
         return stmt if begin is value else ir.Declare(stmt.name, stmt.type, begin, stmt.span)
 
-    def initial(self, value: ir.Expr) -> ir.Expr:
+    def initial_value(self, value: ir.Expr) -> ir.Expr:
         """An initial value: there every language can list the parts of an array or struct."""
         if type(value) is ir.Construct and isinstance(value.type, (Array, Struct)):
-            return value._replace(args=tuple([self.initial(arg) for arg in value.args]))
+            return value._replace(args=tuple([self.initial_value(arg) for arg in value.args]))
         return self.expression(value)
 
     def assign(self, stmt: ir.Assign) -> ir.Stmt | None:
@@ -71,13 +71,13 @@ class LegalStatements(LegalExpressions):
             value = self.select(stmt.value, stmt.target)
             return None if value is stmt.target else stmt._replace(value=value)
         place, value = self.place(stmt.target), self.expression(stmt.value)
-        if type(place) is not ir.Local and any(map(self.refused, parts_of(place))):
+        if type(place) is not ir.Local and any(map(self.lacks_store, parts_of(place))):
             if op:
                 value = self.binary(ir.Binary(place.type, op, place, value, span))
             if self.is_memory(place):
-                self.out += component_stores(place, value, self.refused, self.keep_expensive)
+                self.out += component_stores(place, value, self.lacks_store, self.keep_expensive)
                 return None
-            place, value = whole_store(place, value, self.refused, self.keep_expensive)
+            place, value = whole_store(place, value, self.lacks_store, self.keep_expensive)
             return ir.Assign(place, "", value, span)
         if op:
             result = self.binary(ir.Binary(place.type, op, place, value, span))
@@ -96,7 +96,7 @@ class LegalStatements(LegalExpressions):
             return any(param.passes in self.memories for param in params if param.name == root.name)
         return root is not None and root.name in self.memories
 
-    def refused(self, part: ir.Expr) -> bool:
+    def lacks_store(self, part: ir.Expr) -> bool:
         """Whether the target has no store into such a part."""
         return (is_swizzle_store(part) and not self.capabilities.swizzle_store) or (
             is_dynamic_store(part) and not self.capabilities.dynamic_stores
@@ -107,16 +107,16 @@ class LegalStatements(LegalExpressions):
         return None if isinstance(new, ir.Evaluate) and isinstance(new.call, ir.Local) else new
 
     def leave(self, stmt: ir.Return) -> ir.Stmt | None:
-        value = self.returned(stmt.value, stmt.span) if stmt.value is not None else None
+        value = self.return_value(stmt.value, stmt.span) if stmt.value is not None else None
         return stmt if value is stmt.value else ir.Return(value, stmt.span)
 
-    def returned(self, value: ir.Expr, span: ir.Span) -> ir.Expr:
+    def return_value(self, value: ir.Expr, span: ir.Span) -> ir.Expr:
         """The value of the function's last return; the first arm of a choice that needs an if returns before it."""
         if not isinstance(value, ir.Select) or not self.branches(value):
             return self.expression(value)
         condition, then = self.expression(value.condition), self.inner((ir.Return(value.yes, value.yes.span),))
         self.out.append(ir.If(condition, then, (), span))
-        return self.returned(value.no, span)
+        return self.return_value(value.no, span)
 
     def for_loop(self, stmt: ir.For) -> ir.Stmt | None:
         condition, body = self.loop(stmt)
@@ -136,7 +136,7 @@ class LegalStatements(LegalExpressions):
 
     def loop(self, loop: ir.For | ir.While) -> tuple[ir.Expr | None, ir.Block]:
         """Condition and body; where the condition needs statements, the body begins with them and may break then."""
-        condition, before = self.apart(loop.condition) if loop.condition is not None else (None, [])
+        condition, before = self.detach(loop.condition) if loop.condition is not None else (None, [])
         self.counters.append(counts_up(loop) if isinstance(loop, ir.For) else "")
         body = self.inner(loop.body)
         self.counters.pop()

@@ -15,7 +15,7 @@ from sssgen.passes.legal.array_results import by_out_parameter
 from sssgen.passes.legal.builtin_forms import Polyfill
 from sssgen.passes.legal.legal_statements import LegalStatements, OutOfOrderError
 from sssgen.passes.legal.part_stores import parts_of
-from sssgen.passes.lift_calls import Calls, awkward, lift, reads_too_late
+from sssgen.passes.lift_calls import Calls, lift, order_conflicts, reads_too_late
 from sssgen.passes.scopes import assigned
 from sssgen.passes.unsupported import Unsupported
 
@@ -56,12 +56,12 @@ class _Legaliser(LegalStatements):
     def file_scope_value(self, value: ir.Expr) -> ir.Expr:
         """The value of a declaration at file scope; its numbers where the target cannot compute it there."""
         try:
-            return self.initial(value)
+            return self.initial_value(value)
         except Unsupported:
             numbers = self.constant_calls.literals(value)
             if numbers is None:
                 raise
-            return self.initial(numbers)
+            return self.initial_value(numbers)
 
     def function(self, function: ir.Function) -> ir.Function:
         """A function of the module, or one of a polyfill, which is called while another function is rewritten."""
@@ -75,35 +75,35 @@ class _Legaliser(LegalStatements):
     def in_order(self, function: ir.Function) -> ir.Function:
         """A function whose writing calls are executed in their order."""
         if not self.writing or not self.calls.changing(function):
-            return self.lifted(function)
+            return self.legal_function(function)
         if not self.capabilities.out_parameters:
-            return self.lifted(lift(function, self.calls))
-        stmts = awkward(function, self.calls)
+            return self.legal_function(lift(function, self.calls))
+        stmts = order_conflicts(function, self.calls)
         lifts = stmts and (
             not self.capabilities.operand_order
-            or awkward(function, Calls(self.functions))
+            or order_conflicts(function, Calls(self.functions))
             or reads_too_late(function, self.calls)
         )
         if lifts or self.writes_parts(function):
-            return self.lifted(lift(function, self.calls))
+            return self.legal_function(lift(function, self.calls))
         self.ordered = {id(stmt) for stmt in stmts}
         out = self.out
         try:
-            return self.lifted(function)
+            return self.legal_function(function)
         except OutOfOrderError:
             self.ordered, self.out, self.counters = set(), out, []
-            return self.lifted(lift(function, self.calls))
+            return self.legal_function(lift(function, self.calls))
 
     def writes_parts(self, function: ir.Function) -> bool:
         """Whether a call writes a part of a variable into which the target has no store."""
         return any(
-            self.refused(part)
+            self.lacks_store(part)
             for call in calls_of(function.body or ())
             for index in self.outs.get(call.function, ())
             for part in parts_of(call.args[index])
         )
 
-    def lifted(self, function: ir.Function) -> ir.Function:
+    def legal_function(self, function: ir.Function) -> ir.Function:
         """A function whose writing calls are where the target can have them."""
         self.names, self.current = set(), function
         if not self.capabilities.mutable_parameters:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.spans import Span
-from sssgen.ir.types import FLOAT, INT, Matrix, Scalar, Vector, components, vector_of
+from sssgen.ir.types import FLOAT, INT, Matrix, Scalar, Vector, components
+from sssgen.passes.constructed_parts import components_at
 from sssgen.passes.legal.part_stores import Keep
 
 
@@ -70,18 +71,11 @@ def by_whole_columns(type_: Matrix, args: Sequence[ir.Expr], span: Span) -> ir.C
 
 def _column(cells: Sequence[tuple[ir.Expr, int]], size: int, span: Span) -> ir.Expr:
     """One column from (argument, which of its components) for each of its numbers."""
-    runs: list[tuple[ir.Expr, str]] = []
+    runs: list[tuple[ir.Expr, list[int]]] = []
     for arg, component in cells:
         if runs and runs[-1][0] is arg:
-            runs[-1] = arg, runs[-1][1] + "xyzw"[component]
+            runs[-1][1].append(component)
         else:
-            runs.append((arg, "xyzw"[component]))
-    parts = tuple([_part(arg, letters) for arg, letters in runs])
+            runs.append((arg, [component]))
+    parts = tuple([components_at(arg, run, arg.span) for arg, run in runs])
     return parts[0] if len(parts) == 1 else ir.Construct(Vector("float", size), parts, span)
-
-
-def _part(arg: ir.Expr, letters: str) -> ir.Expr:
-    """Some components of an argument in a row."""
-    if not isinstance(arg.type, Vector) or letters == "xyzw"[: arg.type.size]:
-        return arg
-    return ir.Swizzle(vector_of("float", len(letters)), arg, letters, arg.span)

@@ -57,24 +57,16 @@ class _Wrapper:
         for function in module.functions:
             types = [self.type(param.type) for param in function.params]
             self.keys[function.key] = ir.function_key(function.name, types)
-        constants = tuple(
-            [
-                constant._replace(type=self.type(constant.type), value=rewrite(constant.value, self.node))
-                for constant in module.constants
-            ]
-        )
-        variables = tuple(
-            [
-                variable._replace(
-                    type=self.type(variable.type),
-                    value=None if variable.value is None else rewrite(variable.value, self.node),
-                )
-                for variable in module.variables
-            ]
-        )
+        constants = [
+            each._replace(type=self.type(each.type), value=rewrite(each.value, self.node)) for each in module.constants
+        ]
+        variables = [
+            each._replace(type=self.type(each.type), value=each.value and rewrite(each.value, self.node))
+            for each in module.variables
+        ]
         functions = tuple(map(self.function, module.functions))
         return module._replace(
-            structs=tuple(self.structs), constants=constants, variables=variables, functions=functions
+            structs=tuple(self.structs), constants=tuple(constants), variables=tuple(variables), functions=functions
         )
 
     def type(self, type_: Type) -> Type:

@@ -16,67 +16,68 @@ Keep = Callable[[ir.Expr, str], ir.Expr]
 
 
 def whole_store(
-    place: ir.Expr, value: ir.Expr, refused: Callable[[ir.Expr], bool], keep: Keep
+    place: ir.Expr, value: ir.Expr, lacks_store: Callable[[ir.Expr], bool], keep: Keep
 ) -> tuple[ir.Expr, ir.Expr]:
     """The place and the value of a store that means `place = value` and of which no part is refused."""
-    place = _pinned(place, keep)
-    while any(refused(part) for part in parts_of(place)):
-        place, value = _wider(place, value, keep)
+    place = _pin(place, keep)
+    while any(lacks_store(part) for part in parts_of(place)):
+        place, value = _widen(place, value, keep)
     return place, value
 
 
-def component_stores(place: ir.Expr, value: ir.Expr, refused: Callable[[ir.Expr], bool], keep: Keep) -> list[ir.Stmt]:
+def component_stores(
+    place: ir.Expr, value: ir.Expr, lacks_store: Callable[[ir.Expr], bool], keep: Keep
+) -> list[ir.Stmt]:
     """Stores that mean `place = value` in memory of several invocations: each of one component or column.
 
     A store of the whole would also write the components that other invocations write.
     """
-    return _each(_pinned(place, keep), keep(value, f"{base_name(place)}_new"), refused)
+    return _stores(_pin(place, keep), keep(value, f"{base_name(place)}_new"), lacks_store)
 
 
-def _each(place: ir.Expr, value: ir.Expr, refused: Callable[[ir.Expr], bool]) -> list[ir.Stmt]:
-    if not any(map(refused, parts_of(place))):
+def _stores(place: ir.Expr, value: ir.Expr, lacks_store: Callable[[ir.Expr], bool]) -> list[ir.Stmt]:
+    if not any(map(lacks_store, parts_of(place))):
         return [ir.Assign(place, "", value, place.span)]
     if isinstance(place, ir.Swizzle) and len(place.components) > 1:
-        kind = Scalar(kind_of(place.type))
-        return [
-            stmt
-            for number, letter in enumerate(place.components)
-            for stmt in _each(
-                _part(place.value, "xyzw".index(letter), place.span), _component(value, number, kind), refused
-            )
-        ]
+        stores: list[ir.Stmt] = []
+        for number, letter in enumerate(place.components):
+            part = _part(place.value, "xyzw".index(letter), place.span)
+            stores += _stores(part, _part(value, number, value.span), lacks_store)
+        return stores
     if isinstance(place, ir.Index) and _in_registers(place):
         if isinstance(place.index, ir.Literal):
-            return _each(_part(place.value, int(place.index.value), place.span), value, refused)
+            return _stores(_part(place.value, int(place.index.value), place.span), value, lacks_store)
         type_ = place.value.type
         assert isinstance(type_, Vector | Matrix)
-        stores: list[ir.Stmt] = []
+        stores = []
         for number in range(type_.columns if isinstance(type_, Matrix) else type_.size):
             chosen = ir.Literal(place.index.type, number, place.span)
             selected = ir.Binary(BOOL, "==", place.index, chosen, place.span)
-            inner = _each(_part(place.value, number, place.span), value, refused)
+            inner = _stores(_part(place.value, number, place.span), value, lacks_store)
             stores.append(ir.If(selected, tuple(inner), (), place.span))
         return stores
     assert isinstance(place, ir.Swizzle)  # one component of what has a part that is refused
     if isinstance(place.value, ir.Swizzle):
-        return _each(_part(place.value, "xyzw".index(place.components), place.span), value, refused)
+        return _stores(_part(place.value, "xyzw".index(place.components), place.span), value, lacks_store)
     stores = []
-    for stmt in _each(place.value, place.value, refused):
-        stores.append(_narrowed(stmt, place, value))
+    for stmt in _stores(place.value, place.value, lacks_store):
+        stores.append(_narrow(stmt, place, value))
     return stores
 
 
-def _narrowed(stmt: ir.Stmt, place: ir.Swizzle, value: ir.Expr) -> ir.Stmt:
+def _narrow(stmt: ir.Stmt, place: ir.Swizzle, value: ir.Expr) -> ir.Stmt:
     """A store of a whole column as the store of its component."""
     if isinstance(stmt, ir.If):
-        return stmt._replace(then=tuple([_narrowed(inner, place, value) for inner in stmt.then]))
+        return stmt._replace(then=tuple([_narrow(inner, place, value) for inner in stmt.then]))
     assert isinstance(stmt, ir.Assign)
     return stmt._replace(target=place._replace(value=stmt.target), value=value)
 
 
 def _part(whole: ir.Expr, number: int, span: ir.Span) -> ir.Expr:
-    """A component of a vector, or a column of a matrix."""
+    """A component of a vector, or a column of a matrix; a scalar itself."""
     type_ = whole.type
+    if isinstance(type_, Scalar):
+        return whole
     if isinstance(type_, Matrix):
         return ir.Index(Vector("float", type_.rows), whole, ir.Literal(Scalar("int"), number, span), span)
     if isinstance(whole, ir.Swizzle):
@@ -116,46 +117,40 @@ def _in_registers(index: ir.Index) -> bool:
     return isinstance(index.value.type, Vector | Matrix)
 
 
-def _pinned(place: ir.Expr, keep: Keep) -> ir.Expr:
+def _pin(place: ir.Expr, keep: Keep) -> ir.Expr:
     """The place with its indices computed once."""
     if isinstance(place, ir.Swizzle | ir.Member):
-        return place._replace(value=_pinned(place.value, keep))
+        return place._replace(value=_pin(place.value, keep))
     if isinstance(place, ir.Index):
-        return place._replace(value=_pinned(place.value, keep), index=keep(place.index, "place"))
+        return place._replace(value=_pin(place.value, keep), index=keep(place.index, "place"))
     return place
 
 
-def _wider(place: ir.Expr, value: ir.Expr, keep: Keep) -> tuple[ir.Expr, ir.Expr]:
+def _widen(place: ir.Expr, value: ir.Expr, keep: Keep) -> tuple[ir.Expr, ir.Expr]:
     """The store one step further out: of the vector or matrix that `place` is a part of."""
     assert isinstance(place, ir.Swizzle | ir.Index)
     vector, span = place.value, place.span
     type_ = vector.type
     assert isinstance(type_, Vector | Matrix)
-    part_type = Vector("float", type_.rows) if isinstance(type_, Matrix) else Scalar(type_.kind)
     count = type_.columns if isinstance(type_, Matrix) else type_.size
 
-    def old(component: int) -> ir.Expr:
-        if isinstance(type_, Matrix):
-            return ir.Index(part_type, vector, ir.Literal(Scalar("int"), component, span), span)
-        return ir.Swizzle(part_type, vector, "xyzw"[component], span)
-
-    parts = [old(number) for number in range(count)]
+    parts = [_part(vector, number, span) for number in range(count)]
     if isinstance(place, ir.Swizzle):
         if len(place.components) > 1:
             value = keep(value, f"{base_name(vector)}_{place.components}")
         for number, letter in enumerate(place.components):
-            parts["xyzw".index(letter)] = _component(value, number, part_type)
+            parts["xyzw".index(letter)] = _part(value, number, value.span)
     elif isinstance(place.index, ir.Literal):
         parts[int(place.index.value)] = value
     else:
         value = keep(value, f"{base_name(vector)}_new")
         for number in range(count):
             selected = ir.Binary(BOOL, "==", place.index, ir.Literal(place.index.type, number, span), span)
-            parts[number] = ir.Select(part_type, selected, value, parts[number], span)
-    return vector, ir.Construct(type_, tuple(_joined(parts)), span)
+            parts[number] = ir.Select(parts[number].type, selected, value, parts[number], span)
+    return vector, ir.Construct(type_, tuple(_join(parts)), span)
 
 
-def _joined(parts: list[ir.Expr]) -> list[ir.Expr]:
+def _join(parts: list[ir.Expr]) -> list[ir.Expr]:
     """The components of a vector, with neighbours of one vector taken together: `v.x, v.y, w.z` as `v, w.z`."""
     joined: list[ir.Expr] = []
     for part in parts:
@@ -170,19 +165,6 @@ def _joined(parts: list[ir.Expr]) -> list[ir.Expr]:
 
 def _whole(part: ir.Expr) -> ir.Expr:
     """A vector itself where all of its components are named in their order."""
-    if (
-        isinstance(part, ir.Swizzle)
-        and part.type == part.value.type
-        and part.components == "xyzw"[: components(part.type)]
-    ):
-        return part.value
-    return part
-
-
-def _component(value: ir.Expr, number: int, type_: Scalar | Vector) -> ir.Expr:
-    """One component of a vector, or the scalar itself."""
-    if isinstance(value.type, Scalar):
-        return value
-    if isinstance(value, ir.Swizzle):
-        return ir.Swizzle(type_, value.value, value.components[number], value.span)
-    return ir.Swizzle(type_, value, "xyzw"[number], value.span)
+    if not isinstance(part, ir.Swizzle) or part.type != part.value.type:
+        return part
+    return part.value if part.components == "xyzw"[: components(part.type)] else part

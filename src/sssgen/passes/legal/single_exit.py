@@ -8,6 +8,7 @@ some cases only, is executed if a flag is not set. Place: after `legalise`, whic
 from __future__ import annotations
 
 from sssgen.ir import nodes as ir
+from sssgen.ir.transform import rewrite_block
 from sssgen.ir.types import BOOL, VOID
 from sssgen.ir.walk import all_expressions, inner_statements, statements
 from sssgen.passes.scopes import declared, fresh, separate
@@ -101,16 +102,11 @@ class _Exits:
 
     def without_flag(self, block: ir.Block) -> ir.Block:
         """A block without the assignments to the flag, which nothing reads."""
-        result: list[ir.Stmt] = []
-        for stmt in block:
-            if isinstance(stmt, ir.If):
-                then, otherwise = self.without_flag(stmt.then), self.without_flag(stmt.otherwise)
-                result.append(stmt._replace(then=then, otherwise=otherwise))
-            elif isinstance(stmt, ir.For | ir.While):
-                result.append(stmt._replace(body=self.without_flag(stmt.body)))
-            elif not (isinstance(stmt, ir.Assign) and stmt.target == self.flag):
-                result.append(stmt)
-        return tuple(result)
+
+        def restate(stmt: ir.Stmt) -> ir.Block | None:
+            return () if isinstance(stmt, ir.Assign) and stmt.target == self.flag else None
+
+        return rewrite_block(block, lambda expr: expr, restate)
 
 
 def _always(block: ir.Block) -> bool:

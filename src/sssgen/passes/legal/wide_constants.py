@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from sssgen.ir import constant_arithmetic as arithmetic
-from sssgen.ir.constant_evaluation import Value, combined
+from sssgen.ir.constant_evaluation import Value, combine
 from sssgen.ir.constant_expressions import constant_numbers
 from sssgen.ir.nodes import Binary, Construct, Expr, Global, Intrinsic, Literal, Local, Unary
 from sssgen.ir.types import kind_of
@@ -44,7 +44,7 @@ class ConstantIntegers:
         if known is not None or kind_of(expr.type) in _INTEGERS:
             return known[1] if known is not None else None
         parts = self.parts(expr)
-        return combined(expr, parts) if parts else None
+        return combine(expr, parts) if parts else None
 
     def parts(self, expr: Expr) -> list[Value]:
         """The values of the operands; empty where one is not constant."""

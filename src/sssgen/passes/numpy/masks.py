@@ -29,7 +29,7 @@ class Mask(NamedTuple):
         return Select(inside.type, Local(BOOL, self.name, span), inside, outside, span)
 
 
-def negated(condition: Expr) -> tuple[Expr, bool]:
+def without_not(condition: Expr) -> tuple[Expr, bool]:
     """A condition without its outer `!`, and whether these leave it negated."""
     inverted = False
     while isinstance(condition, Unary):

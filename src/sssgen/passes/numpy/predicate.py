@@ -25,7 +25,7 @@ from sssgen.ir.constant_expressions import zero
 from sssgen.ir.types import BOOL, VOID, Type
 from sssgen.ir.walk import root, statements
 from sssgen.passes.lift_calls import DISCARDED, Functions, lift_calls, out_arguments
-from sssgen.passes.numpy.masks import Mask, negated
+from sssgen.passes.numpy.masks import Mask, without_not
 from sssgen.passes.numpy.settle import settle
 from sssgen.passes.numpy.tidy import renumber, tidy
 from sssgen.passes.numpy.uniformity import Uniformity, uniform_constants
@@ -214,7 +214,7 @@ class _Converter:
 
     def branch(self, stmt: ir.If) -> bool:
         frame = self.frame
-        if self.facts.uniform(stmt.condition):
+        if self.facts.is_uniform(stmt.condition):
             self.prepare_return(stmt)
             frame.branches += 1
             then, then_ends = self.nested(stmt.then)
@@ -222,7 +222,7 @@ class _Converter:
             frame.branches -= 1
             self.out.append(ir.If(stmt.condition, then, otherwise, stmt.span))
             return then_ends and else_ends
-        condition, inverted = negated(stmt.condition)
+        condition, inverted = without_not(stmt.condition)
         outer = frame.mask if self.base(stmt) < self.depth else None
         shared = outer is None and not _jumps_inside(stmt.then)
         if outer is None and isinstance(condition, ir.Local) and self.constant_in(condition.name, stmt):

@@ -89,7 +89,7 @@ class Uniformity:
                 break
             self.names -= self.varying
 
-    def uniform(self, expr: ir.Expr) -> bool:
+    def is_uniform(self, expr: ir.Expr) -> bool:
         """Whether a scalar expression has one value for all lanes."""
         for part in subexpressions(expr):
             if not isinstance(part.type, Scalar):
@@ -112,15 +112,15 @@ class Uniformity:
                     self.varying.add(name)
             if isinstance(stmt, ir.Declare):
                 self.depths[stmt.name] = depth
-                if stmt.value is not None and not self.uniform(stmt.value):
+                if stmt.value is not None and not self.is_uniform(stmt.value):
                     self.varying.add(stmt.name)
             elif isinstance(stmt, ir.Assign):
                 target = root(stmt.target)
                 assert target is not None
-                if self.depths[target.name] < depth or not self.uniform(stmt.value):
+                if self.depths[target.name] < depth or not self.is_uniform(stmt.value):
                     self.varying.add(target.name)
             elif isinstance(stmt, ir.If):
-                inner = depth if self.uniform(stmt.condition) else depth + 1
+                inner = depth if self.is_uniform(stmt.condition) else depth + 1
                 self.block(stmt.then, inner)
                 self.block(stmt.otherwise, inner)
             elif isinstance(stmt, ir.For | ir.While):
@@ -140,11 +140,11 @@ class Uniformity:
         """How to run a loop; `inside`: only some lanes are active there."""
         body = loop.body
         counter = count(loop) if isinstance(loop, ir.For) else None
-        counted = counter is not None and self.fixed(counter, body)
+        counted = counter is not None and self.is_fixed(counter, body)
         jumps = self.jumps(body, False)
         own = _own_jumps(body)
         uniform = counted or (
-            loop.condition is not None and self.uniform(loop.condition) and not jumps and "continue" not in own
+            loop.condition is not None and self.is_uniform(loop.condition) and not jumps and "continue" not in own
         )
         if not uniform and "continue" in own:
             jumps.add("continue")
@@ -154,9 +154,9 @@ class Uniformity:
             jumps.add("return")
         return LoopFacts(counted, not uniform or bool(jumps and not counted), frozenset(jumps))
 
-    def fixed(self, counter: Count, body: ir.Block) -> bool:
+    def is_fixed(self, counter: Count, body: ir.Block) -> bool:
         """Whether the counter and its bounds are uniform and the loop's body does not change them."""
-        if not self.uniform(counter.start) or not self.uniform(counter.stop):
+        if not self.is_uniform(counter.start) or not self.is_uniform(counter.stop):
             return False
         watched = {part.name for part in subexpressions(counter.stop) if isinstance(part, ir.Local)} | {counter.name}
         for stmt in statements(body):
@@ -176,7 +176,7 @@ class Uniformity:
                 if diverged:
                     kinds.add(_kind(stmt))
             elif isinstance(stmt, ir.If):
-                inner = diverged or not self.uniform(stmt.condition)
+                inner = diverged or not self.is_uniform(stmt.condition)
                 kinds |= self.jumps(stmt.then, inner) | self.jumps(stmt.otherwise, inner)
             elif (
                 isinstance(stmt, ir.For | ir.While)

@@ -21,7 +21,7 @@ class CallRanges(AnalysisState):
     def builtin(self, node: ir.Intrinsic, args: tuple[Value, ...], as_texel: bool) -> Value:
         row = BUILTINS[node.name]
         kind = kind_of(node.type)
-        args, guard = self.guarded(node, row, args)
+        args, guard = self.guard_arguments(node, row, args)
         if kind != "float" and (row.unbounded or row.reads_texels):
             return self.unknown(node.type)
         if row.reads_texels and args[0].texel is not None and not args[0].texel.finite and as_texel:
@@ -72,7 +72,7 @@ class CallRanges(AnalysisState):
             for index in range(size)
         ]
 
-    def guarded(
+    def guard_arguments(
         self, node: ir.Intrinsic, row: Builtin, args: tuple[Value, ...]
     ) -> tuple[tuple[Value, ...], Guard | None]:
         """Checks a builtin's domain: the arguments after the guard that it needs, and that guard, if any."""
@@ -88,7 +88,7 @@ class CallRanges(AnalysisState):
                 hull_of(arg.parts) if isinstance(expr.type, Matrix) else arg.length
                 for expr, arg in zip(node.args, args, strict=True)
             ]
-        normal = [[self.flushed(part) for part in ranges] for ranges in rows]
+        normal = [[self.flush(part) for part in ranges] for ranges in rows]
         failures = tuple([
             guard if not self.is_safe(guard, rows, args) else subnormal(guard)
             for guard in guards
@@ -117,7 +117,7 @@ class CallRanges(AnalysisState):
             return True
         return guard.ordered is not None and self.in_order(*[args[index] for index in guard.ordered])
 
-    def flushed(self, part: Range) -> Range:
+    def flush(self, part: Range) -> Range:
         """A range on a GPU that makes subnormal numbers 0."""
         return rounded(part, self.format) if 0.0 < part.gap < self.format.tiny else part
 

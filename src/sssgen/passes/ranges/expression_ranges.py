@@ -43,13 +43,13 @@ class ExpressionRanges(CallRanges):
 
     def local(self, node: ir.Local) -> Value:
         value = self.state.env.get(node.name)
-        return self.unknown(node.type) if value is None else self.refined(value)
+        return self.unknown(node.type) if value is None else self.refine(value)
 
     def global_(self, node: ir.Global) -> Value:
         if node.name in self.variables:
             value = self.state.env.get(global_key(node.name))
-            return self.unknown(node.type) if value is None else self.refined(value)
-        return self.refined(self.globals[node.name])
+            return self.unknown(node.type) if value is None else self.refine(value)
+        return self.refine(self.globals[node.name])
 
     def unary(self, node: ir.Unary) -> Value:
         value = self.expr(node.operand)
@@ -60,10 +60,10 @@ class ExpressionRanges(CallRanges):
             return self.unknown(node.type)
         kind = kind_of(node.type)
         # negation of an integer may wrap
-        numbers = [self.negated(n) if kind == "float" else self.numbers.of("negated", kind, n) for n in value.numbers]
+        numbers = [self.negate(n) if kind == "float" else self.numbers.of("negated", kind, n) for n in value.numbers]
         return self.computed(node, [-part for part in value.parts], numbers, value.length)
 
-    def negated(self, number: int) -> int:
+    def negate(self, number: int) -> int:
         key = self.numbers.definitions[number]
         return cast(int, key[1]) if key[0] == "neg" else self.numbers.of("neg", number)
 
@@ -99,7 +99,7 @@ class ExpressionRanges(CallRanges):
             )
             if product is not None:
                 value = self.computed(node, product, [self.numbers.fresh() for _ in product])
-                return self.turned(node, left, right, value)
+                return self.with_stretch(node, left, right, value)
         if op in ("%", "<<", ">>", "&", "|", "^") or (op == "/" and kind != "float"):
             return self.integer(node, left, right)
         if op == "/":
@@ -116,12 +116,12 @@ class ExpressionRanges(CallRanges):
                 part = self.sum(a, m, b, n, op)
                 number = self.numbers.sum(op, m, n, kind, self.slack(a, b, part, kind))
             if self.unguarded and kind == "float":
-                part = self.expanded(op, number, part, (m, a), (n, b))
+                part = self.expand(op, number, part, (m, a), (n, b))
             parts.append(part)
             numbers.append(number)
         return self.computed(node, parts, numbers, self.length_after(op, left, right))
 
-    def expanded(self, op: str, number: int, part: Range, left: tuple[int, Range], right: tuple[int, Range]) -> Range:
+    def expand(self, op: str, number: int, part: Range, left: tuple[int, Range], right: tuple[int, Range]) -> Range:
         """The range of a sum or product, met with that of the polynomial that it is."""
         for of, range_ in (left, right):
             span = self.spans.get(of)
@@ -151,7 +151,7 @@ class ExpressionRanges(CallRanges):
             return {monomial: Factor(-value, weight) for monomial, (value, weight) in positive}
         return self.polynomials.get(number) or {(number,): Factor(1.0, 1.0)}
 
-    def turned(self, node: ir.Binary, left: Value, right: Value, product: Value) -> Value:
+    def with_stretch(self, node: ir.Binary, left: Value, right: Value, product: Value) -> Value:
         """A product with a matrix of which the stretch is known: a vector's length, or a matrix's stretch."""
         slack = 16.0 * self.format.epsilon
         if isinstance(node.type, Matrix):
@@ -287,7 +287,7 @@ class ExpressionRanges(CallRanges):
         for truth, arm in ((True, node.yes), (False, node.no)):
             self.state = outer.copy()
             self.learn(condition.numbers[0], truth)
-            arms.append((self.refined(self.expr(arm)), self.state))
+            arms.append((self.refine(self.expr(arm)), self.state))
         self.state = self.after_either(outer, [state for _, state in arms])
         if condition.parts[0].low == 1.0 or condition.parts[0].high == 0.0:
             return arms[0 if condition.parts[0].low == 1.0 else 1][0]

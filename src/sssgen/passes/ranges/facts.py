@@ -58,7 +58,7 @@ class Numbers:
         slack += left_sum.slack + right_sum.slack
         earlier = self.sums.get(number)
         if earlier is None:
-            terms = _added(left_sum.terms, right_sum.terms, sign)
+            terms = _add(left_sum.terms, right_sum.terms, sign)
             if len(terms) <= _TERMS:
                 self.sums[number] = Sum(terms, left_sum.constant + sign * right_sum.constant, slack)
         elif slack > earlier.slack:
@@ -75,11 +75,11 @@ class Numbers:
     def difference(self, left: int, right: int) -> Sum:
         """`left - right` as a sum."""
         left_sum, right_sum = self.sum_of(left), self.sum_of(right)
-        terms = _added(left_sum.terms, right_sum.terms, -1.0)
+        terms = _add(left_sum.terms, right_sum.terms, -1.0)
         return Sum(terms, left_sum.constant - right_sum.constant, left_sum.slack + right_sum.slack)
 
 
-def _added(first: Terms, second: Terms, sign: float) -> Terms:
+def _add(first: Terms, second: Terms, sign: float) -> Terms:
     factors = dict(first)
     for number, factor in second:
         factors[number] = factors.get(number, 0.0) + sign * factor

@@ -72,7 +72,7 @@ class LoopRanges(ExpressionRanges):
         block = (*stmt.body, *((stmt.step,) if isinstance(stmt, ir.For) and stmt.step is not None else ()))
         if stmt.condition is not None:  # its calls may write
             block = (*block, ir.Return(stmt.condition, stmt.span))
-        written = self.written(block)
+        written = self.writes_of(block)
         sums = {name: self.sum_kind(name, block) for name in written if name in entry.env}
         numbers = {name: [self.numbers.fresh() for _ in value.parts] for name, value in entry.env.items()}
         ranges = {name: entry.env[name].parts for name in written if name in entry.env}
@@ -165,14 +165,14 @@ class LoopRanges(ExpressionRanges):
             loop.added[name][id(stmt)] = joined, max(times, earlier[1] if earlier else 0.0)
             times *= loop.trips
 
-    def written(self, block: ir.Block) -> set[str]:
+    def writes_of(self, block: ir.Block) -> set[str]:
         names: set[str] = set()
         for stmt in statements(block):
             if isinstance(stmt, ir.Assign) and (key := variable_key(stmt.target)) is not None:
                 names.add(key)
-        return names | self.written_by_calls(block)
+        return names | self.writes_of_calls(block)
 
-    def written_by_calls(self, block: ir.Block) -> set[str]:
+    def writes_of_calls(self, block: ir.Block) -> set[str]:
         """The variables that the calls in a block write, through out parameters or as module variables."""
         names: set[str] = set()
         for call in calls_of(block):
@@ -192,7 +192,7 @@ class LoopRanges(ExpressionRanges):
                     if stmt.op not in ("+", "-") or variable is not stmt.target:
                         return ""
                     kind = kind_of(variable.type)
-        return "" if kind and name in self.written_by_calls(block) else kind
+        return "" if kind and name in self.writes_of_calls(block) else kind
 
     def trips(self, stmt: ir.For | ir.While) -> float:
         """The largest number of iterations that a loop's header allows; infinite if it states none."""

@@ -120,7 +120,7 @@ def _overlap(first: Path, second: Path) -> bool:
     return all(a == b or a is None or b is None for a, b in zip(first, second, strict=False))
 
 
-def _spelled(name: str, path: Path) -> str:
+def _part_text(name: str, path: Path) -> str:
     """A part of a variable, as the language writes it."""
     return name + "".join(
         [f".{step}" if isinstance(step, str) else "[…]" if step is None else f"[{step}]" for step in path]
@@ -190,9 +190,9 @@ class Origins:
         self.calls: dict[str, list[ir.Call]] = {}
         for function in module.functions:
             if trace.interpretations[function.key]:
-                self._read(function)
+                self._add_function(function)
 
-    def _read(self, function: ir.Function) -> None:
+    def _add_function(self, function: ir.Function) -> None:
         key = function.key
         for expr in all_expressions(function.body or ()):
             self.owner[id(expr)] = key
@@ -233,7 +233,7 @@ class Origins:
 
     def _through_variable(self, walk: _Walk, place: Place, variable: Place, own: Range) -> Place | None:
         length = place.is_length(walk.by_length)
-        behind, step = self._behind(variable, own, length, walk.by_length, walk.fails)
+        behind, step = self._source(variable, own, length, walk.by_length, walk.fails)
         is_name = behind is not None and isinstance(_access(behind.node).node, ir.Local | ir.Global)
         if step is not None and not (step.what in ("argument", "definition") and is_name):
             walk.steps.append(step)
@@ -336,7 +336,7 @@ class Origins:
         failing = [pair for pair in ranges if fails is not None and fails(pair[1])]
         return max(failing or ranges, key=lambda pair: pair[1].high - pair[1].low, default=(None, None))[0]
 
-    def _behind(
+    def _source(
         self, variable: Place, own: Range, is_length: bool, by_length: bool, fails: Callable[[Range], bool] | None
     ) -> tuple[Place | None, Step | None]:
         """What a part of a variable is defined by, or the input that it is."""
@@ -345,9 +345,9 @@ class Origins:
         owner = self.owner.get(id(node), "")
         for inputs, what in ((self.uniforms, "uniform"), (self.inputs, "input")):
             if isinstance(node, ir.Global) and node.name in inputs:
-                return None, Step(inputs[node.name].span, what, _spelled(node.name, path), own, is_length)
+                return None, Step(inputs[node.name].span, what, _part_text(node.name, path), own, is_length)
         key = variable_key(node) or ""
-        before = list(self._assigned("" if isinstance(node, ir.Global) else owner, key, path, node.span))
+        before = list(self._assignments("" if isinstance(node, ir.Global) else owner, key, path, node.span))
         function = self.functions.get(owner)
         position = next((at for at, param in enumerate(function.params) if param.name == key), -1) if function else -1
         if (
@@ -358,7 +358,7 @@ class Origins:
             param = function.params[position]
             calls = [call for call in self.calls.get(owner, ()) if id(call) in self.trace.seen]
             argument = self._worst([Place(call.args[position], path) for call in calls], by_length, fails)
-            name = _spelled(param.name, path)
+            name = _part_text(param.name, path)
             if argument is None:
                 return None, Step(param.span, "parameter", name, own, is_length)
             span = argument.node.span
@@ -367,11 +367,11 @@ class Origins:
         if value is None:
             return None, None
         own = self.trace.range_of(value, by_length) or own
-        name = _spelled(key.lstrip("@"), path[: max(len(path) - len(value.path), 0)])
+        name = _part_text(key.lstrip("@"), path[: max(len(path) - len(value.path), 0)])
         is_length = value.is_length(by_length)
         return value, Step(value.node.span, "definition", name, own, is_length, node=value.node)
 
-    def _assigned(self, owner: str, key: str, path: Path, use: ir.Span | None = None) -> Iterator[Place]:
+    def _assignments(self, owner: str, key: str, path: Path, use: ir.Span | None = None) -> Iterator[Place]:
         """What is assigned to a part of a variable, or to what contains it or is in it: before its use, if anything is.
 
         Of many assignments, those nearest to the use.
@@ -396,4 +396,4 @@ class Origins:
                     variable = written_root(arg) if param.direction != "in" else None
                     target = _access(arg).path
                     if variable is not None and variable_key(variable) == key and _overlap(target, path):
-                        yield from self._assigned(callee, param.name, path[len(target) :])
+                        yield from self._assignments(callee, param.name, path[len(target) :])

@@ -110,7 +110,7 @@ class RangeAnalysis(CallSummaries):
         if not isinstance(inner, Struct):
             contract = contracts.from_outside(param._replace(type=inner), self.format, self.chained)
             return self.input(inner, contract, "parameter", param.name)
-        return self.assembled([
+        return self.assemble([
             self.outside(ir.Param(field.name, field.type, "in", field.quantity, param.span)) for field in inner.fields
         ])  # fmt: skip
 
@@ -221,7 +221,7 @@ class RangeAnalysis(CallSummaries):
         value = self.expr(expr)
         quantity = self.frames[-1].function.quantity
         contract = contracts.of_result(quantity, None, self.format) if kind_of(expr.type) == "float" else None
-        return value if contract is None else self.bounded(expr, value, quantity, contract)
+        return value if contract is None else self.keep_contract(expr, value, quantity, contract)
 
     def assign(self, stmt: ir.Assign) -> None:
         value = self.expr(stmt.value)
@@ -237,7 +237,7 @@ class RangeAnalysis(CallSummaries):
         param = self.out_param(variable) if kind_of(node.type) == "float" else None
         contract = self.output_contract(param) if param is not None else None
         if param is not None and contract is not None:
-            value = self.bounded(node, value, param.quantity or param.name, contract)
+            value = self.keep_contract(node, value, param.quantity or param.name, contract)
         self.store(stmt.target, value)
 
     def out_param(self, variable: ir.Local | None) -> ir.Param | None:
@@ -259,7 +259,7 @@ class RangeAnalysis(CallSummaries):
             self.compounds[id(stmt)] = operation
         return operation
 
-    def bounded(self, node: ir.Expr, value: Value, operation: str, contract: Contract) -> Value:
+    def keep_contract(self, node: ir.Expr, value: Value, operation: str, contract: Contract) -> Value:
         """A value that others rely on, kept within its contract."""
         limits = (contract.low, min(contract.high, 1.0) if contract.high == contracts.ONE else contract.high)
         inside = all(part.low >= contract.low and part.high <= contract.high for part in value.parts)

@@ -152,9 +152,9 @@ class AnalysisState:
         inner = innermost(type_)
         if not isinstance(inner, Struct):
             return read(name, inner)
-        return self.assembled([self.by_fields(f"{name}.{field.name}", field.type, read) for field in inner.fields])
+        return self.assemble([self.by_fields(f"{name}.{field.name}", field.type, read) for field in inner.fields])
 
-    def assembled(self, fields: Sequence[Value]) -> Value:
+    def assemble(self, fields: Sequence[Value]) -> Value:
         """A struct of these fields."""
         parts = tuple([part for field in fields for part in field.parts])
         return self.value(parts, tuple([number for field in fields for number in field.numbers]))
@@ -212,7 +212,7 @@ class AnalysisState:
                     parts = (Range(parts[0].low, parts[0].high, max(parts[0].gap, length.low)),)
         return Value(parts, numbers, length)
 
-    def refined(self, value: Value) -> Value:
+    def refine(self, value: Value) -> Value:
         """A value with the facts at this point."""
         facts = self.state.facts.ranges
         if not facts or (facts.keys().isdisjoint(value.numbers) and self.length_fact(value.numbers) is None):

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.intervals import Range
 from sssgen.ir.intrinsics import NONZERO, Guard
 from sssgen.ir.walk import operands
+from sssgen.passes.ranges.guard_report import GuardReport
 from sssgen.support.paths import display_name
 
 OVERFLOW = Guard(
@@ -98,15 +99,15 @@ class Site(NamedTuple):
     def range_text(self) -> str:
         """The ranges, for people."""
         if self.guard.replaces == "result" or not self.args:
-            return f"{shown(self.args[0])}" if self.args and self.operation != "texel" else ""
+            return f"{spell_range(self.args[0])}" if self.args and self.operation != "texel" else ""
         first = "xyz".index(self.guard.replaces) if self.guard is ELEMENT else 0  # only the index has a range
         rows = zip("xyz"[first:], self.args, operands(self.node)[first:], strict=False)
         return ", ".join(
-            [f"{letter} in {shown(arg)}" for letter, arg, node in rows if not isinstance(node, ir.Literal)]
+            [f"{letter} in {spell_range(arg)}" for letter, arg, node in rows if not isinstance(node, ir.Literal)]
         )
 
 
-def shown(range: Range) -> str:
+def spell_range(range: Range) -> str:
     """A range, for people."""
     gap = f" but not within {range.gap:.4g} of 0" if range.gap and range.low < 0.0 < range.high else ""
     return f"{_number(range.low)}..{_number(range.high)}{gap}"
@@ -117,8 +118,8 @@ def _number(value: float) -> str:
     return f"{value:.7g}" if text in ("1", "-1") else text  # what is a little beyond 1 is not 1
 
 
-def report(sites: Sequence[Site], guarded: Sequence[Site], folder: str) -> dict[str, Any]:
-    """For the reflection: how many sites are proven safe, and each site that has a guard, relative to a folder."""
+def report(sites: Sequence[Site], guarded: Sequence[Site], folder: str) -> GuardReport:
+    """The report on all sites and on those that have a guard, with places relative to a folder."""
     rows = [
         {
             "at": site.place_in(folder),
@@ -128,4 +129,4 @@ def report(sites: Sequence[Site], guarded: Sequence[Site], folder: str) -> dict[
         }
         for site in guarded
     ]
-    return {"proven": sum(site.proven for site in sites), "guarded": rows}
+    return GuardReport(sum(site.proven for site in sites), tuple(rows))

@@ -69,7 +69,7 @@ class CallSummaries(LoopRanges):
         result, ends = self.summary(function, args).result
         for name in self.changed.get(function.key, frozenset()) & self.state.env.keys():
             self.state.env[name] = self.unknown(innermost(self.variables[name[1:]].type))
-        return None if result is None else self.unrelated(result), [self.unrelated(end) for end in ends]
+        return None if result is None else self.without_relations(result), [self.without_relations(end) for end in ends]
 
     def summary(self, function: ir.Function, args: Sequence[Value]) -> Summary:
         """A function's summary, widened if it does not cover the arguments yet."""
@@ -83,7 +83,7 @@ class CallSummaries(LoopRanges):
                 self.wider_value(scalar_kinds(param.type), old, arg, widenings) if arg.parts else arg
                 for param, old, arg in zip(function.params, summary.args, args, strict=True)
             ]
-        args = [self.unrelated(arg) for arg in args]
+        args = [self.without_relations(arg) for arg in args]
         outer = self.state
         self.state = State({}, self.assumed_facts.copy())
         result = self.interpret(function, args)
@@ -91,7 +91,7 @@ class CallSummaries(LoopRanges):
         self.summaries[key] = Summary(args, result, widenings)
         return self.summaries[key]
 
-    def unrelated(self, value: Value) -> Value:
+    def without_relations(self, value: Value) -> Value:
         """A value of the same ranges, of which no relation to other values is summary."""
         return value._replace(numbers=tuple([self.numbers.fresh() for _ in value.parts]))
 

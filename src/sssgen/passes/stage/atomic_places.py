@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.nodes import Declare, Expr, Function, Global, Index, Local, Member, MemoryOperation, Module, Span
-from sssgen.ir.types import Array, Scalar, Struct, Type
+from sssgen.ir.types import Array, Scalar, Struct, Type, unnested
 from sssgen.ir.walk import expressions, operands, statements
 from sssgen.passes.unsupported import Unsupported
 
@@ -74,14 +74,14 @@ def _errors(module: Module) -> Iterator[Unsupported]:
                 yield from _copies(expr, places, holders)
         for type_, span in declared:
             if name := _holder(type_, holders):
-                yield _copied(name, holders[name], span)
+                yield _copy_error(name, holders[name], span)
 
 
 def _copies(expr: Expr, places: Iterable[Memory], holders: Mapping[str, str]) -> Iterator[Unsupported]:
     """The errors of an expression whose value is used: memory of atomics that is no single number."""
     if not isinstance(expr.type, Scalar):
         if name := _holder(expr.type, holders):
-            yield _copied(name, holders[name], expr.span)
+            yield _copy_error(name, holders[name], expr.span)
         elif memory_of(expr) in places:
             hint = "copy it element by element in a loop"
             yield Unsupported(f"'{memory_of(expr)[-1]}' has atomics, and is copied as a whole", expr.span, (), hint)
@@ -93,7 +93,7 @@ def _copies(expr: Expr, places: Iterable[Memory], holders: Mapping[str, str]) ->
         yield from _copies(operand, places, holders)
 
 
-def _copied(name: str, member: str, span: Span) -> Unsupported:
+def _copy_error(name: str, member: str, span: Span) -> Unsupported:
     message = f"'{name}.{member}' is an atomic of this target, so a {name} cannot be copied or be a local variable"
     return Unsupported(
         message, span, (), "read and write its members one by one, or give the number an array of its own"
@@ -102,10 +102,9 @@ def _copied(name: str, member: str, span: Span) -> Unsupported:
 
 def _holder(type_: Type, holders: Mapping[str, str]) -> str:
     """The name of a struct with atomics that a value of the type has; '' for none."""
-    while isinstance(type_, Array):
-        type_ = type_.element
-    if not isinstance(type_, Struct):
+    inner, _ = unnested(type_)
+    if not isinstance(inner, Struct):
         return ""
-    if type_.name in holders:
-        return type_.name
-    return next((name for field in type_.fields if (name := _holder(field.type, holders))), "")
+    if inner.name in holders:
+        return inner.name
+    return next((name for field in inner.fields if (name := _holder(field.type, holders))), "")

@@ -32,10 +32,10 @@ def set_at_start(module: Module, entry: str, all_of_them: bool = False) -> Modul
     if not moved:
         return module
     if not entry:
-        raise _unset(moved[0])
+        raise _error(moved[0])
     names = {variable.name for variable in moved}
     variables = [each._replace(value=None) if each.name in names else each for each in module.variables]
-    stmts = tuple(map(_set, moved))
+    stmts = tuple(map(_assignment, moved))
     functions = [
         function._replace(body=(*stmts, *(function.body or ()))) if function.key == entry else function
         for function in module.functions
@@ -68,7 +68,7 @@ def set_in_functions(module: Module, variables_exist: bool, values_vary: bool) -
         if written.isdisjoint({variable.name, *_globals(variable.value)}):
             continue
         if variables_exist:
-            raise _unset(variable)
+            raise _error(variable)
         del computed[variable.name]
     functions = tuple([_with_declarations(function, computed) for function in module.functions])
     variables = tuple([variable for variable in module.variables if variable.name not in computed])
@@ -104,12 +104,12 @@ def _globals(value: Expr) -> set[str]:
     return {part.name for part in subexpressions(value) if isinstance(part, Global)}
 
 
-def _unset(variable: Variable) -> Unsupported:
+def _error(variable: Variable) -> Unsupported:
     message = f"the value of '{variable.name}' is not constant, and there is no main() that could set it"
     return Unsupported(message, variable.span)
 
 
-def _set(variable: Variable) -> Assign:
+def _assignment(variable: Variable) -> Assign:
     assert variable.value is not None
     return Assign(Global(variable.type, variable.name, variable.span), "", variable.value, variable.span)
 

@@ -70,7 +70,7 @@ def _name(member: Uniform) -> str:
     return member.source.rpartition(".")[2]
 
 
-def linked(vertex: Module, fragment: Module) -> tuple[Module, Module]:
+def link_program(vertex: Module, fragment: Module) -> tuple[Module, Module]:
     """Both stages without inputs that are not read; outputs that are not received are private variables."""
     fragment = _without_unread_inputs(fragment)
     outputs = varyings(vertex, "vertex")
@@ -98,10 +98,10 @@ def with_shared_uniforms(vertex: Module, fragment: Module) -> tuple[Module, Modu
     A name of the other stage that this stage has for something else is changed here, where nothing reads it.
     """
     names = list(dict.fromkeys(uniform.source for uniform in (*vertex.uniforms, *fragment.uniforms)))
-    return _declared(vertex, names, fragment), _declared(fragment, names, vertex)
+    return _with_uniforms(vertex, names, fragment), _with_uniforms(fragment, names, vertex)
 
 
-def _declared(module: Module, names: list[str], other: Module) -> Module:
+def _with_uniforms(module: Module, names: list[str], other: Module) -> Module:
     mine = {uniform.source: uniform for uniform in module.uniforms}
     theirs = {uniform.source: uniform for uniform in other.uniforms}
     taken, uniforms = names_of(module), list[Uniform]()
@@ -128,13 +128,13 @@ def sampled_textures(module: Module) -> set[str]:
         before = len(sampled)
         for function in module.functions:
             for node in all_expressions(function.body or ()):
-                names = _sampled(node, functions, sampled)
+                names = _samples_of(node, functions, sampled)
                 sampled.update((function.key if is_parameter else "", name) for name, is_parameter in names)
         if len(sampled) == before:
             return {name for key, name in sampled if not key}
 
 
-def _sampled(node: Expr, functions: dict[str, Function], sampled: set[tuple[str, str]]) -> list[tuple[str, bool]]:
+def _samples_of(node: Expr, functions: dict[str, Function], sampled: set[tuple[str, str]]) -> list[tuple[str, bool]]:
     """The textures that an expression itself samples: their names, and whether each is a parameter."""
     textures = list[Expr]()
     if isinstance(node, Intrinsic) and not (BUILTINS[node.name].size_query or BUILTINS[node.name].by_texel):

@@ -224,13 +224,8 @@ def colors_in_use(module: Module) -> Module:
     def change(expr: Expr) -> Expr:
         return expr._replace(type=short(expr.type)) if isinstance(expr, Global) and expr.name in data else expr
 
-    variables = tuple(
-        [
-            variable._replace(type=short(variable.type)) if variable.name in data else variable
-            for variable in module.variables
-        ]
-    )
-    return rewrite_module(module._replace(variables=variables), change)
+    variables = [each._replace(type=short(each.type)) if each.name in data else each for each in module.variables]
+    return rewrite_module(module._replace(variables=tuple(variables)), change)
 
 
 def remarks(
@@ -240,7 +235,7 @@ def remarks(
 
     `alone`: the other stage is not given.
     """
-    differences = _unmatched(module, kind, capabilities) if alone else []
+    differences = _notes_without_partner(module, kind, capabilities) if alone else []
     for variable in module.variables:
         if variable.interpolation == "noperspective" and not capabilities.noperspective:
             message = f"'{variable.name}' is interpolated with perspective here: this target has no other interpolation"
@@ -255,7 +250,7 @@ def remarks(
     return differences
 
 
-def _unmatched(module: Module, kind: str, capabilities: Capabilities) -> list[Note]:
+def _notes_without_partner(module: Module, kind: str, capabilities: Capabilities) -> list[Note]:
     """What only the other stage can tell."""
     passed = varyings(module, kind)
     named = sorted([variable for variable in passed if variable.location < 0], key=lambda variable: variable.name)

@@ -75,7 +75,7 @@ class _Splitter:
         for path, lengths, element, default in _members((uniform.name,), uniform.type, (), [numbers]):
             name = claim("_".join(path), self.taken) if len(path) > 1 else uniform.name
             leaf = self.leaves[path] = _Leaf(name, lengths, element)
-            spelt = _spelt((uniform.path or uniform.name, *path[1:]), uniform.type)
+            spelt = _host_name((uniform.path or uniform.name, *path[1:]), uniform.type)
             yield uniform._replace(name=name, type=leaf.type, default=default, path=spelt)
 
     # Rewriting, from the leaves up: a chain of members and indices is rewritten as a whole, at its end
@@ -110,7 +110,7 @@ class _Splitter:
         return self.read(node) if self.waits(node) else node
 
     def read(self, node: ir.Expr) -> ir.Expr:
-        path, indices = _taken_apart(node)
+        path, indices = _split_chain(node)
         leaf = self.leaves.get(path)
         whole = not indices and leaf is not None and len(leaf.lengths) == 1
         if leaf is not None and (len(indices) == len(leaf.lengths) or whole):
@@ -137,7 +137,7 @@ class _Splitter:
         return ir.Index(leaf.element, value, position, span)
 
 
-def _taken_apart(node: ir.Expr) -> tuple[Path, list[ir.Expr]]:
+def _split_chain(node: ir.Expr) -> tuple[Path, list[ir.Expr]]:
     """The path of a chain, and its indices from the outermost array on."""
     names: list[str] = []
     indices: list[ir.Expr] = []
@@ -171,7 +171,7 @@ def _members(
         yield path, lengths, type_, tuple([number for element in numbers for number in element])
 
 
-def _spelt(path: Path, type_: Type) -> str:
+def _host_name(path: Path, type_: Type) -> str:
     """A member as a program names it, with the lengths of the arrays: `lights[2].color`."""
     text = path[0]
     for field in (*path[1:], ""):

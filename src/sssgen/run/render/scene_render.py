@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.ir.drawn import BACK_FACES
+from sssgen.ir.view_textures import BACK_FACES
 from sssgen.material.material_loading import load_material
 from sssgen.material.shell_stages import with_shell
 from sssgen.pipeline.compiler import Compiled, compile

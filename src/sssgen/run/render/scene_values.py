@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.ir.drawn import CUBES, DISTANT_VIEWS, IRRADIANCE, LAYERS, LIGHT_VIEWS, REFLECTIONS
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import with_article
+from sssgen.ir.view_textures import CUBES, DISTANT_VIEWS, IRRADIANCE, LAYERS, LIGHT_VIEWS, REFLECTIONS
 from sssgen.material import baked
 from sssgen.material.baked import Baked
 from sssgen.material.model import Material

@@ -55,16 +55,16 @@ class GodotPrinter(GlslPrinter):
         column = self.type(Vector("float", type_.rows))
         starts = range(0, len(args), type_.rows)
         columns = [f"{column}({self.arguments(args[start : start + type_.rows])})" for start in starts]
-        return f"{self.type(type_)}({self.listed(columns)})", PRIMARY
+        return f"{self.type(type_)}({self.join_arguments(columns)})", PRIMARY
 
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The uniforms in the groups of the inspector, each with its documentation, its hint and its default."""
-        return self.grouped([member.uniform for member in members])
+        return self.print_groups([member.uniform for member in members])
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
-        return self.grouped(textures)
+        return self.print_groups(textures)
 
-    def grouped(self, uniforms: list[ir.Uniform]) -> list[Line]:
+    def print_groups(self, uniforms: list[ir.Uniform]) -> list[Line]:
         lines: list[Line] = []
         group = ""
         for uniform in uniforms:
@@ -94,7 +94,7 @@ class GodotPrinter(GlslPrinter):
         if isinstance(type_, Array | Sampler) or len(numbers) != components(type_):
             return ""
         if uniform.name in self.colors:
-            numbers = [*map(_stored, numbers[:3]), *numbers[3:]]
+            numbers = [*map(_as_srgb, numbers[:3]), *numbers[3:]]
         return f" = {self.value_of(type_, numbers)}"
 
     def value_of(self, type_: Type, numbers: Sequence[float]) -> str:
@@ -122,7 +122,7 @@ def _value_hints(uniform: ir.Uniform) -> list[str]:
     return [f"hint_range({', '.join(str(int(limit)) if whole else float_text(float(limit)) for limit in limits)})"]
 
 
-def _stored(light: float) -> float:
+def _as_srgb(light: float) -> float:
     """Linear light as sRGB."""
     light = max(light, 0.0)
     return float(round(12.92 * light if light <= 0.0031308 else 1.055 * light ** (1.0 / 2.4) - 0.055, 6))

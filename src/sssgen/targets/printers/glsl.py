@@ -10,7 +10,7 @@ from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import Array, Scalar, Struct, Type, Vector, kind_of
 from sssgen.passes.stage.stage_interface import COLORS
 from sssgen.targets.descriptor import Target
-from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, documented, wrap
+from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, with_doc, wrap
 from sssgen.targets.printers.printer import PRIMARY, Printer
 from sssgen.targets.uniform_layout import Member
 
@@ -59,10 +59,6 @@ class GlslPrinter(Printer):
         fields = [Line(f"    {self.variable(field.type, field.name)};", variable.span) for field in struct.fields]
         return [Line(head, variable.span), *fields, Line(f"}} {variable.name};")]
 
-    def print_struct(self, struct: ir.StructDecl) -> list[Line]:
-        """A struct; a storage buffer's is its block."""
-        return super().print_struct(struct) if all(buffer.type != struct.type for buffer in self.buffers) else []
-
     def print_layout(self) -> list[Line]:
         if not self.module.workgroup:
             return []
@@ -88,7 +84,7 @@ class GlslPrinter(Printer):
         if self.target.constants:
             return [line for uniform in uniforms for line in self.constant_of(uniform)]
         return [
-            documented(f"uniform {self.variable(uniform.type, uniform.name)}{self.default(uniform)};", uniform)
+            with_doc(f"uniform {self.variable(uniform.type, uniform.name)}{self.default(uniform)};", uniform)
             for uniform in uniforms
         ]
 
@@ -121,13 +117,9 @@ class GlslPrinter(Printer):
     def default(self, uniform: ir.Uniform) -> str:
         """The initial value of a uniform, where the version allows one."""
         plain = isinstance(uniform.type, Scalar | Vector) and uniform.type.kind != "bool"
-        if not self.kept or not plain or not any(uniform.default) or not self.target.capabilities.uniform_values:
+        if not self.keeps_text or not plain or not any(uniform.default) or not self.target.capabilities.uniform_values:
             return ""
-        number = Scalar(kind_of(uniform.type))
-        integral = number.kind != "float"
-        parts = [ir.Literal(number, int(value) if integral else value, uniform.span) for value in uniform.default]
-        texts = ", ".join(map(self.literal, parts))
-        return f" = {texts if len(parts) == 1 else f'{self.type(uniform.type)}({texts})'}"
+        return f" = {self.value_of(uniform.type, uniform.default)}"
 
     def print_textures(self, textures: list[ir.Uniform]) -> list[Line]:
         """The samplers, one a line."""
@@ -138,5 +130,5 @@ class GlslPrinter(Printer):
         lines = []
         for texture in textures:
             type_ = self.type(texture.type)
-            lines.append(documented(f"uniform {type_} {texture.name};", texture))
+            lines.append(with_doc(f"uniform {type_} {texture.name};", texture))
         return lines

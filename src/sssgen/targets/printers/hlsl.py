@@ -19,7 +19,7 @@ from sssgen.passes.uniform_blocks import block_type
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers import hlsl_sizes
 from sssgen.targets.printers.hlsl_entry import print_entry
-from sssgen.targets.printers.printed_lines import Line, documented
+from sssgen.targets.printers.printed_lines import Line, with_doc
 from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Printer
 from sssgen.targets.uniform_layout import Member
 
@@ -123,7 +123,7 @@ class HlslPrinter(Printer):
             of_matrices = isinstance(type_.element if isinstance(type_, Array) else type_, Matrix)
             major = "row_major " if of_matrices and not self.engine_matrices else ""
             declared = self.variable(type_, member.uniform.name)
-            lines.append(documented(f"{pad}{major}{declared};", member.uniform))
+            lines.append(with_doc(f"{pad}{major}{declared};", member.uniform))
         if lines and bindings.material_block:
             head = f"cbuffer {bindings.material_block} : register({bindings.material_register}) {{"
             lines = [Line(head), *lines, Line("};")]
@@ -144,10 +144,6 @@ class HlslPrinter(Printer):
             )
             lines += [Line(part, texture.span) for part in text.splitlines()]
         return lines
-
-    def print_struct(self, struct: ir.StructDecl) -> list[Line]:
-        """A struct; a storage buffer has elements instead of members."""
-        return super().print_struct(struct) if all(buffer.type != struct.type for buffer in self.buffers) else []
 
     def print_variable(self, variable: ir.Variable) -> list[Line]:
         if variable.storage == "shared":

@@ -45,21 +45,21 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
             return semantic(slot)
         return f"{semantics}{slot.location}" if slot.location >= 0 else builtins[slot.variable.builtin]
 
-    def sampled(slot: Slot, semantics: str) -> str:
+    def sampling(slot: Slot, semantics: str) -> str:
         word = interpolation(slot)
         return _INTERPOLATION[word] if semantics == "TEXCOORD" and slot.location >= 0 and word else ""
 
-    def declared(slot: Slot, name: str, semantics: str) -> str:
+    def declaration(slot: Slot, name: str, semantics: str) -> str:
         variable = printer.variable(parameter_type(slot), name)
-        return f"{sampled(slot, semantics)}{variable} : {place_of(slot, semantics)}"
+        return f"{sampling(slot, semantics)}{variable} : {place_of(slot, semantics)}"
 
-    params = ", ".join([declared(slot, name, _INPUT_SEMANTICS[stage.kind]) for name, slot in entry_parameters])
+    params = ", ".join([declaration(slot, name, _INPUT_SEMANTICS[stage.kind]) for name, slot in entry_parameters])
     body = entry_body(printer, stage, entry_parameters, resolution, True)
     lines: list[Line] = []
     if len(stage.outputs) == 1:
         (slot,) = stage.outputs
         semantics = _OUTPUT_SEMANTICS[stage.kind]
-        head = f"{sampled(slot, semantics)}{printer.type(parameter_type(slot))}"
+        head = f"{sampling(slot, semantics)}{printer.type(parameter_type(slot))}"
         signature = f"{head} {name}({params}) : {place_of(slot, semantics)} {{"
         body.append(f"return {place_text(slot)};")
     elif stage.outputs:
@@ -69,7 +69,9 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
         while result in taken:
             result += "_"
         lines.append(Line(f"struct {struct} {{"))
-        lines += [Line(f"    {declared(slot, member(slot), _OUTPUT_SEMANTICS[stage.kind])};") for slot in stage.outputs]
+        lines += [
+            Line(f"    {declaration(slot, member(slot), _OUTPUT_SEMANTICS[stage.kind])};") for slot in stage.outputs
+        ]
         lines += [Line("};"), Line("")]
         signature = f"{struct} {name}({params}) {{"
         body += [f"{struct} {result};"]

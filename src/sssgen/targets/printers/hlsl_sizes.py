@@ -30,7 +30,7 @@ def definition(texture: Sampler) -> list[Line]:
     sizes = ["width", "height", *["depth"] * (texture.dim == "3D"), *["layers"] * texture.array]
     outs = ", ".join(sizes)
     return [
-        Line(f"int{len(sizes)} {_NAME}({_spelled(texture)} map, int level) {{"),
+        Line(f"int{len(sizes)} {_NAME}({_texture_type(texture)} map, int level) {{"),
         Line(f"    uint {outs}, levels;"),
         Line(f"    map.GetDimensions(level, {outs}, levels);"),
         Line(f"    return int{len(sizes)}({outs});"),
@@ -39,6 +39,6 @@ def definition(texture: Sampler) -> list[Line]:
     ]
 
 
-def _spelled(type_: Sampler) -> str:
+def _texture_type(type_: Sampler) -> str:
     texels = "" if type_.kind == "float" else f"<{type_.kind}4>"
     return f"Texture{type_.dim}{'Array' if type_.array else ''}{texels}"

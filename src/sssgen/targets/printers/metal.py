@@ -16,7 +16,7 @@ from sssgen.ir.types import Array, Sampler, Struct, Type, Vector, unnested
 from sssgen.passes.stage.storage_layout import offsets
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.atomic_printer import AtomicPrinter
-from sssgen.targets.printers.printed_lines import Line, documented, wrap
+from sssgen.targets.printers.printed_lines import Line, with_doc, wrap
 from sssgen.targets.printers.printer import POSTFIX, PRIMARY
 from sssgen.targets.uniform_layout import Member
 
@@ -105,7 +105,7 @@ class MetalPrinter(AtomicPrinter):
         readonly = "const " if variable.access == "readonly" else ""
         return f"{readonly}{space} {self.stored_type(variable.type, (variable.name,))}& {name}"
 
-    def passed(self, uniform: ir.Local, param: ir.Param) -> str:
+    def shell_argument(self, uniform: ir.Local, param: ir.Param) -> str:
         return self.argument(uniform, param) if isinstance(param.type, Sampler) else f"material.{uniform.name}"
 
     def print_struct(self, struct: ir.StructDecl) -> list[Line]:
@@ -149,7 +149,7 @@ class MetalPrinter(AtomicPrinter):
         args = [
             param.passes
             if param.passes in self.memories
-            else self.passed(ir.Local(param.type, param.passes, param.span), param)
+            else self.shell_argument(ir.Local(param.type, param.passes, param.span), param)
             for param in main.params
         ]
         listed = [f"    {text}{',' if text is not inputs[-1] else ''}" for text in inputs]
@@ -164,7 +164,7 @@ class MetalPrinter(AtomicPrinter):
     def print_uniforms(self, members: list[Member]) -> list[Line]:
         """The struct of the uniforms."""
         fields = [
-            documented(f"    {self.variable(member.uniform.type, member.uniform.name)};", member.uniform)
+            with_doc(f"    {self.variable(member.uniform.type, member.uniform.name)};", member.uniform)
             for member in members
         ]
         return [Line("struct Material {"), *fields, Line("};")] if fields else []

@@ -39,7 +39,7 @@ class NumpyPrinter(NumpyExpressions):
         self.constants = {constant.name: constant for constant in module.constants}
         self.sharing: dict[str, bool] = {}
         """The results of `shared`."""
-        self.commented: set[tuple[str, int]] = set()
+        self.printed_comments: set[tuple[str, int]] = set()
 
     # Statements
 
@@ -48,8 +48,8 @@ class NumpyPrinter(NumpyExpressions):
         pad = "    " * indent
         for stmt in block:
             place = (stmt.span.file, stmt.span.line)
-            if place not in self.commented:
-                self.commented.add(place)
+            if place not in self.printed_comments:
+                self.printed_comments.add(place)
                 lines += [Line(f"{pad}# {text}", stmt.span) for text in self.comments(*place)]
             lines.extend(self.statement(stmt, indent))
         return lines or [Line(f"{pad}pass")]
@@ -85,11 +85,11 @@ class NumpyPrinter(NumpyExpressions):
         counter = count(loop)
         assert counter is not None  # all other loops are while loops by now
         start, stop = self.expr(counter.start), self.expr(counter.stop, PYTHON_PRECEDENCE["+"])
-        beyond = {"<=": 1, ">=": -1}.get(counter.op, 0)
-        if beyond and isinstance(counter.stop, ir.Literal):
-            stop = repr(int(counter.stop.value) + beyond)
-        elif beyond:
-            stop = f"{stop} {'+' if beyond > 0 else '-'} 1"
+        offset = {"<=": 1, ">=": -1}.get(counter.op, 0)
+        if offset and isinstance(counter.stop, ir.Literal):
+            stop = repr(int(counter.stop.value) + offset)
+        elif offset:
+            stop = f"{stop} {'+' if offset > 0 else '-'} 1"
         bounds = [stop] if start == "0" and counter.step == 1 else [start, stop]
         bounds += [repr(counter.step)] if counter.step != 1 else []
         return f"{counter.name} in range({', '.join(bounds)})"
@@ -106,7 +106,7 @@ class NumpyPrinter(NumpyExpressions):
             assert isinstance(stmt.call, ir.Call)
             return self.assignment(["_"] if stmt.call.type != VOID else [], stmt.call)
         if isinstance(stmt, ir.Return):
-            return self.returned(self.typed(stmt.value) if stmt.value is not None else [])
+            return self.return_text(self.typed(stmt.value) if stmt.value is not None else [])
         return super().simple(stmt)
 
     def assignment(self, names: list[str], value: ir.Expr) -> str:
@@ -130,7 +130,7 @@ class NumpyPrinter(NumpyExpressions):
             return self.store(target.value, f"{record}.replace({target.field}={value})")
         return f"{self.expr(target)} = {value}"
 
-    def returned(self, values: list[str]) -> str:
+    def return_text(self, values: list[str]) -> str:
         assert self.function is not None
         outs = [param.name for param in self.function.params if param.direction != "in"]
         return f"return {', '.join(values + outs)}".rstrip()
@@ -152,7 +152,7 @@ class NumpyPrinter(NumpyExpressions):
             lines += wrap(f"    {name} = {self.typed(constant.value)[0]}", constant.span)
         body = function.body or ()
         ends = bool(body) and isinstance(body[-1], ir.Return)
-        if not ends and self.returned([]) != "return":
+        if not ends and self.return_text([]) != "return":
             body = (*body, ir.Return(None, function.span))
         lines += self.block(body, 1)
         if lines[-1].text == "    return":
@@ -164,7 +164,7 @@ class NumpyPrinter(NumpyExpressions):
         names: dict[str, None] = {}
 
         def need(name: str) -> None:
-            if name in self.constants and not self.shared(self.constants[name]):
+            if name in self.constants and not self.is_shared(self.constants[name]):
                 for part in subexpressions(self.constants[name].value):
                     if isinstance(part, ir.Global):
                         need(part.name)
@@ -175,7 +175,7 @@ class NumpyPrinter(NumpyExpressions):
                 need(part.name)
         return list(names)
 
-    def shared(self, constant: ir.Constant) -> bool:
+    def is_shared(self, constant: ir.Constant) -> bool:
         """Whether a constant is the same in every precision, so that it can be a global of the module."""
         result = self.sharing.get(constant.name)
         if result is None:
@@ -183,12 +183,12 @@ class NumpyPrinter(NumpyExpressions):
             result = self.sharing[constant.name] = (
                 isinstance(constant.type, Scalar)
                 and (constant.type.kind != "float" or self.numbers.plain(constant.value))
-                and all(self.shared(self.constants[name]) for name in used if name in self.constants)
+                and all(self.is_shared(self.constants[name]) for name in used if name in self.constants)
             )
         return result
 
     def print_constant(self, constant: ir.Constant) -> list[Line]:
-        if not self.shared(constant):
+        if not self.is_shared(constant):
             return []
         return wrap(f"{constant.name} = {self.typed(constant.value)[0]}", constant.span)
 

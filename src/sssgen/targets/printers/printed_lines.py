@@ -88,7 +88,7 @@ def first_sentence(doc: str) -> str:
     return comment_text(text[: end.end() if end else None].rstrip("."))
 
 
-def documented(text: str, uniform: ir.Uniform) -> Line:
+def with_doc(text: str, uniform: ir.Uniform) -> Line:
     """A uniform's declaration with the first sentence of its documentation, where that fits on the line."""
     words = first_sentence(uniform.doc)
     full = f"{text}  // {words}"

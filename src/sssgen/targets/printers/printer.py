@@ -62,13 +62,13 @@ class Printer:
         self.chosen: set[str] = set()
         """The names of the current function, once `free_name` gave one."""
         self.comments: Comments = no_comments
-        self.behind: Callable[[str, int], str] = lambda file, line: ""
+        self.comment_behind: Callable[[str, int], str] = lambda file, line: ""
         """Returns the author's comment behind the code of a line."""
         self.source: Callable[[ir.Span], str] = lambda span: ""
         """Returns the line of source that a span begins on."""
-        self.commented: set[tuple[str, int]] = set()
+        self.printed_comments: set[tuple[str, int]] = set()
         """The lines of the source whose comments are printed in the current function."""
-        self.kept = False
+        self.keeps_text = False
         """Whether the author's text is kept: numbers have their digits, and every comment stays."""
         self.texts: dict[tuple[str, tuple[Type, ...]], str] = {}
         self.inlined: Mapping[str, str] = {}
@@ -104,7 +104,7 @@ class Printer:
 
     def literal(self, literal: ir.Literal) -> str:
         if literal.type == FLOAT:
-            return float_text(float(literal.value), self.kept)
+            return float_text(float(literal.value), self.keeps_text)
         if literal.type == INT:
             return str(literal.value) if literal.value != -2147483648 else "(-2147483647 - 1)"
         if literal.type == UINT:
@@ -153,7 +153,7 @@ class Printer:
     def letters(self, swizzle: ir.Swizzle) -> str:
         """The letters of a swizzle: colours where the author wrote them, and of a texel, as readers expect."""
         value, colors = swizzle.value, swizzle.components.translate(_COLOR_LETTERS)
-        if self.kept and swizzle.span.line == swizzle.span.end_line:
+        if self.keeps_text and swizzle.span.line == swizzle.span.end_line:
             end = swizzle.span.end_column - 1
             if self.source(swizzle.span)[end - len(colors) : end] == colors:
                 return colors
@@ -192,9 +192,9 @@ class Printer:
         return f"{condition} ? {self.expr(select.yes, TERNARY + 1)} : {self.expr(select.no)}", TERNARY
 
     def arguments(self, args: tuple[ir.Expr, ...]) -> str:
-        return self.listed([self.expr(arg) for arg in args])
+        return self.join_arguments([self.expr(arg) for arg in args])
 
-    def listed(self, texts: list[str]) -> str:
+    def join_arguments(self, texts: list[str]) -> str:
         """The arguments, separated by commas."""
         return ", ".join(texts)
 
@@ -204,7 +204,7 @@ class Printer:
     def call(self, call: ir.Call) -> str:
         function = self.by_key[call.function]
         args = [self.argument(arg, param) for arg, param in zip(call.args, function.params, strict=True)]
-        return f"{function.name}({self.listed(args)})"
+        return f"{function.name}({self.join_arguments(args)})"
 
     def argument(self, arg: ir.Expr, param: ir.Param) -> str:
         """The argument for a parameter of one of the module's own functions."""
@@ -212,7 +212,7 @@ class Printer:
             return self.target.textures.argument.format(name=arg.name, sampler=self.sampler(arg.name))
         return self.expr(arg)
 
-    def passed(self, uniform: ir.Local, param: ir.Param) -> str:
+    def shell_argument(self, uniform: ir.Local, param: ir.Param) -> str:
         """A uniform or texture as the shell passes it to a function that has it as a parameter."""
         return self.argument(uniform, param)
 
@@ -254,12 +254,12 @@ class Printer:
         for stmt in block:
             place = (stmt.span.file, stmt.span.line)
             behind = ""
-            if place not in self.commented:
-                self.commented.add(place)
+            if place not in self.printed_comments:
+                self.printed_comments.add(place)
                 lines += [
                     Line(f"{'    ' * indent}// {comment_text(text)}", stmt.span) for text in self.comments(*place)
                 ]
-                behind = comment_text(self.behind(*place)) if self.kept else ""
+                behind = comment_text(self.comment_behind(*place)) if self.keeps_text else ""
             printed = self.statement(stmt, indent)
             if behind and len(printed[0].text) + len(behind) + 5 <= WIDTH:
                 printed[0] = printed[0]._replace(text=f"{printed[0].text}  // {behind}")
@@ -390,17 +390,20 @@ class Printer:
     def enter(self, function: ir.Function) -> None:
         """Prepares for the text of a function."""
         self.function, self.chosen = function, set()
-        self.commented = {(function.span.file, function.span.line)}
+        self.printed_comments = {(function.span.file, function.span.line)}
 
     def doc_of(self, function: ir.Function) -> list[str]:
         """The comment before a function: its author's, or the first sentence of its documentation."""
-        if not self.kept:
+        if not self.keeps_text:
             return summary(function.doc)
         lines = [comment_text(line.rstrip()) for line in function.doc.strip("\n").split("\n")]
         return lines if any(lines) else []
 
     def print_struct(self, struct: ir.StructDecl) -> list[Line]:
+        """A struct; that of a storage buffer is its block in GLSL, and HLSL has elements instead of its members."""
         assert isinstance(struct.type, Struct)
+        if any(buffer.type == struct.type for buffer in self.buffers):
+            return []
         fields = [Line(f"    {self.variable(field.type, field.name)};", struct.span) for field in struct.type.fields]
         return [Line(f"struct {struct.type.name} {{", struct.span), *fields, Line("};")]
 

@@ -49,7 +49,7 @@ class TslPrinter(Printer):
     def number(self, kind: str, literal: ir.Literal) -> str:
         """A number of a literal converted to a kind, as JavaScript writes it."""
         if kind == "float":
-            return float_text(float(literal.value), self.kept)
+            return float_text(float(literal.value), self.keeps_text)
         value = int(literal.value) & 0xFFFFFFFF
         if kind == "uint":
             return f"{value:#x}" if value >= 1 << 16 else str(value)
@@ -70,7 +70,7 @@ class TslPrinter(Printer):
     def arguments(self, args: tuple[ir.Expr, ...]) -> str:
         """Not every function of three takes numbers alone."""
         plain = all(isinstance(arg, ir.Literal) for arg in args)
-        return self.listed([self.node(arg) if plain else self.expr(arg) for arg in args])
+        return self.join_arguments([self.node(arg) if plain else self.expr(arg) for arg in args])
 
     def select(self, select: ir.Select) -> tuple[str, int]:
         return f"select({self.arguments((select.condition, select.yes, select.no))})", PRIMARY
@@ -174,10 +174,10 @@ class TslPrinter(Printer):
         self.assigned = assigned(function, {})
         for part in all_expressions(function.body or ()):
             if isinstance(part.type, Matrix | Array):
-                self.spelled(part.type, part.span)
+                self.layout_type(part.type, part.span)
         lines = self.calling(super().print_function(function))[:-1]
         types = [function.result, *[param.type for param in function.params]]
-        result, *names = [self.spelled(type_, function.span) for type_ in types]
+        result, *names = [self.layout_type(type_, function.span) for type_ in types]
         if function.result == VOID or any(isinstance(type_, Sampler | Array) for type_ in types):
             return [*lines, Line("}, 'void');" if function.result == VOID else "});")]  # what returns nothing discards
         inputs = [f"{{ name: '{p.name}', type: '{type_}' }}" for p, type_ in zip(function.params, names, strict=True)]
@@ -186,7 +186,7 @@ class TslPrinter(Printer):
             return [*lines, Line(f"{head}{', '.join(inputs)}] }});", function.span)]
         return [*lines, Line(head), *[Line(f"    {one},") for one in inputs], Line("] });")]
 
-    def spelled(self, type_: Type, span: ir.Span, is_part: bool = False) -> str:
+    def layout_type(self, type_: Type, span: ir.Span, is_part: bool = False) -> str:
         """A type in the layout of a function, or of a part of a struct. Raises SssgenError with its place."""
         name = spell(unnested(type_)[0])
         is_nested = isinstance(type_, Array) and (is_part or isinstance(type_.element, Array))
@@ -203,7 +203,7 @@ class TslPrinter(Printer):
     def print_struct(self, struct: ir.StructDecl) -> list[Line]:
         assert isinstance(struct.type, Struct)
         name, fields = struct.type.name, struct.type.fields
-        members = ", ".join([f"{field.name}: '{self.spelled(field.type, struct.span, True)}'" for field in fields])
+        members = ", ".join([f"{field.name}: '{self.layout_type(field.type, struct.span, True)}'" for field in fields])
         return self.calling(
             wrap(f"export const {name} = /*@__PURE__*/ struct({{ {members} }}, '{name}');", struct.span)
         )

@@ -13,7 +13,7 @@ from sssgen.passes.scopes import assigned, outs_of
 from sssgen.passes.uniform_blocks import block_type
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.atomic_printer import AtomicPrinter
-from sssgen.targets.printers.printed_lines import Line, documented, wrap
+from sssgen.targets.printers.printed_lines import Line, with_doc, wrap
 from sssgen.targets.printers.printer import PRIMARY, UNARY
 from sssgen.targets.printers.wgsl_entry import print_entry
 from sssgen.targets.uniform_layout import Member, padding
@@ -69,7 +69,7 @@ class WgslPrinter(AtomicPrinter):
     def select(self, select: ir.Select) -> tuple[str, int]:
         return f"select({self.arguments((select.no, select.yes, select.condition))})", PRIMARY
 
-    def listed(self, texts: list[str]) -> str:
+    def join_arguments(self, texts: list[str]) -> str:
         """The arguments; `(x < y), (z > t)` are in parentheses, as `x < y, z > t` would be read as a template x<y, z>.
 
         Both are, as npm wesl reads `<y), z>` as a template, too.
@@ -148,7 +148,7 @@ class WgslPrinter(AtomicPrinter):
         lines = [Line("struct Material {")]
         for member in members:
             text = self.type(block_type(member.uniform.type, self.target.capabilities))
-            lines.append(documented(f"    {member.uniform.name}: {text},", member.uniform))
+            lines.append(with_doc(f"    {member.uniform.name}: {text},", member.uniform))
         if self.target.bindings.padded:
             lines += [Line(f"    padding_{index}: f32,") for index in range(padding(members))]
         place = f"@group({self.group}) @binding({self.target.bindings.first})"

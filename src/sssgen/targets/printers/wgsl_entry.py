@@ -25,10 +25,10 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
         sampled = f" @interpolate({_INTERPOLATION[word]})" if varying and word else ""
         return f"@location({slot.location}){sampled}"
 
-    def declared(slot: Slot, name: str, varying: bool) -> str:
+    def declaration(slot: Slot, name: str, varying: bool) -> str:
         return f"{attributes(slot, varying)} {printer.variable(parameter_type(slot), name)}"
 
-    params = ", ".join([declared(slot, name, stage.kind == "fragment") for name, slot in entry_parameters])
+    params = ", ".join([declaration(slot, name, stage.kind == "fragment") for name, slot in entry_parameters])
     body = entry_body(printer, stage, entry_parameters, resolution, False)
     lines: list[Line] = []
     result = ""
@@ -41,7 +41,7 @@ def print_entry(printer: Printer, stage: Stage, name: str, resolution: str) -> l
         while struct in taken:
             struct += "_"
         lines.append(Line(f"struct {struct} {{"))
-        lines += [Line(f"    {declared(slot, member(slot), stage.kind == 'vertex')},") for slot in stage.outputs]
+        lines += [Line(f"    {declaration(slot, member(slot), stage.kind == 'vertex')},") for slot in stage.outputs]
         lines += [Line("}"), Line("")]
         result = f" -> {struct}"
         body.append(f"return {struct}({', '.join(map(place_text, stage.outputs))});")

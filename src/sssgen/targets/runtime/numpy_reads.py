@@ -95,16 +95,16 @@ def texelFetchOffset(texture: Texture, place: Value, level: Value, offset: Value
 
 def textureGather(texture: Texture, coord: Value, channel_or_reference: Value = 0) -> Value:
     """At level 0. The channel is the same in all lanes; a texture that compares has a reference."""
-    return _gathered(texture, coord, channel_or_reference, None)
+    return _gather(texture, coord, channel_or_reference, None)
 
 
 def textureGatherOffset(texture: Texture, coord: Value, first: Value, second: Value = 0) -> Value:
     """The offset, which is the same in all lanes, precedes the channel, and follows the reference."""
     offset, rest = (second, first) if texture.compare else (first, second)
-    return _gathered(texture, coord, rest, _first(offset))
+    return _gather(texture, coord, rest, _first(offset))
 
 
-def _gathered(texture: Texture, coord: Value, channel_or_reference: Value, offset: Value | None) -> Value:
+def _gather(texture: Texture, coord: Value, channel_or_reference: Value, offset: Value | None) -> Value:
     if texture.compare:
         return texture.gather(coord, 0, offset, np.asarray(channel_or_reference, coord.dtype))
     return texture.gather(coord, _level(channel_or_reference), offset)
@@ -138,7 +138,7 @@ def texelFetchLayer(texture: Texture, place: Value, layer: Value, level: Value) 
 def textureCompare(texture: Texture, coord: Value, *rest: Value) -> Value:
     """At level 0, the only one of depth textures here. `rest`: a layer where there are layers, then the reference."""
     *layer, reference = rest
-    return _compared(texture, _with(coord, *layer), reference, None)
+    return _compare(texture, _with(coord, *layer), reference, None)
 
 
 textureCompareLod = textureCompare
@@ -159,7 +159,7 @@ def textureLayerGradOffset(texture: Texture, coord: Value, layer: Value, dx: Val
 def textureCompareOffset(texture: Texture, coord: Value, *rest: Value) -> Value:
     """`rest`: a layer where there are layers, then the reference and the offset."""
     *layer, reference, offset = rest
-    return _compared(texture, _with(coord, *layer), reference, _first(offset))
+    return _compare(texture, _with(coord, *layer), reference, _first(offset))
 
 
 textureCompareLodOffset = textureCompareOffset
@@ -173,7 +173,7 @@ def textureGatherLayerOffset(texture: Texture, coord: Value, layer: Value, first
     return textureGatherOffset(texture, _with(coord, layer), first, second)
 
 
-def _compared(texture: Texture, coord: Value, reference: Value, offset: Value | None) -> Value:
+def _compare(texture: Texture, coord: Value, reference: Value, offset: Value | None) -> Value:
     return texture.sample(coord, 0.0, offset, np.asarray(reference, coord.dtype))[0]
 
 

@@ -191,12 +191,12 @@ class Texture:
         """The texels, (4, n), of one corner of the filter from the lowest one, or their comparisons."""
         shift = np.zeros((len(low), 1), np.int64) if read.offset is None else read.offset
         places = [_integers(p) + bit + o for p, bit, o in zip(low, corner, shift, strict=True)]
-        values = self._wrapped(level, places, face, read.layer).astype(low[0].dtype)
+        values = self._wrap(level, places, face, read.layer).astype(low[0].dtype)
         if read.reference is None:
             return values
         return np.where(read.reference <= values[:1], 1.0, 0.0).astype(values.dtype)
 
-    def _wrapped(self, level: int, places: list[Array], face: Array | None, layer: Array | None) -> Array:
+    def _wrap(self, level: int, places: list[Array], face: Array | None, layer: Array | None) -> Array:
         size = self.size(level)
         rest = [] if layer is None else [layer]
         if face is not None:

@@ -1,7 +1,7 @@
-"""Macros that are kept as constants: `#define HEIGHT 0.5` becomes `const auto HEIGHT = 0.5;`, and its uses stay names.
+"""Macros that become constants: `#define HEIGHT 0.5` becomes `const auto HEIGHT = 0.5;`, and its uses stay names.
 
-A translated shader should keep the names of its numbers. A macro is kept where a constant can replace it: its body is a
-number, or a parenthesised expression or a constructor of numbers and other constants; it is defined between two
+A translated shader should keep the names of its numbers. A macro becomes a constant where one can replace it: its body
+is a number, or a parenthesised expression or a constructor of numbers and other constants; it is defined between two
 declarations; and every use is an operand.
 """
 
@@ -21,7 +21,7 @@ _OPERAND_ENDS = frozenset(("NAME", "TYPE", "RPAR", "RSQB", "DOT", *_LITERALS))
 """No operand follows these: `f SIZE` is a call if SIZE is `(1.0)`."""
 
 
-class KeptConstants:
+class MacroConstants:
     """The constants of one run over a text, each with the range of output tokens in which it is defined."""
 
     def __init__(self, barred: frozenset[str]) -> None:
@@ -31,27 +31,27 @@ class KeptConstants:
         self.ends: dict[str, int] = {}
         self.users: dict[str, list[str]] = {}  # of each: the constants whose values name it
 
-    def add(self, macro: Macro, name: Token, kept: set[str], position: int) -> None:
+    def add(self, macro: Macro, name: Token, constants: set[str], position: int) -> None:
         """Keeps a macro that is defined before the token at `position`, if its name and its body allow it."""
         if macro.params is not None or name.type != "NAME" or macro.name in self.barred or macro.name in self.ends:
             return
-        if not is_constant(macro.body, kept):
+        if not is_constant(macro.body, constants):
             return
-        kept.add(macro.name)
+        constants.add(macro.name)
         self.values[macro.name] = name, macro.body
         self.begins[macro.name] = position
         for token in macro.body:
             if token.type == "NAME":
                 self.users.setdefault(token.text, []).append(macro.name)
 
-    def end(self, name: str, kept: set[str], used: set[str], position: int) -> None:
-        """Ends a constant, and those made of it, at `position`; one that was used can never be kept again."""
+    def end(self, name: str, constants: set[str], used: set[str], position: int) -> None:
+        """Ends a constant, and those made of it, at `position`; one that was used cannot become a constant again."""
         ending = [name]
         while ending:
             name = ending.pop()
-            if name not in kept:
+            if name not in constants:
                 continue
-            kept.remove(name)
+            constants.remove(name)
             users = self.users.pop(name, [])
             ending += users
             if users or name in used:
@@ -82,7 +82,7 @@ class KeptConstants:
             before = kind
         return conflicts
 
-    def declared(self, names: Sequence[str], tokens: list[Token]) -> list[Token]:
+    def with_declarations(self, names: Sequence[str], tokens: list[Token]) -> list[Token]:
         """The tokens with the declarations of the constants inserted."""
         result: list[Token] = []
         start = 0

@@ -12,7 +12,7 @@ _OF_LIGHT = (
     "buffer), and more than any of {} where there is none"
 )
 
-DRAWN = {
+VIEW_TEXTURES = {
     BACK_FACES: "draw the translucent body alone with its front faces culled and a depth test that keeps the nearest, "
     "into a float texture that covers the screen; each texel is the distance from the eye (not the depth), and 0 where "
     "there is no back face",
