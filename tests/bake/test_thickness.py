@@ -26,7 +26,7 @@ from sssgen.bake.bake_light import BakeLight
 from sssgen.bake.chord_lengths import Chords, inward
 from sssgen.bake.depth_map import depth_map
 from sssgen.bake.thickness_map import Map, Request, thickness_map, warnings
-from sssgen.lab.jobs.executor import Failure, run
+from sssgen.jobs.executor import Failure, run
 from sssgen.scene.mesh import Mesh
 from sssgen.targets.runtime.numpy_textures import Texture
 

@@ -13,14 +13,14 @@ import pytest
 
 from sssgen.cli.chart import announce, summary
 from sssgen.cli.main import main
+from sssgen.jobs import executor
+from sssgen.jobs import work_items as work
+from sssgen.jobs.executor import Failure
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.picked_material import stages_of
 from sssgen.lab.chart.record import LEAST, checked, hypervolume, hypervolumes, to_csv, to_json
 from sssgen.lab.gpu import chart_times as chart_gpu
-from sssgen.lab.jobs import executor
-from sssgen.lab.jobs import work_items as work
-from sssgen.lab.jobs.executor import Failure
 from sssgen.lab.measure import candidates
 from sssgen.lab.measure import measurement as measure
 from sssgen.lab.measure import scene_references as references

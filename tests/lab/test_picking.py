@@ -16,13 +16,13 @@ import pytest
 
 from processes import HANG
 from sssgen.cli.main import main
+from sssgen.jobs import executor
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.engine_conditions import Conditions, by_bytes, under
 from sssgen.lab.chart.picking import Pick, allowed, chosen, cost_of, limit_of, pick
 from sssgen.lab.chart.record import hypervolumes, on_fronts
 from sssgen.lab.gpu import device_costs
-from sssgen.lab.jobs import executor
 from sssgen.lab.measure import candidates
 from sssgen.scene.measured import measured_scene
 from sssgen.support.diagnostics import SssgenError

@@ -14,11 +14,11 @@ import numpy.typing as npt
 
 from sssgen.bake import memory_check as memory
 from sssgen.bake.bake_light import BakeLight
+from sssgen.jobs.executor import Progress
 from sssgen.lab.fluence import fluence_field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence.fluence_field import Field, Settings
 from sssgen.lab.fluence.voxels import Grid
-from sssgen.lab.jobs.executor import Progress
 from sssgen.lab.reference import geometry_mesh
 from sssgen.scene import body_identity
 from sssgen.scene.camera import Camera

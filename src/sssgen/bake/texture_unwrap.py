@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from sssgen.bake.atlas import Indices
 from sssgen.bake.voxel_grid import Array
-from sssgen.lab.jobs.executor import Failure, Item, Progress, run
-from sssgen.lab.jobs.result_store import Store
+from sssgen.jobs.executor import Failure, Item, Progress, run
+from sssgen.jobs.result_store import Store
 from sssgen.scene.mesh import Triangles
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need

@@ -12,8 +12,8 @@ from sssgen.bake.atlas import SHARED, Atlas, atlas, filled
 from sssgen.bake.bake_light import BakeLight
 from sssgen.bake.texture_unwrap import obj, unwrapped
 from sssgen.bake.voxel_grid import Array
-from sssgen.lab.jobs.executor import Item, Progress, failures, run
-from sssgen.lab.jobs.result_store import Store
+from sssgen.jobs.executor import Item, Progress, failures, run
+from sssgen.jobs.result_store import Store
 from sssgen.scene.mesh import Mesh
 from sssgen.scene.mesh_distance import MIXED, mixed_sides
 from sssgen.support import cache

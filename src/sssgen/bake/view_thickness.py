@@ -15,8 +15,8 @@ from sssgen.bake import memory_check as memory
 from sssgen.bake.atlas import atlas, filled
 from sssgen.bake.texture_unwrap import obj, unwrapped
 from sssgen.bake.voxel_grid import Array
-from sssgen.lab.jobs.executor import Item, Progress, failures, run
-from sssgen.lab.jobs.result_store import Store
+from sssgen.jobs.executor import Item, Progress, failures, run
+from sssgen.jobs.result_store import Store
 from sssgen.lab.reference import view_harmonics
 from sssgen.scene import body_identity
 from sssgen.scene.measured import measured_scene, media

@@ -15,9 +15,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from sssgen.jobs.executor import Failure, Item, Progress, run
+from sssgen.jobs.work_items import code_stamp
 from sssgen.lab.chart.record import FORMAT, hypervolumes, on_fronts
-from sssgen.lab.jobs.executor import Failure, Item, Progress, run
-from sssgen.lab.jobs.work_items import code_stamp
 from sssgen.lab.measure import candidates, fluence_inputs
 from sssgen.lab.measure import scene_references as references
 from sssgen.lab.measure.candidates import Candidate

@@ -6,10 +6,10 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from sssgen.jobs.executor import Item
 from sssgen.lab.chart import charting
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.picking import allowed, chosen, limit_of
-from sssgen.lab.jobs.executor import Item
 from sssgen.lab.measure.error_metric import flip
 from sssgen.run.backends import Array
 from sssgen.scene.measured.measured_scene import MeasuredScene

@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from sssgen.jobs.executor import Failure, Item, Progress, run
 from sssgen.lab.fluence import octahedron
 from sssgen.lab.fluence.photons import Body, Medium, Tracer
 from sssgen.lab.fluence.projection import Projection, covered
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.lab.fluence.walks import Walks
-from sssgen.lab.jobs.executor import Failure, Item, Progress, run
 from sssgen.lab.reference.geometry_mesh import mesh_of
 from sssgen.scene.measured import scene_body
 from sssgen.scene.measured.measured_scene import MeasuredScene

@@ -8,10 +8,10 @@ from itertools import chain
 
 import numpy as np
 
+from sssgen.jobs.executor import Item
 from sssgen.lab.fluence import fluence_field as field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence import octahedron
-from sssgen.lab.jobs.executor import Item
 from sssgen.run.backends import Array
 from sssgen.scene.bounds import placed_corners
 from sssgen.scene.measured.measured_scene import MeasuredScene

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.lab.jobs.executor import Item
+from sssgen.jobs.executor import Item
 from sssgen.lab.measure.problem import LightReference
 from sssgen.lab.reference.eye_paths import Eye, readings
 from sssgen.lab.reference.first_light import Lamp

@@ -18,16 +18,16 @@ import pytest
 from executor_items import GATE, items, open_gate, runs
 from folders import TESTS
 from processes import HANG, enable_interrupts, wait_until
+from sssgen.analyse.stress.stress_items import run_stress
 from sssgen.analyse.stress.stress_report import Report, as_json
 from sssgen.analyse.stress.stress_run import Machines, Settings, stress
 from sssgen.analyse.stress.subject import specimens
 from sssgen.cli import main as cli
-from sssgen.lab.jobs import dask_cluster as cluster
-from sssgen.lab.jobs import work_items as work
-from sssgen.lab.jobs.executor import Failure, Item, failures, run
-from sssgen.lab.jobs.result_store import Store
-from sssgen.lab.jobs.stress_items import run_stress
-from sssgen.lab.jobs.work_items import execute, task_of
+from sssgen.jobs import dask_cluster as cluster
+from sssgen.jobs import work_items as work
+from sssgen.jobs.executor import Failure, Item, failures, run
+from sssgen.jobs.result_store import Store
+from sssgen.jobs.work_items import execute, task_of
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.progress import ProgressBar
 from sssgen.support.value_bytes import decoded, encoded
@@ -307,10 +307,3 @@ def test_the_command_distributes_its_items(capsys: pytest.CaptureFixture[str]) -
     assert times.sub("", capsys.readouterr().out) == times.sub("", alone)
     assert cli.main([*command, "--processes", "0"]) == 2
     assert "'0' is not a number of processes" in capsys.readouterr().err
-
-
-def test_distributed_rendering_gives_the_same_differences() -> None:
-    jobs = [Item("sssgen.lab.jobs.render_items:compare_backends", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
-    [[single, same]] = results = run(jobs, processes=0, store=Store(""))
-    assert 0.0 < single.worst < 1.0 and single.beyond == 0 and same == (0.0, 0)
-    assert as_bytes(run(jobs, processes=1, store=Store(""))) == as_bytes(results)

@@ -13,8 +13,8 @@ import os
 from collections.abc import Callable, Generator, Sequence
 from typing import Any
 
-from sssgen.lab.jobs.result_store import Store
-from sssgen.lab.jobs.work_items import EncodedResult, Failure, Item, Task, execute, task_of
+from sssgen.jobs.result_store import Store
+from sssgen.jobs.work_items import EncodedResult, Failure, Item, Task, execute, task_of
 from sssgen.support.value_bytes import decoded
 
 __all__ = ["Failure", "Item", "Progress", "failures", "run"]
@@ -75,12 +75,12 @@ def _computed(tasks: list[Task], scheduler: str, processes: int | None) -> Gener
     if not tasks:
         return
     if scheduler:
-        from sssgen.lab.jobs.dask_cluster import on_cluster
+        from sssgen.jobs.dask_cluster import on_cluster
 
         yield from on_cluster(tasks, scheduler)
     elif processes == 0:
         yield from ((task.key, execute(task)) for task in tasks)
     else:
-        from sssgen.lab.jobs.local_workers import in_processes
+        from sssgen.jobs.local_workers import in_processes
 
         yield from in_processes(tasks, min(processes or os.cpu_count() or 1, len(tasks)))

@@ -13,7 +13,7 @@ import logging
 from collections.abc import Generator, Iterator
 from typing import Any
 
-from sssgen.lab.jobs.work_items import EncodedResult, Failure, Task, execute
+from sssgen.jobs.work_items import EncodedResult, Failure, Task, execute
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
 from sssgen.support.value_bytes import encoded
