@@ -21,11 +21,11 @@ import accuracy_goals
 import accuracy_pictures
 import accuracy_points
 import pick_trial
+from choice_pictures import ScenePictures, scene_pictures
 
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart import drawing
 from sssgen.lab.chart.charting import Settings
-from sssgen.lab.chart.choice_pictures import ScenePictures, scene_pictures
 from sssgen.lab.chart.record import checked, to_json
 from sssgen.lab.chart.scene_conditions import boundary, lights
 from sssgen.lab.gpu import chart_times as chart_gpu

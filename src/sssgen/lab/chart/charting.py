@@ -235,30 +235,6 @@ def _points(
         yield scene, {"scene": scene.name, **point}
 
 
-def remeasured(
-    record: Mapping[str, Any], scenes: Sequence[MeasuredScene], settings: Settings
-) -> dict[tuple[str, str], float]:
-    """The errors of a record's materials, with their fitted parameters, against references with other settings.
-
-    (scene, label) → the largest error of the views; infinite for a chain that fails.
-    """
-    views = with_references({scene.name: two_views(scene) for scene in scenes}, settings)
-    points = [point for point in record["points"] if point["role"] == "material" and point["scene"] in views]
-    items = [
-        Item(
-            "sssgen.lab.measure.measurement:measure_candidate",
-            (candidate_of(point), fitted_of(point), views[point["scene"]]),
-            f"{point['label']} on {point['scene']}, remeasured",
-        )
-        for point in points
-    ]
-    errors = {}
-    for point, result in zip(points, results_of(items, settings), strict=True):
-        largest = max(float(view["value"]) for view in result["views"].values())
-        errors[point["scene"], point["label"]] = float("inf") if result["failed"] else largest
-    return errors
-
-
 def candidate_of(point: Mapping[str, Any]) -> Candidate:
     """The candidate of a point."""
     settings, chain = tuple(point["settings"].items()), tuple(point["chain"])
