@@ -47,7 +47,7 @@ def main() -> int:
     whole = candidates.materials(lengths, views, list(filter(candidates.fits_path, lengths)))
     chains = operator_times.time_chains(spread(whole, arguments.chains), scene, size, arguments.rounds)
     for title, predicted in (
-        (f"predicted for {device.name}", [device.predicted(counts) for counts in chains.counts]),
+        (f"predicted for {device.name}", [device.predict(counts) for counts in chains.counts]),
         ("static cost", [weighted(counts) for counts in chains.counts]),
     ):
         result = operator_times.order_of_pairs(chains, predicted)

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.lab.gpu.chart_times import EMPTY, timed
+from sssgen.lab.gpu.chart_times import EMPTY, time_points
 from sssgen.lab.gpu.device_costs import OPERATORS, Device
 from sssgen.lab.gpu.gpu_timing import Device as Driver
 from sssgen.lab.measure.candidates import Candidate
@@ -52,7 +52,7 @@ def time_chains(
     points = [_unfitted(candidate) for candidate in candidates]
     with TemporaryDirectory() as folder:
         counts = [static_cost(chain_of(candidate, shape, folder))._asdict() for candidate in candidates]
-    times = timed(scene, points, size, rounds)
+    times = time_points(scene, points, size, rounds)
     per_pixel, bare = 1e6 / (size[0] * size[1]), np.percentile(times.net_times[EMPTY], TYPICAL)
     ns = [per_pixel * (times.net_times[str(index)] - bare) for index in range(len(points))]
     labels = tuple(candidate.label for candidate in candidates)

@@ -21,7 +21,7 @@ from sssgen.jobs.executor import Item, failures, run
 from sssgen.jobs.result_store import Store
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
-from sssgen.material.requirements import described
+from sssgen.material.requirements import describe
 from sssgen.run import backends
 from sssgen.run.backends import Backend
 from sssgen.support.file_writer import write_files
@@ -197,7 +197,7 @@ def _entry(material: Material, caption: str) -> list[str]:
         "",
         *(line for stage in dict.fromkeys(_techniques(material)) for line in _item(stage)),
         "",
-        *_paragraph(f"Requires: {', '.join(described(material.stages)) or 'any mesh'}."),
+        *_paragraph(f"Requires: {', '.join(describe(material.stages)) or 'any mesh'}."),
         *_paragraph(f"Cost: {_cost(name)}."),
     ]
 

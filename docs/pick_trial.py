@@ -15,7 +15,7 @@ import numpy as np
 from sssgen.jobs.executor import Item
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
-from sssgen.lab.chart.picking import allowed, chosen, cost_of
+from sssgen.lab.chart.picking import choose, cost_of, is_allowed
 from sssgen.scene.camera import Camera
 from sssgen.scene.geometry import Ball, Box, Capsule, Geometry, Torus, Union
 from sssgen.scene.measured import media
@@ -74,11 +74,11 @@ def trial_rows(settings: Settings) -> list[Row]:
     rows: list[Row] = []
     for scene in scenes:
         points = [point for point in record["points"] if point["scene"] == scene.name and point["role"] == "material"]
-        candidates = [point for point in points if allowed(point)]
+        candidates = [point for point in points if is_allowed(point)]
         errors = [true[scene.name, point["label"]] for point in candidates]
         without = next(true[scene.name, point["label"]] for point in candidates if point["name"] == "none")
         for limit in np.geomspace(1.02 * min(errors), 0.98 * without, LIMITS):
-            picked, _ = chosen(candidates, float(limit), None)
+            picked, _ = choose(candidates, float(limit), None)
             assert picked is not None
             within = [cost_of(point) for point, error in zip(candidates, errors, strict=True) if error <= limit]
             rows.append({
@@ -101,7 +101,7 @@ def errors_of(
     items = [
         Item(
             "sssgen.lab.measure.measurement:measure_candidate",
-            (chart.candidate_of(point), chart.fitted_of(point), views[point["scene"]]),
+            (chart.candidate_of(point), chart.fit_of(point), views[point["scene"]]),
             f"{point['label']} on {point['scene']}, measured again",
         )
         for point in points

@@ -410,12 +410,12 @@ def test_a_mesh_that_xatlas_loses_is_unwrapped_in_parts(monkeypatch: pytest.Monk
 
     monkeypatch.setattr(unwrap, "run", once_lost)
     mesh = Mesh(path=globe).triangles
-    uv = unwrap.unwrapped(mesh)
+    uv = unwrap.unwrap_mesh(mesh)
     assert requests == [1, 6] and uv.shape == (len(mesh.corners), 3, 2) and uv.min() >= 0.0 and uv.max() <= 1.0
     assert atlas(mesh, uv, (256, 256), globe).shared < 0.05
     monkeypatch.setattr(unwrap, "run", lambda *_, **__: [Failure("texture coordinates", "its process crashed")])
     with pytest.raises(SssgenError, match="finds no texture coordinates"):
-        unwrap.unwrapped(mesh)
+        unwrap.unwrap_mesh(mesh)
 
 
 @pytest.mark.slow

@@ -30,7 +30,7 @@ from sssgen.jobs.result_store import Store
 from sssgen.jobs.work_items import execute, task_of
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.progress import ProgressBar
-from sssgen.support.value_bytes import decoded, encoded
+from sssgen.support.value_bytes import decode, encode
 
 
 @pytest.fixture(autouse=True)
@@ -42,15 +42,15 @@ def current_stamps() -> None:
 
 def test_a_worker_with_other_code_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     task = task_of(Item("executor_items:echo", (1,), "the item"))
-    assert decoded(execute(task)) == (1, 1)
+    assert decode(execute(task)) == (1, 1)
     monkeypatch.setattr(work, "code_stamp", lambda module: "another")
-    refused = decoded(execute(task))
+    refused = decode(execute(task))
     assert isinstance(refused, Failure) and "another version of sssgen" in refused.message
 
 
 def as_bytes(results: list[Any]) -> list[bytes]:
     assert not failures(results), failures(results)
-    return [encoded(result) for result in results]
+    return [encode(result) for result in results]
 
 
 def test_results_do_not_depend_on_processes(tmp_path: Path) -> None:
@@ -66,14 +66,14 @@ def test_bytes_depend_only_on_values() -> None:
     text = "".join(["one", "two"])
     fixed = grid.copy()
     fixed.flags.writeable = False
-    assert encoded((text, text)) == encoded(("onetwo", "".join(["onet", "wo"])))
-    assert encoded(grid.T) == encoded(np.ascontiguousarray(grid.T)) != encoded(grid)
-    assert encoded(np.asfortranarray(grid)) == encoded(grid) == encoded(fixed)
-    assert encoded(decoded(encoded(grid.T))) == encoded(grid.T)
+    assert encode((text, text)) == encode(("onetwo", "".join(["onet", "wo"])))
+    assert encode(grid.T) == encode(np.ascontiguousarray(grid.T)) != encode(grid)
+    assert encode(np.asfortranarray(grid)) == encode(grid) == encode(fixed)
+    assert encode(decode(encode(grid.T))) == encode(grid.T)
     cycle: list[Any] = []
     cycle.append(cycle)
     with pytest.raises(ValueError, match="cyclic"):
-        encoded(cycle)
+        encode(cycle)
 
 
 def test_keys() -> None:

@@ -12,7 +12,7 @@ import pytest
 
 import operator_times
 from operator_times import TimedChains
-from sssgen.lab.chart.record import checked, hypervolumes, on_fronts
+from sssgen.lab.chart.record import check_record, hypervolumes, on_fronts
 from sssgen.lab.gpu import device_costs
 from sssgen.lab.gpu.device_costs import OPERATORS, Device
 from sssgen.lab.gpu.gpu_timing import Device as Driver
@@ -84,8 +84,8 @@ def test_a_device_is_stored_and_loaded(tmp_path: Path) -> None:
     device = Device("mine", "A device", "4.6", False, NS)
     (tmp_path / "mine.toml").write_text(device.text(), encoding="utf-8")
     assert device_costs.load(str(tmp_path / "mine.toml")) == device
-    assert device.predicted(dict(zip(OPERATORS, (100, 10, 2, 3), strict=True))) == pytest.approx(5.0 + 4.0 + 14.0 + 6.0)
-    assert device.predicted(dict.fromkeys(OPERATORS, 0)) == device_costs.LEAST
+    assert device.predict(dict(zip(OPERATORS, (100, 10, 2, 3), strict=True))) == pytest.approx(5.0 + 4.0 + 14.0 + 6.0)
+    assert device.predict(dict.fromkeys(OPERATORS, 0)) == device_costs.LEAST
     for text in ("", "ns = 3", device.text().replace("fetches = 7", 'fetches = "x"'), "["):
         (tmp_path / "wrong.toml").write_text(text, encoding="utf-8")
         with pytest.raises(SssgenError, match="is not the file of a device"):
@@ -116,7 +116,7 @@ def test_a_record_with_predicted_costs_has_their_fronts() -> None:
     record = {"format": 1, "record": {}, "scenes": [{"name": "s"}], "points": points, "cost": "static",
               "cost_unit": "operations", "hypervolume": hypervolumes(points)}  # fmt: skip
     assert [one["front"] for one in points] == [True, True]
-    result = checked(device_costs.by_device(record, Device("mine", "A device", "4.6", False, NS)))
+    result = check_record(device_costs.by_device(record, Device("mine", "A device", "4.6", False, NS)))
     assert [one["cost"]["value"] for one in result["points"]] == pytest.approx([30.5, 5.0])
     assert [one["cost"]["static"] for one in result["points"]] == [50.0, 100.0]
     assert [one["front"] for one in result["points"]] == [False, True]

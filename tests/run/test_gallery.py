@@ -27,7 +27,7 @@ from sssgen.scene import body_identity
 from sssgen.scene.measured import measured_scene
 from sssgen.scene.pictures import images
 from sssgen.scene.scene_loading import load
-from sssgen.support.value_bytes import encoded
+from sssgen.support.value_bytes import encode
 
 SMALL = (64, 48)
 LOOP = "light_around.webp"
@@ -199,4 +199,4 @@ def test_processes_give_the_same_differences_of_back_ends(monkeypatch: pytest.Mo
     jobs = [Item("gallery_items:compare_backends", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
     [[single, same]] = results = run(jobs, processes=0, store=Store(""))
     assert 0.0 < single.worst < 1.0 and single.differing == 0 and same == (0.0, 0)
-    assert encoded(run(jobs, processes=1, store=Store(""))) == encoded(results)
+    assert encode(run(jobs, processes=1, store=Store(""))) == encode(results)

@@ -20,7 +20,7 @@ PADDING = 4
 RESOLUTION = 1024
 
 
-def unwrapped(mesh: Triangles, progress: Progress = lambda *_: None) -> Array:
+def unwrap_mesh(mesh: Triangles, progress: Progress = lambda *_: None) -> Array:
     """New texture coordinates, (f, 3, 2), in 0..1, without overlaps.
 
     xatlas crashes on some valid meshes, so it runs in its own process. If it fails on the mesh, the mesh is split

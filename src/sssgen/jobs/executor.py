@@ -15,7 +15,7 @@ from typing import Any
 
 from sssgen.jobs.result_store import Store
 from sssgen.jobs.work_items import EncodedResult, Failure, Item, Task, execute, task_of
-from sssgen.support.value_bytes import decoded
+from sssgen.support.value_bytes import decode
 
 __all__ = ["Failure", "Item", "Progress", "failures", "run"]
 
@@ -43,14 +43,14 @@ def run(
     results: dict[str, Any] = {}
 
     def add_result(key: str, data: bytes) -> Any:
-        results[key] = decoded(data)
+        results[key] = decode(data)
         progress(len(results), len(by_key), by_key[key].name)
         return results[key]
 
     for key in by_key:
         if (stored := store.get(key)) is not None:
             add_result(key, stored)
-    computed = _computed([task for key, task in by_key.items() if key not in results], scheduler, processes)
+    computed = _compute([task for key, task in by_key.items() if key not in results], scheduler, processes)
     try:
         for key, data in computed:
             if not isinstance(add_result(key, data), Failure):
@@ -70,7 +70,7 @@ def failures(results: Sequence[Any]) -> list[Failure]:
     return [result for result in results if isinstance(result, Failure)]
 
 
-def _computed(tasks: list[Task], scheduler: str, processes: int | None) -> Generator[EncodedResult]:
+def _compute(tasks: list[Task], scheduler: str, processes: int | None) -> Generator[EncodedResult]:
     """Yields the tasks' results as they end, in any order. Closing it ends the workers."""
     if not tasks:
         return

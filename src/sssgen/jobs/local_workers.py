@@ -13,7 +13,7 @@ from collections.abc import Callable, Generator
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed, wait
 
 from sssgen.jobs.work_items import EncodedResult, Failure, Task, execute
-from sssgen.support.value_bytes import encoded
+from sssgen.support.value_bytes import encode
 from sssgen.support.worker_process import LostError, Process
 
 TRIES = 3
@@ -65,7 +65,7 @@ def _result(task: Task, idle: queue.SimpleQueue[Process], end: threading.Event) 
                 reason = str(error)
     finally:
         idle.put(worker)
-    return encoded(Failure(task.name, f"its process {reason}, {TRIES} times in a row"))
+    return encode(Failure(task.name, f"its process {reason}, {TRIES} times in a row"))
 
 
 def serve(name: str) -> tuple[int, Callable[[Task], bytes]]:

@@ -36,7 +36,7 @@ class Device(NamedTuple):
     ns: tuple[float, ...]
     """Nanoseconds per pixel, in the order of OPERATORS"""
 
-    def predicted(self, cost: Mapping[str, Any]) -> float:
+    def predict(self, cost: Mapping[str, Any]) -> float:
         """The nanoseconds per pixel of a chain with these static counts."""
         return max(sum(ns * float(cost[name]) for name, ns in zip(OPERATORS, self.ns, strict=True)), LEAST)
 
@@ -80,7 +80,7 @@ def load(name: str) -> Device:
 def by_device(record: Mapping[str, Any], device: Device) -> dict[str, Any]:
     """The record with the predicted nanoseconds as the cost, for drawing and picking."""
     points = [
-        {**point, "cost": {**point["cost"], "static": point["cost"]["value"], "value": device.predicted(point["cost"])}}
+        {**point, "cost": {**point["cost"], "static": point["cost"]["value"], "value": device.predict(point["cost"])}}
         for point in record["points"]
     ]
     about = {**record["record"], "device": device.renderer, "driver": device.driver, "software": device.software}
