@@ -115,7 +115,7 @@ def test_the_extras_of_a_checkout_and_of_an_installed_package(monkeypatch: pytes
 
 def test_a_package_for_older_pythons_is_not_missed(monkeypatch: pytest.MonkeyPatch) -> None:
     texts = {"": [], "a": ["old>=1; python_version < '3.0'", "new; python_version < '9.0'"]}
-    monkeypatch.setattr(extra_packages, "_declared", lambda: texts)
+    monkeypatch.setattr(extra_packages, "_declared_requirements", lambda: texts)
     assert extra_packages.packages()["a"] == ["new"]
 
 

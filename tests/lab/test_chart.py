@@ -495,7 +495,7 @@ def test_the_scenes_that_take_minutes_are_announced(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     scenes = [measured_scene.load(name) for name in ("cube", "torus", "inlay_plate")]
-    monkeypatch.setattr(chart, "cached", lambda scene, _: {} if scene.name == "torus" else None)
+    monkeypatch.setattr(chart, "cached_points", lambda scene, _: {} if scene.name == "torus" else None)
     announce(scenes, settings())
     shown = capsys.readouterr()
     assert shown.err.startswith("measuring cube: minutes") and shown.out == ""  # an inlay takes seconds
