@@ -22,7 +22,6 @@ from typing import Any, NamedTuple
 
 from engine_stages import digest, translation, verification
 from public_code import Pool, without_names
-
 from sssgen.support.worker_process import LostError
 
 SECONDS = 240.0

@@ -36,7 +36,6 @@ from public_code import (
     target_results,
     without_names,
 )
-
 from sssgen.support.worker_process import LostError
 
 SECONDS = 60.0

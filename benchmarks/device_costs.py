@@ -12,6 +12,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+import operator_times
 from sssgen.lab.gpu import device_costs
 from sssgen.lab.measure import candidates
 from sssgen.lab.measure.candidates import Candidate
@@ -34,8 +35,8 @@ def main() -> int:
     size = (arguments.width, arguments.width * 9 // 16)
     scene = measured_scene.load(SCENE)
     if not arguments.check:
-        operators = device_costs.time_chains(device_costs.operator_chains(), scene, size, arguments.rounds)
-        measured = device_costs.measured_device(arguments.NAME, operators)
+        operators = operator_times.time_chains(operator_times.operator_chains(), scene, size, arguments.rounds)
+        measured = operator_times.measured_device(arguments.NAME, operators)
         write_files(device_costs.FOLDER, {f"{arguments.NAME}.toml": measured.text()})
         print(f"wrote {Path(device_costs.FOLDER) / arguments.NAME}.toml")
     device = device_costs.load(arguments.NAME)
@@ -44,12 +45,12 @@ def main() -> int:
         print(f"  {operator.replace('_', ' '):22} {ns:8.4g} ns")
     lengths, views = candidates.thickness(), candidates.view_thickness()
     whole = candidates.materials(lengths, views, list(filter(candidates.fits_path, lengths)))
-    chains = device_costs.time_chains(spread(whole, arguments.chains), scene, size, arguments.rounds)
+    chains = operator_times.time_chains(spread(whole, arguments.chains), scene, size, arguments.rounds)
     for title, predicted in (
-        (f"predicted for {device.name}", [device.predicted(counts) for counts in chains.counts]),
+        (f"predicted for {device.name}", [device.predict(counts) for counts in chains.counts]),
         ("static cost", [weighted(counts) for counts in chains.counts]),
     ):
-        result = device_costs.ordered(chains, predicted)
+        result = operator_times.order_of_pairs(chains, predicted)
         print(
             f"{title}: {result.agree} of {result.pairs} pairs in the measured order "
             f"({result.agree / max(result.pairs, 1):.1%}); of the pairs that the clock can tell apart "

@@ -9,7 +9,6 @@ from time import process_time
 from typing import Any
 
 from public_code import READ, reason_of
-
 from sssgen.analyse.verify.verification import Machines, Options, start_machines, verify
 from sssgen.lang.plain_glsl import load_glsl, preprocess_text
 from sssgen.pipeline.compiler import transpile

@@ -19,8 +19,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+import operator_times
 import sssgen
-from sssgen.lab.gpu import device_costs
 from sssgen.lab.gpu import gpu_timing as gpu_cost
 from sssgen.lab.gpu import timed_programs as gpu_programs
 from sssgen.lab.gpu.gpu_timing import Program, ProgramTimes, Spread
@@ -161,7 +161,7 @@ def interior(size: tuple[int, int], rounds: int) -> tuple[Table, ProgramTimes, d
     pixels_per_ns = size[0] * size[1] / 1e6
     rows = [["published thinness", "–" if result.device.software else f"{added:.4g}", "1"]]
     ratios = {}
-    chains = device_costs.time_chains(chains_inside(), measured_scene.load(BODY_SCENE), size, rounds)
+    chains = operator_times.time_chains(chains_inside(), measured_scene.load(BODY_SCENE), size, rounds)
     for label, ns in zip(chains.labels, chains.ns, strict=True):
         median = pixels_per_ns * float(np.median(ns))
         ratios[label] = median / added

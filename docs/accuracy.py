@@ -21,12 +21,12 @@ import accuracy_goals
 import accuracy_pictures
 import accuracy_points
 import pick_trial
+from choice_pictures import ScenePictures, scene_pictures
 
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart import drawing
 from sssgen.lab.chart.charting import Settings
-from sssgen.lab.chart.choice_pictures import ScenePictures, scene_pictures
-from sssgen.lab.chart.record import checked, to_json
+from sssgen.lab.chart.record import check_record, to_json
 from sssgen.lab.chart.scene_conditions import boundary, lights
 from sssgen.lab.gpu import chart_times as chart_gpu
 from sssgen.scene.measured import measured_scene
@@ -116,7 +116,7 @@ def page(
     chart_files = drawing.chart_files(record)
     records = {name: data for name, data in chart_files.items() if name.endswith((".csv", ".json"))}
     if bent is not None:
-        records[BENT] = to_json(checked(bent))
+        records[BENT] = to_json(check_record(bent))
     write_files(str(RECORDS), records)
     files = {name: data for name, data in chart_files.items() if name.endswith(".png")}
     files["points.json"] = accuracy_points.quoted([record, *([bent] if bent is not None else [])])

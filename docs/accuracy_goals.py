@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from statistics import median
 from typing import Any, NamedTuple
 
-from sssgen.lab.chart.picking import allowed, chosen, limit_of
+from sssgen.lab.chart.picking import choose, is_allowed, limit_of
 
 Record = Mapping[str, Any]
 Point = Mapping[str, Any]
@@ -65,7 +65,7 @@ def table(record: Record, bent: Record | None, interior: Record) -> str:
     within = {}
     for scene in _lit(record):
         points = [point for point in record["points"] if point["scene"] == scene and point["role"] == "material"]
-        point, met = chosen(list(filter(allowed, points)), PICKED, None)
+        point, met = choose(list(filter(is_allowed, points)), PICKED, None)
         assert point is not None
         within[scene] = (met, limit_of(point))
     good = sum(met for met, _ in within.values())
@@ -129,7 +129,7 @@ def _reached(record: Record, goal: Goal) -> tuple[str, bool]:
         for label, points in _by_label(record).items()
         if len(points) == len(scenes)
         and _cost_of(points) <= goal.cost
-        and all(allowed(point) and not point["baseline"] for point in points.values())
+        and all(is_allowed(point) and not point["baseline"] for point in points.values())
         and (goal.fixed or _moving(points))
     ]
     if not chains:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from textwrap import fill
 
 import numpy as np
+from choice_pictures import Choice, ScenePictures
 
-from sssgen.lab.chart.choice_pictures import Choice, ScenePictures
 from sssgen.lab.chart.drawing import figure as charts
 from sssgen.run.backends import Array
 from sssgen.scene.pictures.images import encode_srgb

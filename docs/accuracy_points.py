@@ -17,7 +17,7 @@ CHAIN = (
     "role", "name", "label", "settings", "chain", "baseline", "path", "path_settings", "parameters", "scale", "matte",
     "training_error", "factor", "scene",
 )  # fmt: skip
-"""What a point needs to be drawn: `charting.candidate_of` and `fitted_of` read it."""
+"""What a point needs to be drawn: `charting.candidate_of` and `fit_of` read it."""
 
 
 def quoted(records: Sequence[Mapping[str, Any]]) -> str:

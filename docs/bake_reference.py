@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.bake.atlas import filled
+from sssgen.bake.atlas import fill_map
 from sssgen.bake.baked_files import write_picture
 from sssgen.lab.reference.inside_lengths import thickness
 from sssgen.scene.geometry import Mesh
@@ -54,7 +54,7 @@ def write(scene_file: Path, name: str, deep: bool) -> Path:
     # texels outside of the body are filled from inside, so that filters do not darken its edge
     rows = np.arange(SIZE * SIZE).reshape(SIZE, SIZE)[::-1].ravel()  # rows of the view go up, those of a picture down
     texels = np.flatnonzero(hit[rows])
-    picture = filled(values[rows][texels], texels, (SIZE, SIZE))
+    picture = fill_map(values[rows][texels], texels, (SIZE, SIZE))
     write_picture(str(folder / f"{name}.exr"), picture, facts)
     return _scene_file(scene, scene_file, name)
 

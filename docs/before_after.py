@@ -143,7 +143,7 @@ def traced(scene: Scene, compared: Compared, medium: Medium) -> tuple[Array, Arr
         measured = MeasuredScene(
             scene.material, scene.title, body, scene.camera, scene.lights, medium, None, (width, height), "", sky
         )
-        readings = scene_references.traced(measured, compared.samples, 0)
+        readings = scene_references.trace(measured, compared.samples, 0)
     colors = [light.color for light in scene.lights] + ([(1.0, 1.0, 1.0)] if sky else [])
     light = sum(mean * np.array(color)[:, None] for (mean, _), color in zip(readings, colors, strict=True))
     visible = points(measured)

@@ -17,11 +17,11 @@ import gallery_loop
 
 import sssgen
 from sssgen.cli.options import add_workers
-from sssgen.lab.jobs.executor import Item, failures, run
-from sssgen.lab.jobs.result_store import Store
+from sssgen.jobs.executor import Item, failures, run
+from sssgen.jobs.result_store import Store
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
-from sssgen.material.requirements import described
+from sssgen.material.requirements import describe
 from sssgen.run import backends
 from sssgen.run.backends import Backend
 from sssgen.support.file_writer import write_files
@@ -100,11 +100,11 @@ ALTERNATIVE_TEXTS = {
 
 def items(names: Sequence[str]) -> list[Item]:
     """For each scene: its picture, the differences of small pictures, and of large ones with one sample per pixel."""
-    jobs = [Item("sssgen.lab.jobs.render_items:picture", (name,), name) for name in names]
+    jobs = [Item("gallery_items:picture", (name,), name) for name in names]
     large = [name for name in names if name not in MARCHED]
     for title, size, samples, compared in (("small", SMALL, None, names), ("one sample", None, 1, large)):
         jobs += [
-            Item("sssgen.lab.jobs.render_items:compare_backends", (name, BACKENDS, size, samples), f"{name}, {title}")
+            Item("gallery_items:compare_backends", (name, BACKENDS, size, samples), f"{name}, {title}")
             for name in compared
         ]
     return jobs
@@ -197,7 +197,7 @@ def _entry(material: Material, caption: str) -> list[str]:
         "",
         *(line for stage in dict.fromkeys(_techniques(material)) for line in _item(stage)),
         "",
-        *_paragraph(f"Requires: {', '.join(described(material.stages)) or 'any mesh'}."),
+        *_paragraph(f"Requires: {', '.join(describe(material.stages)) or 'any mesh'}."),
         *_paragraph(f"Cost: {_cost(name)}."),
     ]
 
@@ -260,7 +260,7 @@ def main() -> None:
     rows = stored_rows() if PAGE.exists() else ({}, {})
     rows[0].update({name: [f"{difference.worst:.3f}" for difference in small[name]] for name in names})
     rows[1].update(
-        {name: [f"{difference.beyond}" for difference in differences] for name, differences in large.items()}
+        {name: [f"{difference.differing}" for difference in differences] for name, differences in large.items()}
     )
     files = {f"{name}.png": data for name, data in pictures.items()}
     if "loop" in chosen:

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from sssgen.jobs.executor import Item
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
-from sssgen.lab.chart.picking import allowed, chosen, cost_of
+from sssgen.lab.chart.picking import choose, cost_of, is_allowed
 from sssgen.scene.camera import Camera
 from sssgen.scene.geometry import Ball, Box, Capsule, Geometry, Torus, Union
 from sssgen.scene.measured import media
@@ -69,15 +70,15 @@ def trial_rows(settings: Settings) -> list[Row]:
     scenes = [random_scene(number) for number in range(SCENES)]
     record = chart.chart_record(scenes, settings._replace(roles=("thickness", "material")))
     truth = settings._replace(samples=TIMES * settings.samples, seed=TRUE_SEED)
-    true = chart.remeasured(record, scenes, truth)
+    true = errors_of(record, scenes, truth)
     rows: list[Row] = []
     for scene in scenes:
         points = [point for point in record["points"] if point["scene"] == scene.name and point["role"] == "material"]
-        candidates = [point for point in points if allowed(point)]
+        candidates = [point for point in points if is_allowed(point)]
         errors = [true[scene.name, point["label"]] for point in candidates]
         without = next(true[scene.name, point["label"]] for point in candidates if point["name"] == "none")
         for limit in np.geomspace(1.02 * min(errors), 0.98 * without, LIMITS):
-            picked, _ = chosen(candidates, float(limit), None)
+            picked, _ = choose(candidates, float(limit), None)
             assert picked is not None
             within = [cost_of(point) for point, error in zip(candidates, errors, strict=True) if error <= limit]
             rows.append({
@@ -86,6 +87,30 @@ def trial_rows(settings: Settings) -> list[Row]:
                 "best": min(within, default=math.nan),
             })  # fmt: skip
     return rows
+
+
+def errors_of(
+    record: Mapping[str, Any], scenes: Sequence[MeasuredScene], settings: Settings
+) -> dict[tuple[str, str], float]:
+    """The errors of a record's materials, with their fitted parameters, against references with other settings.
+
+    (scene, label) → the largest error of the views; infinite for a chain that fails.
+    """
+    views = chart.with_references({scene.name: chart.two_views(scene) for scene in scenes}, settings)
+    points = [point for point in record["points"] if point["role"] == "material" and point["scene"] in views]
+    items = [
+        Item(
+            "sssgen.lab.measure.measurement:measure_candidate",
+            (chart.candidate_of(point), chart.fit_of(point), views[point["scene"]]),
+            f"{point['label']} on {point['scene']}, measured again",
+        )
+        for point in points
+    ]
+    errors = {}
+    for point, result in zip(points, chart.results_of(items, settings), strict=True):
+        largest = max(float(view["value"]) for view in result["views"].values())
+        errors[point["scene"], point["label"]] = float("inf") if result["failed"] else largest
+    return errors
 
 
 def table(rows: Sequence[Row]) -> str:

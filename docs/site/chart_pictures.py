@@ -37,7 +37,7 @@ def _view(scene: str) -> View:
 def beside_path_tracing(point: Point) -> Picture:
     """The chain of a point, and the path-traced scene, in the same scale."""
     view = _view(str(point["scene"]))
-    drawn, reference = pictures_of(charting.candidate_of(point), charting.fitted_of(point), view)
+    drawn, reference = pictures_of(charting.candidate_of(point), charting.fit_of(point), view)
     scale = BRIGHT / max(float(np.percentile(reference[reference.any(axis=2)], 99)), 1e-3)
     pair = [_enlarged(encode_srgb(_with_background(one, reference, scale))) for one in (drawn, reference)]
     between = np.ones((pair[0].shape[0], GAP, 3))

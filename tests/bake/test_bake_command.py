@@ -51,7 +51,7 @@ def idle(monkeypatch: pytest.MonkeyPatch) -> None:
         raise AssertionError("the work began")
 
     monkeypatch.setattr("sssgen.bake.distance_texture.distances", working)
-    monkeypatch.setattr("sssgen.bake.thickness_map._measured", working)
+    monkeypatch.setattr("sssgen.bake.thickness_map._measure_chords", working)
     monkeypatch.setattr("sssgen.scene.mesh_rays.MeshRays.nearest", working)
 
 

@@ -15,7 +15,7 @@ from sssgen.cli.commands import command_parser
 from sssgen.cli.main import main
 from sssgen.ir.baked_textures import is_baked
 from sssgen.material import library
-from sssgen.material.attributes import Bake, read, sections
+from sssgen.material.attributes import Bake, read_attributes, sections
 from sssgen.material.requirements import baked_functions
 from sssgen.preview.page_messages import PageMessages
 from sssgen.preview.pane import Pane
@@ -196,4 +196,4 @@ def test_all_baked_textures_have_a_command_but_these() -> None:
 
 def test_a_faulty_attribute_is_an_error() -> None:
     with pytest.raises(SssgenError, match="are not the arguments of sssgen bake"):
-        read(sections("A map.\nbake: thickness box.obj"), "")
+        read_attributes(sections("A map.\nbake: thickness box.obj"), "")

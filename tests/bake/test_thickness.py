@@ -26,7 +26,7 @@ from sssgen.bake.bake_light import BakeLight
 from sssgen.bake.chord_lengths import Chords, inward
 from sssgen.bake.depth_map import depth_map
 from sssgen.bake.thickness_map import Map, Request, thickness_map, warnings
-from sssgen.lab.jobs.executor import Failure, run
+from sssgen.jobs.executor import Failure, run
 from sssgen.scene.mesh import Mesh
 from sssgen.targets.runtime.numpy_textures import Texture
 
@@ -410,12 +410,12 @@ def test_a_mesh_that_xatlas_loses_is_unwrapped_in_parts(monkeypatch: pytest.Monk
 
     monkeypatch.setattr(unwrap, "run", once_lost)
     mesh = Mesh(path=globe).triangles
-    uv = unwrap.unwrapped(mesh)
+    uv = unwrap.unwrap_mesh(mesh)
     assert requests == [1, 6] and uv.shape == (len(mesh.corners), 3, 2) and uv.min() >= 0.0 and uv.max() <= 1.0
     assert atlas(mesh, uv, (256, 256), globe).shared < 0.05
     monkeypatch.setattr(unwrap, "run", lambda *_, **__: [Failure("texture coordinates", "its process crashed")])
     with pytest.raises(SssgenError, match="finds no texture coordinates"):
-        unwrap.unwrapped(mesh)
+        unwrap.unwrap_mesh(mesh)
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ import numpy.typing as npt
 import pytest
 
 from sssgen.bake.slice_sheet import columns_and_rows
-from sssgen.bake.volume_files import FORMATS, encoded, layout
+from sssgen.bake.volume_files import FORMATS, encode_volume, layout
 from sssgen.scene.pictures import images
 from sssgen.scene.pictures.volumes import read
 from sssgen.support.diagnostics import SssgenError
@@ -39,7 +39,7 @@ def volume(size: tuple[int, int, int], dtype: str) -> npt.NDArray[Any]:
 
 
 def file_of(texels: npt.NDArray[Any], format: str) -> bytes:
-    return encoded(texels, format)
+    return encode_volume(texels, format)
 
 
 def read_bytes(data: bytes, format: str) -> npt.NDArray[np.float64]:
@@ -150,7 +150,7 @@ def test_a_sheet_is_nearly_square_and_full() -> None:
     with pytest.raises(SssgenError, match="257 slices of 128 × 128 texels do not fit"):
         columns_and_rows(257, 128, 128)
     with pytest.raises(SssgenError, match="do not fit"):
-        encoded(np.zeros((1, 1, 16385), np.uint8), "exr-slices")
+        encode_volume(np.zeros((1, 1, 16385), np.uint8), "exr-slices")
 
 
 @pytest.mark.parametrize("dtype", TYPES)
@@ -188,9 +188,9 @@ def test_memory_order_and_byte_order_leave_no_trace(format: str) -> None:
 
 def test_unsupported_volumes_are_not_written() -> None:
     with pytest.raises(SssgenError, match="did you mean 'ktx2'"):
-        encoded(volume((1, 1, 1), "uint8"), "ktx")
+        encode_volume(volume((1, 1, 1), "uint8"), "ktx")
     with pytest.raises(SssgenError, match="texels of type int32"):
-        encoded(np.zeros((2, 2, 2), np.int32), "dds")
+        encode_volume(np.zeros((2, 2, 2), np.int32), "dds")
     for shape in [(2, 2), (2, 2, 2, 1), (0, 2, 2)]:
         with pytest.raises(SssgenError, match="is not a volume"):
             layout(np.zeros(shape, np.uint8), "dds")

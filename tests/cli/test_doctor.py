@@ -99,7 +99,7 @@ def test_a_back_end_that_does_not_start(run: Run, monkeypatch: pytest.MonkeyPatc
 def test_the_extras_of_a_checkout_and_of_an_installed_package(monkeypatch: pytest.MonkeyPatch) -> None:
     """The metadata of a package states the requirements as pyproject.toml does, each with a marker for its extra."""
     in_checkout = extra_packages.packages()
-    declared = extra_packages._declared()
+    declared = extra_packages._declared_requirements()
     assert in_checkout[extra_packages.NEEDED] == ["argcomplete", "jinja2", "lark"]
     assert {"mitsuba", "trimesh"} <= set(in_checkout["reference"]), "it names the extra render"
     assert "dev" in declared and "dev" not in in_checkout
@@ -115,7 +115,7 @@ def test_the_extras_of_a_checkout_and_of_an_installed_package(monkeypatch: pytes
 
 def test_a_package_for_older_pythons_is_not_missed(monkeypatch: pytest.MonkeyPatch) -> None:
     texts = {"": [], "a": ["old>=1; python_version < '3.0'", "new; python_version < '9.0'"]}
-    monkeypatch.setattr(extra_packages, "_declared", lambda: texts)
+    monkeypatch.setattr(extra_packages, "_declared_requirements", lambda: texts)
     assert extra_packages.packages()["a"] == ["new"]
 
 

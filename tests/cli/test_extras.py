@@ -16,8 +16,8 @@ import pytest
 from folders import ROOT
 from sssgen.cli.commands import COMMANDS
 from sssgen.cli.main import WRONG_INPUT
+from sssgen.jobs.executor import Item
 from sssgen.lab.chart.charting import Settings, results_of
-from sssgen.lab.jobs.executor import Item
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.installation import install_hint
 

@@ -20,7 +20,7 @@ from gltf_files import box, data_uri, inlined, png
 from ir_sample import SAMPLE
 from sssgen.analyse.verify.inline_includes import expanded
 from sssgen.bake import bake_light as light
-from sssgen.bake.volume_files import encoded
+from sssgen.bake.volume_files import encode_volume
 from sssgen.interchange import gltf_reader
 from sssgen.interchange.mapping_report import Report
 from sssgen.ir.nodes import Span
@@ -224,7 +224,7 @@ def _volumes(kind: str) -> Callable[[], list[bytes]]:
     def contents() -> list[bytes]:
         types = (np.uint8, np.uint16, np.float16, np.float32)
         volumes = [np.ones((2, 3, 4), dtype) for dtype in types]
-        return [encoded(volume, kind) for volume in volumes]
+        return [encode_volume(volume, kind) for volume in volumes]
 
     return contents
 
@@ -266,8 +266,8 @@ FRONT_ENDS = {
     "npy": FrontEnd(".npy", images.read, _arrays, False),
     "dds": FrontEnd(".dds", images.read, _volumes("dds"), False),
     "ktx2": FrontEnd(".ktx2", images.read, _volumes("ktx2"), False),
-    "baked": FrontEnd(".png.json", lambda path: baked.read(str(path).removesuffix(".json")), _baked),
-    "light": FrontEnd(".json", lambda path: light.read(str(path)), _lights),
+    "baked": FrontEnd(".png.json", lambda path: baked.read_bake_file(str(path).removesuffix(".json")), _baked),
+    "light": FrontEnd(".json", lambda path: light.read_light(str(path)), _lights),
     "obj": FrontEnd(".obj", _mesh, _meshes("obj"), False),
     "ply": FrontEnd(".ply", _mesh, _meshes("ply"), False),
     "stl": FrontEnd(".stl", _mesh, _meshes("stl"), False),

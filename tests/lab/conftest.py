@@ -34,5 +34,5 @@ def cube() -> View:
 def training() -> tuple[View, ...]:
     return tuple(
         synthetic_view(replace(scene, size=SIZE), scene.name)
-        for scene in references.training(measured_scene.load("cube"))
+        for scene in references.training_scenes(measured_scene.load("cube"))
     )

@@ -13,14 +13,14 @@ import pytest
 
 from sssgen.cli.chart import announce, summary
 from sssgen.cli.main import main
+from sssgen.jobs import executor
+from sssgen.jobs import work_items as work
+from sssgen.jobs.executor import Failure
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.picked_material import stages_of
-from sssgen.lab.chart.record import LEAST, checked, hypervolume, hypervolumes, to_csv, to_json
+from sssgen.lab.chart.record import LEAST, check_record, hypervolume, hypervolumes, to_csv, to_json
 from sssgen.lab.gpu import chart_times as chart_gpu
-from sssgen.lab.jobs import executor
-from sssgen.lab.jobs import work_items as work
-from sssgen.lab.jobs.executor import Failure
 from sssgen.lab.measure import candidates
 from sssgen.lab.measure import measurement as measure
 from sssgen.lab.measure import scene_references as references
@@ -175,7 +175,7 @@ def test_results_do_not_depend_on_processes(monkeypatch: pytest.MonkeyPatch, tmp
 def test_a_record_is_valid_and_complete(cube_measured: dict[str, Any]) -> None:
     scenes = [cube(), measured_scene.load("inlay_plate")]
     record = chart.chart_record(scenes, settings())
-    assert checked(record) == record == json.loads(to_json(record))
+    assert check_record(record) == record == json.loads(to_json(record))
     assert [scene["name"] for scene in record["scenes"]] == ["cube", "inlay_plate"]
     assert record["scenes"][0]["medium"]["name"] == "marble" and "medium" not in record["scenes"][1]
     assert record["scenes"][0]["fitted_to"] == ["ball", "bar", "ball", "bar", "slab"]
@@ -278,7 +278,7 @@ def test_every_technique_with_a_reference_is_a_candidate(monkeypatch: pytest.Mon
         assert len({(candidate.role, candidate.label) for candidate in result}) == len(result)
         for candidate in result:
             assert candidate.baseline == any(candidates.load(name).baseline for name in candidate.techniques)
-    assert {candidate.name for candidate in whole if candidate.baseline} == set(candidates.published())
+    assert {candidate.name for candidate in whole if candidate.baseline} == set(candidates.baselines())
     assert len({candidate.label for candidate in whole}) == len(whole)
     for candidate in whole:
         # each stage reads the result of the previous one
@@ -357,7 +357,7 @@ def test_a_record_restores_its_candidates(cube_measured: dict[str, Any]) -> None
     assert ("light_path", "march_light") in stages[-1].bind
     for name, wrong in (("requires", ["sunshine"]), ("bytes", -1), ("path", 3)):
         with pytest.raises(SssgenError, match=name if name != "requires" else "requires 'sunshine'"):
-            checked({**record, "points": [{**point, name: wrong}]})
+            check_record({**record, "points": [{**point, name: wrong}]})
 
 
 # --- costs on a GPU, computed from fixed times ---
@@ -395,7 +395,7 @@ def test_a_users_scene_is_timed(tmp_path: Path, backend: Callable[[str], Backend
         assert cost["gpu_ratio"] > 0.0
         if not timed["record"]["software"]:
             assert cost["gpu_ms"] >= chart_gpu.LEAST and cost["gpu_ms_low"] <= cost["gpu_ms_high"]
-    assert checked(chart_gpu.by_gpu(timed))["cost"] == "gpu"
+    assert check_record(chart_gpu.by_gpu(timed))["cost"] == "gpu"
 
 
 # --- the commands ---
@@ -495,7 +495,7 @@ def test_the_scenes_that_take_minutes_are_announced(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     scenes = [measured_scene.load(name) for name in ("cube", "torus", "inlay_plate")]
-    monkeypatch.setattr(chart, "cached", lambda scene, _: {} if scene.name == "torus" else None)
+    monkeypatch.setattr(chart, "cached_points", lambda scene, _: {} if scene.name == "torus" else None)
     announce(scenes, settings())
     shown = capsys.readouterr()
     assert shown.err.startswith("measuring cube: minutes") and shown.out == ""  # an inlay takes seconds

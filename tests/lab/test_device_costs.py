@@ -10,9 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sssgen.lab.chart.record import checked, hypervolumes, on_fronts
+import operator_times
+from operator_times import TimedChains
+from sssgen.lab.chart.record import check_record, hypervolumes, on_fronts
 from sssgen.lab.gpu import device_costs
-from sssgen.lab.gpu.device_costs import OPERATORS, Device, TimedChains
+from sssgen.lab.gpu.device_costs import OPERATORS, Device
 from sssgen.lab.gpu.gpu_timing import Device as Driver
 from sssgen.lab.measure.measurement import chain_of, static_cost
 from sssgen.run.backends import Backend
@@ -30,7 +32,7 @@ def counted() -> list[dict[str, int]]:
     """The static counts of the programs that measure the operators, on the cube."""
     shape = body(measured_scene.load("cube").geometry)
     with TemporaryDirectory() as folder:
-        chains = [chain_of(candidate, shape, folder) for candidate in device_costs.operator_chains()]
+        chains = [chain_of(candidate, shape, folder) for candidate in operator_times.operator_chains()]
         return [static_cost(chain)._asdict() for chain in chains]
 
 
@@ -45,7 +47,7 @@ def test_each_operator_has_a_program_that_mostly_consists_of_it() -> None:
     counts = counted()
     for index, operator in enumerate(OPERATORS):
         few, many = counts[2 * index : 2 * index + 2]
-        assert many[operator] - few[operator] >= device_costs.ROUNDS[1] - device_costs.ROUNDS[0]
+        assert many[operator] - few[operator] >= operator_times.ROUNDS[1] - operator_times.ROUNDS[0]
         assert all(few[other] <= 1 for other in ("fetches", "distance_evaluations") if other != operator), operator
     matrix = np.array([[count[operator] for operator in OPERATORS] for count in counts], float)
     assert np.linalg.cond(matrix / np.linalg.norm(matrix, axis=0)) < 100.0  # the times determine all four costs
@@ -53,23 +55,28 @@ def test_each_operator_has_a_program_that_mostly_consists_of_it() -> None:
 
 def test_costs_follow_from_times() -> None:
     counts = counted()
-    device = device_costs.measured_device("mine", timed(counts))
+    device = operator_times.measured_device("mine", timed(counts))
     assert device.ns == pytest.approx(NS, rel=1e-6) and device.renderer == "A device"
-    disturbed = device_costs.measured_device("mine", timed(counts, noise=0.03))
+    disturbed = operator_times.measured_device("mine", timed(counts, noise=0.03))
     assert disturbed.ns[0] == pytest.approx(NS[0], rel=0.05) and disturbed.ns[2] == pytest.approx(NS[2], rel=0.1)
     with pytest.raises(SssgenError, match="too fast for the clock"):
-        device_costs.measured_device("mine", timed(counts, (0.0, 0.0, 7.0, 0.0)))
+        operator_times.measured_device("mine", timed(counts, (0.0, 0.0, 7.0, 0.0)))
 
 
 def test_the_order_of_pairs() -> None:
     counts = [dict.fromkeys(OPERATORS, 0) | {"operations": count} for count in (10, 20, 30, 40)]
     chains = timed(counts)
-    assert device_costs.ordered(chains, [1.0, 2.0, 3.0, 4.0]) == (6, 6, 6, 6)
-    assert device_costs.ordered(chains, [4.0, 3.0, 2.0, 1.0]) == (6, 0, 6, 0)
-    assert device_costs.ordered(chains, [1.0, 1.0, 3.0, 4.0]) == (6, 5, 6, 5)  # equal predictions order nothing
+    assert operator_times.order_of_pairs(chains, [1.0, 2.0, 3.0, 4.0]) == (6, 6, 6, 6)
+    assert operator_times.order_of_pairs(chains, [4.0, 3.0, 2.0, 1.0]) == (6, 0, 6, 0)
+    assert operator_times.order_of_pairs(chains, [1.0, 1.0, 3.0, 4.0]) == (
+        6,
+        5,
+        6,
+        5,
+    )  # equal: no order
     # the first two chains' times overlap: the clock cannot tell them apart
     rounds = chains.ns[:, :1] + np.array([-0.4, -0.2, 0.0, 0.2, 0.4]) * np.array([[1], [1], [0], [0]])
-    result = device_costs.ordered(chains._replace(ns=rounds), [2.0, 1.0, 3.0, 4.0])
+    result = operator_times.order_of_pairs(chains._replace(ns=rounds), [2.0, 1.0, 3.0, 4.0])
     assert result == (6, 5, 5, 5)
 
 
@@ -77,8 +84,8 @@ def test_a_device_is_stored_and_loaded(tmp_path: Path) -> None:
     device = Device("mine", "A device", "4.6", False, NS)
     (tmp_path / "mine.toml").write_text(device.text(), encoding="utf-8")
     assert device_costs.load(str(tmp_path / "mine.toml")) == device
-    assert device.predicted(dict(zip(OPERATORS, (100, 10, 2, 3), strict=True))) == pytest.approx(5.0 + 4.0 + 14.0 + 6.0)
-    assert device.predicted(dict.fromkeys(OPERATORS, 0)) == device_costs.LEAST
+    assert device.predict(dict(zip(OPERATORS, (100, 10, 2, 3), strict=True))) == pytest.approx(5.0 + 4.0 + 14.0 + 6.0)
+    assert device.predict(dict.fromkeys(OPERATORS, 0)) == device_costs.LEAST
     for text in ("", "ns = 3", device.text().replace("fetches = 7", 'fetches = "x"'), "["):
         (tmp_path / "wrong.toml").write_text(text, encoding="utf-8")
         with pytest.raises(SssgenError, match="is not the file of a device"):
@@ -109,7 +116,7 @@ def test_a_record_with_predicted_costs_has_their_fronts() -> None:
     record = {"format": 1, "record": {}, "scenes": [{"name": "s"}], "points": points, "cost": "static",
               "cost_unit": "operations", "hypervolume": hypervolumes(points)}  # fmt: skip
     assert [one["front"] for one in points] == [True, True]
-    result = checked(device_costs.by_device(record, Device("mine", "A device", "4.6", False, NS)))
+    result = check_record(device_costs.by_device(record, Device("mine", "A device", "4.6", False, NS)))
     assert [one["cost"]["value"] for one in result["points"]] == pytest.approx([30.5, 5.0])
     assert [one["cost"]["static"] for one in result["points"]] == [50.0, 100.0]
     assert [one["front"] for one in result["points"]] == [False, True]
@@ -119,6 +126,6 @@ def test_a_record_with_predicted_costs_has_their_fronts() -> None:
 
 def test_the_programs_run(backend: Callable[[str], Backend]) -> None:
     backend("gl")
-    chains = device_costs.time_chains(device_costs.operator_chains(), measured_scene.load("cube"), (32, 32), 2)
+    chains = operator_times.time_chains(operator_times.operator_chains(), measured_scene.load("cube"), (32, 32), 2)
     assert chains.ns.shape == (8, 2) and np.isfinite(chains.ns).all() and chains.driver.renderer
     assert chains.labels[0] == "operations, 64 rounds" and chains.counts[1]["operations"] > 2000

@@ -24,7 +24,7 @@ from processes import HANG
 from sssgen.lab.chart import drawing
 from sssgen.lab.chart.drawing import figure
 from sssgen.lab.chart.drawing.panels import COLORS, Chart, charts_of, label_texts, medians, number, styles
-from sssgen.lab.chart.record import LEAST, checked, front, hypervolume, measures, to_csv, to_json
+from sssgen.lab.chart.record import LEAST, check_record, front, hypervolume, measures, to_csv, to_json
 from sssgen.run.installed import chromium
 from sssgen.support.diagnostics import SssgenError
 
@@ -122,10 +122,10 @@ def test_another_point_never_reduces_the_hypervolume(
 
 def test_checks() -> None:
     good = record()
-    assert checked(good) == good
+    assert check_record(good) == good
     odd = json.loads(json.dumps(good))
     odd["points"][0]["error"] |= {"bias": math.nan, "high": math.inf}
-    assert checked(odd)["points"][0]["error"]["bias"] is None is checked(odd)["points"][0]["error"]["high"]
+    assert check_record(odd)["points"][0]["error"]["bias"] is None is check_record(odd)["points"][0]["error"]["high"]
     assert math.isnan(odd["points"][0]["error"]["bias"])  # the record itself is unchanged
 
     wrong = json.loads(json.dumps(good))
@@ -135,7 +135,7 @@ def test_checks() -> None:
     wrong["points"][2] |= {"cost": {"value": "much"}, "error": {"value": -1.0}}
     wrong["hypervolume"][0]["ours"] = None
     with pytest.raises(SssgenError) as raised:
-        checked(wrong)
+        check_record(wrong)
     message = str(raised.value)
     for part in (
         "its format is 2",
@@ -150,7 +150,7 @@ def test_checks() -> None:
     ):
         assert part in message
     with pytest.raises(SssgenError, match="not a JSON object"):
-        checked([])
+        check_record([])
 
 
 def test_csv_has_every_number() -> None:
@@ -197,10 +197,10 @@ def gpu_record() -> dict[str, Any]:
 WHOLE = Path(__file__).parents[2] / "build" / "accuracy" / "chart.json"
 """The record that `make accuracy` measures."""
 CHARTS = {
-    "two roles": lambda: charts_of(checked(record(("thickness", "material")))),
-    "one scene": lambda: charts_of(checked(record(scenes=("slab",)))),
-    "long notes": lambda: charts_of(checked(gpu_record())),
-    "docs": lambda: charts_of(checked(json.loads(WHOLE.read_text(encoding="utf-8")))),
+    "two roles": lambda: charts_of(check_record(record(("thickness", "material")))),
+    "one scene": lambda: charts_of(check_record(record(scenes=("slab",)))),
+    "long notes": lambda: charts_of(check_record(gpu_record())),
+    "docs": lambda: charts_of(check_record(json.loads(WHOLE.read_text(encoding="utf-8")))),
 }
 
 
@@ -385,24 +385,24 @@ def test_without_points_or_matplotlib(tmp_path: Path, monkeypatch: pytest.Monkey
 
 def test_a_long_device_and_unit_are_shown() -> None:
     result = gpu_record()
-    (chart,) = charts_of(checked(result))
+    (chart,) = charts_of(check_record(result))
     assert chart.cost_unit == result["cost_unit"] and result["record"]["driver"] in chart.note
     assert "a software driver" in chart.note
 
 
 def test_charts_say_the_boundary_and_the_lights() -> None:
     result = record()
-    assert "boundary" not in charts_of(checked(result))[0].note
+    assert "boundary" not in charts_of(check_record(result))[0].note
     smooth, rough, clear = result["scenes"]
     smooth |= {"medium": {"name": "marble", "ior": 1.0, "roughness": 0.0}, "lights": ["from afar"]}
     rough |= {"medium": {"name": "jade", "ior": 1.4, "roughness": 0.3}, "lights": ["point", "even surroundings"]}
     texts = ["boundary matched; light from afar", "boundary index 1.4, roughness 0.3; light point, even surroundings"]
-    (chart,) = charts_of(checked(result))
+    (chart,) = charts_of(check_record(result))
     line, _, rest = chart.note.partition("\n")
     assert line == f"{smooth['name']}: {texts[0]} · {rough['name']}: {texts[1]}"
     assert "boundary" not in rest and clear["name"] not in line
     clear |= {"medium": smooth["medium"], "lights": smooth["lights"]}
-    (chart,) = charts_of(checked(result))
+    (chart,) = charts_of(check_record(result))
     assert chart.note.startswith(f"{smooth['name']}, {clear['name']}: {texts[0]} · ")
     rough["medium"]["roughness"] = 0.0
     page = str(drawing.chart_files(result)["chart.html"])

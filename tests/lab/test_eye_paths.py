@@ -113,7 +113,7 @@ def test_directions_obey_the_surface(roughness: float, outward: bool) -> None:
     direction = rng.normal(size=(4000, 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
     direction *= np.sign(np.einsum("nc,nc->n", direction, normal))[:, None] * (1.0 if outward else -1.0)
-    turn = Dielectric(1.4, roughness).turned(direction, normal, rng)
+    turn = Dielectric(1.4, roughness).reflect_or_refract(direction, normal, rng)
     assert np.linalg.norm(turn.direction, axis=1) == pytest.approx(1.0)
     valid = turn.weight > 0.0
     assert valid.all() and turn.weight.max() <= 1.0
@@ -130,7 +130,8 @@ def test_a_surface_with_little_roughness_is_nearly_smooth() -> None:
     direction = np.tile([0.6, 0.0, -0.8], (20_000, 1))
     normal = np.tile([0.0, 0.0, 1.0], (20_000, 1))
     smooth, rough = (
-        Dielectric(1.5, roughness).turned(direction, normal, np.random.default_rng(2)) for roughness in (0.0, 0.05)
+        Dielectric(1.5, roughness).reflect_or_refract(direction, normal, np.random.default_rng(2))
+        for roughness in (0.0, 0.05)
     )
     assert rough.crosses.mean() == pytest.approx(smooth.crosses.mean(), abs=0.005)
     for side in (True, False):
@@ -275,7 +276,7 @@ def test_a_rough_surface_conserves_energy(rough: float) -> None:
     # a deep slab without absorption: all light of a beam leaves on the lit side, at once or scattered. The eye's paths
     # and the light's rays meet the surface from opposite sides, so that this also tests reciprocity
     medium, normal = grey(1.0, 1.5, 1.0, 0.0, rough), np.tile([0.0, 0.0, 1.0], (100_000, 1))
-    first = Dielectric(1.5, rough).turned(-normal, normal, np.random.default_rng(5))
+    first = Dielectric(1.5, rough).reflect_or_refract(-normal, normal, np.random.default_rng(5))
     reflected = float((~first.crosses).mean())
     assert first.weight.min() == 1.0
     (front, error), (back, _) = fluxes(4.0, medium, 1600)
@@ -286,7 +287,7 @@ def test_a_rough_furnace_is_white() -> None:
     eye = on_top(np.array([0.95, 0.3]))
     result = readings(slab(2.0), grey(1.0, 1.5, 1.0, 0.0, 0.5), eye, [], even, Sampling(20_000))
     entered = [
-        Dielectric(1.5, 0.5).entered(np.repeat(way[None], 20_000, 0), np.repeat(up[None], 20_000, 0), rng).weight.mean()
+        Dielectric(1.5, 0.5).refract(np.repeat(way[None], 20_000, 0), np.repeat(up[None], 20_000, 0), rng).weight.mean()
         for way, up, rng in zip(eye.direction, eye.normal, map(np.random.default_rng, (6, 7)), strict=True)
     ]
     assert result.mean[0, :, 0] == pytest.approx(entered, abs=0.01)

@@ -116,7 +116,7 @@ def test_scale_and_matte_are_least_squares(training: tuple[View, ...], tmp_path:
     built = chain(candidate("exact_thickness", "absorption_tint"), view, tmp_path)
     fit_problem = measure.problem_of("material", view, summed=False)
     assert fit_problem is not None
-    fit_problem = fit_problem.thinned(300)  # fewer lanes than the limit of a fit
+    fit_problem = fit_problem.thin_out(300)  # fewer lanes than the limit of a fit
     result = fit.fit([built], [fit_problem])
     values = fit_problem.values(built, fit.chain_values(result.parameters))
 

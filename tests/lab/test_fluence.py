@@ -14,7 +14,7 @@ from sssgen.lab.fluence import octahedron
 from sssgen.lab.fluence.factors import factors
 from sssgen.lab.fluence.fluence_field import Settings
 from sssgen.lab.fluence.photons import scatter
-from sssgen.lab.fluence.projection import Projection, covered, hats_at
+from sssgen.lab.fluence.projection import Projection, hats_at, inside_shares
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.lab.reference.inside_lengths import thickness
 from sssgen.scene.camera import Camera
@@ -71,7 +71,7 @@ def test_the_collisions_of_a_thin_body_are_those_of_single_scattering() -> None:
     expected = volume * scattered.mean() / 4.0
     grid = traced.grid
     size = float(((grid.high - grid.low) / np.array(grid.shape)).mean()) / field.PARTS
-    projection = Projection(grid, covered(np.linalg.norm(grid.centres(field.PARTS), axis=2) - radius, size))
+    projection = Projection(grid, inside_shares(np.linalg.norm(grid.centres(field.PARTS), axis=2) - radius, size))
     hats = projection.integrals(np.ones((1, len(projection.points(grid)))))[0, projection.counting]
     close(hats.sum() * grid.volume, volume, rtol=0.01)
     # bodies this thin scatter a third time, too: a tenth of the second
@@ -132,7 +132,9 @@ def test_walks_for_all_directions_estimate_what_photons_of_each_do(albedo: float
     """Two ways of tracing, in a body with a hole: each voxel within the noise of both, and no difference in the sum."""
     scene = body(Torus(0.4, 0.15), 6.0, albedo)
     towards = unit(np.array([[1.0, 0.2, 0.1], [0.1, -0.3, 1.0]]))
-    walks = np.stack([field.walked(scene, part, tuple(map(tuple, towards)), 10, 20_000, 3)[0] for part in range(4)])
+    walks = np.stack(
+        [field.trace_walks(scene, part, tuple(map(tuple, towards)), 10, 20_000, 3)[0] for part in range(4)]
+    )
     tracer, medium = field.tracer(scene, 10), field.medium_of(scene, 0)
     photons = np.stack([tracer.trace(medium, towards, 40_000, np.random.default_rng(part)) for part in range(4)])
     difference = walks.mean(axis=0) - photons.mean(axis=0)
@@ -175,7 +177,7 @@ def test_a_texel_is_chosen_as_often_as_it_counts_in_the_interpolation() -> None:
 
 def test_the_volume_of_a_fixed_light_has_the_distance() -> None:
     traced = field.of_light(body(Ball(0.5)), np.array([0.0, 0.0, 1.0]), FEW._replace(photons=20), processes=0)
-    stored = volumes.fixed(traced)
+    stored = volumes.light_volume(traced)
     exact = np.linalg.norm(traced.grid.centres()[:, 0], axis=1) - 0.5
     read = (2.0 * stored.texels[..., 3].ravel() / 255.0 - 1.0) * stored.reach
     close(read, np.clip(exact, -stored.reach, stored.reach), atol=stored.reach / 255.0 + 1e-9)
@@ -183,7 +185,7 @@ def test_the_volume_of_a_fixed_light_has_the_distance() -> None:
 
 def test_the_maps_of_a_table_share_texels() -> None:
     maps = rng(2).uniform(0.0, 1.0, (9, 2, 2, 3))
-    tiles = volumes.packed(maps)
+    tiles = volumes.pack_maps(maps)
     assert tiles.shape == (volumes.tiles_of(8), 2, 2, 4) == (7, 2, 2, 4)
     close(tiles[..., :3], maps[:7])
     close(np.moveaxis(tiles[:6, ..., 3].reshape(2, 3, 2, 2), 1, 3), maps[7:])
@@ -194,7 +196,7 @@ def test_the_same_seed_gives_the_same_bytes() -> None:
     light = np.array([0.6, 0.0, 0.8])
     scene = body(Ball(0.5))
     first, second, other = (
-        volumes.fixed(field.of_light(scene, light, FEW._replace(seed=seed, photons=20), processes=0))
+        volumes.light_volume(field.of_light(scene, light, FEW._replace(seed=seed, photons=20), processes=0))
         for seed in (5, 5, 6)
     )
     assert first.texels.tobytes() == second.texels.tobytes() != other.texels.tobytes()
@@ -218,7 +220,7 @@ def test_the_table_continues_across_the_edges_of_the_map() -> None:
     side = 16
     directions = octahedron.directions(side)
     values = 2.0 + directions @ np.array([0.5, -0.7, 0.3])
-    tile = volumes.bordered(values.reshape(side, side, 1))
+    tile = volumes.add_border(values.reshape(side, side, 1))
     tests = units(500, 9)
     place = technique("common/octahedron.sss:octahedral_place")(v=tests)
     texels = place * side + 1.0 - 0.5

@@ -6,7 +6,7 @@ import pytest
 
 from measured_views import small
 from sssgen.lab.measure import candidates
-from sssgen.lab.measure.fitting import Fitted
+from sssgen.lab.measure.fitting import FitResult
 from sssgen.lab.measure.measurement import View, measure_candidate
 
 pytest.importorskip("scipy", reason="scipy is missing: pip install -e '.[chart]'")
@@ -21,6 +21,6 @@ def test_layers_see_the_gap_of_a_concave_body(name: str) -> None:
     errors = {}
     for path in ("depth_map_path", "depth_layers_path"):
         option = next(option for option in candidates.thickness() if option.name == path)
-        unfitted = Fitted({}, (1.0,) * 3, (0.0,) * 3, 0.0)
+        unfitted = FitResult({}, (1.0,) * 3, (0.0,) * 3, 0.0)
         errors[path] = measure_candidate(option, unfitted, [View("own", small(name))])["error"]["value"]
     assert errors["depth_layers_path"] < 0.7 * errors["depth_map_path"], errors

@@ -28,7 +28,7 @@ from sssgen.lab.measure import (
 from sssgen.lab.measure import (
     scene_references as references,
 )
-from sssgen.lab.measure.fitting import Fitted
+from sssgen.lab.measure.fitting import FitResult
 from sssgen.lab.measure.measured_chain import Chain, material_of
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.measure.problem import Problem
@@ -151,7 +151,9 @@ def test_each_point_reads_its_own_texel() -> None:
 def thickness_error(scene: MeasuredScene, *names: str, **settings: int) -> float:
     """The error of a thickness technique on a scene, without a fit."""
     requests = candidate(*names, "shown_thickness", role="thickness", settings=tuple(settings.items()))
-    point = measure.measure_candidate(requests, Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0), [View("own", scene)])
+    point = measure.measure_candidate(
+        requests, FitResult({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0), [View("own", scene)]
+    )
     return float(point["error"]["value"])
 
 
@@ -194,7 +196,7 @@ def test_lights_in_one_call_equal_separate_calls(
         alone.append(built.run(part.inputs, [part.light])[0])
     assert together == pytest.approx(np.concatenate(alone, axis=1)[:, fit_problem.keep] * fit_problem.gain)
     # the thinned problem has the values of some of the lanes
-    thinned = fit_problem.thinned(10)
+    thinned = fit_problem.thin_out(10)
     assert thinned.target.shape == (3, 10)
     chosen = [int(np.flatnonzero((fit_problem.target == lane[:, None]).all(axis=0))[0]) for lane in thinned.target.T]
     assert thinned.values(built, values) == pytest.approx(together[:, chosen])
@@ -245,7 +247,7 @@ def test_a_chain_with_nan_has_failed(cube: View, monkeypatch: pytest.MonkeyPatch
         return result
 
     monkeypatch.setattr(Problem, "values", broken)
-    point = measure.measure_candidate(chosen, Fitted({}, (1.0,) * 3, (0.0,) * 3, 0.0), [cube])
+    point = measure.measure_candidate(chosen, FitResult({}, (1.0,) * 3, (0.0,) * 3, 0.0), [cube])
     assert point["failed"] == f"4 of {points(cube.scene).count} points are not finite"
 
 
@@ -276,7 +278,7 @@ def test_the_published_seed_3_is_ambient_light_times_transmittance(
 def test_seed_0_mistakes_a_cube_and_a_march_to_the_light_does_not() -> None:
     # both are fitted only to the training scenes
     cube = small("cube")
-    fitted_to = [View(scene.name, replace(scene, size=SIZE)) for scene in references.training(cube)]
+    fitted_to = [View(scene.name, replace(scene, size=SIZE)) for scene in references.training_scenes(cube)]
     error: dict[str, float] = {}
     for option in candidates.thickness():
         if option.name == "cheap_sss_thinness" or option.label == "march_light, 16 steps":
@@ -340,7 +342,7 @@ def test_light_transport_ranks_the_techniques() -> None:
             scene.name, scene, tuple(references.transport(scene, n, 64, 0) for n in range(len(scene.lights))), "64 0"
         )
 
-    fitted_to, own = [view(scene) for scene in references.training(cube)], [view(cube)]
+    fitted_to, own = [view(scene) for scene in references.training_scenes(cube)], [view(cube)]
     listed = [candidate for candidate in candidates.materials([]) if candidate.name in ("none", "Unity ice")]
     listed.append(candidate("exact_thickness", "absorption_tint"))
     error = {
@@ -381,7 +383,7 @@ def test_scenes_without_visible_light_are_refused() -> None:
     with pytest.raises(SssgenError, match="no light passes through the bodies for fitting"):
         measure.fit_candidate(through, [dark])
     with pytest.raises(SssgenError, match="no light passes through the body of 'cube'"):
-        measure.measure_candidate(through, Fitted({}, (1.0,) * 3, (0.0,) * 3, 0.0), [dark])
+        measure.measure_candidate(through, FitResult({}, (1.0,) * 3, (0.0,) * 3, 0.0), [dark])
 
 
 def test_fitting_in_two_steps_equals_fitting_the_chain(training: tuple[View, ...]) -> None:
@@ -393,7 +395,7 @@ def test_fitting_in_two_steps_equals_fitting_the_chain(training: tuple[View, ...
     for view in training[:2]:
         fit_problem = measure.problem_of("material", view, summed=False)
         assert fit_problem is not None
-        fit_problem = fit_problem.thinned(fit.LANES)
+        fit_problem = fit_problem.thin_out(fit.LANES)
         with tempfile.TemporaryDirectory() as folder:
             values = fit_problem.values(chain(whole, view, Path(folder)), fit.chain_values(result.parameters))
         apart = result.apply(values, fit_problem) - fit_problem.target
@@ -428,7 +430,7 @@ def test_references_with_a_surface_are_traced_for_all_lights_at_once(monkeypatch
     refracting = replace(scene, medium=replace(scene.medium, ior=1.4))
     lamp = replace(scene, lights=(Light((0.5, 1.5, -2.0), None, (1.0, 1.0, 1.0)),))
     assert [len(references.items([case])) for case in (scene, refracting, lamp)] == [2, 1, 1]
-    results = [references.traced(case, 16, 0) for case in (refracting, lamp)]
+    results = [references.trace(case, 16, 0) for case in (refracting, lamp)]
     by_scene = references.by_scene([refracting, lamp], results)
     assert [len(by_scene[case.key]) for case in (refracting, lamp)] == [2, 1]
     for mean, error in (*results[0], *results[1]):
@@ -449,7 +451,7 @@ def test_a_point_light_has_its_direction_and_fall_off_at_each_point() -> None:
     facing = np.maximum(np.einsum("cn,cn->n", visible.inputs["N"], way / distance), 0.0)
     assert whole.lambert / whole.gain == pytest.approx(part.color * facing)  # the cube has no shadow on itself
     # its depth map and the exact length agree away from edges
-    depths = whole.thinned(10).parts
+    depths = whole.thin_out(10).parts
     assert depths and np.isfinite(part.values["exact_length"]).all()
     matrix = part.values["light_matrix"][..., 0].T
     projected = matrix @ np.vstack([visible.inputs["P"], np.ones(count)])

@@ -16,13 +16,13 @@ import pytest
 
 from processes import HANG
 from sssgen.cli.main import main
+from sssgen.jobs import executor
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.engine_conditions import Conditions, by_bytes, under
-from sssgen.lab.chart.picking import Pick, allowed, chosen, cost_of, limit_of, pick
+from sssgen.lab.chart.picking import Pick, choose, cost_of, is_allowed, limit_of, pick
 from sssgen.lab.chart.record import hypervolumes, on_fronts
 from sssgen.lab.gpu import device_costs
-from sssgen.lab.jobs import executor
 from sssgen.lab.measure import candidates
 from sssgen.scene.measured import measured_scene
 from sssgen.support.diagnostics import SssgenError
@@ -87,7 +87,7 @@ def test_the_next_cheaper_and_better_chains() -> None:
 
 
 def test_published_forms_and_failed_points_are_never_picked() -> None:
-    assert [point for point in RECORD["points"] if not allowed(point)] == [PUBLISHED, BROKEN]
+    assert [point for point in RECORD["points"] if not is_allowed(point)] == [PUBLISHED, BROKEN]
     for limit in (0.001, 0.02, 0.3, 0.7, 2.0):
         for result in (picked(limit), picked(None, 100.0 * limit)):
             assert PUBLISHED not in result and BROKEN not in result and ELSEWHERE not in result
@@ -102,10 +102,10 @@ def test_published_forms_and_failed_points_are_never_picked() -> None:
 
 
 def test_ties_are_broken_by_cost_then_error() -> None:
-    assert chosen([MAP, {**MAP, "cost": {"value": 40.0}}], 0.5, None)[0]["cost"]["value"] == 40.0  # type: ignore[index]
+    assert choose([MAP, {**MAP, "cost": {"value": 40.0}}], 0.5, None)[0]["cost"]["value"] == 40.0  # type: ignore[index]
     twin = point(MAP["chain"], 60.0, 0.25)
-    assert chosen([MAP, twin], 0.5, None)[0] is twin
-    assert chosen([], 0.5, None) == (None, True)
+    assert choose([MAP, twin], 0.5, None)[0] is twin
+    assert choose([], 0.5, None) == (None, True)
 
 
 def reasons(result: Pick) -> dict[str, tuple[str, str]]:
@@ -284,7 +284,7 @@ def test_a_pick_for_a_device_has_its_costs(stored_chart: str, capsys: pytest.Cap
     assert run("--max-error", "0.01", "--device", "llvmpipe", *options, "--json") == 0
     picked = json.loads(capsys.readouterr().out)["coordinates"]
     assert picked["label"] == static["label"] and picked["cost"]["static"] == static["cost"]["value"]
-    assert picked["cost"]["value"] == device_costs.load("llvmpipe").predicted(static["cost"])
+    assert picked["cost"]["value"] == device_costs.load("llvmpipe").predict(static["cost"])
     assert run("--max-cost", "5", "--device", "llvmpipe") == 0
     costs = re.findall(r"cost [\d.e-]+ ?(.*)", capsys.readouterr().out)
     assert len(costs) > 1 and set(costs) == {"ns"}

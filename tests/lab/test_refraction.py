@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sssgen.lab.reference.inlay_refraction import plane_offset, refracted, visible_inlay
+from sssgen.lab.reference.inlay_refraction import plane_offset, refract, visible_inlay
 from sssgen.scene.camera import Camera
 from sssgen.scene.geometry import Ball, Box, Geometry, Slab
 from sssgen.scene.measured.measured_scene import Inlay, MeasuredScene
@@ -37,7 +37,7 @@ def test_refracted_rays_keep_snells_law(n: float) -> None:
     generator = np.random.default_rng(5)
     V, N = (vectors / np.linalg.norm(vectors, axis=0) for vectors in generator.normal(size=(2, 3, 200)))
     N = N * np.sign((N * V).sum(axis=0))
-    inside = refracted(V, N, 1.0 / n)
+    inside = refract(V, N, 1.0 / n)
     assert np.linalg.norm(inside, axis=0) == pytest.approx(np.ones(200))
     assert ((inside * N).sum(axis=0) < 0.0).all()
     # n sin θ' = sin θ with its direction: the tangential component is unchanged
@@ -47,7 +47,7 @@ def test_refracted_rays_keep_snells_law(n: float) -> None:
 def test_past_the_critical_angle_no_ray_is_refracted() -> None:
     angle = np.radians([40.0, 41.7, 41.9, 80.0])  # asin(1 / 1.5) = 41.81°
     V = np.stack([np.sin(angle), np.zeros(4), np.cos(angle)])
-    length = np.linalg.norm(refracted(V, np.tile([[0.0], [0.0], [1.0]], 4), 1.5), axis=0)
+    length = np.linalg.norm(refract(V, np.tile([[0.0], [0.0], [1.0]], 4), 1.5), axis=0)
     assert length == pytest.approx([1.0, 1.0, 0.0, 0.0])
 
 

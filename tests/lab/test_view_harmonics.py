@@ -12,13 +12,13 @@ from measured_views import small
 from oracle import Array, close, rng, unit, units
 from sssgen.lab.measure import candidates, scene_inputs
 from sssgen.lab.measure import measurement as measure
-from sssgen.lab.measure.fitting import Fitted
+from sssgen.lab.measure.fitting import FitResult
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.reference import view_harmonics
 from sssgen.scene.geometry import Ball, Box, Capsule, Slab
 from sssgen.scene.measured.media import Medium
 
-UNFITTED = Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0)
+UNFITTED = FitResult({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), 0.0)
 
 
 def test_directions_are_inward_with_the_density_of_their_cosine() -> None:
@@ -37,7 +37,7 @@ def test_a_function_of_the_harmonics_is_fitted_exactly() -> None:
     directions = view_harmonics.inward(units(20, 5), 32)
     values = np.einsum("nki,ni->nk", view_harmonics.harmonics(directions), exact)
     some = rng(6).random(values.shape) < 0.8
-    close(view_harmonics.fitted(np.where(some, values, 99.0), directions, some), exact, atol=1e-6)
+    close(view_harmonics.fit_coefficients(np.where(some, values, 99.0), directions, some), exact, atol=1e-6)
 
 
 def test_the_harmonics_are_orthogonal_over_the_sphere() -> None:

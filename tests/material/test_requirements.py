@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from sssgen.material.material_loading import load_material
-from sssgen.material.requirements import described
+from sssgen.material.requirements import describe
 from sssgen.pipeline.compiler import compile
 
 REQUIRED = {
@@ -19,7 +19,7 @@ REQUIRED = {
 
 @pytest.mark.parametrize("name", REQUIRED)
 def test_the_requirements_of_examples(name: str) -> None:
-    assert described(load_material(name).stages) == REQUIRED[name]
+    assert describe(load_material(name).stages) == REQUIRED[name]
 
 
 def head(name: str) -> str:

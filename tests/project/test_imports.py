@@ -50,7 +50,7 @@ LAZY_IMPORTS = {
     "sssgen.testing.project_run": EXTRA,
     "sssgen.testing.pytest_plugin": "pytest imports it in every test run, of other projects, too",
     "sssgen.lab.chart.drawing": EXTRA,
-    "sssgen.lab.jobs.executor": EXTRA,
+    "sssgen.jobs.executor": EXTRA,
     "sssgen.support.value_bytes": EXTRA,
     "sssgen.lang.loader": EMIT,
     "sssgen.lang.syntax.grammar_tables": "only building the tables needs lark",

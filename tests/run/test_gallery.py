@@ -17,6 +17,8 @@ from PIL import Image
 
 from example_cases import ALIKE, example_cases, marks
 from folders import ROOT
+from sssgen.jobs.executor import Item, run
+from sssgen.jobs.result_store import Store
 from sssgen.material.material_loading import examples
 from sssgen.run import backends
 from sssgen.run.backends import Backend
@@ -25,6 +27,7 @@ from sssgen.scene import body_identity
 from sssgen.scene.measured import measured_scene
 from sssgen.scene.pictures import images
 from sssgen.scene.scene_loading import load
+from sssgen.support.value_bytes import encode
 
 SMALL = (64, 48)
 LOOP = "light_around.webp"
@@ -189,3 +192,11 @@ def test_the_comparison_with_path_tracing_is_current(name: str, backend: Callabl
                 assert abs(panel.mean() - expected.mean()) < 0.02
             else:
                 assert np.abs(panel - expected).mean() < 1.0 / 255.0
+
+
+def test_processes_give_the_same_differences_of_back_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(ROOT / "docs")
+    jobs = [Item("gallery_items:compare_backends", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
+    [[single, same]] = results = run(jobs, processes=0, store=Store(""))
+    assert 0.0 < single.worst < 1.0 and single.differing == 0 and same == (0.0, 0)
+    assert encode(run(jobs, processes=1, store=Store(""))) == encode(results)

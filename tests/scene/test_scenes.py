@@ -266,9 +266,11 @@ def test_placed_corners_hold_the_body() -> None:
 
 def test_training_sizes_are_powers_of_two() -> None:
     scene = replace(measured('[medium]\npreset = "cream"\n' + BALL + LIT))
-    sizes = [references.training(replace(scene, geometry=Ball(radius)))[0].geometry for radius in (0.9, 1.0, 1.1, 2.0)]
+    sizes = [
+        references.training_scenes(replace(scene, geometry=Ball(radius)))[0].geometry for radius in (0.9, 1.0, 1.1, 2.0)
+    ]
     assert sizes == [Ball(1.0), Ball(1.0), Ball(1.0), Ball(2.0)]
-    training_scenes = references.training(scene)
+    training_scenes = references.training_scenes(scene)
     assert [training_scene.name for training_scene in training_scenes] == ["ball", "bar", "ball", "bar", "slab"]
     for training_scene in training_scenes:
         assert training_scene.medium == scene.medium

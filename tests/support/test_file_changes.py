@@ -12,7 +12,7 @@ import pytest
 
 from sssgen.support import file_changes
 from sssgen.support.file_changes import FolderMessages, changes
-from sssgen.support.file_memo import CLOCK_STEP, CachedResult, FileState, noted_files, remembered
+from sssgen.support.file_memo import CLOCK_STEP, CachedResult, FileState, noted_files, remember
 from sssgen.support.text_files import read_text
 
 
@@ -215,7 +215,7 @@ def test_a_result_in_memory_is_of_the_newest_text(tmp_path: Path) -> None:
             os.utime(path, ns=(saved, saved))
         return text
 
-    results = [remembered(memory, "a", read) for _ in range(4)]
+    results = [remember(memory, "a", read) for _ in range(4)]
     assert results == ["one", "two", "six", "six"]
 
 

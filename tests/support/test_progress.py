@@ -61,7 +61,7 @@ def test_the_bar_comes_by_itself_and_is_erased_for_output(monkeypatch: pytest.Mo
         deadline = time.monotonic() + 10.0
         while bar.bar is None and time.monotonic() < deadline:
             bar.ended.wait(0.01)
-        with bar.erased():
+        with bar.hide():
             print("ok slow cube")
     shown = terminal.getvalue()
     assert "1/2" in shown and "slow cube" in shown

@@ -39,7 +39,7 @@ def traced() -> field.Field:
 def test_the_techniques_read_what_the_bake_writes(name: str, traced: field.Field) -> None:
     pytest.importorskip("scipy", reason="SciPy is missing: pip install -e '.[chart]'")
     rank = int(name[-1])
-    stored = volumes.factored(traced, rank)
+    stored = volumes.factor_field(traced, rank)
     names = {f"fluence_table_{rank}": Texture(stored.table, wrap="clamp")}
     for number in range(rank // 4):
         latents = stored.latents[..., 4 * number : 4 * number + 4] / 255.0

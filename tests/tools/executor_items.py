@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.lab.jobs.executor import run
-from sssgen.lab.jobs.result_store import Store
-from sssgen.lab.jobs.work_items import Item
+from sssgen.jobs.executor import run
+from sssgen.jobs.result_store import Store
+from sssgen.jobs.work_items import Item
 from sssgen.support.diagnostics import failure
 
 

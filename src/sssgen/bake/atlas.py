@@ -76,7 +76,7 @@ def atlas(mesh: Triangles, uv: Array, size: tuple[int, int], path: str) -> Atlas
     return Atlas(texels, places, mesh.flat[face], max(0.0, 1.0 - len(texels) / covered))
 
 
-def filled(values: Array, texels: Indices, size: tuple[int, int]) -> Array:
+def fill_map(values: Array, texels: Indices, size: tuple[int, int]) -> Array:
     """The map (height, width, …) of values (n, …) at texels (n,); every other texel has the value of the nearest of
     them, so that filters and mipmaps do not mix the surface with the background.
     """

@@ -42,7 +42,7 @@ class BakeLight(NamedTuple):
         return {"direction" if self.afar else "position": [float(value) for value in self.place]}
 
 
-def read(text: str) -> BakeLight:
+def read_light(text: str) -> BakeLight:
     """The light of a .json file, or of `X,Y,Z`, its direction. Raises SssgenError."""
     if not text.lower().endswith(".json"):
         try:

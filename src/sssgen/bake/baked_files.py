@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.bake.volume_files import FORMATS, encoded, layout
+from sssgen.bake.volume_files import FORMATS, encode_volume, layout
 from sssgen.material import baked
 from sssgen.scene.pictures import images
 from sssgen.support.diagnostics import did_you_mean, failure
@@ -45,7 +45,9 @@ def volume_format(path: str, format: str | None) -> str:
 def write_volume(path: str, texels: npt.NDArray[Any], format: str, facts: Mapping[str, Any]) -> list[str]:
     """Writes a volume and its JSON; returns the paths."""
     return _write(
-        path, encoded(texels, format), {**facts, "file": {"name": os.path.basename(path), **layout(texels, format)}}
+        path,
+        encode_volume(texels, format),
+        {**facts, "file": {"name": os.path.basename(path), **layout(texels, format)}},
     )
 
 

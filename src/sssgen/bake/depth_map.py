@@ -10,7 +10,7 @@ from sssgen.bake import memory_check as memory
 from sssgen.bake.bake_light import BakeLight
 from sssgen.bake.voxel_distance import BLOCK
 from sssgen.bake.voxel_grid import Array
-from sssgen.lab.jobs.executor import Progress
+from sssgen.jobs.executor import Progress
 from sssgen.scene.mesh import Mesh
 from sssgen.targets.texture_import import import_settings
 

@@ -12,7 +12,7 @@ from sssgen.bake import memory_check as memory
 from sssgen.bake.distance_encoding import ENCODINGS, encode, error_at_texels
 from sssgen.bake.voxel_distance import BLOCK, distances, inside
 from sssgen.bake.voxel_grid import Array, Grid, around
-from sssgen.lab.jobs.executor import Progress
+from sssgen.jobs.executor import Progress
 from sssgen.scene.mesh import Mesh
 from sssgen.scene.mesh_distance import mixed_sides
 from sssgen.support.diagnostics import did_you_mean, failure

@@ -14,11 +14,11 @@ import numpy.typing as npt
 
 from sssgen.bake import memory_check as memory
 from sssgen.bake.bake_light import BakeLight
+from sssgen.jobs.executor import Progress
 from sssgen.lab.fluence import fluence_field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence.fluence_field import Field, Settings
 from sssgen.lab.fluence.voxels import Grid
-from sssgen.lab.jobs.executor import Progress
 from sssgen.lab.reference import geometry_mesh
 from sssgen.scene import body_identity
 from sssgen.scene.camera import Camera
@@ -51,7 +51,7 @@ class Part(NamedTuple):
     """Its name in the technique"""
 
 
-class Baked(NamedTuple):
+class FluenceBake(NamedTuple):
     """The textures of a bake, and their facts for the JSON files."""
 
     parts: list[Part]
@@ -79,7 +79,7 @@ def body(path: str, medium: str, unit_mm: float) -> MeasuredScene:
 def bake(
     scene: MeasuredScene, rank: int, light: BakeLight | None, settings: Settings, scheduler: str = "",
     processes: int | None = None, progress: Progress = lambda *_: None,
-) -> Baked:  # fmt: skip
+) -> FluenceBake:  # fmt: skip
     """The fluence as `rank` numbers a voxel for lights from afar, or for one `light`. Raises SssgenError."""
     if scene.medium is None:
         raise failure(f"'{scene.name}' has no medium", "add [medium] to the scene")
@@ -106,20 +106,20 @@ def bake(
     refracted = "_refracted" if scene.medium.ior != 1.0 else ""
     if light is None:
         traced = fluence_field.field(scene, settings, scheduler, processes, progress)
-        return Baked(
-            _factored(traced, rank),
+        return FluenceBake(
+            _factor(traced, rank),
             _facts(scene, settings, traced) | {"rank": rank, "technique": f"fluence_factored_{rank}{refracted}"},
         )
     traced = fluence_field.of_light(scene, light.place, settings, scheduler, processes, progress)
-    stored = volumes.fixed(traced)
+    stored = volumes.light_volume(traced)
     facts = _facts(scene, settings, traced) | {"light": light.facts(), "technique": f"fluence_fixed{refracted}"}
     facts["parameters"]["fluence_scale"] = [float(value) for value in stored.scale]
     facts["parameters"]["fluence_reach"] = stored.reach * scene.geometry.scale
-    return Baked([Part("", stored.texels, "fluence_volume")], facts)
+    return FluenceBake([Part("", stored.texels, "fluence_volume")], facts)
 
 
-def _factored(traced: Field, rank: int) -> list[Part]:
-    stored = volumes.factored(traced, rank)
+def _factor(traced: Field, rank: int) -> list[Part]:
+    stored = volumes.factor_field(traced, rank)
     latents = [
         Part(
             f"_latents_{number + 1}", np.ascontiguousarray(stored.latents[..., 4 * number : 4 * number + 4]),

@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from sssgen.bake.atlas import Indices
 from sssgen.bake.voxel_grid import Array
-from sssgen.lab.jobs.executor import Failure, Item, Progress, run
-from sssgen.lab.jobs.result_store import Store
+from sssgen.jobs.executor import Failure, Item, Progress, run
+from sssgen.jobs.result_store import Store
 from sssgen.scene.mesh import Triangles
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
@@ -20,7 +20,7 @@ PADDING = 4
 RESOLUTION = 1024
 
 
-def unwrapped(mesh: Triangles, progress: Progress = lambda *_: None) -> Array:
+def unwrap_mesh(mesh: Triangles, progress: Progress = lambda *_: None) -> Array:
     """New texture coordinates, (f, 3, 2), in 0..1, without overlaps.
 
     xatlas crashes on some valid meshes, so it runs in its own process. If it fails on the mesh, the mesh is split

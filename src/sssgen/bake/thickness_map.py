@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.bake import memory_check as memory
-from sssgen.bake.atlas import SHARED, Atlas, atlas, filled
+from sssgen.bake.atlas import SHARED, Atlas, atlas, fill_map
 from sssgen.bake.bake_light import BakeLight
-from sssgen.bake.texture_unwrap import obj, unwrapped
+from sssgen.bake.texture_unwrap import obj, unwrap_mesh
 from sssgen.bake.voxel_grid import Array
-from sssgen.lab.jobs.executor import Item, Progress, failures, run
-from sssgen.lab.jobs.result_store import Store
+from sssgen.jobs.executor import Item, Progress, failures, run
+from sssgen.jobs.result_store import Store
 from sssgen.scene.mesh import Mesh
 from sssgen.scene.mesh_distance import MIXED, mixed_sides
 from sssgen.support import cache
@@ -69,13 +69,13 @@ def thickness_map(
     body = Mesh(path=path)
     mesh = body.triangles
     new_uv = unwrap or mesh.uv is None
-    uv = unwrapped(mesh, progress) if new_uv or mesh.uv is None else mesh.uv
+    uv = unwrap_mesh(mesh, progress) if new_uv or mesh.uv is None else mesh.uv
     surface = atlas(mesh, uv, size, path)
     if body.inside_out:
         surface = surface._replace(flat=-surface.flat)
     chords = [
         np.concatenate(parts)
-        for parts in zip(*_measured(path, surface, request, processes, scheduler, progress), strict=True)
+        for parts in zip(*_measure_chords(path, surface, request, processes, scheduler, progress), strict=True)
     ]
     value, error, lost = chords
     if lost.min(initial=0.0) >= 1.0 or not value.any():
@@ -101,7 +101,7 @@ def thickness_map(
         "parameters": {} if is_transmittance else {"thickness_factor": largest},
         "import": import_settings(),
     }  # fmt: skip
-    return Map(filled(value / largest, surface.texels, size), facts, obj(mesh, uv) if new_uv else "")
+    return Map(fill_map(value / largest, surface.texels, size), facts, obj(mesh, uv) if new_uv else "")
 
 
 def warnings(facts: dict[str, Any]) -> list[str]:
@@ -136,7 +136,7 @@ def _check(request: Request) -> None:
         raise failure(f"{request.seed} is not a seed", "from 0 to 4294967295")
 
 
-def _measured(
+def _measure_chords(
     path: str, surface: Atlas, request: Request, processes: int | None, scheduler: str, progress: Progress
 ) -> list[Any]:
     """The chords of each block of texels, in order."""

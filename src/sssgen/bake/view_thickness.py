@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.bake import memory_check as memory
-from sssgen.bake.atlas import atlas, filled
-from sssgen.bake.texture_unwrap import obj, unwrapped
+from sssgen.bake.atlas import atlas, fill_map
+from sssgen.bake.texture_unwrap import obj, unwrap_mesh
 from sssgen.bake.voxel_grid import Array
-from sssgen.lab.jobs.executor import Item, Progress, failures, run
-from sssgen.lab.jobs.result_store import Store
+from sssgen.jobs.executor import Item, Progress, failures, run
+from sssgen.jobs.result_store import Store
 from sssgen.lab.reference import view_harmonics
 from sssgen.scene import body_identity
 from sssgen.scene.measured import measured_scene, media
@@ -94,11 +94,11 @@ def bake(
     body = Mesh(path=body.path)
     mesh = body.triangles
     new_uv = unwrap or mesh.uv is None
-    uv = unwrapped(mesh, progress) if new_uv or mesh.uv is None else mesh.uv
+    uv = unwrap_mesh(mesh, progress) if new_uv or mesh.uv is None else mesh.uv
     surface = atlas(mesh, uv, size, body.path)
     normals = -surface.flat if body.inside_out else surface.flat
     length = view_harmonics.fade_length(body, mean_free_path)
-    fit = _fitted(body.path, surface.places, normals, length, rays, processes, scheduler, progress)
+    fit = _fit(body.path, surface.places, normals, length, rays, processes, scheduler, progress)
     if fit.lost.mean() > NO_INSIDE:
         raise failure("no ray enters the mesh: it has no inside", "a flat sheet has no thickness", posix(body.path))
     lowest, highest = fit.coefficients.min(axis=0), fit.coefficients.max(axis=0)
@@ -130,7 +130,7 @@ def bake(
         "parameters": parameters,
         "import": import_settings(),
     }  # fmt: skip
-    stored = filled((fit.coefficients - lowest) / span, surface.texels, size)
+    stored = fill_map((fit.coefficients - lowest) / span, surface.texels, size)
     return Map([stored[..., 3 * number : 3 * number + 3] for number in range(IMAGES)], facts, text)
 
 
@@ -142,7 +142,7 @@ def _rounding(span: Array, normals: Array) -> float:
     return float(np.sqrt((squares * steps**2).sum() / 12.0))
 
 
-def _fitted(
+def _fit(
     path: str, places: Array, normals: Array, fade_length: float, rays: int, processes: int | None, scheduler: str,
     progress: Progress,
 ) -> view_harmonics.Fit:  # fmt: skip

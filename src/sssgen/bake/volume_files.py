@@ -19,7 +19,7 @@ FORMATS = {"npy": ".npy", "dds": ".dds", "ktx2": ".ktx2", "exr-slices": ".exr", 
 """Format → file name suffix."""
 
 
-def encoded(texels: npt.NDArray[Any], format: str) -> bytes:
+def encode_volume(texels: npt.NDArray[Any], format: str) -> bytes:
     """The file of a volume; texels are little-endian.
 
     `texels` is (depth, height, width) = z, y, x ascending, with a fourth axis for four channels; uint8 and uint16 are
@@ -47,9 +47,9 @@ def encoded(texels: npt.NDArray[Any], format: str) -> bytes:
 
 
 def layout(texels: npt.NDArray[Any], format: str) -> dict[str, Any]:
-    """The description of a file of `encoded` for its readers, as values for JSON.
+    """The description of a file of `encode_volume` for its readers, as values for JSON.
 
-    `size` is in texels; `one` is the stored number for 1.0. Raises SssgenError as `encoded` does.
+    `size` is in texels; `one` is the stored number for 1.0. Raises SssgenError as `encode_volume` does.
     """
     encoding = _encoding(texels, format)
     depth, height, width = texels.shape[:3]

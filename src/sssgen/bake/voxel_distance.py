@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.bake.voxel_grid import Array, Grid
-from sssgen.lab.jobs.executor import Progress
+from sssgen.jobs.executor import Progress
 from sssgen.scene.mesh_distance import INSIDE, MeshDistance
 
 Distances: TypeAlias = npt.NDArray[np.float32]

@@ -140,7 +140,7 @@ def _thickness(arguments: Namespace) -> Result:
     baked_files.check_apart(arguments.output, [arguments.MESH, arguments.direction or ""])
     request = Request(
         arguments.mode,
-        bake_light.read(arguments.direction) if arguments.direction else None,
+        bake_light.read_light(arguments.direction) if arguments.direction else None,
         arguments.rays,
         arguments.attenuation or 0.0,
         arguments.seed,
@@ -179,7 +179,7 @@ def _depth(arguments: Namespace) -> Result:
 
     output.picture_suffix(arguments.output, (".exr", ".npy"))
     output.check_apart(arguments.output, [arguments.MESH, arguments.direction])
-    light, size = bake_light.read(arguments.direction), picture_size(arguments.size)
+    light, size = bake_light.read_light(arguments.direction), picture_size(arguments.size)
     with ProgressBar() as bar:
         values, facts = depth_map(arguments.MESH, light, size, bar)
     paths = output.write_picture(arguments.output, values, facts)
@@ -211,7 +211,7 @@ def _fluence(arguments: Namespace) -> Result:
     format = output.volume_format(arguments.output, arguments.format)
     output.check_apart(arguments.output, [arguments.BODY, arguments.light or ""])
     scene = fluence.body(arguments.BODY, arguments.medium, arguments.unit_mm)
-    light = bake_light.read(arguments.light) if arguments.light else None
+    light = bake_light.read_light(arguments.light) if arguments.light else None
     settings = Settings(arguments.voxels, photons=arguments.photons, seed=arguments.seed)
     with ProgressBar() as bar:
         baked = fluence.bake(scene, arguments.rank, light, settings, arguments.scheduler, arguments.processes, bar)

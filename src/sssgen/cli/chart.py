@@ -86,9 +86,9 @@ def run(arguments: Namespace) -> int:
 
 def announce(scenes: Sequence[MeasuredScene], settings: Settings) -> None:
     """Says which scenes are measured first, if that takes minutes: those with light transport that are not cached."""
-    from sssgen.lab.chart.charting import cached
+    from sssgen.lab.chart.charting import cached_points
 
-    names = [scene.name for scene in scenes if scene.medium is not None and cached(scene, settings) is None]
+    names = [scene.name for scene in scenes if scene.medium is not None and cached_points(scene, settings) is None]
     if names and sys.stderr is not None:
         text = f"measuring {', '.join(names)}: minutes for each the first time, then cached; each finished step is kept"
         print(text, file=sys.stderr, flush=True)

@@ -58,7 +58,7 @@ def run(arguments: Namespace) -> int:
                 progress(len(results), len(cases), f"{case.kind} {case.name}")
                 results.append(check(case))
                 if not arguments.json:
-                    with progress.erased():
+                    with progress.hide():
                         _print(results[-1], width)
     finally:
         if arguments.junit:

@@ -170,7 +170,7 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
 
     A material with an error has no files in the result. Raises SssgenError for faulty options, with all errors.
     """
-    from sssgen.material.requirements import described
+    from sssgen.material.requirements import describe
     from sssgen.pipeline.compiler import compile
     from sssgen.pipeline.trace import Trace
     from sssgen.support.progress import ProgressBar
@@ -219,7 +219,7 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
     if wrong:
         raise SssgenError(dict.fromkeys([*wrong, *errors]))
     sources = {file: source for file, source in sources.items() if source[0] not in failed}
-    required = {material.name: described(material.stages) for material in materials if material.name not in failed}
+    required = {material.name: describe(material.stages) for material in materials if material.name not in failed}
     texts = {file: files[file] for file in sources}
     return EmittedFiles(texts, sources, list(dict.fromkeys(warnings)), required, list(dict.fromkeys(errors)))
 

@@ -63,7 +63,7 @@ def run(arguments: Namespace) -> int:
     subjects = specimens(arguments.NAME)
     _check_rows(rows, subjects)
     if arguments.scheduler or arguments.processes is not None:
-        from sssgen.lab.jobs.stress_items import run_stress
+        from sssgen.analyse.stress.stress_items import run_stress
 
         results = run_stress(subjects, names, settings, arguments.scheduler, arguments.processes)
     else:

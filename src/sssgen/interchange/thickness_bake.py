@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.bake.texture_unwrap import unwrapped
+from sssgen.bake.texture_unwrap import unwrap_mesh
 from sssgen.bake.thickness_map import Request, thickness_map
 from sssgen.interchange.imported_material import BAKED_SET, ImportedMaterial
 from sssgen.interchange.mapping_report import Report
@@ -80,7 +80,7 @@ def _bake(mesh: FileContent, progress: Progress) -> tuple[tuple[FileContent, Arr
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "mesh.glb")
         triangles = Mesh(path=path, data=mesh_file(mesh)).triangles
-        uv = unwrapped(triangles, progress)
+        uv = unwrap_mesh(triangles, progress)
         corners = _split_corners(triangles)
         with open(path, "wb") as file:
             file.write(mesh_file(corners._replace(uv=uv.reshape(-1, 2), uv2=None)))

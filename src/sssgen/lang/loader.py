@@ -97,14 +97,14 @@ def _load(
 
 def _cached_module(text: str, name: str, included: Module, key: str) -> LoadedModule:
     """The module with this key, from the cache folder or from its text."""
-    module = cache.unpickled(cache.read(f"{key}.ir"))
+    module = cache.unpickle(cache.read(f"{key}.ir"))
     if not isinstance(module, Module):
         from sssgen.lang.check.module_checker import check
         from sssgen.lang.syntax.parser import parse
 
         module = check(parse(text, name), text, included)
         if not unsaved.any_kept():
-            cache.write(f"{key}.ir", cache.pickled(module))
+            cache.write(f"{key}.ir", cache.to_pickle(module))
     loaded = LoadedModule(*module)
     loaded.key = key
     return loaded

@@ -18,7 +18,7 @@ from sssgen.lang.syntax.doc_comments import words_of
 from sssgen.lang.syntax.parser import parse_tokens
 from sssgen.lang.syntax.tokens import Comment, Token
 from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError, did_you_mean, failure
-from sssgen.support.gc_pause import paused
+from sssgen.support.gc_pause import pause_gc
 from sssgen.support.text_files import read_code
 
 ENTRIES = ("shadertoy",)
@@ -82,7 +82,7 @@ def load_glsl_text(
     if entry and entry not in ENTRIES:
         raise failure(f"unknown entry '{entry}'", did_you_mean(entry, ENTRIES) or f"entries: {', '.join(ENTRIES)}")
     finder = _Finder(roots)
-    with paused():
+    with pause_gc():
         loaded = _load(text, label, preprocess(text, label, finder.find, defines), entry, assumptions)
     return loaded._replace(paths=finder.paths)
 

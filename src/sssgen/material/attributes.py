@@ -108,7 +108,7 @@ def sections(doc: str, shown: str = "") -> dict[str, str]:
     return texts
 
 
-def read(texts: Mapping[str, str], shown: str) -> Attributes:
+def read_attributes(texts: Mapping[str, str], shown: str) -> Attributes:
     """The values of a doc comment's sections. Raises SssgenError where one does not follow its grammar."""
     bounds = _bounds(texts["deviation_bounds"], shown) if "deviation_bounds" in texts else {}
     if bounds and "deviation" not in texts:

@@ -28,7 +28,7 @@ UNITS = "materials use metres: scale the mesh to a few units"
 """The hint if a baked length is outside a parameter's range."""
 
 
-class Baked(NamedTuple):
+class BakeFile(NamedTuple):
     """The content of the JSON file next to a baked texture."""
 
     kind: str
@@ -48,7 +48,7 @@ def sidecar(path: str) -> str:
     return f"{path}.json"
 
 
-def read(path: str) -> Baked | None:
+def read_bake_file(path: str) -> BakeFile | None:
     """The content of a texture's JSON file; None if there is no such file. Raises SssgenError for an invalid one."""
     file = sidecar(path)
     note(file)
@@ -73,10 +73,10 @@ def read(path: str) -> Baked | None:
         numbers = value if isinstance(value, list) else [value]
         if not all(isinstance(number, int | float) and abs(number) < LARGEST for number in numbers):
             raise failure(f"'parameters': '{name}' must be a number or a list of numbers", "bake it again", shown)
-    return Baked(data["kind"], str(data.get("holds") or ""), parameters, settings, data)
+    return BakeFile(data["kind"], str(data.get("holds") or ""), parameters, settings, data)
 
 
-def check(baked_texture: Baked, uniform: Uniform, name: str) -> None:
+def check(baked_texture: BakeFile, uniform: Uniform, name: str) -> None:
     """Raises SssgenError if a texture's uniform takes another quantity, dimension or part of a bake."""
     assert isinstance(uniform.type, Sampler)
     made_for = baked_texture.facts.get("texture", uniform.name)
@@ -104,7 +104,7 @@ def check(baked_texture: Baked, uniform: Uniform, name: str) -> None:
         )
 
 
-def check_boundary(baked_texture: Baked, parameters: Collection[str], name: str) -> None:
+def check_boundary(baked_texture: BakeFile, parameters: Collection[str], name: str) -> None:
     """Raises SssgenError if light is baked with a refracting surface and the technique, with these parameters, has no
     refractive index, or the reverse: then the unscattered light counts twice, or not at all.
     """
@@ -118,7 +118,7 @@ def check_boundary(baked_texture: Baked, parameters: Collection[str], name: str)
         raise failure(f"'{name}' is baked with the refractive index {index:g}, and the technique {does}", hint)
 
 
-def check_medium(baked_texture: Baked, values: Mapping[str, tuple[float, ...]], name: str) -> None:
+def check_medium(baked_texture: BakeFile, values: Mapping[str, tuple[float, ...]], name: str) -> None:
     """Raises SssgenError if a material's values, by their names in its technique, are not the medium of baked light."""
     if baked_texture.kind != "fluence":
         return

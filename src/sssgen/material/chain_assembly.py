@@ -176,7 +176,7 @@ def _per_light(stages: Sequence[ChainFunction]) -> list[set[str]]:
     result = []
     for stage in stages:
         reads = {_value_name(param, stage) for param in stage.function.params if param.direction != "out"}
-        written = _written(stage)
+        written = _outputs(stage)
         result.append(reads & late)
         late = late | written if reads & late else late - (written - reads)
     return result
@@ -184,14 +184,14 @@ def _per_light(stages: Sequence[ChainFunction]) -> list[set[str]]:
 
 def _check_late(stage: ChainFunction, reads: set[str]) -> None:
     """Raises LinkError if a stage that runs once per light writes what the surface has once for all lights."""
-    written = _written(stage) | ({"emission"} if stage.glows else set())
+    written = _outputs(stage) | ({"emission"} if stage.glows else set())
     if lost := [name for name in NAMES if name in written]:
         names, why = " and ".join(lost), " and ".join(sorted(reads))
         message = f"'{stage.technique}' writes {names} once per light, as it reads {why}; all lights share the surface"
         raise LinkError(message, stage.span, f"write {names} in a technique that does not read {why}")
 
 
-def _written(stage: ChainFunction) -> set[str]:
+def _outputs(stage: ChainFunction) -> set[str]:
     names = {_value_name(param, stage) for param in stage.function.params if param.direction != "in"}
     result = _result_name(stage)
     return names | {result} if result else names
@@ -318,14 +318,14 @@ class _Body:
             return Local(param.type, name, span)
         if name in DEFAULTS:
             return literal(*DEFAULTS[name], span)
-        raise LinkError(_missing(name, param, stage), span)
+        raise LinkError(_missing_value_message(name, param, stage), span)
 
     def hands_over(self, name: str) -> bool:
         """Whether the lights read this value from the surface because a stage computed or changed it."""
         is_computed = name in self.values and name not in ("N", *PER_LIGHT)
-        return is_computed and (name not in self.inputs or name in self.changed())
+        return is_computed and (name not in self.inputs or name in self.overwrites())
 
-    def changed(self) -> set[str]:
+    def overwrites(self) -> set[str]:
         """The inputs that a stage has overwritten."""
         return {
             stmt.target.name
@@ -385,7 +385,7 @@ class _Body:
         if assigned is not None:
             value, statements = assigned, statements[:-1]
         if struct is not None:
-            statements = _retyped(statements, struct)
+            statements = _with_surface_type(statements, struct)
             value = _retype(value, struct)
         doc = {
             "translucency": "The transmitted light of one light, as a factor on its colour.",
@@ -429,11 +429,11 @@ def _retype(expr: Expr, struct: Struct) -> Expr:
     return rewrite(expr, lambda node: node._replace(type=struct) if node.type == _SURFACE else node)
 
 
-def _retyped(statements: Sequence[Stmt], struct: Struct) -> list[Stmt]:
+def _with_surface_type(statements: Sequence[Stmt], struct: Struct) -> list[Stmt]:
     change = lambda node: node._replace(type=struct) if node.type == _SURFACE else node  # noqa: E731
     return list(rewrite_block(tuple(statements), change))
 
 
-def _missing(name: str, param: Param, stage: ChainFunction) -> str:
+def _missing_value_message(name: str, param: Param, stage: ChainFunction) -> str:
     value = f"a {name}" if param.quantity in SCALARS else f"'{name}'"
     return f"{stage.technique} reads {value}, which no stage before it gives"

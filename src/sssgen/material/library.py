@@ -14,7 +14,7 @@ from sssgen.lang.source_lines import line_before, source_line
 from sssgen.material import attributes
 from sssgen.material.attributes import Attributes
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
-from sssgen.support.file_memo import CachedResult, remembered
+from sssgen.support.file_memo import CachedResult, remember
 from sssgen.support.paths import TECHNIQUES as TECHNIQUES
 from sssgen.support.paths import source_name, stem
 from sssgen.support.text_files import refuse_folder
@@ -111,7 +111,7 @@ _techniques: dict[str, CachedResult] = {}
 
 def load_path(path: str) -> Technique:
     """The technique that a file holds; the file is read again only if it, or what it includes, has changed."""
-    return remembered(_techniques, os.path.abspath(path), lambda: _read_technique(path))
+    return remember(_techniques, os.path.abspath(path), lambda: _read_technique(path))
 
 
 def _read_technique(path: str) -> Technique:
@@ -128,14 +128,14 @@ def _read_technique(path: str) -> Technique:
             raise failure(f"the technique '{name}' has no role", hint, shown)
         if role not in ROLES:
             raise failure(f"unknown role '{role}'", did_you_mean(role, ROLES) or f"roles: {', '.join(ROLES)}", shown)
-        declared = attributes.read(doc, shown)
+        declared = attributes.read_attributes(doc, shown)
         _check_attributes(declared, module, function, shown)
     except SssgenError as error:
-        raise _placed(error, function) from None
+        raise _with_places(error, function) from None
     return Technique(name, role, path, module, function, doc, declared)
 
 
-def _placed(error: SssgenError, function: Function) -> SssgenError:
+def _with_places(error: SssgenError, function: Function) -> SssgenError:
     """Errors of a doc comment with their places: the attribute's line, or the function where no line names it."""
     placed = []
     for diagnostic in error.diagnostics:

@@ -7,7 +7,7 @@ import os
 from sssgen.material.material_reader import read_material
 from sssgen.material.model import Material
 from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.support.file_memo import CachedResult, note, remembered
+from sssgen.support.file_memo import CachedResult, note, remember
 from sssgen.support.paths import place, posix, source_name
 from sssgen.support.text_files import read_text, refuse_folder
 
@@ -46,7 +46,7 @@ def load_material(path_or_name: str | os.PathLike[str]) -> Material:
             raise failure(f"unknown material '{text}'", file_hint or did_you_mean(text, names) or hint)
         text = path
     key = f"{os.path.abspath(text)}\0{text}"
-    return remembered(_materials, key, lambda: parse_material(read_text(text, posix(text)), text))
+    return remember(_materials, key, lambda: parse_material(read_text(text, posix(text)), text))
 
 
 def parse_material(text: str, path: str | os.PathLike[str]) -> Material:

@@ -27,7 +27,7 @@ CHOICES = {
 }
 
 
-class _Shared(NamedTuple):
+class _SharedValue(NamedTuple):
     """The value that a stage gives to a parameter shared by several stages."""
 
     value: object
@@ -54,7 +54,7 @@ class _Reader:
         self.path = path
         self.foreign: list[Diagnostic] = []
         """The errors of the technique files that the material names."""
-        self.shared: dict[Span, _Shared] = {}
+        self.shared: dict[Span, _SharedValue] = {}
         self.complete = True
         """Whether every stage has a technique, so that the chain can be checked."""
 
@@ -309,7 +309,7 @@ class _Reader:
             span = self.document.place(*path, key).value
             file = os.path.join(os.path.dirname(self.path), stage.textures[uniform.name])
             try:
-                texture = baked.read(file)
+                texture = baked.read_bake_file(file)
                 if texture is None:
                     continue
                 baked.check(texture, uniform, stage.textures[uniform.name])
@@ -341,7 +341,7 @@ class _Reader:
         Those of included files and of bound functions are shared.
         """
         span = self.document.place(*path).value
-        earlier = self.shared.setdefault(uniform.span, _Shared(value, stage.technique.name, span.line))
+        earlier = self.shared.setdefault(uniform.span, _SharedValue(value, stage.technique.name, span.line))
         if earlier.value != value:
             message = f"'{uniform.name}' has another value in '{earlier.technique}', line {earlier.line}"
             file = display_name(uniform.span.file)

@@ -44,7 +44,7 @@ def requirements(uses: Iterable[TechniqueUse]) -> tuple[str, ...]:
     for use in uses:
         for module, function in _functions(use):
             required.update(_attributes(function).requires)
-            textures = [uniform for uniform in _read(module, function) if isinstance(uniform.type, Sampler)]
+            textures = [uniform for uniform in _uniforms_read(module, function) if isinstance(uniform.type, Sampler)]
             volume = any(is_volume(uniform) for uniform in textures)
             slots = needs(module, function)[1]
             for texture in textures:
@@ -54,7 +54,7 @@ def requirements(uses: Iterable[TechniqueUse]) -> tuple[str, ...]:
     return tuple(name for name in REQUIREMENTS if name in required)
 
 
-def described(uses: Sequence[TechniqueUse]) -> list[str]:
+def describe(uses: Sequence[TechniqueUse]) -> list[str]:
     """The requirements of a material in words, with the names of the baked textures and of the body."""
     named = {"bake": [texture.name for texture in baked_textures(uses)], "rigid": bodies(uses)}
     return [
@@ -72,7 +72,7 @@ def bodies(uses: Iterable[TechniqueUse]) -> list[str]:
         binding.function.name
         for use in uses
         for binding in use.bindings.values()
-        if _is_distance(binding.function) and not any(map(is_volume, _read(binding.module, binding.function)))
+        if _is_distance(binding.function) and not any(map(is_volume, _uniforms_read(binding.module, binding.function)))
     ]
     return list(dict.fromkeys(functions))
 
@@ -99,14 +99,14 @@ def baked_functions(uses: Iterable[TechniqueUse]) -> list[BakedFunction]:
         BakedFunction(use, function.name, textures, _attributes(function).bake)
         for use in uses
         for module, function in _functions(use)
-        if (textures := tuple(filter(is_baked, _read(module, function))))
+        if (textures := tuple(filter(is_baked, _uniforms_read(module, function))))
     ]
 
 
 def read_uniforms(use: TechniqueUse) -> Iterator[Uniform]:
     """The parameters and textures that a technique reads, itself and in the functions that are bound to its slots."""
     for module, function in _functions(use):
-        yield from _read(module, function)
+        yield from _uniforms_read(module, function)
 
 
 def texel_bytes(uniform: Uniform) -> int:
@@ -125,7 +125,7 @@ def _functions(use: TechniqueUse) -> Iterator[tuple[Module, Function]]:
         yield binding.module, binding.function
 
 
-def _read(module: Module, function: Function) -> Iterator[Uniform]:
+def _uniforms_read(module: Module, function: Function) -> Iterator[Uniform]:
     names = needs(module, function)[0]
     return (uniform for uniform in module.uniforms if uniform.name in names)
 
@@ -133,6 +133,6 @@ def _read(module: Module, function: Function) -> Iterator[Uniform]:
 def _attributes(function: Function) -> Attributes:
     """The attributes of a function; a user's distance function needs none at all."""
     try:
-        return attributes.read(attributes.sections(function.doc), "")
+        return attributes.read_attributes(attributes.sections(function.doc), "")
     except SssgenError:
         return Attributes()

@@ -43,21 +43,21 @@ def add_shell(
     shell = load_file(os.path.join(SHELLS, f"{name}.sss"), (SHELLS,))
     fields = {field.name for field in surface.fields} if surface is not None else set[str]()
     present = dict(facts) | dict.fromkeys([f"has_{name}" for name in (*entries, *fields)], True)
-    function = _decided(shell, present, fields).functions[-1]
+    function = _decide(shell, present, fields).functions[-1]
     if surface is not None:
         function = Retyper({struct.type: surface for struct in shell.structs}, {}).function(function)
-    function = supplied(_Chained(entries, given).function(function))
+    function = without_unread_parameters(_ChainCalls(entries, given).function(function))
     constants = (*module.constants, *shell.constants)
     return module._replace(constants=constants, functions=(*module.functions, function)), function
 
 
-def supplied(function: Function) -> Function:
+def without_unread_parameters(function: Function) -> Function:
     """The shell without the parameters that nothing reads: the rest is what its target supplies."""
     read = {expr.name for expr in all_expressions(function.body or ()) if type(expr) is Local}
     return function._replace(params=tuple(param for param in function.params if param.name in read))
 
 
-def _decided(shell: Module, facts: Mapping[str, bool], fields: set[str]) -> Module:
+def _decide(shell: Module, facts: Mapping[str, bool], fields: set[str]) -> Module:
     """The shell without the branches that the facts exclude, and without the surface's values that do not exist."""
 
     def change(expr: Expr) -> Expr:
@@ -73,7 +73,7 @@ def _decided(shell: Module, facts: Mapping[str, bool], fields: set[str]) -> Modu
     return shell._replace(functions=(*others, function._replace(body=body[: end + 1])))
 
 
-class _Chained(Transformer):
+class _ChainCalls(Transformer):
     """Replaces the calls of `evaluate_…` in a shell by those of the chain's functions."""
 
     def __init__(self, entries: Mapping[str, Entry], given: Collection[str]) -> None:

@@ -20,7 +20,7 @@ def with_shell(material: Material, options: Sequence[str]) -> Material:
     An option is `ROLE=TECHNIQUE`; the technique's parameters have its own defaults. A later option of the same role
     replaces an earlier one.
     """
-    chosen = dict(_parsed(option) for option in options)
+    chosen = dict(_parse(option) for option in options)
     stages = [stage for stage in material.stages if stage.technique.role not in chosen]
     for name in chosen.values():
         if name != NONE:
@@ -37,17 +37,17 @@ def choices(role: str) -> tuple[str, ...]:
     return (*(technique for technique, path in index().items() if folder_of(path) == role), NONE)
 
 
-def _parsed(option: str) -> tuple[str, str]:
+def _parse(option: str) -> tuple[str, str]:
     role, _, name = option.partition("=")
     if role not in OF_SHELLS:
-        raise failure(f"'{role}' is no part of a shell", did_you_mean(role, OF_SHELLS) or _listed(OF_SHELLS))
+        raise failure(f"'{role}' is no part of a shell", did_you_mean(role, OF_SHELLS) or _choices_hint(OF_SHELLS))
     if name not in (names := choices(role)):
-        hint = did_you_mean(name, names) or _listed([f"{role}={choice}" for choice in names])
+        hint = did_you_mean(name, names) or _choices_hint([f"{role}={choice}" for choice in names])
         raise failure(f"unknown technique '{name}' for {role}", hint)
     return role, name
 
 
-def _listed(words: Sequence[str]) -> str:
+def _choices_hint(words: Sequence[str]) -> str:
     return f"choose from: {', '.join(words)}"
 
 

@@ -28,7 +28,7 @@ def with_constants(function: Function, module: Module, names: Collection[str]) -
     """
     read = [param for param in function.params if param.name in names]
     given = {param.name for param in read if param.type == DEFAULTS[param.name][0]}
-    if not given or function.body is None or not given.isdisjoint(_changed(function, module)):
+    if not given or function.body is None or not given.isdisjoint(_changes(function, module)):
         return function
 
     def change(expr: Expr) -> Expr:
@@ -40,7 +40,7 @@ def with_constants(function: Function, module: Module, names: Collection[str]) -
     return rewrite_function(function._replace(params=rest), change)
 
 
-def _changed(function: Function, module: Module) -> Iterator[str]:
+def _changes(function: Function, module: Module) -> Iterator[str]:
     """The names of the variables that a function declares or changes."""
     assert function.body is not None
     callees = {callee.key: callee for callee in module.functions}

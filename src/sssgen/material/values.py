@@ -37,10 +37,10 @@ def read_value(uniform: Uniform, raw: object) -> tuple[float, ...]:
         return (_number(uniform, raw, None),)
     flat = _flatten(raw) if isinstance(raw, list) else None
     if flat is None:
-        raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this is {_kind_of_raw(raw)}")
+        raise WrongValue(f"'{uniform.name}' takes {value_form(uniform)}, but this is {_kind_of_raw(raw)}")
     if len(flat) != components(type_):
         count = f"{len(flat)} value{'' if len(flat) == 1 else 's'}"
-        raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this has {count}")
+        raise WrongValue(f"'{uniform.name}' takes {value_form(uniform)}, but this has {count}")
     nested = any(isinstance(element, list) for element in raw) if isinstance(raw, list) else False
     return tuple(_number(uniform, element, None if nested else index) for index, element in enumerate(flat))
 
@@ -48,13 +48,13 @@ def read_value(uniform: Uniform, raw: object) -> tuple[float, ...]:
 def read_texture(uniform: Uniform, raw: object) -> str:
     """The picture file of a texture. Raises WrongValue."""
     if not isinstance(raw, str):
-        raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this is {_kind_of_raw(raw)}")
+        raise WrongValue(f"'{uniform.name}' takes {value_form(uniform)}, but this is {_kind_of_raw(raw)}")
     if not raw or any(ord(character) < 32 for character in raw):
         raise WrongValue(f"{raw!r} is not a file name", "leave the line out to use the texture's default")
     return raw
 
 
-def wanted(uniform: Uniform) -> str:
+def value_form(uniform: Uniform) -> str:
     """The values that a uniform takes, for messages: `3 numbers, as in [0.5, 0.5, 0.5]`."""
     type_, kind = uniform.type, _kind(uniform.type)
     if isinstance(type_, Sampler):
@@ -108,7 +108,7 @@ def _colour(uniform: Uniform, text: str) -> tuple[float, ...]:
         hint = "write the number without quotes" if re.fullmatch(r"[-+0-9.eE]+", text.strip()) else ""
         if text.startswith("#"):
             hint = f"'{uniform.name}' is not declared a colour (source_color): give its components"
-        raise WrongValue(f"'{uniform.name}' takes {wanted(uniform)}, but this is a string", hint)
+        raise WrongValue(f"'{uniform.name}' takes {value_form(uniform)}, but this is a string", hint)
     if not _HEX.fullmatch(text):
         raise WrongValue(f"'{text}' is not a colour", 'write "#rgb", "#rrggbb" or "#rrggbbaa", or a list of linear RGB')
     digits = text[1:]
@@ -127,13 +127,13 @@ def _number(uniform: Uniform, raw: Any, index: int | None) -> float:
     kind, name = _kind(uniform.type), uniform.name
     if kind == "bool":
         if not isinstance(raw, bool):
-            raise WrongValue(f"'{name}' takes {wanted(uniform)}, but this is {_kind_of_raw(raw)}", "", index)
+            raise WrongValue(f"'{name}' takes {value_form(uniform)}, but this is {_kind_of_raw(raw)}", "", index)
         return float(raw)
     if isinstance(raw, bool) or not isinstance(raw, int | float):
-        raise WrongValue(f"'{name}' takes {wanted(uniform)}, but this is {_kind_of_raw(raw)}", "", index)
+        raise WrongValue(f"'{name}' takes {value_form(uniform)}, but this is {_kind_of_raw(raw)}", "", index)
     if kind != "float" and isinstance(raw, float):
         hint = f"write {raw:.0f}" if raw.is_integer() and abs(raw) < 2**32 else ""
-        raise WrongValue(f"'{name}' takes {wanted(uniform)}, but this is {raw:g}", hint, index)
+        raise WrongValue(f"'{name}' takes {value_form(uniform)}, but this is {raw:g}", hint, index)
     low, high = _LIMITS[kind]
     if not low <= raw <= high:  # also true of nan
         shown = (

@@ -21,7 +21,7 @@ from sssgen.pipeline.emitted_cache import installation
 from sssgen.pipeline.material_facts import facts_of
 from sssgen.support import cache
 from sssgen.support.diagnostics import Diagnostic, SssgenError, UnsupportedError, failure
-from sssgen.support.gc_pause import paused
+from sssgen.support.gc_pause import pause_gc
 from sssgen.support.paths import place
 from sssgen.targets import registry
 from sssgen.targets.assemble import About, Program, emit
@@ -173,7 +173,7 @@ def transpile(
     _check_guards(guards)
     chosen = registry.load(target)._replace(prefix="")  # the names are the author's
     about = About(name, name, head=tuple(head))
-    with paused():
+    with pause_gc():
         program = make_library(module, chosen, guards, called, at, chained, keep, trace, partner)._replace(about=about)
         inner = {name: _inner(chosen, embedded) for name, embedded in chosen.embedded.items()}
         others = {

@@ -31,7 +31,7 @@ class EmittedFiles(NamedTuple):
 
 def load(command: Sequence[str]) -> EmittedFiles | None:
     """The files of the command (its materials, targets and options), if nothing that they depend on has changed."""
-    entry = cache.unpickled(cache.read(_entry_name(command)))
+    entry = cache.unpickle(cache.read(_entry_name(command)))
     if not isinstance(entry, tuple) or entry[0] != installation():
         return None
     _, digests, emitted = entry
@@ -48,7 +48,7 @@ def store(command: Sequence[str], emitted: EmittedFiles, read: Iterable[str]) ->
     if registry.has_plugins():
         return
     entry = (installation(), _digests(read), tuple(emitted))
-    cache.write(_entry_name(command), cache.pickled(entry))
+    cache.write(_entry_name(command), cache.to_pickle(entry))
 
 
 def _digests(paths: Iterable[str]) -> dict[str, str]:

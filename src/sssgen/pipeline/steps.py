@@ -10,7 +10,7 @@ from sssgen.lang.polyfills import guard as guard_source
 from sssgen.lang.polyfills import polyfill
 from sssgen.lang.source_lines import source_line
 from sssgen.material.chain_assembly import TAKEN, ChainFunction, Entry, assemble
-from sssgen.material.shell_assembly import add_shell, supplied
+from sssgen.material.shell_assembly import add_shell, without_unread_parameters
 from sssgen.passes.cost import cost_of
 from sssgen.passes.fold import fold
 from sssgen.passes.guards import guard
@@ -94,7 +94,7 @@ def write_shell(state: State) -> Module:
 
 def find_frame(state: State) -> Module:
     old = next(function for function in state.module.functions if function.key == state.roots[-1])
-    shell = supplied(old)
+    shell = without_unread_parameters(old)
     state.shell = Entry(shell, tuple([param.name for param in shell.params]))
     state.roots[-1] = shell.key
     return state.module._replace(

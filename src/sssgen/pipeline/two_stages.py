@@ -22,7 +22,7 @@ from sssgen.pipeline.compiler import emit_program
 from sssgen.pipeline.programs import check_partner, target_program
 from sssgen.pipeline.state import State
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
-from sssgen.support.gc_pause import paused
+from sssgen.support.gc_pause import pause_gc
 from sssgen.targets import registry
 from sssgen.targets.assemble import About
 from sssgen.targets.block_places import block_members
@@ -65,7 +65,7 @@ def transpile_stages(
     if any(kind not in chosen.files for kind in sources):
         able = [name for name in registry.names() if "vertex" in registry.load(name).files]
         raise failure(f"{target} has no whole shaders of plain GLSL", f"they go to {', '.join(able)}")
-    with paused():
+    with pause_gc():
         blocks = {kind: block_members(source.module) for kind, source in sources.items()}
         modules = {kind: drop_unused(keep_reachable(source.module, [ENTRY]), True) for kind, source in sources.items()}
         wrong = disagreements(modules["vertex"], modules["fragment"])

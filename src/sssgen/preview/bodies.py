@@ -16,7 +16,7 @@ from sssgen.preview.body_triangles import body_triangles
 from sssgen.scene.geometry import Ball, Box, Distance, Geometry, Mesh, Slab
 from sssgen.support import cache
 from sssgen.support.diagnostics import failure
-from sssgen.support.file_memo import CachedResult, noted_files, remembered
+from sssgen.support.file_memo import CachedResult, noted_files, remember
 
 SHAPES: Mapping[str, Geometry] = {
     "ball": Ball(radius=1.0),
@@ -91,8 +91,8 @@ def packed_triangles(geometry: Geometry) -> bytes:
     content = hashlib.sha256(geometry.data).hexdigest() if isinstance(geometry, Mesh) and geometry.data else ""
     key = repr(at_origin) + content
     if isinstance(at_origin, Distance) and at_origin in SHAPES.values():
-        return remembered(_bodies, key, lambda: _load_triangles(at_origin, key), MOST_BODIES)
-    return remembered(_bodies, key, lambda: body_triangles(copy.deepcopy(at_origin)).pack(), MOST_BODIES)
+        return remember(_bodies, key, lambda: _load_triangles(at_origin, key), MOST_BODIES)
+    return remember(_bodies, key, lambda: body_triangles(copy.deepcopy(at_origin)).pack(), MOST_BODIES)
 
 
 MOST_BODIES = 6

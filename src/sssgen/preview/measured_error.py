@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sssgen.lab.chart.charting import Settings, cached
+from sssgen.lab.chart.charting import Settings, cached_points
 from sssgen.lab.chart.picking import cost_of, limit_of
 from sssgen.lab.chart.record import measures
 from sssgen.lab.measure.candidates import ROLES, is_path
@@ -25,7 +25,7 @@ def measured_error(scene: Scene, material: Material) -> str:
     if _is_clear(scene.measured.get("medium")):
         return "Error: not measured, as a clear medium scatters no light; sssgen chart compares scattering bodies."
     file = scene.document.reporter.file
-    record = cached(measured_scene.load(file), Settings())
+    record = cached_points(measured_scene.load(file), Settings())
     if record is None:
         return f"Error: no chart of this scene is in the cache. It takes minutes: sssgen chart {shell_word(file)}"
     names = _techniques_of_material(material)

@@ -8,7 +8,7 @@ import json
 import os
 import tempfile
 
-from sssgen.lab.measure.technique_chain import BODY, chain_of, named, write_pictures
+from sssgen.lab.measure.technique_chain import BODY, chain_of, reference_to, write_pictures
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
 from sssgen.material.material_text import material_text
@@ -36,7 +36,7 @@ def scene_of_technique(name: str) -> tuple[Scene, Material]:
     write_files(folder, {file: material_text(technique.name, stages)})
     material = load_material(os.path.join(folder, file))
     if technique.role == "distance":
-        return plain_scene(material, _function(named(technique))), material
+        return plain_scene(material, _function(reference_to(technique))), material
     in_slots = {to for stage in stages for _, to in stage.bind}
     scene = plain_scene(material, _function(BODY) if BODY in in_slots else BALL)
     if technique.role in ("thickness", "conversion"):

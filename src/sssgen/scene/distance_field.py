@@ -24,7 +24,7 @@ from sssgen.passes.link import LinkInput, link
 from sssgen.pipeline.compiler import transpile
 from sssgen.scene.placed import Array, Bools, Geometry, Hits, planar, spherical, spread, tangent_of, unit
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
-from sssgen.support.file_memo import CachedResult, remembered
+from sssgen.support.file_memo import CachedResult, remember
 from sssgen.targets.runtime.numpy_values import precision
 
 PROJECTIONS = {"spherical": spherical, "planar": planar}
@@ -77,7 +77,7 @@ class Distance(Geometry):
     def function(self) -> Callable[[Array], Any]:
         """The function on points (3, n). Raises SssgenError."""
         key = repr((self.technique, self.folder, self.parameters))
-        return remembered(_functions, key, self._compiled, MOST_FUNCTIONS)
+        return remember(_functions, key, self._compiled, MOST_FUNCTIONS)
 
     def _compiled(self) -> Callable[[Array], Any]:
         module, function = find_function(self.technique, self.folder)

@@ -84,15 +84,15 @@ def load_or_make(name: str, stamp: object, make: Callable[[], Any]) -> Any:
 
     The value must be picklable.
     """
-    entry = unpickled(read(name))
+    entry = unpickle(read(name))
     if isinstance(entry, tuple) and entry[0] == stamp:
         return entry[1]
     value = make()
-    write(name, pickled((stamp, value)))
+    write(name, to_pickle((stamp, value)))
     return value
 
 
-def unpickled(data: bytes) -> Any:
+def unpickle(data: bytes) -> Any:
     """The value of an entry that `read` returned; None where it cannot be read."""
     if not data:
         return None
@@ -102,7 +102,7 @@ def unpickled(data: bytes) -> Any:
         return None
 
 
-def pickled(value: object) -> bytes:
+def to_pickle(value: object) -> bytes:
     """A value as the bytes of an entry."""
     return pickle.dumps(value, protocol=5)
 

@@ -171,18 +171,18 @@ def did_you_mean(word: str, candidates: Iterable[str], aliases: Iterable[str] = 
     every, folded = [*names, *others], word.lower()
     if same := [name for name in every if name.lower() == folded]:
         return _question(same[:1])
-    if longer := _beginning(folded, names):
+    if longer := _names_starting_with(folded, names):
         return _question(longer)
     if near := difflib.get_close_matches(word, every, n=1, cutoff=ONE_LETTER):
         return _question(near)
     part = re.compile(rf"(?<![a-z0-9]){re.escape(folded)}(?![a-z0-9])")
     holding = [name for name in names if len(word) >= MIN_PART and part.search(name.lower())]
     return _question(
-        holding or _beginning(folded, others) or difflib.get_close_matches(word, every, n=1, cutoff=SIMILAR)
+        holding or _names_starting_with(folded, others) or difflib.get_close_matches(word, every, n=1, cutoff=SIMILAR)
     )
 
 
-def _beginning(folded: str, names: Sequence[str]) -> list[str]:
+def _names_starting_with(folded: str, names: Sequence[str]) -> list[str]:
     return [name for name in names if len(folded) >= MIN_PART and name.lower().startswith(folded)]
 
 

@@ -18,8 +18,8 @@ _DEVELOPMENT = "dev"
 
 def packages() -> dict[str, list[str]]:
     """Extra → the names of its packages. The first is NEEDED; the extra for development is left out."""
-    declared = {extra: [*names] for extra, names in _declared().items() if extra != _DEVELOPMENT}
-    return {extra: sorted(_expanded(names, declared), key=str.lower) for extra, names in declared.items()}
+    declared = {extra: [*names] for extra, names in _declared_requirements().items() if extra != _DEVELOPMENT}
+    return {extra: sorted(_expand(names, declared), key=str.lower) for extra, names in declared.items()}
 
 
 def installed_version(package: str) -> str:
@@ -30,7 +30,7 @@ def installed_version(package: str) -> str:
         return ""
 
 
-def _declared() -> dict[str, list[str]]:
+def _declared_requirements() -> dict[str, list[str]]:
     """The requirements of this checkout or, where it is none, of the installed distribution."""
     top, checkout = source()
     if checkout:
@@ -48,7 +48,7 @@ def _declared() -> dict[str, list[str]]:
     return result
 
 
-def _expanded(requirements: Iterable[str], declared: dict[str, list[str]]) -> set[str]:
+def _expand(requirements: Iterable[str], declared: dict[str, list[str]]) -> set[str]:
     """The names of packages, with those of the extras that a requirement of the distribution itself names."""
     names: set[str] = set()
     for requirement in requirements:
@@ -61,5 +61,5 @@ def _expanded(requirements: Iterable[str], declared: dict[str, list[str]]) -> se
             names.add(match[1])
             continue
         for extra in (match[2] or "").split(","):
-            names |= _expanded(declared.get(extra, ()), declared)
+            names |= _expand(declared.get(extra, ()), declared)
     return names

@@ -69,7 +69,7 @@ def noted_files() -> Iterator[dict[str, FileState]]:
         _watching[:] = [other for other in _watching if other is not files]
 
 
-def remembered(memory: dict[str, CachedResult], key: str, make: Callable[[], _T], most: int = MAX_RESULTS) -> _T:
+def remember(memory: dict[str, CachedResult], key: str, make: Callable[[], _T], most: int = MAX_RESULTS) -> _T:
     """The result of `make`, or the earlier one for this key if none of its files has changed.
 
     `most` is the number of results in this memory before the oldest is dropped.

@@ -24,7 +24,7 @@ def install_hint(extra: str) -> str:
     It installs into the environment that runs this, from where sssgen was installed. Double quotes work in every shell.
     """
     path, editable = source()
-    return f'{_pip()} install {"-e " if editable else ""}"{_shown(path) if path else DISTRIBUTION}[{extra}]"'
+    return f'{_pip()} install {"-e " if editable else ""}"{_short_path(path) if path else DISTRIBUTION}[{extra}]"'
 
 
 def npm_hint(package: str) -> str:
@@ -33,7 +33,7 @@ def npm_hint(package: str) -> str:
     if not checkout:
         return f"npm install {package}, and SSSGEN_NODE_MODULES=/path/to/node_modules"
     folder = os.path.join(path, "build", "node")
-    return make_hint("setup", f"npm install --prefix {_quoted(folder)} {package}")
+    return make_hint("setup", f"npm install --prefix {_quote(folder)} {package}")
 
 
 def make_hint(target: str, otherwise: str, note: str = "") -> str:
@@ -41,7 +41,7 @@ def make_hint(target: str, otherwise: str, note: str = "") -> str:
     path, checkout = source()
     if not checkout:
         return otherwise
-    shown = _quoted(path)
+    shown = _quote(path)
     command = f"make {target}" if shown == os.curdir else f"make -C {shown} {target}"
     return f"{command}{f' ({note})' if note else ''}, or {otherwise}"
 
@@ -69,15 +69,15 @@ def _pip() -> str:
     if (found := shutil.which("pip")) and os.path.dirname(found) == programs:
         return "pip"
     program = shutil.which("pip", path=programs)
-    return _quoted(program) if program else f"{_quoted(sys.executable)} -m pip"
+    return _quote(program) if program else f"{_quote(sys.executable)} -m pip"
 
 
-def _quoted(path: str) -> str:
-    shown = _shown(path)
+def _quote(path: str) -> str:
+    shown = _short_path(path)
     return f'"{shown}"' if " " in shown else shown
 
 
-def _shown(path: str) -> str:
+def _short_path(path: str) -> str:
     """A path, from the current folder where it is below it."""
     try:
         relative = os.path.relpath(path)

@@ -60,7 +60,7 @@ class ProgressBar:
             self._show()
 
     @contextlib.contextmanager
-    def erased(self) -> Iterator[None]:
+    def hide(self) -> Iterator[None]:
         """Erases the bar while the command prints a part of its result."""
         with self.lock:
             if self.bar is not None:

@@ -238,10 +238,10 @@ class _Scanner:
     def keys(self) -> tuple[list[str], Span]:
         """A dotted key and its span."""
         first = self.tokens[self.at]
-        keys = [_unquoted(first)]
+        keys = [_unquote(first)]
         while self.tokens[self.at + 1].text == ".":
             self.at += 2
-            keys.append(_unquoted(self.tokens[self.at]))
+            keys.append(_unquote(self.tokens[self.at]))
         self.at += 1
         return keys, self.place_of(first.start, self.tokens[self.at - 1].end)
 
@@ -295,7 +295,7 @@ def _unescape(quoted: str) -> str:
     return str(tomllib.loads(f"key = {quoted}")["key"])
 
 
-def _unquoted(token: Token) -> str:
+def _unquote(token: Token) -> str:
     if token.kind != "string":
         return token.text
     return _unescape(token.text) if "\\" in token.text else token.text[1:-1]

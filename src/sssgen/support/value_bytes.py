@@ -7,7 +7,7 @@ import pickle
 from typing import Any
 
 
-def encoded(value: Any) -> bytes:
+def encode(value: Any) -> bytes:
     """A value as bytes that depend only on its content, not on shared objects or an array's memory layout.
 
     Pickle must accept the value. It has no cycles (ValueError) and no sets, whose order differs between processes.
@@ -29,6 +29,6 @@ class _Pickler(pickle.Pickler):
         return NotImplemented
 
 
-def decoded(data: bytes) -> Any:
-    """The value of `encoded` bytes, a new object."""
+def decode(data: bytes) -> Any:
+    """The value of bytes that `encode` returned, a new object."""
     return pickle.loads(data)

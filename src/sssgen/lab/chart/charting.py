@@ -15,13 +15,13 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from sssgen.jobs.executor import Failure, Item, Progress, run
+from sssgen.jobs.work_items import code_stamp
 from sssgen.lab.chart.record import FORMAT, hypervolumes, on_fronts
-from sssgen.lab.jobs.executor import Failure, Item, Progress, run
-from sssgen.lab.jobs.work_items import code_stamp
 from sssgen.lab.measure import candidates, fluence_inputs
 from sssgen.lab.measure import scene_references as references
 from sssgen.lab.measure.candidates import Candidate
-from sssgen.lab.measure.fitting import Fitted
+from sssgen.lab.measure.fitting import FitResult
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.measure.problem import LENGTHS
 from sssgen.scene.measured.measured_scene import MeasuredScene
@@ -71,10 +71,10 @@ def chart_record(scenes: Sequence[MeasuredScene], settings: Settings) -> dict[st
     Raises SssgenError for scenes that cannot be measured, and for missing packages.
     """
     settings = settings._replace(roles=candidates.complete(settings.roles))
-    by_key = {scene.key: cached(scene, settings) for scene in scenes}
+    by_key = {scene.key: cached_points(scene, settings) for scene in scenes}
     new = [scene for scene in {scene.key: scene for scene in scenes}.values() if by_key[scene.key] is None]
     if new:
-        for scene, entry in zip(new, _measured(new, settings), strict=True):
+        for scene, entry in zip(new, _measure(new, settings), strict=True):
             by_key[scene.key] = entry
             cache.write(settings.cache_name(scene), json.dumps(entry).encode())
     results = [result for scene in scenes if (result := by_key[scene.key])]
@@ -87,7 +87,7 @@ def chart_record(scenes: Sequence[MeasuredScene], settings: Settings) -> dict[st
     }  # fmt: skip
 
 
-def cached(scene: MeasuredScene, settings: Settings) -> dict[str, Any] | None:
+def cached_points(scene: MeasuredScene, settings: Settings) -> dict[str, Any] | None:
     """The scene's points from the cache, or None."""
     try:
         result: dict[str, Any] = json.loads(cache.read(settings.cache_name(scene)) or b"null")
@@ -96,7 +96,7 @@ def cached(scene: MeasuredScene, settings: Settings) -> dict[str, Any] | None:
     return result
 
 
-def _measured(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[str, Any]]:
+def _measure(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[str, Any]]:
     """Measures the points of scenes."""
     views = _views(scenes, settings)
     points: dict[str, list[dict[str, Any]]] = {scene.key: [] for scene in scenes}
@@ -104,7 +104,7 @@ def _measured(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[
         if role == "material":
             continue
         jobs = [(scene, candidate) for scene in scenes for candidate in _candidates(role, scene, points[scene.key])]
-        jobs = [job for job in jobs if _applies(*job) and _is_wanted(job[1], settings)]
+        jobs = [job for job in jobs if _applies(*job) and _is_selected(job[1], settings)]
         for scene, point in _points(jobs, views, settings, {}):
             points[scene.key].append(point)
     if "material" in settings.roles:
@@ -154,7 +154,7 @@ def _applies(scene: MeasuredScene, candidate: Candidate) -> bool:
     return candidates.refracts(candidate) or not candidates.is_calibrated(candidate)
 
 
-def _is_wanted(candidate: Candidate, settings: Settings) -> bool:
+def _is_selected(candidate: Candidate, settings: Settings) -> bool:
     """Whether a candidate of one technique is to be measured."""
     wanted = settings.techniques
     return not wanted or candidate.role in LENGTHS or candidate.name in wanted
@@ -173,7 +173,7 @@ def _views(scenes: Sequence[MeasuredScene], settings: Settings) -> dict[str, _Vi
     """Each scene's views and training views, with their references."""
     lit = bool(LIT.intersection(settings.roles))
     own = with_references({scene.key: two_views(scene) for scene in scenes}, settings, lit)
-    training = {scene.key: references.training(scene) if scene.medium is not None else [] for scene in scenes}
+    training = {scene.key: references.training_scenes(scene) if scene.medium is not None else [] for scene in scenes}
     cheap = settings._replace(samples=settings.samples // 2)
     named = {key: [(scene.name, scene) for scene in group] for key, group in training.items()}
     lit_views = with_references(named, cheap, lit)
@@ -212,14 +212,14 @@ def _points(
             "sssgen.lab.measure.measurement:fit_candidate",
             (
                 candidate,
-                _training(candidate, views[scene.key]),
+                _training_views(candidate, views[scene.key]),
                 before.get((scene.key, candidate.techniques[:1], candidate.settings)),
             ),
             f"fit {candidate.label}",
         )
         for scene, candidate in jobs
     ]
-    fitted: list[Fitted] = results_of(fits, settings)
+    fitted: list[FitResult] = results_of(fits, settings)
     bodies = {scene.key: scene for scene, candidate in jobs if candidates.reads_fluence(candidate)}
     results_of([item for scene in bodies.values() for item in fluence_inputs.items(scene)], settings)
     measures = [
@@ -235,30 +235,6 @@ def _points(
         yield scene, {"scene": scene.name, **point}
 
 
-def remeasured(
-    record: Mapping[str, Any], scenes: Sequence[MeasuredScene], settings: Settings
-) -> dict[tuple[str, str], float]:
-    """The errors of a record's materials, with their fitted parameters, against references with other settings.
-
-    (scene, label) → the largest error of the views; infinite for a chain that fails.
-    """
-    views = with_references({scene.name: two_views(scene) for scene in scenes}, settings)
-    points = [point for point in record["points"] if point["role"] == "material" and point["scene"] in views]
-    items = [
-        Item(
-            "sssgen.lab.measure.measurement:measure_candidate",
-            (candidate_of(point), fitted_of(point), views[point["scene"]]),
-            f"{point['label']} on {point['scene']}, remeasured",
-        )
-        for point in points
-    ]
-    errors = {}
-    for point, result in zip(points, results_of(items, settings), strict=True):
-        largest = max(float(view["value"]) for view in result["views"].values())
-        errors[point["scene"], point["label"]] = float("inf") if result["failed"] else largest
-    return errors
-
-
 def candidate_of(point: Mapping[str, Any]) -> Candidate:
     """The candidate of a point."""
     settings, chain = tuple(point["settings"].items()), tuple(point["chain"])
@@ -268,13 +244,13 @@ def candidate_of(point: Mapping[str, Any]) -> Candidate:
     )
 
 
-def fitted_of(point: Mapping[str, Any]) -> Fitted:
+def fit_of(point: Mapping[str, Any]) -> FitResult:
     """The result of a point's fit."""
     parameters = {name: tuple(value) for name, value in point["parameters"].items()}
-    return Fitted(parameters, tuple(point["scale"]), tuple(point["matte"]), point["training_error"], point["factor"])
+    return FitResult(parameters, tuple(point["scale"]), tuple(point["matte"]), point["training_error"], point["factor"])
 
 
-def _training(candidate: Candidate, views: _Views) -> tuple[View, ...]:
+def _training_views(candidate: Candidate, views: _Views) -> tuple[View, ...]:
     on_plate = candidate.role == "coordinates"
     return tuple(view for view in views.training if (view.name == "plate") == on_plate)
 

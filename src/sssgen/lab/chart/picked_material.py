@@ -53,7 +53,7 @@ def stages_of(point: Mapping[str, Any], shape: Body, medium: Medium | None = Non
     for name, stage in zip(candidate.techniques, candidate.stages(shape), strict=True):
         bound = [load(candidate.path)] if any(function == candidate.path for _, function in stage.bind) else []
         for technique in (load(name), *bound):
-            stage = _with_values(stage, _fitted(technique, point, known))
+            stage = _with_values(stage, _parameters(technique, point, known))
         stages.append(stage)
     return stages
 
@@ -76,7 +76,7 @@ def _with_values(stage: MaterialSection, values: Mapping[str, object]) -> Materi
     )
 
 
-def _fitted(technique: Any, point: Mapping[str, Any], known: Mapping[str, object]) -> dict[str, object]:
+def _parameters(technique: Any, point: Mapping[str, Any], known: Mapping[str, object]) -> dict[str, object]:
     """A technique's fitted parameters, and those that the scene knows; the factor includes the scale."""
     values: dict[str, object] = {}
     names, _ = needs(technique.module, technique.function)
@@ -84,20 +84,20 @@ def _fitted(technique: Any, point: Mapping[str, Any], known: Mapping[str, object
         if uniform.name not in names or kind_of(uniform.type) != "float":
             continue
         if uniform.name in known:
-            values[uniform.name] = _clamped(uniform, known[uniform.name])
+            values[uniform.name] = _clamp(uniform, known[uniform.name])
         elif uniform.name in point["parameters"]:
             value = point["parameters"][uniform.name]
-            values[uniform.name] = _clamped(uniform, value[0] if components(uniform.type) == 1 else list(value))
+            values[uniform.name] = _clamp(uniform, value[0] if components(uniform.type) == 1 else list(value))
         elif uniform.name == point["factor"]:
             default = np.array(uniform.default)
             scale = np.array(point["scale"])[: len(default)]
-            values[uniform.name] = _clamped(
+            values[uniform.name] = _clamp(
                 uniform, [*(default * scale)] if len(default) > 1 else float((default * scale)[0])
             )
     return values
 
 
-def _clamped(uniform: Uniform, value: Any) -> Any:
+def _clamp(uniform: Uniform, value: Any) -> Any:
     """A value clamped to the parameter's range, which rounding may have exceeded."""
     limits = dict(uniform.hints).get("hint_range")
     if limits is None:

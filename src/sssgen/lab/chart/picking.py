@@ -65,40 +65,40 @@ def pick(
     conditions: Conditions = EVERYTHING,
 ) -> Pick:
     """The choice for a scene of a chart's record; one of the limits is None. Raises SssgenError without points."""
-    points = [point for point in record["points"] if point["scene"] == scene and allowed(point)]
+    points = [point for point in record["points"] if point["scene"] == scene and is_allowed(point)]
     everything = [point for point in points if point["role"] == "material"]
     materials = usable(everything, conditions)
     shifts = [point for point in points if point["role"] == "coordinates"]
     if not materials and not shifts:
         raise failure(f"the chart has no point of the scene '{scene}'", "chart it first: sssgen chart")
-    chain, chain_met = chosen(materials, max_error, max_cost)
-    shift, shift_met = chosen(shifts, max_error, max_cost)
+    chain, chain_met = choose(materials, max_error, max_cost)
+    shift, shift_met = choose(shifts, max_error, max_cost)
     main = chain or shift
     assert main is not None
     front_points = front(materials or shifts)
     cheaper = max((point for point in front_points if cost_of(point) < cost_of(main)), key=cost_of, default=None)
     better = min((point for point in front_points if limit_of(point) < limit_of(main)), key=cost_of, default=None)
     roles = (_coordinates(shift, shifts), *_light(chain, materials))
-    excluded, option = _excluded(everything, main, max_error, max_cost, conditions)
+    excluded, option = _excluded_point(everything, main, max_error, max_cost, conditions)
     met = chain_met and shift_met
     return Pick(scene, chain, shift, roles, cheaper, better, met, excluded, option)
 
 
-def _excluded(
+def _excluded_point(
     points: Sequence[Point], main: Point, max_error: float | None, max_cost: float | None, conditions: Conditions
 ) -> tuple[Point | None, str]:
     """The point that is picked without the conditions, and the option that excludes it; None, '' if it is `main`."""
-    best, _ = chosen(points, max_error, max_cost)
+    best, _ = choose(points, max_error, max_cost)
     option = conditions.missing(best) if best is not None else ""
     return (best, option) if option else (None, "")
 
 
-def allowed(point: Point) -> bool:
+def is_allowed(point: Point) -> bool:
     """Whether a point may be picked: it has not failed, and contains no published technique (with errata)."""
     return not point["failed"] and not any(is_published(load(name)) for name in point["chain"])
 
 
-def chosen(points: Sequence[Point], max_error: float | None, max_cost: float | None) -> tuple[Point | None, bool]:
+def choose(points: Sequence[Point], max_error: float | None, max_cost: float | None) -> tuple[Point | None, bool]:
     """The cheapest point within the error, or the most accurate within the cost, and True.
 
     If there is none: the most accurate, or the cheapest, and False. None without points.

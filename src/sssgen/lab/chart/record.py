@@ -37,7 +37,7 @@ Point = Mapping[str, Any]
 Record = Mapping[str, Any]
 
 
-def checked(record: Any) -> dict[str, Any]:
+def check_record(record: Any) -> dict[str, Any]:
     """A copy of the record with None for numbers that are not finite. Raises SssgenError with up to 20 errors."""
     faults = list(_faults(record)) if isinstance(record, dict) else ["it is not a JSON object"]
     if faults:

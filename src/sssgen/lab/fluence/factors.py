@@ -29,12 +29,12 @@ def factors(field: Array, rank: int, floor: float, smooth: Array) -> tuple[Array
     right: Array = np.linalg.svd(scaled, full_matrices=False)[2][:rank]
     left: Array = np.zeros((len(field), rank))
     for _ in range(ROUNDS):
-        left = _solved(right, field, weight)
-        right = _solved(left.T, field.T, weight.T).T
+        left = _solve(right, field, weight)
+        right = _solve(left.T, field.T, weight.T).T
     return left, right
 
 
-def _solved(basis: Array, field: Array, weight: Array) -> Array:
+def _solve(basis: Array, field: Array, weight: Array) -> Array:
     """The coefficients (rows, rank) of `basis` (rank, columns) that fit each row of the field best."""
     rank = len(basis)
     pairs = (basis[:, None] * basis[None]).reshape(rank * rank, -1)

@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from sssgen.jobs.executor import Failure, Item, Progress, run
 from sssgen.lab.fluence import octahedron
 from sssgen.lab.fluence.photons import Body, Medium, Tracer
-from sssgen.lab.fluence.projection import Projection, covered
+from sssgen.lab.fluence.projection import Projection, inside_shares
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.lab.fluence.walks import Walks
-from sssgen.lab.jobs.executor import Failure, Item, Progress, run
 from sssgen.lab.reference.geometry_mesh import mesh_of
 from sssgen.scene.measured import scene_body
 from sssgen.scene.measured.measured_scene import MeasuredScene
@@ -98,7 +98,7 @@ def walks_of(scene: MeasuredScene, voxels: int) -> Walks:
 Directions = tuple[tuple[float, float, float], ...]
 
 
-def traced(
+def trace_photons(
     scene: MeasuredScene, channel: int, towards: Directions, voxels: int, photons: int, seed: int, unscattered: bool
 ) -> tuple[np.ndarray, float]:
     """The estimates (directions, voxels) of `Tracer.trace` for lights in the directions `towards` (object space), and
@@ -113,7 +113,7 @@ def traced(
     return (0.5 * (first + second)).astype(np.float32), float(np.mean((0.5 * (first - second)) ** 2))
 
 
-def walked(scene: MeasuredScene, part: int, towards: Directions, voxels: int, walks: int, seed: int) -> np.ndarray:
+def trace_walks(scene: MeasuredScene, part: int, towards: Directions, voxels: int, walks: int, seed: int) -> np.ndarray:
     """The estimates of `Walks.trace` in all channels, (3, directions, voxels) in float32."""
     walker, rng = walks_of(scene, voxels), np.random.default_rng([seed, part])
     starts = walker.starts(max(min(walks, STARTS // len(towards)), 1), np.array(towards), rng)
@@ -156,14 +156,14 @@ def items(scene: MeasuredScene, directions: Array, settings: Settings) -> list[I
         walks = max(settings.photons * SHARED // WALK_ITEMS, 1)
         arguments = (_tuples(directions), settings.voxels, walks, settings.seed)
         return [
-            Item("sssgen.lab.fluence.fluence_field:walked", (scene, part, *arguments), label)
+            Item("sssgen.lab.fluence.fluence_field:trace_walks", (scene, part, *arguments), label)
             for part in range(WALK_ITEMS)
         ]
     photons = settings.photons * settings.side if settings.fixed else settings.photons
     groups = [_tuples(directions[first : first + GROUP]) for first in range(0, len(directions), GROUP)]
     return [
         Item(
-            "sssgen.lab.fluence.fluence_field:traced",
+            "sssgen.lab.fluence.fluence_field:trace_photons",
             (scene, channel, group, settings.voxels, photons, settings.seed, settings.fixed),
             label,
         )
@@ -189,7 +189,7 @@ def of_directions(
     grid = grid_in_box(scene, settings.voxels)
     cell = float(((grid.high - grid.low) / np.array(grid.shape)).mean()) / PARTS
     distances = scene.geometry.distance(grid.centres(PARTS).reshape(-1, 3))
-    projection = Projection(grid, covered(distances, cell).reshape(grid.voxels, -1))
+    projection = Projection(grid, inside_shares(distances, cell).reshape(grid.voxels, -1))
     counting = projection.counting
     if not counting.any() or not (distances < 0.0).any():
         raise failure("no voxel is inside the body", "use more voxels, or close the mesh")
@@ -197,17 +197,17 @@ def of_directions(
     for result in results:
         if isinstance(result, Failure):
             raise failure(f"{result.name}: {result.message}", result.hint)
-    estimates, error = (_mean if _by_walks(scene) else _joined)(results, len(directions))
+    estimates, error = (_mean if _by_walks(scene) else _join)(results, len(directions))
     noise = error / max(float(estimates.mean()), 1e-30)
     values = projection.texels(estimates.reshape(-1, grid.voxels)).reshape(3, len(directions), -1)
     if settings.fixed and _by_walks(scene):
-        values += _unscattered(scene, tracer(scene, settings.voxels), projection.points(grid), directions, projection)
+        values += _direct_light(scene, tracer(scene, settings.voxels), projection.points(grid), directions, projection)
     distance = scene.geometry.distance(grid.centres()[:, 0])
     nearest, smooth = _nearest(counting, grid), _smooth(values, counting, grid)
     return Field(grid, values, nearest, directions, noise, smooth, distance)
 
 
-def _joined(results: list[tuple[np.ndarray, float]], directions: int) -> tuple[Array, float]:
+def _join(results: list[tuple[np.ndarray, float]], directions: int) -> tuple[Array, float]:
     """The estimates (3, directions, voxels) of photons and their standard error."""
     values = np.concatenate([part for part, _ in results]).astype(np.float64).reshape(3, directions, -1)
     return values, float(np.sqrt(np.mean([square for _, square in results])))
@@ -220,7 +220,9 @@ def _mean(results: list[np.ndarray], directions: int) -> tuple[Array, float]:
     return mean, float(np.sqrt(np.mean(squares) / max(len(results) - 1, 1)))
 
 
-def _unscattered(scene: MeasuredScene, rays: Tracer, points: Array, directions: Array, projection: Projection) -> Array:
+def _direct_light(
+    scene: MeasuredScene, rays: Tracer, points: Array, directions: Array, projection: Projection
+) -> Array:
     """The texels of light that has not been scattered, (3, 1, counting), from `points`, those of the projection."""
     lengths = rays.lengths(points, directions)[:, 0]
     light = [0.25 * np.exp(-medium_of(scene, channel).extinction * lengths) for channel in range(3)]

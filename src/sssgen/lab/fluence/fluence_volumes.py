@@ -22,16 +22,16 @@ CHANNELS = 4
 """Of a texel of the table."""
 
 
-class Factored(NamedTuple):
+class FactoredVolumes(NamedTuple):
     """Fluence = map 0 + sum over k of latent k times map k."""
 
     latents: Bytes
     """(z, y, x, rank): numbers in 0..1, times 255"""
     table: Array
-    """(side + 2, tiles (side + 2), 4): octahedral maps with a border of one texel, as `packed` places them"""
+    """(side + 2, tiles (side + 2), 4): octahedral maps with a border of one texel, as `pack_maps` places them"""
 
 
-def factored(field: Field, rank: int) -> Factored:
+def factor_field(field: Field, rank: int) -> FactoredVolumes:
     """The field as `rank` volumes and a table."""
     channels, count, voxels = field.values.shape
     columns = field.values.reshape(channels * count, voxels).T
@@ -44,9 +44,9 @@ def factored(field: Field, rank: int) -> Factored:
     tiles = np.concatenate([(low @ rows)[None], size[:, None] * rows])
     side = round(count**0.5)
     squares = tiles.reshape(rank + 1, channels, side, side).transpose(0, 2, 3, 1)
-    table = np.concatenate([bordered(square) for square in packed(squares)], axis=1)
+    table = np.concatenate([add_border(square) for square in pack_maps(squares)], axis=1)
     stored = np.rint(255.0 * (latents - low) / size).astype(np.uint8)
-    return Factored(stored[field.nearest].reshape(*field.grid.shape[::-1], rank), table)
+    return FactoredVolumes(stored[field.nearest].reshape(*field.grid.shape[::-1], rank), table)
 
 
 def tiles_of(rank: int) -> int:
@@ -54,7 +54,7 @@ def tiles_of(rank: int) -> int:
     return -(-3 * (rank + 1) // CHANNELS)
 
 
-def packed(maps: Array) -> Array:
+def pack_maps(maps: Array) -> Array:
     """Maps (n, side, side, 3) in fewer tiles of four channels: the last ones are in the alphas of the first ones."""
     tiles = np.zeros((tiles_of(len(maps) - 1), *maps.shape[1:3], CHANNELS))
     tiles[..., :3] = maps[: len(tiles)]
@@ -63,7 +63,7 @@ def packed(maps: Array) -> Array:
     return tiles
 
 
-def bordered(tile: Array) -> Array:
+def add_border(tile: Array) -> Array:
     """An octahedral map (side, side, channels) with a border: across an edge lies the same edge, reversed."""
     wide = np.pad(tile, ((1, 1), (1, 1), (0, 0)), mode="edge")
     wide[0, 1:-1], wide[-1, 1:-1] = tile[0, ::-1], tile[-1, ::-1]
@@ -71,7 +71,7 @@ def bordered(tile: Array) -> Array:
     return wide
 
 
-class Fixed(NamedTuple):
+class LightVolume(NamedTuple):
     """Light of one light = scale times the square of a texel; its alpha is the distance from the surface."""
 
     texels: Bytes
@@ -82,7 +82,7 @@ class Fixed(NamedTuple):
     """The distance outside that alpha 1 stands for, inside alpha 0, in object space"""
 
 
-def fixed(field: Field) -> Fixed:
+def light_volume(field: Field) -> LightVolume:
     """The volume of a field of one light."""
     values = np.maximum(field.values[:, 0].T, 0.0)
     scale = np.maximum(values.max(axis=0), 1e-12)
@@ -90,7 +90,7 @@ def fixed(field: Field) -> Fixed:
     reach = reach_of(field.grid)
     distance = np.clip(0.5 + 0.5 * field.distance / reach, 0.0, 1.0)
     texels = np.rint(255.0 * np.concatenate([light, distance[:, None]], axis=1)).astype(np.uint8)
-    return Fixed(texels.reshape(*field.grid.shape[::-1], 4), scale, reach)
+    return LightVolume(texels.reshape(*field.grid.shape[::-1], 4), scale, reach)
 
 
 def reach_of(grid: Grid) -> float:

@@ -116,7 +116,7 @@ class Tracer:
             cell = number[counted] * grid.voxels + grid.texel_of(position[counted], rng)
             sums += np.bincount(cell, weight[counted], len(sums))
             crosses = ~collides
-            turned = self._crossed(direction[crosses], normal[crosses], slope[crosses], medium.ior, rng)
+            turned = self._refract_or_reflect(direction[crosses], normal[crosses], slope[crosses], medium.ior, rng)
             direction[crosses] = turned
             position[crosses] += STEP * self.body.size * turned
             direction[collides] = scatter(direction[collides], medium.anisotropy, rng)
@@ -147,7 +147,9 @@ class Tracer:
         return np.concatenate(positions), np.array(areas)
 
     @staticmethod
-    def _crossed(direction: Array, normal: Array, slope: Array, ior: float, rng: np.random.Generator) -> Array:
+    def _refract_or_reflect(
+        direction: Array, normal: Array, slope: Array, ior: float, rng: np.random.Generator
+    ) -> Array:
         """The directions after the surface: refracted, or reflected with Fresnel's probability."""
         if ior == 1.0:
             return direction

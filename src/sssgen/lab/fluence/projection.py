@@ -61,7 +61,7 @@ class Projection:
         return solved
 
 
-def covered(distance: Array, size: float) -> Array:
+def inside_shares(distance: Array, size: float) -> Array:
     """The parts inside of cells with an edge `size`, for the distances of their centres: exact where the surface is
     parallel to a side."""
     return np.clip(0.5 - distance / size, 0.0, 1.0)

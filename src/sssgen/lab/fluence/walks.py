@@ -83,12 +83,12 @@ class Walks:
         group = max(len(expected) * FOLLOWED // max(walks, 1), 1)
         for first in range(0, len(expected), group):
             some = slice(first, first + group)
-            left = self._left(medium, starts.points[some], expected[some], rng)
+            left = self._collisions(medium, starts.points[some], expected[some], rng)
             result += (left.T @ light[some]).T
         result *= np.float32(medium.albedo * starts.volume / (4.0 * grid.volume))
         return result
 
-    def _left(self, medium: Medium, points: Array, expected: Singles, rng: np.random.Generator) -> Any:
+    def _collisions(self, medium: Medium, points: Array, expected: Singles, rng: np.random.Generator) -> Any:
         """The weights of the collisions of walks from each point, a sparse matrix (points, voxels).
 
         `expected` is the mean number of walks from each.

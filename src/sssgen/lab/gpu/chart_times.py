@@ -56,7 +56,7 @@ def with_gpu_cost(
         scene_points = [point for point in points if point["scene"] == measured.name and not point["failed"]]
         for start in range(0, len(scene_points), AT_ONCE):
             batch = scene_points[start : start + AT_ONCE]
-            times = timed(measured, batch, size, rounds)
+            times = time_points(measured, batch, size, rounds)
             for number, point in enumerate(batch):
                 net = times.net_times[str(number)] - times.net_times[EMPTY]
                 low, median, high = (float(value) for value in np.percentile(net, [10.0, 50.0, 90.0]))
@@ -91,7 +91,7 @@ def by_gpu(record: Mapping[str, Any]) -> dict[str, Any]:
     return {**record, "points": points, "cost": "gpu", "cost_unit": unit}
 
 
-def timed(
+def time_points(
     measured: MeasuredScene, points: Sequence[Mapping[str, Any]], size: tuple[int, int], rounds: int
 ) -> ProgramTimes:
     """The times of the points' shaders, named by their numbers, and of the shader without a chain, EMPTY."""

@@ -123,8 +123,8 @@ class ProgramTimes:
             "programs": {
                 name: {
                     "evaluations": self.evaluations[name],
-                    "frame_ms": _rounded(self.raw(name)),
-                    "net_ms": _rounded(self.net(name)),
+                    "frame_ms": _round(self.raw(name)),
+                    "net_ms": _round(self.net(name)),
                 }
                 for name in self.raw_times
             },
@@ -245,9 +245,11 @@ class _TimedFrame:
         for unit, texture in enumerate(linked.textures):
             texture.use(unit)
         self.context.finish()
-        return self._timed(lambda: [linked.array.render(vertices=3) for _ in range(linked.draws)]) / linked.draws
+        return (
+            self._milliseconds_of(lambda: [linked.array.render(vertices=3) for _ in range(linked.draws)]) / linked.draws
+        )
 
-    def _timed(self, work: Callable[[], object]) -> float:
+    def _milliseconds_of(self, work: Callable[[], object]) -> float:
         # a software rasteriser draws after the query has ended
         if self.device.software:
             start = perf_counter()
@@ -288,5 +290,5 @@ def _spread(values: npt.NDArray[np.float64]) -> Spread:
     return Spread(median, low, high)
 
 
-def _rounded(spread: Spread) -> dict[str, float]:
+def _round(spread: Spread) -> dict[str, float]:
     return {name: float(f"{value:.5g}") for name, value in spread._asdict().items()}

@@ -184,7 +184,7 @@ def of_material(
     text = text.replace("discard;", "return;")  # discarding would shorten the time
     textures = {name: bound.data for name, bound in program.textures.items()}
     sum_of_reads = _sum((_VARYINGS[varying][0], varying) for varying in varyings)
-    floor = f"#version 330 core\n{_declared(varyings)}void shade() {{\n    fragment_color = {sum_of_reads};\n}}\n"
+    floor = f"#version 330 core\n{_declarations(varyings)}void shade() {{\n    fragment_color = {sum_of_reads};\n}}\n"
     uniforms = {**program.values, "timing_evaluations": evaluations}
     main = _main(varyings)
     return Program(name, text + main, uniforms, {**textures, **_bound(points)}, floor + main, evaluations)
@@ -313,7 +313,9 @@ def _shade(called: _Signature, subject: probes.Subject, numbers: Mapping[str, An
     ]
     if called.result != "void":
         call, results = f"{called.result} argument_result = {call}", [(called.result, "argument_result"), *results]
-    shared = "uniform vec3 timing_eye;\nuniform vec3 timing_light;\nuniform float timing_time;\n" + _declared(varyings)
+    shared = "uniform vec3 timing_eye;\nuniform vec3 timing_light;\nuniform float timing_time;\n" + _declarations(
+        varyings
+    )
     start = f"{shared}void shade() {{\n{''.join(locals_)}"
     declarations = "".join(_declaration(param, numbers) for param in uniforms)
     sum_of_inputs = _sum((param.type, f"argument_{param.name}") for param in inputs)
@@ -355,7 +357,7 @@ def _sum(values: Iterable[tuple[str, str]]) -> str:
     return " + ".join(_AS_VEC4[type_].format(name) for type_, name in values) or "vec4(0.0)"
 
 
-def _declared(varyings: Sequence[str]) -> str:
+def _declarations(varyings: Sequence[str]) -> str:
     lines = [f"{_VARYINGS[varying][0]} {varying};\n" for varying in varyings]
     return "".join([*lines, "vec4 fragment_color;\n"])
 

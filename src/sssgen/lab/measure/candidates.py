@@ -246,7 +246,7 @@ def materials(
     `lengths` are thicknesses, `views` lengths along the eye's ray, `paths` lengths from a point inside the body.
     """
     result = [Candidate("material", "none", "no translucency", (), ())]
-    for name, chain in published().items():
+    for name, chain in baselines().items():
         result.append(Candidate("material", name, name, (), chain, True))
     for light in of_role("translucency"):
         if is_published(light):
@@ -281,7 +281,7 @@ def materials(
 
 
 @cache
-def published() -> dict[str, tuple[str, ...]]:
+def baselines() -> dict[str, tuple[str, ...]]:
     """The published baselines: name → techniques."""
     with open(PUBLISHED, "rb") as file:
         return {chain["name"]: tuple(chain["techniques"]) for chain in tomllib.load(file)["chain"]}

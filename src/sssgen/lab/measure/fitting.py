@@ -64,7 +64,7 @@ class Factor(NamedTuple):
         return [{self.name: unit} for unit in np.eye(self.components)] if self.weights else [{}]
 
 
-class Fitted(NamedTuple):
+class FitResult(NamedTuple):
     """A chain's parameters for a medium."""
 
     parameters: dict[str, tuple[float, ...]]
@@ -84,12 +84,12 @@ class Fitted(NamedTuple):
         return picture
 
 
-def fit(chains: Sequence[Chain | None], problems: Sequence[Problem]) -> Fitted:
+def fit(chains: Sequence[Chain | None], problems: Sequence[Problem]) -> FitResult:
     """The best parameters over all problems, each with the chain for its body; None stands for the empty chain.
 
     Values that are not finite count as 1e3, so that the search avoids them. Raises SssgenError without SciPy.
     """
-    thinned = [problem.thinned(LANES) for problem in problems]
+    thinned = [problem.thin_out(LANES) for problem in problems]
     compiled = [chain for chain in chains if chain is not None]
     if not compiled:
         return _with_best_scales({}, [np.zeros((1, *problem.target.shape)) for problem in thinned], thinned, None)
@@ -101,7 +101,7 @@ def fit(chains: Sequence[Chain | None], problems: Sequence[Problem]) -> Fitted:
 
 def _fit_from(
     chains: Sequence[Chain], problems: Sequence[Problem], free: Sequence[Free], start: Array, factor: Factor | None
-) -> Fitted:
+) -> FitResult:
     """The result of one search, which begins at the coordinates `start`."""
     optimize = need("scipy.optimize", "scipy", "chart")
 
@@ -114,7 +114,7 @@ def _fit_from(
         ]
 
     def residual(x: Array) -> Array:
-        values = values_of(_named(free, x))
+        values = values_of(_values_by_name(free, x))
         fitted = _with_best_scales({}, values, problems, factor)
         weights = np.array(fitted.parameters[factor.name]) if factor is not None and factor.weights else np.ones(1)
         return np.concatenate([
@@ -127,7 +127,8 @@ def _fit_from(
         evaluations = max(EVALUATIONS // (len(start) + 1), 8)
         x = optimize.least_squares(residual, start, bounds=(0.0, 1.0), diff_step=1e-3, max_nfev=evaluations).x
     parameters = {
-        name: tuple(float(np.float32(part)) for part in np.atleast_1d(value)) for name, value in _named(free, x).items()
+        name: tuple(float(np.float32(part)) for part in np.atleast_1d(value))
+        for name, value in _values_by_name(free, x).items()
     }
     return _with_best_scales(parameters, values_of(chain_values(parameters)), problems, factor)
 
@@ -137,7 +138,7 @@ def chain_values(parameters: Mapping[str, Sequence[float]]) -> dict[str, Any]:
     return {name: _component(np.array(value)) for name, value in parameters.items()}
 
 
-def _residual(fitted: Fitted, values: Array, problem: Problem) -> Array:
+def _residual(fitted: FitResult, values: Array, problem: Problem) -> Array:
     """The relative error of each lane, weighted so that all problems count equally."""
     difference: Array = (fitted.apply(values, problem) - problem.target) / np.sqrt(problem.target**2 + EPSILON)
     weighted: Array = difference / np.sqrt(problem.target.size)
@@ -149,7 +150,7 @@ def _with_best_scales(
     values: Sequence[Array],
     problems: Sequence[Problem],
     factor: Factor | None,
-) -> Fitted:
+) -> FitResult:
     """The best scales of the values and of the Lambert reflection, all at least 0, for these parameters.
 
     `values` has the terms of each problem, (terms, channels, lanes). Each channel has its own scale only if the factor
@@ -186,7 +187,7 @@ def _with_best_scales(
     if factor is not None and weighted:  # the weights are the parameter itself
         parameters = {**parameters, name: tuple(float(np.float32(part)) for part in best[:-channels])}
         scale, name = np.ones(channels), ""
-    return Fitted(parameters, tuple(map(float, scale)), albedo, error, name)
+    return FitResult(parameters, tuple(map(float, scale)), albedo, error, name)
 
 
 def _finite(values: Array) -> Array:
@@ -224,7 +225,7 @@ def is_factor(chain: Chain, uniform: Mapping[str, Any], problem: Problem) -> boo
     name, default = uniform["technique_name"], np.array(uniform["default"])
     if not (default > 0.0).all():
         return False
-    small = problem.thinned(40)
+    small = problem.thin_out(40)
     with np.errstate(all="ignore"):
         values = small.values(chain, {name: _component(0.4 * default)})
         doubled = small.values(chain, {name: _component(0.8 * default)})
@@ -237,7 +238,7 @@ def is_factor(chain: Chain, uniform: Mapping[str, Any], problem: Problem) -> boo
 def is_sum(chain: Chain, uniform: Mapping[str, Any], problem: Problem) -> bool:
     """Whether the output is a sum of terms, each weighted with a component of the parameter."""
     name, default = uniform["technique_name"], np.array(uniform["default"])
-    small = problem.thinned(40)
+    small = problem.thin_out(40)
     with np.errstate(all="ignore"):
         terms = [small.values(chain, {name: default * unit}) for unit in np.eye(len(default))]
         whole = small.values(chain, {name: default})
@@ -248,7 +249,7 @@ def _component(value: Array) -> Any:
     return value if len(value) > 1 else value[0]
 
 
-def _named(free: Sequence[Free], x: Array) -> dict[str, Any]:
+def _values_by_name(free: Sequence[Free], x: Array) -> dict[str, Any]:
     """The parameters' values at the search's coordinates."""
     values, start = {}, 0
     for parameter in free:

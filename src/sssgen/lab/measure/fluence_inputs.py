@@ -8,10 +8,10 @@ from itertools import chain
 
 import numpy as np
 
+from sssgen.jobs.executor import Item
 from sssgen.lab.fluence import fluence_field as field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence import octahedron
-from sssgen.lab.jobs.executor import Item
 from sssgen.run.backends import Array
 from sssgen.scene.bounds import placed_corners
 from sssgen.scene.measured.measured_scene import MeasuredScene
@@ -31,7 +31,7 @@ def of_light(scene: MeasuredScene, light: Light) -> dict[str, Callable[[], Textu
     """The textures of `sssgen bake fluence` by their names in techniques."""
     if scene.medium is None:
         return {}
-    computed: dict[str, Callable[[], Texture]] = {"fluence_volume": partial(_fixed, scene, light)}
+    computed: dict[str, Callable[[], Texture]] = {"fluence_volume": partial(_light_volume, scene, light)}
     for rank in RANKS:
         computed[f"fluence_table_{rank}"] = partial(_table, scene, rank)
         for number in range(rank // LATENTS):
@@ -71,8 +71,8 @@ def _field(scene: MeasuredScene) -> field.Field:
 
 
 @lru_cache(8)
-def _factored(scene: MeasuredScene, rank: int) -> volumes.Factored:
-    return volumes.factored(_field(_without_view(scene)), rank)
+def _volumes(scene: MeasuredScene, rank: int) -> volumes.FactoredVolumes:
+    return volumes.factor_field(_field(_without_view(scene)), rank)
 
 
 def _without_view(scene: MeasuredScene) -> MeasuredScene:
@@ -81,11 +81,11 @@ def _without_view(scene: MeasuredScene) -> MeasuredScene:
 
 
 def _table(scene: MeasuredScene, rank: int) -> Texture:
-    return Texture(_factored(_without_view(scene), rank).table.astype(np.float16), wrap="clamp")
+    return Texture(_volumes(_without_view(scene), rank).table.astype(np.float16), wrap="clamp")
 
 
 def _latents(scene: MeasuredScene, rank: int, number: int) -> Texture:
-    stored = _factored(_without_view(scene), rank).latents[..., LATENTS * number : LATENTS * (number + 1)]
+    stored = _volumes(_without_view(scene), rank).latents[..., LATENTS * number : LATENTS * (number + 1)]
     return Texture(stored / 255.0, wrap="clamp")
 
 
@@ -99,7 +99,7 @@ def _towards(scene: MeasuredScene, light: Light) -> Array:
 
 
 @lru_cache(8)
-def _fixed(scene: MeasuredScene, light: Light) -> Texture:
+def _light_volume(scene: MeasuredScene, light: Light) -> Texture:
     """The light at each voxel; the scale is part of the texels, whose steps are those of the stored volume."""
-    stored = volumes.fixed(field.of_light(_without_view(scene), _towards(scene, light), SETTINGS, processes=0))
+    stored = volumes.light_volume(field.of_light(_without_view(scene), _towards(scene, light), SETTINGS, processes=0))
     return Texture(stored.texels / 255.0 * np.append(np.sqrt(stored.scale), 1.0), wrap="clamp")

@@ -47,7 +47,7 @@ class Chain:
             name = uniform["technique_name"]
             value = values.get(f"{name} {uniform['unit']}", values.get(name))
             if value is not None:
-                self.names[uniform["name"]] = _shaped(uniform["type"], value, self.dtype)
+                self.names[uniform["name"]] = _reshape(uniform["type"], value, self.dtype)
         for texture in self.reflection["textures"]:
             if (data := textures.get(texture["technique_name"])) is not None:
                 self.names[texture["name"]] = data
@@ -97,7 +97,7 @@ class Chain:
         return np.array(np.broadcast_to(value, (len(np.atleast_2d(value)), count)))
 
 
-def _shaped(type_name: str, data: Any, dtype: Any) -> Any:
+def _reshape(type_name: str, data: Any, dtype: Any) -> Any:
     """A value in the emitted module's layout: components first, lanes last."""
     type_ = BY_NAME[type_name.partition("[")[0]]
     kind = dtype if kind_of(type_) == "float" else np.int32

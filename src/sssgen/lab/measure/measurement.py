@@ -14,7 +14,7 @@ import numpy as np
 from sssgen.lab.measure import error_metric as metrics
 from sssgen.lab.measure import fitting
 from sssgen.lab.measure.candidates import PROBES, Candidate, converged_counts, is_calibrated, load
-from sssgen.lab.measure.fitting import Fitted
+from sssgen.lab.measure.fitting import FitResult
 from sssgen.lab.measure.measured_chain import Chain, material_of
 from sssgen.lab.measure.needed_data import NeededData, needed_data
 from sssgen.lab.measure.problem import (
@@ -79,14 +79,14 @@ def _problem_of(role: str, view: View, summed: bool) -> Problem | None:
     return material_problem(view.scene, view.references, summed)
 
 
-def fit_candidate(candidate: Candidate, training: Sequence[View], before: Parameters | None = None) -> Fitted:
+def fit_candidate(candidate: Candidate, training: Sequence[View], before: Parameters | None = None) -> FitResult:
     """Fits the candidate's parameters to the training views, light by light. Raises SssgenError.
 
     `before` has the parameters of its first technique, if they have been fitted: then that technique is evaluated only
     once, and the rest of the chain is fitted to its output.
     """
     if is_calibrated(candidate):
-        return Fitted({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), math.nan)
+        return FitResult({}, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), math.nan)
     solvable = [
         (view, problem) for view in training if (problem := problem_of(candidate.role, view, summed=False)) is not None
     ]
@@ -94,7 +94,7 @@ def fit_candidate(candidate: Candidate, training: Sequence[View], before: Parame
         raise failure(
             "no light passes through the bodies for fitting", "the medium does not scatter, or absorbs all light"
         )
-    problems = [problem.thinned(fitting.LANES) for _, problem in solvable]
+    problems = [problem.thin_out(fitting.LANES) for _, problem in solvable]
     bodies = [body(view.scene.geometry) for view, _ in solvable]
     rest = candidate
     with tempfile.TemporaryDirectory() as folder:
@@ -126,7 +126,7 @@ def chain_of(candidate: Candidate, shape: Body, folder: str, dtype: Any = np.flo
     return Chain(material_of(candidate.stages(shape), folder), dtype)
 
 
-def measure_candidate(candidate: Candidate, fitted: Fitted, views: Sequence[View]) -> dict[str, Any]:
+def measure_candidate(candidate: Candidate, fitted: FitResult, views: Sequence[View]) -> dict[str, Any]:
     """The candidate's error over the views of one scene, with fitted parameters, as a point of a chart's record.
 
     `failed` of the point is not empty if the chain's output has NaN or infinity. Raises SssgenError.
@@ -177,7 +177,7 @@ def measure_candidate(candidate: Candidate, fitted: Fitted, views: Sequence[View
     }  # fmt: skip
 
 
-def pictures_of(candidate: Candidate, fitted: Fitted, view: View) -> tuple[Array, Array]:
+def pictures_of(candidate: Candidate, fitted: FitResult, view: View) -> tuple[Array, Array]:
     """A view of a material by its chain and by the reference: (height, width, 3) each, linear light, exposed alike."""
     problem = problem_of("material", view)
     assert problem is not None
@@ -187,7 +187,7 @@ def pictures_of(candidate: Candidate, fitted: Fitted, view: View) -> tuple[Array
     return visible.picture(_fitted_values(values, fitted, problem)), visible.picture(problem.target)
 
 
-def _fitted_values(values: Array, fitted: Fitted, problem: Problem) -> Array:
+def _fitted_values(values: Array, fitted: FitResult, problem: Problem) -> Array:
     return fitted.apply(np.nan_to_num(values), problem)
 
 
@@ -206,7 +206,7 @@ def difference(values: Array, reference: Array) -> float:
     return float(np.sqrt(((values - reference)[finite] ** 2).mean())) / level if level > 0.0 else 0.0
 
 
-def _values(chain: Chain | None, fitted: Fitted, problem: Problem) -> Array:
+def _values(chain: Chain | None, fitted: FitResult, problem: Problem) -> Array:
     if chain is None:
         return np.zeros_like(problem.target)
     return problem.values(chain, fitting.chain_values(fitted.parameters))

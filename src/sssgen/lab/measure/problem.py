@@ -68,7 +68,7 @@ class Problem:
     def values(self, chain: Chain, parameters: Mapping[str, Any]) -> Array:
         """The chain's output: (channels, lanes)."""
         outputs = []
-        for part in self.parts if any(map(chain.reads, LIGHT_MAPS)) else [self._merged]:
+        for part in self.parts if any(map(chain.reads, LIGHT_MAPS)) else [self._single_part]:
             chain.set({**part.values, **parameters}, part.textures)
             if self.role == "coordinates":
                 outputs.append(UV_RANGE * (chain.surface(part.inputs, "albedo")[:2] - 0.5) - part.inputs["uv"])
@@ -92,14 +92,14 @@ class Problem:
         return replace(self, parts=tuple(parts))
 
     @cached_property
-    def _merged(self) -> Part:
+    def _single_part(self) -> Part:
         """All parts as a single part, with their lanes concatenated: each run of a chain has a large constant cost."""
         if len(self.parts) == 1:
             return self.parts[0]
         counts = [part.inputs["P"].shape[1] for part in self.parts]
 
-        def merged(groups: Sequence[Mapping[str, Any]], names: Collection[str]) -> dict[str, Any]:
-            return {name: _concatenated([values[name] for values in groups], counts) for name in names}
+        def merge(groups: Sequence[Mapping[str, Any]], names: Collection[str]) -> dict[str, Any]:
+            return {name: _concatenate([values[name] for values in groups], counts) for name in names}
 
         first = self.parts[0]
         shared = {
@@ -107,10 +107,10 @@ class Problem:
             for name, value in first.values.items()
             if all(part.values[name] is value for part in self.parts) and np.shape(value)[-1:] != (counts[0],)
         }  # a value of each point, such as a curvature, is repeated for each part
-        values = merged([part.values for part in self.parts], first.values.keys() - shared)
+        values = merge([part.values for part in self.parts], first.values.keys() - shared)
         return Part(
-            merged([part.inputs for part in self.parts], first.inputs.keys()),
-            merged([part.light for part in self.parts], first.light.keys()),
+            merge([part.inputs for part in self.parts], first.inputs.keys()),
+            merge([part.light for part in self.parts], first.light.keys()),
             {**{name: first.values[name] for name in shared}, **values},
             first.textures,
             np.concatenate(
@@ -118,14 +118,14 @@ class Problem:
             ),
         )
 
-    def thinned(self, count: int) -> Problem:
+    def thin_out(self, count: int) -> Problem:
         """The same problem on at most `count` of its lanes, evenly spaced, for fitting."""
         if self.summed or len(self.keep) <= count:
             return self
-        return _selected(self, np.unique(np.linspace(0, len(self.keep) - 1, count).astype(int)))
+        return _select_lanes(self, np.unique(np.linspace(0, len(self.keep) - 1, count).astype(int)))
 
 
-def _selected(problem: Problem, indices: Array) -> Problem:
+def _select_lanes(problem: Problem, indices: Array) -> Problem:
     """The problem with only some of its compared lanes; its parts have no other lanes."""
     lanes = problem.keep[indices]
     parts, start = [], 0
@@ -141,7 +141,7 @@ def _selected(problem: Problem, indices: Array) -> Problem:
     )  # fmt: skip
 
 
-def _concatenated(values: Sequence[Any], counts: Sequence[int]) -> Any:
+def _concatenate(values: Sequence[Any], counts: Sequence[int]) -> Any:
     """The values of several parts, broadcast to their lanes and concatenated."""
     broadcast = [
         np.broadcast_to(value, (*np.shape(value)[:-1], count)) for value, count in zip(values, counts, strict=True)
@@ -152,14 +152,14 @@ def _concatenated(values: Sequence[Any], counts: Sequence[int]) -> Any:
 def _lanes_of(part: Part, lanes: Array, count: int) -> Part:
     """The part with only some of its `count` lanes."""
 
-    def selected(values: Mapping[str, Any]) -> dict[str, Any]:
+    def select(values: Mapping[str, Any]) -> dict[str, Any]:
         return {
             name: value[..., lanes] if np.ndim(value) and np.shape(value)[-1] == count else value
             for name, value in values.items()
         }
 
     color = part.color[:, lanes] if part.color.shape[1] == count else part.color
-    inputs, light, values = selected(part.inputs), selected(part.light), selected(part.values)
+    inputs, light, values = select(part.inputs), select(part.light), select(part.values)
     return part._replace(inputs=inputs, light=light, values=values, color=color)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.lab.jobs.executor import Item
+from sssgen.jobs.executor import Item
 from sssgen.lab.measure.problem import LightReference
 from sssgen.lab.reference.eye_paths import Eye, readings
 from sssgen.lab.reference.first_light import Lamp
@@ -43,7 +43,7 @@ def transport(scene: MeasuredScene, light: int, samples: int, seed: int) -> tupl
     return result.mean.T.astype(np.float32), result.error.T.astype(np.float32)
 
 
-def traced(scene: MeasuredScene, samples: int, seed: int) -> list[LightReference]:
+def trace(scene: MeasuredScene, samples: int, seed: int) -> list[LightReference]:
     """The references of all lights of a scene at once, as `transport`; that of its environment is the last.
 
     Readings of a point light are those of an irradiance of 1 at distance 1, those of an environment are π L.
@@ -73,7 +73,7 @@ def items(scenes: Sequence[MeasuredScene], samples: int = SAMPLES, seed: int = 0
     for scene in scenes:
         label = f"reference of {scene.name}"
         if by_eye_paths(scene):
-            result.append(Item("sssgen.lab.measure.scene_references:traced", (scene, samples, seed), label))
+            result.append(Item("sssgen.lab.measure.scene_references:trace", (scene, samples, seed), label))
         elif scene.medium is not None:
             function = "sssgen.lab.measure.scene_references:transport"
             result += [Item(function, (scene, light, samples, seed), label) for light in range(len(scene.lights))]
@@ -92,7 +92,7 @@ def by_scene(scenes: Sequence[MeasuredScene], results: Sequence[Any]) -> dict[st
     return references
 
 
-def training(scene: MeasuredScene) -> list[MeasuredScene]:
+def training_scenes(scene: MeasuredScene) -> list[MeasuredScene]:
     """The training scenes: balls and bars of the scene's medium, as large as its body and smaller, and a small slab.
 
     Light leaves a bar to all sides, and a slab to none: a large slab would outweigh the others, and no body is one.

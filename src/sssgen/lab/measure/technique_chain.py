@@ -47,11 +47,11 @@ def pictured_stage(technique: Technique, values: tuple[tuple[str, object], ...] 
     """The technique with a picture as each of its textures, and defaults for all but the given values."""
     given = [uniform for uniform in textures_of(technique) if not is_drawn(uniform)]
     return MaterialSection(
-        technique.role, named(technique), (*values, *((one.name, _picture_for(one)) for one in given))
+        technique.role, reference_to(technique), (*values, *((one.name, _picture_for(one)) for one in given))
     )
 
 
-def checkered() -> MaterialSection:
+def checker_stage() -> MaterialSection:
     """The stage that gives the surface the colours of the checker."""
     return pictured_stage(library.load(library.setter("albedo")[0]))
 
@@ -92,7 +92,7 @@ def chain_of(technique: Technique) -> list[MaterialSection]:
     if role in ("coordinates", "surface"):
         stages = [pictured_stage(technique)]
         if technique.name != library.setter("albedo")[0]:
-            stages.insert(0 if role == "surface" else 1, checkered())
+            stages.insert(0 if role == "surface" else 1, checker_stage())
     elif role in ("thickness", "conversion"):
         stages = quantity_stages(technique)
         if role == "conversion":
@@ -106,12 +106,12 @@ def chain_of(technique: Technique) -> list[MaterialSection]:
         raise failure(
             f"'{technique.name}' has the role {role}, which is no part of a body's material", hint, technique.path
         )
-    own = next(index for index, stage in enumerate(stages) if stage.technique == named(technique))
+    own = next(index for index, stage in enumerate(stages) if stage.technique == reference_to(technique))
     stages[own] = stages[own]._replace(bind=tuple(_bindings(technique).items()))
     return [*_suppliers(technique, ()), *stages]
 
 
-def named(technique: Technique) -> str:
+def reference_to(technique: Technique) -> str:
     """The technique as a material of any folder names it."""
     own = library.index().get(technique.name)
     return (
@@ -119,7 +119,7 @@ def named(technique: Technique) -> str:
     )
 
 
-def _needed(technique: Technique) -> list[str]:
+def _quantities_taken(technique: Technique) -> list[str]:
     params = technique.function.params
     return [param.quantity for param in params if param.direction != "out" and param.quantity in _CARRIED]
 
@@ -127,11 +127,11 @@ def _needed(technique: Technique) -> list[str]:
 def _suppliers(technique: Technique, given: tuple[str, ...]) -> list[MaterialSection]:
     """The stages that give the quantities that a technique takes."""
     stages: list[MaterialSection] = []
-    for quantity in dict.fromkeys(_needed(technique)):
+    for quantity in dict.fromkeys(_quantities_taken(technique)):
         if quantity in given:
             continue
         supplier = min(
-            _giving(quantity), key=lambda item: (len(_needed(item)), len(item.function.params)), default=None
+            _givers(quantity), key=lambda item: (len(_quantities_taken(item)), len(item.function.params)), default=None
         )
         if supplier is None:
             raise failure(
@@ -142,7 +142,7 @@ def _suppliers(technique: Technique, given: tuple[str, ...]) -> list[MaterialSec
     return stages
 
 
-def _giving(quantity: str) -> Iterator[Technique]:
+def _givers(quantity: str) -> Iterator[Technique]:
     """The techniques that give a quantity and need no body, no bake and no picture for it."""
     for technique in library.load_all():
         simple = not technique.slots and all(map(is_drawn, textures_of(technique))) and not technique.baseline

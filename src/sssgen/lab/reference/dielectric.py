@@ -38,7 +38,7 @@ class Dielectric(NamedTuple):
     """The refractive index inside, relative to the outside"""
     roughness: float = 0.0
 
-    def turned(self, direction: Array, normal: Array, rng: np.random.Generator) -> Turn:
+    def reflect_or_refract(self, direction: Array, normal: Array, rng: np.random.Generator) -> Turn:
         """Reflected or refracted at random, by Fresnel's share; `normal` is outward. Light and eye paths alike.
 
         The weights are those of light. A path of the eye also has the factor of `radiance`.
@@ -55,10 +55,10 @@ class Dielectric(NamedTuple):
         crosses = rng.random(count) >= reflected
         return Turn(_after(direction, facing, cosine, beyond, ratio, crosses), np.ones(count), crosses)
 
-    def entered(self, direction: Array, normal: Array, rng: np.random.Generator) -> Turn:
+    def refract(self, direction: Array, normal: Array, rng: np.random.Generator) -> Turn:
         """Refracted in any case: the weight has the transmitted share. What is reflected is left out."""
         if self.ior == 1.0 or self.roughness > 0.0:
-            turn = self.turned(direction, normal, rng)
+            turn = self.reflect_or_refract(direction, normal, rng)
             return turn._replace(weight=np.where(turn.crosses, turn.weight, 0.0))
         cosine = -np.einsum("nc,nc->n", direction, normal)
         ratio = np.full_like(cosine, 1.0 / self.ior)

@@ -128,7 +128,7 @@ def _batch(
     result = np.zeros((len(lamps) + (sky is not None), len(eye.position), 3))
     for number, channel in enumerate(unique):
         same = [index for index, candidate in enumerate(channels) if candidate == channel]
-        traced = _traced(body, channel, number, eye, fields, sky, sampling, rng)
+        traced = _trace(body, channel, number, eye, fields, sky, sampling, rng)
         # the sky may differ between channels with the same coefficients
         result[: len(lamps), :, same] = traced[: len(lamps), :, None, 0]
         if sky is not None:
@@ -155,17 +155,17 @@ class _Paths(NamedTuple):
         )
 
 
-def _begun(body: _Body, eye: Eye, samples: int, rng: np.random.Generator) -> _Paths:
+def _enter(body: _Body, eye: Eye, samples: int, rng: np.random.Generator) -> _Paths:
     """Paths behind the surface, `samples` for each point."""
     boundary = body.boundary
     directions, normals = (np.repeat(part, samples, axis=0) for part in (eye.direction, eye.normal))
-    turn = boundary.entered(directions, normals, rng)
+    turn = boundary.refract(directions, normals, rng)
     position = np.repeat(eye.position, samples, axis=0) + body.surface.step * turn.direction
     point = np.repeat(np.arange(len(eye.position)), samples)
     return _Paths(point, position, turn.direction, turn.weight / boundary.ior**2, np.zeros_like(point))
 
 
-def _traced(
+def _trace(
     body: _Body,
     channel: _Channel,
     number: int,
@@ -179,7 +179,7 @@ def _traced(
     surface, voxels, boundary, _ = body
     samples, count = sampling.samples, len(eye.position)
     sums = np.zeros((len(fields) + (sky is not None), count, 3))
-    paths = _begun(body, eye, samples, rng)
+    paths = _enter(body, eye, samples, rng)
     # the first free paths of a point's samples are evenly distributed
     chance = (np.tile(np.arange(samples), count) + rng.random(len(paths.point))) / samples
     while len(paths.point):
@@ -207,8 +207,8 @@ def _traced(
                 cosine = np.einsum("nc,nc->n", -direction[hit], field.direction[number, cell])
                 arriving = arriving * _phase(cosine, channel.anisotropy)
             sums[light, :, 0] += np.pi * np.bincount(point[hit], arriving, count)
-        direction[hit] = _scattered(direction[hit], channel.anisotropy, rng)
-        turn = boundary.turned(direction[meets], normal[meets], rng)
+        direction[hit] = _scatter(direction[hit], channel.anisotropy, rng)
+        turn = boundary.reflect_or_refract(direction[meets], normal[meets], rng)
         factor = np.where(turn.crosses, boundary.radiance(direction[meets], normal[meets]), 1.0)
         weight[meets] *= turn.weight * factor
         direction[meets] = turn.direction
@@ -230,7 +230,7 @@ def _phase(cosine: Array, anisotropy: float) -> Array:
     return value
 
 
-def _scattered(direction: Array, anisotropy: float, rng: np.random.Generator) -> Array:
+def _scatter(direction: Array, anisotropy: float, rng: np.random.Generator) -> Array:
     """Directions after a collision, by Henyey and Greenstein's phase function."""
     count = len(direction)
     cosine = 2.0 * rng.random(count) - 1.0

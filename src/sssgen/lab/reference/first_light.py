@@ -129,7 +129,7 @@ def first_light(
     Raises SssgenError for a point light inside the body.
     """
     surface = voxels.surface
-    position, direction, power = _started(surface, lamp, rays, rng)
+    position, direction, power = _lamp_rays(surface, lamp, rays, rng)
     weight = np.full((rays, len(extinction)), power / rays)
     least = float(extinction.min())
     sums = np.zeros((len(extinction), voxels.count))
@@ -150,7 +150,7 @@ def first_light(
             for picked, values in zip(chosen, share.T, strict=False):
                 picked.add(cell, values, ways, rng)
         weight[inside] *= np.exp(-extinction * ahead[inside, None])
-        turn = boundary.turned(direction, normal, rng)
+        turn = boundary.reflect_or_refract(direction, normal, rng)
         position = position + ahead[:, None] * direction + surface.step * turn.direction
         direction, weight = turn.direction, weight * turn.weight[:, None]
         # what is trapped by total reflection in a clear medium must end, too
@@ -210,7 +210,7 @@ class _Chosen:
         self.direction[cells[earlier]] = direction[index[earlier]]
 
 
-def _started(surface: SurfaceRays, lamp: Lamp, rays: int, rng: np.random.Generator) -> tuple[Array, Array, float]:
+def _lamp_rays(surface: SurfaceRays, lamp: Lamp, rays: int, rng: np.random.Generator) -> tuple[Array, Array, float]:
     """Origins and directions of a lamp's rays at the body, and the power of all."""
     # the points of a lattice (Kronecker's, with the plastic number) are more even than random ones
     at = (np.arange(rays)[:, None] * (0.7548776662466927, 0.5698402909980532) + rng.random(2)) % 1.0

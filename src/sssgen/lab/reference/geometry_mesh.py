@@ -38,7 +38,7 @@ def mesh_of(geometry: Geometry, resolution: int = RESOLUTION) -> tuple[Array, In
     elif isinstance(geometry, Box | Slab):
         vertices, faces = _box(np.array(box_size(geometry)))
     elif isinstance(geometry, Union):
-        vertices, faces = _united([mesh_of(part, resolution) for part in geometry.parts])
+        vertices, faces = _union([mesh_of(part, resolution) for part in geometry.parts])
     else:
         reach = geometry.reach if isinstance(geometry, Distance) else _radius(geometry)
         vertices, faces = _level(geometry.distance, reach, resolution)
@@ -78,7 +78,7 @@ def _ring(major: float, minor: float, steps: int) -> tuple[Array, Indices]:
     return vertices, _halves(quads)
 
 
-def _united(parts: list[tuple[Array, Indices]]) -> tuple[Array, Indices]:
+def _union(parts: list[tuple[Array, Indices]]) -> tuple[Array, Indices]:
     """The surface of the union of closed meshes."""
     manifold = need("manifold3d", "manifold3d", "reference")
     solids = [

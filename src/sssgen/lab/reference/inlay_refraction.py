@@ -30,7 +30,7 @@ class VisibleInlay(NamedTuple):
     depth: float
 
 
-def refracted(V: Array, N: Array, eta: float) -> Array:
+def refract(V: Array, N: Array, eta: float) -> Array:
     """The unit directions (3, n) of rays from the eye after refraction; `eta` is n outside over n inside.
 
     Snell's law in vector form; 0 beyond the critical angle.
@@ -58,7 +58,7 @@ def visible_inlay(scene: MeasuredScene, visible: Points) -> VisibleInlay:
     depth = inlay.depth / scale
     start = visible.inputs["P_object"]
     rotation = to_object[:3, :3] * scale
-    ray = rotation @ refracted(visible.inputs["V"], N, inlay.outside_ior / inlay.ior)
+    ray = rotation @ refract(visible.inputs["V"], N, inlay.outside_ior / inlay.ior)
     t = np.zeros(visible.count)
     hit = np.zeros(visible.count, np.bool_)
     active = np.abs(ray).any(axis=0)

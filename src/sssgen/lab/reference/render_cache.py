@@ -46,11 +46,11 @@ def no_batches(shape: tuple[int, ...]) -> Batches:
     return Batches(0, np.zeros(shape), np.zeros(shape))
 
 
-def cached(key: str, shape: tuple[int, ...], limit: int) -> Batches:
+def read_batches(key: str, shape: tuple[int, ...], limit: int) -> Batches:
     """The largest cached state of a key with at most `limit` batches; no batches without a cache folder."""
     for count in sorted(_counts(key), reverse=True):
         if count <= limit:
-            state = _read(_name(key, count), shape)
+            state = _read_entry(_name(key, count), shape)
             if state is not None and state.number == count:
                 return state
     return no_batches(shape)
@@ -85,7 +85,7 @@ def _counts(key: str) -> list[int]:
     return [int(part) for part in parts if part.isdecimal()]
 
 
-def _read(name: str, shape: tuple[int, ...]) -> Batches | None:
+def _read_entry(name: str, shape: tuple[int, ...]) -> Batches | None:
     """An entry; None for a damaged one."""
     try:
         with np.load(io.BytesIO(cache.read(name)), allow_pickle=False) as entry:

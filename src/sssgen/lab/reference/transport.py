@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.lab.reference.geometry_mesh import RESOLUTION
-from sssgen.lab.reference.render_cache import Batches, cached, store
+from sssgen.lab.reference.render_cache import Batches, read_batches, store
 from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.transport_mitsuba import Body, Channel, Light, Renderer, body_of, mitsuba
 from sssgen.scene.camera import Camera
@@ -135,7 +135,7 @@ def _converge(
     arguments = (_VERSION, mitsuba().__version__, BATCH, channel, light, sampling.seed, sampling.scatterings)
     content = b"".join([repr(arguments).encode(), body.content(), rays[0].tobytes(), rays[1].tobytes()])
     key = cache.digest(content)
-    state = cached(key, (len(rays[0]),), count)
+    state = read_batches(key, (len(rays[0]),), count)
     if state.number == count:
         return state
     base = int(np.random.SeedSequence(int(cache.digest(content + b"stream"), 16)).generate_state(1)[0])

@@ -50,7 +50,7 @@ def inward(normals: Array, count: int) -> Array:
     return directions
 
 
-def fitted(values: Array, directions: Array, valid: Bools) -> Array:
+def fit_coefficients(values: Array, directions: Array, valid: Bools) -> Array:
     """The coefficients (n, 9) of least squares to `values` (n, k) at `directions` (n, k, 3), where `valid`.
 
     They are at most LARGEST.
@@ -95,7 +95,7 @@ def of_points(geometry: Geometry, points: Array, normals: Array, mean_free_path:
     length, valid = length.reshape(-1, rays), valid.reshape(-1, rays)
     turned = directions @ geometry.to_object()[:3, :3].T * geometry.scale
     share = 1.0 - np.exp(-length / mean_free_path)
-    coefficients = fitted(share, turned, valid)
+    coefficients = fit_coefficients(share, turned, valid)
     difference = np.where(valid, np.einsum("nki,ni->nk", harmonics(turned), coefficients) - share, 0.0)
     count = valid.sum(axis=1)
     error = np.sqrt((difference**2).sum(axis=1) / np.maximum(count, 1))

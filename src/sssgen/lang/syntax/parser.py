@@ -16,7 +16,7 @@ from sssgen.lang.syntax.lexer import scan
 from sssgen.lang.syntax.tokens import Comment, Token
 from sssgen.lang.syntax.tree_builder import Builder
 from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError
-from sssgen.support.gc_pause import paused
+from sssgen.support.gc_pause import pause_gc
 
 MAX_DEPTH = 100
 """The deepest nesting of expressions and statements together. Hand-written shaders stay below 30; passes and printers
@@ -46,7 +46,7 @@ def parse(text: str, file: str) -> s.File:
 
     Its only directives are `#include "file"`, which the loader follows, and `#version`, which is ignored.
     """
-    with paused():
+    with pause_gc():
         try:
             tokens, comments = scan(_DIRECTIVE.sub(lambda match: " " * len(match.group()), text), file)
         except SssgenError as error:

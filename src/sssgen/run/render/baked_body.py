@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.material.baked import Baked
+from sssgen.material.baked import BakeFile
 from sssgen.scene import body_identity
 from sssgen.scene.bounds import bounds
 from sssgen.scene.geometry import Geometry
@@ -24,7 +24,7 @@ COARSER, FINER = 2.0, 0.2
 """The mean free path of a material, relative to that of a map of lengths, beyond which the map does not resolve it."""
 
 
-def check_body(sidecar: Baked, geometry: Geometry, name: str) -> None:
+def check_body(sidecar: BakeFile, geometry: Geometry, name: str) -> None:
     """Raises SssgenError if a texture is baked for another shape, or for another scale, than the scene's."""
     body = sidecar.facts.get("body")
     if not isinstance(body, dict):
@@ -58,7 +58,7 @@ def _corner(corner: Iterable[float]) -> str:
     return f"({', '.join(f'{component:.3g}' for component in corner)})"
 
 
-def check_lights(sidecar: Baked, geometry: Geometry, lights: Iterable[Light], name: str) -> None:
+def check_lights(sidecar: BakeFile, geometry: Geometry, lights: Iterable[Light], name: str) -> None:
     """Raises SssgenError if light is baked for another direction than that of every light of the scene, or for lights
     from afar while a light is inside the body.
     """
@@ -78,7 +78,7 @@ def check_lights(sidecar: Baked, geometry: Geometry, lights: Iterable[Light], na
     _check_direction(sidecar, to_object[:3, :3], lights, name)
 
 
-def _check_direction(sidecar: Baked, to_object: npt.NDArray[np.float64], lights: list[Light], name: str) -> None:
+def _check_direction(sidecar: BakeFile, to_object: npt.NDArray[np.float64], lights: list[Light], name: str) -> None:
     fixed = sidecar.facts.get("light")
     if not isinstance(fixed, dict) or np.shape(fixed.get("direction", 0.0)) != (3,):
         return
@@ -93,7 +93,7 @@ def _check_direction(sidecar: Baked, to_object: npt.NDArray[np.float64], lights:
 
 
 def check_resolution(
-    sidecar: Baked, geometry: Geometry, values: Iterable[Mapping[str, tuple[float, ...]]], name: str
+    sidecar: BakeFile, geometry: Geometry, values: Iterable[Mapping[str, tuple[float, ...]]], name: str
 ) -> None:
     """Raises SssgenError if a map of lengths is baked for a mean free path far from that of the material."""
     baked_length, fade = sidecar.facts.get("mean_free_path"), sidecar.parameters.get("fade_length")

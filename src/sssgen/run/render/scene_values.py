@@ -13,7 +13,7 @@ from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import with_article
 from sssgen.ir.view_textures import CUBES, DISTANT_VIEWS, IRRADIANCE, LAYERS, LIGHT_VIEWS, REFLECTIONS
 from sssgen.material import baked
-from sssgen.material.baked import Baked
+from sssgen.material.baked import BakeFile
 from sssgen.material.model import Material
 from sssgen.material.values import WrongValue, read_value
 from sssgen.run.evaluate import input_files as inputs
@@ -27,7 +27,7 @@ from sssgen.scene.geometry import Distance, Geometry
 from sssgen.scene.light_view import LightView
 from sssgen.scene.scene import DistanceTexture, Picture, Scene, placement
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
-from sssgen.support.file_memo import CachedResult, note, remembered
+from sssgen.support.file_memo import CachedResult, note, remember
 from sssgen.support.paths import posix
 from sssgen.targets.runtime.numpy_textures import Texture
 
@@ -93,7 +93,7 @@ def _light_view(geometry: Geometry, light: list[float], layers: bool) -> tuple[L
         return view, half(Texture(depth, wrap="clamp"))
 
     slow = isinstance(geometry, Distance)
-    return remembered(_kept_light_maps, repr((geometry, light, layers)), make, MOST_LIGHT_MAPS) if slow else make()
+    return remember(_kept_light_maps, repr((geometry, light, layers)), make, MOST_LIGHT_MAPS) if slow else make()
 
 
 def _surroundings(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, Texture]:
@@ -153,7 +153,7 @@ def _check_own(
     """Raises SssgenError if a scene's value for a uniform is not that of the medium of its technique's baked light."""
     for texture in reflection["textures"]:
         file = _file(scene, material, texture) if texture["technique"] == uniform["technique"] else ""
-        sidecar = baked.read(file) if file else None
+        sidecar = baked.read_bake_file(file) if file else None
         if sidecar is not None:
             baked.check_medium(sidecar, {uniform["technique_name"]: value}, os.path.basename(file))
 
@@ -164,7 +164,7 @@ def _baked_parameters(scene: Scene, material: Material, reflection: Mapping[str,
     for texture in reflection["textures"]:
         file = _file(scene, material, texture)
         try:
-            sidecar = baked.read(file) if file else None
+            sidecar = baked.read_bake_file(file) if file else None
             if sidecar is None:
                 continue
             baked.check(sidecar, _uniform(material, texture), os.path.basename(file))
@@ -194,14 +194,14 @@ def _baked_parameters(scene: Scene, material: Material, reflection: Mapping[str,
     return parameters
 
 
-def _check_scene(sidecar: Baked, scene: Scene, geometry: Geometry, material: Material, name: str) -> None:
+def _check_scene(sidecar: BakeFile, scene: Scene, geometry: Geometry, material: Material, name: str) -> None:
     """Raises SssgenError if a texture is baked for another body, medium or light than the scene's."""
     baked_body.check_body(sidecar, geometry, name)
     baked_body.check_lights(sidecar, geometry, scene.lights, name)
     baked_body.check_resolution(sidecar, geometry, [stage.values for stage in material.stages], name)
 
 
-def _in_world_space(sidecar: Baked, geometry: Geometry | None) -> dict[str, Any]:
+def _in_world_space(sidecar: BakeFile, geometry: Geometry | None) -> dict[str, Any]:
     """The parameters of a JSON file, transformed from object space to world space where techniques need that.
 
     Raises SssgenError for a depth map of a body that the scene scales, as its lengths are in the units of the bake.
@@ -291,14 +291,14 @@ def _distances(chosen: DistanceTexture, geometry: Geometry) -> Texture:
     def make() -> Texture:
         return half(Texture(chosen.values(copy.deepcopy(geometry)), wrap="clamp"))
 
-    return remembered(_kept_textures, repr((chosen, geometry)), make, MOST_TEXTURES)
+    return remember(_kept_textures, repr((chosen, geometry)), make, MOST_TEXTURES)
 
 
 def _picture(file: str, wrap: str, texture: Mapping[str, Any]) -> Texture:
     """The texture of a file; the last ones are kept until their files change."""
     declared = [texture[name] for name in ("source_name", "type", "color_space")]
     key = repr((os.path.abspath(file), wrap, declared))
-    return remembered(_kept_textures, key, lambda: _read_picture(file, wrap, texture), MOST_TEXTURES)
+    return remember(_kept_textures, key, lambda: _read_picture(file, wrap, texture), MOST_TEXTURES)
 
 
 def _read_picture(file: str, wrap: str, texture: Mapping[str, Any]) -> Texture:

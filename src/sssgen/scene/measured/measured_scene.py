@@ -29,7 +29,7 @@ from sssgen.support import cache
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import stem
 from sssgen.support.text_files import refuse_folder
-from sssgen.support.value_bytes import encoded
+from sssgen.support.value_bytes import encode
 
 SIDE = 64
 """Pixels along the longer side of a measured picture."""
@@ -72,7 +72,7 @@ class MeasuredScene:
     @cached_property
     def key(self) -> str:
         """A digest of the scene."""
-        return cache.digest(encoded(self.__getstate__()))
+        return cache.digest(encode(self.__getstate__()))
 
     @property
     def lit_by(self) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import Any
 
-from sssgen.lab.chart.record import checked, to_csv, to_json
+from sssgen.lab.chart.record import check_record, to_csv, to_json
 from sssgen.support.file_writer import write_files
 
 
@@ -24,7 +24,7 @@ def chart_files(record: Any, stem: str = "chart") -> dict[str, str | bytes]:
     from sssgen.lab.chart.drawing.panels import charts_of
     from sssgen.support.diagnostics import failure
 
-    record = checked(record)
+    record = check_record(record)
     if not record["points"]:
         raise failure("there is nothing to draw: the record has no points")
     charts = charts_of(record)

@@ -107,8 +107,8 @@ def _set_scales(axes: Any, points: Sequence[Point]) -> None:
     errors = [end for bar in bars for end in bar]
     positive = [error for error in errors if error >= LEAST] or [1.0]
     axes.set_xscale("log")
-    axes.set_xlim(*_widened(min(costs), max(costs), 0.10, 0.06))
-    low, high = _widened(min(positive), max(positive), 0.16, 0.18)
+    axes.set_xlim(*_add_margins(min(costs), max(costs), 0.10, 0.06))
+    low, high = _add_margins(min(positive), max(positive), 0.16, 0.18)
     linear = 0.0
     if min(errors, default=1.0) < LEAST:
         linear = 10.0 ** math.floor(math.log10(min(positive)))
@@ -127,7 +127,7 @@ def _set_scales(axes: Any, points: Sequence[Point]) -> None:
         axis.set_minor_locator(ticker.NullLocator())
 
 
-def _widened(least: float, most: float, before: float, after: float) -> tuple[float, float]:
+def _add_margins(least: float, most: float, before: float, after: float) -> tuple[float, float]:
     """The limits with margins, as shares of the range in decades, which is at least 0.8."""
     start, end = math.log10(least), math.log10(most)
     if end - start < 0.8:

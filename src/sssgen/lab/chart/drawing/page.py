@@ -33,7 +33,7 @@ def html_page(record: Record, charts: Sequence[Chart], pictures: Sequence[str]) 
     rows = [_row(point, titles) for chart in charts for panel in chart.panels for point in panel.points]
     names = [*COLUMNS, *(name for name in rows[0] if name not in COLUMNS)]
     return _template().render(
-        charts=[(chart.role, _embedded(svg, chart.role)) for chart, svg in zip(charts, pictures, strict=True)],
+        charts=[(chart.role, _svg_element(svg, chart.role)) for chart, svg in zip(charts, pictures, strict=True)],
         columns=[name for name in names if any(row[name].text not in ("", "–") for row in rows)],
         rows=rows,
         scenes=list(dict.fromkeys(row["scene"].text for row in rows)),
@@ -51,7 +51,7 @@ def _template() -> Template:
     return environment.get_template("page.html")
 
 
-def _embedded(svg: str, role: str) -> str:
+def _svg_element(svg: str, role: str) -> str:
     """The <svg> element of a file, without its metadata, and with ids that are unique in the page."""
     svg = re.sub("<metadata>.*?</metadata>", "", svg[svg.index("<svg") :], flags=re.DOTALL)
     return re.sub(r'(\bid="|url\(#|href="#(?!row\d))', rf"\g<1>{role}_", svg)

@@ -18,19 +18,19 @@ import pytest
 from executor_items import GATE, items, open_gate, runs
 from folders import TESTS
 from processes import HANG, enable_interrupts, wait_until
+from sssgen.analyse.stress.stress_items import run_stress
 from sssgen.analyse.stress.stress_report import Report, as_json
 from sssgen.analyse.stress.stress_run import Machines, Settings, stress
 from sssgen.analyse.stress.subject import specimens
 from sssgen.cli import main as cli
-from sssgen.lab.jobs import dask_cluster as cluster
-from sssgen.lab.jobs import work_items as work
-from sssgen.lab.jobs.executor import Failure, Item, failures, run
-from sssgen.lab.jobs.result_store import Store
-from sssgen.lab.jobs.stress_items import run_stress
-from sssgen.lab.jobs.work_items import execute, task_of
+from sssgen.jobs import dask_cluster as cluster
+from sssgen.jobs import work_items as work
+from sssgen.jobs.executor import Failure, Item, failures, run
+from sssgen.jobs.result_store import Store
+from sssgen.jobs.work_items import execute, task_of
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.progress import ProgressBar
-from sssgen.support.value_bytes import decoded, encoded
+from sssgen.support.value_bytes import decode, encode
 
 
 @pytest.fixture(autouse=True)
@@ -42,15 +42,15 @@ def current_stamps() -> None:
 
 def test_a_worker_with_other_code_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     task = task_of(Item("executor_items:echo", (1,), "the item"))
-    assert decoded(execute(task)) == (1, 1)
+    assert decode(execute(task)) == (1, 1)
     monkeypatch.setattr(work, "code_stamp", lambda module: "another")
-    refused = decoded(execute(task))
+    refused = decode(execute(task))
     assert isinstance(refused, Failure) and "another version of sssgen" in refused.message
 
 
 def as_bytes(results: list[Any]) -> list[bytes]:
     assert not failures(results), failures(results)
-    return [encoded(result) for result in results]
+    return [encode(result) for result in results]
 
 
 def test_results_do_not_depend_on_processes(tmp_path: Path) -> None:
@@ -66,14 +66,14 @@ def test_bytes_depend_only_on_values() -> None:
     text = "".join(["one", "two"])
     fixed = grid.copy()
     fixed.flags.writeable = False
-    assert encoded((text, text)) == encoded(("onetwo", "".join(["onet", "wo"])))
-    assert encoded(grid.T) == encoded(np.ascontiguousarray(grid.T)) != encoded(grid)
-    assert encoded(np.asfortranarray(grid)) == encoded(grid) == encoded(fixed)
-    assert encoded(decoded(encoded(grid.T))) == encoded(grid.T)
+    assert encode((text, text)) == encode(("onetwo", "".join(["onet", "wo"])))
+    assert encode(grid.T) == encode(np.ascontiguousarray(grid.T)) != encode(grid)
+    assert encode(np.asfortranarray(grid)) == encode(grid) == encode(fixed)
+    assert encode(decode(encode(grid.T))) == encode(grid.T)
     cycle: list[Any] = []
     cycle.append(cycle)
     with pytest.raises(ValueError, match="cyclic"):
-        encoded(cycle)
+        encode(cycle)
 
 
 def test_keys() -> None:
@@ -307,10 +307,3 @@ def test_the_command_distributes_its_items(capsys: pytest.CaptureFixture[str]) -
     assert times.sub("", capsys.readouterr().out) == times.sub("", alone)
     assert cli.main([*command, "--processes", "0"]) == 2
     assert "'0' is not a number of processes" in capsys.readouterr().err
-
-
-def test_distributed_rendering_gives_the_same_differences() -> None:
-    jobs = [Item("sssgen.lab.jobs.render_items:compare_backends", ("resin_inlay", ("numpy-f32", "numpy"), (32, 24), 1))]
-    [[single, same]] = results = run(jobs, processes=0, store=Store(""))
-    assert 0.0 < single.worst < 1.0 and single.beyond == 0 and same == (0.0, 0)
-    assert as_bytes(run(jobs, processes=1, store=Store(""))) == as_bytes(results)

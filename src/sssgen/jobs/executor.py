@@ -13,9 +13,9 @@ import os
 from collections.abc import Callable, Generator, Sequence
 from typing import Any
 
-from sssgen.lab.jobs.result_store import Store
-from sssgen.lab.jobs.work_items import EncodedResult, Failure, Item, Task, execute, task_of
-from sssgen.support.value_bytes import decoded
+from sssgen.jobs.result_store import Store
+from sssgen.jobs.work_items import EncodedResult, Failure, Item, Task, execute, task_of
+from sssgen.support.value_bytes import decode
 
 __all__ = ["Failure", "Item", "Progress", "failures", "run"]
 
@@ -43,14 +43,14 @@ def run(
     results: dict[str, Any] = {}
 
     def add_result(key: str, data: bytes) -> Any:
-        results[key] = decoded(data)
+        results[key] = decode(data)
         progress(len(results), len(by_key), by_key[key].name)
         return results[key]
 
     for key in by_key:
         if (stored := store.get(key)) is not None:
             add_result(key, stored)
-    computed = _computed([task for key, task in by_key.items() if key not in results], scheduler, processes)
+    computed = _compute([task for key, task in by_key.items() if key not in results], scheduler, processes)
     try:
         for key, data in computed:
             if not isinstance(add_result(key, data), Failure):
@@ -70,17 +70,17 @@ def failures(results: Sequence[Any]) -> list[Failure]:
     return [result for result in results if isinstance(result, Failure)]
 
 
-def _computed(tasks: list[Task], scheduler: str, processes: int | None) -> Generator[EncodedResult]:
+def _compute(tasks: list[Task], scheduler: str, processes: int | None) -> Generator[EncodedResult]:
     """Yields the tasks' results as they end, in any order. Closing it ends the workers."""
     if not tasks:
         return
     if scheduler:
-        from sssgen.lab.jobs.dask_cluster import on_cluster
+        from sssgen.jobs.dask_cluster import on_cluster
 
         yield from on_cluster(tasks, scheduler)
     elif processes == 0:
         yield from ((task.key, execute(task)) for task in tasks)
     else:
-        from sssgen.lab.jobs.local_workers import in_processes
+        from sssgen.jobs.local_workers import in_processes
 
         yield from in_processes(tasks, min(processes or os.cpu_count() or 1, len(tasks)))

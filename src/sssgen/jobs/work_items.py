@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import PACKAGE, place
-from sssgen.support.value_bytes import decoded, encoded
+from sssgen.support.value_bytes import decode, encode
 
 EncodedResult = tuple[str, bytes]
 """The key of a finished item, and its encoded result."""
@@ -61,7 +61,7 @@ class Task(NamedTuple):
 
 def task_of(item: Item) -> Task:
     """The item with its key: a digest of the function, the arguments and the code."""
-    arguments = encoded(item.arguments)
+    arguments = encode(item.arguments)
     stamp = code_stamp(item.function.partition(":")[0])
     key = cache.digest(b"\0".join([item.function.encode(), stamp.encode(), arguments]))
     return Task(key, item.title, item.function, arguments, stamp)
@@ -72,17 +72,17 @@ def execute(task: Task) -> bytes:
     try:
         module, _, name = task.function.partition(":")
         if code_stamp(module) != task.stamp:
-            return encoded(Failure(task.name, "this worker has another version of sssgen: restart it, or the run"))
+            return encode(Failure(task.name, "this worker has another version of sssgen: restart it, or the run"))
         function = getattr(importlib.import_module(module), name)
-        return encoded(function(*decoded(task.arguments)))
+        return encode(function(*decode(task.arguments)))
     except SssgenError as error:
         hints = dict.fromkeys(diagnostic.hint for diagnostic in error.diagnostics if diagnostic.hint)
         messages = "; ".join(diagnostic.message for diagnostic in error.diagnostics)
-        return encoded(Failure(task.name, messages, "; ".join(hints)))
+        return encode(Failure(task.name, messages, "; ".join(hints)))
     except (Exception, SystemExit) as error:
         frame = traceback.extract_tb(error.__traceback__)[-1]
         position = f"{os.path.basename(frame.filename)}:{frame.lineno}"
-        return encoded(Failure(task.name, f"{type(error).__name__}: {error} ({position})"))
+        return encode(Failure(task.name, f"{type(error).__name__}: {error} ({position})"))
 
 
 @functools.cache

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from sssgen.analyse.stress.stress_report import Report
 from sssgen.analyse.stress.stress_run import Machines, Row, Settings, stress
 from sssgen.analyse.stress.subject import Specimen
-from sssgen.lab.jobs.executor import Item, failures, run
-from sssgen.lab.jobs.result_store import Store
+from sssgen.jobs.executor import Item, failures, run
+from sssgen.jobs.result_store import Store
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.support.progress import ProgressBar
 

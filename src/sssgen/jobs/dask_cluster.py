@@ -13,10 +13,10 @@ import logging
 from collections.abc import Generator, Iterator
 from typing import Any
 
-from sssgen.lab.jobs.work_items import EncodedResult, Failure, Task, execute
+from sssgen.jobs.work_items import EncodedResult, Failure, Task, execute
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
-from sssgen.support.value_bytes import encoded
+from sssgen.support.value_bytes import encode
 
 SECONDS = 5
 """The timeout for the scheduler's answer."""
@@ -35,7 +35,7 @@ def on_cluster(tasks: list[Task], address: str) -> Generator[EncodedResult]:
             if future.status == "cancelled":
                 raise failure(f"the Dask scheduler at {address} was lost", "finished results are stored: run it again")
             if future.status == "error":
-                result = encoded(Failure(task.name, _message(result)))
+                result = encode(Failure(task.name, _message(result)))
             yield task.key, result
 
 
@@ -52,7 +52,7 @@ def _client(distributed: Any, address: str) -> Iterator[Any]:
     for log in logs:
         log.setLevel(logging.CRITICAL)  # its messages about lost workers do not help the user
     try:
-        with _connected(distributed, address) as client:
+        with _connection(distributed, address) as client:
             yield client
     finally:
         for log, level in zip(logs, levels, strict=True):
@@ -60,7 +60,7 @@ def _client(distributed: Any, address: str) -> Iterator[Any]:
 
 
 @contextlib.contextmanager
-def _connected(distributed: Any, address: str) -> Iterator[Any]:
+def _connection(distributed: Any, address: str) -> Iterator[Any]:
     try:
         client = distributed.Client(address, timeout=SECONDS, set_as_default=False)
     except (OSError, ValueError, TypeError) as error:

@@ -6,10 +6,10 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from sssgen.jobs.executor import Item
 from sssgen.lab.chart import charting
 from sssgen.lab.chart.charting import Settings
-from sssgen.lab.chart.picking import allowed, chosen, limit_of
-from sssgen.lab.jobs.executor import Item
+from sssgen.lab.chart.picking import choose, is_allowed, limit_of
 from sssgen.lab.measure.error_metric import flip
 from sssgen.run.backends import Array
 from sssgen.scene.measured.measured_scene import MeasuredScene
@@ -52,7 +52,7 @@ def scene_pictures(
     items = [
         Item(
             "sssgen.lab.measure.measurement:pictures_of",
-            (charting.candidate_of(point), charting.fitted_of(point), views[name][0]),
+            (charting.candidate_of(point), charting.fit_of(point), views[name][0]),
             f"picture of {name}",
         )
         for name, points in choices.items()
@@ -76,7 +76,7 @@ def _points(record: Mapping[str, Any], scene: str, limits: Sequence[float]) -> l
     baselines = [point for point in points if point["baseline"] and not point["failed"]]
     result = [("best published", min(baselines, key=limit_of), True)]
     for limit in limits:
-        point, met = chosen(list(filter(allowed, points)), limit, None)
+        point, met = choose(list(filter(is_allowed, points)), limit, None)
         assert point is not None
         result.append((f"error ≤ {limit:g}", point, met))
     return result

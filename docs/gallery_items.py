@@ -1,6 +1,7 @@
-"""Pictures of scenes as work items: PNG files, and the differences between back ends.
+"""Pictures of scenes as work items of the gallery: PNG files, and the differences between back ends.
 
-An item names an example of the installation, which every worker has.
+An item names an example of the installation, which every worker has. Workers of a cluster need this folder in their
+PYTHONPATH.
 """
 
 from __future__ import annotations
@@ -8,9 +9,9 @@ from __future__ import annotations
 import dataclasses
 import functools
 import io
-import os
 import threading
 from collections.abc import Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -32,7 +33,7 @@ class PictureDifference(NamedTuple):
 
     worst: float
     """The largest difference of a channel, in 1/255 of the encoded sRGB value."""
-    beyond: int
+    differing: int
     """The number of pixels with a channel that differs by more than 1/255."""
 
 
@@ -61,7 +62,7 @@ def compare_backends(
 
 
 def _scene(example: str) -> Scene:
-    return load(os.path.join(place("examples"), example, "scene.toml"))
+    return load(Path(place("examples"), example, "scene.toml"))
 
 
 @functools.cache
