@@ -185,3 +185,16 @@ def test_a_sheen_is_emitted_or_an_error_that_names_it(target: str, tmp_path: Pat
         text = "\n".join(text for file, text in compiled.files.items() if not file.endswith((".json", ".d.ts")))
         written = re.sub(r"(?m)^.*\bsheen_(?:constants|tint|spread)\b.*$", "", text)
         assert written.count("sheen_roughness") + written.count("sheenRoughness") > 3
+
+
+def test_a_frame_in_two_languages_is_written_once() -> None:
+    """Both languages have the same parts, each with its spelling; parameters are passed as their types need it."""
+    target = all_targets()["babylonjs"]
+    inner = target.embedded["wgsl"]
+    assert inner.frame == target.frame and inner.surface == target.surface and inner.variants == target.variants
+    assert set(inner.spelling) == set(target.spelling)
+    entries = sssgen.compile("ice", "babylonjs").reflection["entries"]
+    params = {param["name"]: param for param in entries["surface"]["params"]}
+    uv, tint = params["uv"], params["tint"]
+    assert (uv["expression"], uv["embedded_expressions"]["wgsl"]) == ("sss_uv", "fragmentInputs.sss_uv")
+    assert (tint["expression"], tint["embedded_expressions"]["wgsl"]) == ("sss_tint", "uniforms.sss_tint")

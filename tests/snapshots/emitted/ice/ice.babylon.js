@@ -5,7 +5,7 @@
 //   import { createMaterial } from './ice.babylon.js';
 //   mesh.material = createMaterial({ variation: 0.6 });
 //
-// A PBRMaterial with a plug-in, for WebGL 2 and WebGPU.
+// A PBRMaterial for WebGL 2 and WebGPU.
 // Lights, shadows, fog and the environment are Babylon's.
 
 import { materialClass } from './sssgen-babylon.js';
@@ -66,7 +66,7 @@ export const parameters = {
   power: { type: 'float', default: 6.0, range: [1.0, 32.0], unit: '1', name: 'sss_power' },
 };
 
-/** The textures: type, the one texel of the default, whether it has colours (sRGB), and the name in the shaders. */
+/** The textures: type, the one texel of the default, whether it has colours in sRGB, and the name in the shaders. */
 export const textures = {
   /** Colour of the surface (an sRGB texture), with its opacity in alpha. */
   baseColorTexture: { type: 'sampler2D', default: 'white', color: true, name: 'sss_base_color_texture' },
@@ -101,12 +101,35 @@ const float sss_ENDLESS = 10000.0;
 const float sss_OPAQUE_DEPTH = 80.0;
 
 // The direction of \`x\`; of a zero vector, 0.
-vec2 sss_safe_normalize(vec2 x) {
+vec3 sss_safe_normalize(vec3 x) {
     return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
 }
 
+// The tangent, the bitangent and the normal as columns. \`tangent\` is that of the mesh, with the handedness as
+// w; where it is 0, both come from the derivatives of \`uv\`, and the longer one has the length 1.
+mat3 sss_tangent_frame(vec3 P, vec3 V, vec3 N, float side, vec2 uv, vec4 tangent) {
+    vec3 across = dFdx(P);
+    vec3 up = dFdy(P);
+    vec2 uv_across = dFdx(uv);
+    vec2 uv_up = dFdy(uv);
+    // the rows of some render targets count downwards
+    float upwards = dot(cross(across, up), V) < 0.0 ? -1.0 : 1.0;
+    vec3 first = cross(up, N) * upwards;
+    vec3 second = cross(N, across) * upwards;
+    vec3 T = first * uv_across.x + second * uv_up.x;
+    vec3 B = first * uv_across.y + second * uv_up.y;
+    float scale = inversesqrt(max(max(dot(T, T), dot(B, B)), 1.0e-30));
+    T *= scale;
+    B *= scale;
+    if (dot(tangent.xyz, tangent.xyz) > 0.0) {
+        T = sss_safe_normalize(tangent.xyz);
+        B = cross(N * side, T) * tangent.w;
+    }
+    return mat3(T, B, N);
+}
+
 // The direction of \`x\`; of a zero vector, 0.
-vec3 sss_safe_normalize(vec3 x) {
+vec2 sss_safe_normalize(vec2 x) {
     return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
 }
 
@@ -330,12 +353,35 @@ const sss_ENDLESS: f32 = 10000.0;
 const sss_OPAQUE_DEPTH: f32 = 80.0;
 
 // The direction of \`x\`; of a zero vector, 0.
-fn sss_safe_normalize_vec2(x: vec2f) -> vec2f {
+fn sss_safe_normalize_vec3(x: vec3f) -> vec3f {
     return x * select(0.0, inverseSqrt(dot(x, x)), dot(x, x) > 1.0e-30);
 }
 
+// The tangent, the bitangent and the normal as columns. \`tangent\` is that of the mesh, with the handedness as
+// w; where it is 0, both come from the derivatives of \`uv\`, and the longer one has the length 1.
+fn sss_tangent_frame(P: vec3f, V: vec3f, N: vec3f, side: f32, uv: vec2f, tangent: vec4f) -> mat3x3f {
+    let across = dpdx(P);
+    let up = dpdy(P);
+    let uv_across = dpdx(uv);
+    let uv_up = dpdy(uv);
+    // the rows of some render targets count downwards
+    let upwards = select(1.0, -1.0, dot(cross(across, up), V) < 0.0);
+    let first = cross(up, N) * upwards;
+    let second = cross(N, across) * upwards;
+    var T = first * uv_across.x + second * uv_up.x;
+    var B = first * uv_across.y + second * uv_up.y;
+    let scale = inverseSqrt(max(max(dot(T, T), dot(B, B)), 1.0e-30));
+    T *= scale;
+    B *= scale;
+    if (dot(tangent.xyz, tangent.xyz) > 0.0) {
+        T = sss_safe_normalize_vec3(tangent.xyz);
+        B = cross(N * side, T) * tangent.w;
+    }
+    return mat3x3f(T, B, N);
+}
+
 // The direction of \`x\`; of a zero vector, 0.
-fn sss_safe_normalize_vec3(x: vec3f) -> vec3f {
+fn sss_safe_normalize_vec2(x: vec2f) -> vec2f {
     return x * select(0.0, inverseSqrt(dot(x, x)), dot(x, x) > 1.0e-30);
 }
 
@@ -547,71 +593,19 @@ fn sss_evaluate_translucency(surface: sss_Surface, V: vec3f, N: vec3f, L: vec3f,
 }
 `;
 
-/** What goes into Babylon's shaders, at which of their places: [GLSL, WGSL]. */
-const VERTEX = [{
-  CUSTOM_VERTEX_DEFINITIONS: `
-varying vec2 sss_uv;
-varying vec4 sss_tangent;
-`,
-  CUSTOM_VERTEX_MAIN_END: `
+/** What goes into Babylon's shaders: in GLSL, and in WGSL. */
+const SHELLS = [{
+  functions: GLSL,
+  vertex: `
 sss_uv = uvUpdated;
-float sss_turns = sign(dot(finalWorld[0].xyz, cross(finalWorld[1].xyz, finalWorld[2].xyz)));
 #ifdef TANGENT
-sss_tangent = vec4((finalWorld * vec4(tangentUpdated.xyz, 0.0)).xyz, tangentUpdated.w * sss_turns);
+sss_tangent = vec4((finalWorld * vec4(tangentUpdated.xyz, 0.0)).xyz, tangentUpdated.w);
+sss_tangent.w *= sign(dot(finalWorld[0].xyz, cross(finalWorld[1].xyz, finalWorld[2].xyz)));
 #else
 sss_tangent = vec4(0.0);
 #endif
 `,
-}, {
-  CUSTOM_VERTEX_DEFINITIONS: `
-varying sss_uv: vec2f;
-varying sss_tangent: vec4f;
-`,
-  CUSTOM_VERTEX_MAIN_END: `
-vertexOutputs.sss_uv = uvUpdated;
-var sss_turns: f32 = sign(dot(finalWorld[0].xyz, cross(finalWorld[1].xyz, finalWorld[2].xyz)));
-#ifdef TANGENT
-vertexOutputs.sss_tangent = vec4((finalWorld * vec4(tangentUpdated.xyz, 0.0)).xyz, tangentUpdated.w * sss_turns);
-#else
-vertexOutputs.sss_tangent = vec4(0.0);
-#endif
-`,
-}];
-const FRAGMENT = [{
-  CUSTOM_FRAGMENT_DEFINITIONS: `
-varying vec2 sss_uv;
-varying vec4 sss_tangent;
-vec3 sss_N;
-vec3 sss_V;
-vec3 sss_T;
-vec3 sss_B;
-float sss_side;
-${GLSL}
-sss_Surface sss_surface;
-vec3 sss_unit(vec3 v) {
-  return v * inversesqrt(max(dot(v, v), 1e-30));
-}
-// The tangent and the bitangent: those of the mesh, else from the derivatives of uv.
-void sss_frame() {
-  vec3 first = cross(dFdy(vPositionW), sss_N);
-  vec3 second = cross(sss_N, dFdx(vPositionW));
-  vec2 across = dFdx(sss_uv);
-  vec2 up = dFdy(sss_uv);
-  sss_T = first * across.x + second * up.x;
-  sss_B = first * across.y + second * up.y;
-  float longest = inversesqrt(max(max(dot(sss_T, sss_T), dot(sss_B, sss_B)), 1e-30));
-  sss_T *= longest;
-  sss_B *= longest;
-  if (dot(sss_tangent.xyz, sss_tangent.xyz) > 0.0) {
-    sss_T = sss_unit(sss_tangent.xyz);
-    sss_B = cross(sss_N * sss_side, sss_T) * sss_tangent.w;
-  }
-}
-vec3 sss_through(vec3 L, vec3 N, float sss_light_nearness, vec3 sss_light_color) {
-  return sss_light_color * sss_evaluate_translucency(sss_surface, sss_V, N, L, sss_distortion, sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power);
-}
-`,
-  CUSTOM_FRAGMENT_MAIN_BEGIN: `
+  begin: `
 sss_side = 1.0;
 #ifdef TWOSIDEDLIGHTING
 sss_side = gl_FrontFacing ? 1.0 : -1.0;
@@ -620,90 +614,45 @@ sss_side = -sss_side;
 #endif
 #endif
 #ifdef NORMAL
-sss_N = sss_unit(vNormalW) * sss_side;
+sss_N = sss_safe_normalize(vNormalW) * sss_side;
 #else
-sss_N = sss_unit(cross(dFdx(vPositionW), dFdy(vPositionW))) * vEyePosition.w;
+sss_N = sss_safe_normalize(cross(dFdx(vPositionW), dFdy(vPositionW))) * vEyePosition.w;
 #endif
-sss_V = sss_unit(vEyePosition.xyz - vPositionW);
-sss_frame();
-bool sss_pending = false;
-float sss_light_nearness = 0.0;
-vec3 sss_light_color = vec3(0.0);
-vec3 sss_lights = vec3(0.0);
+sss_V = sss_safe_normalize(vEyePosition.xyz - vPositionW);
+sss_frame = sss_tangent_frame(vPositionW, sss_V, sss_N, sss_side, sss_uv, sss_tangent);
+sss_lights = vec3(0.0);
+sss_pending = false;
 sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count, sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint, sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief, sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture, sss_red_speed, sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color, sss_texel_size, sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height);
 `,
-  CUSTOM_FRAGMENT_UPDATE_ALBEDO: `
+  translucency: 'sss_evaluate_translucency(sss_surface, sss_V, normalW, preInfo.L, sss_distortion, sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power)',
+  places: {
+    CUSTOM_FRAGMENT_UPDATE_ALBEDO: `
 surfaceAlbedo *= sss_surface.albedo;
 alpha *= sss_surface.alpha;
 `,
-  CUSTOM_FRAGMENT_BEFORE_LIGHTS: `
-normalW = sss_unit((sss_T * sss_surface.normal.x + sss_B * sss_surface.normal.y) * sss_side + sss_N * sss_surface.normal.z);
+    CUSTOM_FRAGMENT_BEFORE_LIGHTS: `
+normalW = sss_safe_normalize(sss_frame * vec3(sss_surface.normal.xy * sss_side, sss_surface.normal.z));
 `,
-  CUSTOM_FRAGMENT_UPDATE_METALLICROUGHNESS: `
+    CUSTOM_FRAGMENT_UPDATE_METALLICROUGHNESS: `
 metallicRoughness.r = sss_surface.metallic;
 metallicRoughness.g = sss_surface.roughness;
 `,
-  // Where Babylon begins a light, the one before it is complete. The light's colour has no shadow: light that comes
-  // through entered on the far side.
-  '!#define CUSTOM_LIGHT(\\d+)_COLOR': `
-if (sss_pending) {
-  sss_lights += sss_through(preInfo.L, normalW, sss_light_nearness / max(preInfo.lightDistance, 0.01), sss_light_color * preInfo.attenuation);
-}
-sss_light_color = diffuse$1.rgb;
-sss_light_nearness = 0.0;
-#if defined(POINTLIGHT$1) || defined(SPOTLIGHT$1)
-sss_light_nearness = 1.0;
-#endif
-sss_pending = true;
-#if defined(HEMILIGHT$1) || defined(AREALIGHT$1) || defined(CLUSTLIGHT$1)
-sss_pending = false;
-#endif
-#define CUSTOM_LIGHT$1_COLOR
-`,
-  CUSTOM_FRAGMENT_BEFORE_FINALCOLORCOMPOSITION: `
-#ifndef UNLIT
-if (sss_pending) {
-  sss_lights += sss_through(preInfo.L, normalW, sss_light_nearness / max(preInfo.lightDistance, 0.01), sss_light_color * preInfo.attenuation);
-}
-finalDiffuse += sss_lights * vLightingIntensity.x / 3.14159265;
-#endif
+    CUSTOM_FRAGMENT_BEFORE_FINALCOLORCOMPOSITION: `
 finalEmissive += sss_surface.emission * vLightingIntensity.y;
 `,
+  },
 }, {
-  CUSTOM_FRAGMENT_DEFINITIONS: `
-varying sss_uv: vec2f;
-varying sss_tangent: vec4f;
-var<private> sss_N: vec3f;
-var<private> sss_V: vec3f;
-var<private> sss_T: vec3f;
-var<private> sss_B: vec3f;
-var<private> sss_side: f32;
-${WGSL}
-var<private> sss_surface: sss_Surface;
-fn sss_unit(v: vec3f) -> vec3f {
-  return v * inverseSqrt(max(dot(v, v), 1e-30));
-}
-// The tangent and the bitangent: those of the mesh, else from the derivatives of uv.
-fn sss_frame() {
-  var first: vec3f = cross(dpdy(fragmentInputs.vPositionW), sss_N);
-  var second: vec3f = cross(sss_N, dpdx(fragmentInputs.vPositionW));
-  var across: vec2f = dpdx(fragmentInputs.sss_uv);
-  var up: vec2f = dpdy(fragmentInputs.sss_uv);
-  sss_T = first * across.x + second * up.x;
-  sss_B = first * across.y + second * up.y;
-  var longest: f32 = inverseSqrt(max(max(dot(sss_T, sss_T), dot(sss_B, sss_B)), 1e-30));
-  sss_T *= longest;
-  sss_B *= longest;
-  if (dot(fragmentInputs.sss_tangent.xyz, fragmentInputs.sss_tangent.xyz) > 0.0) {
-    sss_T = sss_unit(fragmentInputs.sss_tangent.xyz);
-    sss_B = cross(sss_N * sss_side, sss_T) * fragmentInputs.sss_tangent.w;
-  }
-}
-fn sss_through(L: vec3f, N: vec3f, sss_light_nearness: f32, sss_light_color: vec3f) -> vec3f {
-  return sss_light_color * sss_evaluate_translucency(sss_surface, sss_V, N, L, uniforms.sss_distortion, uniforms.sss_subsurface_color, uniforms.sss_attenuation, uniforms.sss_scale, uniforms.sss_ambient, uniforms.sss_power);
-}
+  functions: WGSL,
+  vertex: `
+vertexOutputs.sss_uv = uvUpdated;
+#ifdef TANGENT
+vertexOutputs.sss_tangent = vec4((finalWorld * vec4(tangentUpdated.xyz, 0.0)).xyz, tangentUpdated.w);
+vertexOutputs.sss_tangent.w *= sign(dot(finalWorld[0].xyz, cross(finalWorld[1].xyz, finalWorld[2].xyz)));
+#else
+vertexOutputs.sss_tangent = vec4(0.0);
+#endif
 `,
-  CUSTOM_FRAGMENT_MAIN_BEGIN: `
+  begin: `
 sss_side = 1.0;
 #ifdef TWOSIDEDLIGHTING
 sss_side = select(-1.0, 1.0, fragmentInputs.frontFacing);
@@ -712,55 +661,33 @@ sss_side = -sss_side;
 #endif
 #endif
 #ifdef NORMAL
-sss_N = sss_unit(fragmentInputs.vNormalW) * sss_side;
+sss_N = sss_safe_normalize_vec3(fragmentInputs.vNormalW) * sss_side;
 #else
-sss_N = sss_unit(cross(dpdx(fragmentInputs.vPositionW), dpdy(fragmentInputs.vPositionW))) * scene.vEyePosition.w;
+sss_N = sss_safe_normalize_vec3(cross(dpdx(fragmentInputs.vPositionW), dpdy(fragmentInputs.vPositionW))) * scene.vEyePosition.w;
 #endif
-sss_V = sss_unit(scene.vEyePosition.xyz - fragmentInputs.vPositionW);
-sss_frame();
-var sss_pending: bool = false;
-var sss_light_nearness: f32 = 0.0;
-var sss_light_color: vec3f = vec3f(0.0);
-var sss_lights: vec3f = vec3f(0.0);
+sss_V = sss_safe_normalize_vec3(scene.vEyePosition.xyz - fragmentInputs.vPositionW);
+sss_frame = sss_tangent_frame(fragmentInputs.vPositionW, sss_V, sss_N, sss_side, fragmentInputs.sss_uv, fragmentInputs.sss_tangent);
+sss_lights = vec3(0.0);
+sss_pending = false;
 sss_surface = sss_evaluate_surface(fragmentInputs.sss_uv, uniforms.sss_time, uniforms.sss_variation, uniforms.sss_cell_count, uniforms.sss_thickness_factor, uniforms.sss_bevel, uniforms.sss_attenuation_distance, uniforms.sss_tint, sss_base_color_texture, sss_base_color_textureSampler, uniforms.sss_metalness, uniforms.sss_surface_roughness, uniforms.sss_relief, uniforms.sss_uv_per_unit, uniforms.sss_cover, sss_cover_texture, sss_cover_textureSampler, sss_packed_texture, sss_packed_textureSampler, uniforms.sss_red_speed, uniforms.sss_green_speed, uniforms.sss_blue_speed, uniforms.sss_vein_color, uniforms.sss_spark_color, uniforms.sss_texel_size, uniforms.sss_edge, uniforms.sss_erosion, sss_erosion_texture, sss_erosion_textureSampler, uniforms.sss_edge_height);
 `,
-  CUSTOM_FRAGMENT_UPDATE_ALBEDO: `
+  translucency: 'sss_evaluate_translucency(sss_surface, sss_V, normalW, preInfo.L, uniforms.sss_distortion, uniforms.sss_subsurface_color, uniforms.sss_attenuation, uniforms.sss_scale, uniforms.sss_ambient, uniforms.sss_power)',
+  places: {
+    CUSTOM_FRAGMENT_UPDATE_ALBEDO: `
 surfaceAlbedo *= sss_surface.albedo;
 alpha *= sss_surface.alpha;
 `,
-  CUSTOM_FRAGMENT_BEFORE_LIGHTS: `
-normalW = sss_unit((sss_T * sss_surface.normal.x + sss_B * sss_surface.normal.y) * sss_side + sss_N * sss_surface.normal.z);
+    CUSTOM_FRAGMENT_BEFORE_LIGHTS: `
+normalW = sss_safe_normalize_vec3(sss_frame * vec3(sss_surface.normal.xy * sss_side, sss_surface.normal.z));
 `,
-  CUSTOM_FRAGMENT_UPDATE_METALLICROUGHNESS: `
+    CUSTOM_FRAGMENT_UPDATE_METALLICROUGHNESS: `
 metallicRoughness.r = sss_surface.metallic;
 metallicRoughness.g = sss_surface.roughness;
 `,
-  // Where Babylon begins a light, the one before it is complete. The light's colour has no shadow: light that comes
-  // through entered on the far side.
-  '!#define CUSTOM_LIGHT(\\d+)_COLOR': `
-if (sss_pending) {
-  sss_lights += sss_through(preInfo.L, normalW, sss_light_nearness / max(preInfo.lightDistance, 0.01), sss_light_color * preInfo.attenuation);
-}
-sss_light_color = diffuse$1.rgb;
-sss_light_nearness = 0.0;
-#if defined(POINTLIGHT$1) || defined(SPOTLIGHT$1)
-sss_light_nearness = 1.0;
-#endif
-sss_pending = true;
-#if defined(HEMILIGHT$1) || defined(AREALIGHT$1) || defined(CLUSTLIGHT$1)
-sss_pending = false;
-#endif
-#define CUSTOM_LIGHT$1_COLOR
-`,
-  CUSTOM_FRAGMENT_BEFORE_FINALCOLORCOMPOSITION: `
-#ifndef UNLIT
-if (sss_pending) {
-  sss_lights += sss_through(preInfo.L, normalW, sss_light_nearness / max(preInfo.lightDistance, 0.01), sss_light_color * preInfo.attenuation);
-}
-finalDiffuse += sss_lights * uniforms.vLightingIntensity.x / 3.14159265;
-#endif
+    CUSTOM_FRAGMENT_BEFORE_FINALCOLORCOMPOSITION: `
 finalEmissive += sss_surface.emission * uniforms.vLightingIntensity.y;
 `,
+  },
 }];
 
 /** Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes that melt into it. */
@@ -768,7 +695,19 @@ export class IceMaterial extends materialClass({
   name: 'ice', version: 1, lit: true, alphaMode: 'mask',
   fields: ['albedo', 'alpha', 'normal', 'metallic', 'roughness', 'emission', 'transmittance'],
   inputs: ['L', 'N', 'time', 'uv', 'V'],
-  parameters, textures, vertex: VERTEX, fragment: FRAGMENT,
+  varyings: {
+    sss_uv: 'vec2',
+    sss_tangent: 'vec4',
+  },
+  variables: {
+    sss_surface: 'sss_Surface',
+    sss_N: 'vec3',
+    sss_V: 'vec3',
+    sss_side: 'float',
+    sss_frame: 'mat3',
+    sss_lights: 'vec3', sss_light_color: 'vec3', sss_light_nearness: 'float', sss_pending: 'bool',
+  },
+  parameters, textures, shells: SHELLS,
 }) {}
 
 /** The material. `values` are its parameters, its textures, and the properties of PBRMaterial; `scene`: else the last one. */

@@ -10,7 +10,7 @@
 
 import { materialClass } from './sssgen-playcanvas.mjs';
 
-/** The parameters: type, default, range, unit, and the name in the shader. */
+/** The parameters: type, default, range, unit, and the name in the shaders. */
 export const parameters = {
   /** How much the levels of the cells differ: 0 = all are equal. */
   variation: { type: 'float', default: 0.6, range: [0.0, 1.0], unit: '1', name: 'sss_variation' },
@@ -66,7 +66,7 @@ export const parameters = {
   power: { type: 'float', default: 6.0, range: [1.0, 32.0], unit: '1', name: 'sss_power' },
 };
 
-/** The textures: type, the one texel of the default, colour space, and the name in the shader. */
+/** The textures: type, the one texel of the default, whether it has colours in sRGB, and the name in the shaders. */
 export const textures = {
   /** Colour of the surface (an sRGB texture), with its opacity in alpha. */
   baseColorTexture: { type: 'sampler2D', default: 'white', colorSpace: 'srgb', name: 'sss_base_color_texture' },
@@ -101,12 +101,35 @@ const float sss_ENDLESS = 10000.0;
 const float sss_OPAQUE_DEPTH = 80.0;
 
 // The direction of \`x\`; of a zero vector, 0.
-vec2 sss_safe_normalize(vec2 x) {
+vec3 sss_safe_normalize(vec3 x) {
     return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
 }
 
+// The tangent, the bitangent and the normal as columns. \`tangent\` is that of the mesh, with the handedness as
+// w; where it is 0, both come from the derivatives of \`uv\`, and the longer one has the length 1.
+mat3 sss_tangent_frame(vec3 P, vec3 V, vec3 N, float side, vec2 uv, vec4 tangent) {
+    vec3 across = dFdx(P);
+    vec3 up = dFdy(P);
+    vec2 uv_across = dFdx(uv);
+    vec2 uv_up = dFdy(uv);
+    // the rows of some render targets count downwards
+    float upwards = dot(cross(across, up), V) < 0.0 ? -1.0 : 1.0;
+    vec3 first = cross(up, N) * upwards;
+    vec3 second = cross(N, across) * upwards;
+    vec3 T = first * uv_across.x + second * uv_up.x;
+    vec3 B = first * uv_across.y + second * uv_up.y;
+    float scale = inversesqrt(max(max(dot(T, T), dot(B, B)), 1.0e-30));
+    T *= scale;
+    B *= scale;
+    if (dot(tangent.xyz, tangent.xyz) > 0.0) {
+        T = sss_safe_normalize(tangent.xyz);
+        B = cross(N * side, T) * tangent.w;
+    }
+    return mat3(T, B, N);
+}
+
 // The direction of \`x\`; of a zero vector, 0.
-vec3 sss_safe_normalize(vec3 x) {
+vec2 sss_safe_normalize(vec2 x) {
     return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
 }
 
@@ -358,12 +381,35 @@ const sss_ENDLESS: f32 = 10000.0;
 const sss_OPAQUE_DEPTH: f32 = 80.0;
 
 // The direction of \`x\`; of a zero vector, 0.
-fn sss_safe_normalize_vec2(x: vec2f) -> vec2f {
+fn sss_safe_normalize_vec3(x: vec3f) -> vec3f {
     return x * select(0.0, inverseSqrt(dot(x, x)), dot(x, x) > 1.0e-30);
 }
 
+// The tangent, the bitangent and the normal as columns. \`tangent\` is that of the mesh, with the handedness as
+// w; where it is 0, both come from the derivatives of \`uv\`, and the longer one has the length 1.
+fn sss_tangent_frame(P: vec3f, V: vec3f, N: vec3f, side: f32, uv: vec2f, tangent: vec4f) -> mat3x3f {
+    let across = dpdx(P);
+    let up = dpdy(P);
+    let uv_across = dpdx(uv);
+    let uv_up = dpdy(uv);
+    // the rows of some render targets count downwards
+    let upwards = select(1.0, -1.0, dot(cross(across, up), V) < 0.0);
+    let first = cross(up, N) * upwards;
+    let second = cross(N, across) * upwards;
+    var T = first * uv_across.x + second * uv_up.x;
+    var B = first * uv_across.y + second * uv_up.y;
+    let scale = inverseSqrt(max(max(dot(T, T), dot(B, B)), 1.0e-30));
+    T *= scale;
+    B *= scale;
+    if (dot(tangent.xyz, tangent.xyz) > 0.0) {
+        T = sss_safe_normalize_vec3(tangent.xyz);
+        B = cross(N * side, T) * tangent.w;
+    }
+    return mat3x3f(T, B, N);
+}
+
 // The direction of \`x\`; of a zero vector, 0.
-fn sss_safe_normalize_vec3(x: vec3f) -> vec3f {
+fn sss_safe_normalize_vec2(x: vec2f) -> vec2f {
     return x * select(0.0, inverseSqrt(dot(x, x)), dot(x, x) > 1.0e-30);
 }
 
@@ -604,320 +650,113 @@ fn sss_evaluate_lighting(surface: sss_Surface, N: vec3f, V: vec3f, L: vec3f, lig
 }
 `;
 
-/** What goes into PlayCanvas's chunks. */
-const GLSL_CHUNKS = {
-  litUserDeclarationVS: `
-varying vec2 sss_uv;
-varying vec4 sss_tangent;
-#if defined(SSS_TEXCOORD0) && !defined(UV0)
-attribute vec2 vertex_texCoord0;
-#endif
-#if defined(SSS_TANGENT) && !defined(TANGENTS)
-attribute vec4 vertex_tangent;
-#endif
+/** What goes into PlayCanvas's shaders: in GLSL, and in WGSL. */
+const SHELLS = [{
+  functions: GLSL,
+  vertex: `
+sss_tangent = vec4((dModelMatrix * vec4(sss_tangent.xyz, 0.0)).xyz, sss_tangent.w);
+sss_tangent.w *= sign(dot(dModelMatrix[0].xyz, cross(dModelMatrix[1].xyz, dModelMatrix[2].xyz)));
 `,
-  litUserMainEndVS: `
-#ifdef SSS_TEXCOORD0
-sss_uv = vertex_texCoord0;
-#else
-sss_uv = vec2(0.0);
+  begin: `
+sss_side = 1.0;
+#if defined(FORWARD_PASS) && defined(LIT_TWO_SIDED_LIGHTING)
+sss_side = gl_FrontFacing ? 1.0 : -1.0;
 #endif
-#ifdef SSS_TANGENT
-sss_tangent = vertex_tangent;
-#else
-sss_tangent = vec4(0.0);
-#endif
-vec3 sss_axis_x = dModelMatrix[0].xyz;
-vec3 sss_axis_y = dModelMatrix[1].xyz;
-vec3 sss_axis_z = dModelMatrix[2].xyz;
-float sss_axes_volume = dot(cross(sss_axis_x, sss_axis_y), sss_axis_z);
-sss_tangent = vec4((dModelMatrix * vec4(sss_tangent.xyz, 0.0)).xyz, sss_tangent.w * sign(sss_axes_volume));
-`,
-  litUserDeclarationPS: `
-varying vec2 sss_uv;
-varying vec4 sss_tangent;
-${GLSL}
-vec3 sss_N;
-vec3 sss_V;
-vec3 sss_T;
-vec3 sss_B;
-vec3 sss_L;
-vec3 sss_eye_position;
-vec3 sss_light_color;
-vec3 sss_light_sum;
-float sss_light_nearness;
-float sss_side = 1.0;
-sss_Surface sss_surface;
-
-vec3 sss_unit(vec3 v) {
-  float square = dot(v, v);
-  if (square > 1e-30) { return v * inversesqrt(square); }
-  return vec3(0.0);
-}
-`,
-  front: `
-// What the chain reads, and the surface: once per fragment, in the passes of shadows and picking as well.
-void sss_begin_surface() {
-  sss_light_sum = vec3(0.0);
 #ifdef FORWARD_PASS
-  sss_N = dVertexNormalW;
-  sss_V = dViewDirW;
-  sss_eye_position = view_position;
-#ifdef LIT_TWO_SIDED_LIGHTING
-  sss_side = gl_FrontFacing ? 1.0 : -1.0;
-#endif
+sss_N = dVertexNormalW;
 #else
-  sss_N = sss_unit(cross(dFdx(vPositionW), dFdy(vPositionW)));
-  sss_V = sss_N;
-  sss_eye_position = vPositionW + sss_V;
+sss_N = sss_safe_normalize(cross(dFdx(vPositionW), dFdy(vPositionW)));
 #endif
-  // the tangent and the bitangent: those of the mesh, else from the derivatives of uv
-  vec3 across = dFdx(vPositionW);
-  vec3 up = dFdy(vPositionW);
-  vec2 a = dFdx(sss_uv);
-  vec2 b = dFdy(sss_uv);
-  if (dot(cross(across, up), sss_V) < 0.0) { up = -up; b = -b; }  // the rows of the target count downwards
-  vec3 first = cross(up, sss_N);
-  vec3 second = cross(sss_N, across);
-  sss_T = first * a.x + second * b.x;
-  sss_B = first * a.y + second * b.y;
-  float longest = inversesqrt(max(max(dot(sss_T, sss_T), dot(sss_B, sss_B)), 1e-30));
-  sss_T *= longest;
-  sss_B *= longest;
-  if (dot(sss_tangent.xyz, sss_tangent.xyz) > 0.0) {
-    sss_T = sss_unit(sss_tangent.xyz);
-    sss_B = cross(sss_N * sss_side, sss_T) * sss_tangent.w;
-  }
-  sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count, sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint, sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief, sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture, sss_red_speed, sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color, sss_texel_size, sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height);
-}
-
-void evaluateFrontend() {
-  sss_begin_surface();
-  sss_engine_front();
 #ifdef FORWARD_PASS
-  litArgs_albedo *= sss_surface.albedo;
-  litArgs_metalness = sss_surface.metallic;
-  litArgs_gloss = 1.0 - sss_surface.roughness + 1e-7;
-  litArgs_emission += sss_surface.emission;
-  litArgs_worldNormal = sss_unit((sss_T * sss_surface.normal.x + sss_B * sss_surface.normal.y) * sss_side + sss_N * sss_surface.normal.z);
-#endif
-}
-
-// One of PlayCanvas's lights: what comes through has no shadow, as it entered on the far side.
-void sss_light_through(vec3 L, vec3 color, float nearness) {
-  sss_L = L;
-  sss_light_color = color;
-  sss_light_nearness = nearness;
-  sss_light_sum += color * sss_evaluate_translucency(sss_surface, sss_V, litArgs_worldNormal, sss_L, sss_distortion, sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power);
-}
-#ifdef SSS_OWN_LIGHT
-
-void sss_light_reflected(vec3 color) {
-  sss_light_color = color;
-  sss_light_sum += sss_evaluate_lighting(sss_surface, litArgs_worldNormal, sss_V, sss_L, sss_light_color);
-}
-#endif
-`,
-  opacity: `
-void getOpacity() {
-  sss_engine_opacity();
-  dAlpha *= sss_surface.alpha;
-}
-`,
-  combine: `
-#if defined(SSS_OWN_LIGHT) && defined(LIT_ADD_AMBIENT)
-void addAmbient(vec3 worldNormal);
-#endif
-vec3 combineColor(vec3 albedo, vec3 sheenSpecularity, float clearcoatSpecularity) {
-#ifdef SSS_OWN_LIGHT
-#ifdef LIT_ADD_AMBIENT
-  dDiffuseLight = vec3(0.0);
-  addAmbient(litArgs_worldNormal);
-  sss_light_sum += dDiffuseLight * sss_surface.albedo;
-#endif
-  return sss_light_sum;
+sss_V = dViewDirW;
+sss_eye_position = view_position;
 #else
-  return sss_engine_combine(albedo, sheenSpecularity, clearcoatSpecularity) + sss_light_sum;
+sss_V = sss_N;
+sss_eye_position = vPositionW + sss_V;
 #endif
-}
+sss_frame = sss_tangent_frame(vPositionW, sss_V, sss_N, sss_side, sss_uv, sss_tangent);
+sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count, sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint, sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief, sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture, sss_red_speed, sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color, sss_texel_size, sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height);
 `,
-  lambert: `
-float getLightDiffuse(vec3 worldNormal, vec3 viewDir, vec3 lightDirNorm) {
-#ifdef SSS_OWN_LIGHT
-  return 1.0;
-#else
-  return sss_engine_lambert(worldNormal, viewDir, lightDirNorm);
+  translucency: 'sss_evaluate_translucency(sss_surface, sss_V, litArgs_worldNormal, sss_L, sss_distortion, sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power)',
+  lighting: 'sss_evaluate_lighting(sss_surface, litArgs_worldNormal, sss_V, sss_L, sss_light_color)',
+  places: {
+    front: `
+litArgs_albedo *= sss_surface.albedo;
+litArgs_worldNormal = sss_safe_normalize(sss_frame * vec3(sss_surface.normal.xy * sss_side, sss_surface.normal.z));
+litArgs_metalness = sss_surface.metallic;
+litArgs_gloss = 1.0 - sss_surface.roughness + 1e-7;
+litArgs_emission += sss_surface.emission;
+`,
+    opacity: `
+dAlpha *= sss_surface.alpha;
+`,
+    ambient: `
+dDiffuseLight *= sss_surface.albedo;
+`,
+  },
+}, {
+  functions: WGSL,
+  vertex: `
+output.sss_tangent = vec4f((dModelMatrix * vec4f(output.sss_tangent.xyz, 0.0)).xyz, output.sss_tangent.w);
+output.sss_tangent.w *= sign(dot(dModelMatrix[0].xyz, cross(dModelMatrix[1].xyz, dModelMatrix[2].xyz)));
+`,
+  begin: `
+sss_side = 1.0;
+#if defined(FORWARD_PASS) && defined(LIT_TWO_SIDED_LIGHTING)
+sss_side = select(-1.0, 1.0, pcFrontFacing);
 #endif
-}
-`,
-  clustered: `
-float sss_arriving = falloffAttenuation;
-if (light.isSpot) {
-  ClusterLightSpotData spot = decodeClusterLightSpot();
-  sss_arriving *= getSpotEffect(light.direction, spot.innerConeAngleCos, spot.outerConeAngleCos, lightDirNormW);
-}
-sss_light_through(-lightDirNormW, light.color * sss_arriving, 1.0 / max(length(lightDirW), 0.01));
-`,
-};
-
-const WGSL_CHUNKS = {
-  litUserDeclarationVS: `
-varying sss_uv: vec2f;
-varying sss_tangent: vec4f;
-#if defined(SSS_TEXCOORD0) && !defined(UV0)
-attribute vertex_texCoord0: vec2f;
-#endif
-#if defined(SSS_TANGENT) && !defined(TANGENTS)
-attribute vertex_tangent: vec4f;
-#endif
-`,
-  litUserMainEndVS: `
-#ifdef SSS_TEXCOORD0
-output.sss_uv = vertex_texCoord0;
-#else
-output.sss_uv = vec2f(0.0);
-#endif
-#ifdef SSS_TANGENT
-output.sss_tangent = vertex_tangent;
-#else
-output.sss_tangent = vec4f(0.0);
-#endif
-var sss_axis_x = dModelMatrix[0].xyz;
-var sss_axis_y = dModelMatrix[1].xyz;
-var sss_axis_z = dModelMatrix[2].xyz;
-var sss_axes_volume = dot(cross(sss_axis_x, sss_axis_y), sss_axis_z);
-output.sss_tangent = vec4f((dModelMatrix * vec4f(output.sss_tangent.xyz, 0.0)).xyz, output.sss_tangent.w * sign(sss_axes_volume));
-`,
-  litUserDeclarationPS: `
-varying sss_uv: vec2f;
-varying sss_tangent: vec4f;
-${WGSL}
-var<private> sss_N: vec3f;
-var<private> sss_V: vec3f;
-var<private> sss_T: vec3f;
-var<private> sss_B: vec3f;
-var<private> sss_L: vec3f;
-var<private> sss_eye_position: vec3f;
-var<private> sss_light_color: vec3f;
-var<private> sss_light_sum: vec3f;
-var<private> sss_light_nearness: f32;
-var<private> sss_side: f32 = 1.0;
-var<private> sss_surface: sss_Surface;
-
-fn sss_unit(v: vec3f) -> vec3f {
-  var square = dot(v, v);
-  if (square > 1e-30) { return v * inverseSqrt(square); }
-  return vec3f(0.0);
-}
-`,
-  front: `
-// What the chain reads, and the surface: once per fragment, in the passes of shadows and picking as well.
-fn sss_begin_surface() {
-  sss_light_sum = vec3f(0.0);
 #ifdef FORWARD_PASS
-  sss_N = dVertexNormalW;
-  sss_V = dViewDirW;
-  sss_eye_position = uniform.view_position;
-#ifdef LIT_TWO_SIDED_LIGHTING
-  sss_side = select(-1.0, 1.0, pcFrontFacing);
-#endif
+sss_N = dVertexNormalW;
 #else
-  sss_N = sss_unit(cross(dpdx(vPositionW), dpdy(vPositionW))) * -1.0;
-  sss_V = sss_N;
-  sss_eye_position = vPositionW + sss_V;
+sss_N = sss_safe_normalize_vec3(cross(dpdx(vPositionW), -dpdy(vPositionW)));
 #endif
-  // the tangent and the bitangent: those of the mesh, else from the derivatives of uv
-  var across = dpdx(vPositionW);
-  var up = dpdy(vPositionW);
-  var a = dpdx(sss_uv);
-  var b = dpdy(sss_uv);
-  if (dot(cross(across, up), sss_V) < 0.0) { up = -up; b = -b; }  // the rows of the target count downwards
-  var first = cross(up, sss_N);
-  var second = cross(sss_N, across);
-  sss_T = first * a.x + second * b.x;
-  sss_B = first * a.y + second * b.y;
-  var longest = inverseSqrt(max(max(dot(sss_T, sss_T), dot(sss_B, sss_B)), 1e-30));
-  sss_T *= longest;
-  sss_B *= longest;
-  if (dot(sss_tangent.xyz, sss_tangent.xyz) > 0.0) {
-    sss_T = sss_unit(sss_tangent.xyz);
-    sss_B = cross(sss_N * sss_side, sss_T) * sss_tangent.w;
-  }
-  sss_surface = sss_evaluate_surface(sss_uv, uniform.sss_time, uniform.sss_variation, uniform.sss_cell_count, uniform.sss_thickness_factor, uniform.sss_bevel, uniform.sss_attenuation_distance, uniform.sss_tint, sss_base_color_texture, sss_base_color_texture_sampler, uniform.sss_metalness, uniform.sss_surface_roughness, uniform.sss_relief, uniform.sss_uv_per_unit, uniform.sss_cover, sss_cover_texture, sss_cover_texture_sampler, sss_packed_texture, sss_packed_texture_sampler, uniform.sss_red_speed, uniform.sss_green_speed, uniform.sss_blue_speed, uniform.sss_vein_color, uniform.sss_spark_color, uniform.sss_texel_size, uniform.sss_edge, uniform.sss_erosion, sss_erosion_texture, sss_erosion_texture_sampler, uniform.sss_edge_height);
-}
-
-fn evaluateFrontend() {
-  sss_begin_surface();
-  sss_engine_front();
 #ifdef FORWARD_PASS
-  litArgs_albedo *= sss_surface.albedo;
-  litArgs_metalness = sss_surface.metallic;
-  litArgs_gloss = 1.0 - sss_surface.roughness + 1e-7;
-  litArgs_emission += sss_surface.emission;
-  litArgs_worldNormal = sss_unit((sss_T * sss_surface.normal.x + sss_B * sss_surface.normal.y) * sss_side + sss_N * sss_surface.normal.z);
-#endif
-}
-
-// One of PlayCanvas's lights: what comes through has no shadow, as it entered on the far side.
-fn sss_light_through(L: vec3f, color: vec3f, nearness: f32) {
-  sss_L = L;
-  sss_light_color = color;
-  sss_light_nearness = nearness;
-  sss_light_sum += color * sss_evaluate_translucency(sss_surface, sss_V, litArgs_worldNormal, sss_L, uniform.sss_distortion, uniform.sss_subsurface_color, uniform.sss_attenuation, uniform.sss_scale, uniform.sss_ambient, uniform.sss_power);
-}
-#ifdef SSS_OWN_LIGHT
-
-fn sss_light_reflected(color: vec3f) {
-  sss_light_color = color;
-  sss_light_sum += sss_evaluate_lighting(sss_surface, litArgs_worldNormal, sss_V, sss_L, sss_light_color);
-}
-#endif
-`,
-  opacity: `
-fn getOpacity() {
-  sss_engine_opacity();
-  dAlpha *= sss_surface.alpha;
-}
-`,
-  combine: `
-fn combineColor(albedo: vec3f, sheenSpecularity: vec3f, clearcoatSpecularity: f32) -> vec3f {
-#ifdef SSS_OWN_LIGHT
-#ifdef LIT_ADD_AMBIENT
-  dDiffuseLight = vec3f(0.0);
-  addAmbient(litArgs_worldNormal);
-  sss_light_sum += dDiffuseLight * sss_surface.albedo;
-#endif
-  return sss_light_sum;
+sss_V = dViewDirW;
+sss_eye_position = uniform.view_position;
 #else
-  return sss_engine_combine(albedo, sheenSpecularity, clearcoatSpecularity) + sss_light_sum;
+sss_V = sss_N;
+sss_eye_position = vPositionW + sss_V;
 #endif
-}
+sss_frame = sss_tangent_frame(vPositionW, sss_V, sss_N, sss_side, sss_uv, sss_tangent);
+sss_surface = sss_evaluate_surface(sss_uv, uniform.sss_time, uniform.sss_variation, uniform.sss_cell_count, uniform.sss_thickness_factor, uniform.sss_bevel, uniform.sss_attenuation_distance, uniform.sss_tint, sss_base_color_texture, sss_base_color_texture_sampler, uniform.sss_metalness, uniform.sss_surface_roughness, uniform.sss_relief, uniform.sss_uv_per_unit, uniform.sss_cover, sss_cover_texture, sss_cover_texture_sampler, sss_packed_texture, sss_packed_texture_sampler, uniform.sss_red_speed, uniform.sss_green_speed, uniform.sss_blue_speed, uniform.sss_vein_color, uniform.sss_spark_color, uniform.sss_texel_size, uniform.sss_edge, uniform.sss_erosion, sss_erosion_texture, sss_erosion_texture_sampler, uniform.sss_edge_height);
 `,
-  lambert: `
-fn getLightDiffuse(worldNormal: vec3f, viewDir: vec3f, lightDirNorm: vec3f) -> f32 {
-#ifdef SSS_OWN_LIGHT
-  return 1.0;
-#else
-  return sss_engine_lambert(worldNormal, viewDir, lightDirNorm);
-#endif
-}
+  translucency: 'sss_evaluate_translucency(sss_surface, sss_V, litArgs_worldNormal, sss_L, uniform.sss_distortion, uniform.sss_subsurface_color, uniform.sss_attenuation, uniform.sss_scale, uniform.sss_ambient, uniform.sss_power)',
+  lighting: 'sss_evaluate_lighting(sss_surface, litArgs_worldNormal, sss_V, sss_L, sss_light_color)',
+  places: {
+    front: `
+litArgs_albedo *= sss_surface.albedo;
+litArgs_worldNormal = sss_safe_normalize_vec3(sss_frame * vec3(sss_surface.normal.xy * sss_side, sss_surface.normal.z));
+litArgs_metalness = sss_surface.metallic;
+litArgs_gloss = 1.0 - sss_surface.roughness + 1e-7;
+litArgs_emission += sss_surface.emission;
 `,
-  clustered: `
-var sss_arriving = falloffAttenuation;
-if (light.isSpot) {
-  let spot = decodeClusterLightSpot();
-  sss_arriving *= getSpotEffect(light.direction, spot.innerConeAngleCos, spot.outerConeAngleCos, lightDirNormW);
-}
-sss_light_through(-lightDirNormW, light.color * sss_arriving, 1.0 / max(length(lightDirW), 0.01));
+    opacity: `
+dAlpha *= sss_surface.alpha;
 `,
-};
+    ambient: `
+dDiffuseLight *= sss_surface.albedo;
+`,
+  },
+}];
 
 /** Cracked ice in facets: back light, moving veins below the surface, a cover of snow, and holes that melt into it. */
 export class IceMaterial extends materialClass({
   name: 'ice', version: 1, lit: true, alphaMode: 'mask',
   fields: ['albedo', 'alpha', 'normal', 'metallic', 'roughness', 'emission', 'transmittance'],
   inputs: ['L', 'light_color', 'N', 'time', 'uv', 'V'],
-  parameters, textures, glsl: GLSL_CHUNKS, wgsl: WGSL_CHUNKS,
+  varyings: {
+    sss_uv: { type: 'vec2', attribute: 'vertex_texCoord0', semantic: 'TEXCOORD0', define: 'UV0', default: 0 },
+    sss_tangent: { type: 'vec4', attribute: 'vertex_tangent', semantic: 'TANGENT', define: 'TANGENTS', default: 0 },
+  },
+  variables: {
+    sss_surface: 'sss_Surface',
+    sss_side: 'float',
+    sss_N: 'vec3',
+    sss_V: 'vec3',
+    sss_eye_position: 'vec3',
+    sss_frame: 'mat3',
+  },
+  parameters, textures, shells: SHELLS,
 }) {}
 
 /** The material. `values` are its parameters, its textures, and the properties of StandardMaterial. */
