@@ -70,9 +70,9 @@ def run(arguments: Namespace) -> int:
 def _backends(text: str | None) -> list[str]:
     if text is None:
         return []
-    from sssgen.run.backends import chosen
+    from sssgen.run.backends import backend_names
 
-    return chosen(text)
+    return backend_names(text)
 
 
 def _limit(flip: float | None) -> float | None:

@@ -16,10 +16,10 @@ from sssgen.interchange.imported import BAKED_SET, Imported
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.mesh_glb import mesh_file
 from sssgen.interchange.surface_model import Image, Picture, Quantity
+from sssgen.scene.geometry_base import Array
 from sssgen.scene.mesh import Mesh
 from sssgen.scene.mesh_files import FileContent
 from sssgen.scene.pictures.images import png_bytes
-from sssgen.scene.placed import Array
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.progress import Progress, silent
 

@@ -44,7 +44,7 @@ class Picture:
         return read(self.file)
 
 
-def stored(distance: npt.NDArray[np.float64], reach: float) -> npt.NDArray[np.float64]:
+def encode_distance(distance: npt.NDArray[np.float64], reach: float) -> npt.NDArray[np.float64]:
     """Signed distances encoded for the technique distance_texture: 0.5 + distance / (2 reach), clamped to 0..1."""
     value: npt.NDArray[np.float64] = np.clip(0.5 + distance / (2.0 * reach), 0.0, 1.0)
     return value
@@ -77,7 +77,7 @@ class DistanceTexture:
         x, y, z = (start[axis] + size[axis] * (np.arange(n) + 0.5) / n for axis, n in enumerate(self.texels))
         positions = np.stack(np.meshgrid(z, y, x, indexing="ij")[::-1], axis=-1)
         distance = geometry.distance(positions.reshape(-1, 3)).reshape(*positions.shape[:3], 1)
-        return stored(distance, self.range)
+        return encode_distance(distance, self.range)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.scene.placed import (
+from sssgen.scene.geometry_base import (
     Array,
     Bools,
     Geometry,

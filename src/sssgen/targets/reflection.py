@@ -35,7 +35,7 @@ def reflect(
         entry |= {"source_name": source, "technique": technique, "technique_name": own_name}
         if target.properties.style != "plain":
             entry["property"] = property_name(target, source)
-        entry |= _described(uniform)
+        entry |= _description(uniform)
         if isinstance(uniform.type, Sampler):
             entry |= {"holds": uniform.quantity or None, "default": _default_texture(uniform)}
             entry |= {"color_space": "linear" if not has_hint(uniform, "source_color") else "sRGB"}
@@ -182,7 +182,7 @@ def as_text(data: dict[str, Any]) -> str:
     return "{\n" + ",\n".join(parts) + "\n}\n"
 
 
-def _described(uniform: Uniform) -> dict[str, Any]:
+def _description(uniform: Uniform) -> dict[str, Any]:
     hints = dict(uniform.hints)
     limits = hints.get("hint_range")
     return {

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.analyse.stress.contract_inputs import contract, fixed, is_direction
+from sssgen.analyse.stress.contract_inputs import contract, fixed_value, is_direction
 from sssgen.analyse.stress.subject import Specimen
 from sssgen.ir.formats import FLOAT16, FLOAT32, Format
 from sssgen.ir.nodes import Intrinsic
@@ -40,9 +40,9 @@ def plain(specimen: Specimen, lanes: int, overrides: dict[str, Any] | None = Non
             color = next((hint for hint in hints if hint in ("white", "black", "gray", "bump")), "white")
             textures[name] = changes.get(name) or default_texture(spell(param.type), color)
         elif name in changes and name not in specimen.settings:
-            values[name] = _shaped(changes[name], shape_of(param.type))
+            values[name] = _with_shape(changes[name], shape_of(param.type))
         elif name in specimen.subject.uniforms:
-            values[name] = fixed(specimen, name)
+            values[name] = fixed_value(specimen, name)
         else:
             value = np.asarray(_PLAIN.get(name, 0.5))
             if value.shape != shape_of(param.type) or name not in _PLAIN:
@@ -54,7 +54,7 @@ def plain(specimen: Specimen, lanes: int, overrides: dict[str, Any] | None = Non
     return Inputs(values, textures, lanes)
 
 
-def _shaped(value: Any, shape: tuple[int, ...]) -> Array:
+def _with_shape(value: Any, shape: tuple[int, ...]) -> Array:
     """Numbers or vectors, lanes last; a number for a vector goes into all its components."""
     array = np.asarray(value)
     array = array.astype(np.float32) if array.dtype.kind == "f" else array
@@ -63,7 +63,7 @@ def _shaped(value: Any, shape: tuple[int, ...]) -> Array:
     return np.ascontiguousarray(np.broadcast_to(array, (*shape, array.shape[-1])))
 
 
-def mixed(specimen: Specimen, choices: dict[str, list[Any]], lanes: int = 4096) -> Inputs:
+def mix(specimen: Specimen, choices: dict[str, list[Any]], lanes: int = 4096) -> Inputs:
     """Each lane has one of the choices of each input; the other inputs are plain."""
     rng = np.random.default_rng(7)
     changes = {}

@@ -36,7 +36,7 @@ def sample_inputs(specimen: Specimen, lanes: int, rng: np.random.Generator, form
         if isinstance(param.type, Sampler):
             textures[name] = texture(uniform, param.type.dim, rng)
         elif name in specimen.settings:
-            values[name] = fixed(specimen, name)
+            values[name] = fixed_value(specimen, name)
         elif kind_of(param.type) == "float":
             size = (*shape_of(param.type), lanes)
             values[name] = _floats(size, contract(specimen, name, format), param, uniform, line, rng)
@@ -53,14 +53,14 @@ def contract(specimen: Specimen, name: str, format: Format = FLOAT32) -> Contrac
     return contracts.of_param(specimen.subject.params[name], format, specimen.subject.chained)
 
 
-def outside(specimen: Specimen, name: str, format: Format = FLOAT32) -> Contract:
+def outer_contract(specimen: Specimen, name: str, format: Format = FLOAT32) -> Contract:
     """The range of an input if the caller does not keep quantities in their ranges."""
     if name in specimen.subject.uniforms:
         return contract(specimen, name, format)
     return contracts.from_outside(specimen.subject.params[name], format, specimen.subject.chained)
 
 
-def fixed(specimen: Specimen, name: str) -> Array:
+def fixed_value(specimen: Specimen, name: str) -> Array:
     """A uniform's value in this material or technique, one lane."""
     uniform = specimen.subject.uniforms[name]
     value = np.array(specimen.settings.get(name, uniform.default), np.float64)
@@ -93,10 +93,10 @@ def _floats(
         moved = near + rng.uniform(-1.0, 1.0, size).astype(np.float32)
         mixture: Array = np.where(rng.random(size[-1]) < 0.5, moved, numbers(size, ends, rng))
         return mixture
-    return opaque(uniform, numbers(size, ends, rng))
+    return clamp_alpha(uniform, numbers(size, ends, rng))
 
 
-def opaque(uniform: Uniform | None, values: Array) -> Array:
+def clamp_alpha(uniform: Uniform | None, values: Array) -> Array:
     """Values of a colour, with its opacity clamped to 0..1."""
     alpha = contracts.alpha_at(uniform) if uniform is not None else None
     if alpha is not None:

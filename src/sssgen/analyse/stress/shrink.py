@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from sssgen.analyse.stress.contract_inputs import contract, fixed, opaque, whole_range
+from sssgen.analyse.stress.contract_inputs import clamp_alpha, contract, fixed_value, whole_range
 from sssgen.analyse.stress.subject import Specimen
 from sssgen.ir.types import kind_of, spell
 from sssgen.run.backends import Array
@@ -36,7 +36,7 @@ def lane(inputs: Inputs, index: int) -> Inputs:
     return Inputs(values, inputs.textures, 1)
 
 
-def shrunk(specimen: Specimen, failing: Inputs, fails: Fails) -> Inputs:
+def shrink(specimen: Specimen, failing: Inputs, fails: Fails) -> Inputs:
     """The simplest inputs found that still fail, one lane; `failing` itself if it does not fail when run alone."""
     simplest = failing
     if not fails(simplest).all():
@@ -79,8 +79,8 @@ def _simpler(specimen: Specimen, inputs: Inputs, name: str, fails: Fails) -> Inp
         return inputs
     candidates = list(_candidates(specimen, name, value))
     candidates = candidates[: _index(candidates, value)]
-    if _allowed(specimen, name, value):  # a value in the contract stays in it
-        candidates = [candidate for candidate in candidates if _allowed(specimen, name, candidate)]
+    if _is_allowed(specimen, name, value):  # a value in the contract stays in it
+        candidates = [candidate for candidate in candidates if _is_allowed(specimen, name, candidate)]
     if not candidates:
         return inputs
     lanes = np.concatenate(candidates, axis=-1)
@@ -97,13 +97,13 @@ def _index(candidates: list[Array], value: Array) -> int:
     return next(same, len(candidates))
 
 
-def _allowed(specimen: Specimen, name: str, value: Array) -> bool:
+def _is_allowed(specimen: Specimen, name: str, value: Array) -> bool:
     if value.dtype.kind != "f":
         low, high = whole_range(specimen.subject.params[name], specimen.subject.uniforms.get(name))
         return bool(((value >= low) & (value <= high)).all())
     ends = contract(specimen, name)
     within = ((value >= np.float32(ends.low)) & (value <= np.float32(ends.high))).all()
-    if not np.array_equal(opaque(specimen.subject.uniforms.get(name), value.copy()), value):
+    if not np.array_equal(clamp_alpha(specimen.subject.uniforms.get(name), value.copy()), value):
         return False
     return bool(within) and not float(np.linalg.norm(value.astype(np.float64))) > ends.length * (1.0 + 1e-6)
 
@@ -111,7 +111,7 @@ def _allowed(specimen: Specimen, name: str, value: Array) -> bool:
 def _candidates(specimen: Specimen, name: str, value: Array) -> Iterator[Array]:
     """Values to try, the simplest first: the default, axes, simple numbers, single components, fewer digits."""
     if name in specimen.subject.uniforms:
-        yield fixed(specimen, name)
+        yield fixed_value(specimen, name)
     kind = kind_of(specimen.subject.params[name].type)
     if kind == "bool":
         yield np.zeros_like(value)
@@ -168,7 +168,7 @@ def _backend(name: str) -> str:
 def _is_default(specimen: Specimen, name: str, value: Array) -> bool:
     uniform = specimen.subject.uniforms.get(name)
     plain = specimen._replace(settings={})
-    return uniform is not None and name not in specimen.settings and np.array_equal(fixed(plain, name), value)
+    return uniform is not None and name not in specimen.settings and np.array_equal(fixed_value(plain, name), value)
 
 
 def _is_plain_default(specimen: Specimen, name: str, texture: Texture) -> bool:

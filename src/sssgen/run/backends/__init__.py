@@ -23,7 +23,7 @@ from sssgen.run.backends.backend_interface import (
     Place,
     Stage,
     Text,
-    emitted,
+    file_text,
 )
 from sssgen.run.backends.draw_backend import DrawingBackend
 from sssgen.run.compilers import CompilerMissing
@@ -32,7 +32,7 @@ from sssgen.support.diagnostics import failure
 __all__ = [
     "BACKENDS", "DEFAULT", "DRIVERS", "FUNCTIONS", "HALF", "SINGLE", "VERTEX_SIZE", "Array", "Backend", "Block",
     "Bound", "Call", "CompilerMissing", "Drawing", "DrawingBackend", "Place", "Stage", "Text", "available", "chosen",
-    "emitted", "get", "in_half", "missing", "needed",
+    "file_text", "get", "in_half", "missing", "needed",
 ]  # fmt: skip
 
 

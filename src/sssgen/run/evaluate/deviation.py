@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.run.backends import HALF, Array, CompilerMissing, get
-from sssgen.run.backends.isolated import started
+from sssgen.run.backends.backend_process import start_backend
 from sssgen.run.evaluate.evaluation import Inputs, run
 from sssgen.run.evaluate.probes import Subject
 from sssgen.support.diagnostics import SssgenError
@@ -179,7 +179,7 @@ def _row(
     name: str, guards: str,
 ) -> Row:  # fmt: skip
     try:
-        backend = started(name)
+        backend = start_backend(name)
     except CompilerMissing as reason:
         return Row(name, "", None, str(reason), missing=True)
     except SssgenError as error:

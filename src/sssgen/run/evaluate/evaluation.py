@@ -20,7 +20,7 @@ from sssgen.ir.types import Array as ArrayType
 from sssgen.ir.types import Matrix, Sampler, Type, Vector, components, kind_of, spell, with_article
 from sssgen.passes.ranges.sites import Site
 from sssgen.pipeline.compiler import transpile
-from sssgen.run.backends import Array, Backend, Call, Text, emitted
+from sssgen.run.backends import Array, Backend, Call, Text, file_text
 from sssgen.run.evaluate.probes import Subject
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -93,7 +93,7 @@ def _emitted(
         file, reflection = next(name for name in compiled.files if not name.endswith(".json")), compiled.reflection
         if len(_texts) >= 256:
             _texts.clear()
-        cached = _texts[key] = subject, emitted(compiled, reflection, file), reflection["renames"]
+        cached = _texts[key] = subject, file_text(compiled, reflection, file), reflection["renames"]
     return cached[1], cached[2]
 
 
