@@ -183,7 +183,7 @@ class _TimedFrame:
     """The frame that all programs draw into, and the timer: a context that releases all GPU objects at its end."""
 
     def __init__(self, size: tuple[int, int]) -> None:
-        self.gpu = cast(OpenGL, backends.needed("gl"))
+        self.gpu = cast(OpenGL, backends.require("gl"))
         self.context: Any = self.gpu.context
         self.objects: list[Any] = []
         self.uploaded: dict[int, Any] = {}

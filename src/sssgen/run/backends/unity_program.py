@@ -46,7 +46,7 @@ class UnityProgram(HLSL):
         return _BINDING.sub("layout(", text).replace("layout() ", "")
 
     def messages(self, log: str) -> list[Message]:
-        return [unity.located(message, "forward pass") for message in super().messages(log)]
+        return [unity.locate(message, "forward pass") for message in super().messages(log)]
 
     def spirv_cross(self, stage: Stage, kind: str, *options: str) -> str:
         """The output of spirv-cross for a stage: GLSL, or another language with `options`."""

@@ -44,7 +44,7 @@ def evaluate(subject: Subject, values: Mapping[str, Any], backend: Backend, guar
     their defaults; `guards` as in `compile`. Raises SssgenError for inputs that do not fit, and if the back end rejects
     the program.
     """
-    return run(subject, fitted(subject, values), backend, guards)
+    return run(subject, fit_inputs(subject, values), backend, guards)
 
 
 def run(
@@ -55,7 +55,7 @@ def run(
     guard_change: Callable[[Site], str] | None = None,
 ) -> dict[str, Array]:
     """The outputs, lanes first; `guard_change` is the `at` of `passes.guards.guard`."""
-    text, names = _emitted(subject, backend.target.name, guards, guard_change)
+    text, names = _emit(subject, backend.target.name, guards, guard_change)
     calls = [
         Call(
             names.get(probe.function, probe.function),
@@ -82,7 +82,7 @@ def _argument(param: Param, inputs: Inputs) -> Any:
 _texts: dict[tuple[object, ...], tuple[Subject, Text, dict[str, str]]] = {}
 
 
-def _emitted(
+def _emit(
     subject: Subject, target: str, guards: str, guard_change: Callable[[Site], str] | None
 ) -> tuple[Text, dict[str, str]]:
     """The functions form of a subject for a target, and its renamed functions."""
@@ -97,7 +97,7 @@ def _emitted(
     return cached[1], cached[2]
 
 
-def fitted(subject: Subject, raw: Mapping[str, Any]) -> Inputs:
+def fit_inputs(subject: Subject, raw: Mapping[str, Any]) -> Inputs:
     """Inputs in the form of the subject's parameters, rounded to float32, which all back ends share.
 
     Raises SssgenError for an unknown or a missing name, a wrong shape, NaN and infinity.
