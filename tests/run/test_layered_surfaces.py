@@ -17,7 +17,7 @@ from sssgen.pipeline.compiler import all_targets, compile
 from sssgen.run import backends
 from sssgen.run.backends import Array, Backend
 from sssgen.run.backends.engine_page import EnginePage
-from sssgen.run.backends.three_page import THREE
+from sssgen.run.backends.web_engines import THREE
 from sssgen.run.check.compiler_inputs import sources
 from sssgen.run.compilers import Source
 from sssgen.run.render import page_values

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.surface_model import SurfaceModel
-from sssgen.scene.geometry_base import Array
+from sssgen.scene.arrays import Array
 from sssgen.scene.mesh_files import FileContent
 from sssgen.support.diagnostics import did_you_mean, failure
 

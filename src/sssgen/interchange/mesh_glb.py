@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.scene.geometry_base import Array
+from sssgen.scene.arrays import Array
 from sssgen.scene.mesh_files import FileContent
 from sssgen.version import VERSION
 

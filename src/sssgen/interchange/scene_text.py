@@ -9,7 +9,7 @@ import numpy as np
 from sssgen.interchange.surface_model import SurfaceModel
 from sssgen.interchange.technique_choice import Choice
 from sssgen.lab.measure.measured_chain import toml_value
-from sssgen.scene.geometry_base import Array
+from sssgen.scene.arrays import Array
 from sssgen.scene.mesh_files import FileContent
 
 _BALL_RADIUS, _SCATTERED_RADIUS, _CLEAR_RADIUS = 1.0, 6.0, 0.75

@@ -16,7 +16,7 @@ from sssgen.interchange.imported import BAKED_SET, Imported
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.mesh_glb import mesh_file
 from sssgen.interchange.surface_model import Image, Picture, Quantity
-from sssgen.scene.geometry_base import Array
+from sssgen.scene.arrays import Array
 from sssgen.scene.mesh import Mesh
 from sssgen.scene.mesh_files import FileContent
 from sssgen.scene.pictures.images import png_bytes

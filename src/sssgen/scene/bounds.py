@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from sssgen.scene.arrays import Array
 from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
-from sssgen.scene.geometry_base import Array
 from sssgen.support.diagnostics import failure
 
 

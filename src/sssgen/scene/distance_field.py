@@ -22,7 +22,8 @@ from sssgen.material.values import WrongValue, read_value
 from sssgen.passes.fold import fold
 from sssgen.passes.link import LinkInput, link
 from sssgen.pipeline.compiler import transpile
-from sssgen.scene.geometry_base import Array, Bools, Geometry, Hits, planar, spherical, spread, tangent_of, unit
+from sssgen.scene.arrays import Array, Bools
+from sssgen.scene.geometry_base import Geometry, Hits, planar, spherical, spread, tangent_of, unit
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.file_memo import CachedResult, remembered
 from sssgen.targets.runtime.numpy_values import precision

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from sssgen.scene.arrays import Array
 from sssgen.scene.bounds import world_corners
 from sssgen.scene.geometry import Geometry
-from sssgen.scene.geometry_base import Array
 from sssgen.scene.inside_intervals import in_object_space, intervals
 from sssgen.scene.light_view import LightView, directional_view, point_view
 

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from sssgen.scene.arrays import Array
 from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
-from sssgen.scene.geometry_base import Array
 
 
 def in_object_space(geometry: Geometry, origins: Array, directions: Array) -> tuple[Array, Array]:

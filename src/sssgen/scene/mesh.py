@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from sssgen.scene import mesh_files
-from sssgen.scene.geometry_base import Array, Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
+from sssgen.scene.arrays import Array, Indices
+from sssgen.scene.geometry_base import Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
 from sssgen.scene.mesh_distance import MeshDistance, is_inside_out
 from sssgen.scene.mesh_rays import MeshRays
 from sssgen.scene.toml_table import ANY
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
-
-Indices: TypeAlias = npt.NDArray[np.int64]
 
 FARTHEST = ANY[1]
 """The largest coordinate, as for a scene's numbers: products of a few of them do not overflow."""

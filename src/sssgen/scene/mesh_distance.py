@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.scene.geometry_base import Array
+from sssgen.scene.arrays import Array
 from sssgen.support.extras import need
 
 INSIDE = 0.5

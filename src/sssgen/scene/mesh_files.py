@@ -5,20 +5,17 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from sssgen.scene.geometry_base import Array
+from sssgen.scene.arrays import Array, Indices
 from sssgen.scene.pictures.images import decode_srgb
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.extras import need
 from sssgen.support.file_memo import note
 from sssgen.support.paths import posix
 from sssgen.support.text_files import refuse_folder
-
-Indices: TypeAlias = npt.NDArray[np.int64]
 
 SUFFIXES = (".obj", ".ply", ".stl", ".glb", ".gltf")
 

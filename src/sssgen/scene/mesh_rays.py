@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.scene.geometry_base import Array, unit
+from sssgen.scene.arrays import Array, Indices
+from sssgen.scene.geometry_base import unit
 from sssgen.support.extras import need
-
-Indices: TypeAlias = npt.NDArray[np.int64]
 
 MIN_SEPARATION = 1e-6
 """Relative to the mesh's size: triangles closer to each other along a ray count as one."""

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from sssgen.ir.spans import Span
+from sssgen.scene.arrays import Vector
 from sssgen.scene.camera import Camera
 from sssgen.scene.geometry import Geometry
 from sssgen.scene.pictures.images import read
 from sssgen.support.toml_source import Document
-
-Vector: TypeAlias = tuple[float, float, float]
 
 
 @dataclass(frozen=True)

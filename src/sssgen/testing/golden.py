@@ -13,8 +13,8 @@ import os
 import numpy as np
 import numpy.typing as npt
 
+from sssgen.scene.arrays import Array
 from sssgen.scene.pictures import images
-from sssgen.scene.pictures.images import Array
 from sssgen.scene.pictures.picture_difference import compare
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.file_writer import check_names

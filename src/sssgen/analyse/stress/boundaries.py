@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
 from sssgen.analyse.stress.contract_inputs import (
+    DTYPES,
     clamp_alpha,
     contract,
     fixed_value,
@@ -50,8 +50,7 @@ def values(specimen: Specimen, name: str, beyond: bool = False, format: Format =
     if kind_of(param.type) != "float":
         low, high = whole_range(param, uniform)
         chosen = [low - 1, 0, high + 1] if beyond and kind_of(param.type) == "int" else [low, low + 1, high]
-        dtype: Any = {"int": np.int32, "uint": np.uint32, "bool": np.bool_}[kind_of(param.type)]
-        return _splat(np.array(chosen).astype(dtype), shape_of(param.type))
+        return _splat(np.array(chosen).astype(DTYPES[kind_of(param.type)]), shape_of(param.type))
     ends = contract(specimen, name, format)
     shape = shape_of(param.type)
     if is_direction(name, ends) and shape == (3,):

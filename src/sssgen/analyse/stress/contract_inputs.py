@@ -13,10 +13,10 @@ from sssgen.analyse.stress.subject import Specimen
 from sssgen.ir import contracts
 from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.nodes import Param, Uniform
-from sssgen.ir.types import Matrix, Sampler, kind_of, spell
+from sssgen.ir.types import Matrix, Sampler, kind_of
 from sssgen.ir.vector_ranges import LENGTH, Contract
 from sssgen.run.backends import Array
-from sssgen.run.evaluate.evaluation import Inputs, default_texture, shape_of
+from sssgen.run.evaluate.evaluation import Inputs, default_of, shape_of
 from sssgen.targets.runtime.numpy_textures import Texture
 
 TINY = 1e-45
@@ -24,6 +24,8 @@ TINY = 1e-45
 ORDINARY = 2.0
 """In a wide range half of the numbers are at most this large."""
 TEXELS = 16
+DTYPES: dict[str, Any] = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
+"""The types of inputs."""
 
 
 def sample_inputs(specimen: Specimen, lanes: int, rng: np.random.Generator, format: Format = FLOAT32) -> Inputs:
@@ -64,8 +66,7 @@ def fixed_value(specimen: Specimen, name: str) -> Array:
     """A uniform's value in this material or technique, one lane."""
     uniform = specimen.subject.uniforms[name]
     value = np.array(specimen.settings.get(name, uniform.default), np.float64)
-    dtype = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}[kind_of(uniform.type)]
-    return value.reshape(*shape_of(uniform.type), 1).astype(dtype)
+    return value.reshape(*shape_of(uniform.type), 1).astype(DTYPES[kind_of(uniform.type)])
 
 
 def whole_range(param: Param, uniform: Uniform | None) -> tuple[int, int]:
@@ -165,8 +166,7 @@ def _whole(param: Param, uniform: Uniform | None, rng: np.random.Generator) -> A
     if uniform is not None and high - low > 2:
         # steps and taps cost time, so most draws have few
         high = min(high, max(low, int(2 * max(uniform.default))) if rng.random() < 0.9 else high)
-    dtype: Any = {"int": np.int32, "uint": np.uint32, "bool": np.bool_}[kind_of(param.type)]
-    return rng.integers(low, high + 1, (*shape_of(param.type), 1)).astype(dtype)
+    return rng.integers(low, high + 1, (*shape_of(param.type), 1)).astype(DTYPES[kind_of(param.type)])
 
 
 def texture(uniform: Uniform | None, dim: str, rng: np.random.Generator) -> Texture:
@@ -174,8 +174,7 @@ def texture(uniform: Uniform | None, dim: str, rng: np.random.Generator) -> Text
     assert uniform is not None
     kind = int(rng.integers(0, 4))
     if kind == 0:
-        hints = [hint.removeprefix("default_") for hint, _ in uniform.hints if hint.startswith("default_")]
-        return default_texture(spell(uniform.type), hints[0] if hints else "white")
+        return default_of(uniform)
     size = {"2D": (TEXELS, TEXELS), "3D": (TEXELS,) * 3, "Cube": (6, TEXELS, TEXELS)}[dim]
     if kind == 1 and not contracts.of_uniform(uniform).finite:
         return Texture(rng.integers(0, 1 << 16, (*size, 4), np.uint16).view(np.float16), dim=dim)

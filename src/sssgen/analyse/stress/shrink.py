@@ -15,8 +15,9 @@ from sssgen.analyse.stress.contract_inputs import clamp_alpha, contract, fixed_v
 from sssgen.analyse.stress.subject import Specimen
 from sssgen.ir.types import kind_of, spell
 from sssgen.run.backends import Array
-from sssgen.run.evaluate.evaluation import Inputs, default_texture
+from sssgen.run.evaluate.evaluation import Inputs, default_of, default_texture
 from sssgen.targets.runtime.numpy_textures import Texture
+from sssgen.targets.texture_import import default_color
 
 Fails = Callable[[Inputs], Array]
 """Whether inputs fail: (lanes,) bool."""
@@ -25,6 +26,7 @@ ROUNDS = 4
 DIGITS = (1, 2, 3, 5)
 _SIMPLE = (0.0, 1.0, 0.5, 2.0, -1.0, 10.0)
 _TEXELS = (0.25, 2.0, -1.0, 65504.0, -65504.0, np.nan, np.inf, -np.inf)
+_COLORS = ("white", "black", "gray")
 _AXES = ((0, 0, 1), (0, 0, -1), (0, 0, 0), (1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0))
 
 
@@ -55,8 +57,7 @@ def _plainer_textures(specimen: Specimen, simplest: Inputs, fails: Fails) -> Inp
     for name, uniform in specimen.subject.uniforms.items():
         if name not in simplest.textures:
             continue
-        hints = [hint.removeprefix("default_") for hint, _ in uniform.hints if hint.startswith("default_")]
-        plain = [default_texture(spell(uniform.type), color) for color in (*hints[:1], "white", "black", "gray")]
+        plain = [default_texture(spell(uniform.type), color) for color in (default_color(uniform), *_COLORS)]
         values = (0.25,) if contract(specimen, name).finite else _TEXELS
         plain += [_one_texel(simplest.textures[name], value) for value in values]
         for texture in plain:
@@ -172,10 +173,7 @@ def _is_default(specimen: Specimen, name: str, value: Array) -> bool:
 
 
 def _is_plain_default(specimen: Specimen, name: str, texture: Texture) -> bool:
-    uniform = specimen.subject.uniforms[name]
-    hints = [hint.removeprefix("default_") for hint, _ in uniform.hints if hint.startswith("default_")]
-    default = default_texture(spell(uniform.type), hints[0] if hints else "white")
-    return np.array_equal(default.levels[0], texture.levels[0])
+    return np.array_equal(default_of(specimen.subject.uniforms[name]).levels[0], texture.levels[0])
 
 
 def _plain(value: Array) -> object:

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from sssgen.scene.arrays import Array
 from sssgen.scene.geometry import Geometry
-from sssgen.scene.geometry_base import Array
 from sssgen.scene.inside_intervals import in_object_space, intervals
 
 SURFACE = 1e-4

@@ -17,9 +17,10 @@ from typing import NamedTuple
 import numpy as np
 
 from sssgen.lab.reference.inside_lengths import first_exit, thickness
+from sssgen.scene.arrays import Array, Bools
 from sssgen.scene.bounds import world_corners
 from sssgen.scene.geometry import Geometry
-from sssgen.scene.geometry_base import Array, Bools, perpendiculars
+from sssgen.scene.geometry_base import perpendiculars
 
 NUMBERS = 9
 """The harmonics up to order 2."""

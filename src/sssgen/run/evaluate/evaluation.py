@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.ir.nodes import Param
+from sssgen.ir.nodes import Param, Uniform
 from sssgen.ir.types import Array as ArrayType
 from sssgen.ir.types import Matrix, Sampler, Type, Vector, components, kind_of, spell, with_article
 from sssgen.passes.ranges.sites import Site
@@ -24,6 +24,7 @@ from sssgen.run.backends import Array, Backend, Call, Text, file_text
 from sssgen.run.evaluate.probes import Subject
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.targets.runtime.numpy_textures import Texture
+from sssgen.targets.texture_import import default_color
 
 DTYPES: dict[str, Any] = {"float": np.float64, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
 
@@ -188,11 +189,15 @@ def default_texture(type_: str, color: str) -> Texture:
     return Texture(data, dim=dim)
 
 
+def default_of(uniform: Uniform) -> Texture:
+    """One texel of the colour that a texture's declaration states."""
+    return default_texture(spell(uniform.type), default_color(uniform))
+
+
 def _texture(subject: Subject, name: str, type_: Sampler, raw: Any) -> Texture:
     """A texture rounded to float16, which all back ends share; one texel of the default if `raw` is None."""
     if raw is None:
-        hints = [hint.removeprefix("default_") for hint, _ in subject.uniforms[name].hints]
-        raw = default_texture(spell(type_), next((hint for hint in hints if hint in _DEFAULTS), "white"))
+        raw = default_of(subject.uniforms[name])
     if not isinstance(raw, Texture):
         try:
             raw = Texture(np.asarray(raw), dim=type_.dim)

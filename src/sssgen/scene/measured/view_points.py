@@ -10,7 +10,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from sssgen.scene.geometry_base import Array, Bools
+from sssgen.scene.arrays import Array, Bools
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.scene import Light
 from sssgen.support.diagnostics import failure
