@@ -24,7 +24,7 @@ import numpy as np
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.two_stages import Source, transpile_stages
 from sssgen.run.backends.browser_page import START, WEBGL, WEBGPU, Page
-from sssgen.run.installed import all_lacks, chromium, node_modules
+from sssgen.run.machine_parts import all_lacks, chromium, node_modules
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.javascript_runtime import FOLDER
 from sssgen.targets.program_reflection import ROWS

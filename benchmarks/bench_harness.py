@@ -52,7 +52,7 @@ def evaluations(count: int) -> None:
 def cell(backend: backends.Backend, name: str, count: int) -> str:
     """The cell of a technique and a back end."""
     chosen = subject(name)
-    inputs = evaluate.fitted(chosen, samples(chosen, count, 1))
+    inputs = evaluate.fit_inputs(chosen, samples(chosen, count, 1))
     first = median(lambda: evaluate.run(chosen, inputs, backend), 1)
     outside = []
 

@@ -29,7 +29,7 @@ sys.path.append(str(Path(__file__).parents[1] / "docs" / "site" / "playground"))
 sys.path.append(str(Path(__file__).parents[1] / "tests" / "tools"))
 
 import build_playground
-from sssgen.run.installed import chromium, node_modules
+from sssgen.run.machine_parts import chromium, node_modules
 from static_host import serving
 
 ROUNDS, EDITS = 3, 12

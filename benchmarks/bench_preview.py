@@ -30,7 +30,7 @@ from typing import Any
 from sssgen.material import library
 from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import PreviewServer
-from sssgen.run.installed import chromium
+from sssgen.run.machine_parts import chromium
 from sssgen.support.paths import folder
 
 VALUE_SAVES, LINE_SAVES, FRAMES = 10, 5, 5

@@ -17,7 +17,7 @@ from pathlib import Path
 from queue import Queue
 from typing import Any, NamedTuple
 
-from sssgen.analyse.verify.inline_includes import expanded
+from sssgen.analyse.verify.inline_includes import expand
 from sssgen.analyse.verify.stage_variables import without_interface
 from sssgen.lang.plain_glsl import load_glsl
 from sssgen.lang.shadertoy import UNIFORMS
@@ -84,7 +84,7 @@ class TargetResult(NamedTuple):
 def read(path: Path, folders: Sequence[Path]) -> Code:
     """A file with its includes, which are also searched in `folders`. A file with a missing include cannot compile."""
     try:
-        return Code(path, expanded(read_code(path, path.as_posix()), path, folders))
+        return Code(path, expand(read_code(path, path.as_posix()), path, folders))
     except SssgenError as error:
         return Code(path, f"#error {error.diagnostics[0].message}\n")
 

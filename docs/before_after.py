@@ -26,7 +26,7 @@ from sssgen.run import backends
 from sssgen.run.backends import Array
 from sssgen.run.evaluate.evaluation import evaluate
 from sssgen.run.evaluate.probes import subject
-from sssgen.run.render.scene_render import Rendered, render
+from sssgen.run.render.scene_render import RenderedPicture, render
 from sssgen.scene import scene_loading
 from sssgen.scene.environment import Environment, digest
 from sssgen.scene.geometry import Distance
@@ -171,7 +171,7 @@ def mapped(picture: Array) -> Array:
     return result
 
 
-def _drawn(scene: Scene, parameters: dict[str, object]) -> Rendered:
+def _drawn(scene: Scene, parameters: dict[str, object]) -> RenderedPicture:
     return render(dataclasses.replace(scene, parameters={**scene.parameters, **parameters}), backends.get("gl"))
 
 

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from sssgen.material import library, slots
 from sssgen.run.backends import DRIVERS, Array, Backend, get
 from sssgen.run.evaluate.deviation import GOAL, Deviation, deviation, rounding_deviation
-from sssgen.run.evaluate.evaluation import Inputs, fitted, run
+from sssgen.run.evaluate.evaluation import Inputs, fit_inputs, run
 from sssgen.run.evaluate.probes import Subject, subject
 from sssgen.run.evaluate.random_inputs import samples
 
@@ -88,7 +88,7 @@ class _Prepared:
 
     def __init__(self, case: Case, lanes: int, seed: int) -> None:
         self.subject: Subject = subject(case.technique, dict(case.bind))
-        self.inputs: Inputs = fitted(self.subject, samples(self.subject, lanes, seed))
+        self.inputs: Inputs = fit_inputs(self.subject, samples(self.subject, lanes, seed))
         self.oracle: Mapping[str, Array] = run(self.subject, self.inputs, get("numpy"))
         self._rounding: Any = None
 

@@ -27,12 +27,12 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from qualification.ir_mutations import Mutation, mutated, mutations
-from sssgen.analyse.verify.inline_includes import expanded
+from sssgen.analyse.verify.inline_includes import expand
 from sssgen.analyse.verify.lane_interpreter import Program, Run
 from sssgen.analyse.verify.loop_inputs import loop_inputs
 from sssgen.analyse.verify.plain_inputs import RANGES
-from sssgen.analyse.verify.plain_probes import probed
-from sssgen.analyse.verify.rounding_noise import explained, noise
+from sssgen.analyse.verify.plain_probes import probe_functions
+from sssgen.analyse.verify.rounding_noise import is_explained, noise
 from sssgen.analyse.verify.stage_variables import plain
 from sssgen.analyse.verify.verification import Case, Options, load
 from sssgen.ir.nodes import Literal, Module
@@ -118,7 +118,7 @@ class Original:
                 error = np.where(defined, errors(left, right), 0.0)
                 for place, kind in enumerate((1, 0)):
                     limit = limits[kind][index]
-                    detected[place] |= not explained(error, limit).all()
+                    detected[place] |= not is_explained(error, limit).all()
         return detected[0], detected[1]
 
     # Independently of verify's inputs
@@ -167,7 +167,7 @@ class Original:
                 lanes = np.flatnonzero(error > GOAL)[:256]
                 if len(lanes):
                     limit = noise(self.program, [self.keys[index]], values, textures, lanes, DRAWS, granted=True)[0]
-                    if not explained(error[lanes], limit).all():
+                    if not is_explained(error[lanes], limit).all():
                         return True
         return False
 
@@ -217,11 +217,11 @@ def _dense(
 
 def originals(path: Path, seed: int) -> Iterator[Original]:
     """The functions of a file that verify runs."""
-    written = plain(expanded(path.read_text(), path, [path.parent / "include"]))
+    written = plain(expand(path.read_text(), path, [path.parent / "include"]))
     shown = path.name
     module = load(written.text, shown, written.version)
     functions = [part for part in module.functions if part.body is not None and part.span.file == shown]
-    cases = [case for case in probed(module, functions, written.text) if case.probes]
+    cases = [case for case in probe_functions(module, functions, written.text) if case.probes]
     probes = "\n".join(probe.text for case in cases for probe in case.probes)
     with_probes = load(written.text + probes, shown, written.version)
     for number in range(len(cases)):

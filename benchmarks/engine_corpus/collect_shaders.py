@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from sssgen.run.backends.browser_page import WEBGL, Page
-from sssgen.run.installed import chromium
+from sssgen.run.machine_parts import chromium
 
 HERE = Path(__file__).resolve().parent
 DUMP = HERE.parent.parent / "tools" / "dump_shaders.js"

@@ -32,7 +32,7 @@ from sssgen.material.library import Technique
 from sssgen.material.material_text import MaterialSection, material_text
 from sssgen.material.technique_facts import facts_of
 from sssgen.run.backends import Array, Backend
-from sssgen.run.render.scene_render import Rendered, render
+from sssgen.run.render.scene_render import RenderedPicture, render
 from sssgen.scene import scene_loading
 from sssgen.scene.example_scenes import measured_scenes
 from sssgen.scene.measured import measured_scene, scene_body
@@ -219,20 +219,20 @@ def _quantity(technique: Technique, backend: Backend) -> Picture | None:
     return Picture(_scaled(rendered), f"The {what} of a cube, brighter is more")
 
 
-def _scaled(rendered: Rendered) -> Array:
+def _scaled(rendered: RenderedPicture) -> Array:
     """The picture of light with the brightest hundredth of the body at the same brightness for all."""
     light = rendered.linear * (BRIGHT / max(float(np.percentile(rendered.linear[rendered.covered > 0.5], 99)), 1e-3))
     return encode_srgb(light * rendered.covered[..., None] + BACKGROUND * (1.0 - rendered.covered[..., None]))
 
 
 @functools.cache
-def _ball(stages: tuple[MaterialSection, ...], backend: Backend) -> Rendered:
+def _ball(stages: tuple[MaterialSection, ...], backend: Backend) -> RenderedPicture:
     with tempfile.TemporaryDirectory() as folder:
         write_pictures(folder)
         return _rendered(Path(folder), stages, SCENE.format(FRONT) + BALL, backend)
 
 
-def _rendered(folder: Path, stages: Sequence[MaterialSection], scene: str, backend: Backend) -> Rendered:
+def _rendered(folder: Path, stages: Sequence[MaterialSection], scene: str, backend: Backend) -> RenderedPicture:
     (folder / "material.toml").write_text(material_text("material", stages), encoding="utf-8")
     (folder / "scene.toml").write_text(scene, encoding="utf-8")
     loaded = scene_loading.load(str(folder / "scene.toml"))

@@ -11,7 +11,7 @@ import pytest
 from sssgen.analyse.verify.branch_outcomes import Outcomes, branches
 from sssgen.analyse.verify.lane_interpreter import Program, Run
 from sssgen.analyse.verify.loop_inputs import loop_inputs
-from sssgen.analyse.verify.rounded_floats import rounded, seeded
+from sssgen.analyse.verify.rounded_floats import round_floats, seed_errors
 from sssgen.analyse.verify.rounding_noise import GrantedRun, RoundedRun
 from sssgen.analyse.verify.verification import load
 
@@ -110,8 +110,8 @@ def test_endless_lanes_stop() -> None:
 
 
 def test_exact_results_have_no_error_and_others_do() -> None:
-    with seeded(0):
-        x = rounded(np.full(1000, 3.0))
+    with seed_errors(0):
+        x = round_floats(np.full(1000, 3.0))
         assert set(np.asarray(x * x + 7.0 - 2.0).tolist()) == {14.0}
         assert set(np.asarray(x / 2.0).tolist()) == {1.5}
         assert len(set(np.asarray(x / 3.0).tolist())) > 1
@@ -121,7 +121,7 @@ def test_exact_results_have_no_error_and_others_do() -> None:
 
 def test_granted_errors_are_larger() -> None:
     text = "float f(float x) { return sin(x); }"
-    with seeded(1):
+    with seed_errors(1):
         small, large = (np.ptp(run(text, kind, x=[1.0] * 500)[0]) for kind in (RoundedRun, GrantedRun))
     assert 0.0 < small < 1e-6 < 2e-4 < large < 2.0**-10
 

@@ -207,9 +207,9 @@ def test_a_jump_of_a_back_end_alone() -> None:
     def rounding(inputs: Inputs) -> dict[str, Any]:
         return {name: np.round(25.0 * value) / 25.0 for name, value in oracle(inputs).items()}
 
-    size, name, _ = jumps.largest(specimen, rounding, oracle)
+    size, name, _ = jumps.largest_jump(specimen, rounding, oracle)
     assert size == pytest.approx(0.04) and name == "th"
-    assert jumps.largest(specimen, oracle, oracle)[0] < 1e-3
+    assert jumps.largest_jump(specimen, oracle, oracle)[0] < 1e-3
 
 
 def test_a_back_end_with_wrong_results(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from sssgen.analyse.verify.inline_includes import expanded
+from sssgen.analyse.verify.inline_includes import expand
 from sssgen.analyse.verify.stage_variables import plain, without_functions
 from sssgen.analyse.verify.verification import Machines, Options, load, verify
 from sssgen.analyse.verify.verification_report import BACKENDS, Comparison, Coverage, Report, Row
@@ -461,9 +461,9 @@ def test_includes_are_written_out_once(tmp_path: Path) -> None:
     (tmp_path / "lib" / "b.glsl").write_text('#include "a.glsl"\nfloat b;\n')
     path = tmp_path / "main.glsl"
     text = '#include "lib/a.glsl"\n// #include "none"\n#include <b.glsl>\nfloat c;\n'
-    assert expanded(text, path, [tmp_path / "lib"]) == '\nfloat b;\n\nfloat a;\n\n// #include "none"\n\nfloat c;\n'
+    assert expand(text, path, [tmp_path / "lib"]) == '\nfloat b;\n\nfloat a;\n\n// #include "none"\n\nfloat c;\n'
     with pytest.raises(SssgenError, match=r"cannot find 'lost\.glsl'"):
-        expanded('#include "lost.glsl"', path)
+        expand('#include "lost.glsl"', path)
 
 
 def test_probes_do_not_capture_names_of_the_text(rows: Rows) -> None:

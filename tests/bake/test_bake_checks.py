@@ -286,7 +286,7 @@ def test_a_volume_for_another_light(stone: Path, folder: Path) -> None:
     scene = folder / "scene.toml"
     scene.write_text(SCENE.replace("[0.4, 0.8, 0.1]", "[0.0, 1.0, 0.0]"), encoding="utf-8")
     with pytest.raises(SssgenError) as caught:
-        render(load(str(scene)), backends.needed("numpy"))
+        render(load(str(scene)), backends.require("numpy"))
     (wrong,) = caught.value.diagnostics
     assert wrong.message == (
         "'stone.npy' is baked for a light from (0.444, 0.889, 0.111) in the body's space; the scene has (0, 1, 0)"
@@ -294,7 +294,7 @@ def test_a_volume_for_another_light(stone: Path, folder: Path) -> None:
     # the body turns, and the light with it
     turned = SCENE.replace("size = [1.0", "rotation = [0.0, 0.0, 90.0]\nsize = [1.0")
     scene.write_text(turned.replace("[0.4, 0.8, 0.1]", "[-0.8, 0.4, 0.1]"), encoding="utf-8")
-    render(load(str(scene)), backends.needed("numpy"))
+    render(load(str(scene)), backends.require("numpy"))
 
 
 @pytest.mark.parametrize(

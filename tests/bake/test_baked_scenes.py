@@ -18,7 +18,7 @@ from sssgen.cli.main import main
 from sssgen.pipeline.compiler import compile
 from sssgen.run import backends
 from sssgen.run.backends import Backend
-from sssgen.run.render.scene_render import Rendered, render
+from sssgen.run.render.scene_render import RenderedPicture, render
 from sssgen.scene.scene_loading import load
 from sssgen.support.diagnostics import SssgenError
 
@@ -60,7 +60,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @cache
-def drawn(scene: Path, backend: str) -> Rendered:
+def drawn(scene: Path, backend: str) -> RenderedPicture:
     loaded = load(scene)
     return render(dataclasses.replace(loaded, size=(48, 40), samples=1), backends.get(backend))
 

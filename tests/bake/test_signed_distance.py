@@ -232,7 +232,7 @@ def test_distance_and_sign_of_odd_meshes_are_those_of_all_their_triangles(name: 
 def test_blocks_have_the_sign_of_every_voxel_in_them(name: str, resolution: int) -> None:
     body = solid(ODD[name])
     grid = grid_about(body, resolution)
-    assert (inside(body, grid, distances(body, grid)).ravel() == (body.winding(centers(grid)) > INSIDE)).all()
+    assert (inside(body, grid, distances(body, grid)).ravel() == (body.winding_number(centers(grid)) > INSIDE)).all()
 
 
 def test_a_cavity_is_outside() -> None:

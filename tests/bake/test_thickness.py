@@ -397,7 +397,7 @@ def test_gltf_keeps_its_parts_and_their_texture_coordinates() -> None:
         assert np.sort(mesh.triangles.uv.ravel()) == pytest.approx(np.sort(expected.ravel()), abs=1e-6)
         assert mesh.triangles.places.max(axis=0)[0] == pytest.approx(6.0, abs=1e-6)
         assert not mesh.inside_out and mesh.solid.rim == 0.0
-        volume = mesh.solid.winding(np.array([[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [2.5, 0.0, 0.0]]))
+        volume = mesh.solid.winding_number(np.array([[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [2.5, 0.0, 0.0]]))
         assert volume == pytest.approx([1.0, 1.0, 0.0], abs=0.02)
 
 

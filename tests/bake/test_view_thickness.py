@@ -15,7 +15,7 @@ from sssgen.bake import memory_check
 from sssgen.cli.main import main
 from sssgen.run import backends
 from sssgen.run.backends import Backend
-from sssgen.run.render.scene_render import Rendered, render
+from sssgen.run.render.scene_render import RenderedPicture, render
 from sssgen.scene.pictures import images
 from sssgen.scene.scene_loading import load
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -126,7 +126,7 @@ def test_new_texture_coordinates_come_with_a_mesh(folder: Path) -> None:
     assert facts("x_1.png")["body"]["key"] == facts("new_1.png")["body"]["key"]
 
 
-def drawn(backend: str) -> Rendered:
+def drawn(backend: str) -> RenderedPicture:
     return render(load("scene.toml"), backends.get(backend))
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from command_line import Run
 from folders import ROOT
-from sssgen.run import installed, machine_facts
+from sssgen.run import machine_facts, machine_parts
 from sssgen.run.backend_registry import BACKENDS
 from sssgen.run.compiler_registry import COMPILERS
 from sssgen.support import extra_packages
@@ -30,8 +30,8 @@ def bare(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.delenv(variable, raising=False)
     for variable in ("SSSGEN_NODE_MODULES", "SSSGEN_CHROMIUM", "SSSGEN_FIREFOX", "SSSGEN_GODOT", "PATH"):
         monkeypatch.setenv(variable, "nowhere")
-    monkeypatch.setattr(installed, "folder", Path)
-    monkeypatch.setattr(installed, "find_spec", lambda _: None)
+    monkeypatch.setattr(machine_parts, "folder", Path)
+    monkeypatch.setattr(machine_parts, "find_spec", lambda _: None)
     monkeypatch.setattr(machine_facts, "installed_version", lambda _: "")
     monkeypatch.setattr(subprocess, "Popen", refuse)
 
@@ -41,7 +41,7 @@ def test_every_back_end_and_compiler_names_its_parts() -> None:
     without = [name for name, record in [*BACKENDS.items(), *COMPILERS.items()] if not record.parts]
     assert without == ["python"]
     named = {part for record in [*BACKENDS.values(), *COMPILERS.values()] for part in record.parts}
-    assert named == installed._PARTS.keys()
+    assert named == machine_parts._PARTS.keys()
 
 
 def test_every_variable_is_known() -> None:

@@ -18,7 +18,7 @@ from amounts import COUNTED
 from folders import TESTS
 from gltf_files import box, data_uri, inlined, png
 from ir_sample import SAMPLE
-from sssgen.analyse.verify.inline_includes import expanded
+from sssgen.analyse.verify.inline_includes import expand
 from sssgen.bake import bake_light as light
 from sssgen.bake.volume_files import encode_volume
 from sssgen.interchange import gltf_reader
@@ -35,7 +35,7 @@ from sssgen.pipeline.compiler import compile, transpile
 from sssgen.run.check import shader_files
 from sssgen.run.evaluate import input_files as inputs
 from sssgen.run.evaluate import probes
-from sssgen.run.evaluate.evaluation import fitted
+from sssgen.run.evaluate.evaluation import fit_inputs
 from sssgen.scene import scene_loading
 from sssgen.scene.measured import measured_scene
 from sssgen.scene.mesh import Mesh
@@ -109,7 +109,7 @@ def _subject() -> probes.Subject:
 def _inputs(path: Path) -> None:
     values = inputs.read(str(path), _subject())
     with contextlib.suppress(SssgenError):  # which names the input, and knows of no file
-        fitted(_subject(), values)
+        fit_inputs(_subject(), values)
 
 
 def _ci(path: Path) -> None:
@@ -136,7 +136,7 @@ def _sources() -> list[bytes]:
 def _plain_sources() -> list[bytes]:
     """The corpus of plain GLSL, each file with its includes in it."""
     files = [path for path in sorted(CORPUS.iterdir()) if path.is_file() and ".shadertoy." not in path.name]
-    return [expanded(path.read_text("utf-8"), path).encode() for path in files if path.name != "array_results.glsl"]
+    return [expand(path.read_text("utf-8"), path).encode() for path in files if path.name != "array_results.glsl"]
 
 
 def _techniques() -> list[bytes]:

@@ -25,7 +25,7 @@ from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.pipeline.compiler import transpile
 from sssgen.run.backends import Backend, Call, Text
-from sssgen.run.backends.isolated import isolated
+from sssgen.run.backends.backend_process import BackendProcess
 from sssgen.run.compilers import CompilerMissing
 from sssgen.support.diagnostics import SssgenError
 
@@ -144,7 +144,7 @@ class Runner:
 
     def backend(self, name: str) -> Backend:
         if name not in self.backends:
-            self.backends[name] = HLSLInVulkan(name) if name == VULKAN else isolated(name, SECONDS)
+            self.backends[name] = HLSLInVulkan(name) if name == VULKAN else BackendProcess(name, SECONDS)
         return self.backends[name]
 
     def close(self) -> None:

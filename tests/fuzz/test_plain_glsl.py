@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from front_ends import CORPUS
-from sssgen.analyse.verify.inline_includes import expanded
+from sssgen.analyse.verify.inline_includes import expand
 from sssgen.lang.plain_glsl import load_glsl, load_glsl_text
 from sssgen.lang.syntax.lexer import scan
 from sssgen.support.diagnostics import SssgenError
@@ -102,7 +102,7 @@ def test_long_valid_programs_are_accepted(title: str) -> None:
 @pytest.mark.parametrize("name", CUT)
 def test_files_cut_between_words(name: str) -> None:
     """Whatever is left of a file is taken or refused, at a line that it has."""
-    text = expanded((CORPUS / name).read_text("utf-8"), CORPUS / name)
+    text = expand((CORPUS / name).read_text("utf-8"), CORPUS / name)
     code = "\n".join("" if line.startswith("#") else line for line in text.split("\n"))
     lines = text.split("\n")
     starts = [0]

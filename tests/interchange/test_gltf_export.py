@@ -21,7 +21,7 @@ from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.material_writer import write_import
 from sssgen.interchange.surface_model import SurfaceModel
 from sssgen.interchange.texels import mean_of
-from sssgen.run.installed import node_modules
+from sssgen.run.machine_parts import node_modules
 
 VALIDATOR = node_modules() / "gltf-validator"
 

@@ -25,7 +25,7 @@ from sssgen.lab.chart import drawing
 from sssgen.lab.chart.drawing import figure
 from sssgen.lab.chart.drawing.panels import COLORS, Chart, charts_of, label_texts, medians, number, styles
 from sssgen.lab.chart.record import LEAST, check_record, front, hypervolume, measures, to_csv, to_json
-from sssgen.run.installed import chromium
+from sssgen.run.machine_parts import chromium
 from sssgen.support.diagnostics import SssgenError
 
 SCENES = {"slab": "A slab <b>&", "ball": "Ball, lit from behind", "cube": "Marble $x^2$ cube"}

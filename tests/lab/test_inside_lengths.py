@@ -14,7 +14,7 @@ from folders import MESHES
 from sssgen.lab.reference.inside_lengths import first_exit, thickness
 from sssgen.scene.drawn_views import back_faces
 from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
-from sssgen.scene.inside_intervals import intervals, merged
+from sssgen.scene.inside_intervals import intervals, merge
 
 Array = npt.NDArray[np.float64]
 
@@ -184,7 +184,7 @@ def test_merged_intervals_are_disjoint_sorted_and_cover_the_same() -> None:
     generator = np.random.default_rng(7)
     ends = np.sort(generator.uniform(0.0, 1.0, (300, 5, 2)), axis=2)
     ends[:, 2] = 0.0  # an empty interval
-    result = merged(ends)
+    result = merge(ends)
     at = np.linspace(0.0, 1.0, 3001)
     for before, after in zip(ends, result, strict=True):
         inside = ((before[:, :1] <= at) & (at < before[:, 1:])).any(axis=0)
@@ -193,7 +193,7 @@ def test_merged_intervals_are_disjoint_sorted_and_cover_the_same() -> None:
         filled = after[after[:, 0] < after[:, 1]]
         assert (filled[1:, 0] > filled[:-1, 1]).all()
     touching = np.array([[[0.0, 1.0], [1.0, 2.0], [3.0, 4.0]]])
-    assert merged(touching).tolist() == [[[0.0, 2.0], [0.0, 0.0], [3.0, 4.0]]]
+    assert merge(touching).tolist() == [[[0.0, 2.0], [0.0, 0.0], [3.0, 4.0]]]
 
 
 @pytest.mark.parametrize("shape", BODIES, ids=repr)

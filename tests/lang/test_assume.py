@@ -29,7 +29,7 @@ from sssgen.pipeline.compiler import GUARDS, transpile
 from sssgen.run.backends import Array
 from sssgen.run.backends import call_program as calls
 from sssgen.run.backends.numpy_reference import namespace
-from sssgen.run.evaluate.evaluation import Inputs, fitted
+from sssgen.run.evaluate.evaluation import Inputs, fit_inputs
 from sssgen.run.evaluate.probes import Subject, subject
 from sssgen.run.evaluate.random_inputs import samples
 from sssgen.support.diagnostics import SssgenError
@@ -183,7 +183,7 @@ def broken(name: str, count: int, seed: int) -> int:
             inputs[param.name][20:40] *= 1e-20
         elif not isinstance(param.type, Sampler | Matrix) and param.name not in chosen.subject.uniforms:
             inputs[param.name][40:60] = 0
-    return int(dropped(chosen.subject, fitted(chosen.subject, inputs)).sum())
+    return int(dropped(chosen.subject, fit_inputs(chosen.subject, inputs)).sum())
 
 
 def dropped(chosen: Subject, inputs: Inputs) -> Array:
@@ -226,7 +226,7 @@ def test_an_assumption_that_does_not_hold_is_seen(name: str) -> None:
         )
 
     wrong = checked(chosen._replace(module=rewrite_module(chosen.module, lambda expr: expr, turned)))
-    assert dropped(wrong.subject, fitted(chosen, samples(chosen, 400, 1))).mean() > 0.2
+    assert dropped(wrong.subject, fit_inputs(chosen, samples(chosen, 400, 1))).mean() > 0.2
 
 
 def test_the_library_has_assumptions() -> None:

@@ -14,7 +14,7 @@ from folders import SNAPSHOTS, TESTS
 from skips import compiler_or_skip
 from snapshot import check_snapshot
 from sssgen.analyse.verify import verification
-from sssgen.analyse.verify.inline_includes import expanded
+from sssgen.analyse.verify.inline_includes import expand
 from sssgen.analyse.verify.verification import Machines
 from sssgen.ir.text import print_module
 from sssgen.lang.plain_glsl import load_glsl, load_glsl_text
@@ -103,7 +103,7 @@ def test_a_second_transpilation_changes_nothing(name: str) -> None:
 
 def check_results(name: str, samples: int, machines: Machines) -> None:
     """Fails where a function's result differs from that of the original text in OpenGL's driver."""
-    text = expanded((CORPUS / name).read_text("utf-8"), CORPUS / name)
+    text = expand((CORPUS / name).read_text("utf-8"), CORPUS / name)
     report = verification.verify(text, name, verification.Options(samples, 0, entry(name)), machines=machines)
     failures = [
         f"{row.function} as {target}: {result.error or result.at}"

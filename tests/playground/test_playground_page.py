@@ -12,7 +12,7 @@ import pytest
 
 import build_playground
 from sssgen.pipeline.compiler import compile
-from sssgen.run.installed import chromium, node, node_modules
+from sssgen.run.machine_parts import chromium, node, node_modules
 from static_host import serving
 
 playwright = pytest.importorskip("playwright.sync_api")

@@ -18,7 +18,7 @@ from sssgen.material.material_loading import examples, load_material, parse_mate
 from sssgen.pipeline.compiler import all_targets, compile, transpile
 from sssgen.preview.emitted_head import TARGET, emitted_head
 from sssgen.preview.flat_head import plain_head
-from sssgen.run.installed import node, node_modules
+from sssgen.run.machine_parts import node, node_modules
 from sssgen.support.diagnostics import SssgenError
 
 HERE = Path(__file__).parent

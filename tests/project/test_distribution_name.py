@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from folders import ROOT
-from sssgen.run import installed
+from sssgen.run import machine_parts
 from sssgen.run.backend_registry import BACKENDS
 from sssgen.run.compiler_registry import COMPILERS
 from sssgen.support import installation
@@ -81,7 +81,7 @@ def test_no_package_depends_on_the_package_of_others() -> None:
 
 def test_no_hint_installs_the_package_of_others(monkeypatch: pytest.MonkeyPatch) -> None:
     said = [record.install for record in (*BACKENDS.values(), *COMPILERS.values())]
-    said += [how for _, how in installed._PARTS.values()]
+    said += [how for _, how in machine_parts._PARTS.values()]
     assert len([hint for hint in said if " install " in hint and "[" in hint]) > 10
     assert [hint for hint in said if FOREIGN.search(hint)] == []
     monkeypatch.setattr(installation, "source", lambda: ("", False))

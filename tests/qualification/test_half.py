@@ -23,7 +23,7 @@ from sssgen.run.backends import Array, Backend, Call, CompilerMissing, Text
 from sssgen.run.backends.call_program import drawing
 from sssgen.run.backends.webgpu import WebGPU
 from sssgen.run.compilers import Compiler, Source, errors
-from sssgen.run.evaluate.evaluation import fitted, run
+from sssgen.run.evaluate.evaluation import fit_inputs, run
 from sssgen.run.evaluate.probes import Subject, subject
 from sssgen.run.evaluate.random_inputs import samples
 from sssgen.support.diagnostics import SssgenError
@@ -184,7 +184,7 @@ def test_every_technique_compiles_and_runs(step: int, backend: Get, compiler: Ca
             text = next(text for file, text in compiled.items() if not file.endswith(".json"))
             messages = [(reader.name, errors(reader.check(Source(text, "wgsl", "library")))) for reader in readers]
             failures += [f"{name}: {reader}: {result}" for reader, result in messages if result]
-            outputs = run(chosen, fitted(chosen, inputs), gpu)
+            outputs = run(chosen, fit_inputs(chosen, inputs), gpu)
             failures += [f"{name}: {key}" for key, value in outputs.items() if len(value) != 20]
         except SssgenError as error:
             failures.append(f"{name}: {error}")
@@ -195,7 +195,7 @@ def test_every_technique_compiles_and_runs(step: int, backend: Get, compiler: Ca
 def test_a_simple_technique_equals_numpy(name: str, backend: Get) -> None:
     gpu = backend("webgpu-f16")
     chosen, sampled = technique(name, 1000)
-    fit = fitted(chosen, sampled)
+    fit = fit_inputs(chosen, sampled)
     expected = run(chosen, fit, backends.get("numpy-f16"))
     for key, actual in run(chosen, fit, gpu).items():
         right = expected[key].astype(np.float64)

@@ -16,8 +16,8 @@ from sssgen.cli import main as cli
 from sssgen.material import library
 from sssgen.run import backends
 from sssgen.run.backends import Backend
-from sssgen.run.evaluate.deviation import GOAL, MARGIN, compared, deviation, rounding_deviation
-from sssgen.run.evaluate.evaluation import fitted, run
+from sssgen.run.evaluate.deviation import GOAL, MARGIN, compare, deviation, rounding_deviation
+from sssgen.run.evaluate.evaluation import fit_inputs, run
 from sssgen.run.evaluate.probes import subject
 from sssgen.run.evaluate.random_inputs import samples
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -77,8 +77,8 @@ def test_a_lane_at_a_step_is_excluded_and_a_wrong_one_is_not(tmp_path: Path) -> 
     (tmp_path / "cells.sss").write_text(CELLS, encoding="utf-8")
     chosen = subject(f"{tmp_path / 'cells.sss'}:cells")
     x = np.concatenate([np.arange(1, 1000) / 1000.0, np.arange(1, 1000) / 1000.0 + 4e-4])
-    inputs = fitted(chosen, {"x": x})
-    oracle, (row,) = compared(chosen, inputs, ["numpy-f32"])
+    inputs = fit_inputs(chosen, {"x": x})
+    oracle, (row,) = compare(chosen, inputs, ["numpy-f32"])
     assert row.deviation is not None and row.ok
     assert 100 < row.deviation.excluded < 1000, "float32 moves many of the steps"
     assert 1.0 / 999.0 <= row.deviation.furthest <= 1.0
@@ -155,7 +155,7 @@ def test_samples_give_finite_results_for_every_technique() -> None:
     """All results are finite, except those of the baseline without a far limit."""
     for name in library.index():
         chosen = subject(name)
-        outputs = run(chosen, fitted(chosen, samples(chosen, 200, 3)), backends.get("numpy"))
+        outputs = run(chosen, fit_inputs(chosen, samples(chosen, 200, 3)), backends.get("numpy"))
         bad = [key for key, value in outputs.items() if value.dtype.kind == "f" and not np.isfinite(value).all()]
         assert not bad or name == "cheap_sss_raymarch", f"{name}: {bad}"
 

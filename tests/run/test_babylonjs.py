@@ -27,8 +27,8 @@ from folders import ROOT
 from skips import or_skip
 from sssgen.material.material_loading import load_material, parse_material
 from sssgen.run.backends import Array
-from sssgen.run.backends.babylon_page import BABYLON
 from sssgen.run.backends.engine_page import EnginePage
+from sssgen.run.backends.web_engines import BABYLON
 from sssgen.run.compilers import Compiler
 from sssgen.run.render import page_values, shade_numpy
 from sssgen.run.render.scene_render import PlacedMesh

@@ -13,7 +13,7 @@ import pytest
 from command_line import Run
 from folders import UNITY_SAMPLES
 from sssgen.cli import check as check_command
-from sssgen.run import installed
+from sssgen.run import machine_parts
 from sssgen.run.backend_registry import BACKENDS, ENGINES
 from sssgen.run.check import compile_check as check
 from sssgen.run.check.shader_files import of_files, of_material, read
@@ -248,7 +248,7 @@ def test_engines_are_named_and_none_is_started(run: Run, monkeypatch: pytest.Mon
     write({"a.py": "x = 1\n"})
     for variable in ("SSSGEN_NODE_MODULES", "SSSGEN_CHROMIUM", "SSSGEN_FIREFOX", "SSSGEN_GODOT", "PATH"):
         monkeypatch.setenv(variable, "nowhere")
-    monkeypatch.setattr(installed, "folder", Path)
+    monkeypatch.setattr(machine_parts, "folder", Path)
     rows = {row["name"]: row for row in run("check", "a.py", "--json").data["engines"]}
     assert [*rows] == [*ENGINES]
     assert not any(row["found"] for name, row in rows.items())
@@ -284,21 +284,21 @@ def test_an_engine_is_found_by_its_files_alone(run: Run, monkeypatch: pytest.Mon
 def test_the_godot_that_is_named_is_the_only_one(monkeypatch: pytest.MonkeyPatch) -> None:
     """As with the browsers; else the path comes first, then the system that `make engines` sets up."""
     write({"build/engines/godot/usr/bin/godot": ""})
-    monkeypatch.setattr(installed, "folder", lambda name: Path(name).resolve())
+    monkeypatch.setattr(machine_parts, "folder", lambda name: Path(name).resolve())
     system = [("godot", str(Path("build/engines/godot").resolve()))]
     monkeypatch.delenv("SSSGEN_GODOT", raising=False)
     monkeypatch.setenv("PATH", "nowhere")
-    assert installed.godots() == system
+    assert machine_parts.godots() == system
     own = program("own", "true")
     monkeypatch.setenv("PATH", str(Path(program("godot4", "true")).parent))
-    (on_path, root), *others = installed.godots()
+    (on_path, root), *others = machine_parts.godots()
     assert (Path(on_path).name, root, others) == ("godot4", "", system)
     monkeypatch.setenv("SSSGEN_GODOT", own)
-    assert installed.godots() == [(own, "")]
+    assert machine_parts.godots() == [(own, "")]
     for missing in ("none", "godot", "/nowhere/godot"):
         monkeypatch.setenv("SSSGEN_GODOT", missing)
-        assert installed.godots() == []
-    assert "SSSGEN_GODOT" in installed.lacks("godot")
+        assert machine_parts.godots() == []
+    assert "SSSGEN_GODOT" in machine_parts.lacks("godot")
 
 
 def test_a_check_without_a_compilation_fails(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from folders import ROOT
 from sssgen.run.backends.browser_page import START, WEBGL, LostError, Page
-from sssgen.run.installed import chromium
+from sssgen.run.machine_parts import chromium
 
 VERTEX = """#version 300 es
 #define SHADER_NAME lit:blue

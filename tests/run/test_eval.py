@@ -17,7 +17,7 @@ import pytest
 from sssgen.cli.main import main
 from sssgen.run import backends, compilers
 from sssgen.run.backends import Backend
-from sssgen.run.backends.isolated import isolated
+from sssgen.run.backends.backend_process import BackendProcess
 from sssgen.run.evaluate import input_files as inputs
 from sssgen.run.evaluate.deviation import deviation, errors
 from sssgen.run.evaluate.evaluation import evaluate
@@ -261,7 +261,7 @@ def test_a_refusal_names_the_techniques_line(backend: Callable[[str], Backend]) 
 
 def test_a_crashed_back_end_is_restarted(backend: Callable[[str], Backend]) -> None:
     backend("gl")
-    gpu = isolated("gl")
+    gpu = BackendProcess("gl")
     technique, expected = subject("lobe_gdc2011"), None
     try:
         expected = evaluate(technique, LOBE, gpu)["result"]
@@ -297,7 +297,7 @@ def test_a_lost_device_is_replaced(backend: Callable[[str], Backend], monkeypatc
 
 def test_a_back_end_that_hangs_is_ended(backend: Callable[[str], Backend]) -> None:
     backend("gl")
-    gpu = isolated("gl")
+    gpu = BackendProcess("gl")
     try:
         assert gpu.process.process is not None
         os.kill(gpu.process.process.pid, signal.SIGSTOP)

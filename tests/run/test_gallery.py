@@ -22,7 +22,7 @@ from sssgen.jobs.result_store import Store
 from sssgen.material.material_loading import examples
 from sssgen.run import backends
 from sssgen.run.backends import Backend
-from sssgen.run.render.scene_render import Rendered, render
+from sssgen.run.render.scene_render import RenderedPicture, render
 from sssgen.scene import body_identity
 from sssgen.scene.measured import measured_scene
 from sssgen.scene.pictures import images
@@ -34,7 +34,7 @@ LOOP = "light_around.webp"
 
 
 @cache
-def render_example(name: str, backend: str, samples: int = 1) -> Rendered:
+def render_example(name: str, backend: str, samples: int = 1) -> RenderedPicture:
     """A small picture of an example's scene, by an available back end."""
     scene = load(ROOT / "examples" / name / "scene.toml")
     return render(dataclasses.replace(scene, size=SMALL, samples=samples), backends.get(backend))

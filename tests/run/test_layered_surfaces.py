@@ -17,11 +17,11 @@ from sssgen.pipeline.compiler import all_targets, compile
 from sssgen.run import backends
 from sssgen.run.backends import Array, Backend
 from sssgen.run.backends.engine_page import EnginePage
-from sssgen.run.backends.three_page import THREE
+from sssgen.run.backends.web_engines import THREE
 from sssgen.run.check.compiler_inputs import sources
 from sssgen.run.compilers import Source
 from sssgen.run.render import page_values
-from sssgen.run.render.scene_render import placed, render
+from sssgen.run.render.scene_render import place_mesh, render
 from sssgen.run.render.scene_values import shell_of
 from sssgen.scene.scene_loading import load
 from sssgen.support.diagnostics import SssgenError
@@ -87,7 +87,7 @@ def drawn(tmp_path: Path) -> Callable[[str, str], Array]:
     def picture(name: str, stages: str) -> Array:
         (tmp_path / "ball.toml").write_text(BALL + stages, encoding="utf-8")
         (tmp_path / "scene.toml").write_text(SCENE, encoding="utf-8")
-        return render(load(str(tmp_path / "scene.toml")), backends.needed(name)).linear
+        return render(load(str(tmp_path / "scene.toml")), backends.require(name)).linear
 
     return picture
 
@@ -126,7 +126,7 @@ def test_three_draws_them_as_its_own_material(stages: str, tmp_path: Path) -> No
     scene = dataclasses.replace(load(str(tmp_path / "scene.toml")), size=SIZE)
     numpy = compile(load_material(str(tmp_path / "ball.toml")), "numpy")
     shell = shell_of(scene, load_material(scene.material), numpy.reflection)
-    mesh = placed(scene, numpy, shell, registry.load("numpy"), SIZE)
+    mesh = place_mesh(scene, numpy, shell, registry.load("numpy"), SIZE)
     for renderer in THREE.renderers:
         page: Any = or_skip(partial(EnginePage, THREE), renderer)
         try:

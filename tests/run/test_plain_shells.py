@@ -95,7 +95,7 @@ AGX = '[tone_mapping]\ntechnique = "agx"\nexposure = 1.5\n'
 
 
 def test_tone_mapping_is_applied_to_the_whole_light(tmp_path: Path) -> None:
-    numpy = backends.needed("numpy")
+    numpy = backends.require("numpy")
     plain = drawn(tmp_path, numpy, "")
     assert plain.max() > 2.0
     shown = drawn(tmp_path, numpy, '[tone_mapping]\ntechnique = "reinhard"\n')
@@ -196,7 +196,7 @@ def shares(folder: Path, bias: float = 0.02) -> tuple[Array, Array]:
     opaque = MATERIAL.replace(
         'technique = "lobe_normalized"', 'technique = "lobe_normalized"\nscale = 0.0\nambient = 0.0'
     )
-    numpy = backends.needed("numpy")
+    numpy = backends.require("numpy")
     without = picture_of(folder, numpy, opaque, scene)
     return without, picture_of(folder, numpy, f"{opaque}{SHADOW}shadow_bias = {bias}\n", scene)
 
@@ -231,7 +231,7 @@ def test_too_little_bias_causes_spots(tmp_path: Path) -> None:
 
 
 def test_transmitted_light_and_the_second_light_have_no_shadow(tmp_path: Path) -> None:
-    numpy = backends.needed("numpy")
+    numpy = backends.require("numpy")
     without, shadowed = shares(tmp_path)
     with_light = drawn(tmp_path, numpy, SHADOW, BALL_OVER_FLOOR)
     plain = drawn(tmp_path, numpy, "", BALL_OVER_FLOOR)
@@ -279,7 +279,7 @@ def test_a_polished_metal_shows_the_surroundings(tmp_path: Path) -> None:
     dark = dark.replace("[0.1, 0.12, 0.15]", "[0, 0, 0]") + BALL + ENVIRONMENT
     head = '[material]\nname = "wax"\n[[surface]]\ntechnique = "base_color"\n[[surface]]\ntechnique = "pbr_constants"\n'
     metal = f"{head}metalness = 1.0\nsurface_roughness = 0.0\n{SKY}"
-    shown = picture_of(tmp_path, backends.needed("numpy"), metal, dark)[::-1].reshape(-1, 3)
+    shown = picture_of(tmp_path, backends.require("numpy"), metal, dark)[::-1].reshape(-1, 3)
     (tmp_path / "any.toml").write_text(dark.replace("wax.toml", "ice"), encoding="utf-8")
     scene = load(str(tmp_path / "any.toml"))
     environment = read_environment(scene)
@@ -295,7 +295,7 @@ def test_a_polished_metal_shows_the_surroundings(tmp_path: Path) -> None:
 
 
 def test_without_surroundings_it_adds_nothing(tmp_path: Path) -> None:
-    numpy = backends.needed("numpy")
+    numpy = backends.require("numpy")
     np.testing.assert_array_equal(drawn(tmp_path, numpy, SKY), drawn(tmp_path, numpy, ""))
 
 
@@ -316,6 +316,6 @@ def lit_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("name", DRAWING)
 def test_every_back_end_draws_all_of_it(name: str, backend: Callable[[str], Backend], lit_folder: Path) -> None:
-    expected = drawn(lit_folder, backends.needed("numpy"), ALL, LIT_SCENE)
+    expected = drawn(lit_folder, backends.require("numpy"), ALL, LIT_SCENE)
     beyond = np.abs(drawn(lit_folder, backend(name), ALL, LIT_SCENE) - expected).max(axis=-1) > 1.0 / 255.0
     assert beyond.mean() < 0.005  # at the shadow's edge, where rounding decides which texels are compared

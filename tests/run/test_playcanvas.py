@@ -29,7 +29,7 @@ from skips import or_skip
 from sssgen.material.material_loading import load_material
 from sssgen.run.backends import Array
 from sssgen.run.backends.engine_page import EnginePage
-from sssgen.run.backends.playcanvas_page import PLAYCANVAS
+from sssgen.run.backends.web_engines import PLAYCANVAS
 from sssgen.run.compilers import Compiler
 from sssgen.run.render import page_values, shade_numpy
 from sssgen.run.render.scene_render import PlacedMesh

@@ -8,7 +8,7 @@ from importlib.util import find_spec
 import pytest
 
 from folders import ROOT
-from sssgen.run.backend_registry import BACKENDS, DEFAULT, DRIVERS, FUNCTIONS, HALF, SCENES, SINGLE, chosen
+from sssgen.run.backend_registry import BACKENDS, DEFAULT, DRIVERS, FUNCTIONS, HALF, SCENES, SINGLE, backend_names
 from sssgen.run.compiler_registry import COMPILERS
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import registry
@@ -36,12 +36,12 @@ def test_what_draws_no_scenes_is_refused_for_a_scene() -> None:
     for name, record in BACKENDS.items():
         assert not (record.functions_only and record.scenes_only)
         if name in SCENES:
-            assert chosen(name, scenes=True) == [name]
+            assert backend_names(name, scenes=True) == [name]
             continue
         with pytest.raises(
             SssgenError, match=f"{name} evaluates functions and draws no scenes\n.*choose from: numpy, "
         ):
-            chosen(name, scenes=True)
+            backend_names(name, scenes=True)
     assert {"bevy", "tsl", "tsl-webgl2", "unreal", "webgpu-f16"} == set(BACKENDS) - set(SCENES)
 
 

@@ -19,10 +19,10 @@ from lamp_scene import BALL, LAMP, RIBS, SIZE, largest_difference
 from sssgen.cli.main import main
 from sssgen.run import backends
 from sssgen.run.backends import Array, Backend, Text
-from sssgen.run.backends.isolated import isolated
+from sssgen.run.backends.backend_process import BackendProcess
 from sssgen.run.backends.unity_backend import UnityHLSL
 from sssgen.run.render import unity_values
-from sssgen.run.render.scene_render import Rendered, render
+from sssgen.run.render.scene_render import RenderedPicture, render
 from sssgen.scene.pictures import images
 from sssgen.scene.scene import Scene
 from sssgen.scene.scene_loading import parse_scene
@@ -99,7 +99,7 @@ def example(name: str) -> Scene:
     return dataclasses.replace(described, shell={})  # Unity has its own
 
 
-def picture_of(described: Scene, machine: Backend) -> Rendered:
+def picture_of(described: Scene, machine: Backend) -> RenderedPicture:
     return render(described, machine, SIZE)
 
 
@@ -269,7 +269,7 @@ def test_in_another_process(unity: UnityHLSL, backend: Callable[[str], Backend])
     backend("gl")
     path = EXAMPLES / "ci" / "scenes" / "lamp.toml"
     scene = parse_scene(path.read_text(encoding="utf-8"), str(path))
-    other = isolated(unity.name)
+    other = BackendProcess(unity.name)
     try:
         moved = render(scene, other, SIZE)
     finally:

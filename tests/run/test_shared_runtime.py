@@ -19,10 +19,8 @@ from skips import or_skip
 from sssgen.cli.main import main
 from sssgen.pipeline.compiler import Compiled
 from sssgen.run.backends import Array
-from sssgen.run.backends.babylon_page import BABYLON
 from sssgen.run.backends.engine_page import Engine, EnginePage
-from sssgen.run.backends.playcanvas_page import PLAYCANVAS
-from sssgen.run.backends.three_page import THREE
+from sssgen.run.backends.web_engines import BABYLON, PLAYCANVAS, THREE
 from sssgen.run.render import page_values
 from sssgen.support.diagnostics import SssgenError
 

@@ -26,7 +26,7 @@ from folders import ROOT
 from skips import or_skip
 from sssgen.material.material_loading import load_material
 from sssgen.run.backends.engine_page import EnginePage
-from sssgen.run.backends.three_page import THREE
+from sssgen.run.backends.web_engines import THREE
 from sssgen.run.compilers import Compiler
 from sssgen.run.render import page_values, shade_numpy
 from sssgen.run.render.scene_values import shell_of

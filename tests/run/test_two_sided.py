@@ -117,7 +117,7 @@ def seen(tmp_path: Path) -> Callable[..., np.ndarray]:
 
 
 def test_the_point_reflection_of_a_scene_has_the_same_picture_upside_down(seen: Callable[..., np.ndarray]) -> None:
-    numpy = backends.needed("numpy")
+    numpy = backends.require("numpy")
     front = seen(numpy, 1.0)
     behind = seen(numpy, -1.0)
     assert front.max() - front.min() > 0.2
@@ -131,7 +131,7 @@ def test_every_back_end_draws_back_faces(
     name: str, backend: Callable[[str], Backend], seen: Callable[..., np.ndarray]
 ) -> None:
     for side in (1.0, -1.0):
-        drawn, expected = seen(backend(name), side), seen(backends.needed("numpy"), side)
+        drawn, expected = seen(backend(name), side), seen(backends.require("numpy"), side)
         assert np.abs(drawn - expected).max() < 1.0 / 255.0, side
 
 

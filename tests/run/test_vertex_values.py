@@ -207,7 +207,7 @@ def test_every_back_end_draws_them(
     name: str, backend: Callable[[str], Backend], drawn: Callable[..., np.ndarray]
 ) -> None:
     for material, value in ((PAINTED, ""), (SHOWN, "vertex_color.rgb * vertex_color.a + vec3(uv2, 0.0)")):
-        expected = drawn(backends.needed("numpy"), material, value)
+        expected = drawn(backends.require("numpy"), material, value)
         assert expected.std() > 0.1
         assert np.abs(drawn(backend(name), material, value) - expected).max() < 1.0 / 255.0
 
@@ -218,7 +218,7 @@ def test_each_value_has_its_place_in_the_picture(drawn: Callable[..., np.ndarray
         ("vertex_color.rgb", COLORS[:, :3]),
         ("vec3(uv2, vertex_color.a)", np.c_[UV2 * [1.0, -1.0] + [0.0, 1.0], COLORS[:, 3]]),
     ):
-        picture = drawn(backends.needed("numpy"), SHOWN, value)[::-1].reshape(-1, 3)
+        picture = drawn(backends.require("numpy"), SHOWN, value)[::-1].reshape(-1, 3)
         origin, directions = load(str(tmp_path / "scene.toml")).camera.rays(*SIZE)
         points = origin + directions * (-origin[2] / directions[:, 2:])
         on_sheet = (np.abs(points[:, 0]) < 0.95) & (np.abs(points[:, 1]) < 0.65)

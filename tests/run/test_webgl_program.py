@@ -16,7 +16,7 @@ import pytest
 from folders import ROOT
 from sssgen.cli import main as cli
 from sssgen.run.backends.browser_page import Page
-from sssgen.run.installed import all_lacks, node, node_modules
+from sssgen.run.machine_parts import all_lacks, node, node_modules
 from sssgen.targets.program_reflection import ROWS
 
 VERTEX = """#version 300 es

@@ -13,7 +13,7 @@ import pytest
 from documents import Reader, blocks, programs, uncommented
 from folders import DOCS, ROOT
 from sssgen.run.backends.browser_page import WEBGL, WEBGPU
-from sssgen.run.installed import all_lacks, chromium
+from sssgen.run.machine_parts import all_lacks, chromium
 from static_host import serving
 
 DOCUMENT = DOCS / "webgl-to-webgpu.md"

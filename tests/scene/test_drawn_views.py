@@ -19,7 +19,7 @@ from sssgen.run import backends
 from sssgen.run.backends import Backend, Drawing, Text
 from sssgen.run.backends.unity_backend import UnityHLSL
 from sssgen.run.render import pixel_mesh, unity_values
-from sssgen.run.render.scene_render import Rendered, render
+from sssgen.run.render.scene_render import RenderedPicture, render
 from sssgen.run.render.shell_values import Shell
 from sssgen.scene.camera import Camera
 from sssgen.scene.drawn_views import TEXELS, back_faces, light_depth
@@ -74,12 +74,12 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def torus_oracle(tmp_path_factory: pytest.TempPathFactory) -> Rendered:
+def torus_oracle(tmp_path_factory: pytest.TempPathFactory) -> RenderedPicture:
     """The torus by the oracle."""
     return picture(TORUS + LIGHT, write_material(tmp_path_factory.mktemp("torus")), backends.get("numpy"))
 
 
-def picture(text: str, folder: Path, machine: Backend) -> Rendered:
+def picture(text: str, folder: Path, machine: Backend) -> RenderedPicture:
     return render(parse_scene(HEAD + text, folder / "scene.toml"), machine, SIZE)
 
 
@@ -102,7 +102,7 @@ def test_a_ball_in_closed_form(folder: Path) -> None:
 
 @pytest.mark.parametrize("name", DRAWING)
 def test_every_back_end_reads_the_same_texels(
-    name: str, backend: Callable[[str], Backend], folder: Path, torus_oracle: Rendered
+    name: str, backend: Callable[[str], Backend], folder: Path, torus_oracle: RenderedPicture
 ) -> None:
     """Whichever way the rows of its framebuffer are counted."""
     result = picture(TORUS + LIGHT, folder, backend(name))

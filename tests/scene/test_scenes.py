@@ -14,7 +14,7 @@ import pytest
 from sssgen.cli.main import main
 from sssgen.lab.measure import scene_references as references
 from sssgen.run.evaluate.evaluation import half
-from sssgen.scene.bounds import bounds, placed_corners
+from sssgen.scene.bounds import bounds, world_corners
 from sssgen.scene.example_scenes import measured_scenes
 from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.scene.measured import measured_scene, media
@@ -254,7 +254,7 @@ def test_bounds_hold_the_body_and_its_texture_reads_the_distance(shape: Geometry
 def test_placed_corners_hold_the_body() -> None:
     for shape in SOLIDS:
         placed = replace(shape, **ASKEW)
-        corners = placed_corners(placed)
+        corners = world_corners(placed)
         at = np.random.default_rng(4).uniform(-3.0, 3.0, (3000, 3))
         inwards = placed.to_object()
         inside = at[placed.distance(at @ inwards[:3, :3].T + inwards[:3, 3]) < 0.0]

@@ -107,7 +107,7 @@ def test_the_light_that_comes_through(
     linker = compiler("bevy")
     assert isinstance(linker, Bevy)
     set_up, color = LIGHTS[kind]
-    text = in_the_open(linker.linked(shader, CONDITIONS["forward"]), reflection, set_up)
+    text = in_the_open(linker.link(shader, CONDITIONS["forward"]), reflection, set_up)
     chain = inputs()
     rng = np.random.default_rng(3)
     textures = {}
@@ -139,7 +139,7 @@ def test_a_raymarched_picture_is_upright(
     shader, _, reflection = files(material)
     linker = compiler("bevy")
     assert isinstance(linker, Bevy)
-    lit = in_the_open(linker.linked(shader, CONDITIONS["forward"]), reflection, "")
+    lit = in_the_open(linker.link(shader, CONDITIONS["forward"]), reflection, "")
     text = lit.replace("fragment(in, true).color.rgb - dark", "dark").replace("globals.time", "2.0")
     chain = inputs()
     params = (VEC2, VEC3, VEC3, VEC3, VEC3)

@@ -19,7 +19,7 @@ from sssgen.ir.nodes import Module
 from sssgen.ir.types import FLOAT, INT, VEC3
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
-from sssgen.run import backends, installed
+from sssgen.run import backends, machine_parts
 from sssgen.run.backends import Backend, Call, Text
 from sssgen.run.compilers import Source
 from sssgen.support.diagnostics import SssgenError
@@ -59,7 +59,7 @@ def test_three_builds_every_construct(assert_compiles: Callable[[Source], None])
 
 def test_node_imports_the_module(tmp_path: Path) -> None:
     """Each name that the module imports is in three, and each function is exported."""
-    node, three = installed.node(), installed.node_modules() / "three" / "package.json"
+    node, three = machine_parts.node(), machine_parts.node_modules() / "three" / "package.json"
     if not node or not three.is_file():
         pytest.skip("node or npm three is missing: make setup")
     (tmp_path / "node_modules").symlink_to(three.parent.parent)

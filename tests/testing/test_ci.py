@@ -15,7 +15,7 @@ import pytest
 from sssgen.cli import main as cli
 from sssgen.cli.output import CHECK_FAILED
 from sssgen.run.backends import Backend
-from sssgen.run.backends.isolated import Isolated
+from sssgen.run.backends.backend_process import BackendProcess
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.file_writer import write_files
 from sssgen.testing import junit
@@ -145,7 +145,7 @@ def test_a_back_end_that_dies_fails_one_case(backend: Callable[[str], Backend]) 
     with Run(update=True) as run:
         assert run(case).outcome.message == "wrote golden/scene.png"
         gpu = run.started.get("gl")
-        assert isinstance(gpu, Isolated) and gpu.process.process is not None
+        assert isinstance(gpu, BackendProcess) and gpu.process.process is not None
         os.kill(gpu.process.process.pid, signal.SIGKILL)
         assert "crashed (SIGKILL)" in run(case).outcome.message
         assert run(case).outcome.state == "passed"

@@ -22,7 +22,7 @@ from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
 from sssgen.run.check.compiler_inputs import sources
 from sssgen.run.compilers import Compiler, errors
 from sssgen.run.render import page_values, shade_numpy
-from sssgen.run.render.scene_render import PlacedMesh, placed
+from sssgen.run.render.scene_render import PlacedMesh, place_mesh
 from sssgen.run.render.scene_values import shell_of
 from sssgen.run.render.shell_values import Shell
 from sssgen.scene import scene_loading
@@ -66,7 +66,7 @@ def mesh_of(name: str) -> PlacedMesh:
     scene = dataclasses.replace(scene, size=SIZE, samples=1)
     compiled = sssgen.compile(name, "numpy")
     shell = shell_of(scene, load_material(scene.material), compiled.reflection)
-    return placed(scene, compiled, shell, registry.load("numpy"), SIZE)
+    return place_mesh(scene, compiled, shell, registry.load("numpy"), SIZE)
 
 
 def through(name: str, mesh: PlacedMesh) -> Array:

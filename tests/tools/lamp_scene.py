@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from folders import EXAMPLES
-from sssgen.run.render.scene_render import Rendered
+from sssgen.run.render.scene_render import RenderedPicture
 
 LAMP = """
 [[light]]
@@ -21,6 +21,6 @@ RIBS = f'[textures]\nthickness_texture = "{(EXAMPLES / "paper_lantern/textures/t
 SIZE = (48, 36)
 
 
-def largest_difference(a: Rendered, b: Rendered) -> float:
+def largest_difference(a: RenderedPicture, b: RenderedPicture) -> float:
     """The largest difference in 1/255."""
     return float(255.0 * np.abs(a.encoded - b.encoded).max())

@@ -16,7 +16,7 @@ import pytest
 from sssgen.preview.page_library import library
 from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import PreviewServer
-from sssgen.run.installed import chromium
+from sssgen.run.machine_parts import chromium
 from sssgen.support.diagnostics import SssgenError
 
 SWITCHES = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]

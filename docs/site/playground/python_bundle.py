@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from packed_file import write_packed
-from sssgen.run.installed import node, node_modules
+from sssgen.run.machine_parts import node, node_modules
 from sssgen.support import paths
 from sssgen.support.diagnostics import failure
 from sssgen.support.installation import npm_hint

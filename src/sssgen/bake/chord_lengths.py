@@ -12,8 +12,8 @@ from sssgen.bake.voxel_grid import Array
 from sssgen.lab.reference import view_harmonics
 from sssgen.lab.reference.inside_lengths import thickness
 from sssgen.lab.reference.view_harmonics import Fit
+from sssgen.scene.geometry_base import perpendiculars
 from sssgen.scene.mesh import Mesh
-from sssgen.scene.placed import perpendiculars
 
 
 class Chords(NamedTuple):

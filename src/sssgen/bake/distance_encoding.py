@@ -10,7 +10,7 @@ import numpy.typing as npt
 from sssgen.bake.voxel_distance import Distances
 from sssgen.scene.pictures import volumes
 from sssgen.scene.pictures.volumes import Encoding
-from sssgen.scene.scene import stored
+from sssgen.scene.scene import encode_distance
 
 ENCODINGS = {encoding.name: encoding for encoding in volumes.ENCODINGS if encoding.channels == 1}
 """By the names of the command line: unsigned normalised integers, and floats."""
@@ -20,7 +20,7 @@ def encode(distance: Distances, inside: npt.NDArray[np.bool_], reach: float, enc
     """The texels of unsigned distances, (z, y, x)."""
     texels = np.empty(distance.shape, encoding.dtype)
     for layer in range(len(distance)):  # layer by layer, because the intermediate values are float64
-        value = stored(np.where(inside[layer], -1.0, 1.0) * distance[layer], reach)
+        value = encode_distance(np.where(inside[layer], -1.0, 1.0) * distance[layer], reach)
         texels[layer] = np.rint(value * encoding.unit) if encoding.dtype.kind == "u" else value
     return texels
 

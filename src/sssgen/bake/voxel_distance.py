@@ -36,7 +36,7 @@ def distances(body: MeshDistance, grid: Grid, progress: Progress = lambda *_: No
         if end - start < layers:
             order = _in_tiles((end - start, up, across))
         block = np.empty(len(order))
-        block[order] = body.unsigned(grid.slab(start, end)[order])
+        block[order] = body.unsigned_distance(grid.slab(start, end)[order])
         result[start:end] = block.reshape(end - start, up, across)
         progress(end, deep, "distances")
     return result
@@ -78,7 +78,7 @@ def inside(body: MeshDistance, grid: Grid, unsigned: Distances) -> npt.NDArray[n
                 value = before[tuple(enclosing.T)].astype(np.float64)
                 sure = np.abs(value - INSIDE) > within + _change(body.rim, way, nearest) + SLACK
             z, y, x = middle[~sure].astype(np.float64).T
-            value[~sure] = body.winding(grid.centers(x, y, z))
+            value[~sure] = body.winding_number(grid.centers(x, y, z))
             sure |= (np.abs(value - INSIDE) > within + SLACK) | (size == 1)
             state[tuple(block[sure].T)] = np.where(value[sure] > INSIDE, 1, -1)
             turns[tuple(block.T)] = value

@@ -40,9 +40,9 @@ def run(arguments: Namespace) -> int:
     """Checks all cases and prints a line for each; returns 0 if none failed and one passed."""
     backends: list[str] = []
     if arguments.backend is not None:
-        from sssgen.run.backends import chosen
+        from sssgen.run.backends import backend_names
 
-        backends = chosen(arguments.backend)
+        backends = backend_names(arguments.backend)
     cases = ci.cases(arguments.DIR, backends)
     if arguments.flip is not None:
         from sssgen.testing.golden import check_limit

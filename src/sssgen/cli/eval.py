@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from sssgen.cli.layout import print_rows
 from sssgen.cli.options import add_guards, add_seed, check_samples
 from sssgen.cli.output import CHECK_FAILED, OK, print_json
-from sssgen.run.backend_registry import BACKENDS, FUNCTIONS, HALF, chosen, in_half
+from sssgen.run.backend_registry import BACKENDS, FUNCTIONS, HALF, backend_names, half_counterparts
 from sssgen.support.diagnostics import failure
 from sssgen.testing.outcome import in_ci
 
@@ -64,9 +64,9 @@ def run(arguments: Namespace) -> int:
 
         check_samples(arguments, MAX_SAMPLES)
         values = samples(chosen, arguments.samples, arguments.seed) | values
-    from sssgen.run.evaluate.evaluation import fitted
+    from sssgen.run.evaluate.evaluation import fit_inputs
 
-    fit = fitted(chosen, values)
+    fit = fit_inputs(chosen, values)
     if len(names) == 1:
         return _report(chosen, fit, names[0], arguments.json, arguments.guards)
     return _compare(chosen, fit, names, arguments.json, not sampled, arguments.guards)
@@ -74,11 +74,11 @@ def run(arguments: Namespace) -> int:
 
 def _backends(text: str, precision: str | None) -> list[str]:
     """The named back ends; the oracle comes first."""
-    names = list(FUNCTIONS) if text == "all" else chosen(text)
+    names = list(FUNCTIONS) if text == "all" else backend_names(text)
     if precision is None:
         return names
     if precision == "f16":
-        return list(HALF) if text == "all" else in_half(names)
+        return list(HALF) if text == "all" else half_counterparts(names)
     wanted = {"f64": "numpy", "f32": "numpy-f32"}[precision]
     if "numpy" in names:
         return [wanted if name == "numpy" else name for name in names if name not in ("numpy-f32", *HALF)]
@@ -88,10 +88,10 @@ def _backends(text: str, precision: str | None) -> list[str]:
 
 
 def _report(subject: Subject, fit: Inputs, name: str, as_json: bool, guards: str) -> int:
-    from sssgen.run.backends import needed
+    from sssgen.run.backends import require
     from sssgen.run.evaluate.evaluation import run as evaluated
 
-    backend = needed(name)
+    backend = require(name)
     outputs = evaluated(subject, fit, backend, guards)
     if as_json:
         plain = {key: _json_numbers(value) for key, value in outputs.items()}
@@ -103,11 +103,11 @@ def _report(subject: Subject, fit: Inputs, name: str, as_json: bool, guards: str
 
 
 def _compare(subject: Subject, fit: Inputs, names: list[str], as_json: bool, listed: bool, guards: str) -> int:
-    from sssgen.run.evaluate.deviation import GOAL, compared
+    from sssgen.run.evaluate.deviation import GOAL, compare
     from sssgen.support.progress import ProgressBar
 
     with ProgressBar() as progress:
-        oracle, rows = compared(subject, fit, names, guards, progress)
+        oracle, rows = compare(subject, fit, names, guards, progress)
     here = [row for row in rows if not row.missing]
     lacking = any(row.missing and not BACKENDS[row.name].apart for row in rows)
     good = bool(here) and all(row.ok for row in here) and not (in_ci() and lacking)

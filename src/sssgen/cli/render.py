@@ -57,7 +57,7 @@ def _render(arguments: Namespace) -> int:
     from sssgen.scene.scene_keys import MAX_SAMPLES
 
     size = _size(arguments.size) if arguments.size else None
-    name, *more = backends.chosen(arguments.backend, scenes=True)
+    name, *more = backends.backend_names(arguments.backend, scenes=True)
     if more:
         raise failure(f"{arguments.backend} are several back ends", "name one")
     if arguments.time is not None and not abs(arguments.time) < 1e9:
@@ -69,7 +69,7 @@ def _render(arguments: Namespace) -> int:
     output = arguments.output or f"{os.path.splitext(os.path.basename(arguments.SCENE))[0]}.png"
     if images.check_suffix(output) == ".npy":
         raise failure("a picture is written as .png or .exr", "", output)
-    backend = backends.needed(name)
+    backend = backends.require(name)
     start = perf_counter()
     try:
         with ProgressBar() as progress:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from sssgen.cli.options import add_guards, add_output, add_seed, add_workers, check_samples
 from sssgen.cli.output import CHECK_FAILED, OK, print_json, write_text
-from sssgen.run.backend_registry import DEFAULT, HALF, SINGLE, chosen, in_half
+from sssgen.run.backend_registry import DEFAULT, HALF, SINGLE, backend_names, half_counterparts
 from sssgen.support.diagnostics import failure
 from sssgen.testing.outcome import in_ci
 
@@ -57,7 +57,7 @@ def run(arguments: Namespace) -> int:
     check_samples(arguments, MAX_SAMPLES)
     suffix = _suffix(arguments.output, report.SUFFIXES) if arguments.output else ""
     half = arguments.precision == "f16"
-    rows = dangerous.chosen(arguments.row)
+    rows = dangerous.check_rows(arguments.row)
     settings = Settings(arguments.samples, arguments.seed, arguments.guards, half, rows)
     names = _backends(arguments.backend or ("all" if half else ",".join(DEFAULT)), half)
     subjects = specimens(arguments.NAME)
@@ -91,13 +91,13 @@ def _check_rows(rows: Sequence[str], subjects: Sequence[Specimen]) -> None:
 
 def _backends(text: str, half: bool) -> list[str]:
     """The named back ends. Raises SssgenError for unknown ones, and for those of the other precision."""
-    names = list(SINGLE) if text == "all" else chosen(text)
+    names = list(SINGLE) if text == "all" else backend_names(text)
     if not half:
         wrong = [name for name in names if name in HALF]
         if wrong:
             raise failure(f"{wrong[0]} computes in half precision", "--precision f16 --backend numpy,webgpu")
         return names
-    return list(HALF) if text == "all" else in_half(names)
+    return list(HALF) if text == "all" else half_counterparts(names)
 
 
 def _stress_each(subjects: list[Specimen], names: list[str], settings: Settings) -> Report:

@@ -221,7 +221,7 @@ def _verify(arguments: Namespace, path: Path, computes: bool) -> int:
 
     if arguments.define:
         raise failure("-D cannot be used with --verify", "write the #define into the file")
-    text = includes.expanded(read_code(path, path.as_posix()), path, arguments.include)
+    text = includes.expand(read_code(path, path.as_posix()), path, arguments.include)
     report: Any
     if computes:
         if arguments.function:

@@ -13,7 +13,7 @@ import numpy as np
 
 from sssgen.interchange.gltf_container import Container
 from sssgen.interchange.gltf_json import JsonElement
-from sssgen.scene.placed import Array
+from sssgen.scene.arrays import Array
 from sssgen.support.diagnostics import SssgenError
 
 _TYPES = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}

@@ -10,9 +10,10 @@ import numpy as np
 from sssgen.interchange.gltf_buffers import Buffers, read_attribute
 from sssgen.interchange.gltf_json import JsonElement
 from sssgen.interchange.mapping_report import Report
+from sssgen.scene.arrays import Array, Indices
+from sssgen.scene.geometry_base import unit
 from sssgen.scene.mesh import FARTHEST, SMALLEST
-from sssgen.scene.mesh_files import FileContent, Indices, moved_normals
-from sssgen.scene.placed import Array, unit
+from sssgen.scene.mesh_files import FileContent, moved_normals
 
 MOST_TRIANGLES = 20_000_000
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.surface_model import SurfaceModel
+from sssgen.scene.arrays import Array
 from sssgen.scene.mesh_files import FileContent
-from sssgen.scene.placed import Array
 from sssgen.support.diagnostics import did_you_mean, failure
 
 BAKED_SET = 2

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from sssgen.scene.arrays import Array
 from sssgen.scene.mesh_files import FileContent
-from sssgen.scene.placed import Array
 from sssgen.version import VERSION
 
 _ARRAY_BUFFER, _ELEMENT_ARRAY_BUFFER = 34962, 34963

@@ -9,8 +9,8 @@ import numpy as np
 from sssgen.interchange.surface_model import SurfaceModel
 from sssgen.interchange.technique_choice import Choice
 from sssgen.material.material_text import toml_value
+from sssgen.scene.arrays import Array
 from sssgen.scene.mesh_files import FileContent
-from sssgen.scene.placed import Array
 
 _BALL_RADIUS, _SCATTERED_RADIUS, _CLEAR_RADIUS = 1.0, 6.0, 0.75
 """The largest radius of the ball of a material without a mesh: metres, and mean free paths of media with and without

@@ -15,7 +15,7 @@ from sssgen.interchange.surface_model import ONE, WHITE, Quantity, SurfaceModel,
 from sssgen.interchange.texels import mean_of
 from sssgen.interchange.texture_composer import ComposedTexture, Composer, Coordinates, coordinates
 from sssgen.material.material_text import MaterialSection
-from sssgen.scene.placed import Array
+from sssgen.scene.arrays import Array
 
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
 """Of linear sRGB (ITU-R BT.709)."""

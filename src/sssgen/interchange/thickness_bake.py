@@ -16,10 +16,10 @@ from sssgen.interchange.imported_material import BAKED_SET, ImportedMaterial
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.mesh_glb import mesh_file
 from sssgen.interchange.surface_model import Image, Picture, Quantity
+from sssgen.scene.arrays import Array
 from sssgen.scene.mesh import Mesh, Triangles
 from sssgen.scene.mesh_files import FileContent
 from sssgen.scene.pictures.images import png_bytes
-from sssgen.scene.placed import Array
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.progress import Progress, silent
 

@@ -27,7 +27,7 @@ from sssgen.targets import registry
 from sssgen.targets.assemble import About
 from sssgen.targets.block_places import block_members
 from sssgen.targets.descriptor import Target
-from sssgen.targets.program_reflection import ROWS, StageFacts, beyond_limits, reflect_program
+from sssgen.targets.program_reflection import ROWS, StageFacts, exceeded_limits, reflect_program
 from sssgen.targets.reflection import as_text
 
 
@@ -109,7 +109,7 @@ def transpile_stages(
                 blocks[kind],
             )
     described = reflect_program(name, chosen, rows, facts["vertex"], facts["fragment"])
-    beyond = beyond_limits(described, chosen)
+    beyond = exceeded_limits(described, chosen)
     described["warnings"] += beyond
     warnings += [Diagnostic("warning", message) for message in beyond]
     files[f"{name}.program.json"] = as_text(described)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from sssgen.lab.reference.geometry_mesh import mesh_of
 from sssgen.scene.distance_field import PROJECTIONS
 from sssgen.scene.geometry import Ball, Box, Distance, Geometry, Mesh, Slab, Torus, Union
-from sssgen.scene.placed import spherical, unit
+from sssgen.scene.geometry_base import spherical, unit
 
 Array = npt.NDArray[np.float64]
 

@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 from typing import NamedTuple
 
-from sssgen.run.installed import node_modules
+from sssgen.run.machine_parts import node_modules
 from sssgen.support.diagnostics import failure
 from sssgen.support.installation import npm_hint
 from sssgen.support.paths import PACKAGE, folder

@@ -35,7 +35,7 @@ class BackendRecord(NamedTuple):
     functions_only: bool = False
     """Whether it evaluates functions, and draws no scenes."""
     parts: tuple[str, ...] = ()
-    """The parts of `installed` without which it does not start."""
+    """The parts of `machine_parts` without which it does not start."""
     engine: bool = False
     """Whether it is an engine, a stand-in for one, or a browser apart: `sssgen check` tells which of them are found."""
     apart: bool = False
@@ -188,7 +188,7 @@ PREFERRED = "gl"
 """The one where a single back end is needed and none is named."""
 
 
-def chosen(text: str, scenes: bool = False) -> list[str]:
+def backend_names(text: str, scenes: bool = False) -> list[str]:
     """The back ends that `NAME,NAME` names, each once: of those that draw scenes, or of those that evaluate functions.
 
     Raises SssgenError for others.
@@ -217,7 +217,7 @@ def check_draws(name: str) -> None:
         raise failure(f"{name} evaluates functions and draws no scenes", f"choose from: {', '.join(SCENES)}")
 
 
-def in_half(names: list[str]) -> list[str]:
+def half_counterparts(names: list[str]) -> list[str]:
     """The counterparts of those back ends in half precision. Raises SssgenError for one that has none."""
     for name in names:
         if name not in HALF and not BACKENDS[name].half:

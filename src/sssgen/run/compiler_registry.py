@@ -21,7 +21,7 @@ class CompilerRecord(NamedTuple):
     apart: bool = False
     """Whether it is too large for `make setup`: then its tests are skipped where it is missing, in CI, too."""
     parts: tuple[str, ...] = ()
-    """The parts of `installed` without which it does not start."""
+    """The parts of `machine_parts` without which it does not start."""
 
 
 _RECORDS = (

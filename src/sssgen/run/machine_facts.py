@@ -16,7 +16,7 @@ from typing import Any
 
 from sssgen.run.backend_registry import BACKENDS
 from sssgen.run.compiler_registry import COMPILERS
-from sssgen.run.installed import all_lacks
+from sssgen.run.machine_parts import all_lacks
 from sssgen.support import cache
 from sssgen.support.extra_packages import NEEDED, installed_version, packages
 from sssgen.support.installation import install_hint, source
@@ -84,8 +84,8 @@ def facts(start: bool = False) -> Facts:
     backends = [_item(name, BACKENDS[name].description, BACKENDS[name].parts) for name in BACKENDS]
     if start:
         with ThreadPoolExecutor(os.cpu_count()) as pool:
-            compilers = list(pool.map(_started("sssgen.run.compilers.compiler_process"), compilers))
-            backends = list(pool.map(_started(__name__), backends))
+            compilers = list(pool.map(_starter("sssgen.run.compilers.compiler_process"), compilers))
+            backends = list(pool.map(_starter(__name__), backends))
     own = {name: value for name, value in sorted(os.environ.items()) if name.startswith("SSSGEN_")}
     extras = list(_extras())
     return Facts(
@@ -128,7 +128,7 @@ def _versions() -> Iterator[tuple[str, str]]:
             yield name, found
 
 
-def _started(module: str) -> Callable[[Item], Item]:
+def _starter(module: str) -> Callable[[Item], Item]:
     """Starts what is found, in a process of its own."""
 
     def start(item: Item) -> Item:

@@ -11,7 +11,7 @@ import numpy as np
 from sssgen.material.model import Material
 from sssgen.material.requirements import BakedFunction, read_uniforms
 from sssgen.scene.geometry import Mesh
-from sssgen.scene.placed import unit
+from sssgen.scene.geometry_base import unit
 from sssgen.scene.scene import Scene
 from sssgen.support.installed_files import is_installed
 from sssgen.support.paths import posix, shell_word

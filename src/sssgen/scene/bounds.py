@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from sssgen.scene.arrays import Array
 from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
-from sssgen.scene.placed import Array
 from sssgen.support.diagnostics import failure
 
 
@@ -25,7 +25,7 @@ def bounds(geometry: Geometry) -> tuple[Array, Array]:
         size = geometry.size if isinstance(geometry, Box) else (geometry.width, geometry.height, geometry.thickness)
         return -0.5 * np.array(size), 0.5 * np.array(size)
     if isinstance(geometry, Union):
-        corners = [corner for part in geometry.parts for corner in placed_corners(part)]
+        corners = [corner for part in geometry.parts for corner in world_corners(part)]
         return np.min(corners, axis=0), np.max(corners, axis=0)
     assert isinstance(geometry, Distance)
     at = np.linspace(-geometry.reach, geometry.reach, 48)
@@ -37,7 +37,7 @@ def bounds(geometry: Geometry) -> tuple[Array, Array]:
     return near.min(axis=0), near.max(axis=0)
 
 
-def placed_corners(geometry: Geometry) -> Array:
+def world_corners(geometry: Geometry) -> Array:
     """The eight corners of a shape's box, (8, 3), in world space."""
     low, high = bounds(geometry)
     corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 
-Array: TypeAlias = npt.NDArray[np.float64]
-Vector: TypeAlias = tuple[float, float, float]
+from sssgen.scene.arrays import Array, Vector
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sssgen.scene.placed import Array, Geometry, Hits, planar, spherical, spread, tangent_of, unit
+from sssgen.scene.arrays import Array
+from sssgen.scene.geometry_base import Geometry, Hits, planar, spherical, spread, tangent_of, unit
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,8 @@ from sssgen.material.values import WrongValue, read_value
 from sssgen.passes.fold import fold
 from sssgen.passes.link import LinkInput, link
 from sssgen.pipeline.compiler import transpile
-from sssgen.scene.placed import Array, Bools, Geometry, Hits, planar, spherical, spread, tangent_of, unit
+from sssgen.scene.arrays import Array, Bools
+from sssgen.scene.geometry_base import Geometry, Hits, planar, spherical, spread, tangent_of, unit
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.file_memo import CachedResult, remember
 from sssgen.targets.runtime.numpy_values import precision
@@ -77,9 +78,9 @@ class Distance(Geometry):
     def function(self) -> Callable[[Array], Any]:
         """The function on points (3, n). Raises SssgenError."""
         key = repr((self.technique, self.folder, self.parameters))
-        return remember(_functions, key, self._compiled, MOST_FUNCTIONS)
+        return remember(_functions, key, self._compile, MOST_FUNCTIONS)
 
-    def _compiled(self) -> Callable[[Array], Any]:
+    def _compile(self) -> Callable[[Array], Any]:
         module, function = find_function(self.technique, self.folder)
         values = _values(self.technique, uniforms_of(module, function), self.parameters)
         linked = link([LinkInput(function.name, "", module, function, {}, values, frozenset(values))])
@@ -116,10 +117,10 @@ class Distance(Geometry):
             active, value = active[continues], value[continues]
             previous[active] = t[active]
             t[active] = np.minimum(t[active] + np.maximum(np.abs(value), _SHORTEST * self.reach), end[active])
-        t[hit] = self.bisected(origin, directions[hit], previous[hit], t[hit])
+        t[hit] = self.bisect(origin, directions[hit], previous[hit], t[hit])
         return t, hit
 
-    def bisected(self, origins: Array, directions: Array, low: Array, high: Array) -> Array:
+    def bisect(self, origins: Array, directions: Array, low: Array, high: Array) -> Array:
         """The distance along each ray at which the sign changes, exact to the last bit, between `low` and `high`."""
         negative = self.distance(origins + low[:, None] * directions) < 0.0
         for _ in range(BISECTION_STEPS):

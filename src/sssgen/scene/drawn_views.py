@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from sssgen.scene.bounds import placed_corners
+from sssgen.scene.arrays import Array
+from sssgen.scene.bounds import world_corners
 from sssgen.scene.geometry import Geometry
 from sssgen.scene.inside_intervals import in_object_space, intervals
 from sssgen.scene.light_view import LightView, directional_view, point_view
-from sssgen.scene.placed import Array
 
 BLOCK = 1 << 18
 """The number of rays that are cast at once: many, as a march goes on for its last ray with few rays left."""
@@ -30,7 +30,7 @@ def light_depth(geometry: Geometry, light: Array, layers: bool = False) -> tuple
     columns, 3). A texel without a surface has the depth of the body's end, as a larger step would be blurred
     differently by filters. Raises SssgenError for a light at the body.
     """
-    corners, size = placed_corners(geometry), (TEXELS, TEXELS)
+    corners, size = world_corners(geometry), (TEXELS, TEXELS)
     view = point_view(corners, light[:3], size) if light[3] else directional_view(corners, light[:3], size)
     distances = _nearest(geometry, view.origins, view.directions, 0, 2 if layers else 1)
     if layers:

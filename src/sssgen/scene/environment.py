@@ -9,16 +9,14 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from sssgen.scene.arrays import Array
 from sssgen.scene.pictures import images
 from sssgen.scene.scene import Light, Scene
 from sssgen.scene.scene_keys import ENVIRONMENT
 from sssgen.scene.toml_table import Table
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError
-
-Array = npt.NDArray[np.float64]
 
 LIGHTS = 32
 """The lights from afar that stand for an environment where a technique is evaluated."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from sssgen.scene.compound import Capsule, Union
 from sssgen.scene.distance_field import Distance
+from sssgen.scene.geometry_base import Geometry, Hits
 from sssgen.scene.mesh import Mesh
-from sssgen.scene.placed import Geometry, Hits
 from sssgen.scene.solids import Ball, Box, Slab, Torus
 
 __all__ = ["Ball", "Box", "Capsule", "Distance", "Geometry", "Hits", "Mesh", "Slab", "Torus", "Union"]

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from sssgen.scene.arrays import Array
 from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
-from sssgen.scene.placed import Array
 
 
 def in_object_space(geometry: Geometry, origins: Array, directions: Array) -> tuple[Array, Array]:
@@ -81,10 +81,10 @@ def _(geometry: Union, origins: Array, directions: Array, needed: int | None = N
     parts = [
         part.scale * intervals(part, *in_object_space(part, origins, directions), needed) for part in geometry.parts
     ]
-    return merged(np.concatenate(parts, axis=1))
+    return merge(np.concatenate(parts, axis=1))
 
 
-def merged(parts: Array) -> Array:
+def merge(parts: Array) -> Array:
     """Intervals (n, k, 2) that overlap or touch as one; the others are empty. They do not touch, and are in order."""
     order = np.argsort(parts[..., 0], axis=1, kind="stable")
     parts = np.take_along_axis(parts, order[..., None], axis=1)
@@ -130,7 +130,7 @@ def _(geometry: Mesh, origins: Array, directions: Array, needed: int | None = No
     rank = np.arange(len(rays)) - first[rays]
     begins = np.where(starts, 0.0, np.roll(t, 1))
     result[rays[inside], rank[inside]] = np.stack([begins, t], axis=1)[inside]
-    return merged(result)
+    return merge(result)
 
 
 @intervals.register
@@ -159,16 +159,16 @@ def _(geometry: Distance, origins: Array, directions: Array, needed: int | None 
         active[rays] = (after < end[rays]) & (left[rays] > 0)
     rays, low, high = (np.concatenate(parts) for parts in zip(*brackets, strict=True)) if brackets else (t[:0],) * 3
     rays = rays.astype(np.int64)
-    at = geometry.bisected(origins[rays], directions[rays], low, high)
+    at = geometry.bisect(origins[rays], directions[rays], low, high)
     ends_inside = np.flatnonzero(value < 0.0)
     # entries and exits alternate; a start or an end inside the body counts as one of them
     rays = np.concatenate([starts_inside, rays, ends_inside])
     at = np.concatenate([np.zeros(len(starts_inside)), at, end[ends_inside]])
     order = np.lexsort((at, rays))
-    return _gathered(rays[order][::2], at[order].reshape(-1, 2), len(origins))
+    return _gather(rays[order][::2], at[order].reshape(-1, 2), len(origins))
 
 
-def _gathered(rays: Any, ends: Array, count: int) -> Array:
+def _gather(rays: Any, ends: Array, count: int) -> Array:
     """The intervals (m, 2) of rays, in order, as an array (count, k, 2)."""
     rank = np.arange(len(rays)) - np.searchsorted(rays, rays)
     result = np.zeros((count, int(rank.max(initial=0)) + 1, 2))

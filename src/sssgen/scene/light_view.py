@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.scene.placed import Array
+from sssgen.scene.arrays import Array
 from sssgen.support.diagnostics import failure
 
 MARGIN = 1.1

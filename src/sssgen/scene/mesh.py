@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from sssgen.scene import mesh_files
+from sssgen.scene.arrays import Array, Indices
+from sssgen.scene.geometry_base import Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
 from sssgen.scene.mesh_distance import MeshDistance, is_inside_out
 from sssgen.scene.mesh_rays import MeshRays
-from sssgen.scene.placed import Array, Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
 from sssgen.scene.toml_table import ANY
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix
-
-Indices: TypeAlias = npt.NDArray[np.int64]
 
 FARTHEST = ANY[1]
 """The largest coordinate, as for a scene's numbers: products of a few of them do not overflow."""
@@ -94,24 +93,24 @@ class Mesh(Geometry):
         weights = barycentric(position, mesh.places[mesh.corners[face]])
         hit = np.zeros(len(directions), np.bool_)
         hit[rays] = True
-        normal = _interpolated(weights, mesh.corner_normals(face))
+        normal = _interpolate(weights, mesh.corner_normals(face))
         normal = np.where((np.abs(normal) > 0.0).any(axis=1, keepdims=True), unit(normal), mesh.flat[face])
-        others = [None if values is None else _interpolated(weights, values[face]) for values in (mesh.uv2, mesh.color)]
+        others = [None if values is None else _interpolate(weights, values[face]) for values in (mesh.uv2, mesh.color)]
         if mesh.uv is None or mesh.tangents is None:
             uv, grows_u, grows_v = spherical(position - 0.5 * (low + high))
             return spread(hit, position, normal, tangent_of(normal, grows_u, grows_v), uv, slope < 0.0, *others)
-        along = unit(_interpolated(weights, mesh.tangents[face]))
+        along = unit(_interpolate(weights, mesh.tangents[face]))
         along -= np.einsum("nc,nc->n", along, normal)[:, None] * normal
         undefined = np.linalg.norm(along, axis=1, keepdims=True) < 1e-6
         tangent = np.where(undefined, any_tangent(normal), unit(along))
         return spread(
-            hit, position, normal, np.c_[tangent, mesh.handedness[face]], _interpolated(weights, mesh.uv[face]),
+            hit, position, normal, np.c_[tangent, mesh.handedness[face]], _interpolate(weights, mesh.uv[face]),
             slope < 0.0, *others,
         )  # fmt: skip
 
     def distance(self, points: Array) -> Array:
         """The sign is by the winding number, which open meshes also have. Raises SssgenError without libigl."""
-        return self.solid.signed(points)
+        return self.solid.signed_distance(points)
 
     def bounds(self) -> tuple[Array, Array]:
         """The smallest and the largest corner, in object space."""
@@ -207,7 +206,7 @@ def barycentric(points: Array, triangles: Array) -> Array:
     return normalized
 
 
-def _interpolated(weights: Array, values: Array) -> Array:
+def _interpolate(weights: Array, values: Array) -> Array:
     """The values (n, 3, k) of corners, interpolated with weights (n, 3)."""
     values_at_points: Array = np.einsum("nv,nvk->nk", weights, values)
     return values_at_points

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.scene.placed import Array
+from sssgen.scene.arrays import Array
 from sssgen.support.extras import need
 
 INSIDE = 0.5
@@ -38,20 +38,20 @@ class MeshDistance:
         self._winding = igl.FastWindingNumberBVH()
         self._winding.init(self.places, self.corners)
 
-    def unsigned(self, points: Array) -> Array:
+    def unsigned_distance(self, points: Array) -> Array:
         """The distance to the nearest point of the triangles, (n,)."""
         squares = self._tree.squared_distance(self.places, self.corners, np.ascontiguousarray(points))[0]
         distance: Array = np.sqrt(squares)
         return distance
 
-    def winding(self, points: Array) -> Array:
+    def winding_number(self, points: Array) -> Array:
         """The winding numbers of points: 1 inside a closed mesh, 0 outside; with an error of about 0.01."""
         numbers: Array = self._winding.winding_number(np.ascontiguousarray(points))
         return numbers
 
-    def signed(self, points: Array) -> Array:
+    def signed_distance(self, points: Array) -> Array:
         """The distance, negative inside, (n,)."""
-        return np.where(self.winding(points) > INSIDE, -1.0, 1.0) * self.unsigned(points)
+        return np.where(self.winding_number(points) > INSIDE, -1.0, 1.0) * self.unsigned_distance(points)
 
 
 def is_inside_out(places: Array, corners: npt.NDArray[np.int64]) -> bool:

@@ -5,20 +5,17 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from sssgen.scene.arrays import Array, Indices
 from sssgen.scene.pictures.images import decode_srgb
-from sssgen.scene.placed import Array
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.extras import need
 from sssgen.support.file_memo import note
 from sssgen.support.paths import posix
 from sssgen.support.text_files import refuse_folder
-
-Indices: TypeAlias = npt.NDArray[np.int64]
 
 SUFFIXES = (".obj", ".ply", ".stl", ".glb", ".gltf")
 
@@ -61,7 +58,7 @@ def read(path: str) -> FileContent:
         with open(path, "rb") as file:
             return file.read()
 
-    return _parsed(content, kind, posix(path), path)
+    return _parse(content, kind, posix(path), path)
 
 
 def parse(data: bytes, name: str) -> FileContent:
@@ -70,16 +67,16 @@ def parse(data: bytes, name: str) -> FileContent:
     Raises SssgenError for a faulty file.
     """
     check_suffix(name)
-    return _parsed(lambda: data, os.path.splitext(name)[1].lower(), name)
+    return _parse(lambda: data, os.path.splitext(name)[1].lower(), name)
 
 
-def _parsed(content: Callable[[], bytes], kind: str, shown: str, beside: str = "") -> FileContent:
+def _parse(content: Callable[[], bytes], kind: str, shown: str, beside: str = "") -> FileContent:
     """The triangles of a file; those that it refers to are read next to `beside`, and not at all without it."""
     trimesh = need("trimesh")
     try:
         data = content()
         if kind in (".glb", ".gltf"):  # texture coordinates are loaded with the materials
-            return _joined(trimesh.load_scene(*_gltf(data, kind, beside), process=False))
+            return _join(trimesh.load_scene(*_gltf(data, kind, beside), process=False))
         loaded = trimesh.load_mesh(io.BytesIO(data), file_type=kind[1:], process=False, skip_materials=True)
         color = _colors(loaded)
         if color is not None:  # of a file format without a colour space: as its editors show them
@@ -153,7 +150,7 @@ def _fractions(raw: Any) -> Array:
     return fractions
 
 
-def _joined(scene: Any) -> FileContent:
+def _join(scene: Any) -> FileContent:
     """The meshes of a scene, transformed by its nodes. (trimesh itself would merge their pictures and change uv.)"""
     parts = []
     for node in scene.graph.nodes_geometry:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.scene.placed import Array, unit
+from sssgen.scene.arrays import Array, Indices
+from sssgen.scene.geometry_base import unit
 from sssgen.support.extras import need
-
-Indices: TypeAlias = npt.NDArray[np.int64]
 
 MIN_SEPARATION = 1e-6
 """Relative to the mesh's size: triangles closer to each other along a ray count as one."""
@@ -45,7 +44,7 @@ class MeshRays:
         first, second, third = np.moveaxis(places[corners], 1, 0)
         self._first, self._flat = first, unit(np.cross(second - first, third - first))
         self._scene: Any = scenes.EmbreeScene()
-        meshes.TriangleMesh(self._scene, self._scaled(places), corners.astype(np.int32))
+        meshes.TriangleMesh(self._scene, self._scale(places), corners.astype(np.int32))
 
     def first(self, origins: Array, directions: Array) -> Indices:
         """The first triangle that each ray hits, (n,); -1 for a miss. Directions are unit."""
@@ -86,9 +85,9 @@ class MeshRays:
         """The first triangle of each ray, and its distance in float32 precision."""
         if not len(origins):
             return np.zeros(0, np.int64), np.zeros(0)
-        result = self._scene.run(self._scaled(origins), directions.astype(np.float32), query="INTERSECT", output=1)
+        result = self._scene.run(self._scale(origins), directions.astype(np.float32), query="INTERSECT", output=1)
         return result["primID"].astype(np.int64), self.size * result["tfar"].astype(np.float64)
 
-    def _scaled(self, points: Array) -> npt.NDArray[np.float32]:
+    def _scale(self, points: Array) -> npt.NDArray[np.float32]:
         scaled: npt.NDArray[np.float32] = ((points - self.middle) / self.size).astype(np.float32)
         return scaled

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from sssgen.ir.spans import Span
+from sssgen.scene.arrays import Vector
 from sssgen.scene.camera import Camera
 from sssgen.scene.geometry import Geometry
 from sssgen.scene.pictures.images import read
 from sssgen.support.toml_source import Document
-
-Vector: TypeAlias = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,7 @@ class Picture:
         return read(self.file)
 
 
-def stored(distance: npt.NDArray[np.float64], reach: float) -> npt.NDArray[np.float64]:
+def encode_distance(distance: npt.NDArray[np.float64], reach: float) -> npt.NDArray[np.float64]:
     """Signed distances encoded for the technique distance_texture: 0.5 + distance / (2 reach), clamped to 0..1."""
     value: npt.NDArray[np.float64] = np.clip(0.5 + distance / (2.0 * reach), 0.0, 1.0)
     return value
@@ -77,7 +76,7 @@ class DistanceTexture:
         x, y, z = (start[axis] + size[axis] * (np.arange(n) + 0.5) / n for axis, n in enumerate(self.texels))
         positions = np.stack(np.meshgrid(z, y, x, indexing="ij")[::-1], axis=-1)
         distance = geometry.distance(positions.reshape(-1, 3)).reshape(*positions.shape[:3], 1)
-        return stored(distance, self.range)
+        return encode_distance(distance, self.range)
 
 
 @dataclass(frozen=True)

@@ -7,18 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.scene.placed import (
-    Array,
-    Bools,
-    Geometry,
-    Hits,
-    Vector,
-    any_tangent,
-    spherical,
-    spread,
-    tangent_of,
-    unit,
-)
+from sssgen.scene.arrays import Array, Bools, Vector
+from sssgen.scene.geometry_base import Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ def block_members(module: Module) -> dict[tuple[str, str], Member]:
     members: dict[tuple[str, str], Member] = {}
     for block in dict.fromkeys(uniform.block for uniform in module.uniforms if uniform.block):
         own = [uniform for uniform in module.uniforms if uniform.block == block]
-        types = [_transposed(uniform.type) if uniform.row_major else uniform.type for uniform in own]
+        types = [_transpose(uniform.type) if uniform.row_major else uniform.type for uniform in own]
         end = 0
         for uniform, type_ in zip(own, types, strict=True):
             place = extent(type_, RULE)
@@ -71,13 +71,13 @@ def _is_in(name: str, root: str) -> bool:
     return name.startswith(root) and name[len(root) : len(root) + 1] in ("", ".", "[")
 
 
-def _transposed(type_: Type) -> Type:
+def _transpose(type_: Type) -> Type:
     """The type with rows in place of columns: how matrices are stored that are stored by rows."""
     if isinstance(type_, Matrix):
         return type_._replace(columns=type_.rows, rows=type_.columns)
     if isinstance(type_, Array):
-        return type_._replace(element=_transposed(type_.element))
+        return type_._replace(element=_transpose(type_.element))
     if isinstance(type_, Struct):
-        fields = [field._replace(type=_transposed(field.type)) for field in type_.fields]
+        fields = [field._replace(type=_transpose(field.type)) for field in type_.fields]
         return type_._replace(fields=tuple(fields))
     return type_

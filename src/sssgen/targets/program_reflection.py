@@ -60,7 +60,7 @@ def reflect_program(name: str, target: Target, rows: str, vertex: StageFacts, fr
     }
 
 
-def beyond_limits(program: Mapping[str, Any], target: Target) -> list[str]:
+def exceeded_limits(program: Mapping[str, Any], target: Target) -> list[str]:
     """Where a program needs more than every device of the target has."""
     limits, counts = target.limits, list[tuple[str, int, int]]()
     for stage in program["stages"]:
@@ -151,7 +151,7 @@ def _bindings(target: Target, stages: Mapping[str, StageFacts]) -> dict[str, Any
             binding = bindings[len(textures)] if bindings else None
             textures.append(entry | _texture(uniform.type, sampled, passed, binding))
         else:
-            entry |= _described(uniform) | place_in_block(uniform, reader.blocks)
+            entry |= _description(uniform) | place_in_block(uniform, reader.blocks)
             if target.layout:
                 entry |= _in_block(uniform.type, *offsets[declared.name])
             uniforms.append(entry)
@@ -163,7 +163,7 @@ def _block_place(target: Target) -> dict[str, int]:
     return {"group": target.material_group, "binding": target.bindings.first}
 
 
-def _described(uniform: Uniform) -> dict[str, Any]:
+def _description(uniform: Uniform) -> dict[str, Any]:
     """A uniform's name, the type of an element, and the lengths of the arrays around it, the outermost first.
 
     Each `[]` in the name takes one of the lengths; one that is left is the length of the uniform itself.

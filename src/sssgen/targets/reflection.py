@@ -11,7 +11,7 @@ from sssgen.support.paths import display_name
 from sssgen.targets.assemble import Emitted, Program, printer_for, property_name
 from sssgen.targets.chain_inputs import CHAIN_INPUTS
 from sssgen.targets.descriptor import Target
-from sssgen.targets.texture_import import has_hint, import_of
+from sssgen.targets.texture_import import default_color, has_hint, import_of
 
 VERSION = 1
 """The format's version; it is increased when a reader of older files would misread newer ones."""
@@ -35,9 +35,9 @@ def reflect(
         entry |= {"source_name": source, "technique": technique, "technique_name": own_name}
         if target.properties.style != "plain":
             entry["property"] = property_name(target, source)
-        entry |= _described(uniform)
+        entry |= _description(uniform)
         if isinstance(uniform.type, Sampler):
-            entry |= {"holds": uniform.quantity or None, "default": _default_texture(uniform)}
+            entry |= {"holds": uniform.quantity or None, "default": default_color(uniform)}
             entry |= {"color_space": "linear" if not has_hint(uniform, "source_color") else "sRGB"}
             entry["import"] = import_of(uniform)
             if emitted.bindings:
@@ -182,7 +182,7 @@ def as_text(data: dict[str, Any]) -> str:
     return "{\n" + ",\n".join(parts) + "\n}\n"
 
 
-def _described(uniform: Uniform) -> dict[str, Any]:
+def _description(uniform: Uniform) -> dict[str, Any]:
     hints = dict(uniform.hints)
     limits = hints.get("hint_range")
     return {
@@ -193,10 +193,3 @@ def _described(uniform: Uniform) -> dict[str, Any]:
         "drawn": hints.get("drawn", (None,))[0],
         "doc": " ".join(uniform.doc.split()),
     }
-
-
-def _default_texture(uniform: Uniform) -> str:
-    for name, _ in uniform.hints:
-        if name.startswith("default_"):
-            return name.removeprefix("default_")
-    return "white"

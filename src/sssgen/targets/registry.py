@@ -79,17 +79,17 @@ class ReservedNames:
 @functools.cache
 def reserved_everywhere() -> Names:
     """The names that any of the project's own targets reserves. No emitted name is among them."""
-    return _reserved([load(name) for name in _own_names()])
+    return _reserved_names([load(name) for name in _own_names()])
 
 
 @functools.cache
 def reserved_of(language: str) -> Names:
     """The names reserved by a language: those of its first own target without an engine, by name, if it has one."""
     targets = [target for target in map(load, _own_names()) if target.language == language]
-    return _reserved([target for target in targets if target.lighting][:1] or targets[:1])
+    return _reserved_names([target for target in targets if target.lighting][:1] or targets[:1])
 
 
-def _reserved(targets: list[Target]) -> Names:
+def _reserved_names(targets: list[Target]) -> Names:
     return Names(
         reserved=frozenset().union(*(target.names.exact for target in targets)),
         case_insensitive=frozenset().union(*(target.names.case_insensitive for target in targets)),

@@ -26,6 +26,11 @@ def import_of(uniform: Uniform) -> dict[str, Any]:
     return import_settings(dimension, wrap, has_hint(uniform, "source_color"), mipmaps, has_hint(uniform, "normal_map"))
 
 
+def default_color(uniform: Uniform) -> str:
+    """The colour of a texture that is not bound: white, black, gray or bump."""
+    return next((name.removeprefix("default_") for name, _ in uniform.hints if name.startswith("default_")), "white")
+
+
 def has_hint(uniform: Uniform, hint: str) -> bool:
     """Whether a uniform's declaration has the hint."""
     return any(name == hint for name, _ in uniform.hints)

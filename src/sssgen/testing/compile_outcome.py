@@ -14,7 +14,7 @@ from sssgen.support.diagnostics import Diagnostic, did_you_mean, failure
 from sssgen.testing.outcome import Outcome, missing_part
 
 
-def compiled(material: str, targets: str | Iterable[str] = "all") -> Outcome:
+def compile_material(material: str, targets: str | Iterable[str] = "all") -> Outcome:
     """Compiles both forms of a material (a path, or an example's name) with every available compiler.
 
     `targets` is "all", names with commas between them, or a list. For "all" one available compiler is enough; a target

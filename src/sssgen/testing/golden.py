@@ -13,8 +13,8 @@ import os
 import numpy as np
 import numpy.typing as npt
 
+from sssgen.scene.arrays import Array
 from sssgen.scene.pictures import images
-from sssgen.scene.pictures.images import Array
 from sssgen.scene.pictures.picture_difference import compare
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.file_writer import check_names
@@ -43,7 +43,7 @@ def check_limit(flip: float) -> float:
     return flip
 
 
-def compared(
+def compare_golden(
     picture: npt.ArrayLike, folder: str, name: str, limit: float = FLIP, label: str = "", update: str = "--update"
 ) -> Outcome:
     """Compares an encoded picture, (height, width, 3), with `folder`/`name`.png in 8 bits per channel.
@@ -53,30 +53,30 @@ def compared(
     """
     check_limit(limit)
     path = _path(folder, name)
-    actual, shown = _rounded(picture), posix(path)
+    actual, shown = _round(picture), posix(path)
     paths = [os.path.join(_failures(folder), f"{name}{label}.{kind}.png") for kind in ("actual", "difference")]
     _clear(paths)  # of an earlier run
     if not os.path.isfile(path):
         message = f"there is no golden picture {shown}: {update} writes it"
-        return Outcome("failed", message, _written({paths[0]: actual}))
+        return Outcome("failed", message, _write_failure({paths[0]: actual}))
     golden = _color(images.read(path))
     if golden.shape != actual.shape:
         sizes = [f"{picture.shape[1]} × {picture.shape[0]}" for picture in (actual, golden)]
         message = f"the picture has {sizes[0]} pixels, and the golden one, {shown}, has {sizes[1]}"
-        return Outcome("failed", message, _written({paths[0]: actual}))
+        return Outcome("failed", message, _write_failure({paths[0]: actual}))
     difference = compare(actual, golden)
     if difference.flip <= limit:
         return Outcome("passed", f"FLIP {difference.flip:.4f}, at most {limit:g}")
     message = f"FLIP {difference.flip:.4f} is more than {limit:g}: the picture differs from {shown}"
     figures = f"relMSE {difference.relmse:.2e}, p99 {difference.p99:.1f}/255, max {difference.max:.1f}/255"
-    return Outcome("failed", message, f"{figures}\n{_written({paths[0]: actual, paths[1]: difference.picture})}")
+    return Outcome("failed", message, f"{figures}\n{_write_failure({paths[0]: actual, paths[1]: difference.picture})}")
 
 
-def updated(picture: npt.ArrayLike, folder: str, name: str) -> Outcome:
+def update_golden(picture: npt.ArrayLike, folder: str, name: str) -> Outcome:
     """Writes a picture as the golden one. Raises SssgenError where it cannot be written."""
     path = _path(folder, name)
     exists = os.path.isfile(path)
-    _write(path, _rounded(picture))
+    _write(path, _round(picture))
     return Outcome("passed", f"{'replaced' if exists else 'wrote'} {posix(path)}")
 
 
@@ -97,7 +97,7 @@ def _clear(paths: list[str]) -> None:
         os.rmdir(os.path.dirname(paths[0]))  # removed if it is empty
 
 
-def _rounded(picture: npt.ArrayLike) -> Array:
+def _round(picture: npt.ArrayLike) -> Array:
     """The picture rounded to the 8 bits of a file."""
     values = np.asarray(picture, np.float64)
     if values.ndim != 3 or values.shape[2] != 3 or 0 in values.shape:
@@ -112,7 +112,7 @@ def _color(picture: Array) -> Array:
     return picture[..., :3] if picture.shape[-1] >= 3 else picture[..., :1].repeat(3, axis=-1)
 
 
-def _written(pictures: dict[str, Array]) -> str:
+def _write_failure(pictures: dict[str, Array]) -> str:
     """Writes the pictures of a failure; returns where they are, or why they cannot be written."""
     try:
         for path, picture in pictures.items():

@@ -28,7 +28,7 @@ from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.installation import install_hint
 from sssgen.support.paths import posix, stem
 from sssgen.support.text_files import read_text
-from sssgen.testing.compile_outcome import compiled
+from sssgen.testing.compile_outcome import compile_material
 from sssgen.testing.outcome import Outcome, beside, missing_part
 
 EVAL = ".eval.json"
@@ -143,7 +143,7 @@ class Run:
         try:
             outcome = {"compile": self._compile, "render": self._render, "eval": self._eval}[case.kind](case)
         except SssgenError as error:
-            outcome = _failed(error)
+            outcome = _failure(error)
         except ImportError as error:
             outcome = missing_part(f"the package '{error.name}'", install_hint("render"))
         except Exception as error:  # the other cases are checked nevertheless
@@ -151,7 +151,7 @@ class Run:
         return CaseResult(case, outcome, perf_counter() - start)
 
     def _compile(self, case: Case) -> Outcome:
-        return compiled(case.path)
+        return compile_material(case.path)
 
     def _render(self, case: Case) -> Outcome:
         from sssgen.run.compilers import CompilerMissing
@@ -166,14 +166,14 @@ class Run:
             return missing_part(f"the back end {name}", str(reason))
         picture = render(load(case.path), backend).encoded
         if self.update and case.first:
-            return golden.updated(picture, folder, stem(case.path))
+            return golden.update_golden(picture, folder, stem(case.path))
         limit = golden.FLIP if self.flip is None else self.flip
-        return golden.compared(picture, folder, stem(case.path), limit, "" if case.first else f".{name}")
+        return golden.compare_golden(picture, folder, stem(case.path), limit, "" if case.first else f".{name}")
 
     def _eval(self, case: Case) -> Outcome:
         from sssgen.run.backends import SINGLE, CompilerMissing, get
         from sssgen.run.evaluate.deviation import GOAL
-        from sssgen.run.evaluate.evaluation import fitted, run
+        from sssgen.run.evaluate.evaluation import fit_inputs, run
         from sssgen.run.evaluate.input_files import read
         from sssgen.run.evaluate.probes import subject
         from sssgen.run.evaluate.random_inputs import samples
@@ -187,7 +187,7 @@ class Run:
         inputs = read(os.path.join(*folder, inputs), chosen) if isinstance(inputs, str) else inputs
         if "samples" in content:
             inputs = samples(chosen, content["samples"], content.get("seed", 0)) | inputs
-        fit = fitted(chosen, inputs)
+        fit = fit_inputs(chosen, inputs)
         oracle = run(chosen, fit, get("numpy"))
         outcome = against_numbers(oracle, content.get("outputs", {}), tolerance)
         if outcome.state == "failed":
@@ -205,13 +205,13 @@ class Run:
 
     def _backends(self) -> Any:
         if self.started is None:
-            from sssgen.testing.running_backends import Started
+            from sssgen.testing.backend_pool import BackendPool
 
-            self.started = Started()
+            self.started = BackendPool()
         return self.started
 
 
-def _failed(error: SssgenError) -> Outcome:
+def _failure(error: SssgenError) -> Outcome:
     detail = "\n\n".join(diagnostic.render() for diagnostic in error.diagnostics)
     message = " ".join(error.diagnostics[0].message.split())
     return Outcome("failed", message, "" if detail == f"error: {message}" else detail)

@@ -18,10 +18,10 @@ import pytest
 
 if TYPE_CHECKING:
     from sssgen.run.backends import Array, Backend
-    from sssgen.run.render.scene_render import Rendered
+    from sssgen.run.render.scene_render import RenderedPicture
     from sssgen.scene.scene import Scene
+    from sssgen.testing.backend_pool import BackendPool
     from sssgen.testing.outcome import Outcome
-    from sssgen.testing.running_backends import Started
 
 Result = TypeVar("Result")
 
@@ -51,11 +51,11 @@ def pytest_configure(config: pytest.Config) -> None:
         from sssgen.support.diagnostics import SssgenError
 
         try:
-            from sssgen.run.backends import chosen
+            from sssgen.run.backends import backend_names
         except ImportError:  # without NumPy: the fixtures report it
             return
         try:
-            chosen(",".join(names))
+            backend_names(",".join(names))
         except SssgenError as error:
             raise pytest.UsageError(str(error)) from None
 
@@ -75,12 +75,12 @@ def sssgen_backend(request: pytest.FixtureRequest) -> str:
 
 
 @pytest.fixture(scope="session")
-def _sssgen_started() -> Iterator[Started]:
+def _sssgen_backends() -> Iterator[BackendPool]:
     """The back ends, each in its own process: a driver that crashes fails one test."""
     _need("numpy")
-    from sssgen.testing.running_backends import Started
+    from sssgen.testing.backend_pool import BackendPool
 
-    started = Started()
+    started = BackendPool()
     yield started
     started.close()
 
@@ -95,16 +95,16 @@ def sssgen_compile(request: pytest.FixtureRequest) -> Callable[..., None]:
 
     def compile(material: str | os.PathLike[str], targets: str | Iterable[str] = "all") -> None:
         __tracebackhide__ = True
-        from sssgen.testing.compile_outcome import compiled
+        from sssgen.testing.compile_outcome import compile_material
 
-        _end(_guarded(lambda: compiled(_place(request, material), targets)))
+        _end(_guard(lambda: compile_material(_place(request, material), targets)))
 
     return compile
 
 
 @pytest.fixture
 def sssgen_run(
-    request: pytest.FixtureRequest, sssgen_backend: str, _sssgen_started: Started
+    request: pytest.FixtureRequest, sssgen_backend: str, _sssgen_backends: BackendPool
 ) -> Callable[..., dict[str, Array]]:
     """`sssgen_run(technique, bind=None, tolerance=1e-5, **inputs)` returns a technique's outputs as arrays, by name.
 
@@ -122,9 +122,9 @@ def sssgen_run(
         **inputs: Any,
     ) -> dict[str, Array]:
         __tracebackhide__ = True
-        backend = _backend(_sssgen_started, sssgen_backend)
+        backend = _backend(_sssgen_backends, sssgen_backend)
         slots = {slot: _place(request, function) for slot, function in (bind or {}).items()}
-        outputs, outcome = _guarded(lambda: _run(_place(request, technique), slots, inputs, backend, tolerance))
+        outputs, outcome = _guard(lambda: _run(_place(request, technique), slots, inputs, backend, tolerance))
         _end(outcome)
         return outputs
 
@@ -133,8 +133,8 @@ def sssgen_run(
 
 @pytest.fixture
 def sssgen_render(
-    request: pytest.FixtureRequest, sssgen_backend: str, _sssgen_started: Started
-) -> Callable[..., Rendered]:
+    request: pytest.FixtureRequest, sssgen_backend: str, _sssgen_backends: BackendPool
+) -> Callable[..., RenderedPicture]:
     """`sssgen_render(scene, size=None, time=None)` draws a scene's .toml file.
 
     `size` is (width, height) in pixels, `time` is in seconds; the defaults are the scene's. The picture has `.linear`,
@@ -144,16 +144,18 @@ def sssgen_render(
 
     def render(
         scene: str | os.PathLike[str] | Scene, size: tuple[int, int] | None = None, time: float | None = None
-    ) -> Rendered:
+    ) -> RenderedPicture:
         __tracebackhide__ = True
-        backend = _backend(_sssgen_started, sssgen_backend)
-        return _guarded(lambda: _render(request, scene, backend, size, time))
+        backend = _backend(_sssgen_backends, sssgen_backend)
+        return _guard(lambda: _render(request, scene, backend, size, time))
 
     return render
 
 
 @pytest.fixture
-def sssgen_golden(request: pytest.FixtureRequest, sssgen_backend: str, _sssgen_started: Started) -> Callable[..., None]:
+def sssgen_golden(
+    request: pytest.FixtureRequest, sssgen_backend: str, _sssgen_backends: BackendPool
+) -> Callable[..., None]:
     """`sssgen_golden(picture, name, flip=None)` compares with golden/NAME.png next to the test file.
 
     `picture` is the result of `sssgen_render`, an array (height, width, 3) of sRGB 0..1, or a scene to draw. Fails if
@@ -169,27 +171,27 @@ def sssgen_golden(request: pytest.FixtureRequest, sssgen_backend: str, _sssgen_s
         from sssgen.scene.scene import Scene
 
         if isinstance(picture, str | os.PathLike | Scene):
-            scene, backend = picture, _backend(_sssgen_started, sssgen_backend)
-            picture = _guarded(lambda: _render(request, scene, backend))
-        _end(_guarded(lambda: _golden(request, picture, name, flip, sssgen_backend)))
+            scene, backend = picture, _backend(_sssgen_backends, sssgen_backend)
+            picture = _guard(lambda: _render(request, scene, backend))
+        _end(_guard(lambda: _golden(request, picture, name, flip, sssgen_backend)))
 
     return golden
 
 
 def _golden(request: pytest.FixtureRequest, picture: Any, name: str, flip: float | None, backend: str) -> Outcome:
-    from sssgen.run.render.scene_render import Rendered
+    from sssgen.run.render.scene_render import RenderedPicture
     from sssgen.testing import golden
 
-    encoded = picture.encoded if isinstance(picture, Rendered) else picture
+    encoded = picture.encoded if isinstance(picture, RenderedPicture) else picture
     config, names = request.config, _names(request.config)
     setting = str(config.getini("sssgen_golden"))
     folder = str(config.rootpath / setting if setting else request.path.parent / golden.FOLDER)
     if config.getoption("sssgen_update") and backend == names[0]:
-        return golden.updated(encoded, folder, name)
+        return golden.update_golden(encoded, folder, name)
     limits = (flip, config.getoption("sssgen_flip"), golden.FLIP)
     limit = next(value for value in limits if value is not None)
     label = f".{backend}" if len(names) > 1 else ""
-    return golden.compared(encoded, folder, name, limit, label, update="--sssgen-update")
+    return golden.compare_golden(encoded, folder, name, limit, label, update="--sssgen-update")
 
 
 def _render(
@@ -198,7 +200,7 @@ def _render(
     backend: Backend,
     size: tuple[int, int] | None = None,
     time: float | None = None,
-) -> Rendered:
+) -> RenderedPicture:
     from sssgen.run.render.scene_render import render
     from sssgen.scene.scene import Scene
     from sssgen.scene.scene_loading import load
@@ -210,13 +212,13 @@ def _render(
 def _run(
     technique: str, bind: Mapping[str, str], inputs: Mapping[str, Any], backend: Backend, tolerance: float
 ) -> tuple[dict[str, Array], Outcome]:
-    from sssgen.run.evaluate.evaluation import fitted
+    from sssgen.run.evaluate.evaluation import fit_inputs
     from sssgen.run.evaluate.probes import subject
     from sssgen.testing.agreement import against_oracle, check_tolerance
 
     check_tolerance(tolerance)
     chosen = subject(technique, bind)
-    return against_oracle(chosen, fitted(chosen, inputs), backend, tolerance)
+    return against_oracle(chosen, fit_inputs(chosen, inputs), backend, tolerance)
 
 
 def _names(config: pytest.Config) -> list[str]:
@@ -233,14 +235,14 @@ def _place(request: pytest.FixtureRequest, path: str | os.PathLike[str]) -> str:
     return beside(os.fspath(path), [str(request.path.parent), str(request.config.rootpath)])
 
 
-def _backend(started: Started, name: str) -> Backend:
+def _backend(started: BackendPool, name: str) -> Backend:
     """The back end. Skips the test without it; with CI set the test fails."""
     __tracebackhide__ = True
     from sssgen.run.compilers import CompilerMissing
     from sssgen.testing.outcome import missing_part
 
     try:
-        return _guarded(lambda: started.get(name))
+        return _guard(lambda: started.get(name))
     except CompilerMissing as reason:
         outcome = missing_part(f"the back end {name}", str(reason))
     _end(outcome)
@@ -264,7 +266,7 @@ def _need(module: str) -> None:
     _end(outcome)
 
 
-def _guarded(call: Callable[[], Result]) -> Result:
+def _guard(call: Callable[[], Result]) -> Result:
     """The result of the call. An error of its input is shown at the test's own line, not at ours."""
     __tracebackhide__ = True
     from sssgen.support.diagnostics import SssgenError

@@ -111,7 +111,7 @@ class Assumptions:
             return None
         self.matched.update(matching)
         for rule in matching:
-            fact = AssumedFact(name, _shown(rule.assumption, type_), rule.source, rule.because)
+            fact = AssumedFact(name, _value_text(rule.assumption, type_), rule.source, rule.because)
             self.applied[name, rule.source] = fact
         return Assumption(
             max(rule.assumption.low for rule in matching),
@@ -256,7 +256,7 @@ def _rule(document: Document, table: dict[str, Any], index: int, source: str) ->
     )  # fmt: skip
 
 
-def _shown(assumption: Assumption, type_: Type) -> str:
+def _value_text(assumption: Assumption, type_: Type) -> str:
     """An assumption in words."""
     low, high, shortest, longest, finite = assumption
     texts = []

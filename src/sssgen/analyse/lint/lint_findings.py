@@ -247,7 +247,7 @@ def _plain(path: str, with_examples: bool, kinds: Collection[Kind], assumed: Seq
     rules += rules_of_comments(loaded.assumed, input_names(module))
     assumptions = Assumptions(rules, stage_kind(module) == "vertex")
     sites, origins = traced_sites(module, assumed=assumptions.of if rules else None, unguarded=True)
-    facts = [*assumptions.applied.values(), *_stated(module)]
+    facts = [*assumptions.applied.values(), *_source_assumptions(module)]
     specimens = []
     if with_examples and not endless(module):
         names = {name.split(".")[0] for name, _ in assumptions.applied}
@@ -269,7 +269,7 @@ def _is_restricted(module: Module, function: Function, names: Collection[str]) -
     )
 
 
-def _stated(module: Module) -> Iterator[AssumedFact]:
+def _source_assumptions(module: Module) -> Iterator[AssumedFact]:
     """The assumptions in functions: each comment or `assume()` once, though it may state several conditions."""
     spans = {
         stmt.span: function.name
@@ -300,9 +300,9 @@ def _technique(name: str) -> Any:
 
 
 def _stages(name: str) -> list[Any]:
-    from sssgen.analyse.stress.subject import named
+    from sssgen.analyse.stress.subject import named_specimens
 
-    return [*named(name), _technique(registry.load("glsl-330").lighting)]
+    return [*named_specimens(name), _technique(registry.load("glsl-330").lighting)]
 
 
 def _report(
@@ -311,7 +311,7 @@ def _report(
 ) -> Report:  # fmt: skip
     findings = []
     hidden: Counter[str] = Counter()
-    for site in _merged(sites):
+    for site in _merge(sites):
         if site.proven:
             findings.append(Finding(site, PROVEN, site.guard))
             continue
@@ -325,7 +325,7 @@ def _report(
     return Report(name, findings, hidden)
 
 
-def _merged(sites: Sequence[Site]) -> list[Site]:
+def _merge(sites: Sequence[Site]) -> list[Site]:
     """The sites in the order of the source; copies of one, as of a case that others fall into, are one."""
     merged: list[Site] = []
     for site in sorted(sites, key=lambda site: (site.node.span, site.operation)):

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.analyse.stress.contract_inputs import contract, fixed, is_direction
+from sssgen.analyse.stress.contract_inputs import DTYPES, contract, fixed_value, is_direction
 from sssgen.analyse.stress.subject import Specimen
 from sssgen.ir.formats import FLOAT16, FLOAT32, Format
 from sssgen.ir.nodes import Intrinsic
-from sssgen.ir.types import Matrix, Sampler, kind_of, spell
+from sssgen.ir.types import Matrix, Sampler, kind_of
 from sssgen.ir.walk import all_expressions
 from sssgen.run.backends import Array
-from sssgen.run.evaluate.evaluation import Inputs, default_texture, shape_of
+from sssgen.run.evaluate.evaluation import Inputs, default_of, shape_of
 from sssgen.targets.runtime.numpy_textures import Texture
 
 _PLAIN: dict[str, Any] = {
@@ -36,25 +36,23 @@ def plain(specimen: Specimen, lanes: int, overrides: dict[str, Any] | None = Non
     changes = overrides or {}
     for name, param in specimen.subject.params.items():
         if isinstance(param.type, Sampler):
-            hints = [hint.removeprefix("default_") for hint, _ in specimen.subject.uniforms[name].hints]
-            color = next((hint for hint in hints if hint in ("white", "black", "gray", "bump")), "white")
-            textures[name] = changes.get(name) or default_texture(spell(param.type), color)
+            textures[name] = changes.get(name) or default_of(specimen.subject.uniforms[name])
         elif name in changes and name not in specimen.settings:
-            values[name] = _shaped(changes[name], shape_of(param.type))
+            values[name] = _with_shape(changes[name], shape_of(param.type))
         elif name in specimen.subject.uniforms:
-            values[name] = fixed(specimen, name)
+            values[name] = fixed_value(specimen, name)
         else:
             value = np.asarray(_PLAIN.get(name, 0.5))
             if value.shape != shape_of(param.type) or name not in _PLAIN:
                 value = np.asarray(_OF_QUANTITY.get(param.quantity, 0.5))
             if isinstance(param.type, Matrix):
                 value = np.eye(param.type.columns, param.type.rows)
-            dtype = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}[kind_of(param.type)]
-            values[name] = np.broadcast_to(value[..., None], (*shape_of(param.type), 1)).astype(dtype)
+            lane = np.broadcast_to(value[..., None], (*shape_of(param.type), 1))
+            values[name] = lane.astype(DTYPES[kind_of(param.type)])
     return Inputs(values, textures, lanes)
 
 
-def _shaped(value: Any, shape: tuple[int, ...]) -> Array:
+def _with_shape(value: Any, shape: tuple[int, ...]) -> Array:
     """Numbers or vectors, lanes last; a number for a vector goes into all its components."""
     array = np.asarray(value)
     array = array.astype(np.float32) if array.dtype.kind == "f" else array
@@ -63,7 +61,7 @@ def _shaped(value: Any, shape: tuple[int, ...]) -> Array:
     return np.ascontiguousarray(np.broadcast_to(array, (*shape, array.shape[-1])))
 
 
-def mixed(specimen: Specimen, choices: dict[str, list[Any]], lanes: int = 4096) -> Inputs:
+def mix(specimen: Specimen, choices: dict[str, list[Any]], lanes: int = 4096) -> Inputs:
     """Each lane has one of the choices of each input; the other inputs are plain."""
     rng = np.random.default_rng(7)
     changes = {}

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
 from sssgen.analyse.stress.contract_inputs import (
+    DTYPES,
+    clamp_alpha,
     contract,
-    fixed,
+    fixed_value,
     is_direction,
-    opaque,
     sample_inputs,
     texture,
     whole_range,
 )
 from sssgen.analyse.stress.subject import Specimen
-from sssgen.analyse.stress.trial import BEYOND, BOUNDARY, Trial
+from sssgen.analyse.stress.trial import BOUNDARY, OUTSIDE, Trial
 from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.types import Matrix, Sampler, kind_of
 from sssgen.run.backends import Array
@@ -34,12 +34,12 @@ _AXES = np.array([[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -
 def trials(specimen: Specimen, seed: int, format: Format = FLOAT32) -> Iterator[Trial]:
     """Boundary values in the contract, and then beyond it, where faults are reported but do not count."""
     rng = np.random.default_rng([seed, 1])
-    for name, beyond in ((BOUNDARY, False), (BEYOND, True)):
+    for name, beyond in ((BOUNDARY, False), (OUTSIDE, True)):
         by_input = {input_name: values(specimen, input_name, beyond, format) for input_name in specimen.subject.params}
         edges = {input_name: edge_values for input_name, edge_values in by_input.items() if edge_values is not None}
         if edges:
             yield Trial(name, specimen, _pairs(specimen, edges, rng), counts=not beyond, ranged=not beyond)
-            yield Trial(name, specimen, _mixed(specimen, edges, rng, format), counts=not beyond, ranged=not beyond)
+            yield Trial(name, specimen, _mix(specimen, edges, rng, format), counts=not beyond, ranged=not beyond)
 
 
 def values(specimen: Specimen, name: str, beyond: bool = False, format: Format = FLOAT32) -> Array | None:
@@ -50,8 +50,7 @@ def values(specimen: Specimen, name: str, beyond: bool = False, format: Format =
     if kind_of(param.type) != "float":
         low, high = whole_range(param, uniform)
         chosen = [low - 1, 0, high + 1] if beyond and kind_of(param.type) == "int" else [low, low + 1, high]
-        dtype: Any = {"int": np.int32, "uint": np.uint32, "bool": np.bool_}[kind_of(param.type)]
-        return _splat(np.array(chosen).astype(dtype), shape_of(param.type))
+        return _splat(np.array(chosen).astype(DTYPES[kind_of(param.type)]), shape_of(param.type))
     ends = contract(specimen, name, format)
     shape = shape_of(param.type)
     if is_direction(name, ends) and shape == (3,):
@@ -61,16 +60,16 @@ def values(specimen: Specimen, name: str, beyond: bool = False, format: Format =
     if isinstance(param.type, Matrix):
         return _matrices(shape[0], ends.high * (10.0 if beyond else 1.0))
     if beyond:
-        return _splat(np.array(_beyond(ends.low, ends.high)), shape)
-    return opaque(uniform, _splat(np.array(_within(ends.low, ends.high)), shape))
+        return _splat(np.array(_outer_values(ends.low, ends.high)), shape)
+    return clamp_alpha(uniform, _splat(np.array(_inner_values(ends.low, ends.high)), shape))
 
 
-def _within(low: float, high: float) -> list[float]:
+def _inner_values(low: float, high: float) -> list[float]:
     special = [0.0, -0.0, 1e-45, -1e-45, 1.2e-38, 1e-20, -1e-20, 1e-6, -1e-6, 0.5, 1.0, -1.0, 1e6, -1e6]
     return [low, high, *(value for value in special if low <= value <= high)]
 
 
-def _beyond(low: float, high: float) -> list[float]:
+def _outer_values(low: float, high: float) -> list[float]:
     step = max(abs(high), abs(low)) * 1e-3
     candidates = [high + step, low - step, 10.0 * high, 10.0 * low, -high, -1.0]
     return [value for value in dict.fromkeys(candidates) if not low <= value <= high and abs(value) < 3e38] or [high]
@@ -122,12 +121,12 @@ def _pairs(specimen: Specimen, edges: dict[str, Array], rng: np.random.Generator
     for name in (
         specimen.subject.uniforms.keys() & joined.keys()
     ):  # the other uniforms have their defaults in half of the lanes
-        keep = half & ~np.isin(np.arange(count), _chosen(names, edges, name))
-        joined[name][..., keep] = fixed(specimen, name)
+        keep = half & ~np.isin(np.arange(count), _lanes_of(names, edges, name))
+        joined[name][..., keep] = fixed_value(specimen, name)
     return _with_rest(specimen, joined, rng)
 
 
-def _chosen(names: Sequence[str], edges: dict[str, Array], name: str) -> Array:
+def _lanes_of(names: Sequence[str], edges: dict[str, Array], name: str) -> Array:
     """The lanes in which `name` is one of the pair."""
     lanes, start = [np.zeros(0, np.int64)], 0
     for first, second in list(combinations(names, 2)) or [(names[0], names[0])]:
@@ -138,7 +137,7 @@ def _chosen(names: Sequence[str], edges: dict[str, Array], name: str) -> Array:
     return np.concatenate(lanes)
 
 
-def _mixed(specimen: Specimen, edges: dict[str, Array], rng: np.random.Generator, format: Format) -> Inputs:
+def _mix(specimen: Specimen, edges: dict[str, Array], rng: np.random.Generator, format: Format) -> Inputs:
     """Boundary values of all inputs; in a fifth of the lanes an input has a random value instead."""
     random = sample_inputs(specimen, MIXED, rng, format).values
     mixture: dict[str, Array] = {}
@@ -156,5 +155,5 @@ def _with_rest(specimen: Specimen, values: dict[str, Array], rng: np.random.Gene
         if isinstance(param.type, Sampler):
             textures[name] = texture(specimen.subject.uniforms.get(name), param.type.dim, rng)
         elif name not in values:
-            values[name] = fixed(specimen, name)
+            values[name] = fixed_value(specimen, name)
     return Inputs(values, textures, lanes)

@@ -13,10 +13,10 @@ from sssgen.analyse.stress.subject import Specimen
 from sssgen.ir import contracts
 from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.nodes import Param, Uniform
-from sssgen.ir.types import Matrix, Sampler, kind_of, spell
+from sssgen.ir.types import Matrix, Sampler, kind_of
 from sssgen.ir.vector_ranges import LENGTH, Contract
 from sssgen.run.backends import Array
-from sssgen.run.evaluate.evaluation import Inputs, default_texture, shape_of
+from sssgen.run.evaluate.evaluation import Inputs, default_of, shape_of
 from sssgen.targets.runtime.numpy_textures import Texture
 
 TINY = 1e-45
@@ -24,6 +24,8 @@ TINY = 1e-45
 ORDINARY = 2.0
 """In a wide range half of the numbers are at most this large."""
 TEXELS = 16
+DTYPES: dict[str, Any] = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
+"""The types of inputs."""
 
 
 def sample_inputs(specimen: Specimen, lanes: int, rng: np.random.Generator, format: Format = FLOAT32) -> Inputs:
@@ -36,7 +38,7 @@ def sample_inputs(specimen: Specimen, lanes: int, rng: np.random.Generator, form
         if isinstance(param.type, Sampler):
             textures[name] = texture(uniform, param.type.dim, rng)
         elif name in specimen.settings:
-            values[name] = fixed(specimen, name)
+            values[name] = fixed_value(specimen, name)
         elif kind_of(param.type) == "float":
             size = (*shape_of(param.type), lanes)
             values[name] = _floats(size, contract(specimen, name, format), param, uniform, line, rng)
@@ -53,19 +55,18 @@ def contract(specimen: Specimen, name: str, format: Format = FLOAT32) -> Contrac
     return contracts.of_param(specimen.subject.params[name], format, specimen.subject.chained)
 
 
-def outside(specimen: Specimen, name: str, format: Format = FLOAT32) -> Contract:
+def outer_contract(specimen: Specimen, name: str, format: Format = FLOAT32) -> Contract:
     """The range of an input if the caller does not keep quantities in their ranges."""
     if name in specimen.subject.uniforms:
         return contract(specimen, name, format)
     return contracts.from_outside(specimen.subject.params[name], format, specimen.subject.chained)
 
 
-def fixed(specimen: Specimen, name: str) -> Array:
+def fixed_value(specimen: Specimen, name: str) -> Array:
     """A uniform's value in this material or technique, one lane."""
     uniform = specimen.subject.uniforms[name]
     value = np.array(specimen.settings.get(name, uniform.default), np.float64)
-    dtype = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.bool_}[kind_of(uniform.type)]
-    return value.reshape(*shape_of(uniform.type), 1).astype(dtype)
+    return value.reshape(*shape_of(uniform.type), 1).astype(DTYPES[kind_of(uniform.type)])
 
 
 def whole_range(param: Param, uniform: Uniform | None) -> tuple[int, int]:
@@ -93,10 +94,10 @@ def _floats(
         moved = near + rng.uniform(-1.0, 1.0, size).astype(np.float32)
         mixture: Array = np.where(rng.random(size[-1]) < 0.5, moved, numbers(size, ends, rng))
         return mixture
-    return opaque(uniform, numbers(size, ends, rng))
+    return clamp_alpha(uniform, numbers(size, ends, rng))
 
 
-def opaque(uniform: Uniform | None, values: Array) -> Array:
+def clamp_alpha(uniform: Uniform | None, values: Array) -> Array:
     """Values of a colour, with its opacity clamped to 0..1."""
     alpha = contracts.alpha_at(uniform) if uniform is not None else None
     if alpha is not None:
@@ -165,8 +166,7 @@ def _whole(param: Param, uniform: Uniform | None, rng: np.random.Generator) -> A
     if uniform is not None and high - low > 2:
         # steps and taps cost time, so most draws have few
         high = min(high, max(low, int(2 * max(uniform.default))) if rng.random() < 0.9 else high)
-    dtype: Any = {"int": np.int32, "uint": np.uint32, "bool": np.bool_}[kind_of(param.type)]
-    return rng.integers(low, high + 1, (*shape_of(param.type), 1)).astype(dtype)
+    return rng.integers(low, high + 1, (*shape_of(param.type), 1)).astype(DTYPES[kind_of(param.type)])
 
 
 def texture(uniform: Uniform | None, dim: str, rng: np.random.Generator) -> Texture:
@@ -174,8 +174,7 @@ def texture(uniform: Uniform | None, dim: str, rng: np.random.Generator) -> Text
     assert uniform is not None
     kind = int(rng.integers(0, 4))
     if kind == 0:
-        hints = [hint.removeprefix("default_") for hint, _ in uniform.hints if hint.startswith("default_")]
-        return default_texture(spell(uniform.type), hints[0] if hints else "white")
+        return default_of(uniform)
     size = {"2D": (TEXELS, TEXELS), "3D": (TEXELS,) * 3, "Cube": (6, TEXELS, TEXELS)}[dim]
     if kind == 1 and not contracts.of_uniform(uniform).finite:
         return Texture(rng.integers(0, 1 << 16, (*size, 4), np.uint16).view(np.float16), dim=dim)

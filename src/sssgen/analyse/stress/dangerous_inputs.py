@@ -10,7 +10,7 @@ import numpy as np
 from sssgen.analyse.stress import rows_field as field
 from sssgen.analyse.stress import rows_light as light
 from sssgen.analyse.stress import rows_surface as surface
-from sssgen.analyse.stress.contract_inputs import is_direction, outside
+from sssgen.analyse.stress.contract_inputs import is_direction, outer_contract
 from sssgen.analyse.stress.subject import Specimen
 from sssgen.analyse.stress.trial import Trial
 from sssgen.ir.formats import FLOAT32, Format
@@ -75,7 +75,7 @@ ROWS = (
     DangerousRow("anisotropy", "g towards -1 and 1", "clamped", light.extreme_anisotropy),
     DangerousRow(
         "grazing-view", "the view goes to grazing, without refraction",
-        "a documented maximum, fading to the base coordinates", surface.grazing,
+        "a documented maximum, fading to the base coordinates", surface.grazing_view,
     ),
     DangerousRow(
         "critical-angle", "past the critical angle", "the base coordinates, with a smooth fade",
@@ -106,7 +106,7 @@ ROWS = (
     ),
     DangerousRow("concave", "concave bodies, gaps", "the sum of the intervals inside", field.concave),
     DangerousRow("eight-bits", "an 8-bit distance or thickness", "an error of at most half a step", surface.eight_bits),
-    DangerousRow("coinciding", "two points in one place: an axis' ends, a cell's site", "finite", field.coinciding),
+    DangerousRow("coinciding", "two points in one place: an axis' ends, a cell's site", "finite", field.coincidences),
     DangerousRow("few-steps", "steps of 0 and 1, or larger than the body", "at least one step", field.few_steps),
     DangerousRow(
         "fast-math", "NaN tests under fast-math", "the tests read the bits: no NaN remains",
@@ -115,7 +115,7 @@ ROWS = (
 )  # fmt: skip
 
 
-def chosen(names: Sequence[str]) -> tuple[str, ...]:
+def check_rows(names: Sequence[str]) -> tuple[str, ...]:
     """The names, if there are such rows. Raises SssgenError."""
     row_names = [row.name for row in ROWS]
     for name in names:
@@ -139,10 +139,10 @@ def _in_half(trial: Trial, half: Format) -> Trial:
     for name, value in trial.inputs.values.items():
         if value.dtype.kind == "f":
             value = np.clip(value, -half.largest, half.largest)
-            ends = outside(trial.specimen, name, half)
+            ends = outer_contract(trial.specimen, name, half)
             if is_direction(name, ends):  # products of such lengths are still numbers
                 value = value if trial.name == "long-vectors" else np.clip(value, -LONGEST, LONGEST)
-            elif not _beyond(trial.specimen, name, value):
+            elif not _is_outside(trial.specimen, name, value):
                 value = np.clip(value, np.float32(ends.low), np.float32(ends.high))
             value = value.astype(np.float16).astype(np.float32)
         values[name] = value
@@ -152,7 +152,7 @@ def _in_half(trial: Trial, half: Format) -> Trial:
     return trial._replace(inputs=inputs, expected=expected, tolerance=tolerance, path=False, compared=False)
 
 
-def _beyond(specimen: Specimen, name: str, value: Array) -> bool:
+def _is_outside(specimen: Specimen, name: str, value: Array) -> bool:
     """Whether a row has values that no format's contract allows."""
-    ends = outside(specimen, name, FLOAT32)
+    ends = outer_contract(specimen, name, FLOAT32)
     return bool((value < np.float32(ends.low)).any() or (value > np.float32(ends.high)).any())

@@ -16,9 +16,9 @@ from sssgen.analyse.stress import boundaries
 from sssgen.analyse.stress import dangerous_inputs as dangerous
 from sssgen.analyse.stress.contract_inputs import sample_inputs
 from sssgen.analyse.stress.result_checks import non_finite
-from sssgen.analyse.stress.shrink import lane, line, shrunk
+from sssgen.analyse.stress.shrink import lane, line, shrink
 from sssgen.analyse.stress.subject import Specimen
-from sssgen.analyse.stress.trial import BEYOND, RANDOM, Trial
+from sssgen.analyse.stress.trial import OUTSIDE, RANDOM, Trial
 from sssgen.ir.formats import FLOAT32
 from sssgen.passes.ranges.sites import Site
 from sssgen.pipeline.programs import library_sites
@@ -61,7 +61,7 @@ def witness(specimen: Specimen, site: Site, seed: int = 0) -> Witness | None:
         for output, lanes in lanes_by_output.items():
             if lanes.any():
                 start = lane(trial.inputs, int(np.argmax(lanes)))
-                small = shrunk(trial.specimen, start, partial(_fails, trial.specimen, poison, output))
+                small = shrink(trial.specimen, start, partial(_fails, trial.specimen, poison, output))
                 command = line(trial.specimen, small, "numpy-f32").replace(
                     "sssgen eval", "sssgen eval --guards none", 1
                 )
@@ -90,7 +90,7 @@ def _trials(specimen: Specimen, seed: int) -> Iterator[Trial]:
     """The table's rows and the boundary values, then random inputs."""
     rows = dangerous.trials(specimen) if specimen.subject.chained else ()
     every = [*rows, *boundaries.trials(specimen, seed)]
-    yield from (trial for trial in every if trial.counts or trial.name == BEYOND)
+    yield from (trial for trial in every if trial.counts or trial.name == OUTSIDE)
     rng = np.random.default_rng([seed, 4])
     yield Trial(RANDOM, specimen, sample_inputs(specimen, SAMPLES, rng, FLOAT32))
 

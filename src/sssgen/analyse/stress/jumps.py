@@ -8,14 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.analyse.stress.contract_inputs import fixed
+from sssgen.analyse.stress.contract_inputs import fixed_value
 from sssgen.analyse.stress.result_checks import JUMP
 from sssgen.analyse.stress.shrink import lane
 from sssgen.analyse.stress.subject import Specimen
 from sssgen.ir.types import Sampler, kind_of
 from sssgen.run.backends import Array
 from sssgen.run.evaluate.deviation import errors
-from sssgen.run.evaluate.evaluation import Inputs, fitted
+from sssgen.run.evaluate.evaluation import Inputs, fit_inputs
 from sssgen.run.evaluate.random_inputs import samples
 
 LANES = 1024
@@ -41,7 +41,7 @@ class ModelJump(NamedTuple):
 Run = Callable[[Inputs], dict[str, Array]]
 
 
-def largest(specimen: Specimen, run: Run, oracle: Run) -> tuple[float, str, Inputs | None]:
+def largest_jump(specimen: Specimen, run: Run, oracle: Run) -> tuple[float, str, Inputs | None]:
     """The largest step of an output on a back end where the oracle's own is small; of which input, and where.
 
     The oracle's change is its largest over the step and the steps before and after it: where float32 decides a little
@@ -76,14 +76,14 @@ def of_model(specimen: Specimen, run: Run) -> tuple[ModelJump, ...]:
             moved = _apart(value, b[output])
             worst = np.argsort(moved)[-STEEPEST:]
             if moved[worst[-1]] > JUMP:
-                sizes, places = _divided(run, _lanes(first, worst), _lanes(second, worst), name, output)
+                sizes, places = _divide(run, _lanes(first, worst), _lanes(second, worst), name, output)
                 largest_lane = int(np.argmax(sizes))
                 if sizes[largest_lane] > JUMP:
                     model_jumps.append(ModelJump(name, output, float(sizes[largest_lane]), lane(places, largest_lane)))
     return tuple(model_jumps)
 
 
-def _divided(run: Run, first: Inputs, second: Inputs, name: str, output: str) -> tuple[Array, Inputs]:
+def _divide(run: Run, first: Inputs, second: Inputs, name: str, output: str) -> tuple[Array, Inputs]:
     """The changes that remain after repeated division of the steps; each time the part that changes most is kept."""
     a, b = (inputs.values[name] for inputs in (first, second))
     count, share = a.shape[-1], np.linspace(0.0, 1.0, PARTS + 1)
@@ -100,8 +100,8 @@ def _divided(run: Run, first: Inputs, second: Inputs, name: str, output: str) ->
 
 def _walks(specimen: Specimen, step: float = STEP) -> Iterator[tuple[str, tuple[Inputs, Inputs, Inputs, Inputs]]]:
     """For each float input four neighbouring values, a step apart, drawn from what scenes contain."""
-    base = fitted(specimen.subject, samples(specimen.subject, LANES))
-    base = base._replace(values=base.values | {name: fixed(specimen, name) for name in specimen.settings})
+    base = fit_inputs(specimen.subject, samples(specimen.subject, LANES))
+    base = base._replace(values=base.values | {name: fixed_value(specimen, name) for name in specimen.settings})
     for name, param in specimen.subject.params.items():
         if isinstance(param.type, Sampler) or kind_of(param.type) != "float" or name in specimen.settings:
             continue

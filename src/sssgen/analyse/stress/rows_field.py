@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.analyse.stress.base_inputs import angles, mixed, plain
+from sssgen.analyse.stress.base_inputs import angles, mix, plain
 from sssgen.analyse.stress.contract_inputs import TEXELS
 from sssgen.analyse.stress.subject import Specimen
 from sssgen.analyse.stress.trial import Trial
@@ -41,7 +41,7 @@ def not_lipschitz(specimen: Specimen) -> Iterator[Trial]:
     positions = rng.uniform(-1.0, 1.0, (3, lanes))
     axes = [(0, 0, 1), (0.6, 0, 0.8), (0, -1, 0)]
     changes = {"distance_map": texels, "distance_range": 100.0, "P": positions, "P_object": positions}
-    turned = mixed(steep, dict.fromkeys(("N", "L", "V_object", "L_object"), axes), lanes).values
+    turned = mix(steep, dict.fromkeys(("N", "L", "V_object", "L_object"), axes), lanes).values
     yield Trial("", steep, plain(steep, lanes, {**turned, **changes}))
 
 
@@ -81,7 +81,7 @@ def flat_box(specimen: Specimen) -> Iterator[Trial]:
         "P_object": places, "p": places, "P": places,
     }  # fmt: skip
     axes = [(0, 0, 1), (1, 0, 0), (0.6, 0, 0.8), (0, 0, 0)]
-    yield Trial("", specimen, mixed(specimen, {**choices, "V_object": axes, "L_object": axes}, 2048))
+    yield Trial("", specimen, mix(specimen, {**choices, "V_object": axes, "L_object": axes}, 2048))
 
 
 def concave(specimen: Specimen) -> Iterator[Trial]:
@@ -115,7 +115,7 @@ def few_steps(specimen: Specimen) -> Iterator[Trial]:
         yield Trial("", specimen, plain(specimen, 3, {**changes, **far}), counts=count >= 0)
 
 
-def coinciding(specimen: Specimen) -> Iterator[Trial]:
+def coincidences(specimen: Specimen) -> Iterator[Trial]:
     """Two points that coincide: the ends of an axis, and a position exactly at the site of a Voronoi cell."""
     params = specimen.subject.params
     if "start" in params and "end" in params:
@@ -132,12 +132,12 @@ def coinciding(specimen: Specimen) -> Iterator[Trial]:
 
 def _site() -> Array:
     """The site in the cell at the origin, by the formula of common/voronoi.sss."""
-    seed = _hashed(_hashed(1))
-    shift = np.array([_hashed(seed + 1) >> 8, _hashed(seed + 2) >> 8], np.float32) / np.float32(2**24) - np.float32(0.5)
+    seed = _hash(_hash(1))
+    shift = np.array([_hash(seed + 1) >> 8, _hash(seed + 2) >> 8], np.float32) / np.float32(2**24) - np.float32(0.5)
     return (np.float32(0.5) + np.float32(0.6) * shift).astype(np.float64)
 
 
-def _hashed(x: int) -> int:
+def _hash(x: int) -> int:
     """`hash_bits` of common/hash.sss, on 32 bits."""
     x &= 0xFFFFFFFF
     x = ((x ^ (x >> 16)) * 0x7FEB352D) & 0xFFFFFFFF

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.analyse.stress.base_inputs import angles, calls, directions, mixed, plain, samplers, scalars
-from sssgen.analyse.stress.contract_inputs import outside
+from sssgen.analyse.stress.base_inputs import angles, calls, directions, mix, plain, samplers, scalars
+from sssgen.analyse.stress.contract_inputs import outer_contract
 from sssgen.analyse.stress.subject import Specimen
 from sssgen.analyse.stress.trial import Trial
 from sssgen.ir.formats import FLOAT16
@@ -23,7 +23,7 @@ def powers(specimen: Specimen) -> Iterator[Trial]:
     """Every base and exponent at 0, at the ends, and next to 0."""
     if calls(specimen, "pow"):
         choices = scalars(specimen) | dict.fromkeys(directions(specimen), AXES)
-        yield Trial("", specimen, mixed(specimen, choices))
+        yield Trial("", specimen, mix(specimen, choices))
 
 
 def large_powers(specimen: Specimen) -> Iterator[Trial]:
@@ -48,9 +48,9 @@ def zero_vectors(specimen: Specimen) -> Iterator[Trial]:
     yield Trial("", specimen, plain(specimen, lanes, exact))
     lengths = {name: [np.multiply(axis, size) for axis in AXES for size in (0.0, 1e-30, 1e-4, 1.0)] for name in names}
     full = {name: [0.0, 1.0] for name in exact}
-    yield Trial("", specimen, mixed(specimen, {**lengths, **full}))
+    yield Trial("", specimen, mix(specimen, {**lengths, **full}))
     longer = {name: [np.multiply(axis, size) for axis in AXES for size in (1.0, 2.0, 100.0, 1e4)] for name in names}
-    yield Trial("", specimen, mixed(specimen, {**longer, **full}), ranged=False)
+    yield Trial("", specimen, mix(specimen, {**longer, **full}), ranged=False)
 
 
 def lamp_at_surface(specimen: Specimen) -> Iterator[Trial]:
@@ -63,14 +63,14 @@ def lamp_at_surface(specimen: Specimen) -> Iterator[Trial]:
             "light_color": [(65504.0,) * 3, (0, 0, 0)],
             "N": AXES,
         }
-        yield Trial("", specimen, mixed(specimen, choices, 512))
+        yield Trial("", specimen, mix(specimen, choices, 512))
 
 
 def long_vectors(specimen: Specimen) -> Iterator[Trial]:
     """Directions whose squares overflow in half precision."""
     lengths = [np.multiply(axis, size) for axis in AXES for size in (256.0, 1000.0, 1e4)]
     if names := [name for name in directions(specimen) if name in ("L", "L_object")]:
-        yield Trial("", specimen, mixed(specimen, dict.fromkeys(names, lengths), 512), ranged=False)
+        yield Trial("", specimen, mix(specimen, dict.fromkeys(names, lengths), 512), ranged=False)
 
 
 def wrong_quantities(specimen: Specimen) -> Iterator[Trial]:
@@ -81,8 +81,8 @@ def wrong_quantities(specimen: Specimen) -> Iterator[Trial]:
     if names:
         values = [-1e6, -1.0, -1e-6, -0.0, 0.0, 0.5, 1.0, 1.0 + 1e-6, 2.0, 1e6]
         choices: dict[str, list[Any]] = {**scalars(specimen)}
-        choices |= {name: [*values, *(outside(specimen, name)[:2])] for name in names}
-        inputs = mixed(specimen, choices, 512)
+        choices |= {name: [*values, *(outer_contract(specimen, name)[:2])] for name in names}
+        inputs = mix(specimen, choices, 512)
         yield Trial("", specimen, inputs, ranged=False)
         yield Trial("", specimen, inputs, counts=False)  # outputs are in their ranges only if the inputs are
 
@@ -98,15 +98,15 @@ def thick_matter(specimen: Specimen) -> Iterator[Trial]:
         "attenuation_distance": [0.0, 1e-45, 1e-30, 1e-6, 0.2, 10.0],
         "attenuation_color": [(0, 0, 0), (1, 1, 1), (0, 0.5, 1), (1e-30, 0.9, 0.4)],
     }
-    yield Trial("", specimen, mixed(specimen, choices))
+    yield Trial("", specimen, mix(specimen, choices))
     if not distance:
         return
     full = _full(specimen)
     colors = [(0, 0, 0), (1, 1, 1), (0, 0.5, 1), (1e-30, 0.9, 0.4)]
-    clear = mixed(specimen, {**choices, thickness: [0.0], "attenuation_color": colors, **full}, 512)
+    clear = mix(specimen, {**choices, thickness: [0.0], "attenuation_color": colors, **full}, 512)
     yield Trial("", specimen, clear, expected={"result": np.ones(1)})
     opaque = {**choices, thickness: [1e-3, 1.0], "attenuation_distance": [0.0], "attenuation_color": [(0.5, 0.5, 0.5)]}
-    yield Trial("", specimen, mixed(specimen, {**opaque, **full}, 64), expected={"result": np.zeros(1)}, tolerance=1e-6)
+    yield Trial("", specimen, mix(specimen, {**opaque, **full}, 64), expected={"result": np.zeros(1)}, tolerance=1e-6)
 
 
 def lengths_of_the_eye(specimen: Specimen) -> Iterator[Trial]:
@@ -124,9 +124,9 @@ def lengths_of_the_eye(specimen: Specimen) -> Iterator[Trial]:
         "P": [(0.1, 0.2, 0.5), (0, 0, 0), (-3, 0.5, 7), (1e4, -1e4, 1e4)],
         "light_nearness": [0.0, 1e-30, 0.5, 1e4],
     }
-    yield Trial("", specimen, mixed(specimen, choices))
+    yield Trial("", specimen, mix(specimen, choices))
     inside = {**choices, name: [-1.0, 0.0]}
-    yield Trial("", specimen, mixed(specimen, inside, 512), expected={"result": np.zeros(1)})
+    yield Trial("", specimen, mix(specimen, inside, 512), expected={"result": np.zeros(1)})
 
 
 def black_attenuation(specimen: Specimen) -> Iterator[Trial]:
@@ -138,7 +138,7 @@ def black_attenuation(specimen: Specimen) -> Iterator[Trial]:
             "attenuation_color": [(0, 0, 0), (0, 1, 1), (1, 0, 0.5), (0.5, 0.5, 0)],
             "attenuation_distance": [0.0, 1e-6, 0.2, 10.0],
         }
-        clear = mixed(specimen, {**choices, **_full(specimen)}, 256)
+        clear = mix(specimen, {**choices, **_full(specimen)}, 256)
         yield Trial("", specimen, clear, expected={"result": np.ones(1)})
 
 
@@ -158,4 +158,4 @@ def extreme_anisotropy(specimen: Specimen) -> Iterator[Trial]:
     """g at its ends, and beyond them up to 1 itself."""
     if name := next((name for name in specimen.subject.uniforms if name in ("anisotropy", "g")), ""):
         values = [-1.0, -1.0 + _EPS, -0.95, 0.0, 1e-30, 0.95, 1.0 - _EPS, 1.0]
-        yield Trial("", specimen, mixed(specimen, {name: values, "V": AXES, "L": AXES}))
+        yield Trial("", specimen, mix(specimen, {name: values, "V": AXES, "L": AXES}))

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.analyse.stress.base_inputs import angles, mixed, plain, samplers
+from sssgen.analyse.stress.base_inputs import angles, mix, plain, samplers
 from sssgen.analyse.stress.contract_inputs import TEXELS
 from sssgen.analyse.stress.rows_light import AXES
 from sssgen.analyse.stress.subject import Specimen
@@ -46,13 +46,13 @@ def _longest(specimen: Specimen) -> float:
     return 1.055 * float(uniforms["depth"].default[0] if "depth" in uniforms else 0.05) / fade
 
 
-def grazing(specimen: Specimen) -> Iterator[Trial]:
+def grazing_view(specimen: Specimen) -> Iterator[Trial]:
     """The view becomes grazing, without refraction: the slide is bounded, and 0 at 90 degrees."""
     still = {"ior": 1.0, "outside_ior": 1.0, "eta": 1.0}
     if _parallax(specimen) and _free(specimen, still):
         swept = _swept(specimen, -90.0, 90.0, still)
         yield swept._replace(expected={"result": UV}, tolerance=_longest(specimen))
-        flat = mixed(specimen, {"V": [(1, 0, 0), (0, 1, 0), (-1, 0, 0), (1, 0, 1e-30)], "uv": [UV]}, 64)
+        flat = mix(specimen, {"V": [(1, 0, 0), (0, 1, 0), (-1, 0, 0), (1, 0, 1e-30)], "uv": [UV]}, 64)
         flat.values.update({name: np.array([1.0], np.float32) for name in still if name in flat.values})
         yield Trial("", specimen, flat, expected={"result": UV}, tolerance=1e-6)
 
@@ -73,7 +73,7 @@ def from_behind(specimen: Specimen) -> Iterator[Trial]:
         sine, cosine = angles(0.0, 180.0)
         view = np.stack([sine, 0.0 * sine, cosine])
         yield Trial("", specimen, plain(specimen, len(sine), {"V": view}), path=True)
-        yield Trial("", specimen, mixed(specimen, {"V": AXES, "N": AXES, "L": AXES, "uv": [UV]}))
+        yield Trial("", specimen, mix(specimen, {"V": AXES, "N": AXES, "L": AXES, "uv": [UV]}))
 
 
 def bad_frames(specimen: Specimen) -> Iterator[Trial]:
@@ -87,9 +87,9 @@ def bad_frames(specimen: Specimen) -> Iterator[Trial]:
         "V": AXES,
         "uv": [UV],
     }
-    yield Trial("", specimen, mixed(specimen, frames))
+    yield Trial("", specimen, mix(specimen, frames))
     if _parallax(specimen):
-        missing = mixed(specimen, {**frames, "T": [(0, 0, 0)], "N": [(0, 0, 1)]}, 256)
+        missing = mix(specimen, {**frames, "T": [(0, 0, 0)], "N": [(0, 0, 1)]}, 256)
         yield Trial("", specimen, missing, expected={"result": UV})
 
 

@@ -11,12 +11,13 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from sssgen.analyse.stress.contract_inputs import contract, fixed, opaque, whole_range
+from sssgen.analyse.stress.contract_inputs import clamp_alpha, contract, fixed_value, whole_range
 from sssgen.analyse.stress.subject import Specimen
 from sssgen.ir.types import kind_of, spell
 from sssgen.run.backends import Array
-from sssgen.run.evaluate.evaluation import Inputs, default_texture
+from sssgen.run.evaluate.evaluation import Inputs, default_of, default_texture
 from sssgen.targets.runtime.numpy_textures import Texture
+from sssgen.targets.texture_import import default_color
 
 Fails = Callable[[Inputs], Array]
 """Whether inputs fail: (lanes,) bool."""
@@ -25,6 +26,7 @@ ROUNDS = 4
 DIGITS = (1, 2, 3, 5)
 _SIMPLE = (0.0, 1.0, 0.5, 2.0, -1.0, 10.0)
 _TEXELS = (0.25, 2.0, -1.0, 65504.0, -65504.0, np.nan, np.inf, -np.inf)
+_COLORS = ("white", "black", "gray")
 _AXES = ((0, 0, 1), (0, 0, -1), (0, 0, 0), (1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0))
 
 
@@ -36,7 +38,7 @@ def lane(inputs: Inputs, index: int) -> Inputs:
     return Inputs(values, inputs.textures, 1)
 
 
-def shrunk(specimen: Specimen, failing: Inputs, fails: Fails) -> Inputs:
+def shrink(specimen: Specimen, failing: Inputs, fails: Fails) -> Inputs:
     """The simplest inputs found that still fail, one lane; `failing` itself if it does not fail when run alone."""
     simplest = failing
     if not fails(simplest).all():
@@ -55,8 +57,7 @@ def _plainer_textures(specimen: Specimen, simplest: Inputs, fails: Fails) -> Inp
     for name, uniform in specimen.subject.uniforms.items():
         if name not in simplest.textures:
             continue
-        hints = [hint.removeprefix("default_") for hint, _ in uniform.hints if hint.startswith("default_")]
-        plain = [default_texture(spell(uniform.type), color) for color in (*hints[:1], "white", "black", "gray")]
+        plain = [default_texture(spell(uniform.type), color) for color in (default_color(uniform), *_COLORS)]
         values = (0.25,) if contract(specimen, name).finite else _TEXELS
         plain += [_one_texel(simplest.textures[name], value) for value in values]
         for texture in plain:
@@ -79,8 +80,8 @@ def _simpler(specimen: Specimen, inputs: Inputs, name: str, fails: Fails) -> Inp
         return inputs
     candidates = list(_candidates(specimen, name, value))
     candidates = candidates[: _index(candidates, value)]
-    if _allowed(specimen, name, value):  # a value in the contract stays in it
-        candidates = [candidate for candidate in candidates if _allowed(specimen, name, candidate)]
+    if _is_allowed(specimen, name, value):  # a value in the contract stays in it
+        candidates = [candidate for candidate in candidates if _is_allowed(specimen, name, candidate)]
     if not candidates:
         return inputs
     lanes = np.concatenate(candidates, axis=-1)
@@ -97,13 +98,13 @@ def _index(candidates: list[Array], value: Array) -> int:
     return next(same, len(candidates))
 
 
-def _allowed(specimen: Specimen, name: str, value: Array) -> bool:
+def _is_allowed(specimen: Specimen, name: str, value: Array) -> bool:
     if value.dtype.kind != "f":
         low, high = whole_range(specimen.subject.params[name], specimen.subject.uniforms.get(name))
         return bool(((value >= low) & (value <= high)).all())
     ends = contract(specimen, name)
     within = ((value >= np.float32(ends.low)) & (value <= np.float32(ends.high))).all()
-    if not np.array_equal(opaque(specimen.subject.uniforms.get(name), value.copy()), value):
+    if not np.array_equal(clamp_alpha(specimen.subject.uniforms.get(name), value.copy()), value):
         return False
     return bool(within) and not float(np.linalg.norm(value.astype(np.float64))) > ends.length * (1.0 + 1e-6)
 
@@ -111,7 +112,7 @@ def _allowed(specimen: Specimen, name: str, value: Array) -> bool:
 def _candidates(specimen: Specimen, name: str, value: Array) -> Iterator[Array]:
     """Values to try, the simplest first: the default, axes, simple numbers, single components, fewer digits."""
     if name in specimen.subject.uniforms:
-        yield fixed(specimen, name)
+        yield fixed_value(specimen, name)
     kind = kind_of(specimen.subject.params[name].type)
     if kind == "bool":
         yield np.zeros_like(value)
@@ -168,14 +169,11 @@ def _backend(name: str) -> str:
 def _is_default(specimen: Specimen, name: str, value: Array) -> bool:
     uniform = specimen.subject.uniforms.get(name)
     plain = specimen._replace(settings={})
-    return uniform is not None and name not in specimen.settings and np.array_equal(fixed(plain, name), value)
+    return uniform is not None and name not in specimen.settings and np.array_equal(fixed_value(plain, name), value)
 
 
 def _is_plain_default(specimen: Specimen, name: str, texture: Texture) -> bool:
-    uniform = specimen.subject.uniforms[name]
-    hints = [hint.removeprefix("default_") for hint, _ in uniform.hints if hint.startswith("default_")]
-    default = default_texture(spell(uniform.type), hints[0] if hints else "white")
-    return np.array_equal(default.levels[0], texture.levels[0])
+    return np.array_equal(default_of(specimen.subject.uniforms[name]).levels[0], texture.levels[0])
 
 
 def _plain(value: Array) -> object:

@@ -16,12 +16,12 @@ from sssgen.analyse.stress import boundaries, energy, jumps
 from sssgen.analyse.stress import dangerous_inputs as dangerous
 from sssgen.analyse.stress.contract_inputs import sample_inputs
 from sssgen.analyse.stress.result_checks import JUMP, KINDS, OutputFaults, faults_of
-from sssgen.analyse.stress.shrink import lane, line, shrunk
+from sssgen.analyse.stress.shrink import lane, line, shrink
 from sssgen.analyse.stress.subject import Specimen
 from sssgen.analyse.stress.trial import RANDOM, STEPS, Trial
 from sssgen.ir.formats import FLOAT16, FLOAT32, Format
 from sssgen.run.backends import Array, Backend, CompilerMissing, get
-from sssgen.run.backends.isolated import started
+from sssgen.run.backends.backend_process import start_backend
 from sssgen.run.evaluate.deviation import GOAL, MARGIN, errors, rounding_deviation
 from sssgen.run.evaluate.evaluation import Inputs
 from sssgen.run.evaluate.evaluation import run as evaluated
@@ -113,7 +113,7 @@ class Machines:
         self.missing: dict[str, str] = {}
         for name in names:
             try:
-                self.backends[name] = started(name)
+                self.backends[name] = start_backend(name)
             except CompilerMissing as reason:
                 self.missing[name] = str(reason)
             except SssgenError as error:
@@ -136,7 +136,7 @@ Progress = Callable[[str, int], None]
 
 def stress(specimen: Specimen, machines: Machines, settings: Settings, progress: Progress = lambda *_: None) -> Row:
     """All trials of one technique on all back ends."""
-    gathered = [_Gathered(name, backend, specimen, settings) for name, backend in machines.backends.items()]
+    gathered = [_Results(name, backend, specimen, settings) for name, backend in machines.backends.items()]
     for trial in _trials(specimen, settings):
         progress(trial.name, 0)
         reference = _Reference(trial, settings)
@@ -204,7 +204,7 @@ class _Reference:
             return rounding_deviation(self.trial.specimen.subject, self.trial.inputs, self.outputs)
 
 
-class _Gathered:
+class _Results:
     """The results of one technique on one back end, while it runs."""
 
     def __init__(self, name: str, backend: Backend, specimen: Specimen, settings: Settings) -> None:
@@ -280,7 +280,7 @@ class _Gathered:
         if self.error or self.settings.half:
             return
         try:
-            self.jump, name, inputs = jumps.largest(
+            self.jump, name, inputs = jumps.largest_jump(
                 self.specimen,
                 lambda inputs_of_step: self.run(self.specimen, inputs_of_step),
                 exact(self.specimen, self.settings),
@@ -302,13 +302,13 @@ class _Gathered:
             self.name, self.evaluations, self.seconds, tuple(faults), self.jump, self.deviation, self.error
         )  # fmt: skip
 
-    def with_command(self, key: tuple[str, str, str, bool], shrink: bool) -> Fault:
+    def with_command(self, key: tuple[str, str, str, bool], reduce: bool) -> Fault:
         """A fault with the command that shows it."""
         fault, trial = self.faults[key], self.trials.get(key)
         if trial is not None:
             fault = fault._replace(of=self.lanes[trial.name, trial.counts])
         specimen = trial.specimen if trial is not None else self.specimen
-        if not shrink or self.error:
+        if not reduce or self.error:
             return fault
         inputs = fault.inputs
         if trial is not None and fault.kind in ("non-finite", "out of range"):
@@ -321,5 +321,5 @@ class _Gathered:
                 return same_kind[0] if same_kind else np.zeros(candidates.lanes, np.bool_)
 
             with contextlib.suppress(SssgenError):  # then the input stays unreduced
-                inputs = shrunk(specimen, inputs, fails)
+                inputs = shrink(specimen, inputs, fails)
         return fault._replace(inputs=inputs, command=line(specimen, inputs, self.name, self.settings.guards))

@@ -70,7 +70,7 @@ def specimens(names: Sequence[str]) -> list[Specimen]:
     errors, chosen = [], []
     for name in dict.fromkeys(names):
         try:
-            chosen += named(name)
+            chosen += named_specimens(name)
         except SssgenError as error:
             errors += error.diagnostics
     if errors:
@@ -78,7 +78,7 @@ def specimens(names: Sequence[str]) -> list[Specimen]:
     return chosen
 
 
-def named(name: str) -> list[Specimen]:
+def named_specimens(name: str) -> list[Specimen]:
     """The specimens that one name stands for. Raises SssgenError."""
     if name.endswith(".toml") or name in examples():
         return stages(load_material(name))
@@ -108,7 +108,7 @@ def stages(material: Material) -> list[Specimen]:
         link = LinkInput(chosen.name, chosen.role, chosen.module, chosen.function, bound, stage.values, frozenset())
         probes = of_stages(chosen.name, [link])
         bind = {
-            slot: _shown(bound_function.function.span.file, bound_function.function.name)
+            slot: _function_name(bound_function.function.span.file, bound_function.function.name)
             for slot, bound_function in stage.bindings.items()
         }
         settings = {
@@ -124,7 +124,7 @@ def stages(material: Material) -> list[Specimen]:
     return specimens
 
 
-def _shown(file: str, function: str) -> str:
+def _function_name(file: str, function: str) -> str:
     stem = os.path.splitext(os.path.basename(file))[0]
     if stem in library.index():
         return stem if stem == function else f"{stem}:{function}"

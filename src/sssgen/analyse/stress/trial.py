@@ -10,7 +10,7 @@ from sssgen.ir.formats import FLOAT32
 from sssgen.run.backends import Array
 from sssgen.run.evaluate.evaluation import Inputs
 
-RANDOM, BOUNDARY, BEYOND = "random", "boundary values", "beyond the contract"
+RANDOM, BOUNDARY, OUTSIDE = "random", "boundary values", "beyond the contract"
 ENERGY, STEPS = "thickness grows", "small steps"
 """The trials that do not come from the table of dangerous inputs."""
 

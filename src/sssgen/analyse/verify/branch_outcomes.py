@@ -58,7 +58,7 @@ class Outcomes:
             seen = self.branches.get((id(node), value))
             self.branches[id(node), value] = lanes if seen is None else seen | lanes
 
-    def compared(self, node: object, comparison: int, left: Array, right: Array | float, active: Array) -> None:
+    def comparison(self, node: object, comparison: int, left: Array, right: Array | float, active: Array) -> None:
         """Two numbers were compared in the active lanes."""
         if isinstance(left, np.ndarray) and left.dtype.kind == "b":
             return

@@ -38,7 +38,7 @@ class Word(NamedTuple):
     """As `particles[2].mass`."""
 
 
-class Filled(NamedTuple):
+class RoundValues(NamedTuple):
     """The values of one run."""
 
     buffers: dict[str, Array]
@@ -92,7 +92,9 @@ def word_count(buffer: Variable, length: int) -> int:
     return -(-size // 16) * 4
 
 
-def filled(module: Module, layouts: Mapping[str, Sequence[Word]], length: int, number: int, seed: int) -> Filled:
+def round_values(
+    module: Module, layouts: Mapping[str, Sequence[Word]], length: int, number: int, seed: int
+) -> RoundValues:
     """The values of round `number`. Integers among the uniforms are sizes of the grid, its volume, or random."""
     buffers = {}
     for variable in module.variables:
@@ -115,7 +117,7 @@ def filled(module: Module, layouts: Mapping[str, Sequence[Word]], length: int, n
         for uniform in module.uniforms
         if isinstance(uniform.type, Sampler)
     }
-    return Filled(buffers, uniforms, textures)
+    return RoundValues(buffers, uniforms, textures)
 
 
 def _number(kind: str, rng: np.random.Generator) -> np.uint32:

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.analyse.verify.compute_inputs import Filled, Word, filled, group_counts, words
+from sssgen.analyse.verify.compute_inputs import RoundValues, Word, group_counts, round_values, words
 from sssgen.analyse.verify.compute_report import ComputeReport, Difference
 from sssgen.ir.nodes import Module, Variable
 from sssgen.ir.types import Struct, spell, unnested
@@ -29,8 +29,8 @@ from sssgen.passes.stage.host_uniforms import COUNT_TEXT, length_text
 from sssgen.passes.stage.storage_layout import extent
 from sssgen.pipeline.compiler import transpile
 from sssgen.run.backends import Array, Block, Bound, CompilerMissing, Place, Text
+from sssgen.run.backends.backend_process import BackendProcess
 from sssgen.run.backends.dispatch import Dispatch, by_opengl, by_webgpu
-from sssgen.run.backends.isolated import Isolated, isolated
 from sssgen.run.backends.metal_kernel import KernelRun, run_kernel
 from sssgen.run.evaluate.deviation import GOAL
 from sssgen.run.render import metal_values, shell_values
@@ -49,19 +49,19 @@ _VERSION = re.compile(r"^[ \t]*#[ \t]*version\b", re.MULTILINE)
 
 
 def verify_compute(
-    text: str, shown: str, seed: int = 0, machines: Mapping[str, Isolated] | None = None
+    text: str, shown: str, seed: int = 0, machines: Mapping[str, BackendProcess] | None = None
 ) -> ComputeReport:
     """Compares the buffers of a text without `#include`. Raises SssgenError.
 
     `shown` is the text's name in messages; without `machines` the back ends gl, webgpu and metal are started here.
     """
     module = load_glsl_text(text, shown).module
-    started: dict[str, Isolated] = dict(machines or {})
+    started: dict[str, BackendProcess] = dict(machines or {})
     missing: dict[str, str] = {}
     try:
         for name in () if machines else ("gl", "metal", "webgpu"):
             try:
-                started[name] = isolated(name, SECONDS)
+                started[name] = BackendProcess(name, SECONDS)
             except CompilerMissing as reason:
                 missing[name] = str(reason)
         for name, purpose in (("gl", "it runs the text as written"), ("metal", "it finds what depends on the order")):
@@ -74,7 +74,7 @@ def verify_compute(
 
 
 class _Verification:
-    def __init__(self, module: Module, text: str, seed: int, machines: Mapping[str, Isolated]) -> None:
+    def __init__(self, module: Module, text: str, seed: int, machines: Mapping[str, BackendProcess]) -> None:
         self.module, self.seed, self.machines = module, seed, machines
         self.text = text if _VERSION.search(text) else f"#version 430 core\n{text}"
         self.groups = group_counts(module)
@@ -83,9 +83,9 @@ class _Verification:
         self.layouts: dict[str, list[Word]] = {
             buffer.name: list(words(buffer.type, buffer.layout, self.length)) for buffer in self.buffers
         }
-        self.compiled = {name: self.translated(target) for name, (_, target) in TEXTS.items()}
+        self.compiled = {name: self.translate(target) for name, (_, target) in TEXTS.items()}
 
-    def translated(self, target: str) -> Any:
+    def translate(self, target: str) -> Any:
         """The translation for a target, or the SssgenError of its refusal."""
         try:
             return transpile(self.module, target, "verified", keep=True)
@@ -109,7 +109,7 @@ class _Verification:
         for number in range(TRIES):
             if report.rounds == ROUNDS:
                 break
-            values = filled(self.module, self.layouts, self.length, number, self.seed)
+            values = round_values(self.module, self.layouts, self.length, number, self.seed)
             try:
                 runs = [self.on_processor(values, order) for order in ORDERS]
             except SssgenError as error:  # such as a loop without an end
@@ -120,7 +120,7 @@ class _Verification:
                 continue
             stable, places = self.stable([run.buffers for run in runs], written)
             order_places += places
-            report = self.compared(report, values, runs[0], stable, written)
+            report = self.compare(report, values, runs[0], stable, written)
             report = report._replace(
                 rounds=report.rounds + 1, numbers=report.numbers + total, ordered=report.ordered + len(places)
             )
@@ -144,10 +144,10 @@ class _Verification:
             places += [f"{name}.{self.layouts[name][index].place}" for index in np.flatnonzero(~same)]
         return stable, places
 
-    def compared(
+    def compare(
         self,
         report: ComputeReport,
-        values: Filled,
+        values: RoundValues,
         processor: KernelRun,
         stable: dict[str, Array],
         written: Sequence[str],
@@ -169,16 +169,16 @@ class _Verification:
             for buffer in written:
                 layout = self.layouts[buffer]
                 expected, actual = _numbers(original[buffer], layout), _numbers(result[buffer], layout)
-                errors = np.where(stable[buffer] & _defined(layout, expected), _errors(layout, actual, expected), 0.0)
+                errors = np.where(stable[buffer] & _is_number(layout, expected), _errors(layout, actual, expected), 0.0)
                 differences[name] = differences.get(name, Difference(0.0))
                 worst = int(np.argmax(errors))
                 if errors[worst] > (differences[name].deviation or 0.0):
-                    shown = [_shown(layout[worst], numbers[worst]) for numbers in (actual, expected)]
+                    shown = [_text(layout[worst], numbers[worst]) for numbers in (actual, expected)]
                     at = f"{buffer}.{layout[worst].place}: {shown[0]}, the author's text gives {shown[1]}"
                     differences[name] = Difference(float(errors[worst]), f"{at} (round {report.rounds})")
         return report._replace(differences=differences)
 
-    def original(self, values: Filled) -> dict[str, Array]:
+    def original(self, values: RoundValues) -> dict[str, Array]:
         """The buffers after a run of the author's text."""
         names = {buffer.name: _block(buffer) for buffer in self.buffers}
         textures = {name: Bound(texture, Place(0, 0)) for name, texture in values.textures.items()}
@@ -190,7 +190,7 @@ class _Verification:
         after = self.machines["gl"].apply(by_opengl, dispatch)
         return {name: after[block] for name, block in names.items()}
 
-    def blocks(self, values: Filled) -> dict[str, Block]:
+    def blocks(self, values: RoundValues) -> dict[str, Block]:
         """The uniform blocks of the author's text."""
         places = block_members(self.module)
         blocks = {}
@@ -207,12 +207,12 @@ class _Verification:
             blocks[block] = Block(shell_values.material_block(layout, values.uniforms), Place(0, 0))
         return blocks
 
-    def on_processor(self, values: Filled, order: int) -> KernelRun:
+    def on_processor(self, values: RoundValues, order: int) -> KernelRun:
         """The run of the translation to Metal."""
         run: KernelRun = self.machines["metal"].apply(run_kernel, self.dispatch("metal", values), order)
         return run._replace(buffers=self.source_names("metal", run.buffers))
 
-    def run(self, name: str, values: Filled) -> dict[str, Array] | str:
+    def run(self, name: str, values: RoundValues) -> dict[str, Array] | str:
         """The buffers after a run of a translation, or why it does not run."""
         compiled = self.compiled[name]
         if isinstance(compiled, SssgenError):
@@ -227,14 +227,14 @@ class _Verification:
     def source_names(self, name: str, buffers: Mapping[str, Array]) -> dict[str, Array]:
         """The buffers of a translation by the names of the module's variables."""
         listed = self.compiled[name].reflection["storage_buffers"]
-        return {own.name: buffers[other["block"]] for own, other in zip(self._listed(listed), listed, strict=True)}
+        return {own.name: buffers[other["block"]] for own, other in zip(self._buffers_of(listed), listed, strict=True)}
 
-    def _listed(self, listed: Sequence[Any]) -> list[Variable]:
+    def _buffers_of(self, listed: Sequence[Any]) -> list[Variable]:
         """The module's buffers that a reflection lists; both have the order of their declarations."""
         assert len(listed) == len(self.buffers)
         return self.buffers
 
-    def dispatch(self, name: str, values: Filled) -> Dispatch:
+    def dispatch(self, name: str, values: RoundValues) -> Dispatch:
         """The run of a translation."""
         reflection = self.compiled[name].reflection
         (file,) = [text for file, text in self.compiled[name].files.items() if not file.endswith(".json")]
@@ -254,7 +254,7 @@ class _Verification:
             block = shell_values.material_block(reflection, by_name) if reflection["uniforms"] else b""
             group = 1
         entry = next(iter(reflection["files"][0]["stages"].values()))
-        buffers = zip(self._listed(listed), listed, strict=True)
+        buffers = zip(self._buffers_of(listed), listed, strict=True)
         return Dispatch(
             Text(file), self.groups, self._size(),
             {other["block"]: values.buffers[own.name] for own, other in buffers},
@@ -296,7 +296,7 @@ def _floats(layout: Sequence[Word]) -> Array:
     return np.array([word.kind == "float" for word in layout])
 
 
-def _defined(layout: Sequence[Word], numbers: Array) -> Array:
+def _is_number(layout: Sequence[Word], numbers: Array) -> Array:
     """Where a number is no infinity and no NaN."""
     defined: Array = ~_floats(layout) | np.isfinite(numbers.view(np.float32))
     return defined
@@ -312,6 +312,6 @@ def _errors(layout: Sequence[Word], actual: Array, expected: Array) -> Array:
     return errors
 
 
-def _shown(word: Word, number: Any) -> str:
+def _text(word: Word, number: Any) -> str:
     kinds: dict[str, Any] = {"float": np.float32, "int": np.int32, "uint": np.uint32}
     return str(np.asarray(number, np.uint32).view(kinds[word.kind]))

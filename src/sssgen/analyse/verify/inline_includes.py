@@ -14,15 +14,15 @@ _INCLUDE = re.compile(r"""^[ \t]*\#[ \t]*include[ \t]+(?:"([^"\n]+)"|<([^>\n]+)>
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
 
 
-def expanded(text: str, path: str | os.PathLike[str], roots: Sequence[str | os.PathLike[str]] = ()) -> str:
+def expand(text: str, path: str | os.PathLike[str], roots: Sequence[str | os.PathLike[str]] = ()) -> str:
     """The text of the file at `path` with each included file in place of its first `#include`; later ones are removed.
 
     A file is searched for next to the file that includes it, then in `roots`. Raises SssgenError for a missing file.
     """
-    return _expanded(text, Path(path), [Path(root) for root in roots], set())
+    return _expand(text, Path(path), [Path(root) for root in roots], set())
 
 
-def _expanded(text: str, path: Path, roots: Sequence[Path], seen: set[Path]) -> str:
+def _expand(text: str, path: Path, roots: Sequence[Path], seen: set[Path]) -> str:
     seen.add(path.resolve())
     comments = [comment.span() for comment in _COMMENT.finditer(text)]
 
@@ -35,7 +35,7 @@ def _expanded(text: str, path: Path, roots: Sequence[Path], seen: set[Path]) -> 
             if file.is_file():
                 if file.resolve() in seen:
                     return ""
-                return _expanded(read_code(file, file.as_posix()), file, roots, seen)
+                return _expand(read_code(file, file.as_posix()), file, roots, seen)
         raise failure(
             f"cannot find '{name}' to include",
             "it is searched for next to the file, and in the folders of -I",

@@ -23,10 +23,10 @@ from sssgen.analyse.verify.plain_inputs import (
     Source,
     as_integers,
     draw_inputs,
-    joined,
+    join,
+    round_single,
     select_lanes,
-    single,
-    suggested,
+    suggest_numbers,
 )
 from sssgen.ir.types import kind_of
 from sssgen.run.backends import Array
@@ -57,7 +57,7 @@ INPUTS_PER_OUTCOME = 6
 """How many inputs are chosen for each outcome."""
 
 
-class Sampled(NamedTuple):
+class Samples(NamedTuple):
     """Inputs with what is known of them."""
 
     values: dict[str, Array]
@@ -80,12 +80,12 @@ class Search:
         self, program: Program, key: str, sources: Sequence[Source], textures: Mapping[str, Any], seed: int
     ) -> None:
         self.program, self.key, self.sources, self.textures, self.seed = program, key, sources, textures, seed
-        self.numbers: Numbers = suggested(program.module)
+        self.numbers: Numbers = suggest_numbers(program.module)
         self.rng = np.random.default_rng([seed, 1])
         self.work = 0.0
         self.limit = ROUNDS
 
-    def inputs(self, samples: int) -> Sampled:
+    def inputs(self, samples: int) -> Samples:
         """Many inputs, those of the search included."""
         values = draw_inputs(self.sources, 2 * samples, self.numbers, self.seed)
         first = self.run(values)
@@ -93,21 +93,21 @@ class Search:
         if any(source.bounds_loops for source in self.sources):
             free = [source._replace(bounds_loops=False) for source in self.sources]
             large = self.run(draw_inputs(free, samples, self.numbers, self.seed))
-            values = joined([values, select_lanes(large.values, ~large.run.endless)])
+            values = join([values, select_lanes(large.values, ~large.run.endless)])
             first = self.run(values)
         self.work = 0.0
         parts = [values]
         if first.sound.mean() < FEW_DEFINED:
-            parts.append(self.repaired(first))
-            first = self.run(joined(parts))._replace(random_count=first.random_count)
+            parts.append(self.repair(first))
+            first = self.run(join(parts))._replace(random_count=first.random_count)
             parts = [first.values]
         self.work = 0.0
         if first.outcomes.distances:
-            parts += [self.boundaries(first), self.nearer(first)]
+            parts += [self.boundaries(first), self.approach(first)]
         parts = [part for part in parts if part]
-        return self.run(joined(parts))._replace(random_count=first.random_count) if len(parts) > 1 else first
+        return self.run(join(parts))._replace(random_count=first.random_count) if len(parts) > 1 else first
 
-    def run(self, values: dict[str, Array]) -> Sampled:
+    def run(self, values: dict[str, Array]) -> Samples:
         """Runs inputs; where lanes read their neighbours, the last is repeated to fill the grid."""
         lanes = next(value.shape[-1] for value in values.values())
         shape = grid(lanes)
@@ -118,9 +118,9 @@ class Search:
         run = Run(self.program, lanes, {**self.textures, **values}, outcomes, limit=self.limit)
         run.result(self.key, {**self.textures, **values})
         self.work += run.work * (1.0 + lanes / 2000.0) / 2.0
-        return Sampled(values, run, outcomes, lanes)
+        return Samples(values, run, outcomes, lanes)
 
-    def rounds(self, sampled: Sampled, count: int, lanes: int) -> list[dict[str, Array]]:
+    def rounds(self, sampled: Samples, count: int, lanes: int) -> list[dict[str, Array]]:
         """The inputs of each round: in one round, all lanes have the same uniforms.
 
         With several rounds each has more lanes than requested, of which some may be chosen. Where few inputs are
@@ -135,7 +135,7 @@ class Search:
         for number in range(count):
             first = order[number * len(order) // count]
             if scarce:
-                values = self.gentler(select_lanes(sampled.values, np.full(8 * lanes, first)))
+                values = self.change_gently(select_lanes(sampled.values, np.full(8 * lanes, first)))
             else:
                 values = select_lanes(sampled.values, np.resize(np.roll(order, -number * lanes), 4 * lanes))
             for source in self.sources:
@@ -148,7 +148,7 @@ class Search:
 
     # Boundaries
 
-    def boundaries(self, first: Sampled) -> dict[str, Array]:
+    def boundaries(self, first: Samples) -> dict[str, Array]:
         """Neighbouring inputs on both sides of each comparison."""
         usable = ~(first.run.undefined | first.run.endless)
         starts: list[tuple[Site, int, int]] = []
@@ -159,14 +159,14 @@ class Search:
                 starts += [(site, int(low), int(high)) for low, high in pairs]
         if not starts:
             return {}
-        sites, low, high = self.narrowed(first.values, starts)
-        low, high = self.coded(low), self.coded(high)
+        sites, low, high = self.narrow(first.values, starts)
+        low, high = self.encode(low), self.encode(high)
         near, far = low, high
         for _ in range(STEPS):
             middle = {name: value + (high[name] - value) // 2 for name, value in low.items()}
             if self.work > WORK or all((middle[name] == value).all() for name, value in low.items()):
                 break
-            sampled = self.run(self.decoded(middle))
+            sampled = self.run(self.decode(middle))
             distances = self.at(sampled, sites)
             under = distances < 0.0
             low = {name: np.where(under, middle[name], value) for name, value in low.items()}
@@ -175,9 +175,9 @@ class Search:
         for step in BOUNDARY_DISTANCES:
             parts.append({name: _towards(value, far[name], step) for name, value in high.items()})
             parts.append({name: _towards(value, near[name], step) for name, value in low.items()})
-        return joined([self.decoded(part) for part in parts])
+        return join([self.decode(part) for part in parts])
 
-    def narrowed(
+    def narrow(
         self, values: dict[str, Array], starts: list[tuple[Site, int, int]]
     ) -> tuple[list[Site], dict[str, Array], dict[str, Array]]:
         """For each pair of lanes, one that differs in a single source where that suffices: (sites, low, high)."""
@@ -207,7 +207,7 @@ class Search:
                 break
         return sites, low, high
 
-    def at(self, sampled: Sampled, sites: list[Site]) -> Array:
+    def at(self, sampled: Samples, sites: list[Site]) -> Array:
         """The distance of each lane at its own comparison; positive where it does not reach it."""
         result = np.full(len(sites), np.inf)
         for index, site in enumerate(sites):
@@ -218,7 +218,7 @@ class Search:
 
     # Sides that are not reached
 
-    def nearer(self, first: Sampled) -> dict[str, Array]:
+    def approach(self, first: Samples) -> dict[str, Array]:
         """Inputs that come nearer to the other side of comparisons of which only one was reached."""
         usable = ~(first.run.undefined | first.run.endless)
         sites: list[Site] = []
@@ -236,24 +236,24 @@ class Search:
         for number in range(CLIMBS):
             if self.work > WORK:
                 break
-            changed = self.changed(best, number)
+            changed = self.change(best, number)
             distances = self.at(self.run(changed), sites)
             better = np.abs(distances) < nearest
             nearest = np.where(better, np.abs(distances), nearest)
             best = {name: np.where(better, changed[name], value) for name, value in best.items()}
         return best
 
-    def changed(self, values: dict[str, Array], number: int) -> dict[str, Array]:
+    def change(self, values: dict[str, Array], number: int) -> dict[str, Array]:
         """Inputs with one source changed: another random one, or a step of any size."""
         lanes = next(value.shape[-1] for value in values.values())
         fresh = draw_inputs(self.sources, lanes, self.numbers, self.seed + 1000 + number)
         chosen = self.rng.integers(0, len(self.sources), lanes)
-        coded = self.coded(values)
+        coded = self.encode(values)
         result = {}
         for position, source in enumerate(self.sources):
             value = values[source.name]
             step = self.rng.choice([-1, 1], value.shape) * (1 << self.rng.integers(0, 30, value.shape))
-            stepped = self.decoded({source.name: coded[source.name] + step})[source.name]
+            stepped = self.decode({source.name: coded[source.name] + step})[source.name]
             new = np.where(self.rng.random(value.shape) < 0.5, fresh[source.name], stepped)
             if source.bounds_loops:
                 new = fresh[source.name]
@@ -262,7 +262,7 @@ class Search:
 
     # Inputs with undefined operations
 
-    def repaired(self, first: Sampled) -> dict[str, Array]:
+    def repair(self, first: Samples) -> dict[str, Array]:
         """Inputs made of those with the fewest undefined operations, by changes that do not add one."""
         faults = first.run.faults + np.where(first.run.endless, np.inf, 0.0)
         chosen = np.resize(np.argsort(faults, kind="stable")[:REPAIRED], REPAIRED)
@@ -270,7 +270,7 @@ class Search:
         for number in range(len(fewest) * 4):
             if self.work > REPAIR_WORK or np.median(fewest) == 0.0:
                 break
-            changed = self.gentler(best)
+            changed = self.change_gently(best)
             run = self.run(changed).run
             count = run.faults + np.where(run.endless, np.inf, 0.0)
             better = count <= fewest
@@ -282,7 +282,7 @@ class Search:
                 best, fewest = select_lanes(best, order), fewest[order]
         return best
 
-    def gentler(self, values: dict[str, Array]) -> dict[str, Array]:
+    def change_gently(self, values: dict[str, Array]) -> dict[str, Array]:
         """Inputs with some sources changed: to numbers in [0, 1], [1, 8] or [-1, 0], or to those of another input."""
         lanes = next(value.shape[-1] for value in values.values())
         share = 2.0 ** self.rng.uniform(0.0, 4.0, lanes) / max(len(self.sources), 1)
@@ -292,20 +292,22 @@ class Search:
             new = value[..., self.rng.permutation(lanes)]
             if kind_of(source.type) == "float":
                 low, high = self.rng.choice([(0.0, 1.0), (0.0, 1.0), (1.0, 8.0), (-1.0, 0.0)], lanes).T
-                new = np.where(self.rng.random(lanes) < 0.7, single(self.rng.uniform(low, high, value.shape)), new)
+                new = np.where(
+                    self.rng.random(lanes) < 0.7, round_single(self.rng.uniform(low, high, value.shape)), new
+                )
             result[source.name] = np.where(self.rng.random(lanes) < share, new, value)
         return result
 
     # Numbers as integers in the same order
 
-    def coded(self, values: dict[str, Array]) -> dict[str, Array]:
+    def encode(self, values: dict[str, Array]) -> dict[str, Array]:
         """Neighbouring floats as neighbouring integers; integers as they are."""
-        return {source.name: _coded(values[source.name]) for source in self.sources}
+        return {source.name: _encode(values[source.name]) for source in self.sources}
 
-    def decoded(self, codes: dict[str, Array]) -> dict[str, Array]:
+    def decode(self, codes: dict[str, Array]) -> dict[str, Array]:
         """The numbers of `coded`."""
         kinds = {source.name: kind_of(source.type) for source in self.sources}
-        return {name: _decoded(value, kinds[name]) for name, value in codes.items()}
+        return {name: _decode(value, kinds[name]) for name, value in codes.items()}
 
 
 def _towards(start: Array, end: Array, step: int) -> Array:
@@ -314,14 +316,14 @@ def _towards(start: Array, end: Array, step: int) -> Array:
     return moved
 
 
-def _coded(value: Array) -> Array:
+def _encode(value: Array) -> Array:
     if value.dtype.kind != "f":
         return value.astype(np.int64)
     bits = value.astype(np.float32).view(np.int32).astype(np.int64)
     return np.where(bits < 0, -(bits & 0x7FFFFFFF), bits)
 
 
-def _decoded(code: Array, kind: str) -> Array:
+def _decode(code: Array, kind: str) -> Array:
     if kind == "bool":
         return np.not_equal(code, 0)
     if kind in ("int", "uint"):
@@ -335,7 +337,7 @@ def _decoded(code: Array, kind: str) -> Array:
     return floats
 
 
-def select_inputs(sampled: Sampled, count: int, seed: int) -> Array:
+def select_inputs(sampled: Samples, count: int, seed: int) -> Array:
     """The lanes of `count` inputs: for each outcome some, then others as they were drawn."""
     rng = np.random.default_rng([seed, 2])
     lanes = sampled.outcomes.lanes
@@ -363,7 +365,7 @@ def select_inputs(sampled: Sampled, count: int, seed: int) -> Array:
     return np.resize(np.array(result, np.int64), count) if len(result) < count else np.array(result[:count], np.int64)
 
 
-def select_quads(sampled: Sampled, count: int) -> Array:
+def select_quads(sampled: Samples, count: int) -> Array:
     """The lanes of the quads with the fewest undefined operations, so placed that `count` lanes are these quads."""
     shape = grid(sampled.outcomes.lanes)
     width = shape.width // 2 * 2

@@ -133,7 +133,7 @@ class Run:
         function = self.program.functions[call.function]
         pairs = list(zip(call.args, function.params, strict=True))
         args = [self.value(arg) for arg, param in pairs if param.direction != "out"]
-        places = [(self.pinned(arg), param.name) for arg, param in pairs if param.direction != "in"]
+        places = [(self.pin(arg), param.name) for arg, param in pairs if param.direction != "in"]
         result, left = self.enter(function, args)
         for place, name in places:
             self.store(place, left[name])
@@ -154,7 +154,7 @@ class Run:
         if isinstance(stmt, ir.Declare):
             self.frame[stmt.name] = self.unwritten(stmt.type) if stmt.value is None else self.value(stmt.value)
         elif isinstance(stmt, ir.Assign):
-            place = self.pinned(stmt.target)
+            place = self.pin(stmt.target)
             value = self.value(stmt.value)
             if stmt.op:
                 value = self.operate(stmt, stmt.op, place.type, stmt.value.type, self.value(place), value)
@@ -176,7 +176,7 @@ class Run:
             return self.loop(stmt, stmt.condition, stmt.body, None, active)
         elif isinstance(stmt, ir.Return):
             if stmt.value is not None:
-                self.returned = self.chosen(self.active, self.value(stmt.value), self.returned)
+                self.returned = self.choose(self.active, self.value(stmt.value), self.returned)
             return np.zeros_like(active)
         elif isinstance(stmt, ir.Discard):
             self.stopped = self.stopped | active
@@ -224,7 +224,7 @@ class Run:
         """Assigns to a variable or a part of one, in the active lanes."""
         if isinstance(target, ir.Local | ir.Global):
             variables = self.frame if isinstance(target, ir.Local) else self.values
-            variables[target.name] = self.chosen(self.active, value, variables[target.name])
+            variables[target.name] = self.choose(self.active, value, variables[target.name])
             return
         assert isinstance(target, ir.Swizzle | ir.Index | ir.Member)
         whole = self.value(target.value)
@@ -236,15 +236,15 @@ class Run:
             new = whole.replace(**{target.field: value})
         self.store(target.value, new)
 
-    def pinned(self, place: ir.Expr) -> ir.Expr:
+    def pin(self, place: ir.Expr) -> ir.Expr:
         """A place to write to with its indices as they are now."""
         if isinstance(place, ir.Index):
-            return place._replace(value=self.pinned(place.value), index=_Known(self.index(place)))  # type: ignore[arg-type]  # our own
+            return place._replace(value=self.pin(place.value), index=_FixedIndex(self.index(place)))  # type: ignore[arg-type]  # our own
         if isinstance(place, ir.Swizzle | ir.Member):
-            return place._replace(value=self.pinned(place.value))
+            return place._replace(value=self.pin(place.value))
         return place
 
-    def chosen(self, mask: Array, yes: Value, no: Value) -> Value:
+    def choose(self, mask: Array, yes: Value, no: Value) -> Value:
         return yes if mask.all() else rt.select(mask, yes, no)
 
     # Expressions
@@ -299,7 +299,7 @@ class Run:
 
     def operate(self, node: object, op: str, left_type: Type, right_type: Type, left: Value, right: Value) -> Value:
         if op in _COMPARISONS and self.outcomes is not None and isinstance(left, np.ndarray):
-            self.outcomes.compared(node, 0, left, right, self.active)
+            self.outcomes.comparison(node, 0, left, right, self.active)
         if op in ("==", "!="):
             same = rt.equals(left, right)
             return same if op == "==" else ~same
@@ -340,7 +340,7 @@ class Run:
         if self.outcomes is not None and name in CASES:
             for comparison, (left, right) in enumerate(CASES[name]):
                 other = right if isinstance(right, float) else args[right]
-                self.outcomes.compared(expr, comparison, args[left], other, self.active)
+                self.outcomes.comparison(expr, comparison, args[left], other, self.active)
         if row.defined is not None and (name != "abs" or kind_of(expr.type) == "int"):
             self.require(np.asarray(row.defined(rt, *args)))
         if row.kind == "fetch" and len(args) > 1 and np.asarray(args[1]).dtype.kind == "f":
@@ -375,7 +375,7 @@ class Run:
         if isinstance(type_, ArrayType):
             return rt.array(*args)
         kind = kind_of(type_)
-        args = [self.converted(kind, kind_of(arg.type), value) for arg, value in zip(expr.args, args, strict=True)]
+        args = [self.convert(kind, kind_of(arg.type), value) for arg, value in zip(expr.args, args, strict=True)]
         if isinstance(type_, Matrix):
             if len(args) > 1:
                 return rt.mat(type_.columns, *args)
@@ -391,7 +391,7 @@ class Run:
             return args[0].reshape(-1, args[0].shape[-1])[: size if size > 1 else 1][slice(None) if size > 1 else 0]
         return args[0][0] if size == 1 else args[0][:size]
 
-    def converted(self, kind: str, old: str, value: Value) -> Value:
+    def convert(self, kind: str, old: str, value: Value) -> Value:
         if kind == old:
             return value
         if old == "float" and kind in ("int", "uint"):
@@ -413,7 +413,7 @@ class Run:
         place = self.value(expr.index)
         elements = element_type(expr.value.type)
         assert elements is not None
-        if not isinstance(expr.index, ir.Literal | _Known):
+        if not isinstance(expr.index, ir.Literal | _FixedIndex):
             self.require((place >= 0) & (place < elements[1]))
         return place.astype(np.int64)
 
@@ -440,7 +440,7 @@ class Run:
         return value
 
 
-class _Known:
+class _FixedIndex:
     """An index that is computed already."""
 
     __slots__ = ("value",)
@@ -453,21 +453,21 @@ _EVALUATE: dict[type, Callable[[Any, Any], Value]] = {
     ir.Literal: Run.literal, ir.Local: Run.local, ir.Global: Run.variable, ir.Unary: Run.unary,
     ir.Binary: Run.binary, ir.Select: Run.select, ir.Call: Run.call, ir.Intrinsic: Run.intrinsic,
     ir.Construct: Run.construct, ir.Swizzle: Run.swizzle, ir.Index: Run.element, ir.Member: Run.member,
-    _Known: lambda _, known: known.value,
+    _FixedIndex: lambda _, known: known.value,
 }  # fmt: skip
 
 
 def zero(type_: Type) -> Value:
     """The value 0 of a type, in one lane."""
-    return filled(type_, lambda shape, kind: np.zeros((*shape, 1), DTYPES[kind]))
+    return build_value(type_, lambda shape, kind: np.zeros((*shape, 1), DTYPES[kind]))
 
 
-def filled(type_: Type, numbers: Callable[[tuple[int, ...], str], Array]) -> Value:
+def build_value(type_: Type, numbers: Callable[[tuple[int, ...], str], Array]) -> Value:
     """A value of a type whose parts are the `numbers` of a shape, without lanes, and a kind."""
     if isinstance(type_, Struct):
-        return rt.Record(**{field.name: filled(field.type, numbers) for field in type_.fields})
+        return rt.Record(**{field.name: build_value(field.type, numbers) for field in type_.fields})
     if isinstance(type_, ArrayType):
-        return rt.array(*[filled(type_.element, numbers) for _ in range(type_.length)])
+        return rt.array(*[build_value(type_.element, numbers) for _ in range(type_.length)])
     return numbers(shape_of(type_), kind_of(type_))
 
 

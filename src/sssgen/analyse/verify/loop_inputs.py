@@ -72,10 +72,10 @@ def _bounds(function: Function, stmt: Stmt, constants: set[str]) -> Iterator[Nam
     if not isinstance(stmt, For | While):
         return
     counter = count(stmt) if isinstance(stmt, For) else None
-    if counter is not None and _fixed(counter.start, constants) and _fixed(counter.stop, constants):
+    if counter is not None and _is_fixed(counter.start, constants) and _is_fixed(counter.stop, constants):
         return
     condition = stmt.condition
-    if condition is not None and not _fixed(condition, constants):
+    if condition is not None and not _is_fixed(condition, constants):
         yield from _read(function, condition)
     else:
         yield from _around_breaks(function, stmt.body)
@@ -89,7 +89,7 @@ def _around_breaks(function: Function, block: Block) -> Iterator[Name]:
             yield from _read(function, stmt.condition)
 
 
-def _fixed(expr: Expr, constants: Iterable[str]) -> bool:
+def _is_fixed(expr: Expr, constants: Iterable[str]) -> bool:
     return all(
         isinstance(part, Literal) or (isinstance(part, Global) and part.name in constants)
         for part in subexpressions(expr)

@@ -74,7 +74,7 @@ class Numbers(NamedTuple):
     """int64, of which the low 32 bits are used."""
 
 
-def suggested(module: Module) -> Numbers:
+def suggest_numbers(module: Module) -> Numbers:
     """The numbers that the literals of a module suggest: themselves, their neighbours, and numbers between them."""
     literals = [part for function in module.functions for part in all_expressions(function.body or ())]
     literals += [part for constant in module.constants for part in subexpressions(constant.value)]
@@ -138,11 +138,11 @@ def _draw_source(
     if kind == "bool":
         return rng.random(shape) < 0.5
     if kind == "float" and (ends := RANGES.get(source.author_name)):
-        return single(np.where(rng.random(shape) < 0.9, rng.uniform(*ends, shape), _extreme(source, shape, rng)))
+        return round_single(np.where(rng.random(shape) < 0.9, rng.uniform(*ends, shape), _extreme(source, shape, rng)))
     if source.bounds_loops:
         small_numbers = rng.integers(-1, LOOPS, shape)
         if kind == "float":
-            return single(np.where(rng.random(shape) < 0.5, small_numbers, rng.uniform(-2.0, LOOPS, shape)))
+            return round_single(np.where(rng.random(shape) < 0.5, small_numbers, rng.uniform(-2.0, LOOPS, shape)))
         return small_numbers.clip(0).astype(np.uint32) if kind == "uint" else small_numbers.astype(np.int32)
     if kind == "float":
         ordinary, scaled, wild = _floats(shape, rng, exponent)
@@ -157,7 +157,7 @@ def _draw_source(
     )
     special = np.where(chosen & (rng.random(shape) < 0.7), special, ordinary)
     value = np.choose(pattern, [ordinary, special, constant, scaled, wild])
-    return single(value) if kind == "float" else as_integers(value, kind)
+    return round_single(value) if kind == "float" else as_integers(value, kind)
 
 
 def _floats(shape: tuple[int, ...], rng: np.random.Generator, exponent: Array) -> tuple[Array, Array, Array]:
@@ -186,7 +186,7 @@ def _extreme(source: Source, shape: tuple[int, ...], rng: np.random.Generator) -
     return rng.choice(EXTREMES.get(source.author_name, RANGES[source.author_name]), shape)
 
 
-def single(value: Array) -> Array:
+def round_single(value: Array) -> Array:
     """Numbers rounded to float32, in float64; subnormal ones, which drivers may flush, become 0."""
     with np.errstate(all="ignore"):
         rounded = np.clip(value, -LARGEST, LARGEST).astype(np.float32).astype(np.float64)
@@ -199,7 +199,7 @@ def as_integers(value: Array, kind: str) -> Array:
     return low if kind == "uint" else low.view(np.int32)
 
 
-def joined(parts: Iterable[dict[str, Array]]) -> dict[str, Array]:
+def join(parts: Iterable[dict[str, Array]]) -> dict[str, Array]:
     """Lanes behind one another."""
     parts = list(parts)
     return {name: np.concatenate([part[name] for part in parts], axis=-1) for name in parts[0]}

@@ -52,7 +52,7 @@ class Probe(NamedTuple):
     text: str
 
 
-class Probed(NamedTuple):
+class FunctionProbes(NamedTuple):
     """The probes of one function, or why it has none."""
 
     function: Function
@@ -60,7 +60,7 @@ class Probed(NamedTuple):
     reason: str = ""
 
 
-def probed(module: Module, functions: list[Function], text: str) -> list[Probed]:
+def probe_functions(module: Module, functions: list[Function], text: str) -> list[FunctionProbes]:
     """The probes of each function; every name that they declare begins with letters that are nowhere in the text."""
     prefix, count = "sssgen_", 2
     while prefix in text:
@@ -72,7 +72,7 @@ def probed(module: Module, functions: list[Function], text: str) -> list[Probed]
         effect = effect_of.get(function.key, NONE)
         read = {name: variables[name] for name in sorted(effect.reads)}
         written = {name: variables[name] for name in sorted(effect.writes)}
-        probes.append(_probed(function, prefix, f"{prefix}probe_{number}", read, written))
+        probes.append(_probe_function(function, prefix, f"{prefix}probe_{number}", read, written))
     return probes
 
 
@@ -88,7 +88,7 @@ def leaves(type_: Type, path: str = "") -> Iterator[tuple[str, Type]]:
         yield path, type_
 
 
-def declared(type_: Type, name: str) -> str:
+def declaration(type_: Type, name: str) -> str:
     """A declaration in GLSL, with an array's lengths after the name."""
     lengths = ""
     while isinstance(type_, Array):
@@ -97,9 +97,9 @@ def declared(type_: Type, name: str) -> str:
     return f"{spell(type_)} {name}{lengths}"
 
 
-def _probed(
+def _probe_function(
     function: Function, prefix: str, name: str, read: Mapping[str, Type], written: Mapping[str, Type]
-) -> Probed:
+) -> FunctionProbes:
     local = {param.name: f"{prefix}of_{param.name}" for param in function.params}
     result = f"{prefix}result"
     arguments = [(local[param.name], param.type) for param in function.params if param.direction != "out"]
@@ -109,7 +109,7 @@ def _probed(
     outputs += [(local[param.name], param.name, param.type) for param in outs]
     outputs += [(variable, variable, type_) for variable, type_ in written.items()]
     if reason := _unfit([type_ for _, type_ in inputs], [type_ for *_, type_ in outputs]):
-        return Probed(function, reason=reason)
+        return FunctionProbes(function, reason=reason)
     parts = [leaf for path, type_ in inputs for leaf in leaves(type_, path)]
     named = tuple(
         [
@@ -129,17 +129,17 @@ def _probed(
             title = f"{name}_{len(probes)}"
             lines = [f"{spell(type_)} {title}({head}) {{", *body, f"    return {value}{suffix};", "}"]
             probes.append(Probe(title, f"{shown}{suffix}", type_, named, "\n".join(lines) + "\n"))
-    return Probed(function, tuple(probes))
+    return FunctionProbes(function, tuple(probes))
 
 
 def _body(function: Function, local: Mapping[str, str], named: tuple[Leaf, ...], result: str) -> list[str]:
     """The statements before `return`: they put the function's result into the variable `result`."""
     textures = {leaf.path: leaf.name for leaf in named if isinstance(leaf.type, Sampler)}
     values = [param for param in function.params if not isinstance(param.type, Sampler)]
-    lines = [f"    {declared(param.type, local[param.name])};" for param in values]
+    lines = [f"    {declaration(param.type, local[param.name])};" for param in values]
     lines += [f"    {leaf.path} = {leaf.name};" for leaf in named if leaf.path and leaf.path not in textures]
     args = ", ".join([textures.get(path, path) for path in local.values()])
-    target = "" if function.result == VOID else f"{declared(function.result, result)} = "
+    target = "" if function.result == VOID else f"{declaration(function.result, result)} = "
     return [*lines, f"    {target}{function.name}({args});"]
 
 

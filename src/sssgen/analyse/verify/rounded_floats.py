@@ -31,7 +31,7 @@ _generator: ContextVar[np.random.Generator] = ContextVar("errors")
 
 
 @contextmanager
-def seeded(seed: int) -> Iterator[None]:
+def seed_errors(seed: int) -> Iterator[None]:
     """The errors that follow depend on this seed."""
     token = _generator.set(np.random.default_rng(seed))
     try:
@@ -40,15 +40,15 @@ def seeded(seed: int) -> Iterator[None]:
         _generator.reset(token)
 
 
-class Rounded(np.ndarray):
+class RoundedArray(np.ndarray):
     """The numbers; integers and bools that NumPy derives from them are plain again."""
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, out: Any = None, **options: Any) -> Any:
-        plain = [value.view(np.ndarray) if isinstance(value, Rounded) else value for value in inputs]
+        plain = [value.view(np.ndarray) if isinstance(value, RoundedArray) else value for value in inputs]
         if method == "reduce" and ufunc is np.add and plain[0].dtype.kind == "f":
             axis = options.get("axis", 0)
             parts = [np.asarray(part) for part in np.moveaxis(plain[0], axis if isinstance(axis, int) else axis[0], 0)]
-            total: Any = rounded(parts[0])
+            total: Any = round_floats(parts[0])
             for part in parts[1:]:
                 total = total + part
             return total
@@ -56,7 +56,7 @@ class Rounded(np.ndarray):
         if not isinstance(result, np.ndarray) or result.dtype != np.float64:
             return result
         if ufunc in _EXACT:
-            return result.view(Rounded)
+            return result.view(RoundedArray)
         if ufunc is np.divide:
             halves = np.abs(np.frexp(np.asarray(plain[1], np.float64))[0]) == 0.5
             return _with_error(result, DIVISION, ~np.broadcast_to(halves, result.shape))
@@ -65,16 +65,16 @@ class Rounded(np.ndarray):
     def __array_function__(self, function: Any, types: Any, args: Any, options: Any) -> Any:
         result = super().__array_function__(function, types, args, options)
         if isinstance(result, list | tuple):
-            return type(result)(map(_again, result))
-        return _again(result)
+            return type(result)(map(_wrap, result))
+        return _wrap(result)
 
 
-def rounded(value: Array) -> Array:
+def round_floats(value: Array) -> Array:
     """Numbers rounded to float32; other arrays as they are."""
-    if isinstance(value, Rounded) or not isinstance(value, np.ndarray) or value.dtype.kind != "f":
+    if isinstance(value, RoundedArray) or not isinstance(value, np.ndarray) or value.dtype.kind != "f":
         return value
     with np.errstate(all="ignore"):
-        return value.astype(np.float32).astype(np.float64).view(Rounded)
+        return value.astype(np.float32).astype(np.float64).view(RoundedArray)
 
 
 def with_error(value: Array, ulp: float, absolute: Array | float) -> Array:
@@ -82,12 +82,12 @@ def with_error(value: Array, ulp: float, absolute: Array | float) -> Array:
     with np.errstate(all="ignore"):
         plain = np.asarray(value)
         size = np.maximum(ulp * np.spacing(np.abs(plain).astype(np.float32)), absolute)
-        return rounded(plain + drawn(plain.shape) * size)
+        return round_floats(plain + _draw(plain.shape) * size)
 
 
-def _again(value: Any) -> Any:
-    if isinstance(value, np.ndarray) and not isinstance(value, Rounded) and value.dtype == np.float64:
-        return value.view(Rounded)
+def _wrap(value: Any) -> Any:
+    if isinstance(value, np.ndarray) and not isinstance(value, RoundedArray) and value.dtype == np.float64:
+        return value.view(RoundedArray)
     return value
 
 
@@ -99,15 +99,15 @@ def _with_error(exact: Array, ulp: float, always: Array | None = None) -> Array:
         if always is not None:
             inexact |= always & (result != 0.0)
         if inexact.any():
-            moved = exact + ulp * drawn(exact.shape) * np.spacing(np.abs(single))
+            moved = exact + ulp * _draw(exact.shape) * np.spacing(np.abs(single))
             result = np.where(inexact, moved.astype(np.float32).astype(np.float64), result)
         small = np.abs(result) < SMALLEST
         if small.any():
-            draw = drawn(exact.shape)
+            draw = _draw(exact.shape)
             flushed = np.where((draw < -0.5) | (result == 0.0), np.copysign(0.0, draw - 0.25), result)
             result = np.where(small, flushed, result)
-    return result.view(Rounded)
+    return result.view(RoundedArray)
 
 
-def drawn(shape: tuple[int, ...]) -> Array:
+def _draw(shape: tuple[int, ...]) -> Array:
     return _generator.get().uniform(-1.0, 1.0, shape)

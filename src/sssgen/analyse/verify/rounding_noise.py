@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.analyse.verify.lane_interpreter import DTYPES, Program, Run, Value, filled
+from sssgen.analyse.verify.lane_interpreter import DTYPES, Program, Run, Value, build_value
 from sssgen.analyse.verify.plain_inputs import select_lanes
-from sssgen.analyse.verify.rounded_floats import drawn, rounded, seeded, with_error
+from sssgen.analyse.verify.rounded_floats import _draw, round_floats, seed_errors, with_error
 from sssgen.ir.intrinsics.table import LARGEST
 from sssgen.ir.types import Type
 from sssgen.run.backends import Array
@@ -41,7 +41,7 @@ class RoundedRun(Run):
     granted = False
 
     def number(self, value: Value) -> Value:
-        return rounded(value)
+        return round_floats(value)
 
     def finite(self, value: Value) -> Value:
         self.require(np.abs(np.asarray(value)) <= NEARLY_LARGEST)  # in another order, its terms may overflow
@@ -49,11 +49,11 @@ class RoundedRun(Run):
 
     def unwritten(self, type_: Type) -> Value:
         def numbers(shape: tuple[int, ...], kind: str) -> Array:
-            values = drawn((*shape, self.lanes))
-            magnitudes = np.exp2(24.0 * drawn(values.shape))
-            return rounded(magnitudes * values) if kind == "float" else (2.0 * (values > 0.0)).astype(DTYPES[kind])
+            values = _draw((*shape, self.lanes))
+            magnitudes = np.exp2(24.0 * _draw(values.shape))
+            return round_floats(magnitudes * values) if kind == "float" else (2.0 * (values > 0.0)).astype(DTYPES[kind])
 
-        return filled(type_, numbers)
+        return build_value(type_, numbers)
 
     def inexact(self, row: Any, args: list[Value], result: Value) -> Value:
         if row.ulp == 0.0 or row.kind == "derivative" or any(np.asarray(arg).dtype == bool for arg in args):
@@ -88,14 +88,14 @@ class GrantedRun(RoundedRun):
         if row.kind != "derivative" or np.shape(result)[-1:] != (self.lanes,):
             return super().inexact(row, args, result)
         if row.axis:
-            return rounded(self.of_a_quad(np.asarray(result), row.axis))
+            return round_floats(self.of_a_quad(np.asarray(result), row.axis))
         along = zip((rt.dFdx, rt.dFdy), "xy", strict=True)
         changes = [np.abs(self.of_a_quad(np.asarray(change(args[0])), axis)) for change, axis in along]
-        return rounded(changes[0] + changes[1])
+        return round_floats(changes[0] + changes[1])
 
     def of_a_quad(self, derivatives: Array, axis: str) -> Array:
         """Derivatives as another device may have them: of one row (column) of a quad of pixels in both."""
-        draw = float(drawn(()))
+        draw = float(_draw(()))
         if draw < -0.5:
             return derivatives
         shape = grid(self.lanes)
@@ -107,7 +107,7 @@ class GrantedRun(RoundedRun):
         return taken
 
 
-def explained(error: Array, limit: Array) -> Array:
+def is_explained(error: Array, limit: Array) -> Array:
     """Whether rounding, which moves a result by `limit`, explains a deviation; or whether there is none."""
     result: Array = (error <= GOAL) | (error <= MARGIN * limit) | (np.isinf(error) & (limit > UNDETERMINED))
     return result
@@ -134,7 +134,7 @@ def noise(
             largest = _apart(_first(other.result(key, {**textures, **chosen})), exact)
         expected = np.concatenate([exact] * repeats)
         for draw in range(-(-draws // repeats)):
-            with seeded(1000 * seed + draw):
+            with seed_errors(1000 * seed + draw):
                 actual, undefined = result(GrantedRun if granted else RoundedRun, program, key, repeated, textures)
             moved = np.where(undefined, np.inf, _apart(actual, expected)).reshape(repeats, count).max(axis=0)
             largest = np.maximum(largest, moved)

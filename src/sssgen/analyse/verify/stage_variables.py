@@ -88,7 +88,7 @@ class Plain(NamedTuple):
         renames = [f"#define {old} {new}" for old, (new, _) in OLD_NAMES.items() if _uses(self.text, old)]
         # what an extension of ES has, drivers of other versions have without it
         extensions = [line.replace("require", "enable") for line in _EXTENSION.findall(self.text)]
-        text = _replaced(_EXTENSION.sub("", self.text), _without_default if version.endswith("es") else _without_hints)
+        text = _replace(_EXTENSION.sub("", self.text), _without_default if version.endswith("es") else _without_hints)
         precision = _ES_PRECISION if version.endswith("es") else []
         definitions = [OUT_BUILTINS[name].strip() for name in _SHADOW_READS if _uses(self.text, name)]
         return "\n".join([f"#version {version}", *extensions, *precision, *definitions, *renames, text])
@@ -133,7 +133,7 @@ def _uses(text: str, name: str) -> bool:
 
 def without_interface(text: str) -> str:
     """A text without the qualifiers that connect declarations at file scope with a stage."""
-    return _replaced(text, _replacement)
+    return _replace(text, _replacement)
 
 
 def without_functions(text: str, names: Collection[str]) -> str:
@@ -160,7 +160,7 @@ def without_functions(text: str, names: Collection[str]) -> str:
     return "".join([*parts, text[done:]])
 
 
-def _replaced(text: str, replacement: Callable[[str, re.Match[str]], tuple[str, int] | None]) -> str:
+def _replace(text: str, replacement: Callable[[str, re.Match[str]], tuple[str, int] | None]) -> str:
     """A text with what `replacement` gives for the names at file scope: a text and the end of what it replaces."""
     parts: list[str] = []
     depth = done = 0

@@ -31,8 +31,8 @@ from sssgen.analyse.verify.input_search import Search, select_inputs, select_qua
 from sssgen.analyse.verify.lane_interpreter import Program, Run
 from sssgen.analyse.verify.loop_inputs import loop_inputs
 from sssgen.analyse.verify.plain_inputs import Source, picture, select_lanes
-from sssgen.analyse.verify.plain_probes import TEXTURES, Leaf, Probe, Probed, probed
-from sssgen.analyse.verify.rounding_noise import explained, noise
+from sssgen.analyse.verify.plain_probes import TEXTURES, FunctionProbes, Leaf, Probe, probe_functions
+from sssgen.analyse.verify.rounding_noise import is_explained, noise
 from sssgen.analyse.verify.stage_variables import MAIN, Plain, plain, without_functions
 from sssgen.analyse.verify.verification_report import (
     BACKENDS,
@@ -54,7 +54,7 @@ from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.pipeline.compiler import transpile
 from sssgen.run.backends import Array, Bound, Call, CompilerMissing, Place, Stage, Text
 from sssgen.run.backends import call_program as calls
-from sssgen.run.backends.isolated import Isolated, isolated
+from sssgen.run.backends.backend_process import BackendProcess
 from sssgen.run.evaluate.deviation import GOAL, errors
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.progress import Progress, silent
@@ -116,8 +116,8 @@ def verify(
     module = read(written.text, shown)
     functions = [part for part in module.functions if part.body is not None and part.span.file == shown]
     if options.function:
-        functions = _called(options.function, functions, shown)
-    cases = probed(module, functions, written.text)
+        functions = _functions_named(options.function, functions, shown)
+    cases = probe_functions(module, functions, written.text)
     probes = "\n".join(probe.text for case in cases for probe in case.probes)
     with_probes = read(written.text + probes, shown)
     with nullcontext(machines) if machines else start_machines(backends_of(options.target)) as (running, missing):
@@ -137,7 +137,7 @@ def backends_of(target: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(["gl", *TRANSLATIONS[target].values()]))
 
 
-def _called(name: str, functions: list[Function], shown: str) -> list[Function]:
+def _functions_named(name: str, functions: list[Function], shown: str) -> list[Function]:
     """The functions of this name, which may be overloads. Raises SssgenError where there is none."""
     names = {part.name.replace(MAIN, "main") for part in functions}
     if name not in names:
@@ -157,19 +157,19 @@ def _scene(text: str) -> str:
 class Machines(NamedTuple):
     """The back ends, each in its own process; and why the others are missing, by name."""
 
-    running: dict[str, Isolated]
+    running: dict[str, BackendProcess]
     missing: dict[str, str]
 
 
 @contextmanager
 def start_machines(names: Sequence[str] = tuple(BACKENDS.values())) -> Iterator[Machines]:
     """The back ends of `verify`, or some of them; they end with the block. Raises SssgenError without OpenGL."""
-    machines: dict[str, Isolated] = {}
+    machines: dict[str, BackendProcess] = {}
     missing: dict[str, str] = {}
 
     def start(name: str) -> None:
         try:
-            machines[name] = isolated(name, SECONDS)
+            machines[name] = BackendProcess(name, SECONDS)
         except CompilerMissing as reason:
             missing[name] = str(reason)
 
@@ -192,7 +192,7 @@ class Inputs(NamedTuple):
     textures: dict[str, Texture]
 
 
-class _Emitted(NamedTuple):
+class _Translation(NamedTuple):
     """A translated text, and the probes in it."""
 
     probes: tuple[Probe, ...]
@@ -205,10 +205,15 @@ class Case:
     """One function on all back ends."""
 
     def __init__(
-        self, case: Probed, written: Plain, module: Module, machines: Mapping[str, Isolated], options: Options
+        self,
+        case: FunctionProbes,
+        written: Plain,
+        module: Module,
+        machines: Mapping[str, BackendProcess],
+        options: Options,
     ) -> None:
         self.case, self.written, self.machines, self.seed = case, written, machines, options.seed
-        self.texts: dict[str, list[_Emitted]] = {}
+        self.texts: dict[str, list[_Translation]] = {}
         names = {probe.name for probe in case.probes}
         self.keys = {function.name: function.key for function in module.functions if function.name in names}
         self.written_names = {function.name for function in module.functions if function.name not in names}
@@ -231,7 +236,7 @@ class Case:
             # without what has no effect: an undefined value there does no harm
             self.program = Program(prune(self.module, list(self.keys.values())))
             self.key = self.keys[case.probes[0].name]
-            self.textures = self.drawn_textures()
+            self.textures = self.pictures()
             self.inputs = self.search(options.samples)
 
     def uniforms(self) -> dict[str, Param]:
@@ -239,7 +244,7 @@ class Case:
         own = {leaf.name for probe in self.case.probes for leaf in probe.leaves}
         return {param.name: param for params in self.params.values() for param in params if param.name not in own}
 
-    def drawn_textures(self) -> dict[str, Texture]:
+    def pictures(self) -> dict[str, Texture]:
         """A picture for each texture."""
         leaves = [leaf for probe in self.case.probes[:1] for leaf in probe.leaves]
         leaves += [Leaf(name, name, param.type, name) for name, param in self.uniforms().items()]
@@ -336,7 +341,7 @@ class Case:
                 break
             lanes = np.flatnonzero(unexplained)
             limits = self.noise(lanes, draws, name not in SAME_TEXT)
-            wrong = [~explained(error[lanes], limits[output]) for output, error in each.items()]
+            wrong = [~is_explained(error[lanes], limits[output]) for output, error in each.items()]
             unexplained[lanes] = np.any(wrong, axis=0)
         excluded = beyond & ~unexplained
         left = defined & ~excluded
@@ -346,19 +351,19 @@ class Case:
         for output, error in each.items():
             lane = int(np.argmax(np.where(left, error, 0.0)))
             if left[lane] and error[lane] > (comparison.deviation or 0.0):
-                shown = f"{_shown(actual[output][lane])}, the author's text gives {_shown(expected[output][lane])}"
-                at = f"{output}[{lane}]: {shown}{self.shown_inputs(lane)}"
+                shown = f"{_text(actual[output][lane])}, the author's text gives {_text(expected[output][lane])}"
+                at = f"{output}[{lane}]: {shown}{self.inputs_text(lane)}"
                 comparison = comparison._replace(deviation=float(error[lane]), at=at)
         return comparison
 
-    def shown_inputs(self, lane: int) -> str:
+    def inputs_text(self, lane: int) -> str:
         """The inputs of a lane."""
         for inputs in self.inputs:
             count = next(iter(inputs.values.values())).shape[-1]
             if lane < count:
                 names = {leaf.name: leaf.author_name for leaf in self.case.probes[0].leaves}
                 shown = [
-                    f"{names.get(name, name)} = {_shown(value[..., lane])}"
+                    f"{names.get(name, name)} = {_text(value[..., lane])}"
                     for name, value in inputs.values.items()
                     if names.get(name, name)
                 ]
@@ -385,7 +390,7 @@ class Case:
     def result(self, name: str) -> dict[str, Array] | str:
         """The outputs of one translation, or why it does not run."""
         try:
-            return self.all_rounds(partial(self.transpiled, EVERY[name]))
+            return self.all_rounds(partial(self.run_translation, EVERY[name]))
         except SssgenError as error:
             return error.diagnostics[0].message
 
@@ -443,11 +448,11 @@ class Case:
         drawing = drawing._replace(vertex=vertex, textures={**drawing.textures, **bound}, values=values)
         return calls.results(probe_calls, layout, self.machines["gl"].draw(drawing))
 
-    def transpiled(self, backend: str, inputs: Inputs) -> list[Array]:
+    def run_translation(self, backend: str, inputs: Inputs) -> list[Array]:
         """The outputs of the translation for a back end."""
         machine = self.machines[backend]
         outputs: list[Array] = []
-        for probes, text, names in self.emitted(machine.target.name):
+        for probes, text, names in self.translations(machine.target.name):
             probe_calls = [
                 self.call(probe, names.get(probe.name, probe.name), [p.name for p in self.params[probe.name]], inputs)
                 for probe in probes
@@ -455,7 +460,7 @@ class Case:
             outputs += machine.run(text, probe_calls, inputs.textures)
         return outputs
 
-    def emitted(self, target: str) -> list[_Emitted]:
+    def translations(self, target: str) -> list[_Translation]:
         """The texts for a target, cached."""
         if target not in self.texts:
             probes = self.case.probes
@@ -468,7 +473,7 @@ class Case:
         """Whether module variables become parameters of the target's functions."""
         return bool(self.module.variables) and not registry.load(target).capabilities.module_variables
 
-    def translation(self, target: str, probes: Sequence[Probe]) -> _Emitted:
+    def translation(self, target: str, probes: Sequence[Probe]) -> _Translation:
         """One text with these probes; only one, where module variables become its parameters."""
         keys = [self.keys[probe.name] for probe in probes]
         module = keep_reachable(self.module, keys)
@@ -476,7 +481,7 @@ class Case:
             module = variables_to_parameters(module, keys[0])
         compiled = transpile(module, target, "verified", "none", keys, keep=True)
         text = "\n".join([text for name, text in compiled.files.items() if not name.endswith(".json")])
-        return _Emitted(tuple(probes), Text(text), compiled.reflection["renames"])
+        return _Translation(tuple(probes), Text(text), compiled.reflection["renames"])
 
     def call(self, probe: Probe, name: str, params: Sequence[str], inputs: Inputs) -> Call:
         """The call of a probe, called `name` in the text."""
@@ -502,7 +507,7 @@ def _elements(module: Module) -> dict[str, str]:
     }
 
 
-def _shown(value: Array) -> str:
+def _text(value: Array) -> str:
     return str(np.asarray(value).tolist())
 
 

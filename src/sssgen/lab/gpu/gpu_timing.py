@@ -23,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.run import backends
-from sssgen.run.backends.backend_interface import Text, refused
+from sssgen.run.backends.backend_interface import Text, refusal
 from sssgen.run.backends.opengl import OpenGL, is_loose
 from sssgen.run.compilers.gl_driver import messages
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -183,7 +183,7 @@ class _TimedFrame:
     """The frame that all programs draw into, and the timer: a context that releases all GPU objects at its end."""
 
     def __init__(self, size: tuple[int, int]) -> None:
-        self.gpu = cast(OpenGL, backends.needed("gl"))
+        self.gpu = cast(OpenGL, backends.require("gl"))
         self.context: Any = self.gpu.context
         self.objects: list[Any] = []
         self.uploaded: dict[int, Any] = {}
@@ -217,7 +217,7 @@ class _TimedFrame:
         try:
             linked = self._keep(self.context.program(vertex_shader=_SCREEN, fragment_shader=text))
         except Exception as error:
-            raise refused(f"gl: {program.name}", Text(text), messages(str(error))) from None
+            raise refusal(f"gl: {program.name}", Text(text), messages(str(error))) from None
         textures: list[Any] = []
         for name in (name for name in linked if is_loose(linked[name])):
             if name in program.textures:

@@ -13,7 +13,7 @@ from sssgen.lab.fluence import fluence_field as field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence import octahedron
 from sssgen.run.backends import Array
-from sssgen.scene.bounds import placed_corners
+from sssgen.scene.bounds import world_corners
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.scene import Light
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -91,7 +91,7 @@ def _latents(scene: MeasuredScene, rank: int, number: int) -> Texture:
 
 def _towards(scene: MeasuredScene, light: Light) -> Array:
     """The unit direction from the body's centre towards a light, in object space."""
-    centre = placed_corners(scene.geometry).mean(axis=0)
+    centre = world_corners(scene.geometry).mean(axis=0)
     towards = np.array(light.direction) if light.position is None else np.array(light.position) - centre
     turned = scene.geometry.to_object()[:3, :3] @ towards
     unit: Array = turned / np.linalg.norm(turned)

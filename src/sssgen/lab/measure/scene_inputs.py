@@ -19,7 +19,7 @@ from sssgen.lab.reference.inside_lengths import first_exit, thickness
 from sssgen.lab.reference.view_harmonics import LARGEST
 from sssgen.run.backends import Array
 from sssgen.run.evaluate.evaluation import half
-from sssgen.scene.bounds import placed_corners
+from sssgen.scene.bounds import world_corners
 from sssgen.scene.inside_intervals import intervals
 from sssgen.scene.light_view import directional_view, point_view
 from sssgen.scene.measured import scene_body as body
@@ -160,7 +160,7 @@ def mean_chord(scene: MeasuredScene) -> Array:
 def principal_curvatures(scene: MeasuredScene) -> Array:
     """The normal curvatures along T and B, (2, n). Their mean is the mean curvature, as T and B are perpendicular."""
     visible = points(scene)
-    corners = placed_corners(scene.geometry)
+    corners = world_corners(scene.geometry)
     step = CURVATURE_STEP * float(np.ptp(corners, axis=0).max())
     tangent = visible.inputs["T"]
     other = np.cross(visible.inputs["N"].T, tangent.T).T
@@ -212,7 +212,7 @@ def _depth_map(scene: MeasuredScene, light: Light) -> tuple[dict[str, Any], dict
     Raises SssgenError for a point light beside the body: its map must show the whole body.
     """
     geometry = scene.geometry
-    corners, size = placed_corners(geometry), (DEPTH_MAP, DEPTH_MAP)
+    corners, size = world_corners(geometry), (DEPTH_MAP, DEPTH_MAP)
     if light.position is not None:
         view = point_view(corners, np.array(light.position), size)
     else:

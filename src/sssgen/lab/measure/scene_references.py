@@ -15,7 +15,7 @@ from sssgen.lab.reference.first_light import Lamp
 from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.transport import radiance_along
 from sssgen.lab.reference.transport_mitsuba import Light as Beam
-from sssgen.scene.bounds import placed_corners
+from sssgen.scene.bounds import world_corners
 from sssgen.scene.camera import Camera
 from sssgen.scene.geometry import Ball, Capsule, Geometry, Slab
 from sssgen.scene.measured.measured_scene import MeasuredScene
@@ -99,7 +99,7 @@ def training_scenes(scene: MeasuredScene) -> list[MeasuredScene]:
     Sizes are powers of two, so that scenes with the same medium share them.
     """
     assert scene.medium is not None
-    corners = placed_corners(scene.geometry)
+    corners = world_corners(scene.geometry)
     size = 2.0 ** round(float(np.log2(max(np.ptp(corners, axis=0).max(), 1e-6))))
     result = []
     small = 0.4 * size

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from sssgen.scene.arrays import Array
 from sssgen.scene.geometry import Geometry
 from sssgen.scene.inside_intervals import in_object_space, intervals
-from sssgen.scene.placed import Array
 
 SURFACE = 1e-4
 """Intervals that begin within this part of the points' extent begin at the surface."""

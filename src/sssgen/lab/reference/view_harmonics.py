@@ -17,9 +17,10 @@ from typing import NamedTuple
 import numpy as np
 
 from sssgen.lab.reference.inside_lengths import first_exit, thickness
-from sssgen.scene.bounds import placed_corners
+from sssgen.scene.arrays import Array, Bools
+from sssgen.scene.bounds import world_corners
 from sssgen.scene.geometry import Geometry
-from sssgen.scene.placed import Array, Bools, perpendiculars
+from sssgen.scene.geometry_base import perpendiculars
 
 NUMBERS = 9
 """The harmonics up to order 2."""
@@ -68,7 +69,7 @@ def fade_length(geometry: Geometry, mean_free_path: float) -> float:
 
     In a clear medium every length would be a small share of the mean free path.
     """
-    longest: float = np.ptp(placed_corners(geometry), axis=0).max()
+    longest: float = np.ptp(world_corners(geometry), axis=0).max()
     return min(mean_free_path, 0.25 * longest)
 
 

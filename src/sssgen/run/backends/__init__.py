@@ -11,7 +11,16 @@ from __future__ import annotations
 from functools import cache
 from importlib import import_module
 
-from sssgen.run.backend_registry import BACKENDS, DEFAULT, DRIVERS, FUNCTIONS, HALF, SINGLE, chosen, in_half
+from sssgen.run.backend_registry import (
+    BACKENDS,
+    DEFAULT,
+    DRIVERS,
+    FUNCTIONS,
+    HALF,
+    SINGLE,
+    backend_names,
+    half_counterparts,
+)
 from sssgen.run.backends.backend_interface import (
     VERTEX_SIZE,
     Array,
@@ -23,7 +32,7 @@ from sssgen.run.backends.backend_interface import (
     Place,
     Stage,
     Text,
-    emitted,
+    file_text,
 )
 from sssgen.run.backends.draw_backend import DrawingBackend
 from sssgen.run.compilers import CompilerMissing
@@ -31,8 +40,8 @@ from sssgen.support.diagnostics import failure
 
 __all__ = [
     "BACKENDS", "DEFAULT", "DRIVERS", "FUNCTIONS", "HALF", "SINGLE", "VERTEX_SIZE", "Array", "Backend", "Block",
-    "Bound", "Call", "CompilerMissing", "Drawing", "DrawingBackend", "Place", "Stage", "Text", "available", "chosen",
-    "emitted", "get", "in_half", "missing", "needed",
+    "Bound", "Call", "CompilerMissing", "Drawing", "DrawingBackend", "Place", "Stage", "Text", "available",
+    "backend_names", "file_text", "get", "half_counterparts", "missing", "require",
 ]  # fmt: skip
 
 
@@ -44,7 +53,7 @@ def get(name: str) -> Backend:
     return backend
 
 
-def needed(name: str) -> Backend:
+def require(name: str) -> Backend:
     """The same for a caller that cannot continue without it: raises SssgenError where this machine lacks it."""
     try:
         return get(name)

@@ -27,7 +27,7 @@ class Text(NamedTuple):
     origin: Mapping[int, str] = {}
 
 
-def emitted(compiled: Compiled, reflection: Mapping[str, Any], name: str) -> Text:
+def file_text(compiled: Compiled, reflection: Mapping[str, Any], name: str) -> Text:
     """One of the files of a compiled material."""
     places = reflection["source_map"].get(name, {})
     return Text(compiled.files[name], {int(line): place for line, place in places.items()})
@@ -124,7 +124,7 @@ VERTEX_SIZE = 18
 """The numbers of a vertex."""
 
 
-def refused(backend: str, text: Text, messages: Sequence[Message]) -> SssgenError:
+def refusal(backend: str, text: Text, messages: Sequence[Message]) -> SssgenError:
     """The driver's messages about emitted text, at the technique's own lines."""
     reported = [message for message in messages if message.severity == "error"] or list(messages)
     lines = text.text.splitlines()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sssgen.run import compilers
-from sssgen.run.backends.backend_interface import Array, Drawing, Stage, refused
+from sssgen.run.backends.backend_interface import Array, Drawing, Stage, refusal
 from sssgen.run.backends.webgpu import WebGPU
 from sssgen.run.compilers import Message
 from sssgen.run.compilers.bevy_compiler import Bevy
@@ -22,13 +22,13 @@ class BevyWGSL(WebGPU):
         return f"{self.linker.linker()}, {super().device()}"
 
     def draw(self, drawing: Drawing) -> Array:
-        vertex = self.linked(drawing.vertex) if drawing.vertex is not None else None
-        return super().draw(drawing._replace(fragment=self.linked(drawing.fragment), vertex=vertex))
+        vertex = self.link(drawing.vertex) if drawing.vertex is not None else None
+        return super().draw(drawing._replace(fragment=self.link(drawing.fragment), vertex=vertex))
 
-    def linked(self, stage: Stage) -> Stage:
+    def link(self, stage: Stage) -> Stage:
         """A stage with the linker's text."""
         try:
-            text = self.linker.linked(stage.text.text, ())
+            text = self.linker.link(stage.text.text, ())
         except ValueError as error:
-            raise refused(self.name, stage.text, [Message("error", 0, 0, str(error))]) from None
+            raise refusal(self.name, stage.text, [Message("error", 0, 0, str(error))]) from None
         return stage._replace(text=stage.text._replace(text=text))

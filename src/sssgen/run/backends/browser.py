@@ -15,13 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.run.backends.backend_interface import Array, Drawing, backend_failure, refused
+from sssgen.run.backends.backend_interface import Array, Drawing, backend_failure, refusal
 from sssgen.run.backends.browser_page import START, WEBGPU, LostError, Page
 from sssgen.run.backends.call_program import FRAGMENT
 from sssgen.run.backends.draw_backend import DrawingBackend
 from sssgen.run.backends.webgpu_plan import ATTRIBUTE_PLAN, STRIDE, Plan, layout_entries, plan
 from sssgen.run.compilers import CompilerMissing, Message
-from sssgen.run.installed import chromium, firefox
+from sssgen.run.machine_parts import chromium, firefox
 
 SECONDS = 60.0
 """How long a small draw may take; a large one gets more, see `_extra`."""
@@ -56,7 +56,7 @@ class Browser(DrawingBackend):
             drawing_plan = drawing_plan._replace(
                 code=_WHOLE_QUADS + drawing_plan.code
             )  # on the first line: line numbers stay the same
-        head, data = _packed(drawing_plan)
+        head, data = _pack(drawing_plan)
         seconds = self.seconds + _extra(drawing_plan, len(data))
         try:
             if not self.page.alive():
@@ -70,7 +70,7 @@ class Browser(DrawingBackend):
             raise backend_failure(self.name, f"the browser ended and cannot be restarted: {reason}") from None
         if "messages" in answer:
             messages = [Message("error", line, column, _first(text)) for line, column, text in answer["messages"]]
-            raise refused(self.name, drawing.fragment.text, messages)
+            raise refusal(self.name, drawing.fragment.text, messages)
         if "lost" in answer:
             self.page.close()
             raise backend_failure(self.name, f"the browser lost its device: {answer['lost']}")
@@ -118,7 +118,7 @@ def _page(
     return page, facts
 
 
-def _packed(drawing_plan: Plan) -> tuple[str, bytes]:
+def _pack(drawing_plan: Plan) -> tuple[str, bytes]:
     """The plan as JSON, with `{at, size}` in place of each piece of the bytes, and the bytes."""
     pieces: list[bytes] = []
     end = 0

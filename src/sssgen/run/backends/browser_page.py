@@ -112,13 +112,13 @@ class Page:
 
     def send(self, head: str, data: bytes, seconds: float) -> None:
         """Sends a text and bytes to the page. Raises LostError."""
-        with self._limited(seconds):
+        with self._time_limit(seconds):
             self._connection.send(head)
             self._connection.send(data)
 
     def receive(self, seconds: float) -> tuple[dict[str, Any], bytes]:
         """The page's answer: JSON and bytes. Raises LostError, also where it takes longer."""
-        with self._limited(seconds):
+        with self._time_limit(seconds):
             return json.loads(self._connection.recv()), bytes(self._connection.recv(decode=False))
 
     def _first(self, connections: queue.Queue[ServerConnection]) -> ServerConnection:
@@ -132,7 +132,7 @@ class Page:
         raise LostError(f"did not open its page within {START:g} seconds")
 
     @contextlib.contextmanager
-    def _limited(self, seconds: float) -> Iterator[None]:
+    def _time_limit(self, seconds: float) -> Iterator[None]:
         """Ends the browser when a transfer takes longer or is interrupted: its rest would be read as the next one."""
         timed_out = threading.Event()
 

@@ -149,7 +149,7 @@ def drawing(
     writer = _Writer(target, grid(lanes))
     for number, call in enumerate(calls):
         writer.call(number, call)
-    declared = [_declared(target, name, resource) for name, resource in bound.items()]
+    declared = [_declaration(target, name, resource) for name, resource in bound.items()]
     body = "\n".join(f"    {line}" for line in writer.body)
     main = writer.language.main.format(textures="\n".join(declared), body=body, rows=writer.grid.rows)
     rows = writer.data or [np.zeros((writer.grid.rows * writer.grid.width, 4), np.uint32)]
@@ -194,7 +194,7 @@ class _Writer:
                 continue
             statements.append(self._declare(type_, name, self._read(type_, len(self.data) * self.grid.rows)))
             args.append(name)
-            self.data += rows_of(type_, self._rounded(np.asarray(arg)), self.grid)
+            self.data += rows_of(type_, self._round(np.asarray(arg)), self.grid)
         result = f"sssgen_r{number}"
         statements.append(self._declare(call.result, result, f"{call.function}({', '.join(args)})"))
         columns = call.result.columns if isinstance(call.result, Matrix) else 1
@@ -208,7 +208,7 @@ class _Writer:
         self.places.append((self.slots, columns))
         self.slots += columns
 
-    def _rounded(self, arg: Array) -> Array:
+    def _round(self, arg: Array) -> Array:
         """An argument, rounded to the target's floating-point format."""
         if not self.half or arg.dtype.kind != "f":
             return arg
@@ -246,7 +246,7 @@ def _family(target: Target) -> str:
     return target.dialect.partition("-")[0]
 
 
-def _declared(target: Target, name: str, bound: Bound) -> str:
+def _declaration(target: Target, name: str, bound: Bound) -> str:
     assert isinstance(bound.data, Texture)
     pattern = _TEXTURES.get(target.dialect) or _TEXTURES[_family(target)]
     data = bound.data

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.run.backends.backend_interface import Array, Block, Bound, Text, backend_failure, refused
+from sssgen.run.backends.backend_interface import Array, Block, Bound, Text, backend_failure, refusal
 from sssgen.run.backends.opengl import OpenGL
 from sssgen.run.backends.webgpu import WebGPU
 from sssgen.run.backends.webgpu_plan import BlockPlan, Plan, layout_entries, texture_plan
@@ -54,7 +54,7 @@ def by_opengl(backend: OpenGL, dispatch: Dispatch) -> dict[str, Array]:
         try:
             program = keep(context.compute_shader(dispatch.text.text))
         except Exception as error:
-            raise refused(backend.name, dispatch.text, messages(str(error))) from None
+            raise refusal(backend.name, dispatch.text, messages(str(error))) from None
         try:
             backend.bind_uniforms(program, dispatch.textures, dispatch.values, keep)
             backend.bind_blocks(program, dispatch.blocks, keep)
@@ -109,7 +109,7 @@ def by_webgpu(backend: WebGPU, dispatch: Dispatch) -> dict[str, Array]:
         return {name: _like(gpu.queue.read_buffer(store), dispatch.buffers[name]) for name, store in stores.items()}
     except wgpu.GPUError as error:
         if complaints := backend.naga.complaints(plan.code):
-            raise refused(backend.name, dispatch.text, complaints) from None
+            raise refusal(backend.name, dispatch.text, complaints) from None
         raise backend_failure(backend.name, f"{type(error).__name__}: {error}") from error
 
 

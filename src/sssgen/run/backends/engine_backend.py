@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from sssgen.run.backends.babylon_page import BABYLON
 from sssgen.run.backends.backend_interface import Array, Backend, Call, Text, backend_failure
 from sssgen.run.backends.engine_page import EnginePage
 from sssgen.run.backends.godot_drawing import Godot
-from sssgen.run.backends.playcanvas_page import PLAYCANVAS
-from sssgen.run.backends.three_page import THREE
+from sssgen.run.backends.web_engines import BABYLON, PLAYCANVAS, THREE
 from sssgen.targets import registry
 from sssgen.targets.runtime.numpy_textures import Texture
 

@@ -17,7 +17,7 @@ import numpy as np
 from sssgen.run.backends.backend_interface import ATTRIBUTES, VERTEX_SIZE, Array, backend_failure
 from sssgen.run.backends.browser_page import START, LostError, Page
 from sssgen.run.compilers import CompilerMissing
-from sssgen.run.installed import chromium, node_modules
+from sssgen.run.machine_parts import chromium, node_modules
 from sssgen.targets.runtime.numpy_textures import Texture
 
 SECONDS = 120.0
@@ -110,7 +110,7 @@ class EnginePage:
 
     def draw(self, drawing: EngineDrawing) -> Array:
         """The picture in linear light, (height, width, 4) float32, row 0 at the bottom. Raises SssgenError."""
-        head, data = _packed(drawing, self.name, self.renderer)
+        head, data = _pack(drawing, self.name, self.renderer)
         return self.ask(head, data, drawing.size)
 
     def ask(self, head: str, data: bytes, size: tuple[int, int], dtype: Any = np.float32) -> Array:
@@ -152,7 +152,7 @@ class Bytes:
         return b"".join(self.pieces)
 
 
-def _packed(drawing: EngineDrawing, name: str, renderer: Renderer) -> tuple[str, bytes]:
+def _pack(drawing: EngineDrawing, name: str, renderer: Renderer) -> tuple[str, bytes]:
     """The drawing as JSON, with `{at, size}` in place of each piece of the bytes, and the bytes."""
     bytes_ = Bytes()
     piece = bytes_.piece

@@ -74,11 +74,11 @@ class Godot:
         width, height = view.size
         pixels = data.reshape(height, width, 4).astype(np.float64)
         if self.encodes:
-            pixels[..., :3] = _decoded(pixels[..., :3])
+            pixels[..., :3] = _decode(pixels[..., :3])
         return pixels
 
 
-def _decoded(stored: Array) -> Array:
+def _decode(stored: Array) -> Array:
     """The inverse of the curve by which the Compatibility renderer encodes: sRGB's without its linear part."""
     light: Array = np.where(stored > 0.0, ((np.maximum(stored, 0.0) + 0.055) / 1.055) ** 2.4, 0.0)
     return light

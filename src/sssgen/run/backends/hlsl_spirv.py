@@ -10,9 +10,9 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
-from sssgen.run.backends.backend_interface import ATTRIBUTES, Drawing, Stage, Text, refused
+from sssgen.run.backends.backend_interface import ATTRIBUTES, Drawing, Stage, Text, refusal
 from sssgen.run.backends.opengl import _HEADS, _SCREEN, OpenGL
-from sssgen.run.backends.spirv_rewriting import rewritten
+from sssgen.run.backends.spirv_rewriting import rewrite
 from sssgen.run.compilers import CompilerMissing, Message, dxc, glslang
 
 _ENDINGS = {
@@ -44,13 +44,13 @@ class HLSL(OpenGL):
 
     def glsl(self, stage: Stage, kind: str) -> str:
         """A stage as GLSL."""
-        text = self.prepared(stage.text)
-        module, log = compiled(text.text, stage.entry, kind, self.compiler)
+        text = self.prepare(stage.text)
+        module, log = compile_spirv(text.text, stage.entry, kind, self.compiler)
         if not module:
-            raise refused(self.name, stage.text, self.messages(log))
-        glsl, log = cross_compiled(module)
+            raise refusal(self.name, stage.text, self.messages(log))
+        glsl, log = cross_compile(module)
         if not glsl:
-            raise refused(self.name, stage.text, [Message("error", 0, 0, log)])
+            raise refusal(self.name, stage.text, [Message("error", 0, 0, log)])
         return glsl
 
     def owner(self, member: str, names: Collection[str]) -> str:
@@ -66,7 +66,7 @@ class HLSL(OpenGL):
                 return name
         return ""
 
-    def prepared(self, text: Text) -> Text:
+    def prepare(self, text: Text) -> Text:
         """The compiler's input: Unity's text is preprocessed."""
         return text
 
@@ -81,7 +81,7 @@ class HLSL(OpenGL):
 
 
 @lru_cache(64)
-def compiled(text: str, entry: str, stage: str, compiler: str) -> tuple[bytes, str]:
+def compile_spirv(text: str, entry: str, stage: str, compiler: str) -> tuple[bytes, str]:
     """SPIR-V from HLSL by `dxc`, `glslang` or `dx9` (glslang), checked by spirv-val; or nothing and the log."""
     try:
         if compiler == "dxc":
@@ -104,11 +104,11 @@ writes the variable."""
 
 
 @lru_cache(64)
-def cross_compiled(module: bytes, *options: str) -> tuple[str, str]:
+def cross_compile(module: bytes, *options: str) -> tuple[str, str]:
     """GLSL from SPIR-V by spirv-cross (with `options`, another language), or nothing and the log."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "in.spv"
-        path.write_bytes(rewritten(module))
+        path.write_bytes(rewrite(module))
         completed = _process([_tools()["spirv-cross"], str(path), *(options or _GLSL)], b"")
     return ("", completed.stderr.decode(errors="replace")) if completed.returncode else (completed.stdout.decode(), "")
 

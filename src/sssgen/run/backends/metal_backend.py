@@ -14,7 +14,7 @@ import numpy as np
 
 from sssgen.ir.types import BY_NAME, Matrix, Type, Vector, kind_of
 from sssgen.run import compilers
-from sssgen.run.backends.backend_interface import Array, Backend, Call, Text, refused
+from sssgen.run.backends.backend_interface import Array, Backend, Call, Text, refusal
 from sssgen.run.backends.call_program import DTYPES, grid
 from sssgen.run.backends.metal_program import BLOCKS, program, shading
 from sssgen.run.compilers.metal_compiler import OPTIONS, Metal, messages
@@ -73,14 +73,14 @@ class MetalOnCpu(Backend):
 
     def library(self, text: Text, source: str) -> Any:
         """The compiled program. Raises SssgenError where g++ refuses the text."""
-        log, library = _compiled(self.compiler.program, source)
+        log, library = _compile(self.compiler.program, source)
         if library is None:
-            raise refused(self.name, text, messages(log))
+            raise refusal(self.name, text, messages(log))
         return library
 
 
 @lru_cache(64)
-def _compiled(compiler: str, source: str) -> tuple[str, Any]:
+def _compile(compiler: str, source: str) -> tuple[str, Any]:
     """The compiler's log, and the library; None where there is none."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "shader.so"
@@ -104,7 +104,7 @@ def bind_texture(library: Any, number: int, texture: Texture) -> list[Array]:
 def _run(library: Any, number: int, call: Call, lanes: int) -> Array:
     shape = grid(lanes)
     padded = shape.width * shape.rows
-    args = [None if isinstance(arg, str) else _filled(type_, np.asarray(arg), padded)
+    args = [None if isinstance(arg, str) else _pad(type_, np.asarray(arg), padded)
             for type_, arg in zip(call.params, call.args, strict=True)]  # fmt: skip
     inner = _inner(call.result)
     result = np.zeros((*inner, padded), DTYPES[kind_of(call.result)])
@@ -116,7 +116,7 @@ def _run(library: Any, number: int, call: Call, lanes: int) -> Array:
     return values != 0 if kind_of(call.result) == "bool" else values
 
 
-def _filled(type_: Type, value: Array, padded: int) -> Array:
+def _pad(type_: Type, value: Array, padded: int) -> Array:
     """An argument for every lane of the grid and one more, 0 where there is none, as in a picture."""
     with np.errstate(over="ignore", invalid="ignore"):
         value = value.astype(DTYPES[kind_of(type_)]).reshape(*_inner(type_), -1)

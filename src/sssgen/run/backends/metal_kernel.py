@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.run.backends.backend_interface import Array, backend_failure, refused
+from sssgen.run.backends.backend_interface import Array, backend_failure, refusal
 from sssgen.run.backends.dispatch import Dispatch
 from sssgen.run.backends.metal_backend import MetalOnCpu, bind_texture
 from sssgen.run.backends.metal_program import declarations, parameters
@@ -58,9 +58,9 @@ def run_kernel(backend: MetalOnCpu, dispatch: Dispatch, order: int = 0) -> Kerne
     Raises SssgenError where g++ refuses the text.
     """
     textures = list(dispatch.textures)
-    log, library = _compiled(backend.compiler.program, _program(dispatch, textures))
+    log, library = _compile(backend.compiler.program, _program(dispatch, textures))
     if library is None:
-        raise refused(backend.name, dispatch.text, messages(log))
+        raise refusal(backend.name, dispatch.text, messages(log))
     pictures = [dispatch.textures[name].data for name in textures]
     kept = [bind_texture(library, number, data) for number, data in enumerate(pictures) if isinstance(data, Texture)]
     names = sorted(dispatch.buffers, key=dispatch.bindings.__getitem__)
@@ -132,7 +132,7 @@ def _position(names: list[str], dispatch: Dispatch, binding: int) -> int:
 
 
 @lru_cache(64)
-def _compiled(compiler: str, source: str) -> tuple[str, Any]:
+def _compile(compiler: str, source: str) -> tuple[str, Any]:
     """The compiler's log, and the library; None where there is none."""
     with tempfile.TemporaryDirectory() as folder:
         unit, path = Path(folder) / "kernel.o", Path(folder) / "kernel.so"

@@ -26,7 +26,7 @@ def program(target: Target, text: str, calls: Sequence[Call], textures: Sequence
         "static long sssgen_width, sssgen_lanes;",
     ]
     for number, call in enumerate(calls):
-        lines += _call(target, number, call, textures, _together(text))
+        lines += _call(target, number, call, textures, _needs_quads(text))
     return "\n".join([with_swizzles(text, included=True), *lines, ""])
 
 
@@ -75,7 +75,7 @@ def shading(text: str, textures: Sequence[str]) -> str:
         "    const char* const* blocks, const float* points, float* result, long width, long rows, int front) {",
         "    sssgen_blocks = blocks, sssgen_points = points, sssgen_result = result;",
         "    sssgen_width = width, sssgen_rows = rows, sssgen_front = front;",
-        f"    run_quads(sssgen_pixel, width, rows, {_together(text)});",
+        f"    run_quads(sssgen_pixel, width, rows, {_needs_quads(text)});",
         "}",
     ]
     return "\n".join([with_swizzles(text), *lines, ""])
@@ -109,7 +109,7 @@ def _argument(name: str, kind: str, textures: Sequence[str]) -> str:
     return f"{kind}{{{{&sssgen_images[{textures.index(name)}]}}}}"
 
 
-def _together(text: str) -> str:
+def _needs_quads(text: str) -> str:
     """Whether the pixels of a quad must run together."""
     return "true" if _DERIVATIVES.search(text) else "false"
 

@@ -21,7 +21,7 @@ from sssgen.run.backends.backend_interface import (
     Drawing,
     Text,
     backend_failure,
-    refused,
+    refusal,
 )
 from sssgen.run.backends.draw_backend import DrawingBackend
 from sssgen.run.compilers.gl_driver import DriverGL, messages
@@ -89,7 +89,7 @@ class OpenGL(DrawingBackend):
         try:
             program = self.context.program(vertex_shader=vertex, fragment_shader=fragment)
         except Exception as error:
-            raise refused(self.name, origin, messages(str(error))) from None
+            raise refusal(self.name, origin, messages(str(error))) from None
         self.programs[key] = program
         if len(self.programs) > _KEPT:
             self.programs.popitem(last=False)[1].release()

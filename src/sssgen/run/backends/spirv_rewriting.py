@@ -25,7 +25,7 @@ class Op(IntEnum):
     BRANCH_CONDITIONAL = 250
 
 
-def rewritten(module: bytes) -> bytes:
+def rewrite(module: bytes) -> bytes:
     """The module with two changes.
 
     - A constant is copied before it is stored in a variable with several stores. spirv-cross takes an array for a

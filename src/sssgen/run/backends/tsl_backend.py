@@ -12,7 +12,7 @@ from sssgen.ir.types import Matrix, Type, column_size, kind_of, spell
 from sssgen.run.backends import call_program as programs
 from sssgen.run.backends.backend_interface import Array, Backend, Call, Text
 from sssgen.run.backends.engine_page import Bytes, EnginePage
-from sssgen.run.backends.three_page import TSL
+from sssgen.run.backends.web_engines import TSL
 from sssgen.targets import registry
 from sssgen.targets.runtime.numpy_textures import Texture
 

@@ -29,9 +29,9 @@ class UnityHLSL(HLSL):
     def device(self) -> str:
         return f"{self.unity.headers()}, {super().device()}"
 
-    def prepared(self, text: Text) -> Text:
+    def prepare(self, text: Text) -> Text:
         try:
-            return text._replace(text=_preprocessed(self.unity, text.text, self.target.name))
+            return text._replace(text=_preprocess(self.unity, text.text, self.target.name))
         except ValueError as error:
             raise backend_failure(self.name, f"the preprocessor: {error}") from None
 
@@ -45,5 +45,5 @@ class UnityHLSL(HLSL):
 
 
 @lru_cache(16)
-def _preprocessed(unity: unity.Unity, text: str, target: str) -> str:
-    return unity.preprocessed(text, target)
+def _preprocess(unity: unity.Unity, text: str, target: str) -> str:
+    return unity.preprocess(text, target)

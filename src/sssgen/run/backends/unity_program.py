@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.run.backends.backend_interface import Array, Block, Bound, Drawing, Place, Stage, refused
-from sssgen.run.backends.hlsl_spirv import HLSL, compiled, cross_compiled
+from sssgen.run.backends.backend_interface import Array, Block, Bound, Drawing, Place, Stage, refusal
+from sssgen.run.backends.hlsl_spirv import HLSL, compile_spirv, cross_compile
 from sssgen.run.compilers import Message
 from sssgen.run.compilers import unity_compiler as unity
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -46,21 +46,21 @@ class UnityProgram(HLSL):
         return _BINDING.sub("layout(", text).replace("layout() ", "")
 
     def messages(self, log: str) -> list[Message]:
-        return [unity.located(message, "forward pass") for message in super().messages(log)]
+        return [unity.locate(message, "forward pass") for message in super().messages(log)]
 
     def spirv_cross(self, stage: Stage, kind: str, *options: str) -> str:
         """The output of spirv-cross for a stage: GLSL, or another language with `options`."""
         origin = stage.text._replace(text="")  # messages have lines of the .shader file
-        module, log = compiled(_aligned(stage.text.text), stage.entry, kind, self.compiler)
+        module, log = compile_spirv(_align(stage.text.text), stage.entry, kind, self.compiler)
         if not module:
-            raise refused(self.name, origin, self.messages(log))
-        text, log = cross_compiled(module, *options)
+            raise refusal(self.name, origin, self.messages(log))
+        text, log = cross_compile(module, *options)
         if not text:
-            raise refused(self.name, origin, [Message("error", 0, 0, log)])
+            raise refusal(self.name, origin, [Message("error", 0, 0, log)])
         return text
 
 
-def _aligned(text: str) -> str:
+def _align(text: str) -> str:
     """The program with the material's members in the order of their sizes, the largest first.
 
     As emitted they follow HLSL's packing, where a float3 may follow a float. GLSL has no such layout, so

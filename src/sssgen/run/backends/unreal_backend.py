@@ -10,5 +10,5 @@ from sssgen.run.compilers import unreal_node
 class UnrealHLSL(HLSL):
     """The functions of the target `unreal`, with the names that the engine declares."""
 
-    def prepared(self, text: Text) -> Text:
+    def prepare(self, text: Text) -> Text:
         return text._replace(text=unreal_node.before(text.text))

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from sssgen.run import compilers
-from sssgen.run.backends.backend_interface import Array, Drawing, backend_failure, refused
+from sssgen.run.backends.backend_interface import Array, Drawing, backend_failure, refusal
 from sssgen.run.backends.draw_backend import DrawingBackend
 from sssgen.run.backends.webgpu_plan import ATTRIBUTE_PLAN, STRIDE, Plan, TexturePlan, layout_entries, plan
 from sssgen.run.compilers import CompilerMissing
@@ -48,30 +48,30 @@ class WebGPU(DrawingBackend):
         """Tries a second time on a new device: software drivers lose one now and then, whatever the text is."""
         self.check(drawing)
         drawing_plan = plan(drawing)
-        result = self.drawn(drawing, drawing_plan)
+        result = self.draw_once(drawing, drawing_plan)
         if result is None:
-            result = self.drawn(drawing, drawing_plan)
+            result = self.draw_once(drawing, drawing_plan)
         if result is None:
             raise backend_failure(self.name, "the device was lost twice", "the next run uses a new one")
         return result
 
-    def drawn(self, drawing: Drawing, drawing_plan: Plan) -> Array | None:
+    def draw_once(self, drawing: Drawing, drawing_plan: Plan) -> Array | None:
         """The picture; None where the device was lost, and there is a new one."""
         import wgpu
 
         try:
             return self.execute(drawing_plan)
         except wgpu.GPUError as error:
-            if self.lost():
+            if self.is_lost():
                 self.naga.gpu = find().gpu  # the compiler's device is the same
                 self.start(self.naga)
                 return None
             messages = self.naga.complaints(drawing_plan.code)
             if messages:
-                raise refused(self.name, drawing.fragment.text, messages) from None
+                raise refusal(self.name, drawing.fragment.text, messages) from None
             raise backend_failure(self.name, f"{type(error).__name__}: {error}") from error
 
-    def lost(self) -> bool:
+    def is_lost(self) -> bool:
         """Whether the device is lost."""
         import wgpu
 

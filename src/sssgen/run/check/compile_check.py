@@ -17,7 +17,7 @@ from sssgen.run.check.stage_pairs import disagreements, pairs
 from sssgen.run.compilers import COMPILERS, CompilerMissing, Message, Source, errors, readers
 from sssgen.run.compilers import unity_compiler as unity
 from sssgen.run.compilers.compiler_process import Worker
-from sssgen.run.installed import all_lacks
+from sssgen.run.machine_parts import all_lacks
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.paths import place, posix
 from sssgen.support.progress import Progress, silent
@@ -83,7 +83,7 @@ def run(
 
     def compiled(worker: Worker, name: str, shader: Shader, source: Source) -> Result:
         nonlocal done
-        result = Result(shader, source, name, _within(shader, worker.check(source)))
+        result = Result(shader, source, name, _limit_places(shader, worker.check(source)))
         with lock:
             done += 1
             progress(done, total, f"{name}: {shader.name}")
@@ -131,7 +131,7 @@ def run(
     )
 
 
-def _within(shader: Shader, messages: list[Message]) -> list[Message]:
+def _limit_places(shader: Shader, messages: list[Message]) -> list[Message]:
     """Messages with places in the file only: the check appends calls that make a program of a library."""
     count = shader.text.count("\n") + 1
     return [

@@ -24,7 +24,7 @@ def sources(files: Mapping[str, str]) -> list[Source]:
     for name, text in files.items():
         for target, material, output in outputs(name):
             stages = output.stages
-            result += held(text, name, output)
+            result += held_functions(text, name, output)
             if name.endswith(".shader"):  # has all its stages, and declares their entries
                 stages = dict(list(stages.items())[:1])
             for stage, entry in stages.items():
@@ -33,7 +33,7 @@ def sources(files: Mapping[str, str]) -> list[Source]:
     return result
 
 
-def held(text: str, name: str, output: descriptor.OutputFile) -> list[Source]:
+def held_functions(text: str, name: str, output: descriptor.OutputFile) -> list[Source]:
     """The functions in a module of JavaScript, each on the lines that it has there."""
     result = []
     for constant, language in output.holds.items():

@@ -73,7 +73,7 @@ def of_material(argument: str, targets: Sequence[str]) -> list[Shader]:
     """Both forms of a material for each target; no target: for all that a compiler reads."""
     material = load_material(argument)
     shaders: list[Shader] = []
-    for target in targets or [name for name in registry.names() if _compiled(name)]:
+    for target in targets or [name for name in registry.names() if _has_compiler(name)]:
         for form in FORMS:
             try:
                 compiled = compile(material, target, form)
@@ -85,7 +85,7 @@ def of_material(argument: str, targets: Sequence[str]) -> list[Shader]:
     return shaders
 
 
-def _compiled(target: str) -> bool:
+def _has_compiler(target: str) -> bool:
     """Whether a compiler reads what is written for the target."""
     outputs = (output for form in registry.load(target).files.values() for output in form)
     return bool(readers(target)) or any(output.holds for output in outputs)
@@ -98,7 +98,7 @@ def of_files(files: Mapping[str, str], named: set[str], targets: Sequence[str]) 
     handwritten: list[Source] = []
     reflections: dict[str, dict[str, Any]] = {}
     for path, text in files.items():
-        own = transpiled(path)
+        own = find_transpiled(path)
         target = own.target if own is not None else _emitted_for(path, text)
         if own is not None and (not targets or target in targets):
             handwritten += own.sources(text, path)
@@ -195,7 +195,7 @@ def _language(path: str, text: str, named: bool, targets: Sequence[str]) -> str:
 
 def _origins(path: str) -> dict[str, str]:
     """The source map of an emitted file, from the reflection next to it; empty where there is none."""
-    own = transpiled(path)
+    own = find_transpiled(path)
     if own is not None:
         return own.origins
     folder, base = os.path.split(path)
@@ -213,7 +213,7 @@ def _origins(path: str) -> dict[str, str]:
     return {}
 
 
-class Transpiled(NamedTuple):
+class TranspiledFile(NamedTuple):
     """What the reflection next to a file states that `sssgen transpile` wrote under any name."""
 
     target: str
@@ -229,7 +229,7 @@ class Transpiled(NamedTuple):
         ]
 
 
-def transpiled(path: str) -> Transpiled | None:
+def find_transpiled(path: str) -> TranspiledFile | None:
     """The reflection `FILE.reflection.json`; None where there is none."""
     name = f"{path}.{REFLECTION}"
     if not os.path.isfile(name):
@@ -242,7 +242,7 @@ def transpiled(path: str) -> Transpiled | None:
         maps: dict[str, dict[str, str]] = reflection["source_map"]
         origins = maps[file["name"]]
         if reflection["target"] in registry.names() and stages.keys() <= STAGES:
-            return Transpiled(reflection["target"], stages, origins, reflection)
+            return TranspiledFile(reflection["target"], stages, origins, reflection)
     except (ValueError, KeyError, TypeError, AttributeError):
         pass
     raise _no_reflection(name)

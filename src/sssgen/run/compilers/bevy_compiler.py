@@ -74,7 +74,7 @@ class Bevy(Compiler):
         compiled: set[str] = set()
         for name, conditions in CONDITIONS.items():
             try:
-                text = self.linked(source.text, conditions)
+                text = self.link(source.text, conditions)
             except ValueError as error:
                 return [Message("error", 0, 0, f"{name}: {error}")]
             if text in compiled:
@@ -82,10 +82,10 @@ class Bevy(Compiler):
             compiled.add(text)
             for compiler in (self._naga, self._tint):
                 found = compiler.check(Source(text, "wgsl", source.stage, source.entry, source.name))
-                messages += [_placed(message, f"{name}, {compiler.name}", text, source.text) for message in found]
+                messages += [_locate(message, f"{name}, {compiler.name}", text, source.text) for message in found]
         return messages
 
-    def linked(self, text: str, conditions: tuple[str, ...]) -> str:
+    def link(self, text: str, conditions: tuple[str, ...]) -> str:
         """The WGSL of a WESL file with the stand-ins. Raises ValueError with the linker's message."""
         chosen = dict.fromkeys(conditions, True)
         answer = self._process.ask({"text": text, "modules": modules(), "conditions": chosen})
@@ -102,7 +102,7 @@ def modules() -> dict[str, str]:
     }
 
 
-def _placed(message: Message, job: str, linked: str, text: str) -> Message:
+def _locate(message: Message, job: str, linked: str, text: str) -> Message:
     """A message about linked text with its line in the WESL file, where exactly one line there is the same."""
     lines = linked.splitlines()
     wrong = lines[message.line - 1].strip() if 0 < message.line <= len(lines) else ""

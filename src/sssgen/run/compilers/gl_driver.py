@@ -58,7 +58,7 @@ class DriverGL(Compiler):
             return own_messages or ([] if "Compiler failed" in log else messages(log))
         if log:
             return _in_text(messages(log), source.text)
-        return _unfed(vertex, fragment) if source.companion else []
+        return _missing_outputs(vertex, fragment) if source.companion else []
 
     def _compute(self, text: str) -> str:
         """The driver's messages about a compute shader; '' where it compiles."""
@@ -109,7 +109,7 @@ def _interface(text: str, direction: str) -> list[tuple[str, str, str, str]]:
     return re.findall(pattern, text, re.MULTILINE)
 
 
-def _unfed(vertex: str, fragment: str) -> list[Message]:
+def _missing_outputs(vertex: str, fragment: str) -> list[Message]:
     """Fragment inputs that the vertex stage does not write: undefined, and no error in desktop OpenGL."""
     written = {name for *_, name in _interface(vertex, "out")}
     names = [name for *_, name in _interface(fragment, "in") if name not in written]

@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 from subprocess import CompletedProcess
 
-from sssgen.run import installed
+from sssgen.run import machine_parts
 from sssgen.run.compilers.calling_entry import glsl_entry, hlsl_entry
 from sssgen.run.compilers.compiler_interface import Compiler, CompilerMissing, Message, Severity, Source
 from sssgen.run.compilers.gl_driver import with_version
@@ -78,7 +78,7 @@ def _messages_of(completed: CompletedProcess[str]) -> list[Message]:
 
 def find() -> Glslang:
     """The program on the path; SSSGEN_GLSLANG names another. Raises CompilerMissing where there is none."""
-    program = installed.glslang()
+    program = machine_parts.glslang()
     if not program:
         raise CompilerMissing("Debian: glslang-tools · elsewhere: the Vulkan SDK")
     return Glslang(program)

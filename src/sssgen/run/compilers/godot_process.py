@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sssgen.run.compilers.compiler_interface import CompilerMissing
-from sssgen.run.installed import godots, lacks
+from sssgen.run.machine_parts import godots, lacks
 
 _PROJECT = 'config_version=5\n\n[application]\n\nconfig/name="sssgen"\n'
 

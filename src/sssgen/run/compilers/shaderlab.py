@@ -61,7 +61,7 @@ class Program:
         """The text after the first `#pragma KEY`."""
         return next((value for k, value in self.pragmas if k == key), None)
 
-    def declared(self) -> list[str]:
+    def keywords(self) -> list[str]:
         """Every keyword of the pragmas, in the order of the text."""
         lines = [_keywords(key, value, stage) for key, value in self.pragmas for stage in ("vertex", "fragment")]
         if self.pragma("multi_compile_fog") is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from sssgen.run import installed
+from sssgen.run import machine_parts
 from sssgen.run.compilers.calling_entry import wgsl_entry
 from sssgen.run.compilers.compiler_interface import Compiler, CompilerMissing, Message, Source
 from sssgen.run.compilers.node_process import NodeProcess
@@ -66,9 +66,9 @@ class Tint(Compiler):
 
 def node_modules() -> tuple[str, Path]:
     """node, and the folder that npm filled. Raises CompilerMissing where node is lacking."""
-    if not (node := installed.node()):
+    if not (node := machine_parts.node()):
         raise CompilerMissing("node (Debian: nodejs npm)")
-    return node, installed.node_modules()
+    return node, machine_parts.node_modules()
 
 
 def find() -> Tint:

@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from sssgen.run import installed
+from sssgen.run import machine_parts
 from sssgen.run.compilers import dxc, glslang, shaderlab
 from sssgen.run.compilers import surface_shader as surface
 from sssgen.run.compilers.calling_entry import Opaque, hlsl_entry
@@ -135,7 +135,7 @@ class Unity(Compiler):
         """The owner of the headers: Unity or this project."""
         return f"Unity's own headers in {self.root}" if self.real else "the project's stand-in headers"
 
-    def preprocessed(self, text: str, language: str) -> str:
+    def preprocess(self, text: str, language: str) -> str:
         """Functions of `language` after the engine's headers, with their own line numbers.
 
         Raises ValueError with the preprocessor's log.
@@ -228,7 +228,7 @@ class Unity(Compiler):
             raise surface.SurfaceError(f"{program.name}: no #pragma {stage}")
         headers = _CG_HEADERS if program.dialect == "CG" else ()
         common = _BUILTIN_MACROS if builtin else (*self._urp_macros(), _INSTANCED)
-        words, code = program.declared(), program.code
+        words, code = program.keywords(), program.code
         declared = (f"{word}_KEYWORD_DECLARED=1" for word in words)
         defines = (*common, f"SHADER_STAGE_{stage.upper()}=1", *declared, *keywords)
         if self.unity_version >= _KEYWORDS_ARE_VALUES:
@@ -249,7 +249,7 @@ class Unity(Compiler):
             try:
                 text = self._text(job)
             except ValueError as error:
-                return [located(_preprocessing_error(str(error)), job.what)]
+                return [locate(_preprocessing_error(str(error)), job.what)]
             if (text, job.entry) in compiled:
                 continue
             compiled.add((text, job.entry))
@@ -258,7 +258,7 @@ class Unity(Compiler):
             else:
                 messages = self._dxc.check_hlsl(text, job.stage, job.entry)
             for m in messages:
-                unique.setdefault((m.line, m.column, m.text), located(m, job.what))
+                unique.setdefault((m.line, m.column, m.text), locate(m, job.what))
         return list(unique.values())
 
     def _text(self, job: _Job) -> str:
@@ -271,7 +271,7 @@ class Unity(Compiler):
         return [self.root / "CGIncludes", self.root] if builtin else [self.root]
 
 
-def located(message: Message, job: str) -> Message:
+def locate(message: Message, job: str) -> Message:
     """A message with the name of its job; a place outside of the text becomes part of the message."""
     if message.file in ("", _TEXT):
         return replace(message, text=f"{job}: {message.text}", file="")
@@ -337,7 +337,7 @@ def holds_headers(root: Path) -> bool:
 
 def preprocessor() -> Callable[[str, list[str], list[Path]], str]:
     """A C preprocessor: gcc's or clang's."""
-    program = installed.c_preprocessor()
+    program = machine_parts.c_preprocessor()
     if not program:
         raise CompilerMissing("a C preprocessor (Debian: gcc · elsewhere: clang)")
     command = [program, "-E", "-x", "c", "-undef", "-nostdinc", "-w"]

@@ -28,19 +28,19 @@ class Unreal(Compiler):
 
     def check(self, source: Source) -> list[Message]:
         if not source.text.startswith("Begin Object"):
-            return self._compiled(unreal_node.before(hlsl_entry(source.text)), LIBRARY_ENTRY)
+            return self._compile(unreal_node.before(hlsl_entry(source.text)), LIBRARY_ENTRY)
         try:
             text, node = unreal_node.program(source.text, source.companion)
         except unreal_node.NodeError as error:
             return [Message("error", 0, 0, str(error))]
         textures = unreal_node.textures_of(source.companion)
-        return self._compiled(text + entry(node.parameters(textures)), LIBRARY_ENTRY)
+        return self._compile(text + entry(node.parameters(textures)), LIBRARY_ENTRY)
 
-    def _compiled(self, text: str, entry: str) -> list[Message]:
-        return [_located(message) for message in self._dxc.check_hlsl(text, "fragment", entry)]
+    def _compile(self, text: str, entry: str) -> list[Message]:
+        return [_locate(message) for message in self._dxc.check_hlsl(text, "fragment", entry)]
 
 
-def _located(message: Message) -> Message:
+def _locate(message: Message) -> Message:
     """A message with its line in the included file; another place becomes part of the message."""
     if message.file in ("", unreal_node.INCLUDED):
         return replace(message, file="")

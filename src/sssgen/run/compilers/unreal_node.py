@@ -103,10 +103,10 @@ def read(text: str) -> CustomNode:
     (custom,) = [body for name, body in nodes.items() if name.startswith("MaterialGraphNode_Custom")]
     inputs = []
     for name, source in _INPUT.findall(custom):
-        node, output = _connected(nodes, source)
+        node, output = _connection(nodes, source)
         inputs.append(Input(name, _type_of(nodes, node, output), node, output))
     return CustomNode(
-        _unquoted(_property(custom, "Code")),
+        _unquote(_property(custom, "Code")),
         _TYPES[_property(custom, "OutputType")],
         tuple(inputs),
         tuple((_TYPES[type_], name) for name, type_ in _OUTPUT.findall(custom)),
@@ -163,7 +163,7 @@ def _check_wires(nodes: Mapping[str, str]) -> None:
             raise NodeError(f"{name}: a pin is connected to {other}, which is not connected to it")
 
 
-def _connected(nodes: Mapping[str, str], source: str) -> tuple[str, int]:
+def _connection(nodes: Mapping[str, str], source: str) -> tuple[str, int]:
     match = _SOURCE.match(source)
     if match is None or match[2] not in nodes or f'Name="{match[3]}"' not in nodes[match[2]]:
         raise NodeError(f"an input is connected to no node: {source}")
@@ -177,9 +177,9 @@ def _type_of(nodes: Mapping[str, str], node: str, output: int) -> str:
     if kind == "TextureObjectParameter":
         return ""
     if kind == "TruncateLWC":
-        return _type_of(nodes, *_connected(nodes, _property(nodes[node], "Input").strip("()")))
+        return _type_of(nodes, *_connection(nodes, _property(nodes[node], "Input").strip("()")))
     if kind == "AppendVector":
-        parts = [_type_of(nodes, *_connected(nodes, _property(nodes[node], name).strip("()"))) for name in "AB"]
+        parts = [_type_of(nodes, *_connection(nodes, _property(nodes[node], name).strip("()"))) for name in "AB"]
         return f"MaterialFloat{sum(int(part[-1]) if part[-1].isdigit() else 1 for part in parts)}"
     if kind not in NODES or output >= len(NODES[kind]):
         raise NodeError(f"{node}: there is no output {output} of {kind or 'a node without a class'}")
@@ -193,6 +193,6 @@ def _property(body: str, name: str) -> str:
     return match[1]
 
 
-def _unquoted(text: str) -> str:
+def _unquote(text: str) -> str:
     escapes = {"r": "", "n": "\n", "t": "\t"}
     return re.sub(r"\\(.)", lambda match: escapes.get(match[1], match[1]), text[1:-1])

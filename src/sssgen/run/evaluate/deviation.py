@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.run.backends import HALF, Array, CompilerMissing, get
-from sssgen.run.backends.isolated import started
+from sssgen.run.backends.backend_process import start_backend
 from sssgen.run.evaluate.evaluation import Inputs, run
 from sssgen.run.evaluate.probes import Subject
 from sssgen.support.diagnostics import SssgenError
@@ -97,7 +97,7 @@ def deviation(
     `rounding` returns the rounding deviation of each output; it is called only where a lane is beyond the goal. Without
     it no lane is excluded.
     """
-    each = {name: _apart(actual[name], right) for name, right in expected.items()}
+    each = {name: _errors_of(actual[name], right) for name, right in expected.items()}
     excluded = {name: np.zeros(len(lanes), np.bool_) for name, lanes in each.items()}
     if rounding is not None and any((lanes > GOAL).any() for lanes in each.values()):
         limits = rounding()
@@ -124,22 +124,22 @@ def rounding_deviation(
 ) -> dict[str, Array]:
     """The rounding deviation of each output from the oracle, (lanes,), relative as that of `errors`."""
     rounded, exact = get("numpy-f32"), get("numpy")
-    largest = {name: _apart(value, oracle[name]) for name, value in run(subject, inputs, rounded, guards).items()}
+    largest = {name: _errors_of(value, oracle[name]) for name, value in run(subject, inputs, rounded, guards).items()}
     rng = np.random.default_rng(0)
     for _ in range(DRAWS):
-        near = inputs._replace(values={name: _moved(value, rng) for name, value in inputs.values.items()})
+        near = inputs._replace(values={name: _move(value, rng) for name, value in inputs.values.items()})
         right, actual = run(subject, near, exact, guards), run(subject, near, rounded, guards)
         for name, value in right.items():
-            apart = np.maximum(_apart(value, oracle[name]), _apart(actual[name], value))
+            apart = np.maximum(_errors_of(value, oracle[name]), _errors_of(actual[name], value))
             largest[name] = np.maximum(largest[name], apart)
     return largest
 
 
-def _apart(actual: Array, expected: Array) -> Array:
+def _errors_of(actual: Array, expected: Array) -> Array:
     return errors(np.atleast_1d(actual), np.atleast_1d(expected))
 
 
-def _moved(value: Array, rng: np.random.Generator) -> Array:
+def _move(value: Array, rng: np.random.Generator) -> Array:
     """Numbers moved by one float32 step, up or down; whole numbers stay."""
     if value.dtype.kind != "f":
         return value
@@ -160,7 +160,7 @@ def errors(actual: Array, expected: Array) -> Array:
     return relative
 
 
-def compared(
+def compare(
     subject: Subject, inputs: Inputs, names: Sequence[str], guards: str = "auto", progress: Progress = silent
 ) -> tuple[dict[str, Array], list[Row]]:
     """The oracle's outputs, and each back end's deviation. Each back end runs in a process of its own."""
@@ -179,7 +179,7 @@ def _row(
     name: str, guards: str,
 ) -> Row:  # fmt: skip
     try:
-        backend = started(name)
+        backend = start_backend(name)
     except CompilerMissing as reason:
         return Row(name, "", None, str(reason), missing=True)
     except SssgenError as error:

@@ -15,15 +15,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.ir.nodes import Param
+from sssgen.ir.nodes import Param, Uniform
 from sssgen.ir.types import Array as ArrayType
 from sssgen.ir.types import Matrix, Sampler, Type, Vector, components, kind_of, spell, with_article
 from sssgen.passes.ranges.sites import Site
 from sssgen.pipeline.compiler import transpile
-from sssgen.run.backends import Array, Backend, Call, Text, emitted
+from sssgen.run.backends import Array, Backend, Call, Text, file_text
 from sssgen.run.evaluate.probes import Subject
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.targets.runtime.numpy_textures import Texture
+from sssgen.targets.texture_import import default_color
 
 DTYPES: dict[str, Any] = {"float": np.float64, "int": np.int32, "uint": np.uint32, "bool": np.bool_}
 
@@ -44,7 +45,7 @@ def evaluate(subject: Subject, values: Mapping[str, Any], backend: Backend, guar
     their defaults; `guards` as in `compile`. Raises SssgenError for inputs that do not fit, and if the back end rejects
     the program.
     """
-    return run(subject, fitted(subject, values), backend, guards)
+    return run(subject, fit_inputs(subject, values), backend, guards)
 
 
 def run(
@@ -55,7 +56,7 @@ def run(
     guard_change: Callable[[Site], str] | None = None,
 ) -> dict[str, Array]:
     """The outputs, lanes first; `guard_change` is the `at` of `passes.guards.guard`."""
-    text, names = _emitted(subject, backend.target.name, guards, guard_change)
+    text, names = _emit(subject, backend.target.name, guards, guard_change)
     calls = [
         Call(
             names.get(probe.function, probe.function),
@@ -82,7 +83,7 @@ def _argument(param: Param, inputs: Inputs) -> Any:
 _texts: dict[tuple[object, ...], tuple[Subject, Text, dict[str, str]]] = {}
 
 
-def _emitted(
+def _emit(
     subject: Subject, target: str, guards: str, guard_change: Callable[[Site], str] | None
 ) -> tuple[Text, dict[str, str]]:
     """The functions form of a subject for a target, and its renamed functions."""
@@ -93,11 +94,11 @@ def _emitted(
         file, reflection = next(name for name in compiled.files if not name.endswith(".json")), compiled.reflection
         if len(_texts) >= 256:
             _texts.clear()
-        cached = _texts[key] = subject, emitted(compiled, reflection, file), reflection["renames"]
+        cached = _texts[key] = subject, file_text(compiled, reflection, file), reflection["renames"]
     return cached[1], cached[2]
 
 
-def fitted(subject: Subject, raw: Mapping[str, Any]) -> Inputs:
+def fit_inputs(subject: Subject, raw: Mapping[str, Any]) -> Inputs:
     """Inputs in the form of the subject's parameters, rounded to float32, which all back ends share.
 
     Raises SssgenError for an unknown or a missing name, a wrong shape, NaN and infinity.
@@ -188,11 +189,15 @@ def default_texture(type_: str, color: str) -> Texture:
     return Texture(data, dim=dim)
 
 
+def default_of(uniform: Uniform) -> Texture:
+    """One texel of the colour that a texture's declaration states."""
+    return default_texture(spell(uniform.type), default_color(uniform))
+
+
 def _texture(subject: Subject, name: str, type_: Sampler, raw: Any) -> Texture:
     """A texture rounded to float16, which all back ends share; one texel of the default if `raw` is None."""
     if raw is None:
-        hints = [hint.removeprefix("default_") for hint, _ in subject.uniforms[name].hints]
-        raw = default_texture(spell(type_), next((hint for hint in hints if hint in _DEFAULTS), "white"))
+        raw = default_of(subject.uniforms[name])
     if not isinstance(raw, Texture):
         try:
             raw = Texture(np.asarray(raw), dim=type_.dim)

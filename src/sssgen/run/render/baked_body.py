@@ -12,7 +12,7 @@ from sssgen.material.baked import BakeFile
 from sssgen.scene import body_identity
 from sssgen.scene.bounds import bounds
 from sssgen.scene.geometry import Geometry
-from sssgen.scene.placed import unit
+from sssgen.scene.geometry_base import unit
 from sssgen.scene.scene import Light
 from sssgen.support.diagnostics import failure
 

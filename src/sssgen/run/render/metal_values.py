@@ -9,7 +9,7 @@ import numpy as np
 
 from sssgen.ir.types import BY_NAME, column_size, kind_of
 from sssgen.pipeline.compiler import Compiled
-from sssgen.run.backends import VERTEX_SIZE, Array, Text, emitted
+from sssgen.run.backends import VERTEX_SIZE, Array, Text, file_text
 from sssgen.run.backends.metal_backend import MetalOnCpu
 from sssgen.run.render.shell_values import LIGHTS, Shell, bound_texture, inverse
 
@@ -19,7 +19,7 @@ _DTYPES: dict[str, Any] = {"float": np.float32, "int": np.int32, "uint": np.uint
 def shade(compiled: Compiled, shell: Shell, backend: MetalOnCpu, size: tuple[int, int], points: Array | None) -> Array:
     """The picture, (height, width, 4), row 0 at the bottom."""
     reflection = compiled.reflection
-    text: Text = emitted(compiled, reflection, reflection["files"][0]["name"])
+    text: Text = file_text(compiled, reflection, reflection["files"][0]["name"])
     textures = {texture["name"]: bound_texture(texture, shell, True) for texture in reflection["textures"]}
     if points is not None:
         points = points.reshape(size[1], size[0], VERTEX_SIZE)[::-1]

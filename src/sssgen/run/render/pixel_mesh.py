@@ -21,18 +21,18 @@ def vertices(hits: Hits, origin: Array, directions: Array, model: Array, size: t
     """
     hit = hits.hit
     distance = np.linalg.norm(hits.position - origin, axis=1)
-    distance = _extended(distance[:, None], hit, size, [distance[hit].mean() if hit.any() else 1.0])
+    distance = _extend(distance[:, None], hit, size, [distance[hit].mean() if hit.any() else 1.0])
     position = np.where(hit[:, None], hits.position, origin + distance * directions)
     inverse = np.linalg.inv(model)
     placed = position @ inverse[:3, :3].T + inverse[:3, 3]
     normal = hits.normal @ model[:3, :3]  # the shell multiplies by the inverse transpose
     tangent = hits.tangent[:, :3] @ inverse[:3, :3].T
     around = np.concatenate([normal, tangent, hits.tangent[:, 3:], hits.uv, hits.uv2, hits.color], axis=1)
-    around = _extended(around, hit, size, [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, *4 * [0.0], *4 * [1.0]])
+    around = _extend(around, hit, size, [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, *4 * [0.0], *4 * [1.0]])
     return np.concatenate([placed, around], axis=1).astype(np.float32)
 
 
-def _extended(values: Array, valid: Array, size: tuple[int, int], other: list[float]) -> Array:
+def _extend(values: Array, valid: Array, size: tuple[int, int], other: list[float]) -> Array:
     """Values extended by a pixel to their invalid neighbours; pixels further away have the value `other`."""
     width, height = size
     extended, filled = values.reshape(height, width, -1).copy(), valid.reshape(height, width).copy()

@@ -45,7 +45,7 @@ STEPS = 3
 """Of a render: compile, cast rays, draw."""
 
 
-class Rendered(NamedTuple):
+class RenderedPicture(NamedTuple):
     """A picture, row 0 at the top."""
 
     linear: Array
@@ -66,7 +66,7 @@ def render(
     time: float | None = None,
     guards: str = "auto",
     progress: Progress = silent,
-) -> Rendered:
+) -> RenderedPicture:
     """The picture of a scene. `size` and `time` override the scene's; `guards` as in `compile`.
 
     Raises MissingTextures where a baked texture or a named file is missing, and SssgenError for a scene that does not
@@ -102,7 +102,7 @@ def render(
         samples, hit = shade(backend, compiled, shell, (width, height), None), np.ones((height, width), bool)
     else:
         samples, hit = _surface(scene, compiled, shell, backend, (width, height), progress)
-    return _developed(scene, reflection, samples, hit)
+    return _develop(scene, reflection, samples, hit)
 
 
 def with_samples(scene: Scene, samples: int) -> Scene:
@@ -120,7 +120,7 @@ def _surface(
     """The samples of a surface, and which of them hit it."""
     (width, height), edge = size, pixel_mesh.BORDER
     progress(1, STEPS, "casting the eye's rays")
-    mesh = placed(scene, compiled, shell, backend.target, size)
+    mesh = place_mesh(scene, compiled, shell, backend.target, size)
     inner = slice(edge, edge + height), slice(edge, edge + width)
     progress(2, STEPS, f"drawing on {backend.name}")
     picture = shade(backend, compiled, mesh.shell, mesh.size, mesh.points)
@@ -145,7 +145,7 @@ class PlacedMesh(NamedTuple):
     """Likewise, whether it shows a front face."""
 
 
-def placed(scene: Scene, compiled: Compiled, shell: Shell, target: Target, size: tuple[int, int]) -> PlacedMesh:
+def place_mesh(scene: Scene, compiled: Compiled, shell: Shell, target: Target, size: tuple[int, int]) -> PlacedMesh:
     """The mesh of a scene's points, and the shell with its camera and what the program draws of it."""
     assert scene.geometry is not None
     (width, height), edge = size, pixel_mesh.BORDER
@@ -181,7 +181,7 @@ def _matrix(scene: Scene, target: Target, aspect: float) -> Array:
     return scene.camera.view_projection(aspect, zero_to_one=low == 0.0)
 
 
-def _developed(scene: Scene, reflection: Mapping[str, Any], samples: Array, hit: Array) -> Rendered:
+def _develop(scene: Scene, reflection: Mapping[str, Any], samples: Array, hit: Array) -> RenderedPicture:
     """Composites samples over the background, averages them to pixels, and flips rows so that row 0 is at the top."""
     height, width = hit.shape
     color, alpha = samples[..., :3].astype(np.float64), samples[..., 3].astype(np.float64)
@@ -199,10 +199,10 @@ def _developed(scene: Scene, reflection: Mapping[str, Any], samples: Array, hit:
     behind = np.array(scene.background[0]) * (1.0 - up) + np.array(scene.background[1]) * up
     exposed = np.where(hit[..., None], color, 0.0) * scene.exposure
     mixed = exposed * cover[..., None] + np.broadcast_to(behind, (height, width, 3)) * (1.0 - cover[..., None])
-    return Rendered(_averaged(mixed, scene.samples)[::-1], _averaged(cover[..., None], scene.samples)[::-1, :, 0])
+    return RenderedPicture(_average(mixed, scene.samples)[::-1], _average(cover[..., None], scene.samples)[::-1, :, 0])
 
 
-def _averaged(samples: Array, n: int) -> Array:
+def _average(samples: Array, n: int) -> Array:
     height, width, channels = samples.shape
     pixels: Array = samples.reshape(height // n, n, width // n, n, channels).mean(axis=(1, 3))
     return pixels

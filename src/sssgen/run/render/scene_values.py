@@ -275,10 +275,10 @@ def _file(scene: Scene, material: Material, texture: Mapping[str, Any]) -> str:
     chosen = scene.textures.get(texture["source_name"])
     if chosen is not None:
         return chosen.file if isinstance(chosen, Picture) else ""
-    return _suggested(material, texture)
+    return _suggestion(material, texture)
 
 
-def _suggested(material: Material, texture: Mapping[str, Any]) -> str:
+def _suggestion(material: Material, texture: Mapping[str, Any]) -> str:
     for stage in material.stages:
         if stage.technique.name == texture["technique"] and texture["technique_name"] in stage.textures:
             return str(material.path.parent / stage.textures[texture["technique_name"]])

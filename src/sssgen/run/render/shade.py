@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from sssgen.pipeline.compiler import Compiled
 from sssgen.run.backends import Array, Backend, DrawingBackend
+from sssgen.run.backends.backend_process import BackendProcess
 from sssgen.run.backends.engine_backend import GodotBackend, PageBackend
-from sssgen.run.backends.isolated import Isolated
 from sssgen.run.backends.metal_backend import MetalOnCpu
 from sssgen.run.backends.numpy_reference import Reference
 from sssgen.run.backends.unity_backend import UnityHLSL
@@ -19,7 +19,7 @@ def shade(backend: Backend, compiled: Compiled, shell: Shell, size: tuple[int, i
     `points` are the vertices of `pixel_mesh`; None means the screen.
     Raises SssgenError if the back end refuses or fails.
     """
-    if isinstance(backend, Isolated):
+    if isinstance(backend, BackendProcess):
         picture: Array = backend.apply(shade, compiled, shell, size, points)
         return picture
     if isinstance(backend, Reference):

@@ -13,7 +13,7 @@ import numpy as np
 
 from sssgen.ir.types import BY_NAME, column_size, kind_of
 from sssgen.pipeline.compiler import Compiled
-from sssgen.run.backends import Array, Block, Bound, Drawing, Place, Stage, emitted
+from sssgen.run.backends import Array, Block, Bound, Drawing, Place, Stage, file_text
 from sssgen.run.evaluate.evaluation import default_texture
 from sssgen.targets.runtime.numpy_textures import Texture
 
@@ -77,7 +77,7 @@ def _stages(compiled: Compiled, reflection: Mapping[str, Any]) -> tuple[Stage, S
     """The vertex and the fragment stage."""
     stages: dict[str, Stage] = {}
     for file in reflection["files"]:
-        text = emitted(compiled, reflection, file["name"])
+        text = file_text(compiled, reflection, file["name"])
         for stage, entry in file["stages"].items():
             stages[stage] = Stage(text, entry or "main")
     return stages["vertex"], stages["fragment"]

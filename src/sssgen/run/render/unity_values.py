@@ -14,7 +14,7 @@ import numpy as np
 
 from sssgen.ir.types import BY_NAME, column_size
 from sssgen.pipeline.compiler import Compiled
-from sssgen.run.backends import VERTEX_SIZE, Array, Bound, Drawing, Place, emitted
+from sssgen.run.backends import VERTEX_SIZE, Array, Bound, Drawing, Place, file_text
 from sssgen.run.backends.unity_backend import UnityHLSL
 from sssgen.run.render import pixel_mesh
 from sssgen.run.render.shell_values import Shell, inverse, textures
@@ -66,7 +66,7 @@ def _passes(
     """The draws, whose pictures are added."""
     reflection = compiled.reflection
     (name,) = (file["name"] for file in reflection["files"])
-    shader, bound_textures = emitted(compiled, reflection, name), textures(reflection, shell)
+    shader, bound_textures = file_text(compiled, reflection, name), textures(reflection, shell)
     values = _engine(shell, size) | _properties(reflection, shell)
 
     def drawing(keywords: tuple[str, ...], light: dict[str, Array], falloff: Texture | None = None) -> Drawing:

@@ -121,8 +121,8 @@ def preset(name: str, unit_mm: float = 1.0, anisotropy: float = 0.0, file: str =
     entry = presets[name]
     return Medium(
         name,
-        _scaled(entry.absorption, unit_mm),
-        _scaled(entry.reduced_scattering, unit_mm / (1.0 - anisotropy)),
+        _scale(entry.absorption, unit_mm),
+        _scale(entry.reduced_scattering, unit_mm / (1.0 - anisotropy)),
         anisotropy,
         entry.ior,
         entry.source,
@@ -153,6 +153,6 @@ def media(file: str = "") -> Mapping[str, MediumData]:
     return result
 
 
-def _scaled(coefficients: Spectrum, factor: float) -> Spectrum:
+def _scale(coefficients: Spectrum, factor: float) -> Spectrum:
     red, green, blue = (factor * coefficient for coefficient in coefficients)
     return red, green, blue

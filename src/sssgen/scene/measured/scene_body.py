@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from sssgen.material import slots
+from sssgen.scene.arrays import Array, Vector
 from sssgen.scene.bounds import bounds
 from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
-from sssgen.scene.placed import Array, Vector
 from sssgen.scene.scene import DistanceTexture, placement
 from sssgen.support.diagnostics import failure
 

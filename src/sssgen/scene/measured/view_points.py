@@ -10,8 +10,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from sssgen.scene.arrays import Array, Bools
 from sssgen.scene.measured.measured_scene import MeasuredScene
-from sssgen.scene.placed import Array, Bools
 from sssgen.scene.scene import Light
 from sssgen.support.diagnostics import failure
 

@@ -6,11 +6,12 @@ import io
 import os
 import tempfile
 import warnings
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from sssgen.scene.arrays import Array
 from sssgen.scene.pictures import png16, volumes
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.extras import need
@@ -18,8 +19,6 @@ from sssgen.support.file_memo import note
 from sssgen.support.file_writer import write_files
 from sssgen.support.paths import posix
 from sssgen.support.text_files import refuse_folder
-
-Array: TypeAlias = npt.NDArray[np.float64]
 
 SUFFIXES = (".png", ".exr", ".npy")
 """The suffixes of pictures; an .npy may also be a volume."""

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from sssgen.scene.arrays import Array
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
-
-Array: TypeAlias = npt.NDArray[np.float64]
 
 EPSILON = 1e-2
 """Added to the reference's square in relMSE, so that black does not count more than dark."""

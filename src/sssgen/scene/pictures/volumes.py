@@ -8,14 +8,12 @@ from __future__ import annotations
 
 import os
 import struct
-from typing import Any, BinaryIO, NamedTuple, TypeAlias
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from sssgen.scene.arrays import Array
 from sssgen.support.diagnostics import failure
-
-Array: TypeAlias = npt.NDArray[np.float64]
 
 SUFFIXES = (".dds", ".ktx2")
 

@@ -1,6 +1,6 @@
 """A back end in its own process: a driver that crashes or hangs there does not affect this process.
 
-gpu = isolated("gl")
+gpu = BackendProcess("gl")
 gpu.run(text, calls)          # as any back end; SssgenError where the process died or took too long
 """
 
@@ -29,8 +29,11 @@ class _Facts(NamedTuple):
     top_first: bool
 
 
-class Isolated(DrawingBackend):
-    """The proxy of a back end in another process, which is restarted after it was lost."""
+class BackendProcess(DrawingBackend):
+    """The proxy of a back end in another process, which is restarted after it was lost.
+
+    Raises CompilerMissing where this machine lacks the back end, SssgenError where it does not start.
+    """
 
     def __init__(self, name: str, seconds: float = SECONDS) -> None:
         self.name = name
@@ -68,14 +71,9 @@ class Isolated(DrawingBackend):
             raise backend_failure(self.name, f"the back end {reason}", "the others continue without it") from None
 
 
-def isolated(name: str, seconds: float = SECONDS) -> Isolated:
-    """The back end of that name in its own process. Raises CompilerMissing where this machine lacks it."""
-    return Isolated(name, seconds)
-
-
-def started(name: str) -> Backend:
-    """The back end of that name, in its own process if a driver computes. Raises as `isolated` does."""
-    return isolated(name) if backends.BACKENDS[name].driver else backends.get(name)
+def start_backend(name: str) -> Backend:
+    """The back end of that name, in its own process if a driver computes. Raises CompilerMissing, or SssgenError."""
+    return BackendProcess(name) if backends.BACKENDS[name].driver else backends.get(name)
 
 
 def serve(name: str) -> tuple[_Facts, Callable[[tuple[str, tuple[Any, ...]]], Any]]:

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from functools import partial
 
 from sssgen.run.backends import Backend, CompilerMissing
-from sssgen.run.backends.isolated import Isolated, started
+from sssgen.run.backends.backend_process import BackendProcess, start_backend
 from sssgen.support.diagnostics import SssgenError
 
 
-class Started:
+class BackendPool:
     """Back ends by name, each started when it is first used. `close` ends them."""
 
     def __init__(self) -> None:
@@ -29,7 +29,7 @@ class Started:
                 backend = get()
             except (CompilerMissing, SssgenError):
                 continue
-            if isinstance(backend, Isolated):
+            if isinstance(backend, BackendProcess):
                 backend.close()
         self._backends.clear()
 
@@ -37,7 +37,7 @@ class Started:
 def _start(name: str) -> Callable[[], Backend]:
     """A function that returns the back end, or raises the same error at every call."""
     try:
-        backend = started(name)
+        backend = start_backend(name)
     except (CompilerMissing, SssgenError) as reason:
         return partial(_refuse, reason)
     return lambda: backend
