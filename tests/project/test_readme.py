@@ -72,7 +72,7 @@ def test_the_table_of_targets() -> None:
         "godot": "Godot 4.6's parser",
         "metal": "g++",
     }
-    words |= {"unity": "C preprocessor", "unreal": "DXC", "bevy": "wesl"}
+    words |= {"unity": "C preprocessor", "unreal": "DXC", "bevy": "wesl", "tsl": "node"}
     assert list(rows) == [name for name in rows if name in registry.names()]
     for name in registry.names():
         if (ROOT / "targets" / f"{name}.toml").is_file():

@@ -15,10 +15,11 @@ from sssgen.lang.check.quantities import SCALARS
 from sssgen.material.chain_assembly import TAKEN
 from sssgen.material.shell_assembly import SHELLS
 from sssgen.pipeline.compiler import all_targets
+from sssgen.pipeline.frame_functions import check_word
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import folder
 from sssgen.targets.frame import Variant, used_parts
-from sssgen.targets.used_frame import with_names
+from sssgen.targets.used_frame import check_inputs, with_names
 
 TEMPLATES = sorted(folder("templates").rglob("*.j2"))
 OF_VALUES = {
@@ -199,3 +200,22 @@ def test_a_frame_in_two_languages_is_written_once() -> None:
     uv, tint = params["uv"], params["tint"]
     assert (uv["expression"], uv["embedded_expressions"]["wgsl"]) == ("sss_uv", "fragmentInputs.sss_uv")
     assert (tint["expression"], tint["embedded_expressions"]["wgsl"]) == ("sss_tint", "uniforms.sss_tint")
+
+
+def test_what_an_engine_does_not_have_is_an_error() -> None:
+    """A value without an expression, and a word in braces that means nothing: an error before any text is written."""
+    godot = all_targets()["godot"]
+    without = godot._replace(inputs={name: text for name, text in godot.inputs.items() if name != "screen_uv"})
+    check_inputs(godot, {"surface": ["screen_uv", "P", "N"]})
+    with pytest.raises(SssgenError, match="Godot 4 does not have the value 'screen_uv'"):
+        check_inputs(without, {"surface": ["P", "screen_uv"]})
+    with pytest.raises(SssgenError) as caught:
+        check_word(godot, "safe_normalise")
+    assert "names {safe_normalise}, which does not exist" in caught.value.diagnostics[0].message
+    assert "safe_normalize" in str(caught.value.diagnostics[0].hint)
+
+
+def test_a_form_that_a_target_does_not_have_is_an_error() -> None:
+    target = all_targets()["metal"]
+    with pytest.raises(SssgenError, match="unknown form 'shadr'"):
+        sssgen.compile("ice", target.name, "shadr")

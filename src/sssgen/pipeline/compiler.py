@@ -20,7 +20,7 @@ from sssgen.passes.names import check_prefix
 from sssgen.pipeline.emitted_cache import installation
 from sssgen.pipeline.material_facts import facts_of
 from sssgen.support import cache
-from sssgen.support.diagnostics import Diagnostic, SssgenError, UnsupportedError, failure
+from sssgen.support.diagnostics import Diagnostic, SssgenError, UnsupportedError, did_you_mean, failure
 from sssgen.support.gc_pause import pause_gc
 from sssgen.support.paths import place
 from sssgen.targets import registry
@@ -93,8 +93,6 @@ def compile(
 
         material = load_material(material)
     if form not in FORMS:
-        from sssgen.support.diagnostics import did_you_mean, failure
-
         raise failure(f"unknown form '{form}'", did_you_mean(form, FORMS) or "forms: shader, functions")
     _check_guards(guards)
     facts = facts_of(material)
@@ -195,8 +193,6 @@ def guarded_sites(material: Material, target: str = "glsl-330", form: str = "sha
 
 def _check_guards(guards: str) -> None:
     if guards not in GUARDS:
-        from sssgen.support.diagnostics import did_you_mean, failure
-
         raise failure(f"unknown guards '{guards}'", did_you_mean(guards, GUARDS) or "guards: auto, all, none")
 
 

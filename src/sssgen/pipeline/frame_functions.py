@@ -15,6 +15,9 @@ from sssgen.lang.polyfills import polyfill
 from sssgen.material.shell_assembly import SHELLS
 from sssgen.passes.guards import guard
 from sssgen.pipeline.state import State
+from sssgen.support.diagnostics import did_you_mean, failure
+from sssgen.support.paths import stem
+from sssgen.targets.descriptor import Target
 from sssgen.targets.used_frame import named, used_frame
 
 _NORMALIZE = "safe_normalize"
@@ -34,13 +37,24 @@ def add_frame_functions(state: State) -> Module:
     added: dict[str, Function] = {}
     whole = state.form == "shader"
     for name in dict.fromkeys(name for used in frames for name in named(used, whole)):
-        if name not in NAMES and (name == _NORMALIZE or os.path.isfile(_path(name))):
-            functions = _function(name, state.format, state.guards).functions
-            if functions[-1].key not in own:  # with those that it calls before it
-                added |= {function.key: function for function in functions}
-            state.frame_functions[name] = functions[-1]
+        if name in NAMES or name in state.target.spelling:
+            continue
+        check_word(state.target, name)
+        functions = _function(name, state.format, state.guards).functions
+        if functions[-1].key not in own:  # with those that it calls before it
+            added |= {function.key: function for function in functions}
+        state.frame_functions[name] = functions[-1]
     others = tuple(function for function in state.module.functions if function.key not in added)
     return state.module._replace(functions=(*added.values(), *others))
+
+
+def check_word(target: Target, name: str) -> None:
+    """Raises SssgenError where a text of a frame has a word in braces that is no function."""
+    if name != _NORMALIZE and not os.path.isfile(_path(name)):
+        words = [_NORMALIZE, *NAMES, *target.spelling, *(stem(file) for file in os.listdir(SHELLS))]
+        hint = "in braces are a function of src/sssgen/shells/, a value of the surface, or a word of [spelling]"
+        message = f"the descriptor of {target.title} names {{{name}}}, which does not exist"
+        raise failure(message, did_you_mean(name, words) or hint, f"{target.name}.toml")
 
 
 def _path(name: str) -> str:

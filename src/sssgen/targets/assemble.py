@@ -27,7 +27,7 @@ from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text
 from sssgen.targets.printers.printer import Comments, Printer
 from sssgen.targets.templates import NO_LINES, render
 from sssgen.targets.uniform_layout import Member, padding, place
-from sssgen.targets.used_frame import PER_LIGHT, UsedFrame, named, named_per_light, used_frame, with_names
+from sssgen.targets.used_frame import PER_LIGHT, UsedFrame, check_inputs, named, named_per_light, used_frame, with_names
 
 _MARK = re.compile(r"\x02(\d{1,9})\x03", re.ASCII)
 
@@ -240,6 +240,8 @@ def _printed(
     inputs = {kind: names for kind, (_, names) in program.entries.items() if kind not in without}
     fields = {field.name for field in program.surface.fields} if program.surface is not None else set()
     used = used_frame(target, inputs, program.shell[1] if program.shell else None, fields)
+    if form == "shader" and program.shell is None and not target.fragment_shell:
+        check_inputs(used.target, inputs)
     printer = printer_for(target, module)
     owners = {uniform.name: program.source_names.get(uniform.name, uniform.name) for uniform in module.uniforms}
     printer.groups = {name: program.owners[source][0] for name, source in owners.items() if source in program.owners}

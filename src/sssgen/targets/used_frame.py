@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from sssgen.ir.surface_fields import NAMES
 from sssgen.lang.check.quantities import SCALARS
+from sssgen.support.diagnostics import UnsupportedError, failure
 from sssgen.targets.descriptor import Target
 from sssgen.targets.frame import LIGHT, SURFACE, stage_of, used_parts
 
@@ -58,6 +59,20 @@ def used_frame(
     frame = used_parts(parts, target.reads, [*texts, *of_sinks])
     surface = {place: "\n".join(rows) for place, rows in sinks.items()}
     return UsedFrame(target, facts, frame, surface, [text for _, text in texts])
+
+
+def check_inputs(target: Target, entries: Mapping[str, Sequence[str]]) -> None:
+    """Raises UnsupportedError for a value that a chain reads and an engine's shell does not have.
+
+    It needs an expression, a part of the frame, or a port. `target` has its variants for the material.
+    """
+    declared = {name for texts in target.frame.values() for names in texts for name in names.split()}
+    for kind, names in entries.items():
+        own = {**target.inputs, **(target.light_inputs if kind in PER_LIGHT else {}), **target.ports}
+        missing = [name for name in names if name not in own and name not in declared]
+        if missing:
+            hint = "leave out the stages that read it; in a target of your own, give it an expression in [inputs]"
+            raise UnsupportedError(failure(f"{target.title} does not have the value '{missing[0]}'", hint).diagnostics)
 
 
 def _chain_facts(entries: Mapping[str, Sequence[str]], fields: Collection[str]) -> set[str]:
