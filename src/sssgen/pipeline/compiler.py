@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from sssgen.ir.nodes import Module, Uniform
 from sssgen.ir.types import kind_of
@@ -27,6 +27,7 @@ from sssgen.targets import registry
 from sssgen.targets.assemble import About, Program, emit
 from sssgen.targets.descriptor import Embedded, Target
 from sssgen.targets.reflection import as_text, reflect
+from sssgen.targets.reflection_record import Reflection
 
 if TYPE_CHECKING:
     from sssgen.passes.ranges.sites import Site
@@ -45,11 +46,11 @@ class Compiled(NamedTuple):
     warnings: list[Diagnostic]
 
     @property
-    def reflection(self) -> dict[str, Any]:
+    def reflection(self) -> Reflection:
         """The reflection, parsed at each access; the caller may change it."""
         import json
 
-        reflection: dict[str, Any] = json.loads(list(self.files.values())[-1])
+        reflection: Reflection = json.loads(list(self.files.values())[-1])
         return reflection
 
 

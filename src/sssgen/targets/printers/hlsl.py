@@ -21,6 +21,7 @@ from sssgen.targets.printers import hlsl_sizes
 from sssgen.targets.printers.hlsl_entry import print_entry
 from sssgen.targets.printers.printed_lines import Line, with_doc
 from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Printer
+from sssgen.targets.reflection_record import TextureBinding
 from sssgen.targets.uniform_layout import Member
 
 _SHIFTS = ("<<", ">>")
@@ -180,7 +181,7 @@ class HlslPrinter(Printer):
         assert self.stage is not None
         return print_entry(self, self.stage, name, self.stage.resolution)
 
-    def binding(self, index: int) -> dict[str, int | str]:
+    def binding(self, index: int) -> TextureBinding:
         if not self.target.bindings.material_block:
             return {}
         return {"texture": f"t{index}", "sampler": f"s{index}"}

@@ -18,6 +18,7 @@ from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.atomic_printer import AtomicPrinter
 from sssgen.targets.printers.printed_lines import Line, with_doc, wrap
 from sssgen.targets.printers.printer import POSTFIX, PRIMARY
+from sssgen.targets.reflection_record import TextureBinding
 from sssgen.targets.uniform_layout import Member
 
 ARRAY = "fixed_array"
@@ -173,5 +174,5 @@ class MetalPrinter(AtomicPrinter):
         """None: textures are parameters of the fragment function or the kernel."""
         return []
 
-    def binding(self, index: int) -> dict[str, int | str]:
+    def binding(self, index: int) -> TextureBinding:
         return {"texture": index, "sampler": index}

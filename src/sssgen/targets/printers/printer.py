@@ -23,6 +23,7 @@ from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import failure
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, summary, wrap
+from sssgen.targets.reflection_record import TextureBinding
 from sssgen.targets.uniform_layout import Member
 
 _COLOR_LETTERS = str.maketrans("xyzw", "rgba")
@@ -427,7 +428,7 @@ class Printer:
         """The declarations of the textures."""
         raise NotImplementedError
 
-    def binding(self, index: int) -> dict[str, int | str]:
+    def binding(self, index: int) -> TextureBinding:
         """The bindings of the texture at `index`; empty where the text states none."""
         return {}
 
