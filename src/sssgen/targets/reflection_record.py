@@ -262,3 +262,125 @@ class Reflection(StageInterface, Kernel, Shelled):
     source_map: dict[str, dict[str, str]]
     """File → line, 1-based, as a text → `file:line:column` in the source."""
     warnings: list[str]
+
+
+class StageFile(TypedDict):
+    """The file of a stage of a program, and its entry point."""
+
+    file: str
+    entry: str
+
+
+class AttributeRecord(TypedDict):
+    """An input of the vertex shader."""
+
+    name: str
+    type: str
+    location: int
+    """The first."""
+    locations: int
+    """Their number: a matrix has one for each column, an array one for each element."""
+    format: str
+    """WebGPU's vertex format of one location."""
+
+
+class VaryingRecord(TypedDict):
+    """A value that the vertex shader passes on."""
+
+    name: str
+    path: list[int]
+    """The element or column."""
+    type: str
+    location: int
+    interpolation: str
+    """smooth, flat, noperspective or centroid."""
+
+
+class OutputRecord(TypedDict):
+    """An output of the fragment shader: it has `location` or `builtin`."""
+
+    name: str
+    path: list[int]
+    type: str
+    builtin: NotRequired[str | None]
+    location: NotRequired[int]
+
+
+class UniformBlock(TypedDict):
+    """The block of all uniforms."""
+
+    size: int
+    """Bytes."""
+    group: int
+    binding: int
+
+
+class SourceBlock(TypedDict):
+    """The place of a uniform in a block of the source, in bytes, in the layout std140."""
+
+    name: str
+    offset: int
+    strides: list[int]
+    """Of its arrays, the outermost first."""
+    matrix_stride: int
+    row_major: bool
+
+
+class SourcePlace(TypedDict, total=False):
+    """Absent for a uniform that is in no block of the source."""
+
+    block: SourceBlock
+
+
+class ProgramPlace(BlockPlace, total=False):
+    """The place of a uniform of a program in the target's block, in bytes; absent without a block."""
+
+    array_stride: int
+    matrix_stride: int
+
+
+class ProgramUniform(SourcePlace, ProgramPlace):
+    """A uniform of a program."""
+
+    name: str
+    stages: list[str]
+    """Those that read it."""
+    type: str
+    """Of one element."""
+    lengths: list[int]
+    """Of the arrays around it, the outermost first."""
+
+
+class ProgramTexture(TypedDict):
+    """A texture of a program."""
+
+    name: str
+    stages: list[str]
+    dimension: str
+    """2d, 3d, cube, 2d-array or cube-array."""
+    sample_type: str
+    """float, depth, sint or uint."""
+    filterable: bool
+    sampler: str
+    """filtering, comparison, non-filtering, or '' where it needs none."""
+    binding: TextureBinding | None
+
+
+class ProgramReflection(TypedDict):
+    """What a renderer needs to draw with a program of two stages."""
+
+    format: int
+    program: str
+    target: str
+    rows: str
+    """bottom-first or top-first."""
+    stages: dict[str, StageFile]
+    attributes: list[AttributeRecord]
+    varyings: list[VaryingRecord]
+    outputs: list[OutputRecord]
+    uniform_block: UniformBlock | None
+    uniforms: list[ProgramUniform]
+    textures: list[ProgramTexture]
+    renames: dict[str, dict[str, str]]
+    """Stage → a name in the source → its name in the shader."""
+    warnings: list[str]
