@@ -27,11 +27,11 @@ from sssgen.targets import registry
 from sssgen.targets.assemble import About, Program, emit
 from sssgen.targets.descriptor import Embedded, Target
 from sssgen.targets.reflection import as_text, reflect
-from sssgen.targets.reflection_record import Reflection
 
 if TYPE_CHECKING:
     from sssgen.passes.ranges.sites import Site
     from sssgen.pipeline.trace import Trace
+    from sssgen.targets.reflection_record import Reflection
 
 FORMS = ("shader", "functions")
 GUARDS = ("auto", "all", "none")

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Callable, Collection, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sssgen.ir.baked_textures import is_baked
 from sssgen.ir.constant_expressions import literal
@@ -25,10 +25,12 @@ from sssgen.targets.frame import LIBRARY, library
 from sssgen.targets.javascript_runtime import inlined_text, runtime_text
 from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text
 from sssgen.targets.printers.printer import Comments, Printer
-from sssgen.targets.reflection_record import Argument, TextureBinding
 from sssgen.targets.templates import NO_LINES, render
 from sssgen.targets.uniform_layout import Member, padding, place
 from sssgen.targets.used_frame import PER_LIGHT, UsedFrame, named, named_per_light, used_frame, with_names
+
+if TYPE_CHECKING:
+    from sssgen.targets.reflection_record import Argument, TextureBinding
 
 _MARK = re.compile(r"\x02(\d{1,9})\x03", re.ASCII)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, Struct, spell
@@ -13,25 +13,27 @@ from sssgen.support.paths import display_name
 from sssgen.targets.assemble import Emitted, Program, printer_for, property_name
 from sssgen.targets.chain_inputs import CHAIN_INPUTS
 from sssgen.targets.descriptor import Target
-from sssgen.targets.reflection_record import (
-    BlockPlace,
-    Bound,
-    BufferMember,
-    BufferRecord,
-    Declared,
-    EmbeddedExpressions,
-    Kernel,
-    Named,
-    ParameterRecord,
-    ParameterSource,
-    Reflection,
-    Shelled,
-    SlotRecord,
-    StageInterface,
-    TextureRecord,
-    UniformRecord,
-)
 from sssgen.targets.texture_import import default_color, has_hint, import_of
+
+if TYPE_CHECKING:
+    from sssgen.targets.reflection_record import (
+        BindingRecord,
+        BlockPlace,
+        BufferMember,
+        BufferRecord,
+        DeclarationRecord,
+        EmbeddedExpressions,
+        Kernel,
+        NameRecord,
+        ParameterRecord,
+        ParameterSource,
+        Reflection,
+        ShellPart,
+        SlotRecord,
+        StageInterface,
+        TextureRecord,
+        UniformRecord,
+    )
 
 VERSION = 1
 """The format's version; it is increased when a reader of older files would misread newer ones."""
@@ -52,7 +54,7 @@ def reflect(
         declared, quantity = _declared(target, program, uniform), uniform.quantity or None
         if isinstance(uniform.type, Sampler):
             color_space = "linear" if not has_hint(uniform, "source_color") else "sRGB"
-            bound: Bound = {"binding": emitted.bindings[len(textures)]} if emitted.bindings else {}
+            bound: BindingRecord = {"binding": emitted.bindings[len(textures)]} if emitted.bindings else {}
             textures.append(
                 {
                     **declared, "holds": quantity, "default": default_color(uniform),
@@ -127,7 +129,7 @@ def _signature(kind: str, emitted: Emitted) -> list[ParameterRecord]:
     return params
 
 
-def _shell(program: Program) -> Shelled:
+def _shell(program: Program) -> ShellPart:
     """The function around the chain, with the values that it takes, where the text has it as a function."""
     if program.shell is None:
         return {}
@@ -204,10 +206,10 @@ def as_text(data: Mapping[str, object]) -> str:
     return "{\n" + ",\n".join(parts) + "\n}\n"
 
 
-def _declared(target: Target, program: Program, uniform: Uniform) -> Declared:
+def _declared(target: Target, program: Program, uniform: Uniform) -> DeclarationRecord:
     source = program.source_names.get(uniform.name, uniform.name)
     technique, own_name = program.owners.get(source, ("", source))
-    names: Named = {
+    names: NameRecord = {
         "name": uniform.name, "type": spell(uniform.type), "source_name": source,
         "technique": technique, "technique_name": own_name,
     }  # fmt: skip

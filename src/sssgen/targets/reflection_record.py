@@ -1,6 +1,7 @@
 """The records of the reflection JSON, of a shader and of a program of two stages (docs/reflection.md).
 
-They are types only: what is read from a file is cast to them without a check, and a key that is absent stays absent.
+They are types only: what is read from a file is not checked against them. They take 5 ms to load, so modules on the way
+to a shader import them for the type checker alone.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ class BlockMember(BlockPlace):
     type: str
 
 
-class Named(TypedDict):
+class NameRecord(TypedDict):
     """The names of a parameter or texture."""
 
     name: str
@@ -38,7 +39,7 @@ class Named(TypedDict):
     """Its name as a property of the engine's object, where the target has such."""
 
 
-class Declared(Named):
+class DeclarationRecord(NameRecord):
     """What a parameter and a texture have in common."""
 
     range: list[float] | None
@@ -52,7 +53,7 @@ class Declared(Named):
     doc: str
 
 
-class UniformRecord(Declared, BlockPlace):
+class UniformRecord(DeclarationRecord, BlockPlace):
     """A parameter."""
 
     default: list[float]
@@ -82,16 +83,18 @@ class TextureBinding(TypedDict, total=False):
     sampler: int | str
 
 
-class Bound(TypedDict, total=False):
+class BindingRecord(TypedDict, total=False):
     """The binding of a texture; absent where the language binds by name."""
 
     binding: TextureBinding
 
 
-_Imported = TypedDict("_Imported", {"import": ImportSettings})  # a class cannot have a key that is a word of Python
+_ImportRecord = TypedDict(
+    "_ImportRecord", {"import": ImportSettings}
+)  # a class cannot have a key that is a word of Python
 
 
-class TextureRecord(Declared, _Imported, Bound):
+class TextureRecord(DeclarationRecord, _ImportRecord, BindingRecord):
     """A texture."""
 
     holds: str | None
@@ -223,13 +226,13 @@ class Kernel(TypedDict, total=False):
     storage_buffers: list[BufferRecord]
 
 
-class Shelled(TypedDict, total=False):
+class ShellPart(TypedDict, total=False):
     """What only a text has that contains the shell as a function."""
 
     shell: ShellRecord
 
 
-class Reflection(StageInterface, Kernel, Shelled):
+class Reflection(StageInterface, Kernel, ShellPart):
     """What an engine or a tool needs to bind a shader, and the source of each line."""
 
     format: int

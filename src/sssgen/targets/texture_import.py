@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler
-from sssgen.targets.reflection_record import ImportSettings
+
+if TYPE_CHECKING:
+    from sssgen.targets.reflection_record import ImportSettings
 
 
 def import_settings(

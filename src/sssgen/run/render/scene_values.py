@@ -29,7 +29,7 @@ from sssgen.scene.scene import DistanceTexture, Picture, Scene, placement
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.file_memo import CachedResult, note, remember
 from sssgen.support.paths import posix
-from sssgen.targets.reflection_record import Declared, Reflection, TextureRecord, UniformRecord
+from sssgen.targets.reflection_record import DeclarationRecord, Reflection, TextureRecord, UniformRecord
 from sssgen.targets.runtime.numpy_textures import Texture
 
 MOST_TEXTURES = 16
@@ -226,7 +226,7 @@ def _in_world_space(sidecar: BakeFile, geometry: Geometry | None) -> dict[str, A
     return values
 
 
-def _uniform(material: Material, entry: Declared) -> Uniform:
+def _uniform(material: Material, entry: DeclarationRecord) -> Uniform:
     """The uniform that an entry of the reflection comes from."""
     for stage in material.stages:
         modules = [stage.technique.module, *(binding.module for binding in stage.bindings.values())]

@@ -11,6 +11,7 @@ transposed where it is read.
 from __future__ import annotations
 
 from collections import Counter
+from typing import TYPE_CHECKING
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import FLOAT, INT, Array, Matrix, Sampler, Scalar, Struct, Vector, kind_of
@@ -21,8 +22,10 @@ from sssgen.targets.printers import hlsl_sizes
 from sssgen.targets.printers.hlsl_entry import print_entry
 from sssgen.targets.printers.printed_lines import Line, with_doc
 from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Printer
-from sssgen.targets.reflection_record import TextureBinding
 from sssgen.targets.uniform_layout import Member
+
+if TYPE_CHECKING:
+    from sssgen.targets.reflection_record import TextureBinding
 
 _SHIFTS = ("<<", ">>")
 LONGEST_UNROLLED = 8

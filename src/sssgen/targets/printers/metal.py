@@ -11,6 +11,8 @@ next member is packed.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import Array, Sampler, Struct, Type, Vector, unnested
 from sssgen.passes.stage.storage_layout import offsets
@@ -18,8 +20,10 @@ from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.atomic_printer import AtomicPrinter
 from sssgen.targets.printers.printed_lines import Line, with_doc, wrap
 from sssgen.targets.printers.printer import POSTFIX, PRIMARY
-from sssgen.targets.reflection_record import TextureBinding
 from sssgen.targets.uniform_layout import Member
+
+if TYPE_CHECKING:
+    from sssgen.targets.reflection_record import TextureBinding
 
 ARRAY = "fixed_array"
 

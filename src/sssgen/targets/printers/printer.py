@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
@@ -23,8 +24,10 @@ from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import failure
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, summary, wrap
-from sssgen.targets.reflection_record import TextureBinding
 from sssgen.targets.uniform_layout import Member
+
+if TYPE_CHECKING:
+    from sssgen.targets.reflection_record import TextureBinding
 
 _COLOR_LETTERS = str.maketrans("xyzw", "rgba")
 

@@ -5,6 +5,8 @@ Out parameters are pointers; a variable that is assigned only once is a `let`; u
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import VOID, Array, Sampler, Struct, Type
@@ -16,8 +18,10 @@ from sssgen.targets.printers.atomic_printer import AtomicPrinter
 from sssgen.targets.printers.printed_lines import Line, with_doc, wrap
 from sssgen.targets.printers.printer import PRIMARY, UNARY
 from sssgen.targets.printers.wgsl_entry import print_entry
-from sssgen.targets.reflection_record import TextureBinding
 from sssgen.targets.uniform_layout import Member, padding
+
+if TYPE_CHECKING:
+    from sssgen.targets.reflection_record import TextureBinding
 
 _TYPED = (ir.Local, ir.Global, ir.Call, ir.Construct)
 
