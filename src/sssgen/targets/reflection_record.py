@@ -89,9 +89,8 @@ class BindingRecord(TypedDict, total=False):
     binding: TextureBinding
 
 
-_ImportRecord = TypedDict(
-    "_ImportRecord", {"import": ImportSettings}
-)  # a class cannot have a key that is a word of Python
+# a class cannot have a key that is a word of Python
+_ImportRecord = TypedDict("_ImportRecord", {"import": ImportSettings})
 
 
 class TextureRecord(DeclarationRecord, _ImportRecord, BindingRecord):
