@@ -49,7 +49,8 @@ def run(request: pytest.FixtureRequest, backend: Callable[[str], Backend]) -> Ru
         if request.param == "gl":
             return by_opengl(machine, dispatch)
         if request.param == "webgpu":
-            block = shell_values.material_block(reflection, values) if reflection["uniforms"] else b""
+            size = reflection["uniform_block_size"] or 0
+            block = shell_values.material_block(size, reflection["uniforms"], values)
             return by_webgpu(machine, dispatch._replace(block=block))
         lengths = {one["name"]: [buffers[block].size] for one in reflection["uniforms"]
                    for block in buffers if f" of {block}." in one["doc"]}  # fmt: skip

@@ -177,7 +177,7 @@ def _translate(
     finally:
         if trace is not None:
             trace.write(os.path.dirname(arguments.output) or ".")
-    renamed = explain_renames(compiled.reflection.get("renames", {}), target, loaded, compiled.files)
+    renamed = explain_renames(compiled.reflection["renames"], target, loaded, compiled.files)
     warnings = [*(loaded.warnings if loaded else []), *compiled.warnings]
     _print(arguments, compiled.files, warnings, renamed, loaded.constants if loaded else [])
     return OK

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from sssgen.ir.nodes import Module, Uniform
 from sssgen.ir.types import kind_of
@@ -31,6 +31,7 @@ from sssgen.targets.reflection import as_text, reflect
 if TYPE_CHECKING:
     from sssgen.passes.ranges.sites import Site
     from sssgen.pipeline.trace import Trace
+    from sssgen.targets.reflection_record import Reflection
 
 FORMS = ("shader", "functions")
 GUARDS = ("auto", "all", "none")
@@ -45,11 +46,11 @@ class Compiled(NamedTuple):
     warnings: list[Diagnostic]
 
     @property
-    def reflection(self) -> dict[str, Any]:
+    def reflection(self) -> Reflection:
         """The reflection, parsed at each access; the caller may change it."""
         import json
 
-        reflection: dict[str, Any] = json.loads(list(self.files.values())[-1])
+        reflection: Reflection = json.loads(list(self.files.values())[-1])
         return reflection
 
 

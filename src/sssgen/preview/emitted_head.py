@@ -11,6 +11,7 @@ from typing import Any, NotRequired, TypedDict
 from sssgen.ir.view_textures import BACK_FACES, DISTANT, LIGHT
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled
+from sssgen.targets.reflection_record import TextureRecord, UniformRecord
 
 TARGET = "threejs"
 DRAWN_BY_PAGE = (BACK_FACES, LIGHT, DISTANT)
@@ -29,7 +30,7 @@ class Control(TypedDict):
     doc: str
     type: str
     range: list[float] | None
-    unit: str
+    unit: str | None
     color: bool
     default: list[float]
     value: list[float]
@@ -69,14 +70,14 @@ def emitted_head(
         "name": material.name,
         "title": material.title,
         "module": next(text for name, text in compiled.files.items() if name.endswith(".js")),
-        "controls": controls(reflection, values, in_scene),
+        "controls": controls(reflection["uniforms"], values, in_scene),
         "textures": [slot(texture, texture["property"], texture["drawn"] or "") for texture in reflection["textures"]],
         "two_sided": reflection["two_sided"],
-        "cost": {kind: entry["cost"] for kind, entry in reflection["entries"].items() if "cost" in entry},
+        "cost": {kind: entry["cost"] for kind, entry in reflection["entries"].items()},
     }
 
 
-def slot(texture: Mapping[str, Any], name: str, drawn: str = "") -> Slot:
+def slot(texture: TextureRecord, name: str, drawn: str = "") -> Slot:
     """A texture of a reflection, without its texels; `name` is its property on the page."""
     return {
         "property": name,
@@ -92,7 +93,7 @@ def slot(texture: Mapping[str, Any], name: str, drawn: str = "") -> Slot:
 
 
 def controls(
-    reflection: Mapping[str, Any], values: Mapping[str, Sequence[float]], in_scene: Collection[str]
+    uniforms: Sequence[UniformRecord], values: Mapping[str, Sequence[float]], in_scene: Collection[str]
 ) -> list[Control]:
     """The parameters that a person may change."""
     return [
@@ -111,5 +112,5 @@ def controls(
             "drawn": uniform["drawn"],
             "in_scene": uniform["source_name"] in in_scene,
         }
-        for uniform in reflection["uniforms"]
+        for uniform in uniforms
     ]

@@ -19,6 +19,7 @@ from sssgen.preview.emitted_head import controls, slot
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix, stem
 from sssgen.support.text_files import read_text
+from sssgen.targets.reflection_record import Reflection, UniformRecord
 
 TARGET = "glsl-es-300"
 PLAIN = (".glsl", ".frag", ".fs")
@@ -108,23 +109,23 @@ def _head(compiled: Compiled, values: Mapping[str, Sequence[float]], in_scene: C
     if any(uniform["source_name"] == "aspect" and uniform["technique"] for uniform in own):  # of a camera in the chain
         given.update({row["name"]: "aspect" for row in own if row["source_name"] == "aspect"})
         own = [row for row in own if row["source_name"] != "aspect"]
-    rows = [{**uniform, "property": uniform["name"]} for uniform in own]
+    rows: list[UniformRecord] = [{**uniform, "property": uniform["name"]} for uniform in own]
     return {
         "shape": "",
         "shapes": [""],
         "mesh": "",
         "flat": {"fragment": fragment, "given": given},
-        "controls": controls({"uniforms": rows}, values, in_scene),
+        "controls": controls(rows, values, in_scene),
         "textures": [slot(texture, texture["name"]) for texture in reflection["textures"]],
         "background": BACKGROUND,
         "exposure": 1.0,
         "lights": [],
         "saves": "",
-        "cost": {kind: entry["cost"] for kind, entry in reflection["entries"].items() if "cost" in entry},
+        "cost": {kind: entry["cost"] for kind, entry in reflection["entries"].items()},
     }
 
 
-def _page_input(uniform: Mapping[str, Any]) -> str:
+def _page_input(uniform: UniformRecord) -> str:
     """What the page gives for a uniform of plain GLSL; '' for nothing."""
     if uniform["technique"]:
         return ""
@@ -166,7 +167,7 @@ def _call(function: Function) -> str:
     return f"{function.name}({', '.join(arguments)})"
 
 
-def _vertex(reflection: Mapping[str, Any], file_name: str) -> str:
+def _vertex(reflection: Reflection, file_name: str) -> str:
     """A vertex shader for one triangle that gives each two-component input the place in the picture."""
     inputs = [row for row in reflection["stage_inputs"] if not row["builtin"]]
     for row in inputs:

@@ -24,6 +24,7 @@ from sssgen.scene.geometry import Mesh
 from sssgen.scene.scene import Picture as PictureFile
 from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import failure
+from sssgen.targets.reflection_record import Reflection
 from sssgen.targets.runtime.numpy_textures import Texture
 
 
@@ -105,7 +106,7 @@ def picture_of(scene: Scene, material: Material, choices: Choices) -> Picture:
     return Picture(head, pieces.data, material, shell.parameters)
 
 
-def missing_text(scene: Scene, material: Material, reflection: Mapping[str, Any], shell: Shell) -> str:
+def missing_text(scene: Scene, material: Material, reflection: Reflection, shell: Shell) -> str:
     """What a person must do for the textures that are missing, in place of a picture; '' where there are all."""
     errors = missing_textures(scene, material, reflection, shell.textures)
     return "\n\n".join(error.render() for error in errors)
@@ -134,7 +135,7 @@ def _camera(scene: Scene, shape: str) -> dict[str, Any]:
     return {"position": position, "target": target, "field_of_view": scene.camera.field_of_view}
 
 
-def _without_views(reflection: Mapping[str, Any]) -> dict[str, Any]:
+def _without_views(reflection: Reflection) -> Reflection:
     """The reflection without the textures that the page draws, so that nothing else draws them."""
     textures = [texture for texture in reflection["textures"] if texture["drawn"] not in DRAWN_BY_PAGE]
     return {**reflection, "textures": textures}

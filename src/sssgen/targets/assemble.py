@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Callable, Collection, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sssgen.ir.baked_textures import is_baked
 from sssgen.ir.constant_expressions import literal
@@ -28,6 +28,9 @@ from sssgen.targets.printers.printer import Comments, Printer
 from sssgen.targets.templates import NO_LINES, render
 from sssgen.targets.uniform_layout import Member, padding, place
 from sssgen.targets.used_frame import PER_LIGHT, UsedFrame, check_inputs, named, named_per_light, used_frame, with_names
+
+if TYPE_CHECKING:
+    from sssgen.targets.reflection_record import Argument, TextureBinding
 
 _MARK = re.compile(r"\x02(\d{1,9})\x03", re.ASCII)
 
@@ -101,11 +104,11 @@ class Emitted(NamedTuple):
     lines: dict[str, dict[int, Span]]
     members: list[Member]
     block_size: int
-    bindings: list[dict[str, int | str]]
+    bindings: list[TextureBinding]
     """Where each texture and its sampler are bound; empty where the text does not state it."""
-    calls: Mapping[str, list[dict[str, Any]]]
+    calls: Mapping[str, list[Argument]]
     """Entry kind → its parameters in order, with what the shell passes for each."""
-    embedded_calls: Mapping[str, Mapping[str, list[dict[str, Any]]]]
+    embedded_calls: Mapping[str, Mapping[str, list[Argument]]]
     """The same of the embedded languages."""
 
 
@@ -228,13 +231,13 @@ def _runtime(target: Target, outputs: Sequence[OutputFile], standalone: bool) ->
     return {}
 
 
-def _calls(context: Mapping[str, Any]) -> dict[str, list[dict[str, Any]]]:
+def _calls(context: Mapping[str, Any]) -> dict[str, list[Argument]]:
     return {kind: entry["params"] for kind, entry in context["entries"].items()}
 
 
 def _printed(
     target: Target, program: Program, form: str, marks: list[Span], without: Collection[str] = ()
-) -> tuple[dict[str, Any], list[Member], int, list[dict[str, int | str]]]:
+) -> tuple[dict[str, Any], list[Member], int, list[TextureBinding]]:
     """A template's variables without some entries, and where its uniforms and textures are."""
     module = program.module
     inputs = {kind: names for kind, (_, names) in program.entries.items() if kind not in without}
@@ -385,13 +388,17 @@ def _entry(
     texts_of_names = {**target.spelling, **functions}
     leading = ["surface"] if len(function.params) > 0 and isinstance(function.params[0].type, Struct) else []
     names = [*leading, *inputs]
-    params = []
+    params: list[Argument] = []
     for index, param in enumerate(function.params):
         name = names[index] if index < len(names) else ""
         uniform = "" if name else param.passes
         text = with_names(expressions.get(name, name), texts_of_names) if name else _passed(printer, param, uniform)
-        described = {"name": param.name, "type": printer.type(param.type), "base": spell(param.type)}
-        params.append({**described, "input": name, "uniform": uniform, "expression": text})
+        params.append(
+            {
+                "name": param.name, "type": printer.type(param.type), "base": spell(param.type),
+                "input": name, "uniform": uniform, "expression": text,
+            }
+        )  # fmt: skip
     listed = ", ".join([param["expression"] for param in params])
     if target.declared:  # all uniforms are among the arguments
         listed = textwrap.fill(listed, WIDTH - 12, subsequent_indent=" " * 12, break_long_words=False)

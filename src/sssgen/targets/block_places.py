@@ -7,11 +7,12 @@ place there, in the layout std140 (OpenGL ES 3.0, section 2.12.6.4), which WebGL
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from sssgen.ir.nodes import Module, Uniform
 from sssgen.ir.types import Array, Matrix, Struct, Type
 from sssgen.passes.stage.storage_layout import extent, offsets
+from sssgen.targets.reflection_record import SourcePlace
 
 RULE = "std140"
 
@@ -38,7 +39,7 @@ def block_members(module: Module) -> dict[tuple[str, str], Member]:
     return members
 
 
-def place_in_block(uniform: Uniform, members: Mapping[tuple[str, str], Member]) -> dict[str, Any]:
+def place_in_block(uniform: Uniform, members: Mapping[tuple[str, str], Member]) -> SourcePlace:
     """The place of a uniform in its `block` of the source; nothing for one that is in none.
 
     `strides` are those of its arrays, the outermost first; a matrix has `matrix_stride` between its columns, or between
@@ -63,8 +64,12 @@ def place_in_block(uniform: Uniform, members: Mapping[tuple[str, str], Member]) 
         strides.append(extent(type_, RULE).stride)
         type_ = type_.element
     stride = extent(type_, RULE).stride if isinstance(type_, Matrix) else 0
-    place = {"name": uniform.block, "offset": offset, "strides": strides, "matrix_stride": stride}
-    return {"block": {**place, "row_major": uniform.row_major and stride > 0}}
+    return {
+        "block": {
+            "name": uniform.block, "offset": offset, "strides": strides,
+            "matrix_stride": stride, "row_major": uniform.row_major and stride > 0,
+        }
+    }  # fmt: skip
 
 
 def _is_in(name: str, root: str) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence, Set
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Array, Matrix, Sampler, Type, components, kind_of, spell
@@ -12,6 +12,20 @@ from sssgen.passes.stage.stage_interface import Slot, interpolation
 from sssgen.targets.assemble import Program
 from sssgen.targets.block_places import Member, place_in_block
 from sssgen.targets.descriptor import Target
+from sssgen.targets.reflection_record import (
+    AttributeRecord,
+    OutputRecord,
+    ProgramPlace,
+    ProgramReflection,
+    ProgramTexture,
+    ProgramUniform,
+    Reflection,
+    SourcePlace,
+    StageFile,
+    TextureBinding,
+    UniformBlock,
+    VaryingRecord,
+)
 from sssgen.targets.uniform_layout import place
 
 VERSION = 1
@@ -27,7 +41,7 @@ class StageFacts(NamedTuple):
     """One stage of a program, translated."""
 
     program: Program
-    reflection: Mapping[str, Any]
+    reflection: Reflection
     names: Mapping[str, str]
     """A variable's name → its name in the source."""
     uniforms: Sequence[Uniform]
@@ -42,9 +56,12 @@ class StageFacts(NamedTuple):
     """The members of its uniform blocks."""
 
 
-def reflect_program(name: str, target: Target, rows: str, vertex: StageFacts, fragment: StageFacts) -> dict[str, Any]:
+def reflect_program(
+    name: str, target: Target, rows: str, vertex: StageFacts, fragment: StageFacts
+) -> ProgramReflection:
     """What a renderer needs to draw with the program; docs/reflection.md describes it."""
     stages = {"vertex": vertex, "fragment": fragment}
+    block, uniforms, textures = _bindings(target, stages)
     return {
         "format": VERSION,
         "program": name,
@@ -53,14 +70,16 @@ def reflect_program(name: str, target: Target, rows: str, vertex: StageFacts, fr
         "stages": {kind: _file(facts) for kind, facts in stages.items()},
         "attributes": _attributes(vertex),
         "varyings": _varyings(vertex),
-        "outputs": _places(fragment, "stage_outputs"),
-        **_bindings(target, stages),
+        "outputs": _outputs(fragment),
+        "uniform_block": block,
+        "uniforms": uniforms,
+        "textures": textures,
         "renames": {kind: facts.reflection["renames"] for kind, facts in stages.items()},
         "warnings": list(dict.fromkeys(text for facts in stages.values() for text in facts.reflection["warnings"])),
     }
 
 
-def exceeded_limits(program: Mapping[str, Any], target: Target) -> list[str]:
+def exceeded_limits(program: ProgramReflection, target: Target) -> list[str]:
     """Where a program needs more than every device of the target has."""
     limits, counts = target.limits, list[tuple[str, int, int]]()
     for stage in program["stages"]:
@@ -71,8 +90,8 @@ def exceeded_limits(program: Mapping[str, Any], target: Target) -> list[str]:
     places = sum(attribute["locations"] for attribute in program["attributes"])
     counts.append(("locations of attributes", places, limits.attributes))
     counts.append(("values between the stages", len(program["varyings"]), limits.varyings))
-    block = program["uniform_block"] or {"size": 0}
-    counts.append(("bytes of uniforms", block["size"], limits.uniform_block))
+    block = program["uniform_block"]
+    counts.append(("bytes of uniforms", block["size"] if block else 0, limits.uniform_block))
     return [
         f"the program has {count} {what}: devices of {target.title} have at least {least}, and some no more"
         for what, count, least in counts
@@ -80,13 +99,13 @@ def exceeded_limits(program: Mapping[str, Any], target: Target) -> list[str]:
     ]
 
 
-def _file(facts: StageFacts) -> dict[str, str]:
+def _file(facts: StageFacts) -> StageFile:
     (file,) = facts.reflection["files"]
     (entry,) = file["stages"].values()
     return {"file": file["name"], "entry": entry}
 
 
-def _attributes(vertex: StageFacts) -> list[dict[str, Any]]:
+def _attributes(vertex: StageFacts) -> list[AttributeRecord]:
     """The inputs of the vertex shader; a matrix has one location a column, an array one an element."""
     assert vertex.program.stage is not None
     slots: dict[str, list[Slot]] = {}
@@ -112,59 +131,63 @@ def _vertex_format(type_: Type) -> str:
     return f"{kind}x{count}" if count > 1 else kind
 
 
-def _varyings(vertex: StageFacts) -> list[dict[str, Any]]:
+def _varyings(vertex: StageFacts) -> list[VaryingRecord]:
     """What the vertex shader passes to the fragment shader."""
     assert vertex.program.stage is not None
     return [
-        {"name": slot.link or vertex.names.get(slot.variable.name, slot.variable.name), "path": list(slot.path)}
-        | {"type": spell(slot.type), "location": slot.location, "interpolation": interpolation(slot) or "smooth"}
+        {
+            "name": slot.link or vertex.names.get(slot.variable.name, slot.variable.name), "path": list(slot.path),
+            "type": spell(slot.type), "location": slot.location, "interpolation": interpolation(slot) or "smooth",
+        }
         for slot in vertex.program.stage.outputs
         if slot.location >= 0
-    ]
+    ]  # fmt: skip
 
 
-def _places(facts: StageFacts, side: str) -> list[dict[str, Any]]:
-    return [
-        {"name": facts.names.get(slot["name"], slot["name"]), "path": slot["path"], "type": slot["type"]}
-        | ({"builtin": slot["builtin"]} if slot["location"] is None else {"location": slot["location"]})
-        for slot in facts.reflection[side]
-    ]
+def _outputs(fragment: StageFacts) -> list[OutputRecord]:
+    outputs: list[OutputRecord] = []
+    for slot in fragment.reflection["stage_outputs"]:
+        name = fragment.names.get(slot["name"], slot["name"])
+        output: OutputRecord = {"name": name, "path": slot["path"], "type": slot["type"]}
+        if slot["location"] is None:
+            output["builtin"] = slot["builtin"]
+        else:
+            output["location"] = slot["location"]
+        outputs.append(output)
+    return outputs
 
 
-def _bindings(target: Target, stages: Mapping[str, StageFacts]) -> dict[str, Any]:
-    """The uniforms with their block, and the textures with their samplers."""
+def _bindings(
+    target: Target, stages: Mapping[str, StageFacts]
+) -> tuple[UniformBlock | None, list[ProgramUniform], list[ProgramTexture]]:
+    """The block of the uniforms, the uniforms, and the textures with their samplers."""
     first = next(iter(stages.values()))
     members, size = place(first.uniforms, target.layout)
     offsets = {member.uniform.name: (member.offset, member.size) for member in members}
-    uniforms: list[dict[str, Any]] = []
-    textures: list[dict[str, Any]] = []
+    uniforms: list[ProgramUniform] = []
+    textures: list[ProgramTexture] = []
     bindings = [texture.get("binding") for texture in first.reflection["textures"]] if target.layout else []
     for index, declared in enumerate(first.uniforms):
         readers = {kind: facts for kind, facts in stages.items() if facts.uniforms[index].name in facts.own}
         reader = next(iter(readers.values()))
         uniform = reader.uniforms[index]
-        entry: dict[str, Any] = {"name": uniform.source, "stages": list(readers)}
         if isinstance(uniform.type, Sampler):
             names = [(facts.uniforms[index].name, facts) for facts in readers.values()]
             sampled = any(name in facts.sampled for name, facts in names)
             passed = any(name in facts.passed for name, facts in names)
             binding = bindings[len(textures)] if bindings else None
-            textures.append(entry | _texture(uniform.type, sampled, passed, binding))
+            textures.append(_texture(uniform, list(readers), sampled, passed, binding))
         else:
-            entry |= _description(uniform) | place_in_block(uniform, reader.blocks)
-            if target.layout:
-                entry |= _in_block(uniform.type, *offsets[declared.name])
-            uniforms.append(entry)
-    block = {"size": size} | _block_place(target) if target.layout and uniforms else None
-    return {"uniform_block": block, "uniforms": uniforms, "textures": textures}
+            own: ProgramPlace = _in_block(uniform.type, *offsets[declared.name]) if target.layout else {}
+            uniforms.append(_uniform(uniform, list(readers), place_in_block(uniform, reader.blocks), own))
+    block: UniformBlock | None = None
+    if target.layout and uniforms:
+        block = {"size": size, "group": target.material_group, "binding": target.bindings.first}
+    return block, uniforms, textures
 
 
-def _block_place(target: Target) -> dict[str, int]:
-    return {"group": target.material_group, "binding": target.bindings.first}
-
-
-def _description(uniform: Uniform) -> dict[str, Any]:
-    """A uniform's name, the type of an element, and the lengths of the arrays around it, the outermost first.
+def _uniform(uniform: Uniform, readers: list[str], source: SourcePlace, block: ProgramPlace) -> ProgramUniform:
+    """A uniform with the type of an element, and the lengths of the arrays around it, the outermost first.
 
     Each `[]` in the name takes one of the lengths; one that is left is the length of the uniform itself.
     """
@@ -173,21 +196,27 @@ def _description(uniform: Uniform) -> dict[str, Any]:
     if isinstance(uniform.type, Array) and not lengths:
         lengths = [uniform.type.length]
     name = _ARRAY.sub("[]", uniform.source).removesuffix("[]")
-    return {"name": name, "type": spell(element), "lengths": lengths}
+    return {"name": name, "stages": readers, "type": spell(element), "lengths": lengths, **source, **block}
 
 
-def _in_block(type_: Type, offset: int, size: int) -> dict[str, int]:
+def _in_block(type_: Type, offset: int, size: int) -> ProgramPlace:
     element = type_.element if isinstance(type_, Array) else type_
     matrix_stride = 16 if isinstance(element, Matrix) else 0
     array_stride = (16 * element.columns if isinstance(element, Matrix) else 16) if isinstance(type_, Array) else 0
     return {"offset": offset, "size": size, "array_stride": array_stride, "matrix_stride": matrix_stride}
 
 
-def _texture(type_: Sampler, sampled: bool, passed: bool, binding: Mapping[str, Any] | None) -> dict[str, Any]:
+def _texture(
+    uniform: Uniform, readers: list[str], sampled: bool, passed: bool, binding: TextureBinding | None
+) -> ProgramTexture:
+    type_ = uniform.type
+    assert isinstance(type_, Sampler)
     dimension = type_.dim.lower() + ("-array" if type_.array else "")
     sample = "depth" if type_.shadow else {"int": "sint", "uint": "uint"}.get(type_.kind, "float")
     sampler = "comparison" if type_.shadow else "filtering" if sample == "float" and sampled else "non-filtering"
     return {
+        "name": uniform.source,
+        "stages": readers,
         "dimension": dimension,
         "sample_type": sample,
         "filterable": sampled and sample == "float",

@@ -2,16 +2,38 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, Struct, spell
+from sssgen.passes.stage.stage_interface import Slot
 from sssgen.passes.stage.storage_layout import extent, offsets
 from sssgen.support.paths import display_name
 from sssgen.targets.assemble import Emitted, Program, printer_for, property_name
 from sssgen.targets.chain_inputs import CHAIN_INPUTS
 from sssgen.targets.descriptor import Target
 from sssgen.targets.texture_import import default_color, has_hint, import_of
+
+if TYPE_CHECKING:
+    from sssgen.targets.reflection_record import (
+        BindingRecord,
+        BlockPlace,
+        BufferMember,
+        BufferRecord,
+        DeclarationRecord,
+        EmbeddedExpressions,
+        Kernel,
+        NameRecord,
+        ParameterRecord,
+        ParameterSource,
+        Reflection,
+        ShellPart,
+        SlotRecord,
+        StageInterface,
+        TextureRecord,
+        UniformRecord,
+    )
 
 VERSION = 1
 """The format's version; it is increased when a reader of older files would misread newer ones."""
@@ -22,32 +44,28 @@ def reflect(
     program: Program,
     emitted: Emitted,
     form: str,
-) -> dict[str, Any]:
+) -> Reflection:
     """Everything that an engine or a tool needs to bind the shader, as JSON."""
     offsets = {member.uniform.name: member for member in emitted.members}
     blocked = bool(target.layout) and target.declares(form)
-    uniforms: list[dict[str, Any]] = []
-    textures: list[dict[str, Any]] = []
+    uniforms: list[UniformRecord] = []
+    textures: list[TextureRecord] = []
     for uniform in program.module.uniforms:
-        source = program.source_names.get(uniform.name, uniform.name)
-        technique, own_name = program.owners.get(source, ("", source))
-        entry: dict[str, Any] = {"name": uniform.name, "type": spell(uniform.type)}
-        entry |= {"source_name": source, "technique": technique, "technique_name": own_name}
-        if target.properties.style != "plain":
-            entry["property"] = property_name(target, source)
-        entry |= _description(uniform)
+        declared, quantity = _declared(target, program, uniform), uniform.quantity or None
         if isinstance(uniform.type, Sampler):
-            entry |= {"holds": uniform.quantity or None, "default": default_color(uniform)}
-            entry |= {"color_space": "linear" if not has_hint(uniform, "source_color") else "sRGB"}
-            entry["import"] = import_of(uniform)
-            if emitted.bindings:
-                entry["binding"] = emitted.bindings[len(textures)]
-            textures.append(entry)
+            color_space = "linear" if not has_hint(uniform, "source_color") else "sRGB"
+            bound: BindingRecord = {"binding": emitted.bindings[len(textures)]} if emitted.bindings else {}
+            textures.append(
+                {
+                    **declared, "holds": quantity, "default": default_color(uniform),
+                    "color_space": color_space, "import": import_of(uniform), **bound,
+                }
+            )  # fmt: skip
         else:
-            entry |= {"default": list(uniform.default), "quantity": uniform.quantity or None}
+            place: BlockPlace = {}
             if blocked:
-                entry |= {"offset": offsets[uniform.name].offset, "size": offsets[uniform.name].size}
-            uniforms.append(entry)
+                place = {"offset": offsets[uniform.name].offset, "size": offsets[uniform.name].size}
+            uniforms.append({**declared, "default": list(uniform.default), "quantity": quantity, **place})
     sources = {span.file for lines in emitted.lines.values() for span in lines.values()}
     names = {source: display_name(source, program.folder) for source in sources}
     return {
@@ -93,25 +111,25 @@ def reflect(
     }
 
 
-def _signature(kind: str, emitted: Emitted) -> list[dict[str, Any]]:
+def _signature(kind: str, emitted: Emitted) -> list[ParameterRecord]:
     """The parameters of an assembled function in order: what each is, and how this target's shell gets it."""
-    params = []
+    params: list[ParameterRecord] = []
     for index, call in enumerate(emitted.calls[kind]):
         known = CHAIN_INPUTS.get(call["input"])
-        entry = {"name": call["name"], "type": call["base"]}
+        source: ParameterSource = {"uniform": call["uniform"]}
         if known is not None:
-            entry |= {"input": call["input"], "meaning": known.meaning, "space": known.space or None}
-        else:
-            entry |= {"uniform": call["uniform"]}
-        entry["expression"] = call["expression"]
+            source = {"input": call["input"], "meaning": known.meaning, "space": known.space or None}
+        embedded: EmbeddedExpressions = {}
         if emitted.embedded_calls:
             others = {name: calls[kind][index]["expression"] for name, calls in emitted.embedded_calls.items()}
-            entry["embedded_expressions"] = others
-        params.append(entry)
+            embedded = {"embedded_expressions": others}
+        params.append(
+            {"name": call["name"], "type": call["base"], **source, "expression": call["expression"], **embedded}
+        )
     return params
 
 
-def _shell(program: Program) -> dict[str, Any]:
+def _shell(program: Program) -> ShellPart:
     """The function around the chain, with the values that it takes, where the text has it as a function."""
     if program.shell is None:
         return {}
@@ -119,52 +137,58 @@ def _shell(program: Program) -> dict[str, Any]:
     return {"shell": {"function": function.name, "inputs": list(inputs)}}
 
 
-def _stage(program: Program) -> dict[str, Any]:
+def _stage(program: Program) -> StageInterface:
     """The inputs and outputs of a whole shader; its uniforms are listed apart."""
     if program.stage is None:
         return {}
-    sides = {"stage_inputs": program.stage.inputs, "stage_outputs": program.stage.outputs}
-    return {
-        name: [
-            {"name": slot.variable.name, "builtin": slot.variable.builtin or None}
-            | {"path": list(slot.path), "type": spell(slot.type)}
-            | {"location": slot.location if slot.location >= 0 else None, "link": slot.link or None}
-            for slot in slots
-        ]
-        for name, slots in sides.items()
-    }
+    return {"stage_inputs": _slots(program.stage.inputs), "stage_outputs": _slots(program.stage.outputs)}
 
 
-def _compute(target: Target, program: Program) -> dict[str, Any]:
+def _slots(slots: Sequence[Slot]) -> list[SlotRecord]:
+    return [
+        {
+            "name": slot.variable.name, "builtin": slot.variable.builtin or None,
+            "path": list(slot.path), "type": spell(slot.type),
+            "location": slot.location if slot.location >= 0 else None, "link": slot.link or None,
+        }
+        for slot in slots
+    ]  # fmt: skip
+
+
+def _compute(target: Target, program: Program) -> Kernel:
     """The workgroup of a compute shader, and its storage buffers with the layout of their members."""
     module = program.module
     if not module.workgroup:
         return {}
     printer = printer_for(target, module)
-    buffers = []
+    buffers: list[BufferRecord] = []
     for variable in printer.buffers:
         assert isinstance(variable.type, Struct)
         places = zip(variable.type.fields, offsets(variable.type, variable.layout), strict=True)
-        members = [
-            {"name": field.name, "type": spell(field.type), "offset": offset}
-            | {"size": extent(field.type, variable.layout).size, "stride": extent(field.type, variable.layout).stride}
+        members: list[BufferMember] = [
+            {
+                "name": field.name, "type": spell(field.type), "offset": offset,
+                "size": extent(field.type, variable.layout).size, "stride": extent(field.type, variable.layout).stride,
+            }
             for field, offset in places
-        ]
+        ]  # fmt: skip
         buffers.append(
-            {"name": variable.name, "block": variable.type.name, "access": variable.access or "read_write"}
-            | {"layout": variable.layout, "binding": {"binding": printer.buffer_binding(variable)}}
-            | {"least_size": extent(variable.type, variable.layout).size, "members": members}
-        )
+            {
+                "name": variable.name, "block": variable.type.name, "access": variable.access or "read_write",
+                "layout": variable.layout, "binding": {"binding": printer.buffer_binding(variable)},
+                "least_size": extent(variable.type, variable.layout).size, "members": members,
+            }
+        )  # fmt: skip
     return {"workgroup_size": list(module.workgroup), "storage_buffers": buffers}
 
 
-def _conventions(target: Target) -> dict[str, Any]:
+def _conventions(target: Target) -> dict[str, str | list[float]]:
     """The conventions that the descriptor declares."""
     declared = {name: value for name, value in target.conventions._asdict().items() if value}
     return {name: list(value) if isinstance(value, tuple) else value for name, value in declared.items()}
 
 
-def as_text(data: dict[str, Any]) -> str:
+def as_text(data: Mapping[str, object]) -> str:
     """The reflection as JSON, one uniform, texture or entry a line. (json's own indenting is ten times slower.)"""
     import json
 
@@ -182,10 +206,19 @@ def as_text(data: dict[str, Any]) -> str:
     return "{\n" + ",\n".join(parts) + "\n}\n"
 
 
-def _description(uniform: Uniform) -> dict[str, Any]:
-    hints = dict(uniform.hints)
+def _declared(target: Target, program: Program, uniform: Uniform) -> DeclarationRecord:
+    source = program.source_names.get(uniform.name, uniform.name)
+    technique, own_name = program.owners.get(source, ("", source))
+    names: NameRecord = {
+        "name": uniform.name, "type": spell(uniform.type), "source_name": source,
+        "technique": technique, "technique_name": own_name,
+    }  # fmt: skip
+    if target.properties.style != "plain":
+        names["property"] = property_name(target, source)
+    hints: dict[str, tuple[Any, ...]] = dict(uniform.hints)
     limits = hints.get("hint_range")
     return {
+        **names,
         "range": list(limits) if limits else None,
         "unit": hints.get("unit", (None,))[0],
         "color": "source_color" in hints,

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler
 
+if TYPE_CHECKING:
+    from sssgen.targets.reflection_record import ImportSettings
+
 
 def import_settings(
     dimension: str = "2D", wrap: str = "repeat", srgb: bool = False, mipmaps: bool = True, normal_map: bool = False
-) -> dict[str, Any]:
+) -> ImportSettings:
     """The settings as JSON: `dimension` is 2D, 3D or Cube, `wrap` repeat or clamp. The filter is always linear."""
     return {
         "dimension": dimension, "srgb": srgb, "filter": "linear", "wrap": wrap, "mipmaps": mipmaps,
@@ -18,7 +21,7 @@ def import_settings(
     }  # fmt: skip
 
 
-def import_of(uniform: Uniform) -> dict[str, Any]:
+def import_of(uniform: Uniform) -> ImportSettings:
     """The import settings of the image for a texture."""
     assert isinstance(uniform.type, Sampler)
     dimension, clamped = uniform.type.dim, has_hint(uniform, "repeat_disable")

@@ -36,6 +36,7 @@ from sssgen.run.evaluate.deviation import GOAL
 from sssgen.run.render import metal_values, shell_values
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.targets.block_places import block_members
+from sssgen.targets.reflection_record import BlockMember, BufferRecord, TextureBinding
 
 TEXTS = {"glsl": ("gl", "glsl-330"), "wgsl": ("webgpu", "wgsl"), "metal": ("metal", "metal")}
 """The translations that are compared, with the back end and the target of each."""
@@ -197,14 +198,12 @@ class _Verification:
         for block in dict.fromkeys([uniform.block for uniform in self.module.uniforms if uniform.block]):
             own = [uniform for uniform in self.module.uniforms if uniform.block == block]
             ends = [places[block, uniform.source].offset + extent(uniform.type, "std140").size for uniform in own]
-            layout = {
-                "uniform_block_size": -(-max(ends) // 16) * 16,
-                "uniforms": [
-                    {"name": uniform.name, "type": spell(uniform.type), "offset": places[block, uniform.source].offset}
-                    for uniform in own
-                ],
-            }
-            blocks[block] = Block(shell_values.material_block(layout, values.uniforms), Place(0, 0))
+            size = -(-max(ends) // 16) * 16
+            members: list[BlockMember] = [
+                {"name": uniform.name, "type": spell(uniform.type), "offset": places[block, uniform.source].offset}
+                for uniform in own
+            ]
+            blocks[block] = Block(shell_values.material_block(size, members, values.uniforms), Place(0, 0))
         return blocks
 
     def on_processor(self, values: RoundValues, order: int) -> KernelRun:
@@ -229,7 +228,7 @@ class _Verification:
         listed = self.compiled[name].reflection["storage_buffers"]
         return {own.name: buffers[other["block"]] for own, other in zip(self._buffers_of(listed), listed, strict=True)}
 
-    def _buffers_of(self, listed: Sequence[Any]) -> list[Variable]:
+    def _buffers_of(self, listed: Sequence[BufferRecord]) -> list[Variable]:
         """The module's buffers that a reflection lists; both have the order of their declarations."""
         assert len(listed) == len(self.buffers)
         return self.buffers
@@ -251,7 +250,8 @@ class _Verification:
         if name == "metal":
             block = metal_values.material_block(reflection, uniforms)
         elif name == "wgsl":
-            block = shell_values.material_block(reflection, by_name) if reflection["uniforms"] else b""
+            size = reflection["uniform_block_size"] or 0
+            block = shell_values.material_block(size, reflection["uniforms"], by_name)
             group = 1
         entry = next(iter(reflection["files"][0]["stages"].values()))
         buffers = zip(self._buffers_of(listed), listed, strict=True)
@@ -282,8 +282,8 @@ def _block(buffer: Variable) -> str:
     return buffer.type.name
 
 
-def _place(binding: Mapping[str, Any]) -> Place:
-    return Place(binding.get("group", 0), binding.get("texture", 0), binding.get("sampler", -1))
+def _place(binding: TextureBinding) -> Place:
+    return Place(int(binding.get("group", 0)), int(binding.get("texture", 0)), int(binding.get("sampler", -1)))
 
 
 def _numbers(buffer: Array, layout: Sequence[Word]) -> Array:

@@ -15,6 +15,7 @@ from sssgen.passes.cost import Cost
 from sssgen.pipeline.compiler import all_targets, compile
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import posix
+from sssgen.targets.reflection_record import Reflection
 
 names = examples
 """The example materials."""
@@ -24,8 +25,9 @@ def describe(name: str) -> dict[str, Any]:
     """Everything about an example material, or about that of a .toml file. Raises SssgenError."""
     material = load_material(name)
     refused, reflection = _compile_for_all(material)
-    values = {uniform["source_name"]: uniform["default"] for uniform in reflection.get("uniforms", ())}
-    costs = {entry["function"]: _cost(Cost(**entry["cost"])) for entry in reflection.get("entries", {}).values()}
+    uniforms, entries = (reflection["uniforms"], reflection["entries"]) if reflection else ([], {})
+    values = {uniform["source_name"]: uniform["default"] for uniform in uniforms}
+    costs = {entry["function"]: _cost(Cost(**entry["cost"])) for entry in entries.values()}
     return {
         "name": material.name,
         "title": material.title,
@@ -66,13 +68,13 @@ def _stage(use: TechniqueUse, values: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def _compile_for_all(material: Material) -> tuple[dict[str, dict[str, str]], dict[str, Any]]:
+def _compile_for_all(material: Material) -> tuple[dict[str, dict[str, str]], Reflection | None]:
     """The targets that refuse the material, with the reason and the hint; and the reflection of the first other target.
 
     The values and the cost in it are the same for all: they are counted before the program is rewritten for one target.
     """
     refused: dict[str, dict[str, str]] = {}
-    reflection: dict[str, Any] = {}
+    reflection: Reflection | None = None
     for target in all_targets():
         try:
             compiled = compile(material, target)

@@ -15,6 +15,7 @@ from sssgen.pipeline.compiler import Compiled
 from sssgen.run.compilers import Message
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.targets.descriptor import Target
+from sssgen.targets.reflection_record import Reflection
 from sssgen.targets.runtime.numpy_textures import Texture
 
 Array: TypeAlias = npt.NDArray[Any]
@@ -27,7 +28,7 @@ class Text(NamedTuple):
     origin: Mapping[int, str] = {}
 
 
-def file_text(compiled: Compiled, reflection: Mapping[str, Any], name: str) -> Text:
+def file_text(compiled: Compiled, reflection: Reflection, name: str) -> Text:
     """One of the files of a compiled material."""
     places = reflection["source_map"].get(name, {})
     return Text(compiled.files[name], {int(line): place for line, place in places.items()})

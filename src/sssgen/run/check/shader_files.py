@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any, NamedTuple, cast, get_args
+from typing import NamedTuple, cast, get_args
 
 from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import FORMS, compile
@@ -18,6 +18,7 @@ from sssgen.support.diagnostics import Diagnostic, SssgenError, UnsupportedError
 from sssgen.support.paths import posix
 from sssgen.support.text_files import read_text
 from sssgen.targets import registry
+from sssgen.targets.reflection_record import Reflection
 
 REFLECTION = "reflection.json"
 STAGES = frozenset(get_args(Stage))
@@ -31,8 +32,8 @@ class Shader:
     text: str
     sources: tuple[Source, ...]
     origins: Mapping[str, str] = field(default_factory=dict)
-    reflection: Mapping[str, Any] = field(default_factory=dict)
-    """Of a file of `sssgen transpile`; else empty."""
+    reflection: Reflection | None = None
+    """Of a file of `sssgen transpile`."""
 
 
 def read(arguments: Sequence[str], targets: Sequence[str]) -> list[Shader]:
@@ -96,7 +97,7 @@ def of_files(files: Mapping[str, str], named: set[str], targets: Sequence[str]) 
     emitted: dict[str, str] = {}
     problems: list[Diagnostic] = []
     handwritten: list[Source] = []
-    reflections: dict[str, dict[str, Any]] = {}
+    reflections: dict[str, Reflection] = {}
     for path, text in files.items():
         own = find_transpiled(path)
         target = own.target if own is not None else _emitted_for(path, text)
@@ -124,14 +125,14 @@ def _shaders(
     files: Mapping[str, str],
     sources: Sequence[Source],
     origins: Mapping[str, Mapping[str, str]],
-    reflections: Mapping[str, Mapping[str, Any]] = MappingProxyType({}),
+    reflections: Mapping[str, Reflection] = MappingProxyType({}),
 ) -> list[Shader]:
     """One for each file that has sources."""
     by_name: dict[str, list[Source]] = {}
     for source in sources:
         by_name.setdefault(source.name, []).append(source)
     return [
-        Shader(name, files[name], tuple(by_name[name]), origins.get(name, {}), reflections.get(name, {}))
+        Shader(name, files[name], tuple(by_name[name]), origins.get(name, {}), reflections.get(name))
         for name in files
         if name in by_name
     ]
@@ -208,8 +209,7 @@ def _origins(path: str) -> dict[str, str]:
         if os.path.isfile(reflection := os.path.join(folder, name)):
             maps = _reflection(reflection)["source_map"]
             if base in maps:
-                origins: dict[str, str] = maps[base]
-                return origins
+                return maps[base]
     return {}
 
 
@@ -220,7 +220,7 @@ class TranspiledFile(NamedTuple):
     stages: dict[str, str]
     """Stage → its entry point."""
     origins: dict[str, str]
-    reflection: dict[str, Any]
+    reflection: Reflection
 
     def sources(self, text: str, name: str) -> list[Source]:
         """The file's sources."""
@@ -239,8 +239,7 @@ def find_transpiled(path: str) -> TranspiledFile | None:
         base = os.path.basename(path)
         (file,) = [file for file in reflection["files"] if file["name"] == base] or reflection["files"]
         stages = {str(stage): str(entry) for stage, entry in file["stages"].items()}
-        maps: dict[str, dict[str, str]] = reflection["source_map"]
-        origins = maps[file["name"]]
+        origins = reflection["source_map"][file["name"]]
         if reflection["target"] in registry.names() and stages.keys() <= STAGES:
             return TranspiledFile(reflection["target"], stages, origins, reflection)
     except (ValueError, KeyError, TypeError, AttributeError):
@@ -248,10 +247,10 @@ def find_transpiled(path: str) -> TranspiledFile | None:
     raise _no_reflection(name)
 
 
-def _reflection(path: str) -> dict[str, Any]:
+def _reflection(path: str) -> Reflection:
     """A reflection file, with a source map of texts."""
     try:
-        reflection: dict[str, Any] = json.loads(read_text(path, posix(path)))
+        reflection: Reflection = json.loads(read_text(path, posix(path)))
         maps = reflection["source_map"]
         shown = {str(file): {str(line): str(span) for line, span in lines.items()} for file, lines in maps.items()}
         return {**reflection, "source_map": shown}

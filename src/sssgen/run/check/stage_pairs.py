@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 from sssgen.passes.capabilities import Capabilities
 from sssgen.run.check.shader_files import Shader
 from sssgen.targets import registry
-
-Slot = Mapping[str, Any]
-"""An input or output in a reflection."""
+from sssgen.targets.reflection_record import SlotRecord
 
 
 def pairs(shaders: Sequence[Shader]) -> Iterator[tuple[Shader, Shader]]:
     """The vertex and fragment shaders of one program: those of one target with one name, up to the first dot, in one
     folder; or the only two of a target."""
-    for target in dict.fromkeys(shader.reflection.get("target") for shader in shaders):
-        stages = [shader for shader in shaders if shader.reflection.get("target") == target and _kind(shader)]
+    for target in dict.fromkeys(shader.reflection["target"] for shader in shaders if shader.reflection):
+        own = [shader for shader in shaders if shader.reflection and shader.reflection["target"] == target]
+        stages = [shader for shader in own if _kind(shader)]
         programs: dict[str, list[Shader]] = {}
         for shader in stages:
             folder, base = os.path.split(shader.name)
@@ -31,12 +29,13 @@ def pairs(shaders: Sequence[Shader]) -> Iterator[tuple[Shader, Shader]]:
 
 def _kind(shader: Shader) -> str:
     """vertex or fragment; '' for a file that has not one of these stages alone."""
-    form = shader.reflection.get("form")
+    form = shader.reflection.get("form", "") if shader.reflection else ""
     return form if form in ("vertex", "fragment") else ""
 
 
 def disagreements(vertex: Shader, fragment: Shader) -> list[str]:
     """Where the fragment shader does not get what it expects."""
+    assert vertex.reflection is not None and fragment.reflection is not None
     capabilities = registry.load(fragment.reflection["target"]).capabilities
     outputs = [slot for slot in vertex.reflection["stage_outputs"] if not slot["builtin"]]
     inputs = [slot for slot in fragment.reflection["stage_inputs"] if not slot["builtin"]]
@@ -46,7 +45,7 @@ def disagreements(vertex: Shader, fragment: Shader) -> list[str]:
     return messages
 
 
-def _disagreements_of(input_: Slot, outputs: Sequence[Slot], capabilities: Capabilities) -> Iterator[str]:
+def _disagreements_of(input_: SlotRecord, outputs: Sequence[SlotRecord], capabilities: Capabilities) -> Iterator[str]:
     name = input_["name"] + "".join(f"[{index}]" for index in input_["path"])
     partner = next((output for output in outputs if _same(input_, output)), None)
     if partner is None:
@@ -58,9 +57,8 @@ def _disagreements_of(input_: Slot, outputs: Sequence[Slot], capabilities: Capab
         yield f"'{name}' {places}: transpile this file --with the other"
 
 
-def _same(input_: Slot, output: Slot) -> bool:
+def _same(input_: SlotRecord, output: SlotRecord) -> bool:
     """Whether these are matched in GLSL: by name, or by location where both state one."""
     if input_["link"] is None or output["link"] is None:
-        same: bool = input_["link"] == output["link"] and input_["location"] == output["location"]
-        return same
+        return input_["link"] == output["link"] and input_["location"] == output["location"]
     return (input_["link"], input_["path"]) == (output["link"], output["path"])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -13,10 +12,11 @@ from sssgen.run.backends.godot_drawing import Godot, View
 from sssgen.run.render import pixel_mesh
 from sssgen.run.render.shell_values import Shell, bound_texture
 from sssgen.scene.pictures.images import encode_srgb
+from sssgen.targets.reflection_record import Reflection
 
 
 def shade(
-    text: str, reflection: Mapping[str, Any], shell: Shell, godot: Godot, size: tuple[int, int], points: Array | None
+    text: str, reflection: Reflection, shell: Shell, godot: Godot, size: tuple[int, int], points: Array | None
 ) -> Array:
     """The picture of a shader's text, (height, width, 4), row 0 at the bottom. `points` as in `shade`.
 
@@ -49,7 +49,7 @@ def _light(position: Array, color: Array) -> dict[str, Any]:
     return {kind: [*map(float, position[:3])], "color": [*map(float, color / energy)], "energy": energy}
 
 
-def values_of(reflection: Mapping[str, Any], shell: Shell) -> dict[str, Any]:
+def values_of(reflection: Reflection, shell: Shell) -> dict[str, Any]:
     """The scene's parameters, colours in sRGB as in the inspector; the others have the shader's own defaults."""
     values = {}
     for uniform in reflection["uniforms"]:
@@ -63,7 +63,7 @@ def values_of(reflection: Mapping[str, Any], shell: Shell) -> dict[str, Any]:
     return values
 
 
-def textures_of(reflection: Mapping[str, Any], shell: Shell, encodes: bool) -> dict[str, Array]:
+def textures_of(reflection: Reflection, shell: Shell, encodes: bool) -> dict[str, Array]:
     """The scene's textures; the others have the shader's own defaults. `encodes`: colours are passed in sRGB."""
     textures: dict[str, Array] = {}
     for entry in reflection["textures"]:

@@ -12,6 +12,7 @@ from sssgen.pipeline.compiler import Compiled
 from sssgen.run.backends import VERTEX_SIZE, Array, Text, file_text
 from sssgen.run.backends.metal_backend import MetalOnCpu
 from sssgen.run.render.shell_values import LIGHTS, Shell, bound_texture, inverse
+from sssgen.targets.reflection_record import Reflection
 
 _DTYPES: dict[str, Any] = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.uint8}
 
@@ -26,7 +27,7 @@ def shade(compiled: Compiled, shell: Shell, backend: MetalOnCpu, size: tuple[int
     return backend.shade(text, blocks(reflection, shell), textures, points, size, shell.front)[::-1]
 
 
-def blocks(reflection: Mapping[str, Any], shell: Shell) -> dict[str, bytes]:
+def blocks(reflection: Reflection, shell: Shell) -> dict[str, bytes]:
     """The bytes of each struct of the shell."""
     positions, colors = np.zeros((LIGHTS, 4)), np.zeros((LIGHTS, 4))
     positions[: len(shell.light_positions)] = shell.light_positions
@@ -41,7 +42,7 @@ def blocks(reflection: Mapping[str, Any], shell: Shell) -> dict[str, bytes]:
     }
 
 
-def material_block(reflection: Mapping[str, Any], parameters: Mapping[str, Any]) -> bytes:
+def material_block(reflection: Reflection, parameters: Mapping[str, Any]) -> bytes:
     """The bytes of the struct Material: each vector and each column of a matrix at its place."""
     block = bytearray(reflection["uniform_block_size"] or 0)
     for uniform in reflection["uniforms"]:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Mapping
-from typing import Any
+from collections.abc import Collection
 
 from sssgen.material.model import Material
 from sssgen.material.requirements import baked_functions
@@ -12,6 +11,7 @@ from sssgen.scene.bake_advice import advice, is_scene
 from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.support.paths import posix
+from sssgen.targets.reflection_record import Reflection
 
 
 class MissingTextures(SssgenError):
@@ -19,7 +19,7 @@ class MissingTextures(SssgenError):
 
 
 def missing_textures(
-    scene: Scene, material: Material, reflection: Mapping[str, Any], bound: Collection[str]
+    scene: Scene, material: Material, reflection: Reflection, bound: Collection[str]
 ) -> list[Diagnostic]:
     """An error for each function whose baked textures are missing, and for each other picture that a stage names and
     that is not there; `bound` are the textures that there are, by their names in the scene.

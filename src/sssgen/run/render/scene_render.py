@@ -11,8 +11,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,6 +35,7 @@ from sssgen.scene.scene_reader import MAX_COUNT
 from sssgen.support.diagnostics import failure
 from sssgen.support.progress import Progress, silent
 from sssgen.targets.descriptor import Target
+from sssgen.targets.reflection_record import EntryRecord, Reflection
 from sssgen.targets.runtime.numpy_textures import Texture
 
 LARGEST = 8192
@@ -110,7 +110,7 @@ def with_samples(scene: Scene, samples: int) -> Scene:
     return dataclasses.replace(scene, samples=samples)
 
 
-def _reads_rays(entry: Mapping[str, Any]) -> bool:
+def _reads_rays(entry: EntryRecord) -> bool:
     return bool({"ray_origin", "ray_direction"} & set(entry["inputs"]))
 
 
@@ -181,7 +181,7 @@ def _matrix(scene: Scene, target: Target, aspect: float) -> Array:
     return scene.camera.view_projection(aspect, zero_to_one=low == 0.0)
 
 
-def _develop(scene: Scene, reflection: Mapping[str, Any], samples: Array, hit: Array) -> RenderedPicture:
+def _develop(scene: Scene, reflection: Reflection, samples: Array, hit: Array) -> RenderedPicture:
     """Composites samples over the background, averages them to pixels, and flips rows so that row 0 is at the top."""
     height, width = hit.shape
     color, alpha = samples[..., :3].astype(np.float64), samples[..., 3].astype(np.float64)

@@ -29,6 +29,7 @@ from sssgen.scene.scene import DistanceTexture, Picture, Scene, placement
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.file_memo import CachedResult, note, remember
 from sssgen.support.paths import posix
+from sssgen.targets.reflection_record import DeclarationRecord, Reflection, TextureRecord, UniformRecord
 from sssgen.targets.runtime.numpy_textures import Texture
 
 MOST_TEXTURES = 16
@@ -39,7 +40,7 @@ MOST_LIGHT_MAPS = 4
 _kept_light_maps: dict[str, CachedResult] = {}
 
 
-def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> Shell:
+def shell_of(scene: Scene, material: Material, reflection: Reflection) -> Shell:
     """The shell's values for a scene. Raises SssgenError at the scene's own lines."""
     positions = [
         [*light.position, 1.0] if light.position else [*(light.direction or ()), 0.0] for light in scene.lights
@@ -64,7 +65,7 @@ def shell_of(scene: Scene, material: Material, reflection: Mapping[str, Any]) ->
 
 
 def _light_views(
-    scene: Scene, material: Material, reflection: Mapping[str, Any], lights: list[list[float]]
+    scene: Scene, material: Material, reflection: Reflection, lights: list[list[float]]
 ) -> dict[str, tuple[LightView, Texture]]:
     """The depth maps that the program draws, by the hint `drawn`: of the first light that the map is for.
 
@@ -96,7 +97,7 @@ def _light_view(geometry: Geometry, light: list[float], layers: bool) -> tuple[L
     return remember(_kept_light_maps, repr((geometry, light, layers)), make, MOST_LIGHT_MAPS) if slow else make()
 
 
-def _surroundings(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, Texture]:
+def _surroundings(scene: Scene, material: Material, reflection: Reflection) -> dict[str, Texture]:
     """The cube maps of the scene's [environment], by the hint `drawn`."""
     if "environment" not in scene.measured:
         return {}
@@ -111,7 +112,7 @@ def _surroundings(scene: Scene, material: Material, reflection: Mapping[str, Any
 def _parameters(
     scene: Scene,
     material: Material,
-    reflection: Mapping[str, Any],
+    reflection: Reflection,
     views: Mapping[str, tuple[LightView, Texture]],
     maps: Mapping[str, Texture],
 ) -> dict[str, tuple[float, ...]]:
@@ -119,7 +120,7 @@ def _parameters(
     uniforms = {uniform["source_name"]: uniform for uniform in reflection["uniforms"]}
     document, values = scene.document, _baked_parameters(scene, material, reflection)
     for name, uniform in uniforms.items():
-        drawn = uniform["drawn"]
+        drawn = uniform["drawn"] or ""
         if drawn in views and uniform["type"] == "mat4":
             values[name] = (*views[drawn][0].matrix.T.ravel(),)
         elif drawn in maps:
@@ -146,8 +147,8 @@ def _parameters(
 def _check_own(
     scene: Scene,
     material: Material,
-    reflection: Mapping[str, Any],
-    uniform: Mapping[str, Any],
+    reflection: Reflection,
+    uniform: UniformRecord,
     value: tuple[float, ...],
 ) -> None:
     """Raises SssgenError if a scene's value for a uniform is not that of the medium of its technique's baked light."""
@@ -158,7 +159,7 @@ def _check_own(
             baked.check_medium(sidecar, {uniform["technique_name"]: value}, os.path.basename(file))
 
 
-def _baked_parameters(scene: Scene, material: Material, reflection: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
+def _baked_parameters(scene: Scene, material: Material, reflection: Reflection) -> dict[str, tuple[float, ...]]:
     """The parameters of baked textures, for the transform of the scene's geometry."""
     parameters: dict[str, tuple[float, ...]] = {}
     for texture in reflection["textures"]:
@@ -225,7 +226,7 @@ def _in_world_space(sidecar: BakeFile, geometry: Geometry | None) -> dict[str, A
     return values
 
 
-def _uniform(material: Material, entry: Mapping[str, Any]) -> Uniform:
+def _uniform(material: Material, entry: DeclarationRecord) -> Uniform:
     """The uniform that an entry of the reflection comes from."""
     for stage in material.stages:
         modules = [stage.technique.module, *(binding.module for binding in stage.bindings.values())]
@@ -239,7 +240,7 @@ def _uniform(material: Material, entry: Mapping[str, Any]) -> Uniform:
 def _textures(
     scene: Scene,
     material: Material,
-    reflection: Mapping[str, Any],
+    reflection: Reflection,
     maps: Mapping[str, Texture],
 ) -> dict[str, Texture]:
     """The scene's textures; for the others those that the material suggests, or that the program draws.
@@ -260,17 +261,17 @@ def _textures(
                 raise failure(f"texture '{name}' is the distance to the scene's geometry, but the scene has none")
             textures[name] = _distances(chosen, scene.geometry)
         elif not (file := _file(scene, material, texture)):
-            if texture["drawn"] in maps:
-                textures[name] = maps[texture["drawn"]]
+            if (drawn := texture["drawn"] or "") in maps:
+                textures[name] = maps[drawn]
         elif not os.path.isfile(file):
             note(file)
         else:
-            wrap = getattr(chosen, "wrap", "") or str(texture["import"]["wrap"])
+            wrap = getattr(chosen, "wrap", "") or texture["import"]["wrap"]
             textures[name] = _picture(file, wrap, texture)
     return textures
 
 
-def _file(scene: Scene, material: Material, texture: Mapping[str, Any]) -> str:
+def _file(scene: Scene, material: Material, texture: TextureRecord) -> str:
     """The file of a texture: the scene's, or else the one that the material suggests; '' if there is none."""
     chosen = scene.textures.get(texture["source_name"])
     if chosen is not None:
@@ -278,7 +279,7 @@ def _file(scene: Scene, material: Material, texture: Mapping[str, Any]) -> str:
     return _suggestion(material, texture)
 
 
-def _suggestion(material: Material, texture: Mapping[str, Any]) -> str:
+def _suggestion(material: Material, texture: TextureRecord) -> str:
     for stage in material.stages:
         if stage.technique.name == texture["technique"] and texture["technique_name"] in stage.textures:
             return str(material.path.parent / stage.textures[texture["technique_name"]])
@@ -294,14 +295,14 @@ def _distances(chosen: DistanceTexture, geometry: Geometry) -> Texture:
     return remember(_kept_textures, repr((chosen, geometry)), make, MOST_TEXTURES)
 
 
-def _picture(file: str, wrap: str, texture: Mapping[str, Any]) -> Texture:
+def _picture(file: str, wrap: str, texture: TextureRecord) -> Texture:
     """The texture of a file; the last ones are kept until their files change."""
-    declared = [texture[name] for name in ("source_name", "type", "color_space")]
+    declared = [texture["source_name"], texture["type"], texture["color_space"]]
     key = repr((os.path.abspath(file), wrap, declared))
     return remember(_kept_textures, key, lambda: _read_picture(file, wrap, texture), MOST_TEXTURES)
 
 
-def _read_picture(file: str, wrap: str, texture: Mapping[str, Any]) -> Texture:
+def _read_picture(file: str, wrap: str, texture: TextureRecord) -> Texture:
     picture = inputs.texture(file, wrap, srgb=texture["color_space"] == "sRGB")
     if picture.dim != texture["type"].removeprefix("sampler"):
         type_ = with_article(texture["type"])

@@ -15,6 +15,7 @@ from sssgen.ir.types import BY_NAME, column_size, kind_of
 from sssgen.pipeline.compiler import Compiled
 from sssgen.run.backends import Array, Block, Bound, Drawing, Place, Stage, file_text
 from sssgen.run.evaluate.evaluation import default_texture
+from sssgen.targets.reflection_record import BlockMember, Reflection, TextureBinding, TextureRecord
 from sssgen.targets.runtime.numpy_textures import Texture
 
 LIGHTS = 4
@@ -73,7 +74,7 @@ def drawing(
     )  # fmt: skip
 
 
-def _stages(compiled: Compiled, reflection: Mapping[str, Any]) -> tuple[Stage, Stage]:
+def _stages(compiled: Compiled, reflection: Reflection) -> tuple[Stage, Stage]:
     """The vertex and the fragment stage."""
     stages: dict[str, Stage] = {}
     for file in reflection["files"]:
@@ -83,7 +84,7 @@ def _stages(compiled: Compiled, reflection: Mapping[str, Any]) -> tuple[Stage, S
     return stages["vertex"], stages["fragment"]
 
 
-def textures(reflection: Mapping[str, Any], shell: Shell) -> dict[str, Bound]:
+def textures(reflection: Reflection, shell: Shell) -> dict[str, Bound]:
     """The material's textures, by the names in its text."""
     top_first = reflection["conventions"].get("framebuffer_y") == "down"
     return {
@@ -92,7 +93,7 @@ def textures(reflection: Mapping[str, Any], shell: Shell) -> dict[str, Bound]:
     }
 
 
-def bound_texture(texture: Mapping[str, Any], shell: Shell, top_first: bool = False) -> Texture:
+def bound_texture(texture: TextureRecord, shell: Shell, top_first: bool = False) -> Texture:
     """The texture for an entry of the reflection; `top_first`: the first row of the framebuffer is at the top."""
     name = texture["source_name"]
     if (screen := shell.screens.get(name)) is not None:
@@ -101,10 +102,10 @@ def bound_texture(texture: Mapping[str, Any], shell: Shell, top_first: bool = Fa
     return shell.textures.get(name) or default_texture(texture["type"], texture["default"])
 
 
-def _texture_place(binding: Mapping[str, Any]) -> Place:
+def _texture_place(binding: TextureBinding) -> Place:
     if "group" not in binding:  # bound by name
         return Place(0, 0)
-    return Place(binding["group"], binding["texture"], binding["sampler"])
+    return Place(int(binding["group"]), int(binding["texture"]), int(binding["sampler"]))
 
 
 def _values(shell: Shell) -> dict[str, Array]:
@@ -124,7 +125,7 @@ def _values(shell: Shell) -> dict[str, Array]:
     }
 
 
-def _blocks(reflection: Mapping[str, Any], shell: Shell, parameters: Mapping[str, Array]) -> dict[str, Block]:
+def _blocks(reflection: Reflection, shell: Shell, parameters: Mapping[str, Array]) -> dict[str, Block]:
     """The uniform blocks of the HLSL and WGSL shells."""
     values = _values(shell)
     positions, colors = lights_of(shell)
@@ -136,8 +137,9 @@ def _blocks(reflection: Mapping[str, Any], shell: Shell, parameters: Mapping[str
         "Lights": Block(lights.tobytes(), _LIGHTS),
         "Object": Block(_floats(values["model"], values["inverse_model"]), _OBJECT),
     }
-    if reflection["uniform_block_size"]:
-        blocks["Material"] = Block(material_block(reflection, parameters), Place(_MATERIAL_GROUP, 0))
+    if size := reflection["uniform_block_size"]:
+        block = material_block(size, reflection["uniforms"], parameters)
+        blocks["Material"] = Block(block, Place(_MATERIAL_GROUP, 0))
     return blocks
 
 
@@ -155,14 +157,14 @@ def _floats(*values: Array) -> bytes:
 _DTYPES: dict[str, Any] = {"float": np.float32, "int": np.int32, "uint": np.uint32, "bool": np.uint32}
 
 
-def material_block(reflection: Mapping[str, Any], values: Mapping[str, Array]) -> bytes:
-    """The bytes of the material's block: each uniform's numbers at its offset, columns and elements 16 bytes apart."""
-    block = np.zeros(reflection["uniform_block_size"] // 4, np.uint32)
-    for uniform in reflection["uniforms"]:
+def material_block(size: int, uniforms: Sequence[BlockMember], values: Mapping[str, Array]) -> bytes:
+    """A block of `size` bytes: each uniform's numbers at its offset, columns and elements 16 bytes apart."""
+    block = np.zeros(size // 4, np.uint32)
+    for uniform in uniforms:
         type_ = BY_NAME[uniform["type"].partition("[")[0]]
-        size = column_size(type_)
-        rows = np.asarray(values[uniform["name"]]).astype(_DTYPES[kind_of(type_)]).reshape(-1, size)
+        count = column_size(type_)
+        rows = np.asarray(values[uniform["name"]]).astype(_DTYPES[kind_of(type_)]).reshape(-1, count)
         for number, row in enumerate(rows):
             start = uniform["offset"] // 4 + 4 * number
-            block[start : start + size] = np.ascontiguousarray(row).view(np.uint32)
+            block[start : start + count] = np.ascontiguousarray(row).view(np.uint32)
     return block.tobytes()

@@ -7,9 +7,6 @@ added. An unlit shader has only the main light. Ambient light is uniform, and th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 
 from sssgen.ir.types import BY_NAME, column_size
@@ -18,6 +15,7 @@ from sssgen.run.backends import VERTEX_SIZE, Array, Bound, Drawing, Place, file_
 from sssgen.run.backends.unity_backend import UnityHLSL
 from sssgen.run.render import pixel_mesh
 from sssgen.run.render.shell_values import Shell, inverse, textures
+from sssgen.targets.reflection_record import Reflection
 from sssgen.targets.runtime.numpy_textures import Texture
 
 _BASE = ("UNITY_PASS_FORWARDBASE=1", "DIRECTIONAL=1", "LIGHTPROBE_SH=1")
@@ -111,7 +109,7 @@ def _engine(shell: Shell, size: tuple[int, int]) -> dict[str, Array]:
     return values
 
 
-def _properties(reflection: Mapping[str, Any], shell: Shell) -> dict[str, Array]:
+def _properties(reflection: Reflection, shell: Shell) -> dict[str, Array]:
     """The material's properties, each as vectors: an array's elements or a matrix's columns."""
     properties = {}
     for uniform in reflection["uniforms"]:

@@ -11,6 +11,7 @@ transposed where it is read.
 from __future__ import annotations
 
 from collections import Counter
+from typing import TYPE_CHECKING
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import FLOAT, INT, Array, Matrix, Sampler, Scalar, Struct, Vector, kind_of
@@ -22,6 +23,9 @@ from sssgen.targets.printers.hlsl_entry import print_entry
 from sssgen.targets.printers.printed_lines import Line, with_doc
 from sssgen.targets.printers.printer import POSTFIX, PRIMARY, UNARY, Printer
 from sssgen.targets.uniform_layout import Member
+
+if TYPE_CHECKING:
+    from sssgen.targets.reflection_record import TextureBinding
 
 _SHIFTS = ("<<", ">>")
 LONGEST_UNROLLED = 8
@@ -180,7 +184,7 @@ class HlslPrinter(Printer):
         assert self.stage is not None
         return print_entry(self, self.stage, name, self.stage.resolution)
 
-    def binding(self, index: int) -> dict[str, int | str]:
+    def binding(self, index: int) -> TextureBinding:
         if not self.target.bindings.material_block:
             return {}
         return {"texture": f"t{index}", "sampler": f"s{index}"}

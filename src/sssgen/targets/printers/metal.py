@@ -11,6 +11,8 @@ next member is packed.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from sssgen.ir import nodes as ir
 from sssgen.ir.types import Array, Sampler, Struct, Type, Vector, unnested
 from sssgen.passes.stage.storage_layout import offsets
@@ -19,6 +21,9 @@ from sssgen.targets.printers.atomic_printer import AtomicPrinter
 from sssgen.targets.printers.printed_lines import Line, with_doc, wrap
 from sssgen.targets.printers.printer import POSTFIX, PRIMARY
 from sssgen.targets.uniform_layout import Member
+
+if TYPE_CHECKING:
+    from sssgen.targets.reflection_record import TextureBinding
 
 ARRAY = "fixed_array"
 
@@ -173,5 +178,5 @@ class MetalPrinter(AtomicPrinter):
         """None: textures are parameters of the fragment function or the kernel."""
         return []
 
-    def binding(self, index: int) -> dict[str, int | str]:
+    def binding(self, index: int) -> TextureBinding:
         return {"texture": index, "sampler": index}

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
@@ -24,6 +25,9 @@ from sssgen.support.diagnostics import failure
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, summary, wrap
 from sssgen.targets.uniform_layout import Member
+
+if TYPE_CHECKING:
+    from sssgen.targets.reflection_record import TextureBinding
 
 _COLOR_LETTERS = str.maketrans("xyzw", "rgba")
 
@@ -427,7 +431,7 @@ class Printer:
         """The declarations of the textures."""
         raise NotImplementedError
 
-    def binding(self, index: int) -> dict[str, int | str]:
+    def binding(self, index: int) -> TextureBinding:
         """The bindings of the texture at `index`; empty where the text states none."""
         return {}
 

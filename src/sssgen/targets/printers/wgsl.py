@@ -5,6 +5,8 @@ Out parameters are pointers; a variable that is assigned only once is a `let`; u
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import VOID, Array, Sampler, Struct, Type
@@ -17,6 +19,9 @@ from sssgen.targets.printers.printed_lines import Line, with_doc, wrap
 from sssgen.targets.printers.printer import PRIMARY, UNARY
 from sssgen.targets.printers.wgsl_entry import print_entry
 from sssgen.targets.uniform_layout import Member, padding
+
+if TYPE_CHECKING:
+    from sssgen.targets.reflection_record import TextureBinding
 
 _TYPED = (ir.Local, ir.Global, ir.Call, ir.Construct)
 
@@ -163,15 +168,15 @@ class WgslPrinter(AtomicPrinter):
         lines = []
         for index, texture in enumerate(textures):
             binding = self.binding(index)
-            for half, name, type_ in (
-                ("texture", texture.name, self.type(texture.type)),
-                ("sampler", self.sampler(texture.name), self.sampler_type(texture.type)),
+            for number, name, type_ in (
+                (binding["texture"], texture.name, self.type(texture.type)),
+                (binding["sampler"], self.sampler(texture.name), self.sampler_type(texture.type)),
             ):
-                place = f"@group({binding['group']}) @binding({binding[half]})"
+                place = f"@group({binding['group']}) @binding({number})"
                 lines.append(Line(f"{place} var {name}: {type_};", texture.span))
         return lines
 
-    def binding(self, index: int) -> dict[str, int | str]:
+    def binding(self, index: int) -> TextureBinding:
         first = self.target.bindings.first
         return {"group": self.group, "texture": first + 1 + 2 * index, "sampler": first + 2 + 2 * index}
 
