@@ -12,7 +12,9 @@ from sssgen.ir.types import components, kind_of
 from sssgen.lab.chart.charting import candidate_of
 from sssgen.lab.chart.picking import Pick
 from sssgen.lab.measure.candidates import load
+from sssgen.lab.measure.measured_point import MeasuredPoint
 from sssgen.material import library
+from sssgen.material.library import Technique
 from sssgen.material.material_text import MaterialSection, material_text
 from sssgen.material.slots import needs
 from sssgen.scene.measured.measured_scene import MeasuredScene
@@ -42,7 +44,7 @@ def _surface(name: str, value: object) -> MaterialSection:
     return MaterialSection("surface", technique, ((uniform, value),))
 
 
-def stages_of(point: Mapping[str, Any], shape: Body, medium: Medium | None = None) -> list[MaterialSection]:
+def stages_of(point: MeasuredPoint, shape: Body, medium: Medium | None = None) -> list[MaterialSection]:
     """The stages of a point with its fitted parameters and those of the medium.
 
     Counts, and what the body sets, are constants; all others are adjustable.
@@ -58,7 +60,7 @@ def stages_of(point: Mapping[str, Any], shape: Body, medium: Medium | None = Non
     return stages
 
 
-def _coordinates(scene: MeasuredScene, point: Mapping[str, Any], shape: Body) -> list[MaterialSection]:
+def _coordinates(scene: MeasuredScene, point: MeasuredPoint, shape: Body) -> list[MaterialSection]:
     assert scene.inlay is not None
     stages = []
     for stage in stages_of(point, shape)[:1]:
@@ -76,7 +78,7 @@ def _with_values(stage: MaterialSection, values: Mapping[str, object]) -> Materi
     )
 
 
-def _parameters(technique: Any, point: Mapping[str, Any], known: Mapping[str, object]) -> dict[str, object]:
+def _parameters(technique: Technique, point: MeasuredPoint, known: Mapping[str, object]) -> dict[str, object]:
     """A technique's fitted parameters, and those that the scene knows; the factor includes the scale."""
     values: dict[str, object] = {}
     names, _ = needs(technique.module, technique.function)
