@@ -13,7 +13,7 @@ import json
 import math
 import resource
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,7 @@ from choice_pictures import ScenePictures, scene_pictures
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart import drawing
 from sssgen.lab.chart.charting import Settings
-from sssgen.lab.chart.record import check_record, to_json
+from sssgen.lab.chart.record import Point, Record, check_record, measures, to_json
 from sssgen.lab.chart.scene_conditions import boundary, lights
 from sssgen.lab.gpu import chart_times as chart_gpu
 from sssgen.scene.measured import measured_scene
@@ -58,8 +58,6 @@ ROLES = {
     "view_thickness": "Length along the eye's ray",
     "coordinates": "Parallax",
 }
-Record = Mapping[str, Any]
-Point = Mapping[str, Any]
 
 
 def main() -> int:
@@ -109,7 +107,7 @@ def refracting(scene: MeasuredScene) -> MeasuredScene:
 def page(
     record: Record,
     pictures: Sequence[ScenePictures],
-    trial: Sequence[Mapping[str, Any]] | None,
+    trial: Sequence[pick_trial.Row] | None,
     bent: Record | None,
 ) -> None:
     """Writes the pictures and the page; `bent` has the bodies with a refracting boundary. What is None is not shown."""
@@ -147,10 +145,10 @@ def timed() -> int:
     if not stored.is_file():
         print(f"{stored} is missing: python docs/accuracy.py --charts-only measures it", file=sys.stderr)
         return 1
-    record = json.loads(stored.read_text(encoding="utf-8"))
+    record = check_record(json.loads(stored.read_text(encoding="utf-8")))
     points = [point for point in record["points"] if point["front"] or point["baseline"] or point["role"] != "material"]
     names = [scene["name"] for scene in record["scenes"] if scene["name"] in TIMED]
-    shortened = {**record, "points": [point for point in points if point["scene"] in names]}
+    shortened: Record = {**record, "points": [point for point in points if point["scene"] in names]}
 
     def progress(completed: int, total: int, name: str) -> None:
         print(f"{completed} of {total}: {name}", file=sys.stderr, flush=True)
@@ -259,7 +257,7 @@ def expected_results(record: Record) -> str:
 
 def value(point: Point) -> float:
     """A point's error."""
-    return float(point["error"]["value"])
+    return measures(point)[1]
 
 
 def lobe_parameters(point: Point) -> str:

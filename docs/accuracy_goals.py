@@ -7,9 +7,7 @@ from statistics import median
 from typing import Any, NamedTuple
 
 from sssgen.lab.chart.picking import choose, is_allowed, limit_of
-
-Record = Mapping[str, Any]
-Point = Mapping[str, Any]
+from sssgen.lab.chart.record import Point, Record, measures
 
 FIXED = "fixed-light"
 
@@ -44,7 +42,7 @@ GPU_GOALS = (
 """A part of a chain's label, and the largest share of the time that the published thinness adds to its scene."""
 
 
-def table(record: Record, bent: Record | None, interior: Record) -> str:
+def table(record: Record, bent: Record | None, interior: Mapping[str, Any]) -> str:
     """The goals; `bent` has the same bodies with a refracting boundary, if they are measured, `interior` the times on a
     GPU."""
     rows = ["| goal | measured | |", "|---|---|---|"]
@@ -154,7 +152,7 @@ def _cost_of(points: Mapping[str, Point]) -> float:
 
 
 def _median(points: Mapping[str, Point]) -> float:
-    return median(float(point["error"]["value"]) for point in points.values())
+    return median(measures(point)[1] for point in points.values())
 
 
 def _row(*cells: Any) -> str:
