@@ -15,7 +15,7 @@ import resource
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 import accuracy_goals
 import accuracy_pictures
@@ -29,6 +29,7 @@ from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.record import Point, Record, check_record, measures, to_json
 from sssgen.lab.chart.scene_conditions import boundary, lights
 from sssgen.lab.gpu import chart_times as chart_gpu
+from sssgen.lab.gpu.gpu_timing import TimesRecord
 from sssgen.scene.measured import measured_scene
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.support.file_writer import write_files
@@ -331,9 +332,24 @@ def gpu() -> str:
     return "\n".join([*rows, "", "</details>"])
 
 
-def bench_gpu() -> dict[str, Any]:
+class SceneTimes(TimesRecord):
+    """The times of a scene as published and as emitted."""
+
+    flip: float
+    """FLIP between the two pictures, 0 to 1"""
+
+
+class BenchRecord(TypedDict):
+    """What the page quotes of the record of `make bench-gpu`."""
+
+    jelly_cubes: SceneTimes
+    techniques: TimesRecord
+    interior: accuracy_goals.InteriorTimes
+
+
+def bench_gpu() -> BenchRecord:
     """The record of `make bench-gpu`."""
-    record: dict[str, Any] = json.loads((FOLDER / BY_HAND).read_text(encoding="utf-8"))
+    record: BenchRecord = json.loads((FOLDER / BY_HAND).read_text(encoding="utf-8"))
     return record
 
 

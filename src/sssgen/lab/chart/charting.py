@@ -22,7 +22,7 @@ from sssgen.lab.measure import candidates, fluence_inputs
 from sssgen.lab.measure import scene_references as references
 from sssgen.lab.measure.candidates import Candidate
 from sssgen.lab.measure.fitting import FitResult
-from sssgen.lab.measure.measured_point import MeasuredPoint
+from sssgen.lab.measure.measured_point import FittedChain, MeasuredPoint
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.measure.problem import LENGTHS
 from sssgen.scene.measured.measured_scene import MeasuredScene
@@ -117,7 +117,7 @@ def _measure(scenes: Sequence[MeasuredScene], settings: Settings) -> list[SceneP
             points[scene.key].append(point)
     if "material" in settings.roles:
         jobs = []
-        before: dict[tuple[str, tuple[str, ...], Any], Mapping[str, tuple[float, ...]]] = {}
+        before: dict[tuple[str, Techniques, Counts], FittedParameters] = {}
         for scene in scenes:
             if scene.medium is not None:
                 whole = candidates.materials(
@@ -168,7 +168,10 @@ def _is_selected(candidate: Candidate, settings: Settings) -> bool:
     return not wanted or candidate.role in LENGTHS or candidate.name in wanted
 
 
-Before = Mapping[tuple[str, tuple[str, ...], Any], Mapping[str, tuple[float, ...]]]
+Techniques = tuple[str, ...]
+Counts = tuple[tuple[str, int], ...]
+FittedParameters = dict[str, tuple[float, ...]]
+Before = Mapping[tuple[str, Techniques, Counts], FittedParameters]
 """(a scene's key, a technique, its settings) → the technique's parameters"""
 
 
@@ -243,7 +246,7 @@ def _points(
         yield scene, {"scene": scene.name, **point}
 
 
-def candidate_of(point: MeasuredPoint) -> Candidate:
+def candidate_of(point: FittedChain) -> Candidate:
     """The candidate of a point."""
     settings, chain = tuple(point["settings"].items()), tuple(point["chain"])
     path, path_settings = point.get("path", ""), tuple(point.get("path_settings", {}).items())
@@ -252,7 +255,7 @@ def candidate_of(point: MeasuredPoint) -> Candidate:
     )
 
 
-def fit_of(point: MeasuredPoint) -> FitResult:
+def fit_of(point: FittedChain) -> FitResult:
     """The result of a point's fit."""
     parameters = {name: tuple(value) for name, value in point["parameters"].items()}
     return FitResult(parameters, tuple(point["scale"]), tuple(point["matte"]), point["training_error"], point["factor"])
@@ -282,13 +285,13 @@ def results_of(items: Sequence[Item], settings: Settings) -> list[Any]:
 
 def distance_function_parameters(
     points: Sequence[Point],
-) -> dict[tuple[tuple[str, ...], Any], dict[str, tuple[float, ...]]]:
+) -> dict[tuple[Techniques, Counts], FittedParameters]:
     """The fitted parameters of the lengths that evaluate a distance function: by technique and settings.
 
     Complete chains use them unchanged, because fitting them again in each chain would take hours.
     """
-    parameters: dict[tuple[tuple[str, ...], Any], dict[str, tuple[float, ...]]] = {}
-    best: dict[tuple[tuple[str, ...], Any], float] = {}
+    parameters: dict[tuple[Techniques, Counts], FittedParameters] = {}
+    best: dict[tuple[Techniques, Counts], float] = {}
     for point in points:
         technique = candidates.load(point["chain"][0]) if point["role"] in LENGTHS else None
         if technique is None or not technique.slots:

@@ -19,7 +19,7 @@ from sssgen.lab.gpu import gpu_timing as gpu_cost
 from sssgen.lab.gpu import timed_programs as gpu_programs
 from sssgen.lab.gpu.gpu_timing import ProgramTimes
 from sssgen.lab.measure.measured_chain import material_of
-from sssgen.lab.measure.measured_point import GpuTimes
+from sssgen.lab.measure.measured_point import FittedChain, GpuTimes
 from sssgen.material import library
 from sssgen.material.material_text import MaterialSection
 from sssgen.material.model import Material
@@ -93,7 +93,9 @@ def by_gpu(record: Record) -> Record:
     return {**record, "points": points, "cost": "gpu", "cost_unit": unit}
 
 
-def time_points(measured: MeasuredScene, points: Sequence[Point], size: tuple[int, int], rounds: int) -> ProgramTimes:
+def time_points(
+    measured: MeasuredScene, points: Sequence[FittedChain], size: tuple[int, int], rounds: int
+) -> ProgramTimes:
     """The times of the points' shaders, named by their numbers, and of the shader without a chain, EMPTY."""
     scene = _drawable(measured)
     surface_points = gpu_programs.surface_points(scene, size)

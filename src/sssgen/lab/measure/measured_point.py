@@ -6,6 +6,7 @@ required. Numbers that are not finite are NaN or infinity in a measured point, a
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NotRequired, TypedDict
 
 
@@ -56,8 +57,8 @@ class PointError(ViewError):
     """The mean of FLIP's map, 0 to 1; only of materials"""
 
 
-class MeasuredPoint(TypedDict):
-    """A candidate that is measured on the views of one scene."""
+class FittedChain(TypedDict):
+    """A candidate with its fitted parameters."""
 
     role: str
     name: str
@@ -81,7 +82,12 @@ class MeasuredPoint(TypedDict):
     factor: NotRequired[str]
     """The parameter that `scale` multiplies; '' without one"""
     training_error: NotRequired[float]
-    """The relative error on the training views"""
+    """The relative error on the training views; NaN if nothing is fitted"""
+
+
+class MeasuredPoint(FittedChain):
+    """A chain that is measured on the views of one scene."""
+
     requires: NotRequired[list[str]]
     """Of `material.attributes.REQUIREMENTS`"""
     bytes: NotRequired[int]
@@ -89,7 +95,7 @@ class MeasuredPoint(TypedDict):
     cost: PointCost
     error: PointError
     views: NotRequired[dict[str, ViewError]]
-    implementation: NotRequired[dict[str, float]]
+    implementation: NotRequired[Mapping[str, float | None]]
     """The relative errors of float32 and of finite counts, without the error of the model"""
     failed: NotRequired[str]
     """Why the point failed; '' if it has not"""
