@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from itertools import combinations
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from sssgen.lab.gpu.chart_times import EMPTY, time_points
 from sssgen.lab.gpu.device_costs import OPERATORS, Device
 from sssgen.lab.gpu.gpu_timing import Device as Driver
 from sssgen.lab.measure.candidates import Candidate
+from sssgen.lab.measure.measured_point import FittedChain
 from sssgen.lab.measure.measurement import chain_of, static_cost
 from sssgen.run.backends import Array
 from sssgen.scene.measured.measured_scene import MeasuredScene
@@ -59,7 +60,7 @@ def time_chains(
     return TimedChains(labels, tuple(counts), np.array(ns), times.device)
 
 
-def _unfitted(candidate: Candidate) -> dict[str, Any]:
+def _unfitted(candidate: Candidate) -> FittedChain:
     """The candidate as a point whose parameters have their defaults."""
     return {
         "role": candidate.role, "name": candidate.name, "label": candidate.label, "baseline": candidate.baseline,

@@ -13,9 +13,9 @@ import json
 import math
 import resource
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 import accuracy_goals
 import accuracy_pictures
@@ -26,9 +26,10 @@ from choice_pictures import ScenePictures, scene_pictures
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart import drawing
 from sssgen.lab.chart.charting import Settings
-from sssgen.lab.chart.record import check_record, to_json
+from sssgen.lab.chart.record import Point, Record, check_record, measures, to_json
 from sssgen.lab.chart.scene_conditions import boundary, lights
 from sssgen.lab.gpu import chart_times as chart_gpu
+from sssgen.lab.gpu.gpu_timing import TimesRecord
 from sssgen.scene.measured import measured_scene
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.support.file_writer import write_files
@@ -58,8 +59,6 @@ ROLES = {
     "view_thickness": "Length along the eye's ray",
     "coordinates": "Parallax",
 }
-Record = Mapping[str, Any]
-Point = Mapping[str, Any]
 
 
 def main() -> int:
@@ -109,7 +108,7 @@ def refracting(scene: MeasuredScene) -> MeasuredScene:
 def page(
     record: Record,
     pictures: Sequence[ScenePictures],
-    trial: Sequence[Mapping[str, Any]] | None,
+    trial: Sequence[pick_trial.Row] | None,
     bent: Record | None,
 ) -> None:
     """Writes the pictures and the page; `bent` has the bodies with a refracting boundary. What is None is not shown."""
@@ -147,10 +146,10 @@ def timed() -> int:
     if not stored.is_file():
         print(f"{stored} is missing: python docs/accuracy.py --charts-only measures it", file=sys.stderr)
         return 1
-    record = json.loads(stored.read_text(encoding="utf-8"))
+    record = check_record(json.loads(stored.read_text(encoding="utf-8")))
     points = [point for point in record["points"] if point["front"] or point["baseline"] or point["role"] != "material"]
     names = [scene["name"] for scene in record["scenes"] if scene["name"] in TIMED]
-    shortened = {**record, "points": [point for point in points if point["scene"] in names]}
+    shortened: Record = {**record, "points": [point for point in points if point["scene"] in names]}
 
     def progress(completed: int, total: int, name: str) -> None:
         print(f"{completed} of {total}: {name}", file=sys.stderr, flush=True)
@@ -259,7 +258,7 @@ def expected_results(record: Record) -> str:
 
 def value(point: Point) -> float:
     """A point's error."""
-    return float(point["error"]["value"])
+    return measures(point)[1]
 
 
 def lobe_parameters(point: Point) -> str:
@@ -333,9 +332,24 @@ def gpu() -> str:
     return "\n".join([*rows, "", "</details>"])
 
 
-def bench_gpu() -> dict[str, Any]:
+class SceneTimes(TimesRecord):
+    """The times of a scene as published and as emitted."""
+
+    flip: float
+    """FLIP between the two pictures, 0 to 1"""
+
+
+class BenchRecord(TypedDict):
+    """What the page quotes of the record of `make bench-gpu`."""
+
+    jelly_cubes: SceneTimes
+    techniques: TimesRecord
+    interior: accuracy_goals.InteriorTimes
+
+
+def bench_gpu() -> BenchRecord:
     """The record of `make bench-gpu`."""
-    record: dict[str, Any] = json.loads((FOLDER / BY_HAND).read_text(encoding="utf-8"))
+    record: BenchRecord = json.loads((FOLDER / BY_HAND).read_text(encoding="utf-8"))
     return record
 
 

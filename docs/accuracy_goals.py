@@ -4,14 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from statistics import median
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from sssgen.lab.chart.picking import choose, is_allowed, limit_of
-
-Record = Mapping[str, Any]
-Point = Mapping[str, Any]
+from sssgen.lab.chart.record import Point, Record, measures
+from sssgen.lab.gpu.gpu_timing import TimesRecord
 
 FIXED = "fixed-light"
+
+
+class InteriorTimes(TimesRecord):
+    """The times of chains that know the light inside a body."""
+
+    added_ms: float
+    """What the published thinness adds to its scene"""
+    of_thinness: dict[str, float]
+    """The times of chains, by label, relative to `added_ms`"""
 
 
 class Goal(NamedTuple):
@@ -44,7 +52,7 @@ GPU_GOALS = (
 """A part of a chain's label, and the largest share of the time that the published thinness adds to its scene."""
 
 
-def table(record: Record, bent: Record | None, interior: Record) -> str:
+def table(record: Record, bent: Record | None, interior: InteriorTimes) -> str:
     """The goals; `bent` has the same bodies with a refracting boundary, if they are measured, `interior` the times on a
     GPU."""
     rows = ["| goal | measured | |", "|---|---|---|"]
@@ -154,9 +162,8 @@ def _cost_of(points: Mapping[str, Point]) -> float:
 
 
 def _median(points: Mapping[str, Point]) -> float:
-    return median(float(point["error"]["value"]) for point in points.values())
+    return median(measures(point)[1] for point in points.values())
 
 
-def _row(*cells: Any) -> str:
-    *texts, met = cells
-    return f"| {' | '.join(texts)} | {'reached' if met else '**missed**'} |"
+def _row(name: str, measured: str, met: bool) -> str:
+    return f"| {name} | {measured} | {'reached' if met else '**missed**'} |"

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
 
+from sssgen.lab.chart.record import Point, Record, measures
 from sssgen.lab.measure.technique_chain import is_drawn, textures_of
 from sssgen.material import library
-
-Point = Mapping[str, Any]
 
 DRAWN = "cube"
 """The scene on which the site draws the most accurate chain with each technique."""
@@ -20,7 +18,7 @@ CHAIN = (
 """What a point needs to be drawn: `charting.candidate_of` and `fit_of` read it."""
 
 
-def quoted(records: Sequence[Mapping[str, Any]]) -> str:
+def quoted(records: Sequence[Record]) -> str:
     """JSON: `alone` has the error and cost of each technique by itself, `best` the most accurate chain with each.
 
     Of two records with the same scene and chain, it quotes the first.
@@ -35,18 +33,21 @@ def quoted(records: Sequence[Mapping[str, Any]]) -> str:
     return f'{{"alone": [\n{rows}\n], "best": {{\n{chain_rows}\n}}}}\n'
 
 
-def _alone(point: Point) -> dict[str, Any]:
-    kept = {key: point[key] for key in ("role", "name", "label", "scene")}
-    return kept | {key: {"value": round(point[key]["value"], 6)} for key in ("error", "cost")}
+def _alone(point: Point) -> dict[str, object]:
+    return {
+        "role": point["role"], "name": point["name"], "label": point["label"], "scene": point["scene"],
+        "error": {"value": round(measures(point)[1], 6)}, "cost": {"value": round(point["cost"]["value"], 6)},
+    }  # fmt: skip
 
 
-def _best(chains: Iterable[Point]) -> dict[str, Point]:
+def _best(chains: Iterable[Point]) -> dict[str, dict[str, object]]:
     """For each technique, the most accurate chain with it that needs no baked texture."""
-    best: dict[str, Point] = {}
-    for point in sorted(chains, key=lambda point: float(point["error"]["value"])):
+    best: dict[str, dict[str, object]] = {}
+    for point in sorted(chains, key=lambda point: measures(point)[1]):
+        fields: Mapping[str, object] = point
         names = [name for name in (*point["chain"], point.get("path", "")) if name]
         if not any(map(_is_baked, names)):
-            kept = {key: point[key] for key in CHAIN if key in point} | {"error": {"value": point["error"]["value"]}}
+            kept = {key: fields[key] for key in CHAIN if key in fields} | {"error": {"value": point["error"]["value"]}}
             for name in names:
                 best.setdefault(name, kept)
     return best

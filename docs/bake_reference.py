@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from sssgen.bake.atlas import fill_map
+from sssgen.bake.bake_facts import BakeFacts
 from sssgen.bake.baked_files import write_picture
 from sssgen.lab.reference.inside_lengths import thickness
 from sssgen.scene.geometry import Mesh
@@ -44,7 +45,7 @@ def write(scene_file: Path, name: str, deep: bool) -> Path:
     lengths = _deep(mesh, places, view.directions[hit], light) if deep else thickness(mesh, places, light)
     values = np.zeros(len(met))
     values[hit] = lengths / lengths.max()
-    facts: dict[str, Any] = {
+    facts: BakeFacts = {
         "kind": "exact", "holds": "thickness",
         "parameters": {
             "exact_factor": float(lengths.max()), "camera_matrix": [float(number) for number in view.matrix.T.ravel()]

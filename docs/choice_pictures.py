@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 from sssgen.jobs.executor import Item
 from sssgen.lab.chart import charting
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.picking import choose, is_allowed, limit_of
+from sssgen.lab.chart.record import Point, Record
 from sssgen.lab.measure.error_metric import flip
 from sssgen.run.backends import Array
 from sssgen.scene.measured.measured_scene import MeasuredScene
-
-Point = Mapping[str, Any]
 
 SIDE = 144
 """Pixels along each side of a picture."""
@@ -42,7 +41,7 @@ class ScenePictures(NamedTuple):
 
 
 def scene_pictures(
-    record: Mapping[str, Any], scenes: Sequence[MeasuredScene], limits: Sequence[float], settings: Settings
+    record: Record, scenes: Sequence[MeasuredScene], limits: Sequence[float], settings: Settings
 ) -> list[ScenePictures]:
     """The pictures of those scenes of a record that have a medium. Raises SssgenError as `charting.chart_record`."""
     lit = [scene for scene in scenes if scene.medium is not None]
@@ -70,7 +69,7 @@ def scene_pictures(
     return result
 
 
-def _points(record: Mapping[str, Any], scene: str, limits: Sequence[float]) -> list[tuple[str, Point, bool]]:
+def _points(record: Record, scene: str, limits: Sequence[float]) -> list[tuple[str, Point, bool]]:
     """Title, point and whether it is within the limit: the most accurate baseline, then the choice for each limit."""
     points = [point for point in record["points"] if point["scene"] == scene and point["role"] == "material"]
     baselines = [point for point in points if point["baseline"] and not point["failed"]]

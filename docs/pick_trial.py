@@ -7,8 +7,8 @@ scenes.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from sssgen.jobs.executor import Item
 from sssgen.lab.chart import charting as chart
 from sssgen.lab.chart.charting import Settings
 from sssgen.lab.chart.picking import choose, cost_of, is_allowed
+from sssgen.lab.chart.record import Record
 from sssgen.scene.camera import Camera
 from sssgen.scene.geometry import Ball, Box, Capsule, Geometry, Torus, Union
 from sssgen.scene.measured import media
@@ -31,7 +32,22 @@ CLOSE = 1.10
 """The largest ratio of the costs of a pick and of the best chain."""
 TRUE_SEED, TIMES = 1001, 2
 
-Row = Mapping[str, Any]
+
+class Row(TypedDict):
+    """A pick within a limit on a scene."""
+
+    scene: str
+    title: str
+    limit: float
+    """The largest relative error"""
+    picked: str
+    """The label of the chain"""
+    error: float
+    """The true error of the picked chain"""
+    cost: float
+    """Weighted operations; so is `best`"""
+    best: float
+    """The cost of the cheapest chain whose true error is within the limit; NaN without one"""
 
 
 def random_scene(number: int) -> MeasuredScene:
@@ -89,9 +105,7 @@ def trial_rows(settings: Settings) -> list[Row]:
     return rows
 
 
-def errors_of(
-    record: Mapping[str, Any], scenes: Sequence[MeasuredScene], settings: Settings
-) -> dict[tuple[str, str], float]:
+def errors_of(record: Record, scenes: Sequence[MeasuredScene], settings: Settings) -> dict[tuple[str, str], float]:
     """The errors of a record's materials, with their fitted parameters, against references with other settings.
 
     (scene, label) → the largest error of the views; infinite for a chain that fails.

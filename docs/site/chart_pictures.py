@@ -8,8 +8,8 @@ import functools
 import numpy as np
 
 from picture import Picture
-from records import Point
 from sssgen.lab.chart import charting
+from sssgen.lab.chart.record import Point
 from sssgen.lab.measure.measurement import View, pictures_of
 from sssgen.run.backends import Array
 from sssgen.scene.measured import measured_scene

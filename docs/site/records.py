@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import functools
 import json
-from collections.abc import Mapping
-from typing import Any
+from typing import TypedDict
 
 from menu import ROOT
+from sssgen.lab.chart.record import Point
 
-Point = Mapping[str, Any]
+
+class Quoted(TypedDict):
+    """Points with those of their keys that the site needs."""
+
+    alone: list[Point]
+    best: dict[str, Point]
+    """By technique"""
 
 
 @functools.cache
-def _quoted() -> Mapping[str, Any]:
-    quoted: Mapping[str, Any] = json.loads((ROOT / "docs" / "accuracy" / "points.json").read_text(encoding="utf-8"))
+def _quoted() -> Quoted:
+    quoted: Quoted = json.loads((ROOT / "docs" / "accuracy" / "points.json").read_text(encoding="utf-8"))
     return quoted
 
 
@@ -25,5 +31,4 @@ def points_of(technique: str) -> list[Point]:
 
 def best_point(technique: str) -> Point | None:
     """The most accurate chain with the technique, on one scene, that needs no baked texture."""
-    point: Point | None = _quoted()["best"].get(technique)
-    return point
+    return _quoted()["best"].get(technique)

@@ -10,6 +10,7 @@ import formula_math
 from markup import escaped, fenced, number, table
 from records import points_of
 from sssgen.ir.types import VOID, spell
+from sssgen.lab.chart.record import measures
 from sssgen.material import library
 from sssgen.material.library import ROLES, Technique
 from sssgen.material.technique_facts import facts_of
@@ -174,7 +175,7 @@ def _measured(technique: Technique) -> list[str]:
     rows = []
     for role, label in dict.fromkeys((point["role"], point["label"]) for point in points):
         same = [point for point in points if (point["role"], point["label"]) == (role, label)]
-        errors = [point["error"]["value"] for point in same]
+        errors = [measures(point)[1] for point in same]
         costs = statistics.median(point["cost"]["value"] for point in same)
         figures = (f"{statistics.median(errors):.3f}", f"{max(errors):.3f}", f"{costs:.0f}", str(len(same)))
         rows.append((role.replace("_", " "), escaped(label), *figures))

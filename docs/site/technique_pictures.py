@@ -17,8 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from picture import Picture
-from records import Point, best_point
+from records import best_point
 from sssgen.lab.chart.picked_material import stages_of
+from sssgen.lab.chart.record import Point
 from sssgen.lab.measure.technique_chain import (
     BODY,
     is_drawn,

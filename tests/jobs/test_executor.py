@@ -210,9 +210,9 @@ def test_no_bar_without_rich(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Cap
     assert capsys.readouterr() == ("", "")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def dask() -> Iterator[Any]:
-    """A scheduler and two workers, in separate processes."""
+    """A scheduler and two workers, in separate processes; new for each test, as workers keep their `code_stamp`."""
     distributed = pytest.importorskip("distributed")
     import dask
 

@@ -37,8 +37,8 @@ class BakeLight(NamedTuple):
         """Its view of the box of corners (n, 3); `size` is (width, height)."""
         return directional_view(corners, self.place, size) if self.afar else point_view(corners, self.place, size)
 
-    def facts(self) -> dict[str, Any]:
-        """Its entry in a JSON file."""
+    def facts(self) -> dict[str, list[float]]:
+        """Its entry in a JSON file: its `direction` or its `position`."""
         return {"direction" if self.afar else "position": [float(value) for value in self.place]}
 
 

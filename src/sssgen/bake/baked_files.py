@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from sssgen.bake.bake_facts import BakeFacts
 from sssgen.bake.volume_files import FORMATS, encode_volume, layout
 from sssgen.material import baked
 from sssgen.scene.pictures import images
@@ -42,7 +43,7 @@ def volume_format(path: str, format: str | None) -> str:
     return format
 
 
-def write_volume(path: str, texels: npt.NDArray[Any], format: str, facts: Mapping[str, Any]) -> list[str]:
+def write_volume(path: str, texels: npt.NDArray[Any], format: str, facts: BakeFacts) -> list[str]:
     """Writes a volume and its JSON; returns the paths."""
     return _write(
         path,
@@ -66,7 +67,7 @@ def picture_suffix(path: str, allowed: tuple[str, ...] = PICTURES) -> str:
 def write_picture(
     path: str,
     values: npt.NDArray[np.float64],
-    facts: Mapping[str, Any],
+    facts: BakeFacts,
     bits: int = 16,
     beside: Mapping[str, str] | None = None,
 ) -> list[str]:
@@ -101,7 +102,7 @@ def check_cube_path(path: str) -> None:
         raise failure(f"'{suffix}' is not the suffix of a cube map's file", "end it in .dds", posix(path))
 
 
-def write_cubes(path: str, cubes: Mapping[str, bytes], facts: Mapping[str, Any]) -> list[str]:
+def write_cubes(path: str, cubes: Mapping[str, bytes], facts: BakeFacts) -> list[str]:
     """Writes cube maps, by what follows the name of `path`, and one JSON file; returns the paths."""
     check_cube_path(path)
     stem, suffix = os.path.splitext(path)
@@ -135,13 +136,13 @@ def _check_place(path: str) -> None:
         raise failure("cannot write the file: this is not a folder", "choose another folder with -o", posix(folder))
 
 
-def _write(path: str, data: bytes, facts: Mapping[str, Any], beside: Mapping[str, str] | None = None) -> list[str]:
+def _write(path: str, data: bytes, facts: Mapping[str, object], beside: Mapping[str, str] | None = None) -> list[str]:
     folder, name = os.path.split(path)
     files: dict[str, str | bytes] = {name: data, **_json_beside(name, facts), **(beside or {})}
     return [written.path for written in write_files(folder, files)]
 
 
-def _json_beside(name: str, facts: Mapping[str, Any]) -> dict[str, str]:
+def _json_beside(name: str, facts: Mapping[str, object]) -> dict[str, str]:
     """The JSON file of a texture's file, with its text."""
     content = {"format": baked.FORMAT, "made_by": f"sssgen {VERSION}", **facts}
     lines = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in content.items()]

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from sssgen.bake import memory_check as memory
+from sssgen.bake.bake_facts import DepthFacts
 from sssgen.bake.bake_light import BakeLight
 from sssgen.bake.voxel_distance import BLOCK
 from sssgen.bake.voxel_grid import Array
@@ -17,7 +16,7 @@ from sssgen.targets.texture_import import import_settings
 
 def depth_map(
     path: str, light: BakeLight, size: tuple[int, int], progress: Progress = lambda *_: None
-) -> tuple[Array, dict[str, Any]]:
+) -> tuple[Array, DepthFacts]:
     """The map of a mesh, (height, width), row 0 at the top, in units of the mesh; and the facts for its JSON.
 
     `size` is (width, height). Texels without a hit have a depth far behind the mesh. Raises SssgenError for a mesh
@@ -37,7 +36,7 @@ def depth_map(
         depth[part] = np.where(faces >= 0, (away[part] + t) * view.slopes[part], view.far)
         progress(min(start + BLOCK, len(starts)), len(starts), "depths")
     reached = depth[depth < view.far]
-    facts = {
+    facts: DepthFacts = {
         "kind": "depth", "holds": None, "light": light.facts(), "unit": "of the mesh",
         "formula": "texel = distance from the light's plane to the first surface",
         "range": [float(reached.min(initial=view.far)), float(reached.max(initial=0.0))], "nothing": view.far,

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.bake import memory_check as memory
+from sssgen.bake.bake_facts import DistanceError, DistanceFacts
 from sssgen.bake.distance_encoding import ENCODINGS, encode, error_at_texels
 from sssgen.bake.voxel_distance import BLOCK, distances, inside
 from sssgen.bake.voxel_grid import Array, Grid, around
@@ -35,7 +36,7 @@ class Volume(NamedTuple):
     grid: Grid
     reach: float
     """The distance of the largest stored number"""
-    facts: dict[str, Any]
+    facts: DistanceFacts
     """For the JSON file"""
 
 
@@ -87,7 +88,13 @@ def sdf(
         _without_inside(path, solid.rim > 0.0, thin, grid)
     reach = float(unsigned.max()) if reach is None else reach
     texels = encode(unsigned, within, reach, form)
-    facts = {
+    error: DistanceError = {
+        "at_texels": error_at_texels(reach, form, grid.diagonal),
+        "between_texels": 0.5 * float(np.linalg.norm(grid.voxel)),
+    }
+    if solid.rim and thin is None:
+        error["but"] = "not across its holes, where the sign jumps"
+    facts: DistanceFacts = {
         "kind": "distance", "holds": None,
         "mesh": {
             "triangles": len(mesh.triangles.corners), "closed": solid.rim == 0.0, "inside_out": solid.inside_out,
@@ -100,11 +107,7 @@ def sdf(
         "range": reach, "beyond_range": round(float((unsigned > reach).mean()), 6),
         "sign": f"negative within {thin:g} / 2 of the sheet" if thin else
                 "negative where the generalised winding number is more than 0.5",
-        "error": {
-            "at_texels": error_at_texels(reach, form, grid.diagonal),
-            "between_texels": 0.5 * float(np.linalg.norm(grid.voxel)),
-            **({"but": "not across its holes, where the sign jumps"} if solid.rim and thin is None else {}),
-        },
+        "error": error,
         "inside": round(float(within.mean()), 6),
         "parameters": {"box_min": _floats(grid.low), "box_max": _floats(grid.high), "distance_range": reach},
         "import": import_settings("3D", "clamp", mipmaps=False),

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.bake import memory_check as memory
+from sssgen.bake.bake_facts import FluenceFacts
 from sssgen.bake.bake_light import BakeLight
 from sssgen.jobs.executor import Progress
 from sssgen.lab.fluence import fluence_field
@@ -55,7 +56,7 @@ class FluenceBake(NamedTuple):
     """The textures of a bake, and their facts for the JSON files."""
 
     parts: list[Part]
-    facts: dict[str, Any]
+    facts: FluenceFacts
 
 
 def body(path: str, medium: str, unit_mm: float) -> MeasuredScene:
@@ -108,11 +109,13 @@ def bake(
         traced = fluence_field.field(scene, settings, scheduler, processes, progress)
         return FluenceBake(
             _factor(traced, rank),
-            _facts(scene, settings, traced) | {"rank": rank, "technique": f"fluence_factored_{rank}{refracted}"},
+            {**_facts(scene, settings, traced), "rank": rank, "technique": f"fluence_factored_{rank}{refracted}"},
         )
     traced = fluence_field.of_light(scene, light.place, settings, scheduler, processes, progress)
     stored = volumes.light_volume(traced)
-    facts = _facts(scene, settings, traced) | {"light": light.facts(), "technique": f"fluence_fixed{refracted}"}
+    facts: FluenceFacts = {
+        **_facts(scene, settings, traced), "light": light.facts(), "technique": f"fluence_fixed{refracted}"
+    }  # fmt: skip
     facts["parameters"]["fluence_scale"] = [float(value) for value in stored.scale]
     facts["parameters"]["fluence_reach"] = stored.reach * scene.geometry.scale
     return FluenceBake([Part("", stored.texels, "fluence_volume")], facts)
@@ -130,7 +133,7 @@ def _factor(traced: Field, rank: int) -> list[Part]:
     return [*latents, Part("_table", stored.table, f"fluence_table_{rank}")]
 
 
-def _facts(scene: MeasuredScene, settings: Settings, traced: Field) -> dict[str, Any]:
+def _facts(scene: MeasuredScene, settings: Settings, traced: Field) -> FluenceFacts:
     medium = scene.medium
     assert medium is not None
     voxel = _voxel(scene, traced.grid)

@@ -9,6 +9,7 @@ import numpy as np
 
 from sssgen.bake import memory_check as memory
 from sssgen.bake.atlas import SHARED, Atlas, atlas, fill_map
+from sssgen.bake.bake_facts import SurfaceMapFacts, ThicknessFacts
 from sssgen.bake.bake_light import BakeLight
 from sssgen.bake.texture_unwrap import obj, unwrap_mesh
 from sssgen.bake.voxel_grid import Array
@@ -44,7 +45,7 @@ class Map(NamedTuple):
 
     values: Array
     """(height, width), row 0 at the top: 0..1, as stored"""
-    facts: dict[str, Any]
+    facts: ThicknessFacts
     """For the JSON file"""
     mesh: str
     """The mesh as a Wavefront file if it has new texture coordinates, otherwise empty"""
@@ -83,7 +84,7 @@ def thickness_map(
     is_transmittance = request.mode == "transmittance"
     largest = 1.0 if is_transmittance else float(value.max())
     holds = "transmittance" if is_transmittance else "thickness"
-    facts = {
+    facts: ThicknessFacts = {
         "kind": holds, "holds": holds, "mode": "direction" if request.light else request.mode,
         "mesh": {
             "triangles": len(mesh.corners), "new_uv": new_uv, "inside_out": body.inside_out,
@@ -104,7 +105,7 @@ def thickness_map(
     return Map(fill_map(value / largest, surface.texels, size), facts, obj(mesh, uv) if new_uv else "")
 
 
-def warnings(facts: dict[str, Any]) -> list[str]:
+def warnings(facts: SurfaceMapFacts) -> list[str]:
     """Warnings about a map for the user."""
     messages = ["the mesh is inside out: its normals are reversed for the bake"] if facts["mesh"]["inside_out"] else []
     if (shared := facts["mesh"]["shared_texels"]) > SHARED and not facts["mesh"]["new_uv"]:

@@ -7,17 +7,19 @@ the map, so that 8 bits are enough.
 from __future__ import annotations
 
 import os
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from sssgen.bake import memory_check as memory
 from sssgen.bake.atlas import atlas, fill_map
+from sssgen.bake.bake_facts import ViewThicknessFacts
 from sssgen.bake.texture_unwrap import obj, unwrap_mesh
 from sssgen.bake.voxel_grid import Array
 from sssgen.jobs.executor import Item, Progress, failures, run
 from sssgen.jobs.result_store import Store
 from sssgen.lab.reference import view_harmonics
+from sssgen.material.baked import ParameterValue
 from sssgen.scene import body_identity
 from sssgen.scene.measured import measured_scene, media
 from sssgen.scene.measured.media import Medium
@@ -44,7 +46,7 @@ class Map(NamedTuple):
 
     pictures: list[Array]
     """(height, width, 3) each, row 0 at the top: 0..1, as stored"""
-    facts: dict[str, Any]
+    facts: ViewThicknessFacts
     """For the JSON files"""
     mesh: str
     """The mesh as a Wavefront file if it has new texture coordinates, otherwise empty"""
@@ -107,12 +109,12 @@ def bake(
     identity = body_identity.identity(body, scaled=False)
     if text:  # the map belongs to the mesh that is written with it
         identity["key"] = body_identity.mesh_key(text.encode())
-    parameters: dict[str, Any] = {"fade_length": length}
+    parameters: dict[str, ParameterValue] = {"fade_length": length}
     for number in range(IMAGES):
         part = slice(3 * number, 3 * number + 3)
         parameters[f"harmonics_lowest_{number + 1}"] = lowest[part].tolist()
         parameters[f"harmonics_span_{number + 1}"] = span[part].tolist()
-    facts = {
+    facts: ViewThicknessFacts = {
         "kind": "view_thickness", "holds": None,
         "body": identity,
         "mesh": {

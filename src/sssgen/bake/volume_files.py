@@ -46,7 +46,7 @@ def encode_volume(texels: npt.NDArray[Any], format: str) -> bytes:
             return texels.tobytes()
 
 
-def layout(texels: npt.NDArray[Any], format: str) -> dict[str, Any]:
+def layout(texels: npt.NDArray[Any], format: str) -> dict[str, object]:
     """The description of a file of `encode_volume` for its readers, as values for JSON.
 
     `size` is in texels; `one` is the stored number for 1.0. Raises SssgenError as `encode_volume` does.
@@ -78,7 +78,7 @@ def _encoding(texels: npt.NDArray[Any], format: str) -> Encoding:
     return encoding
 
 
-def _details(texels: npt.NDArray[Any], encoding: Encoding, format: str) -> dict[str, Any]:
+def _details(texels: npt.NDArray[Any], encoding: Encoding, format: str) -> dict[str, object]:
     """The entries of `layout` that depend on the format."""
     match format:
         case "dds":

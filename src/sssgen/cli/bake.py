@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from sssgen.cli.options import add_json, add_output, add_seed, add_workers
 from sssgen.cli.output import OK, print_result
@@ -15,10 +15,13 @@ from sssgen.support.paths import posix
 from sssgen.support.progress import ProgressBar
 from sssgen.targets.texture_import import import_settings
 
+if TYPE_CHECKING:
+    from sssgen.bake.bake_facts import BakeFacts, CellFacts, FluenceFacts, NormalFacts, PackedFacts, ViewThicknessFacts
+
 CHANNELS = ("red", "green", "blue", "alpha")
 GREEN = {"opengl": "OpenGL (up)", "directx": "DirectX (down)"}
 
-Result = tuple[list[str], dict[str, Any], list[str]]
+Result: TypeAlias = "tuple[list[str], BakeFacts, list[str]]"
 """The files that were written, the content of their JSON, and the lines to print."""
 
 
@@ -217,13 +220,14 @@ def _fluence(arguments: Namespace) -> Result:
         baked = fluence.bake(scene, arguments.rank, light, settings, arguments.scheduler, arguments.processes, bar)
     paths = []
     for part in baked.parts:
-        facts = {**baked.facts, "texture": part.texture}
+        facts: FluenceFacts = {**baked.facts, "texture": part.texture}
         if part.texels.ndim == 4:
             path = fluence.part_path(arguments.output, part.suffix)
             paths += output.write_volume(path, part.texels, format, facts)
         else:
             path = fluence.part_path(arguments.output, part.suffix, ".exr")
-            paths += output.write_picture(path, part.texels[::-1], {**facts, "import": import_settings(wrap="clamp")})
+            facts["import"] = import_settings(wrap="clamp")
+            paths += output.write_picture(path, part.texels[::-1], facts)
     x, y, z = baked.facts["texels"]
     lines = [
         f"{x} × {y} × {z} voxels; {baked.facts['photons']} photons for each of {baked.facts['directions']} "
@@ -270,7 +274,7 @@ def _view_thickness(arguments: Namespace) -> Result:
     beside = {os.path.basename(written): baked.mesh} if baked.mesh else {}
     paths = []
     for number, picture in enumerate(baked.pictures, 1):
-        facts = {**baked.facts, "texture": f"{view_thickness.TEXTURE}_{number}"}
+        facts: ViewThicknessFacts = {**baked.facts, "texture": f"{view_thickness.TEXTURE}_{number}"}
         path = fluence.part_path(arguments.output, f"_{number}")
         paths += output.write_picture(path, picture, facts, view_thickness.BITS, beside if number == 1 else None)
     error = baked.facts["error"]
@@ -316,7 +320,7 @@ def _voronoi(arguments: Namespace) -> Result:
     )
     with ProgressBar() as bar:
         texels = cells.voronoi(pattern, bar)
-        facts = {
+        facts: CellFacts = {
             "kind": "cells", "holds": "thickness", "feature": arguments.feature,
             "cells": list(count), "jitter": arguments.jitter, "seed": arguments.seed, "tiles": tiles,
             "bevel": arguments.bevel, "variation": arguments.variation,
@@ -354,7 +358,7 @@ def _normal(arguments: Namespace) -> Result:
         bar(1, 3, "normals")
         texels = normals.from_height(height[..., 0], arguments.strength, tiles, arguments.green)
         bar(2, 3, f"writing {arguments.output}")
-        facts = {
+        facts: NormalFacts = {
             "kind": "normal", "holds": None, "strength": arguments.strength,
             "green": arguments.green, "tiles": tiles, "parameters": {},
             "import": import_settings(wrap="repeat" if tiles else "clamp", normal_map=True),
@@ -382,7 +386,7 @@ def _pack(arguments: Namespace) -> Result:
     output.check_apart(arguments.output, [source.file for source in sources if source and source.file])
     with ProgressBar() as bar:
         texels = packing.pack(packing.load(sources, bar))
-        facts = {
+        facts: PackedFacts = {
             "kind": "packed", "holds": None, "channels": sources_by_channel, "parameters": {},
             "import": import_settings(),
         }  # fmt: skip
@@ -413,7 +417,7 @@ def _environment(arguments: Namespace) -> Result:
         reflections = half(maps.reflection_map(environment))
         bar(1, 2, "irradiance")
         irradiance = half(maps.irradiance_map(environment))
-    facts = {
+    facts: BakeFacts = {
         "kind": "environment", "holds": None, "parameters": {"reflection_levels": len(reflections.levels) - 1.0},
         "import": import_settings("Cube", "clamp"),
     }  # fmt: skip

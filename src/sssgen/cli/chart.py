@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sys
 from argparse import ArgumentParser, Namespace
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from sssgen.cli.engine_options import add_condition_options, conditions_of, device_of
 from sssgen.cli.layout import table_rows, table_width
@@ -16,6 +16,7 @@ from sssgen.support.progress import ProgressBar
 
 if TYPE_CHECKING:
     from sssgen.lab.chart.charting import Settings
+    from sssgen.lab.chart.record import Record
     from sssgen.scene.measured.measured_scene import MeasuredScene
 
 MAX_SAMPLES = 1 << 16
@@ -109,7 +110,7 @@ def settings_of(arguments: Namespace) -> Settings:
     return Settings(arguments.samples, arguments.seed, roles, arguments.scheduler, arguments.processes, ProgressBar)
 
 
-def summary(record: Mapping[str, Any]) -> str:
+def summary(record: Record) -> str:
     """The fronts, as text."""
     lines: list[str] = []
     for volume in record["hypervolume"]:

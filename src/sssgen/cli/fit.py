@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
-from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING
 
 from sssgen.cli.chart import add_reference_options, settings_of
 from sssgen.cli.options import unknown_name
 from sssgen.cli.output import OK, print_result
 from sssgen.support.diagnostics import failure
+
+if TYPE_CHECKING:
+    from sssgen.lab.chart.record import Point
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -23,6 +25,7 @@ def run(arguments: Namespace) -> int:
     """Fits on balls, bars and a slab of the medium, and prints the error there and on the scene itself."""
     settings = settings_of(arguments)._replace(roles=("coordinates", "translucency"))
     from sssgen.lab.chart import charting as chart
+    from sssgen.lab.chart.record import measures
     from sssgen.lab.measure import candidates
     from sssgen.scene.measured import measured_scene
 
@@ -40,13 +43,13 @@ def run(arguments: Namespace) -> int:
     lines = [
         f"{scene.title}: fitted with the exact thickness, on balls, bars and a slab of the same medium",
         "  fit: relative error on these; scene: on this scene, and from the side",
-        *map(_point_text, sorted(points, key=lambda point: float(point["error"]["value"]))),
+        *map(_point_text, sorted(points, key=lambda point: measures(point)[1])),
     ]
     print_result(arguments.json, {"scene": scene.name, "points": points}, "\n".join(lines))
     return OK
 
 
-def _point_text(point: Mapping[str, Any]) -> str:
+def _point_text(point: Point) -> str:
     parameters = dict(point["parameters"])
     if point["factor"]:
         parameters[f"{point['factor']} ×"] = point["scale"]

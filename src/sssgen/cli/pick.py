@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import os
 from argparse import ArgumentParser, Namespace
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from sssgen.cli.chart import add_reference_options, announce, settings_of
 from sssgen.cli.emit import chosen_targets
@@ -19,6 +18,7 @@ from sssgen.support.file_writer import write_files
 
 if TYPE_CHECKING:
     from sssgen.lab.chart.picking import Pick
+    from sssgen.lab.chart.record import Point
     from sssgen.scene.measured.measured_scene import MeasuredScene
 
 
@@ -106,7 +106,7 @@ def summary(scene: MeasuredScene, picked: Pick, max_error: float | None, max_cos
     return "\n".join(lines)
 
 
-def _point(point: Mapping[str, Any]) -> str:
+def _point(point: Point) -> str:
     from sssgen.lab.chart.picking import cost_of, limit_of
 
     error = point["error"]

@@ -6,10 +6,10 @@ import os
 import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
+from sssgen.bake.bake_facts import ThicknessFacts
 from sssgen.bake.texture_unwrap import unwrap_mesh
 from sssgen.bake.thickness_map import Request, thickness_map
 from sssgen.interchange.imported_material import BAKED_SET, ImportedMaterial
@@ -75,7 +75,7 @@ def bake_thickness(imported: ImportedMaterial, report: Report, progress: Progres
     )
 
 
-def _bake(mesh: FileContent, progress: Progress) -> tuple[tuple[FileContent, Array], bytes, dict[str, Any]]:
+def _bake(mesh: FileContent, progress: Progress) -> tuple[tuple[FileContent, Array], bytes, ThicknessFacts]:
     """The mesh with a vertex for each corner, its new texture coordinates, the map as a PNG file, and its facts."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "mesh.glb")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterable, Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler
@@ -28,6 +28,10 @@ UNITS = "materials use metres: scale the mesh to a few units"
 """The hint if a baked length is outside a parameter's range."""
 
 
+ParameterValue = float | list[float]
+"""A number, or the components of a vector or a matrix; a matrix column by column."""
+
+
 class BakeFile(NamedTuple):
     """The content of the JSON file next to a baked texture."""
 
@@ -35,12 +39,12 @@ class BakeFile(NamedTuple):
     """distance, thickness, transmittance, depth, cells, normal or packed"""
     holds: str
     """The quantity type of its numbers; "" if they have none"""
-    parameters: Mapping[str, Any]
+    parameters: Mapping[str, ParameterValue]
     """The parameters of techniques that it needs, by name: TOML values, in the body's object space"""
-    settings: Mapping[str, Any]
+    settings: Mapping[str, object]
     """How an engine imports it; see `targets.texture_import`"""
-    facts: Mapping[str, Any]
-    """The whole content of the file"""
+    facts: Mapping[str, object]
+    """The whole content of the file; only the parts above are checked"""
 
 
 def sidecar(path: str) -> str:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from sssgen.lab.chart.charting import Settings, cached_points
 from sssgen.lab.chart.picking import cost_of, limit_of
-from sssgen.lab.chart.record import measures
+from sssgen.lab.chart.record import Point, measures
 from sssgen.lab.measure.candidates import ROLES, is_path
 from sssgen.material.model import Material
 from sssgen.scene.measured import measured_scene
@@ -38,18 +37,18 @@ def measured_error(scene: Scene, material: Material) -> str:
     return f"Error of {same} in the chart, {point['label']}: {numbers}."
 
 
-def _is_clear(medium: Any) -> bool:
+def _is_clear(medium: object) -> bool:
     """Whether a section [medium] says that nothing scatters; without the key it scatters."""
     return isinstance(medium, Mapping) and medium.get("scattering") == [0, 0, 0]
 
 
-def nearest(points: Sequence[Mapping[str, Any]], names: frozenset[str]) -> Mapping[str, Any] | None:
+def nearest(points: Sequence[Point], names: frozenset[str]) -> Point | None:
     """The complete chain with the fewest other techniques than these; of several the one with the least error."""
     whole = [point for point in points if point["role"] in ("material", "coordinates") and not point.get("failed")]
     return min(whole, key=lambda point: (len(_techniques_of_point(point) ^ names), limit_of(point)), default=None)
 
 
-def _techniques_of_point(point: Mapping[str, Any]) -> frozenset[str]:
+def _techniques_of_point(point: Point) -> frozenset[str]:
     """The techniques of a chart's point."""
     return frozenset(filter(None, (*point["chain"], point.get("path", ""))))
 

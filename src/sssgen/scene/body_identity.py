@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import Any, NotRequired, TypedDict
 
 from sssgen.scene.bounds import bounds
 from sssgen.scene.geometry import Distance, Geometry, Mesh, Union
@@ -14,13 +14,29 @@ from sssgen.support import cache
 PLACEMENT = ("position", "rotation", "scale")
 
 
-def identity(geometry: Geometry, scaled: bool) -> dict[str, Any]:
-    """The entry `body` of a JSON file: a key of the shape, its name, its box in object space, and its scale if the
-    texture depends on it.
-    """
+class BodyIdentity(TypedDict):
+    """The entry `body` of a JSON file."""
+
+    key: str
+    """A digest of the shape in object space"""
+    name: str
+    box_min: list[float]
+    """In object space; so is `box_max`"""
+    box_max: list[float]
+    scale: NotRequired[float]
+    """Only if the texture depends on it"""
+
+
+def identity(geometry: Geometry, scaled: bool) -> BodyIdentity:
+    """The identity of a body; `scaled` is whether the texture depends on its scale."""
     low, high = bounds(geometry)
-    entry = {"key": key(geometry), "name": name(geometry), "box_min": low.tolist(), "box_max": high.tolist()}
-    return entry | {"scale": geometry.scale} if scaled else entry
+    entry: BodyIdentity = {
+        "key": key(geometry),
+        "name": name(geometry),
+        "box_min": low.tolist(),
+        "box_max": high.tolist(),
+    }
+    return {**entry, "scale": geometry.scale} if scaled else entry
 
 
 def key(geometry: Geometry) -> str:

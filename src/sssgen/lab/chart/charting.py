@@ -13,15 +13,16 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypedDict
 
 from sssgen.jobs.executor import Failure, Item, Progress, run
 from sssgen.jobs.work_items import code_stamp
-from sssgen.lab.chart.record import FORMAT, hypervolumes, on_fronts
+from sssgen.lab.chart.record import FORMAT, Measurement, Point, Record, SceneEntry, hypervolumes, on_fronts
 from sssgen.lab.measure import candidates, fluence_inputs
 from sssgen.lab.measure import scene_references as references
 from sssgen.lab.measure.candidates import Candidate
 from sssgen.lab.measure.fitting import FitResult
+from sssgen.lab.measure.measured_point import FittedChain, MeasuredPoint
 from sssgen.lab.measure.measurement import View
 from sssgen.lab.measure.problem import LENGTHS
 from sssgen.scene.measured.measured_scene import MeasuredScene
@@ -65,7 +66,14 @@ class Settings(NamedTuple):
         return f"chart-{cache.digest(key)}.json"
 
 
-def chart_record(scenes: Sequence[MeasuredScene], settings: Settings) -> dict[str, Any]:
+class ScenePoints(TypedDict):
+    """A scene and its points, as the cache has them."""
+
+    scene: SceneEntry
+    points: list[Point]
+
+
+def chart_record(scenes: Sequence[MeasuredScene], settings: Settings) -> Record:
     """The record of a chart: all points of these scenes, from the cache or measured.
 
     Raises SssgenError for scenes that cannot be measured, and for missing packages.
@@ -87,19 +95,19 @@ def chart_record(scenes: Sequence[MeasuredScene], settings: Settings) -> dict[st
     }  # fmt: skip
 
 
-def cached_points(scene: MeasuredScene, settings: Settings) -> dict[str, Any] | None:
+def cached_points(scene: MeasuredScene, settings: Settings) -> ScenePoints | None:
     """The scene's points from the cache, or None."""
     try:
-        result: dict[str, Any] = json.loads(cache.read(settings.cache_name(scene)) or b"null")
+        result: ScenePoints | None = json.loads(cache.read(settings.cache_name(scene)) or b"null")
     except ValueError:
         return None
     return result
 
 
-def _measure(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[str, Any]]:
+def _measure(scenes: Sequence[MeasuredScene], settings: Settings) -> list[ScenePoints]:
     """Measures the points of scenes."""
     views = _views(scenes, settings)
-    points: dict[str, list[dict[str, Any]]] = {scene.key: [] for scene in scenes}
+    points: dict[str, list[Point]] = {scene.key: [] for scene in scenes}
     for role in settings.roles:
         if role == "material":
             continue
@@ -109,7 +117,7 @@ def _measure(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[s
             points[scene.key].append(point)
     if "material" in settings.roles:
         jobs = []
-        before: dict[tuple[str, tuple[str, ...], Any], Mapping[str, tuple[float, ...]]] = {}
+        before: dict[tuple[str, Techniques, Counts], FittedParameters] = {}
         for scene in scenes:
             if scene.medium is not None:
                 whole = candidates.materials(
@@ -126,7 +134,7 @@ def _measure(scenes: Sequence[MeasuredScene], settings: Settings) -> list[dict[s
     return [{"scene": _description(scene, views[scene.key]), "points": points[scene.key]} for scene in scenes]
 
 
-def _candidates(role: str, scene: MeasuredScene, measured: Sequence[Mapping[str, Any]]) -> list[Candidate]:
+def _candidates(role: str, scene: MeasuredScene, measured: Sequence[Point]) -> list[Candidate]:
     """The candidates of a role that apply to a scene; `measured` has its points of the roles before."""
     if role == "coordinates":
         return candidates.coordinates() if scene.inlay is not None else []
@@ -160,7 +168,10 @@ def _is_selected(candidate: Candidate, settings: Settings) -> bool:
     return not wanted or candidate.role in LENGTHS or candidate.name in wanted
 
 
-Before = Mapping[tuple[str, tuple[str, ...], Any], Mapping[str, tuple[float, ...]]]
+Techniques = tuple[str, ...]
+Counts = tuple[tuple[str, int], ...]
+FittedParameters = dict[str, tuple[float, ...]]
+Before = Mapping[tuple[str, Techniques, Counts], FittedParameters]
 """(a scene's key, a technique, its settings) → the technique's parameters"""
 
 
@@ -202,7 +213,7 @@ def with_references(
 
 def _points(
     jobs: Sequence[tuple[MeasuredScene, Candidate]], views: dict[str, _Views], settings: Settings, before: Before
-) -> Iterable[tuple[MeasuredScene, dict[str, Any]]]:
+) -> Iterable[tuple[MeasuredScene, Point]]:
     """The points of the jobs. Scenes with the same training views share the fit.
 
     `before` has the parameters of first techniques that are fitted already.
@@ -230,12 +241,12 @@ def _points(
         )
         for (scene, candidate), fit in zip(jobs, fitted, strict=True)
     ]
-    points: list[dict[str, Any]] = results_of(measures, settings)
+    points: list[MeasuredPoint] = results_of(measures, settings)
     for (scene, _), point in zip(jobs, points, strict=True):
         yield scene, {"scene": scene.name, **point}
 
 
-def candidate_of(point: Mapping[str, Any]) -> Candidate:
+def candidate_of(point: FittedChain) -> Candidate:
     """The candidate of a point."""
     settings, chain = tuple(point["settings"].items()), tuple(point["chain"])
     path, path_settings = point.get("path", ""), tuple(point.get("path_settings", {}).items())
@@ -244,7 +255,7 @@ def candidate_of(point: Mapping[str, Any]) -> Candidate:
     )
 
 
-def fit_of(point: Mapping[str, Any]) -> FitResult:
+def fit_of(point: FittedChain) -> FitResult:
     """The result of a point's fit."""
     parameters = {name: tuple(value) for name, value in point["parameters"].items()}
     return FitResult(parameters, tuple(point["scale"]), tuple(point["matte"]), point["training_error"], point["factor"])
@@ -273,14 +284,14 @@ def results_of(items: Sequence[Item], settings: Settings) -> list[Any]:
 
 
 def distance_function_parameters(
-    points: Sequence[dict[str, Any]],
-) -> dict[tuple[tuple[str, ...], Any], dict[str, tuple[float, ...]]]:
+    points: Sequence[Point],
+) -> dict[tuple[Techniques, Counts], FittedParameters]:
     """The fitted parameters of the lengths that evaluate a distance function: by technique and settings.
 
     Complete chains use them unchanged, because fitting them again in each chain would take hours.
     """
-    parameters: dict[tuple[tuple[str, ...], Any], dict[str, tuple[float, ...]]] = {}
-    best: dict[tuple[tuple[str, ...], Any], float] = {}
+    parameters: dict[tuple[Techniques, Counts], FittedParameters] = {}
+    best: dict[tuple[Techniques, Counts], float] = {}
     for point in points:
         technique = candidates.load(point["chain"][0]) if point["role"] in LENGTHS else None
         if technique is None or not technique.slots:
@@ -292,19 +303,19 @@ def distance_function_parameters(
     return parameters
 
 
-def useful_paths(points: Sequence[Mapping[str, Any]]) -> list[Candidate]:
+def useful_paths(points: Sequence[Point]) -> list[Candidate]:
     """The useful thicknesses among those that can be measured from a point inside the body."""
     return useful_lengths(points, list(filter(candidates.fits_path, candidates.thickness())))
 
 
-def useful_lengths(points: Sequence[Mapping[str, Any]], lengths: Sequence[Candidate]) -> list[Candidate]:
+def useful_lengths(points: Sequence[Point], lengths: Sequence[Candidate]) -> list[Candidate]:
     """Those of `lengths` for complete chains: of those that require the same data the cheapest, and more expensive ones
     with a lower error.
 
     The training error decides, not the error on the scene.
     """
     by_label = {(candidate.role, candidate.label): candidate for candidate in lengths}
-    groups: dict[tuple[str, ...], list[Mapping[str, Any]]] = {}
+    groups: dict[tuple[str, ...], list[Point]] = {}
     for point in points:
         if (point["role"], point["label"]) in by_label:
             groups.setdefault(tuple(point["requires"]), []).append(point)
@@ -318,18 +329,20 @@ def useful_lengths(points: Sequence[Mapping[str, Any]], lengths: Sequence[Candid
     return chosen
 
 
-def _description(scene: MeasuredScene, views: _Views) -> dict[str, Any]:
+def _description(scene: MeasuredScene, views: _Views) -> SceneEntry:
     """A scene's entry in the record."""
-    entry: dict[str, Any] = {"name": scene.name, "title": scene.title, "key": scene.key}
+    entry: SceneEntry = {"name": scene.name, "title": scene.title, "key": scene.key}
     if (medium := scene.medium) is not None:
-        entry["medium"] = {"name": medium.name, "albedo": list(medium.albedo), "extinction": list(medium.extinction)}
-        entry["medium"] |= {"ior": medium.ior, "roughness": medium.roughness}
+        entry["medium"] = {
+            "name": medium.name, "albedo": list(medium.albedo), "extinction": list(medium.extinction),
+            "ior": medium.ior, "roughness": medium.roughness,
+        }  # fmt: skip
         entry["lights"] = scene.lit_by
         entry["fitted_to"] = [view.name for view in views.training]
     return entry
 
 
-def conditions(settings: Settings) -> dict[str, Any]:
+def conditions(settings: Settings) -> Measurement:
     """The conditions for repeating the measurement: versions, seed, samples."""
     packages = ("numpy", "scipy", "mitsuba", "embreex", "libigl", "flip-evaluator")
     return {

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
-from sssgen.lab.chart.record import fronts_of
+from sssgen.lab.chart.record import Point, Record, fronts_of
 from sssgen.support.diagnostics import failure
-
-Point = Mapping[str, Any]
 
 LIGHTS = ("fixed", "moving")
 BODIES = ("rigid", "deforming")
@@ -53,17 +51,17 @@ def usable(points: Sequence[Point], conditions: Conditions) -> list[Point]:
     return kept
 
 
-def under(record: Mapping[str, Any], conditions: Conditions) -> dict[str, Any]:
+def under(record: Record, conditions: Conditions) -> Record:
     """The record with the points that can be used, their fronts and hypervolumes. Raises SssgenError as `usable`."""
     if conditions == EVERYTHING:
-        return dict(record)
+        return record
     kept = usable(record["points"], conditions)
     return fronts_of({**record, "points": kept, "conditions": conditions._asdict()})
 
 
-def by_bytes(record: Mapping[str, Any]) -> dict[str, Any]:
+def by_bytes(record: Record) -> Record:
     """The record with the bytes of bakes as the cost; nothing baked is drawn as one byte."""
-    points = [
+    points: list[Point] = [
         {**point, "cost": {**point["cost"], "static": point["cost"]["value"], "value": max(point.get("bytes", 0), 1)}}
         for point in record["points"]
     ]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -12,7 +11,10 @@ from sssgen.ir.types import components, kind_of
 from sssgen.lab.chart.charting import candidate_of
 from sssgen.lab.chart.picking import Pick
 from sssgen.lab.measure.candidates import load
+from sssgen.lab.measure.measured_point import FittedChain
 from sssgen.material import library
+from sssgen.material.baked import ParameterValue
+from sssgen.material.library import Technique
 from sssgen.material.material_text import MaterialSection, material_text
 from sssgen.material.slots import needs
 from sssgen.scene.measured.measured_scene import MeasuredScene
@@ -42,7 +44,7 @@ def _surface(name: str, value: object) -> MaterialSection:
     return MaterialSection("surface", technique, ((uniform, value),))
 
 
-def stages_of(point: Mapping[str, Any], shape: Body, medium: Medium | None = None) -> list[MaterialSection]:
+def stages_of(point: FittedChain, shape: Body, medium: Medium | None = None) -> list[MaterialSection]:
     """The stages of a point with its fitted parameters and those of the medium.
 
     Counts, and what the body sets, are constants; all others are adjustable.
@@ -58,7 +60,7 @@ def stages_of(point: Mapping[str, Any], shape: Body, medium: Medium | None = Non
     return stages
 
 
-def _coordinates(scene: MeasuredScene, point: Mapping[str, Any], shape: Body) -> list[MaterialSection]:
+def _coordinates(scene: MeasuredScene, point: FittedChain, shape: Body) -> list[MaterialSection]:
     assert scene.inlay is not None
     stages = []
     for stage in stages_of(point, shape)[:1]:
@@ -76,9 +78,11 @@ def _with_values(stage: MaterialSection, values: Mapping[str, object]) -> Materi
     )
 
 
-def _parameters(technique: Any, point: Mapping[str, Any], known: Mapping[str, object]) -> dict[str, object]:
+def _parameters(
+    technique: Technique, point: FittedChain, known: Mapping[str, ParameterValue]
+) -> dict[str, ParameterValue]:
     """A technique's fitted parameters, and those that the scene knows; the factor includes the scale."""
-    values: dict[str, object] = {}
+    values: dict[str, ParameterValue] = {}
     names, _ = needs(technique.module, technique.function)
     for uniform in technique.uniforms:
         if uniform.name not in names or kind_of(uniform.type) != "float":
@@ -97,7 +101,7 @@ def _parameters(technique: Any, point: Mapping[str, Any], known: Mapping[str, ob
     return values
 
 
-def _clamp(uniform: Uniform, value: Any) -> Any:
+def _clamp(uniform: Uniform, value: ParameterValue) -> ParameterValue:
     """A value clamped to the parameter's range, which rounding may have exceeded."""
     limits = dict(uniform.hints).get("hint_range")
     if limits is None:

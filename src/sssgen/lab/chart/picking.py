@@ -6,15 +6,15 @@ measured value.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
 
 from sssgen.lab.chart.engine_conditions import EVERYTHING, Conditions, usable
-from sssgen.lab.chart.record import front
+from sssgen.lab.chart.record import Point, Record, front
 from sssgen.lab.measure.candidates import is_constant, is_published, load, needs
+from sssgen.lab.measure.measured_point import ViewError
 from sssgen.support.diagnostics import failure
-
-Point = Mapping[str, Any]
 
 
 class Role(NamedTuple):
@@ -48,8 +48,9 @@ class Pick(NamedTuple):
 
 def limit_of(point: Point) -> float:
     """The upper bound of a point's error: the largest upper end of its views' error bars."""
-    views = point["views"].values()
-    return max((float(view["high"]) for view in views), default=float(point["error"]["high"]))
+    errors: list[ViewError] = [*point["views"].values()] or [point["error"]]
+    ends = [error.get("high") for error in errors]
+    return max(math.inf if end is None else float(end) for end in ends)
 
 
 def cost_of(point: Point) -> float:
@@ -58,7 +59,7 @@ def cost_of(point: Point) -> float:
 
 
 def pick(
-    record: Mapping[str, Any],
+    record: Record,
     scene: str,
     max_error: float | None,
     max_cost: float | None,

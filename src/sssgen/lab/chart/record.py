@@ -10,9 +10,10 @@ import csv
 import io
 import json
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, TypeGuard
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, Literal, NotRequired, TypedDict, TypeGuard, cast
 
+from sssgen.lab.measure.measured_point import MeasuredPoint
 from sssgen.material.attributes import REQUIREMENTS
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 
@@ -22,30 +23,115 @@ FORMAT = 1
 ROLES = ("coordinates", "thickness", "view_thickness", "translucency", "material")
 """Points of the same role are compared; in the order of the charts."""
 
-COSTS = {"value": "cost", "operations": "operations", "transcendentals": "transcendentals", "fetches": "fetches"}
-COSTS |= {"distance_evaluations": "distance evaluations", "gpu_ms": "GPU ms"}
+CostName = Literal["value", "operations", "transcendentals", "fetches", "distance_evaluations", "gpu_ms"]
+ErrorName = Literal["value", "low", "high", "relmse", "bias", "p99", "max", "flip"]
+
+COSTS: dict[CostName, str] = {
+    "value": "cost", "operations": "operations", "transcendentals": "transcendentals", "fetches": "fetches",
+    "distance_evaluations": "distance evaluations", "gpu_ms": "GPU ms",
+}  # fmt: skip
 """Key of a point's cost → table column; charts show `value`."""
 
-ERRORS = {"value": "error", "low": "low", "high": "high", "relmse": "relMSE", "bias": "bias", "p99": "p99"}
-ERRORS |= {"max": "max", "flip": "FLIP"}
+ERRORS: dict[ErrorName, str] = {
+    "value": "error", "low": "low", "high": "high", "relmse": "relMSE", "bias": "bias", "p99": "p99", "max": "max",
+    "flip": "FLIP",
+}  # fmt: skip
 """Key of a point's error → table column; charts show `value`, with a bar from `low` to `high`."""
 
 LEAST = 1e-6
 """Logarithms of smaller costs and errors use this value, which is below the rounding of float32."""
 
-Point = Mapping[str, Any]
-Record = Mapping[str, Any]
+
+class Point(MeasuredPoint):
+    """A point in a record."""
+
+    scene: str
+    """The name of its scene"""
 
 
-def check_record(record: Any) -> dict[str, Any]:
+class MediumEntry(TypedDict, total=False):
+    """The medium of a scene."""
+
+    name: str
+    albedo: list[float]
+    """Single-scattering albedo, 0 to 1, for red, green and blue"""
+    extinction: list[float]
+    """Per unit of the scene, for red, green and blue"""
+    ior: float
+    roughness: float
+    """Of the boundary, 0 to 1"""
+
+
+class SceneEntry(TypedDict):
+    """A scene of a record."""
+
+    name: str
+    title: NotRequired[str]
+    key: NotRequired[str]
+    """Differs between scenes that differ"""
+    medium: NotRequired[MediumEntry]
+    lights: NotRequired[list[str]]
+    """The kinds of its lights; with a medium only"""
+    fitted_to: NotRequired[list[str]]
+    """The names of the training views; with a medium only"""
+
+
+class Hypervolume(TypedDict):
+    """The hypervolumes of a scene and role, in decades of cost × decades of error."""
+
+    scene: str
+    role: str
+    reference_point: NotRequired[list[float]]
+    """(cost, error)"""
+    ours: float
+    baselines: float
+
+
+class Measurement(TypedDict, total=False):
+    """The conditions of the measurement."""
+
+    sssgen: str
+    commit: str
+    versions: dict[str, str]
+    """By package; '' if it is not installed"""
+    seed: int
+    samples: int
+    """Of the reference, per ray and channel"""
+    device: str
+    """'' without times of a GPU; so is `driver`"""
+    driver: str
+    software: bool
+    """Whether the device is a rasteriser on the CPU"""
+    size: list[int]
+    """Width and height of the timed pictures, in pixels"""
+    rounds: int
+    rank_correlation: dict[str, float]
+    """Of static cost and time, by role; -1 to 1"""
+
+
+class Record(TypedDict):
+    """A chart's record."""
+
+    format: int
+    record: Measurement
+    cost: str
+    """static, gpu, bytes or device"""
+    cost_unit: str
+    scenes: list[SceneEntry]
+    points: list[Point]
+    hypervolume: NotRequired[list[Hypervolume]]
+    conditions: NotRequired[dict[str, Any]]
+    """The fields of `engine_conditions.Conditions`, if points are left out because of them"""
+
+
+def check_record(record: object) -> Record:
     """A copy of the record with None for numbers that are not finite. Raises SssgenError with up to 20 errors."""
     faults = list(_faults(record)) if isinstance(record, dict) else ["it is not a JSON object"]
     if faults:
         raise SssgenError(
             [failure(f"this is not a record of a chart: {fault}").diagnostics[0] for fault in faults[:20]]
         )
-    copy: dict[str, Any] = _finite(record)
-    return copy
+    return cast(Record, _finite(record))
 
 
 def _finite(value: Any) -> Any:
@@ -155,7 +241,7 @@ def hypervolume(points: Iterable[Point], reference_point: Sequence[float]) -> fl
     return area
 
 
-def on_fronts(points: Sequence[Point]) -> list[dict[str, Any]]:
+def on_fronts(points: Sequence[Point]) -> list[Point]:
     """The points; `front` is whether a point is on the front of its scene and role."""
     groups: dict[tuple[str, str], list[Point]] = {}
     for point in points:
@@ -164,9 +250,9 @@ def on_fronts(points: Sequence[Point]) -> list[dict[str, Any]]:
     return [{**point, "front": id(point) in best} for point in points]
 
 
-def hypervolumes(points: Sequence[Point]) -> list[dict[str, Any]]:
+def hypervolumes(points: Sequence[Point]) -> list[Hypervolume]:
     """The hypervolumes of our points and of all baselines together, for each scene and role."""
-    volumes = []
+    volumes: list[Hypervolume] = []
     for scene, role in dict.fromkeys((point["scene"], point["role"]) for point in points):
         group = [point for point in points if (point["scene"], point["role"]) == (scene, role)]
         reference_point = [1.1 * max(float(point["cost"]["value"]) for point in group), 1.0]
@@ -179,7 +265,7 @@ def hypervolumes(points: Sequence[Point]) -> list[dict[str, Any]]:
     return volumes
 
 
-def fronts_of(record: Record) -> dict[str, Any]:
+def fronts_of(record: Record) -> Record:
     """The record with the fronts and hypervolumes of the points that it has now."""
     points = on_fronts(record["points"])
     return {**record, "points": points, "hypervolume": hypervolumes(points)}
@@ -213,10 +299,10 @@ def to_csv(record: Record) -> str:
     columns += [f"cost_{name}" for name in COSTS] + [f"error_{name}" for name in ERRORS]
     writer.writerow([*columns, "implementation"])
     for point in record["points"]:
-        row = [point["scene"], point["role"], point["name"], point["label"]]
-        row += [int(bool(point.get(name))) for name in ("baseline", "front")]
+        row: list[object] = [point["scene"], point["role"], point["name"], point["label"]]
+        row += [int(bool(point.get("baseline"))), int(bool(point.get("front")))]
         row += [point.get("failed", ""), " + ".join(point.get("chain", []))]
-        row += [_compact(point.get(name, {})) for name in ("settings", "parameters")]
+        row += [_compact(point.get("settings", {})), _compact(point.get("parameters", {}))]
         row += [point.get("path", ""), _compact(point.get("path_settings", {}))]
         row += [" + ".join(point.get("requires", [])), point.get("bytes", "")]
         row += [point["cost"].get(name) for name in COSTS] + [point["error"].get(name) for name in ERRORS]
@@ -224,5 +310,5 @@ def to_csv(record: Record) -> str:
     return file.getvalue()
 
 
-def _compact(value: Any) -> str:
+def _compact(value: object) -> str:
     return json.dumps(value, sort_keys=True, ensure_ascii=False)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from sssgen.lab.chart.record import MediumEntry, SceneEntry
 
 
-def boundary(medium: Mapping[str, Any]) -> str:
+def boundary(medium: MediumEntry) -> str:
     """The surface of a medium of a record."""
     index, roughness = medium.get("ior", 1.0), medium.get("roughness", 0.0)
     if index == 1.0:
@@ -14,12 +13,12 @@ def boundary(medium: Mapping[str, Any]) -> str:
     return f"index {index:g}, {f'roughness {roughness:g}' if roughness else 'smooth'}"
 
 
-def lights(scene: Mapping[str, Any]) -> str:
+def lights(scene: SceneEntry) -> str:
     """The kinds of lights of a record's scene."""
     return ", ".join(scene.get("lights", ()))
 
 
-def conditions(scene: Mapping[str, Any]) -> str:
+def conditions(scene: SceneEntry) -> str:
     """Both in a line; '' for a scene without a medium."""
     if (medium := scene.get("medium")) is None:
         return ""

@@ -8,16 +8,18 @@ from __future__ import annotations
 import dataclasses
 import os
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Literal
 
 import numpy as np
 
 from sssgen.lab.chart.picked_material import stages_of
+from sssgen.lab.chart.record import Point, Record
 from sssgen.lab.gpu import gpu_timing as gpu_cost
 from sssgen.lab.gpu import timed_programs as gpu_programs
 from sssgen.lab.gpu.gpu_timing import ProgramTimes
 from sssgen.lab.measure.measured_chain import material_of
+from sssgen.lab.measure.measured_point import FittedChain, GpuTimes
 from sssgen.material import library
 from sssgen.material.material_text import MaterialSection
 from sssgen.material.model import Material
@@ -39,18 +41,18 @@ Progress = Callable[[int, int, str], None]
 
 
 def with_gpu_cost(
-    record: Mapping[str, Any],
+    record: Record,
     scenes: Sequence[MeasuredScene],
     size: tuple[int, int] = gpu_cost.SIZE,
     rounds: int = gpu_cost.ROUNDS,
     progress: Progress = lambda *_: None,
-) -> dict[str, Any]:
+) -> Record:
     """The record with each point's time as its cost, the static cost's rank correlation with it, and the device.
 
     Failed points are not timed. Raises SssgenError without OpenGL.
     """
-    points = [dict(point) for point in record["points"]]
-    about = dict(record["record"])
+    points = [point.copy() for point in record["points"]]
+    about = record["record"].copy()
     finished = 0
     for measured in scenes:
         scene_points = [point for point in points if point["scene"] == measured.name and not point["failed"]]
@@ -69,30 +71,30 @@ def with_gpu_cost(
     return {**record, "record": about, "points": points}
 
 
-def _cost(low: float, median: float, high: float, times: ProgramTimes) -> dict[str, Any]:
+def _cost(low: float, median: float, high: float, times: ProgramTimes) -> GpuTimes:
     """Times as a cost; on a software rasteriser only the ratio to the shader without the chain."""
     without = max(float(np.median(times.net_times[EMPTY])), LEAST)
-    ratio = {"gpu_ratio": max(median, LEAST) / without}
+    ratio: GpuTimes = {"gpu_ratio": max(median, LEAST) / without}
     if times.device.software:
         return ratio
     return {**ratio, "gpu_ms": max(median, LEAST), "gpu_ms_low": low, "gpu_ms_high": high}
 
 
-def by_gpu(record: Mapping[str, Any]) -> dict[str, Any]:
+def by_gpu(record: Record) -> Record:
     """The record with GPU times as the cost for drawing and picking; it omits points without a time."""
     software = bool(record["record"].get("software"))
-    kind = "gpu_ratio" if software else "gpu_ms"
-    points = [
-        {**point, "cost": {**point["cost"], "static": point["cost"]["value"], "value": point["cost"][kind]}}
+    kind: Literal["gpu_ratio", "gpu_ms"] = "gpu_ratio" if software else "gpu_ms"
+    points: list[Point] = [
+        {**point, "cost": {**point["cost"], "static": point["cost"]["value"], "value": value}}
         for point in record["points"]
-        if point["cost"].get(kind) is not None
+        if (value := point["cost"].get(kind)) is not None
     ]
     unit = "× the bare shader" if software else "ms at 1080p"
     return {**record, "points": points, "cost": "gpu", "cost_unit": unit}
 
 
 def time_points(
-    measured: MeasuredScene, points: Sequence[Mapping[str, Any]], size: tuple[int, int], rounds: int
+    measured: MeasuredScene, points: Sequence[FittedChain], size: tuple[int, int], rounds: int
 ) -> ProgramTimes:
     """The times of the points' shaders, named by their numbers, and of the shader without a chain, EMPTY."""
     scene = _drawable(measured)
@@ -137,7 +139,7 @@ def _with_parameters(scene: Scene, measured: MeasuredScene, material: Material) 
     )
 
 
-def correlations(points: Sequence[Mapping[str, Any]]) -> dict[str, float]:
+def correlations(points: Sequence[Point]) -> dict[str, float]:
     """Spearman's rank correlation of static and measured cost, over all scenes, by role."""
     result = {}
     for role in dict.fromkeys(point["role"] for point in points):

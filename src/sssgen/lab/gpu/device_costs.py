@@ -9,20 +9,20 @@ from __future__ import annotations
 
 import os
 import tomllib
-from collections.abc import Mapping
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Literal, NamedTuple
 
-from sssgen.lab.chart.record import fronts_of
+from sssgen.lab.chart.record import Measurement, Point, Record, fronts_of
+from sssgen.lab.measure.measured_point import PointCost
 from sssgen.support.diagnostics import did_you_mean, failure
 
 FOLDER = os.path.join(os.path.dirname(__file__), "devices")
-OPERATORS = ("operations", "transcendentals", "fetches", "distance_evaluations")
+Operator = Literal["operations", "transcendentals", "fetches", "distance_evaluations"]
+
+OPERATORS: tuple[Operator, ...] = ("operations", "transcendentals", "fetches", "distance_evaluations")
 """The static counts of a chain that have a cost."""
 LEAST = 1e-3
 """The least predicted cost, in nanoseconds: an empty chain costs nothing."""
-
-Point = Mapping[str, Any]
 
 
 class Device(NamedTuple):
@@ -36,7 +36,7 @@ class Device(NamedTuple):
     ns: tuple[float, ...]
     """Nanoseconds per pixel, in the order of OPERATORS"""
 
-    def predict(self, cost: Mapping[str, Any]) -> float:
+    def predict(self, cost: PointCost) -> float:
         """The nanoseconds per pixel of a chain with these static counts."""
         return max(sum(ns * float(cost[name]) for name, ns in zip(OPERATORS, self.ns, strict=True)), LEAST)
 
@@ -77,12 +77,14 @@ def load(name: str) -> Device:
     return Device(os.path.basename(path).removesuffix(".toml"), *about, ns)
 
 
-def by_device(record: Mapping[str, Any], device: Device) -> dict[str, Any]:
+def by_device(record: Record, device: Device) -> Record:
     """The record with the predicted nanoseconds as the cost, for drawing and picking."""
-    points = [
+    points: list[Point] = [
         {**point, "cost": {**point["cost"], "static": point["cost"]["value"], "value": device.predict(point["cost"])}}
         for point in record["points"]
     ]
-    about = {**record["record"], "device": device.renderer, "driver": device.driver, "software": device.software}
+    about: Measurement = {
+        **record["record"], "device": device.renderer, "driver": device.driver, "software": device.software
+    }  # fmt: skip
     unit = f"ns per pixel on {device.name}, predicted"
     return fronts_of({**record, "record": about, "points": points, "cost": "device", "cost_unit": unit})

@@ -17,7 +17,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from time import perf_counter
-from typing import Any, NamedTuple, cast
+from typing import Any, NamedTuple, TypedDict, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -54,7 +54,7 @@ class Program(NamedTuple):
     name: str
     fragment: str
     """GLSL 3.30 with its `#version`; it may read `in vec2 v_uv`, 0..1, and writes one vec4."""
-    uniforms: Mapping[str, Any] = {}
+    uniforms: Mapping[str, object] = {}
     """Numbers by name; a matrix column by column. Uniforms that the driver has removed are ignored."""
     textures: Mapping[str, Texture | backends.Array] = {}
     """By name. An array (height, width, 4) is uploaded as float32, for texelFetch."""
@@ -81,6 +81,28 @@ class Spread(NamedTuple):
     """The 10th percentile."""
     high: float
     """The 90th percentile."""
+
+
+class ProgramRecord(TypedDict):
+    """The times of a program, as JSON: median, low and high, as in Spread."""
+
+    evaluations: int
+    frame_ms: dict[str, float]
+    """Of a draw with its floor"""
+    net_ms: dict[str, float]
+    """Of one evaluation at every pixel, without the floor"""
+
+
+class TimesRecord(TypedDict):
+    """The times of several programs, as JSON."""
+
+    device: str
+    driver: str
+    software: bool
+    size: list[int]
+    """Width and height, in pixels"""
+    rounds: int
+    programs: dict[str, ProgramRecord]
 
 
 @dataclass(frozen=True)
@@ -112,7 +134,7 @@ class ProgramTimes:
         # the floor's noise may exceed a cheap program's time, so that its net time is negative
         return _spread(np.maximum(self.net_times[name], 0.0) / np.maximum(self.net_times[reference], 1e-9))
 
-    def record(self) -> dict[str, Any]:
+    def record(self) -> TimesRecord:
         """The measurement for JSON. If `software`, only ratios of the times are meaningful."""
         return {
             "device": self.device.renderer,

@@ -46,6 +46,10 @@ MOST_RAYS = 500_000
 """The limit of rays that the CPU casts for a picture."""
 
 
+Numbers = Mapping[str, float | Sequence[float]]
+"""The values of uniforms by name"""
+
+
 class Points(NamedTuple):
     """The inputs of a fragment stage at each pixel, as (height, width, 4) float32."""
 
@@ -223,7 +227,7 @@ def of_technique(
     evaluations: int = 1,
     guards: str = "auto",
     text: str = "",
-    values: Mapping[str, Any] | None = None,
+    values: Numbers | None = None,
 ) -> Program:
     """The program of one technique (named as for `sssgen eval`, with functions bound to its slots) at surface points.
 
@@ -248,7 +252,7 @@ def of_technique(
                 f"{function} has no parameter '{key}'",
                 did_you_mean(key, defaults) or f"parameters: {', '.join(defaults)}",
             )
-    numbers: dict[str, Any] = {**defaults, **(values or {})}
+    numbers: Numbers = {**defaults, **(values or {})}
     shade = _shade(_signature(text, function, renamed), subject, numbers)
     uniforms = {**numbers, **{f"value_{key}": value for key, value in numbers.items()}}
     uniforms |= {"timing_eye": EYE, "timing_light": LIGHT, "timing_time": 1.5, "timing_evaluations": evaluations}
@@ -295,7 +299,7 @@ def _signature(text: str, function: str, renamed: Mapping[str, str]) -> _Signatu
     return _Signature(match[1], emitted, params)
 
 
-def _shade(called: _Signature, subject: probes.Subject, numbers: Mapping[str, Any]) -> _Shade:
+def _shade(called: _Signature, subject: probes.Subject, numbers: Numbers) -> _Shade:
     """The functions that call a technique with a pixel's inputs and the technique's uniforms."""
     uniforms = [param for param in called.params if param.name in subject.uniforms]
     inputs = [param for param in called.params if param.name not in subject.uniforms and param.direction != "out"]
@@ -326,7 +330,7 @@ def _shade(called: _Signature, subject: probes.Subject, numbers: Mapping[str, An
     )
 
 
-def _declaration(uniform: _Input, numbers: Mapping[str, Any]) -> str:
+def _declaration(uniform: _Input, numbers: Numbers) -> str:
     """The declaration of a technique's uniform; a count is a constant."""
     if uniform.type in ("int", "uint"):
         value = np.ravel(numbers[uniform.name])[0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from sssgen.lab.measure.measured_point import PointError
 from sssgen.run.backends import Array
 from sssgen.scene.pictures.images import encode_srgb
 from sssgen.scene.pictures.picture_difference import EPSILON
@@ -13,7 +14,7 @@ BARS = 2.0
 """Standard errors to either side, in an error bar."""
 
 
-def compare(values: Array, reference: Array, noise: Array | None = None) -> dict[str, float]:
+def compare(values: Array, reference: Array, noise: Array | None = None) -> PointError:
     """The error of `values` (k, n) against `reference` (k, n), whose standard errors are `noise` (k, n).
 
     `relmse`: the mean of (v − r)² / (r² + ε), minus the expected contribution of the reference's noise. `value`: its

@@ -16,6 +16,7 @@ from sssgen.lab.measure import fitting
 from sssgen.lab.measure.candidates import PROBES, Candidate, converged_counts, is_calibrated, load
 from sssgen.lab.measure.fitting import FitResult
 from sssgen.lab.measure.measured_chain import Chain, material_of
+from sssgen.lab.measure.measured_point import MeasuredPoint, ViewError
 from sssgen.lab.measure.needed_data import NeededData, needed_data
 from sssgen.lab.measure.problem import (
     LENGTHS,
@@ -126,7 +127,7 @@ def chain_of(candidate: Candidate, shape: Body, folder: str, dtype: Any = np.flo
     return Chain(material_of(candidate.stages(shape), folder), dtype)
 
 
-def measure_candidate(candidate: Candidate, fitted: FitResult, views: Sequence[View]) -> dict[str, Any]:
+def measure_candidate(candidate: Candidate, fitted: FitResult, views: Sequence[View]) -> MeasuredPoint:
     """The candidate's error over the views of one scene, with fitted parameters, as a point of a chart's record.
 
     `failed` of the point is not empty if the chain's output has NaN or infinity. Raises SssgenError.
@@ -153,10 +154,10 @@ def measure_candidate(candidate: Candidate, fitted: FitResult, views: Sequence[V
         np.concatenate([problem.target for problem in problems], axis=1),
         np.concatenate([problem.noise for problem in problems], axis=1),
     )
-    view_errors = {}
+    view_errors: dict[str, ViewError] = {}
     for picture, (view, problem) in zip(pictures, solvable, strict=True):
         view_error = metrics.compare(picture, problem.target, problem.noise)
-        view_errors[view.name] = {key: view_error[key] for key in ("value", "low", "high")}
+        view_errors[view.name] = {"value": view_error["value"], "low": view_error["low"], "high": view_error["high"]}
     if candidate.role == "material":
         flips = [
             metrics.flip(points(view.scene).picture(picture), points(view.scene).picture(problem.target))
@@ -171,7 +172,11 @@ def measure_candidate(candidate: Candidate, fitted: FitResult, views: Sequence[V
         "scale": list(fitted.scale), "matte": list(fitted.matte), "factor": fitted.factor,
         "training_error": fitted.error,
         "requires": list(data.requires), "bytes": data.bytes,
-        "cost": {"value": float(max(cost.weight, 1)), **cost._asdict(), "gpu_ms": None},
+        "cost": {
+            "value": float(max(cost.weight, 1)), "operations": cost.operations,
+            "transcendentals": cost.transcendentals, "fetches": cost.fetches,
+            "distance_evaluations": cost.distance_evaluations, "gpu_ms": None,
+        },
         "error": error, "views": view_errors, "implementation": implementation,
         "failed": f"{not_finite} of {lanes} points are not finite" if not_finite else "",
     }  # fmt: skip

@@ -69,7 +69,7 @@ class Medium:
         return red, green, blue
 
     @property
-    def parameters(self) -> dict[str, object]:
+    def parameters(self) -> dict[str, float | list[float]]:
         """The medium's parameters by their names in techniques, as TOML values."""
         return {
             "ior": self.ior,

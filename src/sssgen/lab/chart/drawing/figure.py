@@ -137,7 +137,7 @@ def _add_margins(least: float, most: float, before: float, after: float) -> tupl
 
 def _error_bar(point: Point) -> tuple[float, float]:
     error = measures(point)[1]
-    low, high = (point["error"].get(name) for name in ("low", "high"))
+    low, high = point["error"].get("low"), point["error"].get("high")
     return max(error if low is None else low, 0.0), max(error if high is None else high, 0.0)
 
 

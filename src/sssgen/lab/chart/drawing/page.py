@@ -5,13 +5,13 @@ from __future__ import annotations
 import functools
 import os
 import re
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Template
 
 from sssgen.lab.chart.drawing.panels import Chart, number
-from sssgen.lab.chart.record import COSTS, ERRORS, Point, Record
+from sssgen.lab.chart.record import COSTS, ERRORS, Point, Record, SceneEntry
 from sssgen.lab.chart.scene_conditions import conditions
 
 COLUMNS = ("scene", "role", "technique", "cost", "error", "low", "high", "front", "failed", "settings", "chain")
@@ -70,24 +70,24 @@ def _row(point: Point, titles: dict[str, str]) -> dict[str, Cell]:
         "implementation": _pairs(point.get("implementation", {})),
     }
     cells = {name: Cell(text, text.lower()) for name, text in texts.items()}
-    for numbers, columns in ((point["cost"], COSTS), (point["error"], ERRORS)):
-        for name, title in columns.items():
-            value = numbers.get(name)
-            cells[title] = Cell(number(value), "" if value is None else float(value))
+    numbers = {title: point["cost"].get(name) for name, title in COSTS.items()}
+    numbers |= {title: point["error"].get(name) for name, title in ERRORS.items()}
+    for title, value in numbers.items():
+        cells[title] = Cell(number(value), "" if value is None else float(value))
     return cells
 
 
-def _medium(scene: dict[str, Any]) -> tuple[str, str]:
+def _medium(scene: SceneEntry) -> tuple[str, str]:
     """A scene's title, and its medium with its conditions."""
     text = " · ".join(filter(None, (scene["medium"].get("name", ""), conditions(scene))))
     return str(scene.get("title") or scene["name"]), text
 
 
-def _pairs(values: dict[str, Any]) -> str:
+def _pairs(values: Mapping[str, object]) -> str:
     return ", ".join(f"{name} = {_value(value)}" for name, value in sorted(values.items()))
 
 
-def _value(value: Any) -> str:
+def _value(value: object) -> str:
     if isinstance(value, list):
         return f"({', '.join(map(_value, value))})"
     return number(value) if isinstance(value, float) else str(value)
@@ -100,7 +100,7 @@ def _facts(record: Record) -> list[tuple[str, str]]:
     return [(name, _fact(facts[name])) for name in names]
 
 
-def _fact(value: Any) -> str:
+def _fact(value: object) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     return _pairs(value) if isinstance(value, dict) else str(value)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from statistics import median
-from typing import Any
 
 from sssgen.lab.chart.record import Point, Record, front, measures, points_of, roles
 from sssgen.lab.chart.scene_conditions import conditions
@@ -95,7 +94,7 @@ def _surroundings(record: Record, role: str) -> str:
 
 def _conditions(record: Record) -> str:
     """The conditions of the measurement, in one line."""
-    facts = record["record"]
+    facts: Mapping[str, object] = record["record"]
     parts = [f"commit {str(facts['commit'])[:10]}"] if facts.get("commit") else []
     parts += [f"{name} {facts[name]}" for name in ("seed", "samples") if facts.get(name) is not None]
     if record["cost"] == "gpu":
@@ -141,7 +140,7 @@ def medians(record: Record, role: str) -> list[Point]:
     groups: dict[tuple[str, str], list[Point]] = {}
     for point in points_of(record, role):
         groups.setdefault((point["name"], point["label"]), []).append(point)
-    points: list[dict[str, Any]] = []
+    points: list[Point] = []
     for group in groups.values():
         costs, errors = zip(*map(measures, group), strict=True)
         error = median(errors)
