@@ -55,11 +55,9 @@ def test_the_root_of_the_package_has_few_files() -> None:
 
 
 def test_module_names_are_unique() -> None:
-    """A name identifies a module. A command may have the name of the module that it runs, and a module of `cli/facts` has
-    that of the kind which it describes."""
+    """A name identifies a module. Commands, and modules of `cli/facts`, have the names of what they are about."""
+    named_apart = (PACKAGE / "cli", PACKAGE / "cli" / "facts")
     names = Counter(
-        path.name
-        for path in python_files()
-        if path.name != "__init__.py" and path.parent not in (PACKAGE / "cli", PACKAGE / "cli" / "facts")
+        path.name for path in python_files() if path.name != "__init__.py" and path.parent not in named_apart
     )
     assert not [name for name, count in names.items() if count > 1]
