@@ -14,8 +14,14 @@ float lobe(vec3 across, float NoL, float NoV, float NoH, float roughness) {
     return a * a / (spread * spread) * 0.5 / mix(2.0 * NoL * NoV, NoL + NoV, a);
 }
 
+// A fit to what a white sheen of this roughness reflects.
+float charlie_share(float cosine, float r) {
+    float grazing = (2.31 - 3.95 * r + 2.23 * r * r) * exp(-(9.86 - 19.53 * r + 11.69 * r * r) * cosine);
+    return clamp(grazing + 0.051 * r * r, 0.0, 1.0);
+}
+
 vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color,
-        float specular, float clearcoat, float clearcoat_roughness) {
+        float specular, float clearcoat, float clearcoat_roughness, vec3 sheen_color, float sheen_roughness) {
     vec3 H = normalize(V + L);
     float NoL = max(dot(N, L), 0.0);
     float NoV = max(dot(N, V), 1.0e-4);
@@ -25,6 +31,13 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
     vec3 F0 = mix(vec3(specular), albedo, metallic);
     vec3 F = F0 + (1.0 - F0) * grazing;
     vec3 base = albedo * (1.0 - metallic) * (1.0 - F) + lobe(across, NoL, NoV, NoH, roughness) * F;
+    float strongest = max(sheen_color.x, max(sheen_color.y, sheen_color.z));
+    if (strongest > 0.0) {
+        float share = max(charlie_share(NoL, sheen_roughness), charlie_share(NoV, sheen_roughness));
+        float n = 1.0 / max(sheen_roughness * sheen_roughness, 0.005);
+        float fibres = (2.0 + n) * pow(length(across), n) / (8.0 * max(NoL + NoV - NoL * NoV, 1.0e-4));
+        base = base * max(1.0 - strongest * share, 0.0) + sheen_color * fibres;
+    }
     if (clearcoat > 0.0) {
         float coat = clearcoat * (0.04 + 0.96 * grazing);
         base = mix(base, vec3(lobe(across, NoL, NoV, NoH, clearcoat_roughness)), coat);

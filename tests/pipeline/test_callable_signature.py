@@ -15,7 +15,7 @@ from sssgen.run.compilers import Source
 from sssgen.support.diagnostics import SssgenError
 
 EXAMPLES = ("ice", "jade_ring", "marble_idol", "wax_mouse")
-DECLARED = re.compile(r"^(?:static )?(?:const )?(?:struct|fn|def|class|[\w<>]+)\s+(\w+)\s*[({=:]", re.MULTILINE)
+DECLARED = re.compile(r"^(?:export |static )?(?:const )?(?:struct|fn|def|class|[\w<>]+)\s+(\w+)\s*[({=:]", re.MULTILINE)
 
 
 @pytest.mark.parametrize("target", ["glsl-330", "glsl-es-300", "hlsl", "wgsl"])

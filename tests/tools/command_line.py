@@ -29,7 +29,7 @@ class Compiled(NamedTuple):
 
     @property
     def reflection(self) -> dict[str, object]:
-        return {}
+        return {"renames": {}}
 
 
 class Target(NamedTuple):
