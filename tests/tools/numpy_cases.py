@@ -28,7 +28,8 @@ def module_of(source: str) -> Module:
 
 def python_of(module: Module) -> str:
     """The Python text of a checked module."""
-    renamed, _ = rename(predicate(module), rules_of(load("numpy").names.exact, False))
+    names = load("numpy").names
+    renamed, _ = rename(predicate(module), rules_of(names.exact | names.private, False))
     return print_functions(renamed)
 
 
