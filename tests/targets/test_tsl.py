@@ -14,7 +14,7 @@ import sssgen
 from folders import TESTS
 from skips import or_skip
 from snapshot import check_snapshot
-from sssgen.analyse.verify.verification import Machines, backends_of, start_machines, verify
+from sssgen.analyse.verify.verification import Machines, Options, backends_of, start_machines, verify
 from sssgen.ir.nodes import Module
 from sssgen.ir.types import FLOAT, INT, VEC3
 from sssgen.lang.plain_glsl import load_glsl_text
@@ -82,7 +82,7 @@ def machines(backend: Callable[[str], Backend]) -> Iterator[Machines]:
 
 
 def test_every_construct_has_its_results_in_three(machines: Machines) -> None:
-    report = verify(CONSTRUCTS, "constructs.glsl", 64, machines=machines)
+    report = verify(CONSTRUCTS, "constructs.glsl", Options(64), machines=machines)
     assert [row.function for row in report.rows if not row.ok] == [], "\n".join(report.lines())
     assert all({"tsl", "tsl-gl2"} <= set(row.comparisons) for row in report.rows)
     assert "hlsl" not in next(iter(report.lines()))
@@ -92,7 +92,9 @@ def test_a_wrong_translation_is_seen(machines: Machines) -> None:
     def misread(text: str, shown: str) -> Module:
         return load_glsl_text(text.replace("x * 2.0", "x * 2.5"), shown).module
 
-    (row,) = verify("float f(float x) { return x * 2.0; }", "case.glsl", 32, read=misread, machines=machines).rows
+    (row,) = verify(
+        "float f(float x) { return x * 2.0; }", "case.glsl", Options(32), read=misread, machines=machines
+    ).rows
     assert not row.comparisons["tsl"].ok and not row.comparisons["tsl-gl2"].ok
 
 
