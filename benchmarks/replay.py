@@ -60,7 +60,7 @@ def texts_of_this_state() -> dict[str, str]:
     try:
         from sssgen.run.evaluate import probes
     except ImportError:  # the folders of earlier states
-        from sssgen.run.evaluate import probes
+        from sssgen.harness.evaluate import probes
 
     texts: dict[str, str] = {}
     materials = [path for path in sorted(Path().glob("examples/*/*.toml")) if path.stem == path.parent.name]

@@ -98,7 +98,7 @@ def measure(backend: Backend, chosen: Sequence[Case]) -> dict[str, Figure]:
 
 def supported(case: Case, backend: Backend) -> bool:
     """Whether a back end's target has the overload, and the back end its textures."""
-    types = [spell(type_) for type_ in case.params]
+    types = [spell(type_) for type_ in (*case.params, case.result)]
     has_types = all(name in backend.target.types and name not in backend.unsupported_types for name in types)
     return has_types and _written(case.name, case.params, backend.target.dialect)
 

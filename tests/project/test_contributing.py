@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import sys
 import sysconfig
@@ -17,6 +18,7 @@ import pytest
 from documents import Reader, blocks, programs, read, uncommented
 from folders import ROOT
 from sssgen import SssgenError
+from sssgen.cli.main import main
 from sssgen.lang.check.shader_interface import BUILTIN_VARIABLES
 from sssgen.material.chain_assembly import INPUTS
 from sssgen.passes.capabilities import Capabilities
@@ -119,7 +121,7 @@ def plugin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, st
 
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.delitem(sys.modules, "toy_target", raising=False)
-    for module_, name in ((registry, "names"), (registry, "load"), (plugins, "entries")):
+    for module_, name in ((registry, "names"), (registry, "faults"), (registry, "load"), (plugins, "entries")):
         monkeypatch.setattr(module_, name, getattr(module_, name).__wrapped__)
     return install
 
@@ -152,11 +154,29 @@ def test_a_faulty_plugin_is_named(plugin: Callable[[str, str], None], entry: str
     assert message in result.render()
 
 
+def test_a_faulty_plugin_leaves_the_other_targets(
+    plugin: Callable[[str, str], None], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """It is listed with the reason; only those who name it, or ask for all targets, get the error."""
+    plugin("toy = toy_target:toy", "import no_such_module")
+    out = str(tmp_path / "out")
+    assert "toy" not in registry.names() and main(["emit", "ice", "--target", "wgsl", "-o", out]) == 0
+    assert main(["list", "targets"]) == 0
+    (line,) = [line for line in capsys.readouterr().out.splitlines() if line.split()[:1] == ["toy"]]
+    assert "cannot be read: the plug-in of target 'toy' cannot be loaded" in line
+    for targets in ("wgsl,toy", "all"):
+        assert main(["emit", "ice", "--target", targets, "-o", out]) == 2
+        assert "No module named 'no_such_module'" in capsys.readouterr().err
+
+
 def test_a_faulty_descriptor_is_named(tmp_path: Path) -> None:
     path = tmp_path / "toy.toml"
-    for text in ("title = 1\n", "title = 'T'\nlanguage = 'glsl'\n[types]\n[names]\nreserved = 3\n[files]\n", "= 1"):
+    names = "title = 'T'\nlanguage = 'glsl'\n[types]\n[names]\nreserved = 3\n[files]\n"
+    for text, message in (
+        ("title = 1\n", "the target descriptor is incomplete"), (names, "toy.toml:5:1"), ("= 1", "toy.toml:1:1"),
+    ):  # fmt: skip
         path.write_text(text, encoding="utf-8")
-        with pytest.raises(SssgenError, match="target descriptor"):
+        with pytest.raises(SssgenError, match=message):
             descriptor.read(path)
 
 
@@ -190,6 +210,7 @@ def changed(old: str, new: str, tmp_path: Path) -> str:
 def test_a_misspelt_key_is_named(tmp_path: Path, old: str, new: str, section: str, nearest: str) -> None:
     message = changed(old, new, tmp_path)
     assert "the target descriptor has an unknown key '" in message and f"'{section}\n" in message
+    assert re.search(r"vulkan\.toml:\d+:\d+\n \d+ \| .*\n +\| +\^\^\^", message), message
     assert f"did you mean '{nearest}'?" in message
 
 

@@ -17,7 +17,7 @@ CHOSEN_FOR_IMPORTS = {
 }  # fmt: skip
 PERMITTED = {
     "cli/ci.py": (EXAMPLE, {"lobe_gdc2011"}),
-    "cli/new.py": (
+    "cli/starter.toml": (
         "the material to start from, which the user edits",
         {"base_color", "beer_lambert", "constant_thickness", "lobe_normalized", "parallax_refracted", "pbr_constants"},
     ),

@@ -379,6 +379,12 @@ def test_specular_and_clearcoat() -> None:
     close(roughness, 0.3 * texels[:, 1])
 
 
+def test_sheen_is_the_same_everywhere() -> None:
+    color, roughness = technique("sheen_constants")(sheen_tint=(0.9, 0.4, 0.1), sheen_spread=0.35)
+    close(color, (0.9, 0.4, 0.1))
+    assert roughness == 0.35
+
+
 def test_emission_is_added() -> None:
     picture = rng().uniform(size=(2, 2, 3))
     values = {"emission_color": (1.0, 0.5, 0.25), "emission_strength": 20.0, "emission": (0.1, 0.2, 0.3)}

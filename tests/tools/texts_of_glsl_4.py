@@ -328,28 +328,28 @@ LATER = {
         """,
     },
     "bitfieldExtract(i3, j, k)": {
-        "glsl": "k == 0 ? ivec3(0) : (i3 << (uint((32 - j - k) & 31) & 31u)) >> (uint((32 - k) & 31) & 31u)",
-        "hlsl": "k == 0 ? (int3)0 : (i3 << (uint((32 - j - k) & 31) & 31u)) >> (uint((32 - k) & 31) & 31u)",
+        "glsl": "k == 0 ? ivec3(0) : (i3 << (uint(32 - j - k) & 31u)) >> (uint(32 - k) & 31u)",
+        "hlsl": "k == 0 ? (int3)0 : (i3 << (uint(32 - j - k) & 31u)) >> (uint(32 - k) & 31u)",
         "wgsl": "extractBits(i3, u32(j), u32(k))",
     },
     "bitfieldExtract(u, i, j)": {
-        "glsl": "j == 0 ? 0u : (u << (uint((32 - i - j) & 31) & 31u)) >> (uint((32 - j) & 31) & 31u)",
-        "hlsl": "j == 0 ? 0u : (u << (uint((32 - i - j) & 31) & 31u)) >> (uint((32 - j) & 31) & 31u)",
+        "glsl": "j == 0 ? 0u : (u << (uint(32 - i - j) & 31u)) >> (uint(32 - j) & 31u)",
+        "hlsl": "j == 0 ? 0u : (u << (uint(32 - i - j) & 31u)) >> (uint(32 - j) & 31u)",
         "wgsl": "extractBits(u, u32(i), u32(j))",
     },
     "bitfieldInsert(i, j, k, k)": {
         "glsl": """
             int bitfieldInsert_(int x, int y, int z, int w) {
-                int mask = int((w > 31 ? 0xffffffffu : (1u << (uint(w & 31) & 31u)) - 1u) << (uint(z & 31) & 31u));
-                return (x & ~mask) | ((y << (uint(z & 31) & 31u)) & mask);
+                int mask = int((w > 31 ? 0xffffffffu : (1u << (uint(w) & 31u)) - 1u) << (uint(z) & 31u));
+                return (x & ~mask) | ((y << (uint(z) & 31u)) & mask);
             }
 
             return bitfieldInsert_(i, j, k, k);
         """,
         "hlsl": """
             int bitfieldInsert_(int x, int y, int z, int w) {
-                int mask = int((w > 31 ? 0xffffffffu : (1u << (uint(w & 31) & 31u)) - 1u) << (uint(z & 31) & 31u));
-                return (x & ~mask) | ((y << (uint(z & 31) & 31u)) & mask);
+                int mask = int((w > 31 ? 0xffffffffu : (1u << (uint(w) & 31u)) - 1u) << (uint(z) & 31u));
+                return (x & ~mask) | ((y << (uint(z) & 31u)) & mask);
             }
 
             return bitfieldInsert_(i, j, k, k);
@@ -359,16 +359,16 @@ LATER = {
     "bitfieldInsert(u3, v3, i, j)": {
         "glsl": """
             uvec3 bitfieldInsert_(uvec3 x, uvec3 y, int z, int w) {
-                uvec3 mask = uvec3((w > 31 ? 0xffffffffu : (1u << (uint(w & 31) & 31u)) - 1u) << (uint(z & 31) & 31u));
-                return (x & ~mask) | ((y << (uint(z & 31) & 31u)) & mask);
+                uvec3 mask = uvec3((w > 31 ? 0xffffffffu : (1u << (uint(w) & 31u)) - 1u) << (uint(z) & 31u));
+                return (x & ~mask) | ((y << (uint(z) & 31u)) & mask);
             }
 
             return bitfieldInsert_(u3, v3, i, j);
         """,
         "hlsl": """
             uint3 bitfieldInsert_(uint3 x, uint3 y, int z, int w) {
-                uint3 mask = (uint3)((w > 31 ? 0xffffffffu : (1u << (uint(w & 31) & 31u)) - 1u) << (uint(z & 31) & 31u));
-                return (x & ~mask) | ((y << (uint(z & 31) & 31u)) & mask);
+                uint3 mask = (uint3)((w > 31 ? 0xffffffffu : (1u << (uint(w) & 31u)) - 1u) << (uint(z) & 31u));
+                return (x & ~mask) | ((y << (uint(z) & 31u)) & mask);
             }
 
             return bitfieldInsert_(u3, v3, i, j);

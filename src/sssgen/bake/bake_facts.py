@@ -5,12 +5,13 @@ Lengths are in units of the mesh, and places in its object space, unless a docst
 
 from __future__ import annotations
 
-from typing import Any, NotRequired, TypedDict
+from typing import NotRequired, TypedDict
 
 from sssgen.material.baked import ParameterValue
 from sssgen.scene.body_identity import BodyIdentity
+from sssgen.targets.reflection_record import ImportSettings
 
-_Imported = TypedDict("_Imported", {"import": dict[str, Any]})  # a keyword cannot be the name of a field of a class
+_Imported = TypedDict("_Imported", {"import": ImportSettings})  # a keyword cannot be the name of a field of a class
 
 
 class BakeFacts(_Imported):

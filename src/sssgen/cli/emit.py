@@ -227,14 +227,17 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
 def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:
     """The targets that `T,T` or `all` names, each once; unknown ones are added to `wrong`."""
     from sssgen.pipeline.compiler import all_targets
-    from sssgen.targets.registry import found_under
+    from sssgen.targets.registry import faults, found_under
 
-    targets = list(all_targets())
+    targets, broken = list(all_targets()), faults()
     names = [name.strip() for name in text.split(",") if name.strip()]
     if not names:
         wrong += failure("no target is named", f"targets: {', '.join(targets)}, or all").diagnostics
+    for name in broken if "all" in names else names:
+        if name in broken:
+            wrong += broken[name].diagnostics
     for name in names:
-        if name not in (*targets, "all"):
+        if name not in (*targets, *broken, "all"):
             hint = (
                 found_under(name) or did_you_mean(name, [*targets, "all"]) or f"targets: {', '.join(targets)}, or all"
             )

@@ -17,6 +17,7 @@ from sssgen.run.backend_registry import BACKENDS
 from sssgen.scene.example_scenes import all_scenes, summary
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import display_name, posix, source_name
+from sssgen.targets import registry
 
 LISTS = ("techniques", "targets", "materials", "scenes", "media", "builtins", "backends")
 
@@ -77,7 +78,10 @@ def _techniques() -> list[dict[str, Any]]:
 
 
 def _targets() -> list[dict[str, Any]]:
-    return [{"name": name, "summary": target.title} for name, target in all_targets().items()]
+    """With the targets of plug-ins, those that cannot be read among them."""
+    broken = {name: f"cannot be read: {error.diagnostics[0].message}" for name, error in registry.faults().items()}
+    titles = {name: target.title for name, target in all_targets().items()}
+    return [{"name": name, "summary": summary} for name, summary in {**titles, **broken}.items()]
 
 
 def _materials() -> list[dict[str, Any]]:

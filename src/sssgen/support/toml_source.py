@@ -8,7 +8,7 @@ from __future__ import annotations
 import functools
 import re
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from sssgen.ir.nodes import Span
@@ -50,6 +50,14 @@ class Document:
             path = path[:-1]
         start = Span(self.reporter.file, 1, 1, 1, 1)
         return self._places.get(path, Place(start, start))
+
+    def find(self, keys: Sequence[str]) -> Place | None:
+        """The place of a value, the first where an array of tables has several; None where there is none."""
+        names = tuple(keys)
+        for path, place in self._places.items():
+            if tuple([part for part in path if isinstance(part, str)]) == names:
+                return place
+        return None
 
     def error(self, span: Span, message: str, hint: str = "") -> None:
         """Records an error. Raises SssgenError after too many."""

@@ -23,6 +23,14 @@ from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.targets.descriptor import OutputFile, Target
 from sssgen.targets.frame import LIBRARY, library
 from sssgen.targets.javascript_runtime import inlined_text, runtime_text
+from sssgen.targets.parameter_variables import (
+    check_properties,
+    hint_of,
+    property_name,
+    texture_variables,
+    uniform_variables,
+)
+from sssgen.targets.printed_places import Places, check_places
 from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text
 from sssgen.targets.printers.printer import Comments, Printer
 from sssgen.targets.templates import NO_LINES, render
@@ -33,8 +41,6 @@ if TYPE_CHECKING:
     from sssgen.targets.reflection_record import Argument, TextureBinding
 
 _MARK = re.compile(r"\x02(\d{1,9})\x03", re.ASCII)
-
-_DEFAULTS = {"default_white": "white", "default_black": "black", "default_gray": "gray", "default_bump": "bump"}
 
 
 class About(NamedTuple):
@@ -192,6 +198,7 @@ def emit(
     context, members, size, bindings = _printed(target, program, form, marks)
     embedded = {name: _printed(*inner, form, marks)[0] for name, inner in program.embedded.items()}
     context["embedded"] = embedded
+    contexts = [("", context), *((f"embedded.{name}.", inner) for name, inner in embedded.items())]
     files: dict[str, str] = {}
     lines: dict[str, dict[int, Span]] = {}
     outputs = target.files.get(form, ())
@@ -205,6 +212,7 @@ def emit(
         own = context
         if output.without:
             own = _printed(target, program, form, marks, output.without)[0]
+            contexts.append(("", own))
         if output.note:
             own = {**own, "header": [*own["header"], output.note]}
         if output.graph:
@@ -212,6 +220,8 @@ def emit(
         text = render(output.template, own, templates, target.folder)
         if text.strip():  # a template may have nothing to say about a material
             files[name], lines[name] = _finish(text, marks)
+    if form == "shader" and templates is None:  # a template of the user may leave a place out
+        check_places(target, [output.template for output in outputs if output.template], contexts)
     embedded_calls = {name: _calls(inner) for name, inner in embedded.items()}
     return Emitted(files, lines, members, size, bindings, _calls(context), embedded_calls)
 
@@ -306,14 +316,16 @@ def _context(
     target, surface = used.target, program.surface
     entries = {kind: _entry(target, printer, kind, *program.entries[kind], program.frame_functions) for kind in kinds}
     inputs = {name for kind in kinds for name in program.entries[kind][1]}
-    _check_properties(target, program)
+    uniforms = [(uniform, program.source_names.get(uniform.name, uniform.name)) for uniform in program.module.uniforms]
+    check_properties(target, [source for _, source in uniforms])
+    textures = [(uniform, uniform.type, source) for uniform, source in uniforms if isinstance(uniform.type, Sampler)]
     members = [{"name": field.name, "type": printer.type(field.type)} for field in surface.fields] if surface else []
     per_light = [program.surface_reads[kind] for kind in PER_LIGHT if kind in kinds]
     read_per_light = frozenset(named_per_light(used)).union(*per_light)
     texts_of_names = {**target.spelling, **program.frame_functions} | _surface_values(target, printer, fields)
     return {
-        "frame": {place: with_names(text, texts_of_names) for place, text in used.frame.items()},
-        "surface": {place: with_names(text, texts_of_names) for place, text in used.surface.items()},
+        "frame": Places({place: with_names(text, texts_of_names) for place, text in used.frame.items()}),
+        "surface": Places({place: with_names(text, texts_of_names) for place, text in used.surface.items()}),
         "material": program.about._asdict(),
         "facts": {*program.about.facts, *used.facts},
         "target": target,
@@ -321,11 +333,11 @@ def _context(
         "header": _header(target, program),
         "code": code,
         "uniforms": [
-            _uniform(printer, uniform, program)
-            for uniform in program.module.uniforms
+            uniform_variables(printer, uniform, source)
+            for uniform, source in uniforms
             if not isinstance(uniform.type, Sampler)
         ],
-        "textures": _textures(printer, program),
+        "textures": [texture_variables(printer, *texture, index) for index, texture in enumerate(textures)],
         "entries": entries,
         "inputs": inputs,
         "surface_fields": members,
@@ -365,7 +377,7 @@ def _header(target: Target, program: Program) -> list[str]:
 
 def _supplied(target: Target, program: Program, uniform: Uniform) -> str:
     """How the program supplies a texture that is drawn or baked, or ''."""
-    _, views = _hint(uniform, "drawn")
+    _, views = hint_of(uniform, "drawn")
     baked = bool(program.entries) and is_baked(uniform)  # a texture of plain GLSL may hold anything
     if not isinstance(uniform.type, Sampler) or not (views or baked):
         return ""
@@ -419,88 +431,6 @@ def _passed(printer: Printer, param: Param, uniform: str) -> str:
         if spell(param.type) in types.split():
             return with_names(text, {"name": uniform, "type": printer.type(param.type)})
     return printer.shell_argument(Local(param.type, uniform, param.span), param)
-
-
-def _hint(uniform: Uniform, *names: str) -> tuple[str, tuple[Any, ...]]:
-    for name, args in uniform.hints:
-        if name in names:
-            return name, args
-    return "", ()
-
-
-def _uniform(printer: Printer, uniform: Uniform, program: Program) -> dict[str, Any]:
-    _, limits = _hint(uniform, "hint_range")
-    source = program.source_names.get(uniform.name, uniform.name)
-    return {
-        "name": uniform.name,
-        "source_name": source,
-        "type": printer.type(uniform.type),
-        "base": spell(uniform.type),
-        "property": property_name(printer.target, source),
-        "default": list(uniform.default),
-        "range": (*limits, None)[:3] if limits else None,
-        "unit": (_hint(uniform, "unit")[1] or ("",))[0],
-        "hint": _hint(uniform, "source_color")[0],
-        "doc": " ".join(uniform.doc.split()),
-        "label": source.replace("_", " ").capitalize(),
-    }
-
-
-def _check_properties(target: Target, program: Program) -> None:
-    """Raises SssgenError for parameters that would be one property of the engine's object."""
-    if target.properties.style == "plain" and not target.properties.taken:
-        return
-    sources: dict[str, str] = {}
-    for uniform in program.module.uniforms:
-        source = program.source_names.get(uniform.name, uniform.name)
-        name = property_name(target, source)
-        if name in sources:
-            message = f"'{sources[name]}' and '{source}' would both be the property '{name}' in {target.title}"
-            raise failure(message, "rename one of them in its technique")
-        sources[name] = source
-
-
-def property_name(target: Target, name: str) -> str:
-    """The name of a parameter as a property of the engine's object."""
-    if target.properties.style == "plain":
-        return f"sss_{name}" if name in target.properties.taken else name
-    name = _camel(name)
-    return _camel(f"sss_{name}") if name in target.properties.taken else name
-
-
-def _camel(name: str) -> str:
-    """`cellCount` for `cell_count`."""
-    first, *others = name.split("_")
-    return first + "".join([word[:1].upper() + word[1:] for word in others])
-
-
-def _textures(printer: Printer, program: Program) -> list[dict[str, Any]]:
-    textures: list[dict[str, Any]] = []
-    for uniform in program.module.uniforms:
-        if not isinstance(uniform.type, Sampler):
-            continue
-        source = program.source_names.get(uniform.name, uniform.name)
-        textures.append(
-            {
-                "name": uniform.name,
-                "source_name": source,
-                "property": property_name(printer.target, source),
-                "sampler": printer.sampler(uniform.name),
-                "type": printer.type(uniform.type),
-                "sampler_type": printer.sampler_type(uniform.type),
-                "dim": uniform.type.dim + "Array" * uniform.type.array,
-                "default": _DEFAULTS.get(_hint(uniform, *_DEFAULTS)[0], "white"),
-                "hint": _hint(uniform, "normal_map")[0] or _hint(uniform, "source_color")[0],
-                "wrap": "clamp" if _hint(uniform, "repeat_disable")[0] else "repeat",
-                "doc": " ".join(uniform.doc.split()),
-                "label": source.replace("_", " ").capitalize(),
-                "holds": uniform.quantity,
-                "drawn": (_hint(uniform, "drawn")[1] or ("",))[0],
-                "binding": 1 + 2 * len(textures),
-                "sampler_binding": 2 + 2 * len(textures),
-            }
-        )
-    return textures
 
 
 def _finish(text: str, marks: list[Span]) -> tuple[str, dict[int, Span]]:

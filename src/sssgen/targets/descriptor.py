@@ -6,17 +6,17 @@ The records below are the sections of the file, their fields its keys: a key tha
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple, TypeVar
 
 from sssgen.ir.surface_fields import NAMES, OPTIONAL
 from sssgen.ir.types import BY_NAME
 from sssgen.lang.check.quantities import SCALARS
 from sssgen.passes.capabilities import Capabilities
-from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
+from sssgen.support.diagnostics import SssgenError, did_you_mean
 from sssgen.support.paths import stem
 from sssgen.targets.chain_inputs import CHAIN_INPUTS, SHELL_INPUTS
-from sssgen.targets.descriptor_table import table_of
+from sssgen.targets.descriptor_table import error_at, table_of
 from sssgen.targets.frame import Parts, Variant
 
 _Record = TypeVar("_Record", bound=NamedTuple)
@@ -360,22 +360,22 @@ def read(path: str | os.PathLike[str]) -> Target:
 
 def target_of(table: Mapping[str, Any], path: str) -> Target:
     """The target that the contents of the descriptor at `path` describe. Raises SssgenError where they are faulty."""
-    return _Reader(os.path.basename(path)).target(table)._replace(folder=os.path.dirname(path))
+    return _Reader(path).target(table)._replace(folder=os.path.dirname(path))
 
 
 class _Reader:
     """Makes records of tables. Raises SssgenError for an unknown key and for a value of the wrong type."""
 
-    def __init__(self, file: str) -> None:
-        self.file = file
+    def __init__(self, path: str) -> None:
+        self.path = path
 
     def target(self, table: Mapping[str, Any]) -> Target:
         self.check_keys(table, _KEYS[""], "")
         missing = [key for key in _REQUIRED if key not in table]
         if missing:
-            raise self.wrong(f"is incomplete: it has no {' and no '.join(missing)}")
+            raise self.wrong(f"is incomplete: it has no {' and no '.join(missing)}", "", ())
         simple = {key: value for key, value in table.items() if key not in _NESTED}
-        target = self.record(Target(name=stem(self.file), dialect=table["language"]), simple, "")
+        target = self.record(Target(name=stem(self.path), dialect=table["language"]), simple, "")
         files = {
             form: tuple([self.record(OutputFile(), entry, f"files.{form}") for entry in self.is_a(list, entries, form)])
             for form, entries in self.is_a(dict, table["files"], "files").items()
@@ -454,20 +454,25 @@ class _Reader:
         """The value, if it is of that kind."""
         if type(value) is not kind:
             where = f" in [{section}]" if section else ""
-            raise self.wrong(f"needs {_KINDS[kind]} for '{key}'{where}")
+            raise self.wrong(f"needs {_KINDS[kind]} for '{key}'{where}", "", (*_parts(section), key))
         return value
 
     def check_keys(self, table: Mapping[str, Any], keys: Collection[str], section: str) -> None:
         for key in table:
             if key not in keys:
                 where = f" in [{section}]" if section else ""
-                raise self.wrong(f"has an unknown key '{key}'{where}", did_you_mean(key, keys) or _listed(keys))
+                hint = did_you_mean(key, keys) or _listed(keys)
+                raise self.wrong(f"has an unknown key '{key}'{where}", hint, (*_parts(section), key))
 
-    def wrong(self, message: str, hint: str = "") -> SssgenError:
-        return failure(f"the target descriptor {message}", hint, self.file)
+    def wrong(self, message: str, hint: str, keys: Sequence[str]) -> SssgenError:
+        return error_at(self.path, keys, f"the target descriptor {message}", hint)
 
 
 _KINDS = {bool: "true or false", int: "an integer", str: "a text", list: "a list", dict: "a table"}
+
+
+def _parts(section: str) -> list[str]:
+    return section.split(".") if section else []
 
 
 def _present(texts: Mapping[str, str]) -> Mapping[str, str]:

@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.support.paths import place, stem
+from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean, failure
+from sssgen.support.paths import place, posix, stem
 from sssgen.targets import plugins
 
 OWN_KEYS = ("name", "title", "also")
@@ -29,6 +29,30 @@ SECTIONS_OF_PLACES = ("frame", "surface", "absent")
 def table_of(path: str) -> dict[str, Any]:
     """The contents of a descriptor, with those that it inherits. Raises SssgenError where a file cannot be read, for an
     unknown base, and for a cycle of bases."""
+    result: dict[str, Any] = {}
+    for table in reversed(_chain(path).values()):
+        result = _merged({key: value for key, value in result.items() if key not in OWN_KEYS}, table)
+    result.pop("extends", None)
+    return result
+
+
+def error_at(path: str, keys: Sequence[str], message: str, hint: str = "") -> SssgenError:
+    """The error about a key of the descriptor at `path`, in this file or in the base that has it; `keys` lead to it.
+
+    A key of a word list, which has no place, is an error in the descriptor.
+    """
+    from sssgen.support.toml_source import parse
+
+    for file in _chain(path):
+        with open(file, encoding="utf-8") as opened:
+            document = parse(opened.read(), posix(file))
+        if place := document.find(keys):
+            return SssgenError([Diagnostic("error", message, place.key, hint, document.reporter.line(place.key))])
+    return failure(message, hint, posix(path))
+
+
+def _chain(path: str) -> dict[str, dict[str, Any]]:
+    """The contents of a descriptor and of its bases, by path."""
     own = _contents(path)
     chain = {os.path.abspath(path): own}
     base = _base(path, own)
@@ -36,20 +60,16 @@ def table_of(path: str) -> dict[str, Any]:
         if base in chain:
             names = " → ".join(map(stem, (*list(chain)[list(chain).index(base) :], base)))
             message = f"the target descriptor extends itself: {names}"
-            raise failure(message, "extend another target in one of these files", os.path.basename(path))
+            raise failure(message, "extend another target in one of these files", posix(path))
         chain[base] = _inherited_contents(base)
         base = _base(base, chain[base])
-    result: dict[str, Any] = {}
-    for table in reversed(chain.values()):
-        result = _merged({key: value for key, value in result.items() if key not in OWN_KEYS}, table)
-    result.pop("extends", None)
-    return result
+    return chain
 
 
 def _base(path: str, table: Mapping[str, Any]) -> str:
     """The absolute path of the descriptor that this one extends, or ''."""
     name = table.get("extends", "")
-    file = os.path.basename(path)
+    file = posix(path)
     if not isinstance(name, str):
         raise failure("the target descriptor needs a text for 'extends'", file=file)
     if not name:
@@ -86,14 +106,20 @@ def _contents(path: str) -> dict[str, Any]:
     """What one descriptor file and its word lists contain."""
     import tomllib
 
-    file = os.path.basename(path)
+    file = posix(path)
     try:
         with open(path, encoding="utf-8") as opened:
-            table = tomllib.loads(opened.read())
+            text = opened.read()
+        table = tomllib.loads(text)
         words = table.pop("words", "")
         if not isinstance(words, str):
             raise failure("the target descriptor needs a text for 'words'", file=file)
         return _merged(_word_lists(_beside(path, words)), table) if words else table
+    except tomllib.TOMLDecodeError:
+        from sssgen.support.toml_source import parse
+
+        parse(text, file)  # raises the errors with their places
+        raise
     except (OSError, ValueError) as error:
         raise failure(f"cannot read the target descriptor: {error}", file=file) from None
 
@@ -114,7 +140,7 @@ def _word_lists(path: str) -> dict[str, dict[str, list[str]]]:
                 words = lists.setdefault(section, {}).setdefault(key, [])
             elif text and words is None:
                 message = f"line {number} has words before the first list"
-                raise failure(message, "begin it with a line such as [names.reserved]", os.path.basename(path))
+                raise failure(message, "begin it with a line such as [names.reserved]", posix(path))
             elif words is not None:
                 words.extend(text.split())
     return lists

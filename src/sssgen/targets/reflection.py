@@ -10,9 +10,10 @@ from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.passes.stage.stage_interface import Slot
 from sssgen.passes.stage.storage_layout import extent, offsets
 from sssgen.support.paths import display_name
-from sssgen.targets.assemble import Emitted, Program, printer_for, property_name
+from sssgen.targets.assemble import Emitted, Program, printer_for
 from sssgen.targets.chain_inputs import CHAIN_INPUTS
 from sssgen.targets.descriptor import Target
+from sssgen.targets.parameter_variables import property_name
 from sssgen.targets.texture_import import default_color, has_hint, import_of
 
 if TYPE_CHECKING:

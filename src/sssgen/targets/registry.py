@@ -21,9 +21,21 @@ from sssgen.targets.descriptor_table import table_of
 
 @functools.cache
 def names() -> tuple[str, ...]:
-    """The names of all targets for users, the project's own first."""
+    """The names of all targets for users, the project's own first; without plug-ins that cannot be read."""
     own = _own_names()
-    return own + tuple(sorted(name for name in plugins.entries() if name not in own))
+    return own + tuple(sorted(name for name in plugins.entries() if name not in own and name not in faults()))
+
+
+@functools.cache
+def faults() -> dict[str, SssgenError]:
+    """Name of a plug-in's target that cannot be read → the reason."""
+    errors = {}
+    for name in plugins.entries():
+        try:
+            load(name)
+        except SssgenError as error:
+            errors[name] = error
+    return errors
 
 
 @functools.cache

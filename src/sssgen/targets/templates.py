@@ -7,6 +7,7 @@ bounds their time and memory. What Jinja compiles is kept in the cache folder.
 from __future__ import annotations
 
 import os
+import re
 from typing import TYPE_CHECKING, Any
 
 from sssgen.ir.spans import Span
@@ -57,6 +58,20 @@ def render(template: str, context: dict[str, Any], templates: str | None, folder
         message = f"the template cannot be rendered: {str(error) or type(error).__name__}"
         hint = "docs/templates.md lists what a template may use"
         raise _failure(message, hint, _place(error) or (template, 0)) from None
+
+
+def words(template: str, folder: str) -> set[str]:
+    """The words of a template and of all those that it includes or imports."""
+    from jinja2.meta import find_referenced_templates
+
+    environment = _environment(None, folder)
+    pending, texts = [template], dict[str, str]()
+    while pending:
+        name = pending.pop()
+        if name not in texts and environment.loader is not None:
+            texts[name] = environment.loader.get_source(environment, name)[0]
+            pending += filter(None, find_referenced_templates(environment.parse(texts[name])))
+    return {word for text in texts.values() for word in re.findall(r"\w+", text)}
 
 
 def _drop_changed(templates: str) -> None:

@@ -71,7 +71,7 @@ def _shape(type_: Type) -> dict[str, Any]:
 def _texture(texture: Texture, bytes_: Bytes) -> dict[str, Any]:
     numbers = {"float": np.float32, "int": np.int32, "uint": np.uint32}[texture.kind]
     return {
-        "dim": texture.dim, "kind": texture.kind, "compare": texture.compare, "size": texture.size(),
+        "dim": texture.dim, "kind": texture.kind, "compare": texture.compare,
         "layers": len(texture.levels[0]) if texture.layers else 0, "filter": texture.filter, "wrap": texture.wrap,
         "levels": [
             {"size": texture.size(number), "data": bytes_.piece(level, numbers)}

@@ -8,7 +8,8 @@ import * as TSL from 'three/tsl';
 import { floats, imported, indices, serve } from './engine_page.js';
 
 /** @typedef {{ dim: string, kind: 'float' | 'int' | 'uint', layers: number, compare: string, levels: { size: number[], data: Piece }[],
- *   filter: string, wrap: 'repeat' | 'clamp' | 'mirror', size: number[] }} Texels */
+ *   filter: string, wrap: 'repeat' | 'clamp' | 'mirror' }} Texels */
+/** @typedef {{ width: number, height: number, depth: number, data: any }} Image  A level of a texture; six faces have the depth 6. */
 /** @typedef {{ texture: string, type: string, size: number, kind: string, rows: number[] }} Argument  A row for each column. */
 /** @typedef {{ modules: Record<string, string>, renderer: string, width: number, height: number, rows: number, data: Piece,
  *   textures: Record<string, Texels>,
@@ -114,37 +115,75 @@ function nodeOf(one) {
 const WRAPS = { repeat: THREE.RepeatWrapping, clamp: THREE.ClampToEdgeWrapping, mirror: THREE.MirroredRepeatWrapping };
 
 /** @param {Texels} texels @param {PieceOf} piece */
-function textureOf({ dim, kind, layers, compare, levels, filter, wrap, size }, piece) {
+function textureOf({ dim, kind, layers, compare, levels, filter, wrap }, piece) {
   const array = { float: floats, int: (bytes) => new Int32Array(bytes.slice().buffer), uint: indices }[kind];
-  const texels = levels.map((level) => array(piece(level.data)));
-  const [width, height, depth] = size;
+  const images = levels.map((level) => {
+    const [width, height, depth = layers || (dim === 'Cube' ? 6 : 1)] = level.size;
+    const texels = array(piece(level.data));
+    return { width, height, depth, data: dim === 'Cube' ? turned(texels, width) : texels };
+  });
+  const { width, height, depth, data } = images[0];
   let one;
   if (compare) throw new Error(`no ${dim} texture that compares`);
   if (dim === 'Cube') {
-    // three reads a cube at -x: the faces +x and -x change places, and every row of texels is turned round
-    const count = width * width * 4;
-    const faces = [1, 0, 2, 3, 4, 5].map((face) => {
-      const own = texels[0].slice(face * count, (face + 1) * count);
-      const turned = own.map((_, at) => own[at - (at % (4 * width)) + 4 * (width - 1 - Math.floor((at % (4 * width)) / 4)) + (at % 4)]);
-      return Object.assign(new THREE.DataTexture(turned, width, width, THREE.RGBAFormat, THREE.FloatType), { needsUpdate: true });
-    });
-    one = new THREE.CubeTexture(faces);
-  } else if (layers) {
-    one = new THREE.DataArrayTexture(texels[0], width, height, layers);
-  } else if (dim === '3D') {
-    one = new THREE.Data3DTexture(texels[0], width, height, depth);
+    one = new THREE.CubeTexture(facesOf(images[0]));
+    one.mipmaps = images.slice(1).map((image) => ({ images: facesOf(image) }));
   } else {
-    one = new THREE.DataTexture(texels[0], width, height);
-    if (levels.length > 1) {
-      one.mipmaps = levels.map((level, i) => ({ data: texels[i], width: level.size[0], height: level.size[1] }));
-    }
+    one = layers ? new THREE.DataArrayTexture(data, width, height, depth)
+      : dim === '3D' ? new THREE.Data3DTexture(data, width, height, depth) : new THREE.DataTexture(data, width, height);
+    if (images.length > 1) one.mipmaps = images;
   }
   const mag = filter === 'nearest' ? THREE.NearestFilter : THREE.LinearFilter;
-  return Object.assign(one, {
+  Object.assign(one, {
     format: kind === 'float' ? THREE.RGBAFormat : THREE.RGBAIntegerFormat,
     type: { float: THREE.FloatType, int: THREE.IntType, uint: THREE.UnsignedIntType }[kind],
     magFilter: mag, minFilter: levels.length > 1 ? THREE.LinearMipmapLinearFilter : mag, generateMipmaps: false,
     wrapS: WRAPS[wrap], wrapT: WRAPS[wrap], wrapR: WRAPS[wrap], unpackAlignment: 1, needsUpdate: true,
+  });
+  if (!one.isDataTexture && images.length > 1) writeLevels(one, images);
+  return one;
+}
+
+/** three reads a cube at -x: the faces +x and -x change places, and every row of texels is turned round.
+ * @param {any} texels  of six faces @param {number} width */
+function turned(texels, width) {
+  const row = 4 * width, count = row * width;
+  return texels.map((_, at) => {
+    const face = [1, 0, 2, 3, 4, 5][Math.floor(at / count)], inside = at % count, column = Math.floor((inside % row) / 4);
+    return texels[face * count + inside - (inside % row) + 4 * (width - 1 - column) + (inside % 4)];
+  });
+}
+
+/** @param {Image} image */
+function facesOf({ width, data }) {
+  const count = 4 * width * width;
+  return [0, 1, 2, 3, 4, 5].map((face) => {
+    const own = data.slice(face * count, (face + 1) * count);
+    return Object.assign(new THREE.DataTexture(own, width, width, THREE.RGBAFormat, THREE.FloatType), { needsUpdate: true });
+  });
+}
+
+/** Writes the levels of a texture after the first, which three writes for a plain texture alone.
+ * @param {any} one @param {Image[]} images */
+function writeLevels(one, images) {
+  renderer.initTexture(one);
+  const backend = /** @type {any} */ (renderer.backend);
+  const { texture: gpu, textureGPU, glTextureType, glFormat, glType } = backend.get(one);
+  images.forEach(({ width, height, depth, data }, level) => {
+    if (level === 0) return;
+    if (gpu) {
+      const layout = { bytesPerRow: 4 * data.BYTES_PER_ELEMENT * width, rowsPerImage: height };
+      backend.device.queue.writeTexture({ texture: gpu, mipLevel: level }, data, layout, [width, height, depth]);
+      return;
+    }
+    const gl = backend.gl;
+    backend.state.bindTexture(glTextureType, textureGPU);
+    if (one.isCubeTexture) {
+      facesOf({ width, height, depth, data }).forEach((face, index) => {
+        const target = gl.TEXTURE_CUBE_MAP_POSITIVE_X + index;
+        gl.texSubImage2D(target, level, 0, 0, width, width, glFormat, glType, face.image.data);
+      });
+    } else gl.texSubImage3D(glTextureType, level, 0, 0, 0, width, height, depth, glFormat, glType, data);
   });
 }
 
