@@ -12,12 +12,12 @@ import pytest
 
 from qualification.closed_forms import ball_once, h_function, half_space, henyey_greenstein, slab_once, unscattered
 from sssgen.lab.reference import transport
-from sssgen.lab.reference.geometry_mesh import mesh_of
 from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.transport import Light, Transport, radiance, radiance_along
 from sssgen.lab.reference.transport_mitsuba import Renderer
 from sssgen.scene.camera import Camera
 from sssgen.scene.geometry import Ball, Box, Distance, Geometry, Slab, Torus
+from sssgen.scene.geometry_mesh import mesh_of
 from sssgen.scene.measured.media import Medium, preset
 from sssgen.support import cache
 from sssgen.support.diagnostics import SssgenError

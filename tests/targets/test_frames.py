@@ -18,6 +18,7 @@ from sssgen.pipeline.compiler import all_targets
 from sssgen.pipeline.frame_functions import check_word
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import folder
+from sssgen.targets.descriptor import read
 from sssgen.targets.frame import Variant, used_parts
 from sssgen.targets.printed_places import Places, check_places
 from sssgen.targets.used_frame import check_inputs, with_names
@@ -215,19 +216,20 @@ def test_what_an_engine_does_not_have_is_an_error() -> None:
     assert "safe_normalize" in str(caught.value.diagnostics[0].hint)
 
 
-def test_a_place_that_no_template_prints_is_an_error() -> None:
-    """Its text would be lost."""
-    godot = all_targets()["godot"]
+def test_a_place_that_no_template_prints_is_an_error(tmp_path: Path) -> None:
+    """Its text would be lost; a place of the base is not checked."""
+    (tmp_path / "toy.toml").write_text("title = 'Toy'\nextends = 'godot'\n[frame.varyingss]\na = 'varying vec3 a;'\n")
+    toy = read(tmp_path / "toy.toml")
     contexts = [{"frame": Places({"varyings": "varying vec3 a;", "light": ""}), "surface": Places({})}]
     assert contexts[0]["frame"]["varyings"]
-    check_places(godot, ["godot/shader.gdshader.j2"], [("", contexts[0])])
-    contexts.append({"frame": Places({"light": "vec3 L = LIGHT;"}), "surface": Places({})})
-    check_places(godot, ["godot/shader.gdshader.j2"], [("", own) for own in contexts])  # known to a template
-    contexts.append({"frame": Places({"varyingss": "varying vec3 b;"}), "surface": Places({})})
+    contexts.append({"frame": Places({"light": "vec3 L = LIGHT;", "of_base": "a"}), "surface": Places({})})
+    check_places(toy, ["godot/shader.gdshader.j2"], [("", own) for own in contexts])
+    contexts.append({"frame": Places({"varyingss": "varying vec3 a;"}), "surface": Places({})})
     with pytest.raises(SssgenError) as caught:
-        check_places(godot, ["godot/shader.gdshader.j2"], [("", own) for own in contexts])
-    assert "do not print the place 'varyingss' of [frame]" in caught.value.diagnostics[0].message
-    assert "varyings" in str(caught.value.diagnostics[0].hint)
+        check_places(toy, ["godot/shader.gdshader.j2"], [("", own) for own in contexts])
+    (result,) = caught.value.diagnostics
+    assert "do not print the place 'varyingss' of [frame]" in result.message and result.span.line == 3
+    assert "did you mean 'varyings'?" in result.hint
 
 
 def test_a_form_that_a_target_does_not_have_is_an_error() -> None:

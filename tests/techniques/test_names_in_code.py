@@ -48,7 +48,8 @@ PERMITTED = {
     "material/attributes.py": (SHAPE, {"box", "sphere", "torus"}),
     "material/baked.py": (HINT, {"normal_map"}),
     "material/slots.py": (EXAMPLE, {"box"}),
-    "targets/assemble.py": (HINT, {"normal_map"}),
+    "targets/graphs/unreal_nodes.py": (HINT, {"normal_map"}),
+    "targets/parameter_variables.py": (HINT, {"normal_map"}),
     "targets/texture_import.py": ("settings of a texture import", {"normal_map", "srgb"}),
 }
 """File → the reason, and the quoted words that are also names of techniques."""

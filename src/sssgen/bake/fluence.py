@@ -20,8 +20,7 @@ from sssgen.lab.fluence import fluence_field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence.fluence_field import Field, Settings
 from sssgen.lab.fluence.voxels import Grid
-from sssgen.lab.reference import geometry_mesh
-from sssgen.scene import body_identity
+from sssgen.scene import body_identity, geometry_mesh
 from sssgen.scene.camera import Camera
 from sssgen.scene.geometry import Mesh
 from sssgen.scene.measured import measured_scene, media

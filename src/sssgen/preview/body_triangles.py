@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.lab.reference.geometry_mesh import mesh_of
 from sssgen.scene.distance_field import PROJECTIONS
 from sssgen.scene.geometry import Ball, Box, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.scene.geometry_base import spherical, unit
+from sssgen.scene.geometry_mesh import mesh_of
 
 Array = npt.NDArray[np.float64]
 

@@ -411,11 +411,24 @@ def _entry(
                 "input": name, "uniform": uniform, "expression": text,
             }
         )  # fmt: skip
-    listed = ", ".join([param["expression"] for param in params])
-    if target.declared:  # all uniforms are among the arguments
-        listed = textwrap.fill(listed, WIDTH - 12, subsequent_indent=" " * 12, break_long_words=False)
-    call = f"{function.name}({listed})"
+    call = _call(function.name, [param["expression"] for param in params])
     return {"name": function.name, "params": params, "result": printer.type(function.result), "call": call}
+
+
+def _call(name: str, arguments: Sequence[str]) -> str:
+    """The text of a call, on several lines where one would be long; no line is broken inside an argument.
+
+    The first line leaves room for what a template has before the call.
+    """
+    lines = [f"{name}("]
+    for index, text in enumerate(arguments):
+        text += ")" if index + 1 == len(arguments) else ","
+        room = WIDTH - (36 if len(lines) == 1 else 16)
+        if index == 0 or len(lines[-1]) + 1 + len(text) <= room:
+            lines[-1] += text if index == 0 else f" {text}"
+        else:
+            lines.append(text)
+    return "\n            ".join(lines) if arguments else f"{name}()"
 
 
 def _texts(target: Target, printer: Printer, shell: Function, inputs: Sequence[str]) -> dict[str, str]:

@@ -41,14 +41,20 @@ def error_at(path: str, keys: Sequence[str], message: str, hint: str = "") -> Ss
 
     A key of a word list, which has no place, is an error in the descriptor.
     """
+    errors = (error_in(file, keys, message, hint) for file in _chain(path))
+    return next(filter(None, errors), None) or failure(message, hint, posix(path))
+
+
+def error_in(path: str, keys: Sequence[str], message: str, hint: str = "") -> SssgenError | None:
+    """The same about a key of this file alone; None where it does not have it."""
     from sssgen.support.toml_source import parse
 
-    for file in _chain(path):
-        with open(file, encoding="utf-8") as opened:
-            document = parse(opened.read(), posix(file))
-        if place := document.find(keys):
-            return SssgenError([Diagnostic("error", message, place.key, hint, document.reporter.line(place.key))])
-    return failure(message, hint, posix(path))
+    with open(path, encoding="utf-8") as file:
+        document = parse(file.read(), posix(path))
+    place = document.find(keys)
+    if place is None:
+        return None
+    return SssgenError([Diagnostic("error", message, place.key, hint, document.reporter.line(place.key))])
 
 
 def _chain(path: str) -> dict[str, dict[str, Any]]:

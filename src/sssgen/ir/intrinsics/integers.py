@@ -117,10 +117,10 @@ gen{kind} bitfieldReverse(gen{kind} x) {{
         texts={"glsl": "", "tsl": "", "hlsl": "", "wgsl": "extractBits({0}, u32({1}), u32({2}))", "wgsl-metal": ""},
         polyfill="""
 genI bitfieldExtract(genI x, int y, int z) {
-    return z == 0 ? genI(0) : (x << uint(32 - y - z)) >> uint(32 - z);
+    return z == 0 ? genI(0) : (x << (uint(32 - y - z) & 31u)) >> (uint(32 - z) & 31u);
 }
 genU bitfieldExtract(genU x, int y, int z) {
-    return z == 0 ? genU(0u) : (x << uint(32 - y - z)) >> uint(32 - z);
+    return z == 0 ? genU(0u) : (x << (uint(32 - y - z) & 31u)) >> (uint(32 - z) & 31u);
 }
 """,
         splat=(), cost=3, vectors=(
@@ -136,8 +136,8 @@ genU bitfieldExtract(genU x, int y, int z) {
         texts={"glsl": "", "tsl": "", "hlsl": "", "wgsl": "insertBits({0}, {1}, u32({2}), u32({3}))", "wgsl-metal": ""},
         polyfill="".join(f"""
 gen{kind} bitfieldInsert(gen{kind} x, gen{kind} y, int z, int w) {{
-    gen{kind} mask = gen{kind}((w > 31 ? 0xffffffffu : (1u << uint(w)) - 1u) << uint(z));
-    return (x & ~mask) | ((y << uint(z)) & mask);
+    gen{kind} mask = gen{kind}((w > 31 ? 0xffffffffu : (1u << (uint(w) & 31u)) - 1u) << (uint(z) & 31u));
+    return (x & ~mask) | ((y << (uint(z) & 31u)) & mask);
 }}
 """ for kind in "IU"),
         splat=(), cost=7, vectors=(

@@ -15,7 +15,7 @@ from sssgen.lab.fluence.photons import Body, Medium, Tracer
 from sssgen.lab.fluence.projection import Projection, inside_shares
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.lab.fluence.walks import Walks
-from sssgen.lab.reference.geometry_mesh import mesh_of
+from sssgen.scene.geometry_mesh import mesh_of
 from sssgen.scene.measured import scene_body
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.support.diagnostics import failure

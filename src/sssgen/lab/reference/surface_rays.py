@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.lab.reference.geometry_mesh import RESOLUTION, box_size, mesh_of
 from sssgen.scene.geometry import Ball, Box, Geometry, Slab
+from sssgen.scene.geometry_mesh import RESOLUTION, box_size, mesh_of
 from sssgen.scene.mesh_rays import AllHits, MeshRays
 
 Array = npt.NDArray[np.float64]

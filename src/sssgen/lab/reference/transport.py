@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.lab.reference.geometry_mesh import RESOLUTION
 from sssgen.lab.reference.render_cache import Batches, read_batches, store
 from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.transport_mitsuba import Body, Channel, Light, Renderer, body_of, mitsuba
 from sssgen.scene.camera import Camera
 from sssgen.scene.geometry import Geometry
+from sssgen.scene.geometry_mesh import RESOLUTION
 from sssgen.scene.measured.media import Medium
 from sssgen.support import cache
 from sssgen.support.diagnostics import failure

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.lab.reference.geometry_mesh import RESOLUTION, box_size, mesh_of
 from sssgen.scene.geometry import Ball, Box, Geometry, Slab
+from sssgen.scene.geometry_mesh import RESOLUTION, box_size, mesh_of
 from sssgen.support.diagnostics import failure
 from sssgen.support.installation import install_hint
 

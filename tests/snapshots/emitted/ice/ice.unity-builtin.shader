@@ -349,7 +349,8 @@ Shader "sssgen/Ice" {
         #else
             float3 light_color = gi.light.color;
         #endif
-            color.rgb += evaluate_translucency(s.surface, viewDir, safe_normalize(s.Normal), gi.light.dir) * light_color;
+            color.rgb += evaluate_translucency(s.surface, viewDir, safe_normalize(s.Normal),
+                    gi.light.dir) * light_color;
             return color;
         }
 

@@ -324,7 +324,11 @@ void Ice_float(
     out float Transmittance) {
     V = ice_safe_normalize(V);
     N = ice_safe_normalize(N);
-    ice_Surface surface = ice_evaluate_surface(uv, time, variation, cell_count, thickness_factor, bevel, attenuation_distance, tint, base_color_texture, base_color_texture_sampler, metalness, surface_roughness, relief, uv_per_unit, cover, cover_texture, cover_texture_sampler, packed_texture, packed_texture_sampler, red_speed, green_speed, blue_speed, vein_color, spark_color, texel_size, edge, erosion, erosion_texture, erosion_texture_sampler, edge_height);
+    ice_Surface surface = ice_evaluate_surface(uv, time, variation, cell_count, thickness_factor,
+            bevel, attenuation_distance, tint, base_color_texture, base_color_texture_sampler, metalness,
+            surface_roughness, relief, uv_per_unit, cover, cover_texture, cover_texture_sampler,
+            packed_texture, packed_texture_sampler, red_speed, green_speed, blue_speed, vein_color,
+            spark_color, texel_size, edge, erosion, erosion_texture, erosion_texture_sampler, edge_height);
     BaseColor = surface.albedo;
     Alpha = surface.alpha;
     NormalTS = surface.normal;
@@ -339,7 +343,8 @@ void Ice_float(
 #if defined(SHADERGRAPH_PREVIEW)
     float3 light_color = 1.0;
     float3 L = normalize(float3(0.5, 0.5, -0.5));
-    Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power) * light_color;
+    Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color,
+            attenuation, scale, ambient, power) * light_color;
 #elif defined(UNIVERSAL_LIGHTING_INCLUDED)
     InputData inputData = (InputData)0;
     inputData.positionWS = P;
@@ -348,7 +353,8 @@ void Ice_float(
     Light light = GetMainLight(TransformWorldToShadowCoord(P), P, half4(1.0, 1.0, 1.0, 1.0));  // with its cookie
     float3 light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
     float3 L = light.direction;
-    Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power) * light_color;
+    Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color,
+            attenuation, scale, ambient, power) * light_color;
 #if defined(_ADDITIONAL_LIGHTS)
 #if USE_CLUSTER_LIGHT_LOOP || USE_FORWARD_PLUS || USE_CLUSTERED_LIGHTING
     // The loop below has the lights near this part of the screen; directional ones come first in the array.
@@ -361,7 +367,8 @@ void Ice_float(
         light = GetAdditionalLight(number, P, half4(1.0, 1.0, 1.0, 1.0));
         light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
         L = light.direction;
-        Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power) * light_color;
+        Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color,
+            attenuation, scale, ambient, power) * light_color;
     }
 #endif
     uint light_count = GetAdditionalLightsCount();
@@ -369,7 +376,8 @@ void Ice_float(
         light = GetAdditionalLight(lightIndex, P, half4(1.0, 1.0, 1.0, 1.0));
         light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
         L = light.direction;
-        Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color, attenuation, scale, ambient, power) * light_color;
+        Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color,
+            attenuation, scale, ambient, power) * light_color;
     LIGHT_LOOP_END
 #endif
 #endif
