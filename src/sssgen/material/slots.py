@@ -132,12 +132,8 @@ def candidates(slot: Function) -> list[str]:
         if library.folder_of(path) != ("thickness" if slot.quantity else "distance"):
             continue
         with contextlib.suppress(SssgenError):  # a file with errors is reported when it is used
-            module = library.load_path(path).module
-            own = [
-                function
-                for function in module.functions
-                if function.span.file == source_name(path) and fits(slot, function)
-            ]
+            module, file = library.load_path(path).module, source_name(path)
+            own = [function for function in module.functions if function.span.file == file and fits(slot, function)]
             function_names = [
                 function.name
                 for function in own
@@ -153,7 +149,8 @@ def body(shape: str, place: str) -> str:
     '' where there is none: `body("box", "object_position")` is `box:box_object`.
     """
     for technique in library.load_all():
-        own = [function for function in technique.module.functions if function.span.file == source_name(technique.path)]
+        file = source_name(technique.path)
+        own = [function for function in technique.module.functions if function.span.file == file]
         for function in own if technique.attributes.shape == shape else ():
             if [param.quantity for param in function.params] == [place]:
                 return technique.name if function.name == technique.name else f"{technique.name}:{function.name}"

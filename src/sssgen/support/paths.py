@@ -19,6 +19,9 @@ PACKAGE = os.path.dirname(os.path.dirname(__file__))
 TECHNIQUES = os.path.join(PACKAGE, "techniques")
 """The folder of the technique library."""
 
+_LIBRARIES = tuple(os.path.realpath(folder) + os.sep for folder in (TECHNIQUES, PACKAGE))
+"""Their real paths; a file's name is relative to them."""
+
 
 def place(name: str) -> str:
     """The path of the folder called `name`, in a checkout or an installed package."""
@@ -60,8 +63,8 @@ def source_name(path: str | os.PathLike[str]) -> str:
         real = os.path.realpath(path)
     except ValueError:  # it contains a zero byte, or what is no character
         return posix(path)
-    for library in (TECHNIQUES, PACKAGE):
-        real = real.removeprefix(os.path.realpath(library) + os.sep)
+    for library in _LIBRARIES:
+        real = real.removeprefix(library)
     return posix(real)
 
 

@@ -209,6 +209,7 @@ def translucency(paths: Sequence[Candidate] | None = None) -> list[Candidate]:
 
     A technique that measures from a point inside the body does so with each of `paths`.
     """
+    paths = default_paths() if paths is None else paths
     result = [Candidate("translucency", "none", "none", (), ())]
     for technique in of_role("translucency"):
         needed = quantity_read(technique)
@@ -217,7 +218,7 @@ def translucency(paths: Sequence[Candidate] | None = None) -> list[Candidate]:
             lengths = (f"exact_{exact}", *route) if needed else ()
             chain, baseline = (*lengths, technique.name), technique.baseline
             whole = Candidate("translucency", technique.name, technique.name, (), chain, baseline)
-            result += _with_paths(whole, technique, default_paths() if paths is None else paths)
+            result += _with_paths(whole, technique, paths)
     return result
 
 
