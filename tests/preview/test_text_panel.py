@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -92,7 +93,7 @@ def test_the_cost_and_how_to_measure_the_error(browser: Any, tmp_path: Path) -> 
 def test_changed_lines(browser: Any, tmp_path: Path, before: str, after: str, changed: list[int]) -> None:
     text = (Path(__file__).parents[2] / "src/sssgen/preview/page/emitted_text.js").read_text(encoding="utf-8")
     page = browser.new_page()
-    module = text.replace("export ", "")
+    module = re.sub(r"^import .*\n", "", text, flags=re.MULTILINE).replace("export ", "")
     lines = [before.split(" "), after.split(" ")]
     found = page.evaluate(f"() => {{ {module}; return [...changedLines(...{lines!r})]; }}")
     page.close()

@@ -81,12 +81,13 @@ def test_the_rest_of_a_head_is_indented_twice() -> None:
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=marks(name)) for name in examples()])
 def test_long_lines_of_an_example_are_broken_outside_of_types(name: str) -> None:
-    """The functions alone: a template may indent them, or have long lines of its own."""
+    """The functions alone: a template may indent them, or have long lines of its own, such as the rows of a table."""
     count = 0
     for target in carrying(name):
         for file, text in sssgen.compile(name, target, "functions").files.items():
             if not file.endswith((".json", ".ts", ".mts")):
-                codes = [code_of(line, file) for line in text.splitlines()]
+                lines = [line for line in text.splitlines() if not line.lstrip().startswith("{ name: ")]
+                codes = [code_of(line, file) for line in lines]
                 count += sum(len(code) > WIDTH / 2 for code in codes)
                 assert [code for code in codes if len(code) > WIDTH] == [], file
                 assert [code for code in codes if open_types(code) > 0] == [], file

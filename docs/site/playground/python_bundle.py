@@ -18,7 +18,7 @@ from sssgen.support.installation import npm_hint
 from starts import Start
 
 HERE = Path(__file__).parent
-RUN = ("ir", "lang", "material", "passes", "pipeline", "support", "targets", "techniques")
+RUN = ("ir", "lang", "material", "passes", "pipeline", "shells", "support", "targets", "techniques")
 """The folders of the package that the way to a shader's text needs."""
 MODULES = ("__init__.py", "version.py", "preview/__init__.py", "preview/emitted_head.py", "preview/flat_head.py")
 NEVER = ("__pycache__", "numpy_runtime.py", "runtime", "worker_process.py")

@@ -64,7 +64,9 @@ def source_name(path: str | os.PathLike[str]) -> str:
     except ValueError:  # it contains a zero byte, or what is no character
         return posix(path)
     for library in _LIBRARIES:
-        real = real.removeprefix(library)
+        inside = real.removeprefix(library)
+        if inside != real and not inside.startswith("_data"):  # a wheel has the examples there
+            return posix(inside)
     return posix(real)
 
 
