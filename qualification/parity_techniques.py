@@ -36,6 +36,10 @@ class Case(NamedTuple):
     bind: tuple[tuple[str, str], ...] = ()
 
 
+DRIVER_OF = {"tsl": "browser", "tsl-webgl2": "browser"}
+"""Back end → the one whose driver computes its results, and whose bounds are declared: three.js runs in Chromium."""
+
+
 class Limits(NamedTuple):
     """How far the results of a technique may deviate on a back end."""
 
@@ -60,7 +64,7 @@ def cases() -> list[Case]:
 def limits(technique: str, backend: str) -> Limits:
     """The limits of a technique on a back end: the usual ones, or those that its `deviation_bounds` declare."""
     declared = library.load(technique).attributes.deviation_bounds
-    driver = "browser" if backend in ("tsl", "tsl-webgl2") else backend  # three.js runs there
+    driver = DRIVER_OF.get(backend, backend)
     return Limits(**declared.get(driver, declared.get("", {})))
 
 

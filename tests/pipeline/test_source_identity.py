@@ -53,19 +53,20 @@ def emitted_from_folders(tmp_path: Path, name: str, targets: str) -> list[dict[s
     return [emit(tmp_path / str(index), folder, [text], targets) for index, (folder, text) in enumerate(ways)]
 
 
-def test_the_folder_does_not_change_a_byte(tmp_path: Path) -> None:
-    first, *others = emitted_from_folders(tmp_path, "jelly", ",".join(TARGETS))
+@pytest.mark.parametrize("name", ["candle", "jelly"])
+def test_the_folder_does_not_change_a_byte(tmp_path: Path, name: str) -> None:
+    first, *others = emitted_from_folders(tmp_path, name, ",".join(TARGETS))
     assert len(first) > len(TARGETS)
     assert all(other == first for other in others)
 
 
 def test_the_folder_does_not_change_a_byte_of_any_example(tmp_path: Path) -> None:
-    target = TARGETS[0]
+    targets = ",".join(TARGETS)  # both can express every example
     paths = [Path(path) for path in examples().values()]
-    top = emit(tmp_path / "top", EXAMPLES, [path.relative_to(EXAMPLES).as_posix() for path in paths], target)
+    top = emit(tmp_path / "top", EXAMPLES, [path.relative_to(EXAMPLES).as_posix() for path in paths], targets)
     inside = [Path(os.path.relpath(path, EXAMPLES / "jelly")).as_posix() for path in paths]
-    assert emit(tmp_path / "inside", EXAMPLES / "jelly", inside, target) == top
-    assert emit(tmp_path / "absolute", tmp_path, [str(path) for path in paths], target) == top
+    assert emit(tmp_path / "inside", EXAMPLES / "jelly", inside, targets) == top
+    assert emit(tmp_path / "absolute", tmp_path, [str(path) for path in paths], targets) == top
     assert len(paths) > 10 and not any(os.fsencode(EXAMPLES) in data for data in top.values())
 
 

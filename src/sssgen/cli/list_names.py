@@ -78,7 +78,7 @@ def _techniques() -> list[dict[str, Any]]:
 
 
 def _targets() -> list[dict[str, Any]]:
-    """With the targets of plug-ins, those that cannot be read among them."""
+    """All targets; a plug-in that cannot be read has the reason as its summary."""
     broken = {name: f"cannot be read: {error.diagnostics[0].message}" for name, error in registry.faults().items()}
     titles = {name: target.title for name, target in all_targets().items()}
     return [{"name": name, "summary": summary} for name, summary in {**titles, **broken}.items()]

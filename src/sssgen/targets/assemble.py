@@ -31,7 +31,7 @@ from sssgen.targets.parameter_variables import (
     uniform_variables,
 )
 from sssgen.targets.printed_places import Places, check_places
-from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text
+from sssgen.targets.printers.printed_lines import Line, comment_text, wrap
 from sssgen.targets.printers.printer import Comments, Printer
 from sssgen.targets.templates import NO_LINES, render
 from sssgen.targets.uniform_layout import Member, padding, place
@@ -416,19 +416,9 @@ def _entry(
 
 
 def _call(name: str, arguments: Sequence[str]) -> str:
-    """The text of a call, on several lines where one would be long; no line is broken inside an argument.
-
-    The first line leaves room for what a template has before the call.
-    """
-    lines = [f"{name}("]
-    for index, text in enumerate(arguments):
-        text += ")" if index + 1 == len(arguments) else ","
-        room = WIDTH - (36 if len(lines) == 1 else 16)
-        if index == 0 or len(lines[-1]) + 1 + len(text) <= room:
-            lines[-1] += text if index == 0 else f" {text}"
-        else:
-            lines.append(text)
-    return "\n            ".join(lines) if arguments else f"{name}()"
+    """The text of a call, on several lines where it is long. The indent leaves room for what stands before the call."""
+    lines = wrap(f"{' ' * 24}{name}({', '.join(arguments)})", NOWHERE)
+    return "\n            ".join([line.text.strip() for line in lines])
 
 
 def _texts(target: Target, printer: Printer, shell: Function, inputs: Sequence[str]) -> dict[str, str]:

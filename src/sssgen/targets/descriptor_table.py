@@ -46,7 +46,7 @@ def error_at(path: str, keys: Sequence[str], message: str, hint: str = "") -> Ss
 
 
 def error_in(path: str, keys: Sequence[str], message: str, hint: str = "") -> SssgenError | None:
-    """The same about a key of this file alone; None where it does not have it."""
+    """The error about a key of the descriptor file at `path`; None where this file does not have the key."""
     from sssgen.support.toml_source import parse
 
     with open(path, encoding="utf-8") as file:

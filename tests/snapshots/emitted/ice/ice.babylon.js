@@ -623,14 +623,14 @@ sss_frame = sss_tangent_frame(vPositionW, sss_V, sss_N, sss_side, sss_uv, sss_ta
 sss_lights = vec3(0.0);
 sss_pending = false;
 sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count,
-            sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint, sss_base_color_texture,
-            sss_metalness, sss_surface_roughness, sss_relief, sss_uv_per_unit, sss_cover,
-            sss_cover_texture, sss_packed_texture, sss_red_speed, sss_green_speed, sss_blue_speed,
-            sss_vein_color, sss_spark_color, sss_texel_size, sss_edge, sss_erosion, sss_erosion_texture,
-            sss_edge_height);
+            sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint,
+            sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief,
+            sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture, sss_red_speed,
+            sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color, sss_texel_size,
+            sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height);
 `,
-  translucency: `sss_evaluate_translucency(sss_surface, sss_V, normalW, preInfo.L,
-            sss_distortion, sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power)`,
+  translucency: `sss_evaluate_translucency(sss_surface, sss_V, normalW, preInfo.L, sss_distortion,
+            sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power)`,
   places: {
     CUSTOM_FRAGMENT_UPDATE_ALBEDO: `
 surfaceAlbedo *= sss_surface.albedo;
@@ -683,8 +683,9 @@ sss_surface = sss_evaluate_surface(fragmentInputs.sss_uv, uniforms.sss_time,
             uniforms.sss_cover, sss_cover_texture, sss_cover_textureSampler,
             sss_packed_texture, sss_packed_textureSampler, uniforms.sss_red_speed,
             uniforms.sss_green_speed, uniforms.sss_blue_speed, uniforms.sss_vein_color,
-            uniforms.sss_spark_color, uniforms.sss_texel_size, uniforms.sss_edge, uniforms.sss_erosion,
-            sss_erosion_texture, sss_erosion_textureSampler, uniforms.sss_edge_height);
+            uniforms.sss_spark_color, uniforms.sss_texel_size, uniforms.sss_edge,
+            uniforms.sss_erosion, sss_erosion_texture, sss_erosion_textureSampler,
+            uniforms.sss_edge_height);
 `,
   translucency: `sss_evaluate_translucency(sss_surface, sss_V, normalW, preInfo.L,
             uniforms.sss_distortion, uniforms.sss_subsurface_color, uniforms.sss_attenuation,

@@ -618,11 +618,11 @@ sss_V = sss_safe_normalize((isOrthographic ? vec3(0.0, 0.0, 1.0) : -sss_view_pos
 sss_P = cameraPosition + sss_view_position * mat3(viewMatrix);
 sss_frame = sss_tangent_frame(sss_P, sss_V, sss_N, sss_side, sss_uv, sss_tangent);
 sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count,
-            sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint, sss_base_color_texture,
-            sss_metalness, sss_surface_roughness, sss_relief, sss_uv_per_unit, sss_cover,
-            sss_cover_texture, sss_packed_texture, sss_red_speed, sss_green_speed, sss_blue_speed,
-            sss_vein_color, sss_spark_color, sss_texel_size, sss_edge, sss_erosion, sss_erosion_texture,
-            sss_edge_height);
+            sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint,
+            sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief,
+            sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture, sss_red_speed,
+            sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color, sss_texel_size,
+            sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height);
 `,
   light: /* glsl */ `
 vec3 L = sss_safe_normalize(directLight.direction * mat3(viewMatrix));

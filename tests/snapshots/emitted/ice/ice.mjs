@@ -676,16 +676,16 @@ sss_eye_position = vPositionW + sss_V;
 #endif
 sss_frame = sss_tangent_frame(vPositionW, sss_V, sss_N, sss_side, sss_uv, sss_tangent);
 sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count,
-            sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint, sss_base_color_texture,
-            sss_metalness, sss_surface_roughness, sss_relief, sss_uv_per_unit, sss_cover,
-            sss_cover_texture, sss_packed_texture, sss_red_speed, sss_green_speed, sss_blue_speed,
-            sss_vein_color, sss_spark_color, sss_texel_size, sss_edge, sss_erosion, sss_erosion_texture,
-            sss_edge_height);
+            sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint,
+            sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief,
+            sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture, sss_red_speed,
+            sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color, sss_texel_size,
+            sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height);
 `,
   translucency: `sss_evaluate_translucency(sss_surface, sss_V, litArgs_worldNormal, sss_L,
-            sss_distortion, sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power)`,
-  lighting: `sss_evaluate_lighting(sss_surface, litArgs_worldNormal, sss_V, sss_L,
-            sss_light_color)`,
+            sss_distortion, sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient,
+            sss_power)`,
+  lighting: `sss_evaluate_lighting(sss_surface, litArgs_worldNormal, sss_V, sss_L, sss_light_color)`,
   places: {
     front: `
 litArgs_albedo *= sss_surface.albedo;
@@ -727,20 +727,20 @@ sss_eye_position = vPositionW + sss_V;
 sss_frame = sss_tangent_frame(vPositionW, sss_V, sss_N, sss_side, sss_uv, sss_tangent);
 sss_surface = sss_evaluate_surface(sss_uv, uniform.sss_time, uniform.sss_variation,
             uniform.sss_cell_count, uniform.sss_thickness_factor, uniform.sss_bevel,
-            uniform.sss_attenuation_distance, uniform.sss_tint,
-            sss_base_color_texture, sss_base_color_texture_sampler, uniform.sss_metalness,
-            uniform.sss_surface_roughness, uniform.sss_relief, uniform.sss_uv_per_unit, uniform.sss_cover,
-            sss_cover_texture, sss_cover_texture_sampler, sss_packed_texture, sss_packed_texture_sampler,
-            uniform.sss_red_speed, uniform.sss_green_speed, uniform.sss_blue_speed,
-            uniform.sss_vein_color, uniform.sss_spark_color, uniform.sss_texel_size, uniform.sss_edge,
+            uniform.sss_attenuation_distance, uniform.sss_tint, sss_base_color_texture,
+            sss_base_color_texture_sampler, uniform.sss_metalness,
+            uniform.sss_surface_roughness, uniform.sss_relief, uniform.sss_uv_per_unit,
+            uniform.sss_cover, sss_cover_texture, sss_cover_texture_sampler,
+            sss_packed_texture, sss_packed_texture_sampler, uniform.sss_red_speed,
+            uniform.sss_green_speed, uniform.sss_blue_speed, uniform.sss_vein_color,
+            uniform.sss_spark_color, uniform.sss_texel_size, uniform.sss_edge,
             uniform.sss_erosion, sss_erosion_texture, sss_erosion_texture_sampler,
             uniform.sss_edge_height);
 `,
   translucency: `sss_evaluate_translucency(sss_surface, sss_V, litArgs_worldNormal, sss_L,
             uniform.sss_distortion, uniform.sss_subsurface_color, uniform.sss_attenuation,
             uniform.sss_scale, uniform.sss_ambient, uniform.sss_power)`,
-  lighting: `sss_evaluate_lighting(sss_surface, litArgs_worldNormal, sss_V, sss_L,
-            sss_light_color)`,
+  lighting: `sss_evaluate_lighting(sss_surface, litArgs_worldNormal, sss_V, sss_L, sss_light_color)`,
   places: {
     front: `
 litArgs_albedo *= sss_surface.albedo;

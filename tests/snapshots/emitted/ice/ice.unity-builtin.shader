@@ -349,8 +349,7 @@ Shader "sssgen/Ice" {
         #else
             float3 light_color = gi.light.color;
         #endif
-            color.rgb += evaluate_translucency(s.surface, viewDir, safe_normalize(s.Normal),
-                    gi.light.dir) * light_color;
+            color.rgb += evaluate_translucency(s.surface, viewDir, safe_normalize(s.Normal), gi.light.dir) * light_color;
             return color;
         }
 

@@ -324,11 +324,12 @@ void Ice_float(
     out float Transmittance) {
     V = ice_safe_normalize(V);
     N = ice_safe_normalize(N);
-    ice_Surface surface = ice_evaluate_surface(uv, time, variation, cell_count, thickness_factor,
-            bevel, attenuation_distance, tint, base_color_texture, base_color_texture_sampler, metalness,
-            surface_roughness, relief, uv_per_unit, cover, cover_texture, cover_texture_sampler,
-            packed_texture, packed_texture_sampler, red_speed, green_speed, blue_speed, vein_color,
-            spark_color, texel_size, edge, erosion, erosion_texture, erosion_texture_sampler, edge_height);
+    ice_Surface surface = ice_evaluate_surface(uv, time, variation, cell_count, thickness_factor, bevel,
+            attenuation_distance, tint, base_color_texture, base_color_texture_sampler,
+            metalness, surface_roughness, relief, uv_per_unit, cover, cover_texture,
+            cover_texture_sampler, packed_texture, packed_texture_sampler, red_speed,
+            green_speed, blue_speed, vein_color, spark_color, texel_size, edge, erosion,
+            erosion_texture, erosion_texture_sampler, edge_height);
     BaseColor = surface.albedo;
     Alpha = surface.alpha;
     NormalTS = surface.normal;
