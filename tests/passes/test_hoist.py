@@ -36,6 +36,15 @@ def stays(source: str) -> None:
     assert result is module and not notes
 
 
+def test_an_entry_that_is_called_in_branches_reads_level_0() -> None:
+    source = "vec4 read(vec2 uv) { return texture(map, uv); } vec4 f(vec2 uv) { return read(uv) * depth; }"
+    module = module_of(HEAD + source)
+    (entry,) = [function.key for function in module.functions if function.name == "f"]
+    result, notes = hoist(module, [entry], [entry])
+    assert_is(result, HEAD + source.replace("texture(map, uv)", "textureLod(map, uv, 0.0)"))
+    assert [note.message for note in notes] and notes[0].message.startswith("'map' is read at level 0 here")
+
+
 def test_uniform_flow_is_unchanged() -> None:
     stays(
         """

@@ -12,7 +12,7 @@ Place: after `prune`, which removes unused operations; before the passes for one
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from sssgen.ir import nodes as ir
 from sssgen.ir.constant_expressions import zero
@@ -37,10 +37,11 @@ _LARGEST = 64
 """How many nodes an expression may have that replaces a variable."""
 
 
-def hoist(module: ir.Module, entries: Iterable[str]) -> tuple[ir.Module, list[Note]]:
+def hoist(module: ir.Module, entries: Iterable[str], in_branches: Collection[str] = ()) -> tuple[ir.Module, list[Note]]:
     """The module with every implicit derivative in uniform control flow, and notes on what that changed.
 
-    `entries` are the keys of the functions that are called from outside, for each pixel with other values.
+    `entries` are the keys of the functions that are called from outside, for each pixel with other values. Those that
+    are `in_branches`, too, are called where not all pixels of a quad may pass.
     """
     if implicit().isdisjoint(builtins_of(module)):
         return module, []
@@ -49,7 +50,8 @@ def hoist(module: ir.Module, entries: Iterable[str]) -> tuple[ir.Module, list[No
     sites: dict[str, CallContext] = {}
     for key in entries:
         if summary_of[key].compares:
-            sites[key] = CallContext(True, frozenset(param.name for param in functions[key].params))
+            names = frozenset(param.name for param in functions[key].params)
+            sites[key] = CallContext(key not in in_branches, names)
     notes: dict[Note, None] = {}
     for key in _callers_first(sites, summary_of):
         function = functions[key]

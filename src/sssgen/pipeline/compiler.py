@@ -142,6 +142,7 @@ def _inner(target: Target, embedded: Embedded) -> Target:
         frame=embedded.frame, surface=embedded.surface, absent=embedded.absent, reads=embedded.reads,
         variants=embedded.variants, spelling=embedded.spelling, arguments=embedded.arguments,
         lighting=target.lighting, fragment_shell=target.fragment_shell, engine_encodes=target.engine_encodes,
+        clustered_lights=target.clustered_lights,
         parameters=target.parameters,
         prefix=target.prefix, properties=target.properties,
     )  # fmt: skip

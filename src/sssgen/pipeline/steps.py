@@ -41,6 +41,7 @@ from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.targets import registry
 from sssgen.targets.descriptor import Names
 from sssgen.targets.registry import ReservedNames
+from sssgen.targets.used_frame import OF_A_LIGHT, PER_LIGHT
 
 
 def on_module(change: Callable[[Module], Module]) -> Callable[[State], Module]:
@@ -152,7 +153,7 @@ def prune_unused(state: State) -> Module:
 
 
 def hoist_derivatives(state: State) -> Module:
-    module, notes = hoist(state.module, state.roots)
+    module, notes = hoist(state.module, state.roots, _called_for_lights_of_a_cluster(state))
     state.notes += notes
     return module
 
@@ -162,6 +163,14 @@ def hoist_derivatives_of_entry(state: State) -> Module:
     module, notes = hoist(state.module, _called_from_outside(state.module, state.roots))
     state.notes += notes
     return module
+
+
+def _called_for_lights_of_a_cluster(state: State) -> list[str]:
+    """The keys of the entries that the engine's shell calls in a loop whose length differs from pixel to pixel."""
+    if state.chosen is None or not state.chosen.clustered_lights:
+        return []
+    entries = [entry for kind, entry in state.entries.items() if kind in PER_LIGHT]
+    return [entry.function.key for entry in entries if not OF_A_LIGHT.isdisjoint(entry.inputs)]
 
 
 def _called_from_outside(module: Module, roots: list[str]) -> list[str]:
