@@ -13,6 +13,7 @@ import pytest
 
 from folders import EXAMPLES
 from lamp_scene import largest_difference
+from sssgen.ir.frame_passes import FRAME_PASSES, LAYERS
 from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import all_targets, compile
 from sssgen.run import backends
@@ -141,7 +142,7 @@ def test_a_light_sees_the_surface(shape: Geometry, light: tuple[float, ...]) -> 
 def test_a_light_sees_three_layers() -> None:
     """First entry, first exit and second entry; a texel without one of them has the depth of the body's end."""
     shape = SHAPES["two boxes"]  # from -0.95 to -0.45 and from 0.4 to 1 in x; the second is thinner and farther up in z
-    view, depth = light_depth(shape, np.array([-1.0, 0.0, 0.0, 0.0]), layers=True)
+    view, depth = light_depth(shape, np.array([-1.0, 0.0, 0.0, 0.0]), FRAME_PASSES[LAYERS].layers)
     assert depth.shape == (TEXELS, TEXELS, 3)
     _, first = light_depth(shape, np.array([-1.0, 0.0, 0.0, 0.0]))
     np.testing.assert_array_equal(depth[..., :1], first)

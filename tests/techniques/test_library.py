@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from sssgen.ir.baked_textures import is_baked
+from sssgen.ir.frame_passes import FRAME_PASSES
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Matrix, Sampler, Scalar
 from sssgen.lang.check.quantities import SCALARS
@@ -20,7 +21,7 @@ from sssgen.material import attributes, library
 from sssgen.material.library import Technique
 from sssgen.material.material_loading import parse_material
 from sssgen.material.model import Material
-from sssgen.material.requirements import DRAWN, baked_textures, requirements, texel_bytes
+from sssgen.material.requirements import baked_textures, needed_for, requirements, texel_bytes
 from sssgen.material.slots import candidates
 from sssgen.pipeline.compiler import FORMS, Compiled
 from sssgen.pipeline.compiler import compile as compile_material
@@ -120,7 +121,7 @@ def test_baked_textures_state_their_size_and_pictures_who_draws_them() -> None:
             assert is_baked(uniform) <= ("texel_bytes" in hints), f"{technique.name}: {uniform.name}"
             if isinstance(uniform.type, Sampler) and "repeat_disable" in hints and not is_baked(uniform):
                 assert "drawn" in hints or technique.attributes.requires, f"{technique.name}: {uniform.name}"
-    assert {name for names in DRAWN.values() for name in names} <= set(attributes.REQUIREMENTS)
+    assert {name for drawn in FRAME_PASSES for name in needed_for(drawn)} <= set(attributes.REQUIREMENTS)
 
 
 def test_requirements_follow_from_declarations(tmp_path: Path) -> None:

@@ -61,10 +61,10 @@ _NO_LIGHTING = "def evaluate_lighting(*_):\n    return np.zeros((3, 1))\n"
 
 @cache
 def mesh_of(name: str) -> PlacedMesh:
-    """The points of an example's scene, with values for its program."""
-    scene = scene_loading.load(str(ROOT / "examples" / name / "scene.toml"))
+    """The points of an example's scene, or of a scene's file, with values for its program."""
+    scene = scene_loading.load(name if name.endswith(".toml") else str(ROOT / "examples" / name / "scene.toml"))
     scene = dataclasses.replace(scene, size=SIZE, samples=1)
-    compiled = sssgen.compile(name, "numpy")
+    compiled = sssgen.compile(scene.material, "numpy")
     shell = shell_of(scene, load_material(scene.material), compiled.reflection)
     return place_mesh(scene, compiled, shell, registry.load("numpy"), SIZE)
 

@@ -10,11 +10,11 @@ from sssgen.editor.analysis import Analysis, function_around
 from sssgen.editor.completion_item import Item, items_of
 from sssgen.editor.documents import TECHNIQUE, Document
 from sssgen.editor.lookup import is_in_comment
+from sssgen.ir.frame_passes import FRAME_PASSES
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.nodes import Declare
 from sssgen.ir.out_builtins import OUT_BUILTINS
 from sssgen.ir.types import spell
-from sssgen.ir.view_textures import VIEW_TEXTURES
 from sssgen.ir.walk import statements
 from sssgen.lang.check.quantities import QUANTITIES, SCALARS
 from sssgen.lang.check.uniform_hints import HINTS
@@ -47,7 +47,7 @@ def code_items(document: Document, analysis: Analysis, line: int, column: int) -
         return []
     argument = _HINT_ARGUMENT.match(before) if technique else None
     if argument is not None:
-        return items_of(VIEW_TEXTURES if argument["hint"] == "drawn" else SCALARS, "value")
+        return items_of(FRAME_PASSES if argument["hint"] == "drawn" else SCALARS, "value")
     if technique and _HINT.match(before):
         return items_of(HINTS, "keyword")
     items = [*_local_items(document, analysis, line), *_declared_items(analysis)]

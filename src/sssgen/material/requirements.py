@@ -11,20 +11,15 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from sssgen.ir.baked_textures import is_baked, is_volume
+from sssgen.ir.frame_passes import FRAME_PASSES, LIGHT_VIEWS, pass_name
 from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.ir.types import Sampler
-from sssgen.ir.view_textures import BACK_FACES, CUBES, DISTANT, LAYERS, LIGHT, SHADOW
 from sssgen.material import attributes
 from sssgen.material.attributes import REQUIREMENTS, Attributes, Bake
 from sssgen.material.model import TechniqueUse
 from sssgen.material.slots import needs
 from sssgen.support.diagnostics import SssgenError
 
-DRAWN = {
-    BACK_FACES: ("back-faces",), LIGHT: ("depth-map",), DISTANT: ("depth-map",), LAYERS: ("depth-map", "depth-layers"),
-    SHADOW: ("depth-map",), **dict.fromkeys(CUBES, ()),
-}  # fmt: skip
-"""A picture that the engine draws → the requirements."""
 DESCRIPTIONS = {
     "bake": "a texture that is baked from the body",
     "depth-map": "the light's depth map",
@@ -48,10 +43,18 @@ def requirements(uses: Iterable[TechniqueUse]) -> tuple[str, ...]:
             volume = any(is_volume(uniform) for uniform in textures)
             slots = needs(module, function)[1]
             for texture in textures:
-                required.update(*(DRAWN[str(view)] for view in dict(texture.hints).get("drawn", ())))
+                required.update(*(needed_for(name) for name in [pass_name(texture)] if name))
             required.update({"bake"} if any(map(is_baked, textures)) else ())
             required.update({"rigid"} if volume or any(map(_is_distance, slots)) else ())
     return tuple(name for name in REQUIREMENTS if name in required)
+
+
+def needed_for(name: str) -> tuple[str, ...]:
+    """The requirements of a pass."""
+    frame_pass = FRAME_PASSES[name]
+    if name in LIGHT_VIEWS:
+        return ("depth-map", "depth-layers") if len(frame_pass.layers) > 1 else ("depth-map",)
+    return ("back-faces",) if frame_pass.seen_from == "eye" else ()
 
 
 def describe(uses: Sequence[TechniqueUse]) -> list[str]:

@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NotRequired, TypedDict
 
-from sssgen.ir.view_textures import BACK_FACES, DISTANT, LIGHT
+from sssgen.ir.frame_passes import FRAME_PASSES
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled
 from sssgen.targets.reflection_record import TextureRecord, UniformRecord
 
 TARGET = "threejs"
-DRAWN_BY_PAGE = (BACK_FACES, LIGHT, DISTANT)
-"""The textures that the page draws for each frame; the others are made once, for the scene's own light."""
+DRAWN_BY_PAGE = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.of == "body")
+"""The passes that the material's own runtime runs; other textures are made once, for the scene's own light."""
 PARTS = ("name", "title", "module", "controls", "textures", "two_sided", "cost")
 """The parts of a head that `emitted_head` makes."""
 

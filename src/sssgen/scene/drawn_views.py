@@ -1,6 +1,8 @@
-"""The textures that a program draws of the body (ir/view_textures.py), cast on the CPU."""
+"""The textures that a program draws of the body (ir/frame_passes.py), cast on the CPU."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -12,8 +14,12 @@ from sssgen.scene.light_view import LightView, directional_view, point_view
 
 BLOCK = 1 << 18
 """The number of rays that are cast at once: many, as a march goes on for its last ray with few rays left."""
+SIDES = ("entry", "exit")
+"""The ends of an interval inside a body, in the order of `intervals`."""
 TEXELS = 512
 """Width and height of a light's depth map."""
+TILES = 2
+"""The number of tiles along a side of a map for several lights."""
 
 
 def back_faces(geometry: Geometry, origin: Array, directions: Array) -> Array:
@@ -23,26 +29,60 @@ def back_faces(geometry: Geometry, origin: Array, directions: Array) -> Array:
     return result
 
 
-def light_depth(geometry: Geometry, light: Array, layers: bool = False) -> tuple[LightView, Array]:
+def light_depth(geometry: Geometry, light: Array, layers: Sequence[str] = ("entry 1",)) -> tuple[LightView, Array]:
     """The view of a light, (4,): w = 1 where it is, w = 0 the unit direction towards it; and its map.
 
-    The map is (rows, columns, 1); with `layers` it has the first entry, the first exit and the second entry: (rows,
-    columns, 3). A texel without a surface has the depth of the body's end, as a larger step would be blurred
-    differently by filters. Raises SssgenError for a light at the body.
+    The map is (rows, columns, channels): the `layers` of a pass (`ir.frame_passes`). A texel without a surface has the
+    depth of the body's end, as a larger step would be blurred differently by filters. Raises SssgenError for a light at
+    the body.
     """
     corners, size = world_corners(geometry), (TEXELS, TEXELS)
     view = point_view(corners, light[:3], size) if light[3] else directional_view(corners, light[:3], size)
-    distances = _nearest(geometry, view.origins, view.directions, 0, 2 if layers else 1)
-    if layers:
-        distances = np.insert(distances, 1, _nearest(geometry, view.origins, view.directions, 1)[:, 0], axis=1)
+    distances = _distances(geometry, view.origins, view.directions, layers)
     end = float((corners @ view.matrix[2, :3] + view.matrix[2, 3]).max())
     view = view._replace(far=end)
     depth = np.where(np.isfinite(distances), distances * view.slopes[:, None], end)
     return view, depth.reshape(TEXELS, TEXELS, -1)
 
 
+def light_layers(geometry: Geometry, lights: Array, layers: Sequence[str]) -> tuple[list[Array], Array]:
+    """The matrices (4, 4) of lights (n, 4), as in `light_depth`, and their maps as the tiles of one picture.
+
+    It is (rows, columns, channels). The first light's tile is at u = v = 0, the second beside it in u. Raises SssgenError for a light at the body.
+    """
+    matrices: list[Array] = []
+    picture = np.zeros((TILES * TEXELS, TILES * TEXELS, len(layers)))
+    for index, light in enumerate(lights):
+        row, column = divmod(index, TILES)
+        view, depth = light_depth(geometry, light, layers)
+        matrix = view.matrix.copy()
+        matrix[0] = (matrix[0] + column * matrix[3]) / TILES
+        matrix[1] = (matrix[1] + row * matrix[3]) / TILES
+        matrices.append(matrix)
+        picture[row * TEXELS : (row + 1) * TEXELS, column * TEXELS : (column + 1) * TEXELS] = depth
+    return matrices, picture
+
+
+def brightest(geometry: Geometry, lights: Array, colors: Array) -> list[int]:
+    """The indices of the lights (n, 4) that are brightest at a body, at most `TILES` squared, the brightest first."""
+    center = world_corners(geometry).mean(axis=0)
+    near = lights[:, 3] > 0.0
+    fall = np.where(near, np.maximum(np.sum((lights[:, :3] - center) ** 2, axis=1), 1e-6), 1.0)
+    strength = colors.max(axis=1) / fall
+    order = np.argsort(-strength, kind="stable")[: TILES * TILES]
+    return [int(index) for index in order if strength[index] > 0.0]
+
+
+def _distances(geometry: Geometry, origins: Array, directions: Array, layers: Sequence[str]) -> Array:
+    """The distance of each layer along each ray, (n, layers); inf for none."""
+    places = [(SIDES.index(side), int(place)) for side, place in map(str.split, layers)]
+    counts = {side: max(place for other, place in places if other == side) for side, _ in places}
+    nearest = {side: _nearest(geometry, origins, directions, side, count) for side, count in counts.items()}
+    return np.stack([nearest[side][:, place - 1] for side, place in places], axis=1)
+
+
 def _nearest(geometry: Geometry, origins: Array, directions: Array, side: int, count: int = 1) -> Array:
-    """The distances to the nearest entries (side 0) or exits (1) in front of each origin, (n, count); inf for none."""
+    """The distances to the nearest surfaces of a side in front of each origin, (n, count); inf for none."""
     nearest = np.full((len(directions), count), np.inf)
     needed = 2 * count - 1 + side
     for start in range(0, len(directions), BLOCK):

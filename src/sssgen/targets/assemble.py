@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sssgen.ir.baked_textures import is_baked
 from sssgen.ir.constant_expressions import literal
+from sssgen.ir.frame_passes import FRAME_PASSES, pass_name
 from sssgen.ir.nodes import NOWHERE, Function, Local, Module, Param, Span, Uniform
 from sssgen.ir.surface_fields import FIELDS
 from sssgen.ir.types import Sampler, Struct, spell
-from sssgen.ir.view_textures import VIEW_TEXTURES
 from sssgen.passes.ranges.guard_report import GuardReport
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import Diagnostic, failure
@@ -25,7 +25,7 @@ from sssgen.targets.frame import LIBRARY, library
 from sssgen.targets.javascript_runtime import inlined_text, runtime_text
 from sssgen.targets.parameter_variables import (
     check_properties,
-    hint_of,
+    pass_variables,
     property_name,
     texture_variables,
     uniform_variables,
@@ -338,6 +338,7 @@ def _context(
             if not isinstance(uniform.type, Sampler)
         ],
         "textures": [texture_variables(printer, *texture, index) for index, texture in enumerate(textures)],
+        "passes": pass_variables(target, program.module.uniforms, program.source_names),
         "entries": entries,
         "inputs": inputs,
         "surface_fields": members,
@@ -377,14 +378,14 @@ def _header(target: Target, program: Program) -> list[str]:
 
 def _supplied(target: Target, program: Program, uniform: Uniform) -> str:
     """How the program supplies a texture that is drawn or baked, or ''."""
-    _, views = hint_of(uniform, "drawn")
+    drawn = pass_name(uniform)
     baked = bool(program.entries) and is_baked(uniform)  # a texture of plain GLSL may hold anything
-    if not isinstance(uniform.type, Sampler) or not (views or baked):
+    if not isinstance(uniform.type, Sampler) or not (drawn or baked):
         return ""
     name = uniform.name
     if target.properties.style != "plain":  # its user sees the property only
         name = property_name(target, program.source_names.get(name, name))
-    return f"{name}: {VIEW_TEXTURES[views[0]]}." if views else f"{name}: bake it from the body (sssgen bake)."
+    return f"{name}: {FRAME_PASSES[drawn].how}." if drawn else f"{name}: bake it from the body (sssgen bake)."
 
 
 def _entry(

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
+from sssgen.ir.frame_passes import FRAME_PASSES, passes_of
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, spell
 from sssgen.support.diagnostics import failure
@@ -52,6 +53,23 @@ def texture_variables(printer: Printer, uniform: Uniform, type_: Sampler, source
         "binding": 1 + 2 * index,
         "sampler_binding": 2 + 2 * index,
     }
+
+
+def pass_variables(target: Target, uniforms: Iterable[Uniform], sources: Mapping[str, str]) -> list[dict[str, Any]]:
+    """The passes that draw the body alone, with the engine's properties; `sources` are the techniques' own names."""
+
+    def of(uniform: Uniform) -> str:
+        return property_name(target, sources.get(uniform.name, uniform.name))
+
+    return [
+        {
+            "name": use.name, "seen_from": drawn.seen_from, "layers": list(drawn.layers), "empty": drawn.empty,
+            "texture": of(use.texture), "views": [of(view) for view in use.views],
+        }
+        for use in passes_of(uniforms)
+        for drawn in [FRAME_PASSES[use.name]]
+        if drawn.of == "body"
+    ]  # fmt: skip
 
 
 def check_properties(target: Target, names: Iterable[str]) -> None:

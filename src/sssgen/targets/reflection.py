@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from sssgen.ir.frame_passes import FRAME_PASSES, passes_of
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.passes.stage.stage_interface import Slot
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
         NameRecord,
         ParameterRecord,
         ParameterSource,
+        PassRecord,
         Reflection,
         ShellPart,
         SlotRecord,
@@ -89,6 +91,7 @@ def reflect(
         "uniforms": uniforms,
         "uniform_block_size": emitted.block_size if blocked else None,
         "textures": textures,
+        "passes": _passes(program),
         "entries": {
             kind: {
                 "function": function.name,
@@ -205,6 +208,22 @@ def as_text(data: Mapping[str, object]) -> str:
             text = json.dumps(value)
         parts.append(f" {json.dumps(key)}: {text}")
     return "{\n" + ",\n".join(parts) + "\n}\n"
+
+
+def _passes(program: Program) -> list[PassRecord]:
+    """The passes of a material; plain GLSL has none."""
+    records: list[PassRecord] = []
+    for use in passes_of(program.module.uniforms):
+        drawn = FRAME_PASSES[use.name]
+        texture, *views = [program.source_names.get(one.name, one.name) for one in (use.texture, *use.views)]
+        size = program.source_names.get(use.size.name, use.size.name) if use.size else None
+        records.append(
+            {
+                "name": use.name, "of": drawn.of, "seen_from": drawn.seen_from, "layers": list(drawn.layers),
+                "empty": drawn.empty, "texture": texture, "views": views, "size": size,
+            }
+        )  # fmt: skip
+    return records
 
 
 def _declared(target: Target, program: Program, uniform: Uniform) -> DeclarationRecord:

@@ -49,7 +49,7 @@ class DeclarationRecord(NameRecord):
     """Whether it is a colour."""
     aliases: list[str]
     drawn: str | None
-    """The view that the program draws for each frame (`ir.view_textures`)."""
+    """The view that the program draws for each frame (`ir.frame_passes`)."""
     doc: str
 
 
@@ -102,6 +102,26 @@ class TextureRecord(DeclarationRecord, _ImportRecord, BindingRecord):
     """The texture to bind if there is no picture: white, black, gray or bump."""
     color_space: str
     """sRGB or linear."""
+
+
+class PassRecord(TypedDict):
+    """A pass that a program runs before it draws the material (`ir.frame_passes`)."""
+
+    name: str
+    of: str
+    """body, casters or surroundings."""
+    seen_from: str
+    """eye, light, distant light, first light, or everywhere."""
+    layers: list[str]
+    """For each channel of the picture `entry N` or `exit N`."""
+    empty: str
+    """What a texel without a surface has: 0, or far."""
+    texture: str
+    """The texture that shows the picture, by its `source_name`."""
+    views: list[str]
+    """The matrices of its views, one for each light, likewise."""
+    size: str | None
+    """The parameter with the picture's width, or with the last level of a cube map, likewise."""
 
 
 class FileRecord(TypedDict):
@@ -252,6 +272,8 @@ class Reflection(StageInterface, Kernel, ShellPart):
     uniform_block_size: int | None
     """Bytes."""
     textures: list[TextureRecord]
+    passes: list[PassRecord]
+    """What the program draws first, in order."""
     entries: dict[str, EntryRecord]
     """Kind of entry (surface, translucency, …) → its function."""
     proven_safe: int

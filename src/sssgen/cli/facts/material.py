@@ -15,7 +15,7 @@ from sssgen.passes.cost import Cost
 from sssgen.pipeline.compiler import all_targets, compile
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import posix
-from sssgen.targets.reflection_record import Reflection
+from sssgen.targets.reflection_record import PassRecord, Reflection
 
 names = examples
 """The example materials."""
@@ -37,6 +37,7 @@ def describe(name: str) -> dict[str, Any]:
         "two_sided": material.two_sided,
         "stages": [_stage(use, values) for use in material.stages],
         "requires": list(requirements(material.stages)),
+        "passes": reflection["passes"] if reflection else [],
         "cost": costs,
         "refused": refused,
         "file": posix(material.file),
@@ -110,6 +111,10 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
         text += [f"      {slot} = {function}" for slot, function in stage["slots"].items()]
     needed = [f"{name} ({DESCRIPTIONS[name]})" for name in facts["requires"]]
     text += ["", *wrap(f"requires: {', '.join(needed) or 'nothing besides its parameters'}", width, "", "  ")]
+    if facts["passes"]:
+        text += ["", "passes, which the program runs before it draws the material:"]
+        for row in map(_pass, facts["passes"]):
+            text += wrap(row, width, "  ", "      ")
     if facts["cost"]:
         text += ["", "cost, in operations, counted before the target's compiler optimises:"]
         longest = max(map(len, facts["cost"]))
@@ -123,6 +128,12 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
         reason = why["message"] + (f" ({why['help']})" if why["help"] else "")
         text += wrap(f"{target}: {reason}", width, "  ", "      ")
     return [*text, "", f"file: {facts['file']}", "a technique in detail: sssgen show TECHNIQUE"]
+
+
+def _pass(record: PassRecord) -> str:
+    layers = f", {', '.join(record['layers'])}" if record["layers"] else ""
+    views = f", in the view {', '.join(record['views'])}" if record["views"] else ""
+    return f"{record['name']}: the {record['of']} from {record['seen_from']}{layers}; to {record['texture']}{views}"
 
 
 def _parameter(parameter: Mapping[str, Any]) -> str:

@@ -20,8 +20,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sssgen.ir.frame_passes import BACK_FACES
 from sssgen.ir.types import Sampler
-from sssgen.ir.view_textures import BACK_FACES
 from sssgen.lab.gpu.gpu_timing import ROUNDS, SIZE, Program, ProgramTimes, measure
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material

@@ -12,9 +12,9 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
+from sssgen.ir.frame_passes import DISTANT_VIEWS
 from sssgen.ir.nodes import Function, Uniform
 from sssgen.ir.types import Sampler, kind_of
-from sssgen.ir.view_textures import DISTANT_VIEWS
 from sssgen.lab.measure.fluence_inputs import PREFIX
 from sssgen.lang.check.quantities import SCALARS
 from sssgen.material import library, slots

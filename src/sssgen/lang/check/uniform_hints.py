@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from sssgen.ir.frame_passes import CUBES, FRAME_PASSES
 from sssgen.ir.nodes import Span
 from sssgen.ir.rules import FLOAT_MAX
 from sssgen.ir.types import FLOAT, VEC3, VEC4, Matrix, Sampler, Type, kind_of
-from sssgen.ir.view_textures import CUBES, VIEW_TEXTURES
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.context import CheckContext
 from sssgen.lang.syntax import tree as s
@@ -73,11 +73,11 @@ def check_hints(
 
 
 def _check_drawn(context: CheckContext, span: Span, view: str, type_: Type) -> None:
-    if view not in VIEW_TEXTURES:
+    if view not in FRAME_PASSES:
         raise context.fail(
             span,
             f"a program cannot draw '{view}'",
-            did_you_mean(view, VIEW_TEXTURES) or f"one of: {', '.join(VIEW_TEXTURES)}",
+            did_you_mean(view, FRAME_PASSES) or f"one of: {', '.join(FRAME_PASSES)}",
         )
     dim = "Cube" if view in CUBES else "2D"
     if type_ not in (Matrix(4, 4), FLOAT) and not (isinstance(type_, Sampler) and type_.dim == dim):

@@ -4,7 +4,6 @@ import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { ballOf, coarseOf, geometryOf } from './coarse_body.js';
 import { Drafts } from './drafts.js';
-import { DrawnViews } from './drawn_views.js';
 import { materialOf, programOf, update, valueOf } from './material.js';
 import { rendererOf } from './renderer.js';
 
@@ -27,8 +26,6 @@ export class Stage {
   mesh;  // from show() on
   /** @type {Body[]} */
   bodies;  // the body, and its draft
-  /** @type {DrawnViews} */
-  views;
   /** @type {THREE.Sphere} */
   ball;  // around the body
 
@@ -103,8 +100,6 @@ export class Stage {
     if (kept) update(material, picture, values, textures);
     else {
       if (picture.two_sided) material.side = THREE.DoubleSide;
-      this.views?.dispose();
-      this.views = new DrawnViews(this.kind, picture.textures, picture.controls);
     }
     this.program = program;
     this.forget(new Set(Object.values(textures)));
@@ -238,9 +233,6 @@ export class Stage {
     this.hold();
     const away = this.camera.position.distanceTo(this.ball.center);  // bodies are millimetres or kilometres large
     Object.assign(this.camera, { near: 0.005 * away, far: 50 * away }).updateProjectionMatrix();
-    const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
-    const distant = this.lamps.find((lamp) => lamp instanceof THREE.DirectionalLight) ?? this.lamps[0];
-    if (distant) this.views.draw(this.renderer, this.mesh, this.mesh.material, this.camera, distant, size);
     this.renderer.render(this.scene, this.camera);
     this.drawn += 1;
   }
@@ -307,7 +299,6 @@ export class Stage {
     this.drafts.dispose();
     this.sizes?.disconnect();
     this.orbit?.dispose();
-    this.views?.dispose();
     this.bodies?.forEach((one) => one.dispose());
     this.mesh?.material.dispose();
     this.textures.forEach((texture) => texture.dispose());

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.ir.view_textures import BACK_FACES
+from sssgen.ir.frame_passes import BACK_FACES
 from sssgen.material.material_loading import load_material
 from sssgen.material.shell_stages import with_shell
 from sssgen.pipeline.compiler import Compiled, compile

@@ -4,14 +4,22 @@ from __future__ import annotations
 
 import copy
 import os
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from sssgen.ir.frame_passes import (
+    CUBES,
+    DISTANT_VIEWS,
+    FRAME_PASSES,
+    IRRADIANCE,
+    LIGHT_LAYERS,
+    LIGHT_VIEWS,
+    REFLECTIONS,
+)
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import with_article
-from sssgen.ir.view_textures import CUBES, DISTANT_VIEWS, IRRADIANCE, LAYERS, LIGHT_VIEWS, REFLECTIONS
 from sssgen.material import baked
 from sssgen.material.baked import BakeFile
 from sssgen.material.model import Material
@@ -21,10 +29,10 @@ from sssgen.run.evaluate.evaluation import half
 from sssgen.run.render import baked_body
 from sssgen.run.render.environment_maps import irradiance_map, reflection_map
 from sssgen.run.render.shell_values import Shell
-from sssgen.scene.drawn_views import light_depth
+from sssgen.scene.arrays import Array
+from sssgen.scene.drawn_views import brightest, light_depth, light_layers
 from sssgen.scene.environment import read_environment
 from sssgen.scene.geometry import Distance, Geometry
-from sssgen.scene.light_view import LightView
 from sssgen.scene.scene import DistanceTexture, Picture, Scene, placement
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.file_memo import CachedResult, note, remember
@@ -47,7 +55,7 @@ def shell_of(scene: Scene, material: Material, reflection: Reflection) -> Shell:
     ]
     views = _light_views(scene, material, reflection, positions)
     surroundings = _surroundings(scene, material, reflection)
-    maps = surroundings | {name: texture for name, (_, texture) in views.items()}
+    maps = surroundings | {name: drawn.texture for name, drawn in views.items()}
     parameters = _parameters(scene, material, reflection, views, maps)
     if any(uniform["source_name"] == "aspect" for uniform in reflection["uniforms"]):  # of a camera in the chain
         parameters.setdefault("aspect", (scene.size[0] / scene.size[1],))
@@ -64,37 +72,57 @@ def shell_of(scene: Scene, material: Material, reflection: Reflection) -> Shell:
     )
 
 
+class DrawnLights(NamedTuple):
+    """What a pass draws from lights."""
+
+    matrices: Sequence[Array]
+    """For each light the matrix (4, 4) from world space to the picture."""
+    texture: Texture
+
+
 def _light_views(
     scene: Scene, material: Material, reflection: Reflection, lights: list[list[float]]
-) -> dict[str, tuple[LightView, Texture]]:
-    """The depth maps that the program draws, by the hint `drawn`: of the first light that the map is for.
+) -> dict[str, DrawnLights]:
+    """The depth maps that the program draws, by the name of the pass: of the first light that the map is for, or of the
+    brightest lights.
 
     A texture of the scene or of the material is not drawn. Raises SssgenError without such a light.
     """
-    views: dict[str, tuple[LightView, Texture]] = {}
+    views: dict[str, DrawnLights] = {}
     for texture in reflection["textures"]:
         drawn = texture["drawn"]
         if drawn not in LIGHT_VIEWS or drawn in views or scene.geometry is None or _file(scene, material, texture):
             continue
-        light = next((light for light in lights if not (light[3] and drawn in DISTANT_VIEWS)), None)
-        if light is None:
+        seen = [light for light in lights if not (light[3] and drawn in DISTANT_VIEWS)]
+        if not seen:
             hint = "add [[light]] with a direction" if drawn in DISTANT_VIEWS else "add [[light]]"
             file = scene.document.reporter.file
             raise failure(f"'{texture['source_name']}' is drawn from a light, and the scene has none", hint, file)
-        views[drawn] = _light_view(scene.geometry, light, drawn == LAYERS)
+        if drawn == LIGHT_LAYERS:
+            colors = np.array([light.color for light in scene.lights], float)
+            seen = [lights[index] for index in brightest(scene.geometry, np.array(lights, float), colors)]
+        else:
+            seen = seen[:1]
+        views[drawn] = _drawn_lights(scene.geometry, seen, FRAME_PASSES[drawn].layers, drawn == LIGHT_LAYERS)
     return views
 
 
-def _light_view(geometry: Geometry, light: list[float], layers: bool) -> tuple[LightView, Texture]:
-    """A light's view of a body; those of slow bodies, distance functions, are kept until a file of theirs changes."""
+def _drawn_lights(geometry: Geometry, lights: list[list[float]], layers: tuple[str, ...], tiled: bool) -> DrawnLights:
+    """Lights' views of a body; those of slow bodies, distance functions, are kept until a file of theirs changes."""
 
-    def make() -> tuple[LightView, Texture]:
+    def make() -> DrawnLights:
         # the copy has no compiled function, so that the files of the function are read here
-        view, depth = light_depth(copy.deepcopy(geometry) if slow else geometry, np.array(light), layers)
-        return view, half(Texture(depth, wrap="clamp"))
+        body = copy.deepcopy(geometry) if slow else geometry
+        if tiled:
+            matrices, depth = light_layers(body, np.array(lights), layers)
+        else:
+            view, depth = light_depth(body, np.array(lights[0]), layers)
+            matrices = [view.matrix]
+        return DrawnLights(matrices, half(Texture(depth, wrap="clamp")))
 
     slow = isinstance(geometry, Distance)
-    return remember(_kept_light_maps, repr((geometry, light, layers)), make, MOST_LIGHT_MAPS) if slow else make()
+    key = repr((geometry, lights, layers, tiled))
+    return remember(_kept_light_maps, key, make, MOST_LIGHT_MAPS) if slow else make()
 
 
 def _surroundings(scene: Scene, material: Material, reflection: Reflection) -> dict[str, Texture]:
@@ -113,18 +141,20 @@ def _parameters(
     scene: Scene,
     material: Material,
     reflection: Reflection,
-    views: Mapping[str, tuple[LightView, Texture]],
+    views: Mapping[str, DrawnLights],
     maps: Mapping[str, Texture],
 ) -> dict[str, tuple[float, ...]]:
     """The scene's values for the material's uniforms, with the same checks as in a material."""
     uniforms = {uniform["source_name"]: uniform for uniform in reflection["uniforms"]}
     document, values = scene.document, _baked_parameters(scene, material, reflection)
-    for name, uniform in uniforms.items():
-        drawn = uniform["drawn"] or ""
-        if drawn in views and uniform["type"] == "mat4":
-            values[name] = (*views[drawn][0].matrix.T.ravel(),)
-        elif drawn in maps:
-            values[name] = (len(maps[drawn].levels) - 1.0 if drawn in CUBES else float(maps[drawn].size()[0]),)
+    for drawn in reflection["passes"]:
+        if (name := drawn["name"]) in views:
+            values |= {
+                view: (*matrix.T.ravel(),) for view, matrix in zip(drawn["views"], views[name].matrices, strict=False)
+            }
+        if name in maps and drawn["size"]:
+            size = len(maps[name].levels) - 1.0 if name in CUBES else float(maps[name].size()[0])
+            values[drawn["size"]] = (size,)
     for name, raw in scene.parameters.items():
         place = document.place("parameters", name)
         if name not in uniforms:

@@ -4,6 +4,7 @@
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
 import { nodesOf } from './three_nodes.js';
+import { Passes } from './three_passes.js';
 import { Properties, TEXELS } from './values.js';
 
 /**
@@ -18,6 +19,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {string[]} [fields] the members of its surface
  * @property {Record<string, import('./values.js').Parameter>} parameters
  * @property {Record<string, import('./values.js').TextureParameter>} textures
+ * @property {import('./three_passes.js').Pass[]} [passes] what is drawn before it, in order
  * @property {string} glsl functions
  * @property {string} wgsl the same
  * @property {Record<string, import('./three_nodes.js').Call>} calls `color` of an unlit material; `surface` and `translucency` of a lit one
@@ -136,17 +138,21 @@ function uniformsOf({ parameters, textures }, moves, takesLight) {
  * @param {Description} description
  */
 export function materialClass(description) {
-  const { name, lit, parameters, textures, calls, fields = [] } = description;
+  const { name, lit, parameters, textures, calls, fields = [], passes = [] } = description;
   const base = lit ? 'MeshPhysicalMaterial' : 'MeshBasicMaterial';
   const inputs = Object.values(calls).flatMap((call) => call.inputs);
   const properties = new Properties({ ...description, inputs }, base);
   const { moves, takesLight } = properties;
+  const isDrawn = (property) => passes.some((pass) => pass.texture === property);
   const texts = { glsl: TSL.glsl(description.glsl), wgsl: TSL.wgsl(description.wgsl) };
   // three keeps one program per key
   const key = `sssgen ${name} ${Properties.hashOf(JSON.stringify([description.glsl, description.webgl]))}`;
 
   return class extends THREE[base] {
     #uniforms = uniformsOf(description, moves, takesLight);
+    #passes = new Passes(passes);
+    /** The textures that the page has set. */
+    #given = new Set();
 
     constructor(values = {}) {
       super();
@@ -167,6 +173,10 @@ export function materialClass(description) {
         /** One of three's lights, which lights this unlit material; null: none. */
         this.light = null;
         this.#uniforms.lightPlace.onRenderUpdate(() => this.#placeLight());
+      }
+      if (passes.length) { // in WebGPURenderer
+        const first = this.#uniforms[passes[0].texture];
+        Object.assign(first, { updateBeforeType: 'object', updateBefore: (frame) => this.#drawPasses(frame) });
       }
       Object.assign(this, nodesOf(description, texts, this.#uniforms));
       this.setValues(values);
@@ -206,6 +216,8 @@ export function materialClass(description) {
       }
       const decoded = value?.type === THREE.HalfFloatType || value?.type === THREE.FloatType;
       if (value?.colorSpace === THREE.NoColorSpace && !decoded) value.colorSpace = declared.colorSpace;
+      if (value) this.#given.add(property);
+      else this.#given.delete(property);
       this.#uniforms[property].value = value ?? texel(declared);
       this.needsUpdate = true;
     }
@@ -240,10 +252,25 @@ export function materialClass(description) {
       return lightPlace.value.set(place.x, place.y, place.z, light.isDirectionalLight ? 0 : 1);
     }
 
-    onBeforeRender() {
+    /** @param {{ renderer: any, scene: THREE.Scene, camera: THREE.Camera, object: THREE.Mesh }} frame */
+    #drawPasses(frame) {
+      this.#passes.draw(frame, (property) => this.#given.has(property), (property, value) => {
+        const node = this.#uniforms[property];
+        if (value.isMatrix4) node.value.copy(value);
+        else node.value = value;
+      });
+    }
+
+    onBeforeRender(renderer, scene, camera, geometry, object) {
+      if (passes.length) this.#drawPasses({ renderer, scene, camera, object });
       if (moves) this.#uniforms.time.value = this.#seconds();
       if (takesLight) this.#placeLight();
-      if (moves || takesLight) this.uniformsNeedUpdate = true;
+      if (moves || takesLight || passes.length) this.uniformsNeedUpdate = true;
+    }
+
+    dispose() {
+      super.dispose();
+      this.#passes.dispose();
     }
 
     onBeforeCompile(shader) {
@@ -256,7 +283,9 @@ export function materialClass(description) {
 
     copy(source) {
       super.copy(source);
-      for (const property of properties.names) this[property] = source[property];
+      for (const property of properties.names) {
+        if (!isDrawn(property) || source.#given.has(property)) this[property] = source[property];
+      }
       if (moves) this.time = source.time;
       if (takesLight) this.light = source.light;
       return this;

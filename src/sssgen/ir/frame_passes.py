@@ -1,0 +1,124 @@
+"""The passes that a material needs before it is drawn: each draws a picture that a texture with the hint `drawn` shows.
+
+A material's passes follow from its textures, in the order of their declarations. The reflection lists them, and every
+host executes this list: `sssgen render`, and the runtimes of engines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from sssgen.ir.nodes import Uniform
+from sssgen.ir.types import FLOAT, Matrix, Sampler
+
+BACK_FACES, LIGHT, DISTANT, LAYERS = "back_faces", "light_depth", "distant_light_depth", "distant_light_layers"
+LIGHT_LAYERS = "light_layers"
+SHADOW = "shadow_depth"
+IRRADIANCE, REFLECTIONS = "irradiance", "reflections"
+
+
+class FramePass(NamedTuple):
+    """A pass: what it draws, from where, and what a texel has."""
+
+    of: str
+    """body (the object alone), casters (all that casts a shadow) or surroundings (the light around the scene)"""
+    seen_from: str
+    """eye, light, distant light, first light, each light (the four brightest, each in a tile of 2 × 2), or everywhere: a
+    cube map"""
+    layers: tuple[str, ...]
+    """For each channel the surface whose distance it has: `entry 1` is the nearest front face, `exit 1` the nearest
+    back face, `entry 2` the nearest front face behind `exit 1`. () for light"""
+    empty: str
+    """A texel without a surface: `0`, or `far`, which is more than any distance"""
+    how: str
+    """How a program draws it, as a sentence after the texture's name"""
+
+
+_OF_LIGHT = (
+    "draw {} from the {}, with a depth test that keeps the nearest, into a float texture; "
+    "each texel is the distance of the first surface from the light's plane in world units (not the value of the depth "
+    "buffer), and more than any of {} where there is none"
+)
+
+FRAME_PASSES = {
+    BACK_FACES: FramePass(
+        "body", "eye", ("exit 1",), "0",
+        "draw the translucent body alone with its front faces culled and a depth test that keeps the nearest, "
+        "into a float texture that covers the screen; each texel is the distance from the eye (not the depth), and 0 "
+        "where there is no back face",
+    ),
+    LIGHT: FramePass(
+        "body", "light", ("entry 1",), "far", _OF_LIGHT.format("the translucent body alone", "light", "the body's")
+    ),
+    DISTANT: FramePass(
+        "body", "distant light", ("entry 1",), "far",
+        _OF_LIGHT.format("the translucent body alone", "light, which must be far away", "the body's"),
+    ),
+    LIGHT_LAYERS: FramePass(
+        "body", "each light", ("entry 1", "exit 1", "entry 2", "exit 2"), "far",
+        "for each of the four lights that are brightest at the translucent body, draw this body alone from the light, "
+        "four times into a tile of 2 x 2 of a float texture: red has the nearest front face, green the nearest back "
+        "face, blue the nearest front face behind that back face, alpha the nearest back face behind that; each is the "
+        "distance from the light's plane in world units, and more than any of the body's where there is none. The "
+        "matrix of a light that there is not has zeros",
+    ),
+    SHADOW: FramePass(
+        "casters", "first light", ("entry 1",), "far",
+        _OF_LIGHT.format("all that casts a shadow", "first light", "these"),
+    ),
+    IRRADIANCE: FramePass(
+        "surroundings", "everywhere", (), "0",
+        "draw the light of the surroundings into a cube map in world space; each texel is the mean over the "
+        "hemisphere around its direction, weighted with the cosine",
+    ),
+    REFLECTIONS: FramePass(
+        "surroundings", "everywhere", (), "0",
+        "draw the light of the surroundings into a cube map with levels, in world space; level 0 is the light "
+        "itself, level i of n the mean that a mirror of roughness i / n shows from the front",
+    ),
+    LAYERS: FramePass(
+        "body", "distant light", ("entry 1", "exit 1", "entry 2"), "far",
+        "draw the translucent body alone from the light, which must be far away, three times into a float texture: "
+        "red has the nearest front face, green the nearest back face, blue the nearest front face behind that back "
+        "face (discard the fragments in front of it); each is the distance from the light's plane in world units, and "
+        "more than any of the body's where there is none",
+    ),
+}  # fmt: skip
+"""The passes by the word of the hint `drawn`."""
+
+CUBES = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.seen_from == "everywhere")
+"""What is drawn into a cube map."""
+DISTANT_VIEWS = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.seen_from == "distant light")
+"""What is drawn in the view of a light from afar."""
+LIGHT_VIEWS = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.seen_from.endswith("light"))
+"""What is drawn in the view of a light."""
+
+
+class PassUse(NamedTuple):
+    """A pass of a material, with the uniforms that a host sets."""
+
+    name: str
+    texture: Uniform
+    """The picture"""
+    views: tuple[Uniform, ...]
+    """For each light the matrix from world space to the picture: (u w, v w, distance from the light's plane, w)"""
+    size: Uniform | None
+    """The width of the picture in texels, or the last level of a cube map"""
+
+
+def pass_name(uniform: Uniform) -> str:
+    """The pass that a uniform belongs to; '' for none."""
+    return str(dict(uniform.hints).get("drawn", ("",))[0])
+
+
+def passes_of(uniforms: Iterable[Uniform]) -> list[PassUse]:
+    """The passes that a program with these uniforms needs, in order."""
+    drawn = [uniform for uniform in uniforms if pass_name(uniform)]
+    uses: list[PassUse] = []
+    for texture in (uniform for uniform in drawn if isinstance(uniform.type, Sampler)):
+        name = pass_name(texture)
+        own = [uniform for uniform in drawn if pass_name(uniform) == name]
+        views = tuple(uniform for uniform in own if isinstance(uniform.type, Matrix))
+        uses.append(PassUse(name, texture, views, next((uniform for uniform in own if uniform.type == FLOAT), None)))
+    return uses

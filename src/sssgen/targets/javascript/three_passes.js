@@ -1,0 +1,346 @@
+// What three draws before a material: pictures of the body alone, as the eye or a light sees it. A picture that the page
+// sets itself is not drawn.
+
+import * as THREE from 'three/webgpu';
+import * as TSL from 'three/tsl';
+
+/**
+ * A pass, as a material's module lists it.
+ * @typedef {object} Pass
+ * @property {string} name
+ * @property {string} seenFrom `eye`, `light` or `distant light`
+ * @property {string[]} layers for each channel `entry N` or `exit N`: the N-th front or back face
+ * @property {'0' | 'far'} empty what a texel without a surface has
+ * @property {string} texture the property of the picture
+ * @property {string[]} views the properties of the matrices from world space to the picture, one for each light
+ */
+
+/** The distance where there is no surface: it fits into half a float. */
+const FAR = 60000;
+/** The width of what one light sees, in texels. */
+const SIDE = 1024;
+/** The layer of three that only a pass draws. */
+const ALONE = 31;
+
+// The materials of a pass: they write the distance from the eye or from the light's plane.
+
+const VERTEX = /* glsl */ `
+#include <common>
+#include <batching_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+varying vec3 sss_place;
+void main() {
+  #include <batching_vertex>
+  #include <skinbase_vertex>
+  #include <morphinstance_vertex>
+  #include <begin_vertex>
+  #include <morphtarget_vertex>
+  #include <skinning_vertex>
+  #include <project_vertex>
+  sss_place = mvPosition.xyz;
+}`;
+
+const FRAGMENT = /* glsl */ `
+varying vec3 sss_place;
+uniform bool fromPlane;
+uniform float margin;
+uniform sampler2D front;
+void main() {
+  float distance = fromPlane ? -sss_place.z : length(sss_place);
+  // the surfaces behind those of the layer before
+  if (margin > 0.0 && distance < texelFetch(front, ivec2(gl_FragCoord.xy), 0).r + margin) discard;
+  gl_FragColor = vec4(distance, 0.0, 0.0, 1.0);
+}`;
+
+const PACKING = /* glsl */ `
+uniform sampler2D layer0;
+uniform sampler2D layer1;
+uniform sampler2D layer2;
+uniform sampler2D layer3;
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  gl_FragColor = vec4(texelFetch(layer0, at, 0).r, texelFetch(layer1, at, 0).r, texelFetch(layer2, at, 0).r, texelFetch(layer3, at, 0).r);
+}`;
+
+const emptyPicture = () => new THREE.DataTexture(new Float32Array(4), 1, 1, THREE.RGBAFormat, THREE.FloatType);
+/** The uniforms of a ShaderMaterial. */
+const glslUniforms = (values) => Object.fromEntries(Object.entries(values).map(([name, value]) => [name, { value }]));
+
+/**
+ * A material that writes distances, and its uniforms. `nodes`: for WebGPURenderer.
+ * @returns {{ uniforms: Record<string, any>, material: THREE.Material }}
+ */
+function distanceMaterial(nodes, side) {
+  if (!nodes) {
+    const uniforms = glslUniforms({ fromPlane: false, margin: 0, front: emptyPicture() });
+    return { uniforms, material: new THREE.ShaderMaterial({ side, uniforms, vertexShader: VERTEX, fragmentShader: FRAGMENT }) };
+  }
+  const uniforms = { fromPlane: TSL.uniform(0), margin: TSL.uniform(0), front: TSL.textureLoad(emptyPicture(), TSL.ivec2(TSL.screenCoordinate)) };
+  const distance = TSL.select(uniforms.fromPlane.greaterThan(0), TSL.positionView.z.negate(), TSL.positionView.length());
+  const fragmentNode = TSL.Fn(() => {
+    TSL.Discard(uniforms.margin.greaterThan(0).and(distance.lessThan(uniforms.front.r.add(uniforms.margin))));
+    return TSL.vec4(distance, 0, 0, 1);
+  })();
+  return { uniforms, material: Object.assign(new THREE.NodeMaterial(), { side, fragmentNode }) };
+}
+
+/**
+ * A material that writes four layers into one picture.
+ * @returns {{ uniforms: Record<string, any>, material: THREE.Material }}
+ */
+function packingMaterial(nodes) {
+  const names = ['layer0', 'layer1', 'layer2', 'layer3'];
+  const settings = { depthTest: false, depthWrite: false };
+  if (!nodes) {
+    const uniforms = glslUniforms(Object.fromEntries(names.map((name) => [name, emptyPicture()])));
+    const vertexShader = 'void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }';
+    return { uniforms, material: new THREE.ShaderMaterial({ ...settings, uniforms, vertexShader, fragmentShader: PACKING }) };
+  }
+  const uniforms = Object.fromEntries(names.map((name) => [name, TSL.textureLoad(emptyPicture(), TSL.ivec2(TSL.screenCoordinate))]));
+  const fragmentNode = TSL.vec4(...names.map((name) => uniforms[name].r));
+  const vertexNode = TSL.vec4(TSL.positionGeometry.xy, 0, 1);
+  return { uniforms, material: Object.assign(new THREE.NodeMaterial(), { ...settings, vertexNode, fragmentNode }) };
+}
+
+function pictureOf(width, height, type) {
+  const settings = { type, format: THREE.RGBAFormat, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter };
+  return new THREE.WebGLRenderTarget(width, height, settings); // WebGPURenderer takes it, too
+}
+
+// The lights of a body.
+
+const placeOf = (object) => new THREE.Vector3().setFromMatrixPosition(object.matrixWorld);
+
+/** The ball around a body, in world space. */
+function ballOf(object) {
+  if (object.computeBoundingSphere) object.computeBoundingSphere(); // of bones, instances
+  else if (!object.geometry.boundingSphere) object.geometry.computeBoundingSphere();
+  return (object.boundingSphere ?? object.geometry.boundingSphere).clone().applyMatrix4(object.matrixWorld);
+}
+
+/** The lights that are brightest at a ball, at most `count`; `distant`: those from afar, if there are any. */
+function lightsAt(ball, scene, camera, distant, count) {
+  const lights = [];
+  scene.traverseVisible((light) => {
+    const near = light.isPointLight || light.isSpotLight;
+    if (!(light.isDirectionalLight || near) || !light.layers.test(camera.layers)) return;
+    const fall = near ? Math.max(placeOf(light).distanceToSquared(ball.center), 1e-6) : 1;
+    lights.push({ light, strength: (light.intensity * Math.max(light.color.r, light.color.g, light.color.b)) / fall });
+  });
+  const fitting = distant ? lights.filter(({ light }) => light.isDirectionalLight) : lights;
+  return (fitting.length ? fitting : lights).filter(({ strength }) => strength > 0).sort((a, b) => b.strength - a.strength).slice(0, count).map(({ light }) => light);
+}
+
+/** A camera that sees all of a ball from a light; `distant`: as if it were far away. */
+function lampOf(light, ball, distant, coordinateSystem) {
+  const radius = ball.radius * 1.02;
+  const way = placeOf(light).sub(light.isDirectionalLight ? placeOf(light.target) : ball.center);
+  const afar = distant || light.isDirectionalLight;
+  const distance = afar ? 2 * radius : Math.max(way.length(), 1e-6);
+  const half = Math.min(Math.asin(Math.min(radius / distance, 1)), 1.5);
+  const lamp = afar
+    ? new THREE.OrthographicCamera(-radius, radius, radius, -radius)
+    : new THREE.PerspectiveCamera((half * 360) / Math.PI, 1);
+  Object.assign(lamp, { near: Math.max(distance - radius, 0.001 * distance), far: distance + radius, coordinateSystem });
+  lamp.position.copy(ball.center).addScaledVector(way.normalize(), distance);
+  if (Math.abs(way.y) > 0.99) lamp.up.set(0, 0, 1);
+  lamp.lookAt(ball.center);
+  lamp.updateProjectionMatrix();
+  lamp.updateMatrixWorld();
+  return lamp;
+}
+
+/** World space to (u w, v w, distance from the light's plane, w), in a tile of the picture. */
+function viewOf(lamp, tile, columns, up) {
+  const { elements: clip } = new THREE.Matrix4().multiplyMatrices(lamp.projectionMatrix, lamp.matrixWorldInverse);
+  const { elements: view } = lamp.matrixWorldInverse;
+  const rows = [0, 1, 2, 3].map((column) => {
+    const [x, y, , w] = clip.slice(4 * column, 4 * column + 4);
+    return [((tile.x + 0.5) * w + 0.5 * x) / columns, ((tile.y + 0.5) * w + 0.5 * up * y) / columns, -view[4 * column + 2], w];
+  });
+  return new THREE.Matrix4().fromArray(rows.flat());
+}
+
+/** The passes of a material, in one renderer. */
+class Drawing {
+  constructor(renderer) {
+    this.nodes = renderer.isWebGPURenderer === true;
+    this.gpu = this.nodes && renderer.backend.isWebGPUBackend === true;
+    // half floats where a device does not filter others: three declares no sampler for a texture that it cannot filter
+    this.type = this.gpu && !renderer.hasFeature('float32-filterable') ? THREE.HalfFloatType : THREE.FloatType;
+    this.fronts = distanceMaterial(this.nodes, THREE.FrontSide);
+    this.backs = distanceMaterial(this.nodes, THREE.BackSide);
+    this.packing = packingMaterial(this.nodes);
+    this.blank = emptyPicture();
+    this.scene = Object.assign(new THREE.Scene(), { matrixWorldAutoUpdate: false });
+    this.quad = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), this.packing.material);
+    this.quad.frustumCulled = false;
+    this.camera = new THREE.OrthographicCamera();
+  }
+
+  /** Draws with `work`, and leaves the renderer as it was. */
+  apart(renderer, work) {
+    const state = {
+      target: [renderer.getRenderTarget(), renderer.getActiveCubeFace(), renderer.getActiveMipmapLevel()],
+      color: renderer.getClearColor(new THREE.Color()), alpha: renderer.getClearAlpha(),
+      mrt: renderer.getMRT?.(), objectFunction: renderer.getRenderObjectFunction?.(),
+      values: Object.fromEntries(['autoClear', 'toneMapping', 'opaque', 'transparent'].filter((name) => name in renderer).map((name) => [name, renderer[name]])),
+      shadows: renderer.shadowMap.autoUpdate, presents: renderer.xr?.enabled,
+    };
+    renderer.setMRT?.(null);
+    renderer.setRenderObjectFunction?.(null);
+    renderer.shadowMap.autoUpdate = false;
+    if (renderer.xr) renderer.xr.enabled = false;
+    Object.assign(renderer, { autoClear: false, toneMapping: THREE.NoToneMapping });
+    for (const name of ['opaque', 'transparent']) if (name in renderer) renderer[name] = true;
+    try {
+      work();
+    } finally {
+      Object.assign(renderer, state.values);
+      renderer.shadowMap.autoUpdate = state.shadows;
+      if (renderer.xr) renderer.xr.enabled = state.presents;
+      renderer.setRenderObjectFunction?.(state.objectFunction);
+      renderer.setMRT?.(state.mrt);
+      renderer.setClearColor(state.color, state.alpha);
+      renderer.setRenderTarget(...state.target);
+    }
+  }
+
+  /** Draws one pass of an object into its pictures. */
+  draw(renderer, pass, pictures, object, cameras, tileSize) {
+    const empty = pass.empty === 'far' ? FAR : 0;
+    const margin = 1e-3 * ballOf(object).radius;
+    renderer.setClearColor(new THREE.Color(empty, empty, empty), 1);
+    pass.layers.forEach((layer, index) => {
+      const [side, count] = layer.split(' ');
+      const { material, uniforms } = side === 'exit' ? this.backs : this.fronts;
+      const before = side === 'exit' ? index - 1 : pass.layers.indexOf(`exit ${Number(count) - 1}`);
+      const peels = (side === 'entry' && Number(count) > 1) || (side === 'exit' && Number(count) > 1);
+      uniforms.fromPlane.value = this.nodes ? Number(pass.seenFrom !== 'eye') : pass.seenFrom !== 'eye';
+      uniforms.margin.value = peels ? margin : 0;
+      uniforms.front.value = peels ? pictures.layers[before].texture : this.blank;
+      const picture = pictures.layers[index];
+      picture.viewport.set(0, 0, picture.width, picture.height);
+      picture.scissor.set(0, 0, picture.width, picture.height);
+      renderer.setRenderTarget(picture);
+      renderer.clear();
+      cameras.forEach((camera, tile) => {
+        picture.viewport.set(tileSize.x * (tile % pictures.columns), tileSize.y * Math.floor(tile / pictures.columns), tileSize.x, tileSize.y);
+        picture.scissor.copy(picture.viewport);
+        renderer.setRenderTarget(picture);
+        this.alone(renderer, object, material, camera);
+      });
+    });
+    if (pictures.layers.length === 1) return;
+    pictures.layers.forEach(({ texture }, index) => (this.packing.uniforms[`layer${index}`].value = texture));
+    renderer.setRenderTarget(pictures.packed);
+    this.scene.overrideMaterial = null;
+    this.scene.children = [this.quad];
+    renderer.render(this.scene, this.camera);
+  }
+
+  /** Draws an object with another material, without its children. */
+  alone(renderer, object, material, camera) {
+    const masks = [object.layers.mask, camera.layers.mask];
+    object.layers.enable(ALONE);
+    camera.layers.set(ALONE);
+    this.scene.children = [object]; // whose parent stays
+    this.scene.overrideMaterial = material;
+    renderer.render(this.scene, camera);
+    this.scene.children = [];
+    [object.layers.mask, camera.layers.mask] = masks;
+  }
+
+  dispose() {
+    for (const { material } of [this.fronts, this.backs, this.packing]) material.dispose();
+    this.quad.geometry.dispose();
+  }
+}
+
+/** The passes of a material. */
+export class Passes {
+  /** @type {Map<any, Drawing>} */
+  #drawings = new Map();
+  /** @type {Map<THREE.Object3D, Record<string, { layers: THREE.RenderTarget[], packed: THREE.RenderTarget, columns: number }>>} */
+  #pictures = new Map();
+
+  /** @param {Pass[]} passes */
+  constructor(passes) {
+    this.passes = passes;
+  }
+
+  /**
+   * Draws the passes whose textures are not `given` for an object, and sets the textures and views with `set`.
+   * @param {{ renderer: any, scene: THREE.Scene, camera: THREE.Camera, object: THREE.Mesh }} frame
+   * @param {(property: string) => boolean} given
+   * @param {(property: string, value: any) => void} set
+   */
+  draw({ renderer, scene, camera, object }, given, set) {
+    const passes = this.passes.filter((pass) => !given(pass.texture));
+    if (!passes.length) return;
+    let drawing = this.#drawings.get(renderer);
+    if (!drawing) this.#drawings.set(renderer, (drawing = new Drawing(renderer)));
+    drawing.apart(renderer, () => {
+      for (const pass of passes) this.#drawPass(drawing, pass, { renderer, scene, camera, object }, set);
+    });
+    object.modelViewMatrix.multiplyMatrices(camera.matrixWorldInverse, object.matrixWorld);
+    object.normalMatrix.getNormalMatrix(object.modelViewMatrix);
+  }
+
+  #drawPass(drawing, pass, { renderer, scene, camera, object }, set) {
+    const columns = pass.views.length > 1 ? 2 : 1;
+    const eye = pass.seenFrom === 'eye';
+    const size = eye ? sizeOf(renderer) : new THREE.Vector2(SIDE, SIDE).multiplyScalar(columns);
+    const tile = size.clone().divideScalar(columns);
+    const pictures = this.#picturesOf(object, pass, size, columns, drawing.type);
+    let cameras = [camera];
+    if (!eye) {
+      const ball = ballOf(object);
+      const system = drawing.gpu ? THREE.WebGPUCoordinateSystem : THREE.WebGLCoordinateSystem;
+      const distant = pass.seenFrom === 'distant light';
+      cameras = lightsAt(ball, scene, camera, distant, Math.max(pass.views.length, 1)).map((light) => lampOf(light, ball, distant, system));
+      pass.views.forEach((view, index) => {
+        const row = Math.floor(index / columns);
+        // the rows of WebGPURenderer's fallback count upwards, its viewports downwards
+        const corner = { x: index % columns, y: drawing.nodes && !drawing.gpu ? columns - 1 - row : row };
+        // a view of zeros shows nothing
+        set(view, cameras[index] ? viewOf(cameras[index], corner, columns, drawing.gpu ? -1 : 1) : new THREE.Matrix4().multiplyScalar(0));
+      });
+    }
+    drawing.draw(renderer, pass, pictures, object, cameras, tile);
+    set(pass.texture, pictures.packed.texture);
+  }
+
+  #picturesOf(object, pass, size, columns, type) {
+    let own = this.#pictures.get(object);
+    if (!own) {
+      this.#pictures.set(object, (own = {}));
+      object.addEventListener('removed', () => this.#forget(object));
+    }
+    const layers = own[pass.name]?.layers ?? pass.layers.map(() => pictureOf(size.x, size.y, type));
+    const packed = own[pass.name]?.packed ?? (layers.length > 1 ? pictureOf(size.x, size.y, type) : layers[0]);
+    for (const picture of [...layers, packed]) {
+      if (picture.width !== size.x || picture.height !== size.y) picture.setSize(size.x, size.y);
+      picture.scissorTest = picture !== packed || layers.length === 1;
+    }
+    return (own[pass.name] = { layers, packed, columns });
+  }
+
+  #forget(object) {
+    for (const { layers, packed } of Object.values(this.#pictures.get(object) ?? {})) [...layers, packed].forEach((picture) => picture.dispose());
+    this.#pictures.delete(object);
+  }
+
+  dispose() {
+    for (const object of [...this.#pictures.keys()]) this.#forget(object);
+    for (const drawing of this.#drawings.values()) drawing.dispose();
+    this.#drawings.clear();
+  }
+}
+
+/** The size of what a renderer draws into. */
+function sizeOf(renderer) {
+  const picture = renderer.getRenderTarget();
+  return picture ? new THREE.Vector2(picture.width, picture.height) : renderer.getDrawingBufferSize(new THREE.Vector2());
+}
