@@ -339,6 +339,23 @@ def test_thickness_from_the_lights_depth_map() -> None:
     close(technique("depth_map_thickness")(P=p, **values), expected, atol=1e-12)
 
 
+def test_each_light_has_its_view_of_the_layers() -> None:
+    """Two slabs across the axes of two lights, one from afar and one at the origin; a third light has no view."""
+    p = rng().uniform([-0.4, -0.4, 0.8], [0.4, 0.4, 2.8], (200, 3))
+    layers = np.array([1.0, 1.5, 2.0, 2.6])
+    afar = np.array([[0.25, 0.0, 0.0, 0.25], [0.0, 0.25, 0.0, 0.25], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+    near = np.array([[0.25, 0.0, 0.75, 0.0], [0.0, 0.25, 0.25, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 1.0, 0.0]])
+    picture = np.broadcast_to(layers, (8, 8, 4))
+    values = {"light_matrix": afar, "light_matrix_3": near, "light_layer_map": Texture(picture, "nearest", "clamp")}
+    axial = np.clip(p[:, 2], 1.0, 1.5) - 1.0 + np.clip(p[:, 2], 2.0, 2.6) - 2.0
+    towards = -p / np.linalg.norm(p, axis=1, keepdims=True)
+    lengths = technique("light_layers_path")
+    close(lengths(P=p, L=np.array([0.0, 0.0, -1.0]), **values), axial, atol=1e-12)
+    close(lengths(P=p, L=towards, **values), axial / -towards[:, 2], atol=1e-12)
+    for other in ([0.0, 0.0, 1.0], [0.6, 0.0, -0.8]):
+        close(lengths(P=p, L=np.array(other), **values), np.full(200, 1e4))
+
+
 def test_the_published_depth_map_absorption() -> None:
     """The result has no upper bound; it may be greater than 1."""
     p, matrix, depths, _, entry = lights_view()
