@@ -46,7 +46,7 @@ class Engine(NamedTuple):
     modules: Callable[[Path], Mapping[str, Path]]
     """What scripts import, name → file, in the folder of npm's packages; files that are missing: the engine is."""
     script: str
-    """Its file beside this one."""
+    """Its file: beside this one, or an absolute path."""
     renderers: Mapping[str, Renderer]
     v_down: bool = False
     """Whether v is 0 at the top of the engine's own meshes."""
@@ -94,7 +94,7 @@ class EnginePage:
 
     def _start(self) -> None:
         adapter = os.environ.get("SSSGEN_BROWSER_ADAPTER", "swiftshader")
-        script = Path(__file__).with_name(self.engine.script).read_text(encoding="utf-8")
+        script = (Path(__file__).parent / self.engine.script).read_text(encoding="utf-8")
         modules = {**self.modules, "./engine_page.js": Path(__file__).with_name("engine_page.js")}
         self.page = Page(self.program, adapter, script, self.renderer.switches, modules)
         facts, _ = self.page.receive(START)
