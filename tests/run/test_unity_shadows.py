@@ -40,7 +40,13 @@ THIN: dict[str, Any] = {
     "box": ([-1.0, -1.0, -0.05], [1.0, 1.0, 0.05]),
 }
 BODIES = {"ball": BALL, "thin body": THIN}
-LET_THROUGH = "/** Half of it.\nrole: translucency\n*/\nvec3 let_through(world_direction L) {\n    return vec3(0.5) + 0.0 * L;\n}\n"
+LET_THROUGH = """/** Half of it.
+role: translucency
+*/
+vec3 let_through(world_direction L) {
+    return vec3(0.5) + 0.0 * L;
+}
+"""
 
 
 @pytest.fixture
