@@ -51,8 +51,9 @@ half AdditionalLightShadow(
     int lightIndex, float3 positionWS, half3 lightDirection, half4 shadowMask, half4 occlusionProbeChannels)
 {
     float4 light = _AdditionalLightsPosition[lightIndex];
-    float way = light.w == 0.0 ? 1e6 : distance(light.xyz, positionWS);
-    return LerpWhiteTo(standin_unshadowed(positionWS, lightDirection, way), _AdditionalShadowParams[lightIndex].x);
+    float3 toLight = light.xyz - positionWS * light.w;  // also from a place beyond the light
+    float way = light.w == 0.0 ? 1e6 : length(toLight);
+    return LerpWhiteTo(standin_unshadowed(positionWS, SafeNormalize(toLight), way), _AdditionalShadowParams[lightIndex].x);
 }
 
 float3 ApplyShadowBias(float3 positionWS, float3 normalWS, float3 lightDirection)
