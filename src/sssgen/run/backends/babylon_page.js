@@ -43,8 +43,11 @@ class GivenCamera extends Camera {
   /** @param {Plan} plan @param {Scene} scene */
   constructor(plan, scene) {
     super('given', Vector3.Zero(), scene);
-    this.view = Matrix.FromArray(plan.view);
-    this.freezeProjectionMatrix(Matrix.FromArray(plan.projection));
+    const whole = Matrix.FromArray(plan.view).multiply(Matrix.FromArray(plan.projection));
+    const [x, y, z] = plan.eye;
+    // cascades are chosen by the depth in view space, so that it must not be turned
+    this.view = plan.properties.stage?.cascades ? Matrix.Translation(-x, -y, -z) : Matrix.FromArray(plan.view);
+    this.freezeProjectionMatrix(Matrix.Invert(this.view).multiply(whole));
   }
 
   _getViewMatrix() {
