@@ -277,10 +277,10 @@ def test_layers_are_those_of_its_own_material(playcanvas: EnginePage, tmp_path: 
 def test_light_that_comes_through_has_no_shadow(playcanvas: EnginePage, clustered: bool) -> None:
     """The material is drawn into shadow maps, with its mask, and the light that comes through stays."""
     mesh = mesh_of("ice")
-    properties = {**BLACK, "clustered": clustered, "shadows": True}
+    properties = {**BLACK, "clustered": clustered, "stage": {"shadows": True}}
     alone = drawn(playcanvas, "ice", mesh, properties, ambient=(0.0, 0.0, 0.0))
     assert np.abs(alone - through("ice", mesh))[..., :3][mesh.hit].max() < 1.0 / 255.0
-    whole, dark = (drawn(playcanvas, "ice", mesh, {"clustered": clustered, "shadows": one}) for one in (False, True))
+    whole, dark = (drawn(playcanvas, "ice", mesh, {"clustered": clustered, "stage": {"shadows": one}}) for one in (False, True))
     assert (whole - dark)[..., :3][mesh.hit].max() > 8.0 / 255.0  # what it reflects is in its own shadow
 
 

@@ -155,7 +155,7 @@ function shadowOf(light, { cascades }, casters, camera) {
   if (directional) light.autoCalcShadowZBounds = true;
   else Object.assign(light, { shadowMinZ: 0.1, shadowMaxZ: 20 });
   Object.assign(camera, { minZ: 0.5, maxZ: 20 }); // where cascades begin and end
-  const generator = directional && cascades ? new CascadedShadowGenerator(512, light, false, camera) : new ShadowGenerator(512, light);
+  const generator = directional && cascades ? new CascadedShadowGenerator(1024, light, false, camera) : new ShadowGenerator(512, light);
   generator.usePercentageCloserFiltering = !(light instanceof PointLight);
   casters.forEach((one) => generator.addShadowCaster(one));
   return generator;
