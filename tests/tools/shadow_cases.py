@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import pytest
 
 import sssgen
 from engine_cases import HEAD
@@ -15,12 +15,16 @@ from sssgen.run.backends import Array
 from sssgen.run.backends.backend_interface import ATTRIBUTES, VERTEX_SIZE
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
 from sssgen.run.render import page_values
+from sssgen.support.diagnostics import SssgenError
 
 LEVEL = 1.0 / 255.0
 LAMP = np.array([0.6, 0.8, -3.0])
 """Behind the bodies, which the camera sees from the other side."""
-LAMPS: Mapping[str, Mapping[str, Any]] = {"direction": {}, "spot": {"spot": 1.2}, "point": {}}
+LAMPS: Mapping[str, Mapping[str, Any]] = {
+    "direction": {}, "cascades": {"cascades": True}, "spot": {"spot": 1.2}, "point": {},
+}  # fmt: skip
 """Kind → its part of the stage."""
+DIRECTIONS = ("direction", "cascades")
 EYE = (0.0, 0.0, 5.0)
 SIZE = (64, 48)
 HALF = HEAD.format("translucency") + "vec3 made() { return vec3(0.5); }\n"
@@ -42,7 +46,7 @@ def sheet() -> Body:
     normals = np.repeat(np.array([[0, 0, -1], [0, 0, 1], [0, -1, 0], [0, 1, 0], [-1, 0, 0], [1, 0, 0]]), 4, axis=0)
     first = 4 * np.arange(6)[:, None, None]
     turned = _turned(0.4, (2, 0)) @ np.diag([1.6, 1.2, 0.8, 1.0])
-    return Body(_vertices(points, normals), (first + [[0, 1, 2], [0, 2, 3]]).reshape(-1, 3), turned)
+    return Body(_vertices(points, normals), (first + np.array([[0, 1, 2], [0, 2, 3]])).reshape(-1, 3), turned)
 
 
 def ball() -> Body:
@@ -90,8 +94,8 @@ class Scene(NamedTuple):
     def light(self, body: Body, **stage: Any) -> Array:
         """What comes through, of one channel; NaN where there is no body."""
         vertices = body.vertices.astype(np.float32)
-        place = np.array([[*LAMP, 0.0 if self.lamp == "direction" else 1.0]])
-        strength = 1.0 if self.lamp == "direction" else float(LAMP @ LAMP)
+        place = np.array([[*LAMP, 0.0 if self.lamp in DIRECTIONS else 1.0]])
+        strength = 1.0 if self.lamp in DIRECTIONS else float(LAMP @ LAMP)
         drawing = EngineDrawing(
             self.modules, SIZE, vertices, body.triangles, _view_projection(), EYE, body.model, place,
             np.full((1, 3), strength), properties={**self.properties, "stage": {**LAMPS[self.lamp], **stage}},
@@ -100,7 +104,6 @@ class Scene(NamedTuple):
         return np.where(picture[..., 3] > 0.5, picture[..., 0], np.nan)
 
 
-@cache
 def modules_of(target: str, folder: Path) -> Mapping[str, str]:
     """The modules of a material that passes half of all light on."""
     (folder / "made.sss").write_text(HALF, "utf-8")
@@ -112,6 +115,20 @@ def modules_of(target: str, folder: Path) -> Mapping[str, str]:
 def change(first: Array, second: Array, seen: Array) -> float:
     """The largest change of a picture, where a body is seen."""
     return float(np.abs(first - second)[seen].max())
+
+
+def check_shadows(scene: Scene) -> None:
+    """What light that comes through owes to shadows."""
+    check_wall(scene)
+    check_convex(scene)
+    check_two_bodies(scene)
+
+
+def check_absence(scene: Scene, sought: str, said: str) -> None:
+    """An engine without a text that the runtime seeks is an error that names it: here the runtime seeks another one."""
+    modules = {name: text.replace(sought, f"{sought}_ABSENT") for name, text in scene.modules.items()}
+    with pytest.raises(SssgenError, match=said):
+        scene._replace(modules=modules).light(sheet())
 
 
 def check_wall(scene: Scene) -> float:
@@ -150,7 +167,7 @@ def check_two_bodies(scene: Scene) -> None:
     right = seen & ~left
     assert left.sum() > 50 and right.sum() > 100
     assert change(scene.light(small, shadows=True, copies=other), free, seen) < LEVEL
-    towards = LAMP / np.linalg.norm(LAMP) if scene.lamp == "direction" else LAMP - (-0.9, 0.0, 0.0)
+    towards = LAMP / np.linalg.norm(LAMP) if scene.lamp in DIRECTIONS else LAMP - (-0.9, 0.0, 0.0)
     near = wall((-0.9, 0.0, 0.0) + 0.7 * towards / np.linalg.norm(towards), 0.9)
     dark = scene.light(small, shadows=True, copies=other, walls=[near])
     assert np.mean(dark[left]) < 0.1 * np.mean(free[left])
