@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,6 +25,7 @@ LAMPS: Mapping[str, Mapping[str, Any]] = {
 }  # fmt: skip
 """Kind → its part of the stage."""
 DIRECTIONS = ("direction", "cascades")
+LEFT, RIGHT = np.array([-0.9, 0.0, 0.0]), np.array([0.9, 0.0, 0.0])
 EYE = (0.0, 0.0, 5.0)
 SIZE = (64, 48)
 HALF = HEAD.format("translucency") + "vec3 made() { return vec3(0.5); }\n"
@@ -49,18 +50,18 @@ def sheet() -> Body:
     return Body(_vertices(points, normals), (first + np.array([[0, 1, 2], [0, 2, 3]])).reshape(-1, 3), turned)
 
 
-def ball() -> Body:
-    """A ball of radius 0.7."""
+def ball(radius: float = 0.7) -> Body:
+    """A ball about the origin."""
     columns, rows = 48, 24
     u, v = np.meshgrid(2.0 * np.pi * np.arange(columns + 1) / columns, np.pi * np.arange(rows + 1) / rows)
     normals = np.stack([np.sin(v) * np.sin(u), np.cos(v), np.sin(v) * np.cos(u)], -1).reshape(-1, 3)
     row, column = np.meshgrid(np.arange(rows), np.arange(columns), indexing="ij")
     first = (row * (columns + 1) + column).reshape(-1, 1)
     quads = [[0, columns + 1, 1], [1, columns + 1, columns + 2]]
-    return Body(_vertices(0.7 * normals, normals), (first[..., None] + np.array(quads)).reshape(-1, 3))
+    return Body(_vertices(radius * normals, normals), (first[..., None] + np.array(quads)).reshape(-1, 3))
 
 
-def wall(place: Sequence[float], size: float) -> list[float]:
+def wall(place: Array, size: float) -> list[float]:
     """The matrix of a wall that faces the lamp, by columns."""
     z = LAMP / np.linalg.norm(LAMP)
     x = np.cross([0.0, 1.0, 0.0], z)
@@ -71,16 +72,11 @@ def wall(place: Sequence[float], size: float) -> list[float]:
     return _by_columns(matrix)
 
 
-def scaled(size: float, place: Sequence[float]) -> Array:
+def scaled(size: float, place: Array) -> Array:
     """The matrix of a size and a place."""
     matrix = np.diag([size, size, size, 1.0])
     matrix[:3, 3] = place
     return matrix
-
-
-def copy(vertex_size: float, size: float, place: Sequence[float]) -> Mapping[str, Any]:
-    """Another body with the same material: its vertices are `vertex_size` times as large, its matrix has `size`."""
-    return {"size": vertex_size, "model": _by_columns(scaled(size, place))}
 
 
 class Scene(NamedTuple):
@@ -159,17 +155,21 @@ def check_convex(scene: Scene) -> float:
 
 def check_two_bodies(scene: Scene) -> None:
     """Two balls with one material: each has its own box and scale, and a wall close to one takes its light alone."""
-    small = ball()._replace(model=scaled(0.5, (-0.9, 0.0, 0.0)))
-    other = [copy(0.25, 4.0, (0.9, 0.0, 0.0))]
-    free = scene.light(small, copies=other)
+    small = ball(0.175)._replace(model=scaled(2.0, LEFT))
+    _check_pair(scene, small, copies=[{"size": 4.0, "model": _by_columns(scaled(1.0, RIGHT))}])
+    _check_pair(scene, ball(), instances=[_by_columns(scaled(0.5, LEFT)), _by_columns(scaled(1.0, RIGHT))])
+
+
+def _check_pair(scene: Scene, body: Body, **stage: Any) -> None:
+    free = scene.light(body, **stage)
     seen = np.isfinite(free)
     left = seen & (np.arange(SIZE[0]) < SIZE[0] / 2 - 3)
     right = seen & ~left
-    assert left.sum() > 50 and right.sum() > 100
-    assert change(scene.light(small, shadows=True, copies=other), free, seen) < LEVEL
-    towards = LAMP / np.linalg.norm(LAMP) if scene.lamp in DIRECTIONS else LAMP - (-0.9, 0.0, 0.0)
-    near = wall((-0.9, 0.0, 0.0) + 0.7 * towards / np.linalg.norm(towards), 0.9)
-    dark = scene.light(small, shadows=True, copies=other, walls=[near])
+    assert left.sum() > 40 and right.sum() > 100
+    assert change(scene.light(body, shadows=True, **stage), free, seen) < LEVEL
+    towards = LAMP if scene.lamp in DIRECTIONS else LAMP - LEFT
+    near = wall(LEFT + 0.7 * towards / np.linalg.norm(towards), 0.9)
+    dark = scene.light(body, shadows=True, walls=[near], **stage)
     assert np.mean(dark[left]) < 0.1 * np.mean(free[left])
     assert change(dark, free, right) < LEVEL
 

@@ -25,4 +25,5 @@ export * from '@babylonjs/core/Maths/math.vector.js';
 export * from '@babylonjs/core/Meshes/mesh.js';
 export * from '@babylonjs/core/Meshes/Builders/boxBuilder.js';
 export * from '@babylonjs/core/Meshes/mesh.vertexData.js';
+export * from '@babylonjs/core/Meshes/thinInstanceMesh.js';
 export * from '@babylonjs/core/Misc/decorators.serialization.js';

@@ -18,6 +18,7 @@ import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
 import { CreateBoxVertexData } from '@babylonjs/core/Meshes/Builders/boxBuilder.js';
 import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
+import '@babylonjs/core/Meshes/thinInstanceMesh.js';
 import { Scene } from '@babylonjs/core/scene.js';
 import { floats, halves, imported, indices, serve } from './engine_page.js';
 
@@ -91,6 +92,7 @@ async function draw(plan, piece) {
     return mesh;
   };
   const meshes = [placed(vertexDataOf(plan, piece), plan.model)];
+  for (const model of stage.instances ?? []) meshes[0].thinInstanceAdd(Matrix.FromArray(model));
   for (const { size, model } of stage.copies ?? []) meshes.push(placed(vertexDataOf(plan, piece, size), model));
   const walls = (stage.walls ?? []).map((model) => placed(CreateBoxVertexData({}), model));
   const generators = stage.shadows ? lights.map((light) => shadowOf(light, stage, [...meshes, ...walls], camera)) : [];
@@ -101,7 +103,7 @@ async function draw(plan, piece) {
   target.activeCamera = camera;
   target.renderList = meshes;
   scene.activeCamera = camera;
-  const ready = (/** @type {Mesh} */ mesh) => mesh.isReady(true) && generators.every((one) => one.isReady(mesh.subMeshes[0], false, false));
+  const ready = (/** @type {Mesh} */ mesh) => mesh.isReady(true) && generators.every((one) => one.isReady(mesh.subMeshes[0], mesh.hasThinInstances, false));
   while (![...meshes, ...walls].every(ready)) {
     const wrong = meshes[0].subMeshes[0].effect?.getCompilationError();
     if (wrong) throw new Error(wrong);

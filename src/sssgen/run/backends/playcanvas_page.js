@@ -79,6 +79,7 @@ async function draw(plan, piece) {
     return entity;
   };
   const bodies = [placed(meshOf(device, plan, piece), plan.model)];
+  if (stage.instances) instancesOf(bodies[0], device, stage.instances);
   for (const { size, model } of stage.copies ?? []) bodies.push(placed(meshOf(device, plan, piece, size), model));
   for (const model of stage.walls ?? []) bodies.push(placed(pc.Mesh.fromGeometry(device, new pc.BoxGeometry()), model));
   const lights = plan.lights.map((light) => lightOf(app, light, stage));
@@ -139,6 +140,14 @@ function lightOf(app, { position, color }, { shadows, cascades, spot }) {
   // a light shines down its own y
   if (!w || spot) entity.setRotation(new pc.Quat().setFromDirections(pc.Vec3.UP, new pc.Vec3(x, y, z).normalize()));
   return entity;
+}
+
+/** Draws an entity's mesh with these matrices.
+ * @param {pc.Entity} entity @param {pc.GraphicsDevice} device @param {number[][]} matrices */
+function instancesOf(entity, device, matrices) {
+  const data = new Float32Array(matrices.flat()).buffer;
+  const format = pc.VertexFormat.getDefaultInstancingFormat(device);
+  entity.render?.meshInstances[0].setInstancing(new pc.VertexBuffer(device, format, matrices.length, { data }));
 }
 
 /** Gives an entity a matrix that may stretch and mirror along any axes: not one of position, rotation and scale.

@@ -106,8 +106,9 @@ sss_shadow = shadow;
 fragmentInputs = sss_inputs;
 }`];
 
+const TO_LIGHT = 'vPositionFromLight\\{X\\}[^;]*=[^;]*worldPos';
 /** Babylon's way from `worldPos` into a shadow map. A cascade is that of the seen point: the light's way has one place in it. */
-const toLight = (includes) => includes.shadowsVertex
+const wayToLight = (vertexText) => vertexText
   .replace(/[\w.]*vPositionFromCamera\{X\}\s*=[^;]*;/g, '').replaceAll('vertexOutputs.', 'fragmentInputs.').replaceAll('{X}', '$2');
 
 /** The places of the light that comes through. */
@@ -179,7 +180,7 @@ function pluginClass(description, { moves, takesLight }) {
     constructor(material) {
       super(material, key, 200);
       this.doNotSerialize = true;
-      this.registerForExtraEvents = true; // hardBindForSubMesh
+      this.registerForExtraEvents = true; // calls hardBindForSubMesh
       this._enable(true);
     }
 
@@ -206,15 +207,15 @@ function pluginClass(description, { moves, takesLight }) {
       const places = code[language][stage];
       const { pbrPixelShader } = ShaderStore.GetShadersStore(language);
       if (stage === 'vertex' || !pbrPixelShader) return places;
-      const includes = ShaderStore.GetIncludesShadersStore(language);
-      const whole = pbrPixelShader + includes.lightFragment?.replaceAll('{X}', '0');
-      for (const place of Object.keys(places)) { // those without a name in Babylon
-        const absent = place.startsWith('!') && !new RegExp(place.slice(1)).test(whole);
-        if (absent) throw new Error(`${materialName}: this version of Babylon.js has no ${place}`);
-      }
+      const { lightFragment = '', shadowsVertex = '' } = ShaderStore.GetIncludesShadersStore(language);
+      const need = (sought, text) => {
+        if (!new RegExp(sought).test(text)) throw new Error(`${materialName}: this version of Babylon.js has no ${sought}`);
+      };
+      const whole = pbrPixelShader + lightFragment.replaceAll('{X}', '0');
+      for (const place of Object.keys(places)) if (place.startsWith('!')) need(place.slice(1), whole); // without a name in Babylon
       if (!(BEHIND_SHADOW in places)) return places;
-      if (!/vPositionFromLight\{X\}.*worldPos/.test(includes.shadowsVertex)) throw new Error(`${materialName}: this version of Babylon.js has no vPositionFromLight of worldPos in shadowsVertex`);
-      return { ...places, [BEHIND_SHADOW]: places[BEHIND_SHADOW].replace('TO_LIGHT', () => toLight(includes)) };
+      need(TO_LIGHT, shadowsVertex);
+      return { ...places, [BEHIND_SHADOW]: places[BEHIND_SHADOW].replace('TO_LIGHT', () => wayToLight(shadowsVertex)) };
     }
 
     prepareDefinesBeforeAttributes(defines) {
