@@ -142,11 +142,11 @@ float sss_way_out_of_box(vec3 at, vec3 towards, vec3 box_min, vec3 box_max) {
 // map says what lies between the light and the body.
 vec3 sss_light_entry(vec3 P, vec3 L, float nearness, vec3 P_object, mat3 to_object, vec3 box_min,
     vec3 box_max) {
-    // a shadow is read over some texels: as long as these are within the margin, none has a part of the body before the
-    // place of entry, also where light grazes a side of the box
+    // A shadow is read over some texels. While these are within the margin, none of them has a part of the
+    // body before this place, also where light grazes a side of the box.
     float margin = 0.02 * distance(box_min, box_max);
     float way = sss_way_out_of_box(P_object, L * to_object, box_min - margin, box_max + margin);
-    // cofactors of a matrix are its inverse times its determinant, whose square is theirs
+    // to world space: a matrix of cofactors is the inverse times a determinant, whose square it has
     way *= sqrt(abs(determinant(to_object)));
     // before the light, where no shadow map begins
     return P + L * min(way, nearness > 0.0 ? 0.99 / max(nearness, 1.0e-20) : way);
@@ -418,11 +418,11 @@ fn sss_way_out_of_box(at: vec3f, towards: vec3f, box_min: vec3f, box_max: vec3f)
 // map says what lies between the light and the body.
 fn sss_light_entry(P: vec3f, L: vec3f, nearness: f32, P_object: vec3f, to_object: mat3x3f, box_min: vec3f,
     box_max: vec3f) -> vec3f {
-    // a shadow is read over some texels: as long as these are within the margin, none has a part of the body before the
-    // place of entry, also where light grazes a side of the box
+    // A shadow is read over some texels. While these are within the margin, none of them has a part of the
+    // body before this place, also where light grazes a side of the box.
     let margin = 0.02 * distance(box_min, box_max);
     var way = sss_way_out_of_box(P_object, L * to_object, box_min - margin, box_max + margin);
-    // cofactors of a matrix are its inverse times its determinant, whose square is theirs
+    // to world space: a matrix of cofactors is the inverse times a determinant, whose square it has
     way *= sqrt(abs(determinant(to_object)));
     // before the light, where no shadow map begins
     return P + L * min(way, select(way, 0.99 / max(nearness, 1.0e-20), nearness > 0.0));
