@@ -4,8 +4,9 @@
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
 import { nodesOf } from './three_nodes.js';
+import { ObjectUniforms, placedValue } from './three_object.js';
 import { Passes } from './three_passes.js';
-import { boxUniforms, entryChunks, entryFunction, placeBox } from './three_shadows.js';
+import { entryChunks, entryFunction } from './three_shadows.js';
 import { Properties, TEXELS } from './values.js';
 
 /**
@@ -126,11 +127,17 @@ function texel({ type, default: name }) {
 
 const TEXTURE_NODES = { sampler3D: TSL.texture3D, samplerCube: TSL.cubeTexture };
 
-/** The uniforms of a material, as nodes that both renderers read. */
-function uniformsOf({ parameters, textures, calls }, moves, takesLight) {
+/**
+ * The uniforms of a material, as nodes that both renderers read. `own` gets what a page sets: of a parameter that is placed with
+ * the object, the value before.
+ */
+function uniformsOf({ parameters, textures, calls }, moves, takesLight, ofObject, own) {
   const uniforms = {};
   for (const [name, declared] of Object.entries(parameters)) {
-    uniforms[name] = ['int', 'uint'].includes(declared.type) ? TSL.uniform(startOf(declared), declared.type) : TSL.uniform(startOf(declared));
+    const start = startOf(declared);
+    if (declared.placed) uniforms[name] = ofObject.uniform(start, (object) => placedValue(own[name].value, object));
+    else uniforms[name] = ['int', 'uint'].includes(declared.type) ? TSL.uniform(start, declared.type) : TSL.uniform(start);
+    own[name] = declared.placed ? { value: startOf(declared) } : uniforms[name];
   }
   for (const [name, declared] of Object.entries(textures)) {
     uniforms[name] = (TEXTURE_NODES[declared.type] ?? TSL.texture)(texel(declared));
@@ -138,7 +145,7 @@ function uniformsOf({ parameters, textures, calls }, moves, takesLight) {
   if (moves) uniforms.time = TSL.uniform(0);
   if (takesLight) uniforms.lightPlace = TSL.uniform(new THREE.Vector4(0, 1, 0, 0));
   if (takesLight) uniforms.lightRadiance = TSL.uniform(new THREE.Color(0, 0, 0));
-  if (calls.translucency) Object.assign(uniforms, boxUniforms());
+  if (calls.translucency) Object.assign(uniforms, ofObject.box());
   return uniforms;
 }
 
@@ -158,7 +165,10 @@ export function materialClass(description) {
   const key = `sssgen ${name} ${Properties.hashOf(JSON.stringify([description.glsl, description.webgl]))}`;
 
   return class extends THREE[base] {
-    #uniforms = uniformsOf(description, moves, takesLight);
+    #ofObject = new ObjectUniforms();
+    /** @type {Record<string, { value: any }>} */
+    #own = {};
+    #uniforms = uniformsOf(description, moves, takesLight, this.#ofObject, this.#own);
     #passes = new Passes(passes);
     /** The textures that the page has set. */
     #given = new Set();
@@ -194,7 +204,7 @@ export function materialClass(description) {
     static {
       for (const property of Object.keys(parameters)) {
         properties.define(this.prototype, property, {
-          get() { return this.#uniforms[property].value; },
+          get() { return this.#own[property].value; },
           set(value) { this.#setParameter(property, value); },
         });
       }
@@ -207,7 +217,7 @@ export function materialClass(description) {
     }
 
     #setParameter(property, value) {
-      const node = this.#uniforms[property];
+      const node = this.#own[property];
       const isColor = node.value.isColor && (typeof value === 'string' || typeof value === 'number');
       const color = isColor && new THREE.Color(NaN, NaN, NaN).set(value); // which a string that it does not know leaves
       const given = color && Number.isFinite(color.r) ? color : value;
@@ -272,7 +282,7 @@ export function materialClass(description) {
 
     onBeforeRender(renderer, scene, camera, geometry, object) {
       if (passes.length) this.#drawPasses({ renderer, scene, camera, object });
-      if (calls.translucency) placeBox(this.#uniforms, object, renderer);
+      this.#ofObject.place(object, renderer);
       if (moves) this.#uniforms.time.value = this.#seconds();
       if (takesLight) this.#placeLight();
       if (moves || takesLight || passes.length) this.uniformsNeedUpdate = true;

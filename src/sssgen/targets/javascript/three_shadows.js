@@ -2,45 +2,7 @@
 // the shadow is read where the light entered a box around the body: there only other objects shadow it.
 
 import * as CLASSIC from 'three';
-import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
-
-/**
- * How much larger the box is on all sides, in parts of its diagonal: a texel of the shadow map on a face of the box may be
- * the body's own, and the filter of the shadow reads its neighbours.
- */
-const MARGIN = 0.02;
-
-const box = new THREE.Box3(), size = new THREE.Vector3();
-
-/** A box around an object's body, in its space; of many instances, the box of each. */
-function boxOf(object) {
-  const owner = object.isSkinnedMesh ? object : object.geometry;
-  if (!owner.boundingBox) owner.computeBoundingBox();
-  const diagonal = box.copy(owner.boundingBox).getSize(size).length();
-  return box.expandByScalar(MARGIN * diagonal);
-}
-
-/** The uniforms of that box. A material may belong to several objects: each renderer sets them for each object. */
-export function boxUniforms() {
-  /** @param {'min' | 'max'} corner */
-  const uniform = (corner) => TSL.uniform(new THREE.Vector3()).onObjectUpdate(({ object }, self) => {
-    self.value.copy(boxOf(object)[corner]);
-  });
-  return { bodyMin: uniform('min'), bodyMax: uniform('max') };
-}
-
-/**
- * Sets these uniforms in WebGLRenderer, which otherwise uploads a material's uniforms once for successive objects.
- * @param {Record<string, any>} uniforms
- */
-export function placeBox({ bodyMin, bodyMax }, object, renderer) {
-  const { min, max } = boxOf(object);
-  if (bodyMin.value.equals(min) && bodyMax.value.equals(max)) return;
-  bodyMin.value.copy(min);
-  bodyMax.value.copy(max);
-  renderer.state.useProgram(null);
-}
 
 // WebGLRenderer: each shadow that three's shader reads at the surface is read at the entry, too.
 
