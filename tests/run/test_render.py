@@ -368,3 +368,20 @@ def test_a_texture_with_nan(scene: Callable[..., str], tmp_path: Path, texel: fl
     path = scene(f'material = "resin_inlay"\n{BALL}[textures]\nbase_color_texture = "none.npy"\n')
     with pytest.raises(SssgenError, match="a texture contains NaN, infinity or numbers beyond 65504"):
         render(load(path), backends.get("numpy"), SIZE)
+
+
+def test_an_open_mesh_under_a_pass_gets_a_warning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """jade_ring reads the body's back faces: a box without its last triangle has a hole."""
+    corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    faces = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
+    lines = [f"v {x} {y} {z}" for x, y, z in corners]
+    lines += [f"f {a} {b} {c}\nf {a} {c} {d}" for a, b, c, d in faces]
+    (tmp_path / "scene.toml").write_text(
+        'material = "jade_ring"\nsize = [16, 12]\nsamples = 1\n[geometry]\nkind = "mesh"\nfile = "box.obj"\n'
+        "[camera]\nposition = [2.0, 3.0, 5.0]\n[[light]]\ndirection = [0.0, 1.0, 0.0]\ncolor = [1.0, 1.0, 1.0]\n"
+    )
+    for text, warns in (("\n".join(lines), False), ("\n".join(lines).rsplit("\n", 1)[0], True)):
+        (tmp_path / "box.obj").write_text(text)
+        picture = str(tmp_path / "picture.png")
+        assert main(["render", str(tmp_path / "scene.toml"), "-o", picture, "--backend", "numpy"]) == 0
+        assert ("the mesh has a hole" in capsys.readouterr().err) == warns

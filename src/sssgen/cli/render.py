@@ -8,7 +8,7 @@ from argparse import ArgumentParser, Namespace
 from time import perf_counter
 
 from sssgen.cli.options import add_guards, add_output
-from sssgen.cli.output import CHECK_FAILED, OK, print_result, report_errors
+from sssgen.cli.output import CHECK_FAILED, OK, print_result, print_warnings, report_errors
 from sssgen.run.backend_registry import PREFERRED, SCENES
 from sssgen.support.diagnostics import failure
 from sssgen.support.progress import ProgressBar
@@ -78,6 +78,7 @@ def _render(arguments: Namespace) -> int:
         report_errors(error.diagnostics, arguments.json)
         return CHECK_FAILED
     seconds = perf_counter() - start
+    print_warnings(picture.warnings)
     write = {
         ".png": lambda: images.write_png(output, picture.encoded),
         ".exr": lambda: images.write_exr(output, picture.linear),

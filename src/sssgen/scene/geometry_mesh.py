@@ -32,7 +32,7 @@ def mesh_of(geometry: Geometry, resolution: int = RESOLUTION) -> tuple[Array, In
     """
     if isinstance(geometry, Mesh):
         vertices, faces = geometry.triangles.places, geometry.triangles.corners
-        _check_closed(vertices, faces, geometry.path)
+        _check_closed(geometry)
     elif isinstance(geometry, Torus):
         vertices, faces = _ring(geometry.major, geometry.minor, 2 * resolution)
     elif isinstance(geometry, Box | Slab):
@@ -165,11 +165,17 @@ def _volume(vertices: Array, faces: Indices) -> float:
     return float(np.einsum("nc,nc->", first, np.cross(second, third)) / 6.0)
 
 
-def _check_closed(vertices: Array, faces: Indices, path: str) -> None:
-    """Raises SssgenError unless each edge has equally many triangles in both directions."""
+def is_closed(mesh: Mesh) -> bool:
+    """Whether each edge has equally many triangles in both directions: the mesh has an inside."""
+    vertices, faces = mesh.triangles.places, mesh.triangles.corners
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     forward = edges[:, 0] * len(vertices) + edges[:, 1]
     backward = edges[:, 1] * len(vertices) + edges[:, 0]
-    if not np.array_equal(np.sort(forward), np.sort(backward)):
+    return np.array_equal(np.sort(forward), np.sort(backward))
+
+
+def _check_closed(mesh: Mesh) -> None:
+    """Raises SssgenError for a mesh without an inside."""
+    if not is_closed(mesh):
         message = "the mesh has a hole, or triangles with different orientations: light transport needs an inside"
-        raise failure(message, "close it, and make all its triangles counter-clockwise seen from outside", path)
+        raise failure(message, "close it, and make all its triangles counter-clockwise seen from outside", mesh.path)

@@ -11,11 +11,13 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from sssgen.ir.frame_passes import BACK_FACES
+from sssgen.ir.spans import Span
 from sssgen.material.material_loading import load_material
 from sssgen.material.shell_stages import with_shell
 from sssgen.pipeline.compiler import Compiled, compile
@@ -28,11 +30,12 @@ from sssgen.run.render.scene_values import shell_of
 from sssgen.run.render.shade import shade
 from sssgen.run.render.shell_values import Shell
 from sssgen.scene.drawn_views import back_faces
-from sssgen.scene.geometry import Geometry, Hits
+from sssgen.scene.geometry import Geometry, Hits, Mesh
+from sssgen.scene.geometry_mesh import is_closed
 from sssgen.scene.pictures.images import decode_srgb, encode_srgb
 from sssgen.scene.scene import Scene
 from sssgen.scene.scene_reader import MAX_COUNT
-from sssgen.support.diagnostics import failure
+from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.support.progress import Progress, silent
 from sssgen.targets.descriptor import Target
 from sssgen.targets.reflection_record import EntryRecord, Reflection
@@ -52,6 +55,8 @@ class RenderedPicture(NamedTuple):
     """(height, width, 3): linear light, exposed, over the background; not clamped."""
     covered: Array
     """(height, width): the share of each pixel that is not background, 0 to 1."""
+    warnings: Sequence[Diagnostic] = ()
+    """What makes the picture wrong, though it can be drawn"""
 
     @property
     def encoded(self) -> Array:
@@ -102,7 +107,18 @@ def render(
         samples, hit = shade(backend, compiled, shell, (width, height), None), np.ones((height, width), bool)
     else:
         samples, hit = _surface(scene, compiled, shell, backend, (width, height), progress)
-    return _develop(scene, reflection, samples, hit)
+    return _develop(scene, reflection, samples, hit)._replace(warnings=_warnings(scene, reflection))
+
+
+def _warnings(scene: Scene, reflection: Reflection) -> list[Diagnostic]:
+    """A warning about an open mesh under passes that look for the end of the body."""
+    mesh = scene.geometry
+    passes = [drawn["name"] for drawn in reflection["passes"] if drawn["of"] == "body"]
+    if not passes or not isinstance(mesh, Mesh) or is_closed(mesh):
+        return []
+    message = f"the mesh has a hole, or triangles with different orientations, and {passes[0]} looks for its other side"
+    hint = "the light inside is wrong there: close it, and make all triangles counter-clockwise seen from outside"
+    return [Diagnostic("warning", message, Span(mesh.path, 0, 0, 0, 0), hint)]
 
 
 def with_samples(scene: Scene, samples: int) -> Scene:
