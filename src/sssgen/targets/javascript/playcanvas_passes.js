@@ -136,6 +136,35 @@ fn fragmentMain(input: FragmentInput) -> FragmentOutput {
 
 // The lights of a body.
 
+/** The distance of a mesh's farthest vertex from the middle of its box. @type {WeakMap<pc.Mesh, { version: number, radius: number }>} */
+const radii = new WeakMap();
+
+/** That distance in object space; a ball around the box would make texels larger. */
+function radiusOf(mesh) {
+  const known = radii.get(mesh);
+  if (known && known.version === mesh._aabbVer) return known.radius;
+  const { center, halfExtents } = mesh.aabb;
+  const floats = mesh.vertexBuffer.format.elements.some(({ name, dataType }) => name === pc.SEMANTIC_POSITION && dataType === pc.TYPE_FLOAT32);
+  /** @type {number[]} */
+  const places = [];
+  if (floats) mesh.getPositions(places);
+  let radius = places.length ? 0 : halfExtents.length();
+  for (let at = 0; at < places.length; at += 3) {
+    radius = Math.max(radius, Math.hypot(places[at] - center.x, places[at + 1] - center.y, places[at + 2] - center.z));
+  }
+  radii.set(mesh, { version: mesh._aabbVer, radius });
+  return radius;
+}
+
+/** The ball around a mesh instance, in world space. */
+function ballOf(instance) {
+  const { mesh, node, skinInstance, morphInstance, _customAabb, aabb } = internalsOf(instance);
+  if (skinInstance || morphInstance || _customAabb) return { center: aabb.center, radius: aabb.halfExtents.length() };
+  const world = node.getWorldTransform();
+  const { x, y, z } = world.getScale();
+  return { center: world.transformPoint(mesh.aabb.center), radius: radiusOf(mesh) * Math.max(x, y, z) };
+}
+
 /** The lights that are brightest at a ball, at most `count`; `distant`: those from afar, if there are any. */
 function lightsAt(ball, lights, distant, count) {
   const bright = [...lights].filter(({ enabled }) => enabled).map((light) => ({ light, strength: Math.max(...light._colorLinear) * nearness(light, ball) }));
@@ -154,8 +183,8 @@ function nearness(light, { center, radius }) {
 }
 
 /** A camera that sees all of a ball from a light. */
-function lampCamera() {
-  const camera = new pc.Camera();
+function lampCamera(device) {
+  const camera = new pc.Camera(device);
   camera.node = new pc.GraphNode();
   camera.aspectRatioMode = pc.ASPECT_MANUAL;
   camera.aspectRatio = 1;
@@ -242,12 +271,6 @@ class Body {
     this.instance = instance;
   }
 
-  /** The ball around it, in world space. */
-  get ball() {
-    const { center, halfExtents } = this.instance.aabb;
-    return { center, radius: halfExtents.length() };
-  }
-
   /** The mesh instance with another material: with its bones, morph targets and instances. */
   copy(material) {
     const { node, mesh, flipFacesFactor, _skinInstance, _morphInstance, instancingData, drawCommands, _shaderDefs } = internalsOf(this.instance);
@@ -299,7 +322,7 @@ class Body {
 
 /** The passes of a material. PlayCanvas runs them before each camera that sees a mesh instance with the material. */
 export class Passes {
-  /** @type {pc.AppBase | undefined} */
+  /** The app that draws. @type {any} */
   #app;
   /** @type {Map<pc.MeshInstance, Body>} */
   #bodies = new Map();
@@ -307,7 +330,8 @@ export class Passes {
   #before = new Map();
   /** @type {Map<string, pc.ShaderMaterial>} */
   #materials = new Map();
-  #lamps = Array.from({ length: 4 }, lampCamera);
+  /** @type {any[]} */
+  #lamps;
   #tiles;
   #packing;
 
@@ -322,6 +346,7 @@ export class Passes {
     this.passes = passes;
     this.instances = instances;
     this.given = given;
+    this.#lamps = passes.length ? Array.from({ length: 4 }, () => lampCamera(device)) : [];
     /** The name of a property in the shader. */
     this.nameOf = (property) => (textures[property] ?? parameters[property]).name;
     this.follow();
@@ -337,7 +362,7 @@ export class Passes {
 
   /** Before a frame: adds cameras that are new, and forgets what is gone. */
   #prepare() {
-    const { cameras } = internalsOf(this.#app).systems.camera;
+    const { cameras } = this.#app.systems.camera;
     for (const camera of cameras) {
       if (this.#before.has(camera)) continue;
       const before = new pc.FramePass(this.device);
@@ -373,8 +398,8 @@ export class Passes {
   /** Draws the passes for a camera. */
   #draw(camera) {
     for (const [instance, lights] of this.#seenBy(camera)) {
-      if (!this.#bodies.has(instance)) this.#bodies.set(instance, new Body(instance));
-      const body = this.#bodies.get(instance);
+      const body = this.#bodies.get(instance) ?? new Body(instance);
+      this.#bodies.set(instance, body);
       for (const pass of this.passes) {
         if (this.given(pass.texture)) this.#clear(body, pass);
         else this.#drawPass(pass, body, camera, lights);
@@ -386,7 +411,7 @@ export class Passes {
   #seenBy(camera) {
     const seen = new Map();
     for (const id of camera.layers) {
-      const layer = internalsOf(this.#app).scene.layers.getLayerById(id);
+      const layer = this.#app.scene.layers.getLayerById(id);
       const { opaque = [], transparent = [] } = layer?.enabled ? layer.getCulledInstances(camera.camera) : {};
       for (const instance of [...opaque, ...transparent]) {
         if (!this.instances.has(instance)) continue;
@@ -405,7 +430,7 @@ export class Passes {
     body.instance.setParameter(this.nameOf(pass.texture), pictures.packed.colorBuffer);
     if (!eye && pictures.version === device.renderVersion) return; // they are the same for all cameras of a frame
     pictures.version = device.renderVersion;
-    const { ball } = body;
+    const ball = ballOf(body.instance);
     let cameras = [camera.camera];
     if (!eye) {
       const distant = pass.seenFrom === 'distant light';
@@ -421,7 +446,7 @@ export class Passes {
   }
 
   #drawLayers(pass, body, { layers, packed }, cameras, columns, margin) {
-    const tiles = (this.#tiles ??= new TilePass(this.device, internalsOf(this.#app).renderer));
+    const tiles = (this.#tiles ??= new TilePass(this.device, this.#app.renderer));
     const empty = pass.empty === 'far' ? FAR : 0;
     pass.layers.forEach((layer, index) => {
       const [side, number] = layer.split(' ');
