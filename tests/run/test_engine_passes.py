@@ -23,7 +23,7 @@ from sssgen.run.render.scene_render import PlacedMesh
 from sssgen.scene import scene_loading
 from sssgen.scene.solids import Torus
 
-ENGINES = {engine.target: engine for engine in (THREE, PLAYCANVAS)}
+RENDERERS = {f"{engine.target} {name}": (engine, name) for engine in (THREE, PLAYCANVAS) for name in engine.renderers}
 BLACK: dict[str, dict[str, Any]] = {
     "threejs": {"color": 0.0, "specularIntensity": 0.0},
     "playcanvas": {"diffuse": 0.0, "useMetalness": False, "specular": 0.0, "enableGGXSpecular": False},
@@ -31,10 +31,10 @@ BLACK: dict[str, dict[str, Any]] = {
 """Without the engine's own reflection."""
 
 
-@pytest.fixture(scope="module", params=[f"{name} {one}" for name, engine in ENGINES.items() for one in engine.renderers])
+@pytest.fixture(scope="module", params=RENDERERS)
 def page(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
-    name, kind = request.param.split()
-    renderer: EnginePage = or_skip(partial(EnginePage, ENGINES[name]), kind)
+    engine, name = RENDERERS[request.param]
+    renderer: EnginePage = or_skip(partial(EnginePage, engine), name)
     yield renderer
     renderer.page.close()
 
@@ -76,7 +76,7 @@ def torus_scene(folder: Path, several: bool) -> str:
     return str(folder / "scene.toml")
 
 
-@pytest.fixture(scope="module", params=["one light", "several lights"])
+@pytest.fixture(scope="session", params=["one light", "several lights"])
 def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, PlacedMesh, Array]:
     """A scene with the mesh of its points, and the light that comes through by the oracle."""
     path = torus_scene(tmp_path_factory.mktemp("torus"), request.param == "several lights")

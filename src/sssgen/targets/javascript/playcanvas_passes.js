@@ -61,7 +61,7 @@ fn vertexMain(input: VertexInput) -> VertexOutput {
   return output;
 }`;
 
-// Behind the margin are the surfaces that follow those of the layer before.
+// A layer that peels has the surfaces behind those of the layer before.
 const FRAGMENT_GLSL = `
 varying vec3 sss_place;
 uniform float sss_from_plane;
@@ -401,7 +401,8 @@ export class Passes {
       const body = this.#bodies.get(instance) ?? new Body(instance);
       this.#bodies.set(instance, body);
       for (const pass of this.passes) {
-        if (this.given(pass.texture)) this.#clear(body, pass);
+        const manyEyes = pass.seenFrom === 'eye' && camera.camera.xrActive;
+        if (manyEyes || this.given(pass.texture)) this.#clear(body, pass);
         else this.#drawPass(pass, body, camera, lights);
       }
     }
