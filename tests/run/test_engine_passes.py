@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,19 +18,24 @@ from skips import or_skip
 from sssgen.run.backends import Array
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
-from sssgen.run.backends.web_engines import THREE
+from sssgen.run.backends.web_engines import PLAYCANVAS, THREE
 from sssgen.run.render import page_values
 from sssgen.run.render.scene_render import PlacedMesh
 from sssgen.scene import scene_loading
 from sssgen.scene.solids import Torus
 
-BLACK = {"color": 0.0, "specularIntensity": 0.0}
-"""Without three's own reflection."""
+RENDERERS = {f"{engine.target} {name}": (engine, name) for engine in (THREE, PLAYCANVAS) for name in engine.renderers}
+BLACK: dict[str, dict[str, Any]] = {
+    "threejs": {"color": 0.0, "specularIntensity": 0.0},
+    "playcanvas": {"diffuse": 0.0, "useMetalness": False, "specular": 0.0, "enableGGXSpecular": False},
+}
+"""Without the engine's own reflection."""
 
 
-@pytest.fixture(scope="module", params=list(THREE.renderers))
-def three(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
-    renderer: EnginePage = or_skip(partial(EnginePage, THREE), request.param)
+@pytest.fixture(scope="module", params=RENDERERS)
+def page(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
+    engine, name = RENDERERS[request.param]
+    renderer: EnginePage = or_skip(partial(EnginePage, engine), name)
     yield renderer
     renderer.page.close()
 
@@ -71,7 +77,7 @@ def torus_scene(folder: Path, several: bool) -> str:
     return str(folder / "scene.toml")
 
 
-@pytest.fixture(scope="module", params=["one light", "several lights"])
+@pytest.fixture(scope="session", params=["one light", "several lights"])
 def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, PlacedMesh, Array]:
     """A scene with the mesh of its points, and the light that comes through by the oracle."""
     path = torus_scene(tmp_path_factory.mktemp("torus"), request.param == "several lights")
@@ -79,19 +85,19 @@ def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     return path, mesh, through(str(Path(path).with_name("jade.toml")), mesh)
 
 
-def test_the_engine_draws_the_passes(three: EnginePage, case: tuple[str, PlacedMesh, Array]) -> None:
+def test_the_engine_draws_the_passes(page: EnginePage, case: tuple[str, PlacedMesh, Array]) -> None:
     """Without textures from the page, the light that comes through is that of the oracle."""
     path, mesh, expected = case
     scene = scene_loading.load(path)
     assert isinstance(scene.geometry, Torus)
     vertices, triangles = torus_mesh(scene.geometry)
-    compiled = sssgen.compile(scene.material, "threejs")
+    compiled = sssgen.compile(scene.material, page.engine.target)
     drawing = EngineDrawing(
         page_values.modules_of(compiled), mesh.size, vertices, triangles, mesh.shell.view_projection,
         mesh.shell.camera_position, mesh.shell.model, mesh.shell.light_positions, mesh.shell.light_colors,
-        properties=BLACK,
+        properties=BLACK[page.engine.target],
     )  # fmt: skip
-    drawn = three.draw(drawing)
+    drawn = page.draw(drawing)
     inner = mesh.hit.copy()  # without the pixels at the edge, where triangles replace the round body
     for axis, step in ((0, -1), (0, 1), (1, -1), (1, 1)):
         inner &= np.roll(mesh.hit, step, axis)

@@ -21,6 +21,7 @@ async function appFor(renderer, clustered) {
   const started = apps.get(kind);
   if (started) return started;
   const canvas = document.createElement('canvas');
+  canvas.id = kind; // by which a material finds its app
   const gpu = renderer === 'webgpu';
   const device = await pc.createGraphicsDevice(canvas, { deviceTypes: [gpu ? pc.DEVICETYPE_WEBGPU : pc.DEVICETYPE_WEBGL2], antialias: false });
   if (device.isWebGPU !== gpu) throw new Error(`PlayCanvas chose another device: ${device.deviceType}`);

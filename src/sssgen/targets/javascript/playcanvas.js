@@ -3,6 +3,7 @@
 
 import * as pc from 'playcanvas';
 import { setChunks } from './playcanvas_chunks.js';
+import { Passes } from './playcanvas_passes.js';
 import { Properties, TEXELS } from './values.js';
 
 /**
@@ -43,6 +44,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {Record<string, Varying>} varyings
  * @property {Record<string, string>} variables of the fragment shader: name → type
  * @property {Shell[]} shells in GLSL and in WGSL
+ * @property {import('./playcanvas_passes.js').Pass[]} [passes] what is drawn before it
  */
 
 // Textures and values.
@@ -99,6 +101,9 @@ export function materialClass(description) {
 
   return class extends pc.StandardMaterial {
     #device;
+    /** The textures that the page has set. */
+    #given = new Set();
+    #passes;
 
     constructor(device, values = {}) {
       if (typeof device?.isWebGPU !== 'boolean') properties.refuse('createMaterial', 'a graphics device first, such as app.graphicsDevice', device);
@@ -127,6 +132,8 @@ export function materialClass(description) {
       /** A light component, which lights this unlit material; null: none. */
       if (takesLight) this.light = null;
       setChunks(this, device, description, properties);
+      const { meshInstances } = /** @type {any} */ (this);
+      this.#passes = new Passes(device, description, meshInstances, (property) => this.#given.has(property));
       for (const [property, declared] of Object.entries(parameters)) this[property] = declared.default;
       for (const property of Object.keys(textures)) this[property] = null;
       this.set(values);
@@ -168,6 +175,8 @@ export function materialClass(description) {
       if (!(value == null || value instanceof pc.Texture)) properties.refuse(property, 'a pc.Texture, or null', value);
       if (value) properties.checkKind(property, { cube: value.cubemap, volume: value.volume, layers: value.array });
       const declared = textures[property];
+      if (value) this.#given.add(property);
+      else this.#given.delete(property);
       this.setParameter(declared.name, withTexels(value ?? texel(this.#device, materialName, declared)));
     }
 
@@ -195,6 +204,7 @@ export function materialClass(description) {
       if (moves) this.setParameter('sss_time', this.time ?? performance.now() / 1000);
       if (takesLight) this.#setLight(this.light);
       if (shells[0].entry && !names) this.#setBodies();
+      this.#passes.follow();
       super.setParameters(device, names);
     }
 
@@ -215,9 +225,15 @@ export function materialClass(description) {
       this.setParameter('sss_light_radiance', radiance);
     }
 
+    destroy() {
+      super.destroy();
+      this.#passes.dispose();
+    }
+
     clone() {
       const Own = /** @type {any} */ (this.constructor);
       const copy = new Own(this.#device).copy(this);
+      for (const property of this.#given) copy[property] = this[property];
       return Object.assign(copy, moves && { time: this.time }, takesLight && { light: this.light });
     }
   };

@@ -1,0 +1,492 @@
+// What PlayCanvas draws before a material: pictures of a body alone, as the eye or a light sees it. A picture that the page
+// sets itself is not drawn.
+
+import * as pc from 'playcanvas';
+
+/**
+ * A pass, as a material's module lists it.
+ * @typedef {object} Pass
+ * @property {string} name
+ * @property {string} seenFrom `eye`, `light`, `distant light` or `each light`
+ * @property {string[]} layers for each channel `entry N` or `exit N`: the N-th front or back face
+ * @property {'0' | 'far'} empty what a texel without a surface has
+ * @property {string} texture the property of the picture
+ * @property {string[]} views the properties of the matrices from world space to the picture, one for each light
+ */
+
+/** The distance where there is no surface: it fits into half a float. */
+const FAR = 60000;
+/** The width of what one light sees, in texels. */
+const SIDE = 1024;
+
+/**
+ * An object with what PlayCanvas's types keep to the engine.
+ * @param {object} object
+ * @returns {any}
+ */
+const internalsOf = (object) => object;
+
+// The shaders of a pass: they write the distance from the eye or from the light's plane.
+
+const ATTRIBUTES = {
+  vertex_position: pc.SEMANTIC_POSITION, instance_line1: pc.SEMANTIC_ATTR11, instance_line2: pc.SEMANTIC_ATTR12,
+  instance_line3: pc.SEMANTIC_ATTR14, instance_line4: pc.SEMANTIC_ATTR15,
+};
+
+/** A material's vertex shader has no text for instances: here is PlayCanvas's own. */
+const matricesOf = (device, language) => `
+#include "transformCoreVS"
+#ifdef INSTANCING
+${pc.ShaderChunks.get(device, language).get('transformInstancingVS')}
+#endif`;
+
+const vertexGlsl = (matrices) => `${matrices}
+uniform mat4 matrix_view;
+varying vec3 sss_place;
+void main() {
+  vec4 place = getModelMatrix() * vec4(getLocalPosition(vertex_position.xyz), 1.0);
+  sss_place = (matrix_view * place).xyz;
+  gl_Position = matrix_viewProjection * place;
+}`;
+
+const vertexWgsl = (matrices) => `${matrices}
+uniform matrix_view: mat4x4f;
+varying sss_place: vec3f;
+@vertex
+fn vertexMain(input: VertexInput) -> VertexOutput {
+  var output: VertexOutput;
+  let place = getModelMatrix() * vec4f(getLocalPosition(vertex_position.xyz), 1.0);
+  output.sss_place = (uniform.matrix_view * place).xyz;
+  output.position = uniform.matrix_viewProjection * place;
+  return output;
+}`;
+
+// A layer that peels has the surfaces behind those of the layer before.
+const FRAGMENT_GLSL = `
+varying vec3 sss_place;
+uniform float sss_from_plane;
+#ifdef SSS_PEELS
+uniform float sss_margin;
+uniform highp sampler2D sss_front;
+#endif
+void main() {
+  float distance = sss_from_plane > 0.0 ? -sss_place.z : length(sss_place);
+#ifdef SSS_PEELS
+  if (distance < texelFetch(sss_front, ivec2(gl_FragCoord.xy), 0).r + sss_margin) discard;
+#endif
+  gl_FragColor = vec4(distance, 0.0, 0.0, 1.0);
+}`;
+
+const FRAGMENT_WGSL = `
+varying sss_place: vec3f;
+uniform sss_from_plane: f32;
+#ifdef SSS_PEELS
+uniform sss_margin: f32;
+var sss_front: texture_2d<uff>;
+#endif
+@fragment
+fn fragmentMain(input: FragmentInput) -> FragmentOutput {
+  var output: FragmentOutput;
+  let distance = select(length(input.sss_place), -input.sss_place.z, uniform.sss_from_plane > 0.0);
+#ifdef SSS_PEELS
+  if (distance < textureLoad(sss_front, vec2i(pcPosition.xy), 0).r + uniform.sss_margin) { discard; }
+#endif
+  output.color = vec4f(distance, 0.0, 0.0, 1.0);
+  return output;
+}`;
+
+/** A material that writes the distances of front or back faces; `peels`: of those behind the layer before. */
+function distanceMaterial(device, back, peels) {
+  const material = new pc.ShaderMaterial({
+    uniqueName: 'sss_distance', attributes: ATTRIBUTES,
+    vertexGLSL: vertexGlsl(matricesOf(device, pc.SHADERLANGUAGE_GLSL)), fragmentGLSL: FRAGMENT_GLSL,
+    vertexWGSL: vertexWgsl(matricesOf(device, pc.SHADERLANGUAGE_WGSL)), fragmentWGSL: FRAGMENT_WGSL,
+  });
+  material.cull = back ? pc.CULLFACE_FRONT : pc.CULLFACE_BACK;
+  if (peels) material.setDefine('SSS_PEELS', '');
+  material.update();
+  return material;
+}
+
+const LAYERS = ['sss_layer0', 'sss_layer1', 'sss_layer2', 'sss_layer3'];
+
+/** Writes four layers into one picture. */
+function packingPass(device) {
+  const pass = new pc.RenderPassShaderQuad(device);
+  pass.shader = pc.ShaderUtils.createShader(device, {
+    uniqueName: 'sss_packing', attributes: { vertex_position: pc.SEMANTIC_POSITION }, vertexChunk: 'fullscreenQuadVS',
+    fragmentGLSL: `
+${LAYERS.map((name) => `uniform highp sampler2D ${name};`).join('\n')}
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  gl_FragColor = vec4(${LAYERS.map((name) => `texelFetch(${name}, at, 0).r`).join(', ')});
+}`,
+    fragmentWGSL: `
+${LAYERS.map((name) => `var ${name}: texture_2d<uff>;`).join('\n')}
+@fragment
+fn fragmentMain(input: FragmentInput) -> FragmentOutput {
+  var output: FragmentOutput;
+  let at = vec2i(pcPosition.xy);
+  output.color = vec4f(${LAYERS.map((name) => `textureLoad(${name}, at, 0).r`).join(', ')});
+  return output;
+}`,
+  });
+  return pass;
+}
+
+// The lights of a body.
+
+/** The distance of a mesh's farthest vertex from the middle of its box. @type {WeakMap<pc.Mesh, { version: number, radius: number }>} */
+const radii = new WeakMap();
+
+/** That distance in object space; a ball around the box would make texels larger. */
+function radiusOf(mesh) {
+  const known = radii.get(mesh);
+  if (known && known.version === mesh._aabbVer) return known.radius;
+  const { center, halfExtents } = mesh.aabb;
+  const floats = mesh.vertexBuffer.format.elements.some(({ name, dataType }) => name === pc.SEMANTIC_POSITION && dataType === pc.TYPE_FLOAT32);
+  /** @type {number[]} */
+  const places = [];
+  if (floats) mesh.getPositions(places);
+  let radius = places.length ? 0 : halfExtents.length();
+  for (let at = 0; at < places.length; at += 3) {
+    radius = Math.max(radius, Math.hypot(places[at] - center.x, places[at + 1] - center.y, places[at + 2] - center.z));
+  }
+  radii.set(mesh, { version: mesh._aabbVer, radius });
+  return radius;
+}
+
+/** The ball around a mesh instance, in world space. */
+function ballOf(instance) {
+  const { mesh, node, skinInstance, morphInstance, _customAabb, aabb } = internalsOf(instance);
+  if (skinInstance || morphInstance || _customAabb) return { center: aabb.center, radius: aabb.halfExtents.length() };
+  const world = node.getWorldTransform();
+  const { x, y, z } = world.getScale();
+  return { center: world.transformPoint(mesh.aabb.center), radius: radiusOf(mesh) * Math.max(x, y, z) };
+}
+
+/** The lights that are brightest at a ball, at most `count`; `distant`: those from afar, if there are any. */
+function lightsAt(ball, lights, distant, count) {
+  const bright = [...lights].filter(({ enabled }) => enabled).map((light) => ({ light, strength: Math.max(...light._colorLinear) * nearness(light, ball) }));
+  const afar = bright.filter(({ light }) => light.type === pc.LIGHTTYPE_DIRECTIONAL);
+  return (distant && afar.length ? afar : bright).filter(({ strength }) => strength > 0)
+    .sort((a, b) => b.strength - a.strength).slice(0, count).map(({ light }) => light);
+}
+
+/** The share of a light that arrives at a ball. */
+function nearness(light, { center, radius }) {
+  if (light.type === pc.LIGHTTYPE_DIRECTIONAL) return 1;
+  const range = light.attenuationEnd;
+  const distance = Math.max(light._node.getPosition().distance(center) - radius, 0);
+  if (distance >= range) return 0;
+  return light.falloffMode === pc.LIGHTFALLOFF_LINEAR ? 1 - distance / range : 16 / (distance * distance + 1);
+}
+
+/** A camera that sees all of a ball from a light. */
+function lampCamera(device) {
+  const camera = new pc.Camera(device);
+  camera.node = new pc.GraphNode();
+  camera.aspectRatioMode = pc.ASPECT_MANUAL;
+  camera.aspectRatio = 1;
+  return camera;
+}
+
+/** Places such a camera; `distant`: as if the light were far away. */
+function aim(camera, light, { center, radius: tight }, distant) {
+  const radius = 1.02 * tight;
+  const directional = light.type === pc.LIGHTTYPE_DIRECTIONAL;
+  const way = directional ? light._node.up.clone() : light._node.getPosition().clone().sub(center);
+  const afar = distant || directional;
+  const distance = afar ? 2 * radius : Math.max(way.length(), 1e-6);
+  const half = Math.min(Math.asin(Math.min(radius / distance, 1)), 1.5);
+  way.normalize();
+  camera.projection = afar ? pc.PROJECTION_ORTHOGRAPHIC : pc.PROJECTION_PERSPECTIVE;
+  camera.orthoHeight = radius;
+  camera.fov = (half * 360) / Math.PI;
+  camera.nearClip = Math.max(distance - radius, 0.001 * distance);
+  camera.farClip = distance + radius;
+  camera.node.setPosition(center.clone().add(way.clone().mulScalar(distance)));
+  camera.node.lookAt(center, Math.abs(way.y) > 0.99 ? pc.Vec3.BACK : pc.Vec3.UP);
+  return camera;
+}
+
+/** World space to (u w, v w, distance from the light's plane, w), in a tile of the picture; `down`: its rows count downwards. */
+function viewOf(camera, tile, columns, down) {
+  const view = camera.node.getWorldTransform().clone().invert();
+  const clip = new pc.Mat4().mul2(camera.projectionMatrix, view);
+  const [column, row] = [tile % columns, Math.floor(tile / columns)];
+  return [0, 1, 2, 3].flatMap((index) => {
+    const [x, y, , w] = clip.data.slice(4 * index, 4 * index + 4);
+    const v = ((row + 0.5) * w + 0.5 * y) / columns;
+    return [((column + 0.5) * w + 0.5 * x) / columns, down ? w - v : v, -view.data[4 * index + 2], w];
+  });
+}
+
+/** Draws mesh instances into tiles of a picture, each tile as a camera sees them. */
+class TilePass extends pc.RenderPass {
+  /** @type {any[]} */
+  cameras = [];
+  /** @type {pc.MeshInstance[]} */
+  meshInstances = [];
+  columns = 1;
+
+  constructor(device, renderer) {
+    super(device);
+    this.renderer = renderer;
+  }
+
+  execute() {
+    const { renderer, renderTarget, meshInstances, columns } = this;
+    this.cameras.forEach((camera, tile) => {
+      const rect = new pc.Vec4(tile % columns, Math.floor(tile / columns), 1, 1).mulScalar(1 / columns);
+      const kept = { rect: camera.rect.clone(), scissorRect: camera.scissorRect.clone(), cullFaces: camera.cullFaces };
+      Object.assign(camera, { rect, scissorRect: rect, cullFaces: true });
+      renderer.renderForwardLayer(camera, renderTarget, null, undefined, pc.SHADER_FORWARD, { meshInstances });
+      Object.assign(camera, kept);
+    });
+  }
+}
+
+/** A render target for distances. */
+function pictureOf(device, name, channels, { width, height, origin }) {
+  // half floats where WebGPU does not filter others: PlayCanvas declares a sampler for each texture of a material
+  const full = device.textureFloatRenderable && (!device.isWebGPU || device.textureFloatFilterable);
+  const format = channels === 1 ? (full ? pc.PIXELFORMAT_R32F : pc.PIXELFORMAT_R16F) : full ? pc.PIXELFORMAT_RGBA32F : pc.PIXELFORMAT_RGBA16F;
+  const colorBuffer = new pc.Texture(device, {
+    name, width, height, format, mipmaps: false, minFilter: pc.FILTER_NEAREST, magFilter: pc.FILTER_NEAREST,
+    addressU: pc.ADDRESS_CLAMP_TO_EDGE, addressV: pc.ADDRESS_CLAMP_TO_EDGE,
+  });
+  return new pc.RenderTarget({ name, colorBuffer, depth: channels === 1, samples: 1, origin });
+}
+
+/** A mesh instance that has the material: its copies with the materials of passes, and its pictures. */
+class Body {
+  /** @type {Map<pc.Material, any>} */
+  #copies = new Map();
+  /** @type {{ pass: Pass, camera: any, origin: any, layers: pc.RenderTarget[], packed: pc.RenderTarget, version: number }[]} */
+  #pictures = [];
+
+  /** @param {pc.MeshInstance} instance */
+  constructor(instance) {
+    this.instance = instance;
+  }
+
+  /** The mesh instance with another material: with its bones, morph targets and instances. */
+  copy(material) {
+    const { node, mesh, flipFacesFactor, _skinInstance, _morphInstance, instancingData, drawCommands, _shaderDefs } = internalsOf(this.instance);
+    if (!this.#copies.has(material)) this.#copies.set(material, new pc.MeshInstance(mesh, material, node));
+    const copy = this.#copies.get(material);
+    Object.assign(copy, { node, mesh, flipFacesFactor, _skinInstance, _morphInstance, instancingData, drawCommands });
+    copy._updateShaderDefs(_shaderDefs);
+    return copy;
+  }
+
+  /** The pictures of a pass; `camera`: that which they are for, or null for all. */
+  picturesOf(pass, camera, device, size) {
+    let pictures = this.#pictures.find((one) => one.pass === pass && one.camera === camera && one.origin === size.origin);
+    if (!pictures) {
+      const layers = pass.layers.map((layer) => pictureOf(device, `${pass.name} ${layer}`, 1, size));
+      const packed = layers.length > 1 ? pictureOf(device, pass.name, 4, size) : layers[0];
+      this.#pictures.push((pictures = { pass, camera, origin: size.origin, layers, packed, version: -1 }));
+    }
+    for (const target of [...pictures.layers, pictures.packed]) {
+      if (target.width !== size.width || target.height !== size.height) target.resize(size.width, size.height);
+    }
+    return pictures;
+  }
+
+  /** Destroys the pictures for cameras that are not among these. */
+  keep(cameras) {
+    this.#destroy(({ camera }) => camera && !cameras.includes(camera));
+  }
+
+  #destroy(isGone) {
+    const gone = this.#pictures.filter(isGone);
+    this.#pictures = this.#pictures.filter((one) => !gone.includes(one));
+    for (const target of new Set(gone.flatMap(({ layers, packed }) => [...layers, packed]))) {
+      target.destroyTextureBuffers();
+      target.destroy();
+    }
+  }
+
+  dispose() {
+    this.#destroy(() => true);
+    for (const copy of this.#copies.values()) {
+      // those of the mesh instance stay
+      Object.assign(copy, { _skinInstance: null, _morphInstance: null, instancingData: null, drawCommands: null });
+      copy.destroy();
+    }
+    this.#copies.clear();
+  }
+}
+
+/** The passes of a material. PlayCanvas runs them before each camera that sees a mesh instance with the material. */
+export class Passes {
+  /** The app that draws. @type {any} */
+  #app;
+  /** @type {Map<pc.MeshInstance, Body>} */
+  #bodies = new Map();
+  /** For each camera what PlayCanvas runs before it. @type {Map<any, pc.FramePass>} */
+  #before = new Map();
+  /** @type {Map<string, pc.ShaderMaterial>} */
+  #materials = new Map();
+  /** @type {any[]} */
+  #lamps;
+  #tiles;
+  #packing;
+
+  /**
+   * @param {any} device
+   * @param {{ passes?: Pass[], textures: Record<string, { name: string }>, parameters: Record<string, { name: string }> }} description
+   * @param {Set<pc.MeshInstance>} instances those that have the material
+   * @param {(property: string) => boolean} given whether the page has set a texture
+   */
+  constructor(device, { passes = [], textures, parameters }, instances, given) {
+    this.device = device;
+    this.passes = passes;
+    this.instances = instances;
+    this.given = given;
+    this.#lamps = passes.length ? Array.from({ length: 4 }, () => lampCamera(device)) : [];
+    /** The name of a property in the shader. */
+    this.nameOf = (property) => (textures[property] ?? parameters[property]).name;
+    this.follow();
+  }
+
+  /** Follows the app of the device, as soon as there is one. */
+  follow() {
+    if (this.#app || !this.passes.length) return;
+    const apps = [pc.AppBase.getApplication(this.device.canvas.id), pc.AppBase.getApplication()];
+    this.#app = apps.find((app) => app?.graphicsDevice === this.device);
+    this.#app?.on('prerender', this.#prepare, this);
+  }
+
+  /** Before a frame: adds cameras that are new, and forgets what is gone. */
+  #prepare() {
+    const { cameras } = this.#app.systems.camera;
+    for (const camera of cameras) {
+      if (this.#before.has(camera)) continue;
+      const before = new pc.FramePass(this.device);
+      before.execute = () => this.#draw(camera);
+      camera.camera.beforePasses.push(before);
+      this.#before.set(camera, before);
+    }
+    for (const camera of this.#before.keys()) if (!cameras.includes(camera)) this.#leave(camera);
+    for (const [instance, body] of this.#bodies) {
+      if (this.instances.has(instance)) body.keep(cameras);
+      else this.#forget(body);
+    }
+  }
+
+  #leave(camera) {
+    const { beforePasses } = camera.camera;
+    const index = beforePasses.indexOf(this.#before.get(camera));
+    if (index >= 0) beforePasses.splice(index, 1);
+    this.#before.delete(camera);
+  }
+
+  #forget(body) {
+    for (const pass of this.passes) this.#clear(body, pass);
+    body.dispose();
+    this.#bodies.delete(body.instance);
+  }
+
+  /** Takes a pass's picture away from a mesh instance. */
+  #clear({ instance }, pass) {
+    for (const property of [pass.texture, ...pass.views]) instance.deleteParameter(this.nameOf(property));
+  }
+
+  /** Draws the passes for a camera. */
+  #draw(camera) {
+    for (const [instance, lights] of this.#seenBy(camera)) {
+      const body = this.#bodies.get(instance) ?? new Body(instance);
+      this.#bodies.set(instance, body);
+      for (const pass of this.passes) {
+        const manyEyes = pass.seenFrom === 'eye' && camera.camera.xrActive;
+        if (manyEyes || this.given(pass.texture)) this.#clear(body, pass);
+        else this.#drawPass(pass, body, camera, lights);
+      }
+    }
+  }
+
+  /** The mesh instances that a camera sees, and their lights. */
+  #seenBy(camera) {
+    const seen = new Map();
+    for (const id of camera.layers) {
+      const layer = this.#app.scene.layers.getLayerById(id);
+      const { opaque = [], transparent = [] } = layer?.enabled ? layer.getCulledInstances(camera.camera) : {};
+      for (const instance of [...opaque, ...transparent]) {
+        if (!this.instances.has(instance)) continue;
+        const lights = layer._lights.filter(({ mask }) => mask & instance.mask);
+        seen.set(instance, new Set([...(seen.get(instance) ?? []), ...lights]));
+      }
+    }
+    return seen;
+  }
+
+  #drawPass(pass, body, camera, lights) {
+    const { device } = this;
+    const eye = pass.seenFrom === 'eye';
+    const columns = pass.views.length > 1 ? 2 : 1;
+    const pictures = body.picturesOf(pass, eye ? camera : null, device, eye ? sizeOf(camera, device) : { width: SIDE * columns, height: SIDE * columns });
+    body.instance.setParameter(this.nameOf(pass.texture), pictures.packed.colorBuffer);
+    if (!eye && pictures.version === device.renderVersion) return; // they are the same for all cameras of a frame
+    pictures.version = device.renderVersion;
+    const ball = ballOf(body.instance);
+    let cameras = [camera.camera];
+    if (!eye) {
+      const distant = pass.seenFrom === 'distant light';
+      const brightest = lightsAt(ball, lights, distant, Math.max(pass.views.length, 1));
+      cameras = brightest.map((light, index) => aim(this.#lamps[index], light, ball, distant));
+    }
+    pass.views.forEach((view, index) => {
+      // a view of zeros shows nothing
+      const matrix = cameras[index] ? viewOf(cameras[index], index, columns, device.isWebGPU) : Array(16).fill(0);
+      body.instance.setParameter(this.nameOf(view), matrix);
+    });
+    this.#drawLayers(pass, body, pictures, cameras, columns, 1e-3 * ball.radius);
+  }
+
+  #drawLayers(pass, body, { layers, packed }, cameras, columns, margin) {
+    const tiles = (this.#tiles ??= new TilePass(this.device, this.#app.renderer));
+    const empty = pass.empty === 'far' ? FAR : 0;
+    pass.layers.forEach((layer, index) => {
+      const [side, number] = layer.split(' ');
+      const before = side === 'exit' ? index - 1 : pass.layers.indexOf(`exit ${Number(number) - 1}`);
+      const material = this.#materialOf(side === 'exit', Number(number) > 1);
+      material.setParameter('sss_from_plane', Number(pass.seenFrom !== 'eye'));
+      material.setParameter('sss_margin', margin);
+      if (Number(number) > 1) material.setParameter('sss_front', layers[before].colorBuffer);
+      tiles.init(layers[index]);
+      tiles.setClearColor(new pc.Color(empty, empty, empty, 1));
+      tiles.setClearDepth(1);
+      Object.assign(tiles, { cameras, columns, meshInstances: [body.copy(material)] });
+      tiles.render();
+    });
+    if (layers.length === 1) return;
+    const packing = (this.#packing ??= packingPass(this.device));
+    LAYERS.forEach((name, index) => this.device.scope.resolve(name).setValue((layers[index] ?? layers[0]).colorBuffer));
+    packing.init(packed);
+    packing.render();
+  }
+
+  #materialOf(back, peels) {
+    const key = `${back} ${peels}`;
+    if (!this.#materials.has(key)) this.#materials.set(key, distanceMaterial(this.device, back, peels));
+    return /** @type {pc.ShaderMaterial} */ (this.#materials.get(key));
+  }
+
+  dispose() {
+    this.#app?.off('prerender', this.#prepare, this);
+    for (const camera of [...this.#before.keys()]) this.#leave(camera);
+    for (const body of [...this.#bodies.values()]) this.#forget(body);
+    for (const material of this.#materials.values()) material.destroy();
+    this.#packing?.quadRender?.destroy();
+  }
+}
+
+/** The size and the rows of what a camera draws into. */
+function sizeOf({ renderTarget, rect }, device) {
+  const { width, height } = renderTarget ?? device;
+  const [across, up] = [width * rect.z, height * rect.w].map((value) => Math.max(Math.floor(value), 1));
+  return { width: across, height: up, origin: renderTarget?.origin };
+}
