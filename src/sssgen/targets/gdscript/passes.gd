@@ -1,0 +1,401 @@
+# What Godot draws before a material: pictures of the body alone, as the eye or a light sees it, each in a SubViewport
+# with a world of its own. A texture that the scene sets itself is not drawn.
+extends Node
+
+## The distance where there is no surface: it fits into half a float.
+const FAR := 60000.0
+## The width of what one light sees, in texels.
+const SIDE := 1024
+## A surface behind another is at least this share of the body's radius farther away: more than half floats round.
+const MARGIN := 2e-3
+## The name under which a material knows whose pictures it has.
+const OWNER := &"sssgen_passes"
+
+## The distance from the eye or from a plane in front of the light, of what is behind the surface before.
+const DISTANCE := "shader_type spatial;
+render_mode unshaded, fog_disabled, shadows_disabled, cull_%s;
+uniform bool from_plane;
+uniform float plane;
+uniform float margin;
+uniform sampler2D before : filter_nearest, repeat_disable;
+
+// What ALBEDO takes for a stored number: the Compatibility renderer decodes it with a cubic polynomial, and encodes it
+// with a power.
+float stored(float x) {
+#if CURRENT_RENDERER == RENDERER_COMPATIBILITY
+    float light = pow((x + 0.055) / 1.055, 2.4);
+    float root = pow(light / 0.305306011, 1.0 / 3.0);
+    for (int i = 0; i < 8; i++) {
+        float excess = root * (root * (root * 0.305306011 + 0.682171111) + 0.012522878) - light;
+        root -= excess / (root * (root * 0.915918033 + 1.364342222) + 0.012522878);
+    }
+    return root;
+#else
+    return x;
+#endif
+}
+
+void fragment() {
+    float away = from_plane ? -VERTEX.z - plane : length(VERTEX);
+    if (margin > 0.0 && away < textureLod(before, SCREEN_UV, 0.0).r + margin) {
+        discard;
+    }
+    ALBEDO = vec3(stored(away));
+}
+"
+
+## Several layers as the channels of one picture.
+const PACKING := "shader_type canvas_item;
+render_mode unshaded, blend_disabled;
+uniform sampler2D layer_0 : filter_nearest, repeat_disable;
+uniform sampler2D layer_1 : filter_nearest, repeat_disable;
+uniform sampler2D layer_2 : filter_nearest, repeat_disable;
+uniform sampler2D layer_3 : filter_nearest, repeat_disable;
+
+void fragment() {
+    COLOR = vec4(textureLod(layer_0, UV, 0.0).r, textureLod(layer_1, UV, 0.0).r, textureLod(layer_2, UV, 0.0).r,
+        textureLod(layer_3, UV, 0.0).r);
+}
+"
+
+## The body; without one it is the parent.
+@export var body: GeometryInstance3D
+## The camera whose view the pictures of the eye have; without one it is the current camera of the body's viewport.
+@export var eye: Camera3D
+
+static var _shaders: Dictionary = {}
+var _pictures: Array[Picture] = []
+var _lights: Array[Light3D] = []
+var _materials: Array[ShaderMaterial] = []
+
+
+## The passes of the material: `name`, `seen_from`, `layers`, `empty`, `texture` and `views`, as in its reflection.
+func passes() -> Array[Dictionary]:
+	return []
+
+
+func _enter_tree() -> void:
+	if body == null:
+		body = get_parent() as GeometryInstance3D
+	if body == null:
+		push_error("%s has no body: add it below one" % name)
+		return
+	for data in passes():
+		_pictures.append(Picture.new(data, self))
+	_lights.assign(get_tree().root.find_children("*", "Light3D", true, false))
+	get_tree().node_added.connect(_note_light)
+	# after all scripts of the frame, so that no picture is a frame late
+	RenderingServer.frame_pre_draw.connect(_draw)
+
+
+func _exit_tree() -> void:
+	if not RenderingServer.frame_pre_draw.is_connected(_draw):
+		return
+	RenderingServer.frame_pre_draw.disconnect(_draw)
+	get_tree().node_added.disconnect(_note_light)
+	for picture in _pictures:
+		picture.release()
+	for material in _materials:
+		material.remove_meta(OWNER)
+	_pictures.clear()
+	_materials.clear()
+
+
+func _note_light(node: Node) -> void:
+	if node is Light3D and node not in _lights:
+		_lights.append(node)
+
+
+func _draw() -> void:
+	if not is_instance_valid(body) or not body.is_inside_tree():
+		return
+	var camera := eye if is_instance_valid(eye) else body.get_viewport().get_camera_3d()
+	var seen := camera != null and body.is_visible_in_tree()
+	if seen:
+		_find_materials()
+	for picture in _pictures:
+		if seen:
+			picture.draw(body, camera, _brightest)
+		else:
+			picture.rest()
+
+
+## The materials of the body whose textures are drawn.
+func _find_materials() -> void:
+	var found: Array[Material] = [body.material_override, body.material_overlay]
+	if body is MeshInstance3D and body.mesh != null:
+		for i in body.mesh.get_surface_count():
+			found.append(body.get_active_material(i))
+	elif body is MultiMeshInstance3D and body.multimesh != null and body.multimesh.mesh != null:
+		for i in body.multimesh.mesh.get_surface_count():
+			found.append(body.multimesh.mesh.surface_get_material(i))
+	for one in found:
+		var material := one as ShaderMaterial
+		if material == null or material in _materials or not _reads(material.shader):
+			continue
+		if material.has_meta(OWNER):
+			push_warning("%s shares its material with another body: make it unique" % body.name)
+		material.set_meta(OWNER, true)
+		_materials.append(material)
+		for picture in _pictures:
+			picture.take(material)
+
+
+func _reads(shader: Shader) -> bool:
+	if shader == null:
+		return false
+	var names := shader.get_shader_uniform_list().map(func(uniform): return uniform["name"])
+	return _pictures.any(func(picture): return picture.data["texture"] in names)
+
+
+## The lights that are brightest at a ball, at most `count`; `distant`: those from afar, if there are any.
+func _brightest(center: Vector3, distant: bool, count: int) -> Array[Light3D]:
+	var found: Array[Light3D] = []
+	var strengths := {}
+	_lights = _lights.filter(func(light): return is_instance_valid(light))
+	for light in _lights:
+		if not light.is_visible_in_tree() or light.get_world_3d() != body.get_world_3d():
+			continue
+		if light.light_negative or not (light.light_cull_mask & body.layers):
+			continue
+		var color := light.light_color.srgb_to_linear()
+		var strength := light.light_energy * maxf(color.r, maxf(color.g, color.b))
+		if light is DirectionalLight3D:
+			strength *= float(light.sky_mode != DirectionalLight3D.SKY_MODE_SKY_ONLY)
+		else:
+			strength *= _fall(light, center)
+		if strength > 0.0:
+			found.append(light)
+			strengths[light] = strength
+	if distant and found.any(func(light): return light is DirectionalLight3D):
+		found = found.filter(func(light): return light is DirectionalLight3D)
+	found.sort_custom(func(a, b): return strengths[a] > strengths[b])
+	return found.slice(0, count)
+
+
+## The share of a near light that its distance leaves, as Godot has it.
+func _fall(light: Light3D, center: Vector3) -> float:
+	var away := maxf(light.global_position.distance_to(center), 1e-3)
+	var kind := "spot" if light is SpotLight3D else "omni"
+	var reach: float = light.get(kind + "_range")
+	return pow(maxf(1.0 - pow(away / reach, 4.0), 0.0), 2.0) * pow(away, -light.get(kind + "_attenuation"))
+
+
+static func shader_of(text: String) -> Shader:
+	if text not in _shaders:
+		_shaders[text] = Shader.new()
+		_shaders[text].code = text
+	return _shaders[text]
+
+
+static func viewport_of(parent: Node) -> SubViewport:
+	var view := SubViewport.new()
+	view.use_hdr_2d = true # half floats
+	view.gui_disable_input = true
+	parent.add_child(view, false, Node.INTERNAL_MODE_BACK)
+	return view
+
+
+## The ball around a body, in world space: its center, and in w its radius.
+static func ball_of(geometry: GeometryInstance3D, place: Transform3D) -> Vector4:
+	var box := geometry.custom_aabb if geometry.custom_aabb.has_volume() else geometry.get_aabb()
+	box = box.grow(geometry.extra_cull_margin)
+	var center := place * box.get_center()
+	var radius := 0.0
+	for i in 8:
+		radius = maxf(radius, center.distance_to(place * box.get_endpoint(i)))
+	return Vector4(center.x, center.y, center.z, maxf(radius, 1e-6) * 1.02)
+
+
+## What one camera sees of the body alone: a layer of a picture.
+class Layer:
+	var view: SubViewport
+	var camera := Camera3D.new()
+	var copy := GeometryInstance3D.new()
+	var material := ShaderMaterial.new()
+	var skeleton: RID
+
+	## `before`: the layer that this one is behind, or null.
+	func _init(back: bool, empty: float, before: Layer, parent: Node) -> void:
+		view = viewport_of(parent)
+		view.own_world_3d = true
+		var environment := Environment.new()
+		environment.background_mode = Environment.BG_COLOR
+		environment.background_color = Color(empty, empty, empty)
+		environment.ambient_light_source = Environment.AMBIENT_SOURCE_DISABLED
+		environment.reflected_light_source = Environment.REFLECTION_SOURCE_DISABLED
+		camera.environment = environment
+		material.shader = shader_of(DISTANCE % ("front" if back else "back"))
+		if before != null:
+			material.set_shader_parameter("before", before.view.get_texture())
+		copy.material_override = material
+		copy.cast_shadow = GeometryInstance3D.SHADOW_CASTING_SETTING_OFF
+		for node: Node3D in [camera, copy]:
+			node.physics_interpolation_mode = Node.PHYSICS_INTERPOLATION_MODE_OFF
+			view.add_child(node)
+		camera.current = true
+
+	## Takes the shape that a body has in this frame.
+	func follow(body: GeometryInstance3D, place: Transform3D) -> void:
+		if copy.get_base() != body.get_base():
+			copy.set_base(body.get_base())
+			skeleton = RID()
+		copy.custom_aabb = body.custom_aabb
+		copy.extra_cull_margin = body.extra_cull_margin
+		copy.lod_bias = body.lod_bias
+		copy.transform = place
+		copy.force_update_transform()
+		var shape := body as MeshInstance3D
+		if shape == null:
+			return
+		var skin := shape.get_skin_reference()
+		var bones := skin.get_skeleton() if skin != null else RID()
+		if skeleton != bones:
+			skeleton = bones
+			RenderingServer.instance_attach_skeleton(copy.get_instance(), bones)
+		for i in shape.get_blend_shape_count():
+			RenderingServer.instance_set_blend_shape_weight(copy.get_instance(), i, shape.get_blend_shape_value(i))
+
+	## `plane`: where distances start, or -1 for the eye itself; `margin`: how far it is behind the layer before.
+	func look(size: Vector2i, plane: float, margin: float) -> void:
+		camera.force_update_transform()
+		if view.size != size:
+			view.size = size
+		view.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+		material.set_shader_parameter("from_plane", plane >= 0.0)
+		material.set_shader_parameter("plane", plane)
+		material.set_shader_parameter("margin", margin)
+
+
+## A pass: the layers that it draws for each light, and the picture that they make. The eye is one light here.
+class Picture:
+	var data: Dictionary
+	var texture: ViewportTexture
+	var users: Array[ShaderMaterial] = []
+	var tiles: Array[Array] = []
+	var columns := 1
+	var packing: SubViewport
+
+	func _init(pass_data: Dictionary, parent: Node) -> void:
+		data = pass_data
+		columns = 2 if data["views"].size() > 1 else 1
+		for tile in maxi(data["views"].size(), 1):
+			var layers: Array[Layer] = []
+			for layer: String in data["layers"]:
+				var back := layer.begins_with("exit")
+				var place := int(layer.get_slice(" ", 1))
+				var before: int = layers.size() - 1 if back else data["layers"].find("exit %d" % (place - 1))
+				layers.append(Layer.new(back, FAR if data["empty"] == "far" else 0.0, layers[before] if place > 1 else null, parent))
+			tiles.append(layers)
+		if tiles[0].size() == 1 and tiles.size() == 1:
+			texture = tiles[0][0].view.get_texture()
+		else:
+			_pack(parent)
+
+	## The last viewport has a tile for each light and a channel for each layer.
+	func _pack(parent: Node) -> void:
+		packing = viewport_of(parent)
+		packing.disable_3d = true
+		packing.size = Vector2i(SIDE, SIDE) * columns
+		for tile in tiles.size():
+			var square := ColorRect.new()
+			square.position = Vector2(tile % columns, floori(tile / float(columns))) * SIDE
+			square.size = Vector2(SIDE, SIDE)
+			var material := ShaderMaterial.new()
+			material.shader = shader_of(PACKING)
+			for i in 4:
+				material.set_shader_parameter("layer_%d" % i, tiles[tile][mini(i, tiles[tile].size() - 1)].view.get_texture())
+			square.material = material
+			packing.add_child(square)
+		texture = packing.get_texture()
+
+	func take(material: ShaderMaterial) -> void:
+		if material.get_shader_parameter(data["texture"]) == null:
+			material.set_shader_parameter(data["texture"], texture)
+			users.append(material)
+
+	func release() -> void:
+		for material in users:
+			material.set_shader_parameter(data["texture"], null)
+		for layers in tiles:
+			for layer: Layer in layers:
+				layer.view.queue_free()
+		if packing != null:
+			packing.queue_free()
+
+	## Draws nothing: the body is not to be seen.
+	func rest() -> void:
+		for layers in tiles:
+			for layer: Layer in layers:
+				layer.view.render_target_update_mode = SubViewport.UPDATE_DISABLED
+		if packing != null:
+			packing.render_target_update_mode = SubViewport.UPDATE_DISABLED
+
+	func draw(body: GeometryInstance3D, eye: Camera3D, lights: Callable) -> void:
+		rest()
+		if users.is_empty():
+			return
+		var place := body.get_global_transform_interpolated()
+		var ball := ball_of(body, place)
+		if data["seen_from"] == "eye":
+			_draw_tile(0, body, place, ball, func(camera): return copy_eye(camera, eye, ball), eye.get_viewport().get_texture().get_size())
+			return
+		var distant: bool = data["seen_from"] == "distant light"
+		var found: Array[Light3D] = lights.call(Vector3(ball.x, ball.y, ball.z), distant, tiles.size())
+		for tile in tiles.size():
+			# a view of zeros shows nothing
+			var view := Projection(Vector4.ZERO, Vector4.ZERO, Vector4.ZERO, Vector4.ZERO)
+			if tile < found.size():
+				_draw_tile(tile, body, place, ball, func(camera): return look_from(camera, found[tile], distant, ball), Vector2i(SIDE, SIDE))
+				view = view_of(tiles[tile][0].camera, Vector2i(tile % columns, floori(tile / float(columns))), columns)
+			if tile < data["views"].size():
+				for material in users:
+					material.set_shader_parameter(data["views"][tile], view)
+		if packing != null:
+			packing.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+
+	func _draw_tile(tile: int, body: GeometryInstance3D, place: Transform3D, ball: Vector4, aim: Callable, size: Vector2i) -> void:
+		for layer: Layer in tiles[tile]:
+			layer.follow(body, place)
+			layer.look(size, aim.call(layer.camera), MARGIN * ball.w if layer.material.get_shader_parameter("before") else 0.0)
+
+
+## Gives a camera the view of the eye; -1, as distances are those from the eye.
+static func copy_eye(camera: Camera3D, eye: Camera3D, ball: Vector4) -> float:
+	for property in ["projection", "fov", "size", "frustum_offset", "keep_aspect", "near", "far", "h_offset", "v_offset"]:
+		camera.set(property, eye.get(property))
+	camera.transform = eye.get_global_transform_interpolated().orthonormalized()
+	return -1.0
+
+
+## Lets a camera see all of a ball from a light, `distant`: as if it were far away. The distance of the plane before it.
+static func look_from(camera: Camera3D, light: Light3D, distant: bool, ball: Vector4) -> float:
+	var center := Vector3(ball.x, ball.y, ball.z)
+	var place := light.get_global_transform_interpolated()
+	var afar := distant or light is DirectionalLight3D
+	var way := place.basis.z if light is DirectionalLight3D else place.origin - center
+	var distance := 2.0 * ball.w if afar else maxf(way.length(), 1e-6)
+	var half := minf(asin(minf(ball.w / distance, 1.0)), 1.5)
+	var near := maxf(distance - ball.w, 0.001 * distance)
+	if afar:
+		camera.set_orthogonal(2.0 * ball.w, near, distance + ball.w)
+	else:
+		camera.set_perspective(rad_to_deg(2.0 * half), near, distance + ball.w)
+	way = way.normalized()
+	var up := Vector3.BACK if absf(way.y) > 0.99 else Vector3.UP
+	camera.transform = Transform3D(Basis.looking_at(-way, up), center + way * distance)
+	return near
+
+
+## World space to (u w, v w, distance from the light's plane, w) in a tile of the picture.
+static func view_of(camera: Camera3D, tile: Vector2i, columns: int) -> Projection:
+	var view := Projection(camera.transform.affine_inverse())
+	var clip := camera.get_camera_projection() * view
+	var result := Projection()
+	for i in 4:
+		var to := clip[i]
+		var u := (tile.x + 0.5) * to.w + 0.5 * to.x
+		var v := (tile.y + 0.5) * to.w - 0.5 * to.y
+		result[i] = Vector4(u / columns, v / columns, -view[i].z, to.w)
+	result[3].z -= camera.near # half floats are finer near the plane
+	return result
