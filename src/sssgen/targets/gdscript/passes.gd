@@ -63,7 +63,6 @@ void fragment() {
 ## The camera whose view the pictures of the eye have; without one it is the current camera of the body's viewport.
 @export var eye: Camera3D
 
-static var _shaders: Dictionary = {}
 var _pictures: Array[Picture] = []
 var _lights: Array[Light3D] = []
 var _materials: Array[ShaderMaterial] = []
@@ -81,7 +80,7 @@ func _enter_tree() -> void:
 		push_error("%s has no body: add it below one" % name)
 		return
 	for data in passes():
-		_pictures.append(Picture.new(data, self))
+		_pictures.append(Picture.new(self, data))
 	_lights.assign(get_tree().root.find_children("*", "Light3D", true, false))
 	get_tree().node_added.connect(_note_light)
 	# after all scripts of the frame, so that no picture is a frame late
@@ -181,221 +180,223 @@ func _fall(light: Light3D, center: Vector3) -> float:
 	return pow(maxf(1.0 - pow(away / reach, 4.0), 0.0), 2.0) * pow(away, -light.get(kind + "_attenuation"))
 
 
-static func shader_of(text: String) -> Shader:
-	if text not in _shaders:
-		_shaders[text] = Shader.new()
-		_shaders[text].code = text
-	return _shaders[text]
+## The ball around a body, in world space.
+class Ball:
+	var center: Vector3
+	var radius := 1e-6
+
+	func _init(body: GeometryInstance3D, place: Transform3D) -> void:
+		var box := body.custom_aabb if body.custom_aabb.has_volume() else body.get_aabb()
+		box = box.grow(body.extra_cull_margin)
+		center = place * box.get_center()
+		for i in 8:
+			radius = maxf(radius, 1.02 * center.distance_to(place * box.get_endpoint(i)))
 
 
-static func viewport_of(parent: Node) -> SubViewport:
-	var view := SubViewport.new()
-	view.use_hdr_2d = true # half floats
-	view.gui_disable_input = true
-	parent.add_child(view, false, Node.INTERNAL_MODE_BACK)
-	return view
+## A viewport of half floats.
+class FloatView extends SubViewport:
+	static var shaders := {}
 
+	func _init(above: Node) -> void:
+		use_hdr_2d = true
+		gui_disable_input = true
+		above.add_child(self, false, Node.INTERNAL_MODE_BACK)
 
-## The ball around a body, in world space: its center, and in w its radius.
-static func ball_of(geometry: GeometryInstance3D, place: Transform3D) -> Vector4:
-	var box := geometry.custom_aabb if geometry.custom_aabb.has_volume() else geometry.get_aabb()
-	box = box.grow(geometry.extra_cull_margin)
-	var center := place * box.get_center()
-	var radius := 0.0
-	for i in 8:
-		radius = maxf(radius, center.distance_to(place * box.get_endpoint(i)))
-	return Vector4(center.x, center.y, center.z, maxf(radius, 1e-6) * 1.02)
+	static func material_of(text: String) -> ShaderMaterial:
+		if text not in shaders:
+			shaders[text] = Shader.new()
+			shaders[text].code = text
+		var material := ShaderMaterial.new()
+		material.shader = shaders[text]
+		return material
 
 
 ## What one camera sees of the body alone: a layer of a picture.
-class Layer:
-	var view: SubViewport
+class Layer extends FloatView:
 	var camera := Camera3D.new()
 	var copy := GeometryInstance3D.new()
-	var material := ShaderMaterial.new()
+	var material: ShaderMaterial
 	var skeleton: RID
+	var is_behind: bool
 
 	## `before`: the layer that this one is behind, or null.
-	func _init(back: bool, empty: float, before: Layer, parent: Node) -> void:
-		view = viewport_of(parent)
-		view.own_world_3d = true
-		var environment := Environment.new()
-		environment.background_mode = Environment.BG_COLOR
-		environment.background_color = Color(empty, empty, empty)
-		environment.ambient_light_source = Environment.AMBIENT_SOURCE_DISABLED
-		environment.reflected_light_source = Environment.REFLECTION_SOURCE_DISABLED
-		camera.environment = environment
-		material.shader = shader_of(DISTANCE % ("front" if back else "back"))
-		if before != null:
-			material.set_shader_parameter("before", before.view.get_texture())
+	func _init(above: Node, back: bool, empty: float, before: Layer) -> void:
+		super(above)
+		own_world_3d = true
+		is_behind = before != null
+		material = material_of(DISTANCE % ("front" if back else "back"))
+		if is_behind:
+			material.set_shader_parameter("before", before.get_texture())
 		copy.material_override = material
-		copy.cast_shadow = GeometryInstance3D.SHADOW_CASTING_SETTING_OFF
-		for node: Node3D in [camera, copy]:
+		camera.environment = Environment.new()
+		camera.environment.background_mode = Environment.BG_COLOR
+		camera.environment.background_color = Color(empty, empty, empty)
+		for node: Node3D in [copy, camera]:
 			node.physics_interpolation_mode = Node.PHYSICS_INTERPOLATION_MODE_OFF
-			view.add_child(node)
+			add_child(node)
 		camera.current = true
 
-	## Takes the shape that a body has in this frame.
-	func follow(body: GeometryInstance3D, place: Transform3D) -> void:
+	## Gives the camera the view of the eye.
+	func aim_as(eye: Camera3D) -> void:
+		for property in ["projection", "fov", "size", "frustum_offset", "keep_aspect", "near", "far", "h_offset", "v_offset"]:
+			camera.set(property, eye.get(property))
+		camera.transform = eye.get_global_transform_interpolated().orthonormalized()
+
+	## Lets the camera see all of a ball from a light; `distant`: as if it were far away.
+	func aim_from(light: Light3D, distant: bool, ball: Ball) -> void:
+		var place := light.get_global_transform_interpolated()
+		var way := place.basis.z if light is DirectionalLight3D else place.origin - ball.center
+		var afar := distant or light is DirectionalLight3D
+		var distance := 2.0 * ball.radius if afar else maxf(way.length(), 1e-6)
+		var near := maxf(distance - ball.radius, 0.001 * distance)
+		if afar:
+			camera.set_orthogonal(2.0 * ball.radius, near, distance + ball.radius)
+		else:
+			var half := minf(asin(minf(ball.radius / distance, 1.0)), 1.5)
+			camera.set_perspective(rad_to_deg(2.0 * half), near, distance + ball.radius)
+		way = way.normalized()
+		var up := Vector3.BACK if absf(way.y) > 0.99 else Vector3.UP
+		camera.transform = Transform3D(Basis.looking_at(-way, up), ball.center + way * distance)
+
+	## Draws a body as it is in this frame.
+	func draw(body: GeometryInstance3D, place: Transform3D, new_size: Vector2i, from_plane: bool, margin: float) -> void:
+		_take_shape(body)
+		copy.transform = place
+		copy.force_update_transform()
+		camera.force_update_transform()
+		if size != new_size:
+			size = new_size
+		material.set_shader_parameter("from_plane", from_plane)
+		material.set_shader_parameter("plane", camera.near)
+		material.set_shader_parameter("margin", margin if is_behind else 0.0)
+		render_target_update_mode = SubViewport.UPDATE_ALWAYS
+
+	func _take_shape(body: GeometryInstance3D) -> void:
 		if copy.get_base() != body.get_base():
 			copy.set_base(body.get_base())
 			skeleton = RID()
 		copy.custom_aabb = body.custom_aabb
 		copy.extra_cull_margin = body.extra_cull_margin
 		copy.lod_bias = body.lod_bias
-		copy.transform = place
-		copy.force_update_transform()
-		var shape := body as MeshInstance3D
-		if shape == null:
+		var mesh := body as MeshInstance3D
+		if mesh == null:
 			return
-		var skin := shape.get_skin_reference()
+		var skin := mesh.get_skin_reference()
 		var bones := skin.get_skeleton() if skin != null else RID()
 		if skeleton != bones:
 			skeleton = bones
 			RenderingServer.instance_attach_skeleton(copy.get_instance(), bones)
-		for i in shape.get_blend_shape_count():
-			RenderingServer.instance_set_blend_shape_weight(copy.get_instance(), i, shape.get_blend_shape_value(i))
+		for i in mesh.get_blend_shape_count():
+			RenderingServer.instance_set_blend_shape_weight(copy.get_instance(), i, mesh.get_blend_shape_value(i))
 
-	## `plane`: where distances start, or -1 for the eye itself; `margin`: how far it is behind the layer before.
-	func look(size: Vector2i, plane: float, margin: float) -> void:
-		camera.force_update_transform()
-		if view.size != size:
-			view.size = size
-		view.render_target_update_mode = SubViewport.UPDATE_ALWAYS
-		material.set_shader_parameter("from_plane", plane >= 0.0)
-		material.set_shader_parameter("plane", plane)
-		material.set_shader_parameter("margin", margin)
+	## World space to (u w, v w, distance from the plane, w) in a tile of the picture.
+	func view_in(tile: Vector2i, columns: int) -> Projection:
+		var view := Projection(camera.transform.affine_inverse())
+		var clip := camera.get_camera_projection() * view
+		var result := Projection()
+		for i in 4:
+			var to: Vector4 = clip[i]
+			var u := (tile.x + 0.5) * to.w + 0.5 * to.x
+			var v := (tile.y + 0.5) * to.w - 0.5 * to.y
+			result[i] = Vector4(u / columns, v / columns, -view[i].z, to.w)
+		result[3].z -= camera.near # the plane: half floats are finer near it
+		return result
+
+
+## Several layers as the channels of one picture, with a tile for each light.
+class Packing extends FloatView:
+	func _init(above: Node, tiles: Array[Array], columns: int) -> void:
+		super(above)
+		disable_3d = true
+		size = Vector2i(SIDE, SIDE)
+		for tile in tiles.size():
+			var square := ColorRect.new()
+			square.size = Vector2(SIDE, SIDE) / columns
+			square.position = square.size * Vector2(tile % columns, floori(float(tile) / columns))
+			square.material = material_of(PACKING)
+			for i in 4:
+				var layer: Layer = tiles[tile][mini(i, tiles[tile].size() - 1)]
+				square.material.set_shader_parameter("layer_%d" % i, layer.get_texture())
+			add_child(square)
 
 
 ## A pass: the layers that it draws for each light, and the picture that they make. The eye is one light here.
 class Picture:
 	var data: Dictionary
-	var texture: ViewportTexture
 	var users: Array[ShaderMaterial] = []
 	var tiles: Array[Array] = []
 	var columns := 1
-	var packing: SubViewport
+	var packing: Packing
 
-	func _init(pass_data: Dictionary, parent: Node) -> void:
-		data = pass_data
+	func _init(above: Node, of_pass: Dictionary) -> void:
+		data = of_pass
 		columns = 2 if data["views"].size() > 1 else 1
 		for tile in maxi(data["views"].size(), 1):
-			var layers: Array[Layer] = []
-			for layer: String in data["layers"]:
-				var back := layer.begins_with("exit")
-				var place := int(layer.get_slice(" ", 1))
-				var before: int = layers.size() - 1 if back else data["layers"].find("exit %d" % (place - 1))
-				layers.append(Layer.new(back, FAR if data["empty"] == "far" else 0.0, layers[before] if place > 1 else null, parent))
-			tiles.append(layers)
-		if tiles[0].size() == 1 and tiles.size() == 1:
-			texture = tiles[0][0].view.get_texture()
-		else:
-			_pack(parent)
+			tiles.append(_layers(above))
+		if tiles.size() > 1 or tiles[0].size() > 1:
+			packing = Packing.new(above, tiles, columns)
 
-	## The last viewport has a tile for each light and a channel for each layer.
-	func _pack(parent: Node) -> void:
-		packing = viewport_of(parent)
-		packing.disable_3d = true
-		packing.size = Vector2i(SIDE, SIDE) * columns
-		for tile in tiles.size():
-			var square := ColorRect.new()
-			square.position = Vector2(tile % columns, floori(tile / float(columns))) * SIDE
-			square.size = Vector2(SIDE, SIDE)
-			var material := ShaderMaterial.new()
-			material.shader = shader_of(PACKING)
-			for i in 4:
-				material.set_shader_parameter("layer_%d" % i, tiles[tile][mini(i, tiles[tile].size() - 1)].view.get_texture())
-			square.material = material
-			packing.add_child(square)
-		texture = packing.get_texture()
+	func _layers(above: Node) -> Array:
+		var layers: Array[Layer] = []
+		var empty := FAR if data["empty"] == "far" else 0.0
+		for layer: String in data["layers"]:
+			var back := layer.begins_with("exit")
+			var place := int(layer.get_slice(" ", 1))
+			var before: int = layers.size() - 1 if back else data["layers"].find("exit %d" % (place - 1))
+			layers.append(Layer.new(above, back, empty, layers[before] if place > 1 else null))
+		return layers
+
+	## The viewport whose texture is the picture.
+	func view() -> FloatView:
+		return packing if packing != null else tiles[0][0]
 
 	func take(material: ShaderMaterial) -> void:
 		if material.get_shader_parameter(data["texture"]) == null:
-			material.set_shader_parameter(data["texture"], texture)
+			material.set_shader_parameter(data["texture"], view().get_texture())
 			users.append(material)
 
 	func release() -> void:
 		for material in users:
 			material.set_shader_parameter(data["texture"], null)
-		for layers in tiles:
-			for layer: Layer in layers:
-				layer.view.queue_free()
-		if packing != null:
-			packing.queue_free()
+		for one in _views():
+			one.queue_free()
 
-	## Draws nothing: the body is not to be seen.
 	func rest() -> void:
-		for layers in tiles:
-			for layer: Layer in layers:
-				layer.view.render_target_update_mode = SubViewport.UPDATE_DISABLED
-		if packing != null:
-			packing.render_target_update_mode = SubViewport.UPDATE_DISABLED
+		for one in _views():
+			one.render_target_update_mode = SubViewport.UPDATE_DISABLED
 
-	func draw(body: GeometryInstance3D, eye: Camera3D, lights: Callable) -> void:
+	func _views() -> Array[FloatView]:
+		var views: Array[FloatView] = []
+		for layers in tiles:
+			views.append_array(layers)
+		if packing != null:
+			views.append(packing)
+		return views
+
+	func draw(body: GeometryInstance3D, eye: Camera3D, brightest: Callable) -> void:
 		rest()
 		if users.is_empty():
 			return
 		var place := body.get_global_transform_interpolated()
-		var ball := ball_of(body, place)
-		if data["seen_from"] == "eye":
-			_draw_tile(0, body, place, ball, func(camera): return copy_eye(camera, eye, ball), eye.get_viewport().get_texture().get_size())
-			return
+		var ball := Ball.new(body, place)
+		var by_eye: bool = data["seen_from"] == "eye"
 		var distant: bool = data["seen_from"] == "distant light"
-		var found: Array[Light3D] = lights.call(Vector3(ball.x, ball.y, ball.z), distant, tiles.size())
+		var lights: Array = [] if by_eye else brightest.call(ball.center, distant, tiles.size())
 		for tile in tiles.size():
 			# a view of zeros shows nothing
-			var view := Projection(Vector4.ZERO, Vector4.ZERO, Vector4.ZERO, Vector4.ZERO)
-			if tile < found.size():
-				_draw_tile(tile, body, place, ball, func(camera): return look_from(camera, found[tile], distant, ball), Vector2i(SIDE, SIDE))
-				view = view_of(tiles[tile][0].camera, Vector2i(tile % columns, floori(tile / float(columns))), columns)
+			var shown := Projection(Vector4.ZERO, Vector4.ZERO, Vector4.ZERO, Vector4.ZERO)
+			if by_eye or tile < lights.size():
+				for layer: Layer in tiles[tile]:
+					if by_eye:
+						layer.aim_as(eye)
+					else:
+						layer.aim_from(lights[tile], distant, ball)
+					var side := Vector2i(SIDE, SIDE) / columns
+					var size := Vector2i(eye.get_viewport().get_texture().get_size()) if by_eye else side
+					layer.draw(body, place, size, not by_eye, MARGIN * ball.radius)
+				shown = tiles[tile][0].view_in(Vector2i(tile % columns, floori(float(tile) / columns)), columns)
 			if tile < data["views"].size():
 				for material in users:
-					material.set_shader_parameter(data["views"][tile], view)
+					material.set_shader_parameter(data["views"][tile], shown)
 		if packing != null:
 			packing.render_target_update_mode = SubViewport.UPDATE_ALWAYS
-
-	func _draw_tile(tile: int, body: GeometryInstance3D, place: Transform3D, ball: Vector4, aim: Callable, size: Vector2i) -> void:
-		for layer: Layer in tiles[tile]:
-			layer.follow(body, place)
-			layer.look(size, aim.call(layer.camera), MARGIN * ball.w if layer.material.get_shader_parameter("before") else 0.0)
-
-
-## Gives a camera the view of the eye; -1, as distances are those from the eye.
-static func copy_eye(camera: Camera3D, eye: Camera3D, ball: Vector4) -> float:
-	for property in ["projection", "fov", "size", "frustum_offset", "keep_aspect", "near", "far", "h_offset", "v_offset"]:
-		camera.set(property, eye.get(property))
-	camera.transform = eye.get_global_transform_interpolated().orthonormalized()
-	return -1.0
-
-
-## Lets a camera see all of a ball from a light, `distant`: as if it were far away. The distance of the plane before it.
-static func look_from(camera: Camera3D, light: Light3D, distant: bool, ball: Vector4) -> float:
-	var center := Vector3(ball.x, ball.y, ball.z)
-	var place := light.get_global_transform_interpolated()
-	var afar := distant or light is DirectionalLight3D
-	var way := place.basis.z if light is DirectionalLight3D else place.origin - center
-	var distance := 2.0 * ball.w if afar else maxf(way.length(), 1e-6)
-	var half := minf(asin(minf(ball.w / distance, 1.0)), 1.5)
-	var near := maxf(distance - ball.w, 0.001 * distance)
-	if afar:
-		camera.set_orthogonal(2.0 * ball.w, near, distance + ball.w)
-	else:
-		camera.set_perspective(rad_to_deg(2.0 * half), near, distance + ball.w)
-	way = way.normalized()
-	var up := Vector3.BACK if absf(way.y) > 0.99 else Vector3.UP
-	camera.transform = Transform3D(Basis.looking_at(-way, up), center + way * distance)
-	return near
-
-
-## World space to (u w, v w, distance from the light's plane, w) in a tile of the picture.
-static func view_of(camera: Camera3D, tile: Vector2i, columns: int) -> Projection:
-	var view := Projection(camera.transform.affine_inverse())
-	var clip := camera.get_camera_projection() * view
-	var result := Projection()
-	for i in 4:
-		var to := clip[i]
-		var u := (tile.x + 0.5) * to.w + 0.5 * to.x
-		var v := (tile.y + 0.5) * to.w - 0.5 * to.y
-		result[i] = Vector4(u / columns, v / columns, -view[i].z, to.w)
-	result[3].z -= camera.near # half floats are finer near the plane
-	return result
