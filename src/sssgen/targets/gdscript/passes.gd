@@ -19,8 +19,14 @@ uniform float plane;
 uniform float margin;
 uniform sampler2D before : filter_nearest, repeat_disable;
 
-// What ALBEDO takes for a stored number: the Compatibility renderer decodes it with a cubic polynomial, and encodes it
-// with a power.
+// The nearest half float, and a bit more, so that it stays the same where it is cut off and where it is rounded.
+float half(float x) {
+    float unit = exp2(floor(log2(max(x, 0.0001))) - 10.0);
+    return (round(x / unit) + 0.25) * unit;
+}
+
+// What ALBEDO takes for a number to be stored: the Compatibility renderer decodes it with a cubic polynomial, and encodes
+// it with a power.
 float stored(float x) {
 #if CURRENT_RENDERER == RENDERER_COMPATIBILITY
     float light = pow((x + 0.055) / 1.055, 2.4);
@@ -40,7 +46,7 @@ void fragment() {
     if (margin > 0.0 && away < textureLod(before, SCREEN_UV, 0.0).r + margin) {
         discard;
     }
-    ALBEDO = vec3(stored(away));
+    ALBEDO = vec3(stored(half(away)));
 }
 "
 
