@@ -63,8 +63,9 @@ class Godot:
         """The picture, (height, width, 4) float64, row 0 at the top, in linear light; alpha is 0 behind the body.
 
         `values` are parameters as JSON values with their kind, `textures` (height, width, 4) or (depth, height, width,
-        4) of float32, row 0 at v = 0. The first of the `scripts` is that of a node below the body. An empty `shader` means Godot's standard material with `values`. Raises
-        SssgenError where Godot refuses the shader or draws nothing.
+        4) of float32, row 0 at v = 0. The first of the `scripts` is that of a node below the body. An empty `shader`
+        means Godot's standard material with `values`. Raises SssgenError where Godot refuses the shader or draws
+        nothing.
         """
         plan, files = _plan(view, values, textures)
         plan["script"] = next(iter(scripts or {}), "")

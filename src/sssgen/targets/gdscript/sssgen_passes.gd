@@ -314,6 +314,7 @@ class Packing extends FloatView:
 	func _init(above: Node, tiles: Array[Array], columns: int) -> void:
 		super(above)
 		disable_3d = true
+		transparent_bg = true # alpha has a layer
 		size = Vector2i(SIDE, SIDE)
 		for tile in tiles.size():
 			var square := ColorRect.new()
