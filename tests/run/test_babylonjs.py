@@ -24,6 +24,7 @@ from engine_cases import (
     through,
 )
 from folders import ROOT
+from shadow_cases import Scene, check_absence, check_shadows, modules_of
 from skips import or_skip
 from sssgen.material.material_loading import load_material, parse_material
 from sssgen.run.backends import Array
@@ -147,6 +148,21 @@ def test_a_leaf_from_both_sides(babylon: EnginePage, front: bool, lit_from: str,
     inner[[0, -1]] = inner[:, [0, -1]] = False  # the rasteriser's rule leaves the mesh's last row out
     assert np.abs(picture - expected)[..., :3][inner].max() < 1.0 / 255.0
     assert (picture[..., :3][inner].max() > 0.1) == (lit_from == "behind")
+
+
+@pytest.mark.parametrize("lamp", some_slow("direction", "point", others=["cascades", "spot"]))
+def test_other_bodies_shadow_the_light_that_comes_through(babylon: EnginePage, lamp: str, tmp_path: Path) -> None:
+    """A wall does, wherever it is; the body does not, nor one of another scale with the same material."""
+    check_shadows(Scene(babylon, modules_of("babylonjs", tmp_path), BLACK, lamp))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("sought", "text"), [("aggShadow", "aggShadow_ABSENT"), ("[^;]*worldPos", "worldPos_ABSENT")])
+def test_a_version_without_its_text_of_shadows_is_an_error(
+    babylon: EnginePage, sought: str, text: str, tmp_path: Path
+) -> None:
+    scene = Scene(babylon, modules_of("babylonjs", tmp_path), BLACK, "point")
+    check_absence(scene, sought, rf"m: this version of Babylon\.js has no .*{text}")
 
 
 @pytest.mark.slow

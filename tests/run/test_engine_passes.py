@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -97,3 +98,24 @@ def test_the_engine_draws_the_passes(three: EnginePage, case: tuple[str, PlacedM
     difference = np.abs(drawn - expected)[..., :3][inner].max(axis=-1)
     # the oracle's depths are half floats, so that every back end has the same
     assert np.quantile(difference, 0.98) < 1.0 / 255.0 and expected[..., :3][inner].mean() > 0.05
+
+
+def test_values_of_the_object_come_from_its_matrix(three: EnginePage) -> None:
+    """wax_mouse half as large and in another place: the page sets no scale."""
+    mesh, compiled = mesh_of("wax_mouse"), sssgen.compile("wax_mouse", "threejs")
+    moved = np.diag([0.5, 0.5, 0.5, 1.0])
+    moved[:3, 3] = [0.3, -0.2, 0.1]
+    own = mesh.shell
+    shell = dataclasses.replace(
+        own,
+        model=moved @ own.model,
+        camera_position=tuple(moved[:3, :3] @ own.camera_position + moved[:3, 3]),
+        view_projection=own.view_projection @ np.linalg.inv(moved),
+        parameters={**own.parameters, "object_scale": (0.5 * own.parameters["object_scale"][0],)},
+        ambient=(0.0, 0.0, 0.0),
+    )
+    assert shell.unplaced(compiled.reflection["uniforms"])["object_scale"] == pytest.approx([1.0])
+    drawn = page_values.shade(compiled, shell, three, mesh.size, mesh.points, BLACK)
+    expected, whole = (through("wax_mouse", mesh._replace(shell=one)) for one in (shell, own))
+    assert np.abs(drawn - expected)[..., :3][mesh.hit].max() < 1.0 / 255.0
+    assert np.abs(whole - expected)[..., :3][mesh.hit].max() > 0.02, "the size matters"

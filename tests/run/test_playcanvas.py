@@ -25,6 +25,7 @@ from engine_cases import (
     through,
 )
 from folders import ROOT
+from shadow_cases import LAMPS, Scene, check_absence, check_shadows, modules_of
 from skips import or_skip
 from sssgen.material.material_loading import load_material
 from sssgen.run.backends import Array
@@ -274,14 +275,51 @@ def test_layers_are_those_of_its_own_material(playcanvas: EnginePage, tmp_path: 
 
 @SLOW
 @CLUSTERED
-def test_light_that_comes_through_has_no_shadow(playcanvas: EnginePage, clustered: bool) -> None:
+def test_a_body_does_not_shadow_the_light_that_comes_through_it(playcanvas: EnginePage, clustered: bool) -> None:
     """The material is drawn into shadow maps, with its mask, and the light that comes through stays."""
     mesh = mesh_of("ice")
-    properties = {**BLACK, "clustered": clustered, "shadows": True}
+    properties = {**BLACK, "clustered": clustered, "stage": {"shadows": True}}
     alone = drawn(playcanvas, "ice", mesh, properties, ambient=(0.0, 0.0, 0.0))
     assert np.abs(alone - through("ice", mesh))[..., :3][mesh.hit].max() < 1.0 / 255.0
-    whole, dark = (drawn(playcanvas, "ice", mesh, {"clustered": clustered, "shadows": one}) for one in (False, True))
+    whole, dark = (
+        drawn(playcanvas, "ice", mesh, {"clustered": clustered, "stage": {"shadows": one}}) for one in (False, True)
+    )
     assert (whole - dark)[..., :3][mesh.hit].max() > 8.0 / 255.0  # what it reflects is in its own shadow
+
+
+@pytest.mark.parametrize(
+    ("lamp", "clustered"),
+    [
+        pytest.param(
+            lamp, clustered, marks=[] if (lamp, clustered) in (("point", True), ("direction", False)) else [SLOW]
+        )
+        for lamp in LAMPS
+        for clustered in (True, False)
+    ],
+)
+def test_other_bodies_shadow_the_light_that_comes_through(
+    playcanvas: EnginePage, lamp: str, clustered: bool, tmp_path: Path
+) -> None:
+    """A wall does, wherever it is; the body does not, nor one of another scale with the same material."""
+    properties = {**BLACK, "clustered": clustered}
+    check_shadows(Scene(playcanvas, modules_of("playcanvas", tmp_path), properties, lamp))
+
+
+@SLOW
+@pytest.mark.parametrize(
+    ("sought", "chunk"),
+    [
+        ("CASTSHADOW", "lightFunctionLightPS"),
+        ("cookieIntensity", "clusteredLightPS"),
+        ("vPositionW", "lightFunctionShadowPS"),
+    ],
+)
+def test_a_version_without_its_text_of_shadows_is_an_error(
+    playcanvas: EnginePage, sought: str, chunk: str, tmp_path: Path
+) -> None:
+    scene = Scene(playcanvas, modules_of("playcanvas", tmp_path), BLACK, "point")
+    said = rf"m: this version of PlayCanvas has no .*{sought}_ABSENT.* in its chunk {chunk}"
+    check_absence(scene, sought, said)
 
 
 @SLOW

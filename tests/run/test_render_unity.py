@@ -9,7 +9,6 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -18,10 +17,9 @@ from folders import EXAMPLES
 from lamp_scene import BALL, LAMP, RIBS, SIZE, largest_difference
 from sssgen.cli.main import main
 from sssgen.run import backends
-from sssgen.run.backends import Array, Backend, Text
+from sssgen.run.backends import Backend, Text
 from sssgen.run.backends.backend_process import BackendProcess
 from sssgen.run.backends.unity_backend import UnityHLSL
-from sssgen.run.render import unity_values
 from sssgen.run.render.scene_render import RenderedPicture, render
 from sssgen.scene.pictures import images
 from sssgen.scene.scene import Scene
@@ -207,39 +205,6 @@ def test_how_near_each_light_is(unity: UnityHLSL, tmp_path: Path) -> None:
         means[lights] = oracle.linear[oracle.covered == 1.0].mean(axis=0)
     lamp, sun, both = means.values()
     assert sun[0] < 0.02 < 0.05 < both[0] < lamp[0]
-
-
-def test_shadows_on_transmitted_light(backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) -> None:
-    """In URP the shadow of another body takes the transmitted light, and the body's own does not.
-
-    The stand-in's shadow map has one plane, and everything behind it is in shadow.
-    """
-    machine = backend("unity-urp")
-    assert isinstance(machine, UnityHLSL)
-    if machine.unity.real:
-        pytest.skip("Unity's shadow map is a texture")
-    ball, light = '[geometry]\nkind = "ball"\n', "[[light]]\ndirection = [0.0, 0.0, -1.0]\ncolor = [0.9, 0.8, 0.7]\n"
-    described = scene(f'material = "paper_lantern"\nsamples = 1\n{ball}{light}{RIBS}')
-    engine = unity_values._engine
-
-    def brightest(plane: float, offset: float) -> float:
-        """`plane`: its distance towards the light."""
-        to_shadow = np.zeros((4, 4))
-        to_shadow[2] = [0.0, 0.0, 1.0, 0.5 + plane]  # above 0.5, behind the plane
-
-        def with_shadow(*arguments: Any) -> dict[str, Array]:
-            own = {"_MainLightWorldToShadow": to_shadow.T, "_MainLightShadowParams": np.array([1.0, 0.0, 0.0, 0.0])}
-            return engine(*arguments) | own | {"_TransmissionShadowOffset": np.array(offset)}
-
-        monkeypatch.setattr(unity_values, "_engine", with_shadow)
-        return float(picture_of(described, machine).linear.max())
-
-    lit = brightest(-9.0, 0.0)
-    assert lit > 0.1
-    own, other = 0.0, 5.0
-    assert brightest(own, 0.0) == brightest(other, 0.0) == lit
-    assert brightest(own, 2.5) == lit
-    assert brightest(other, 2.5) == 0.0
 
 
 @pytest.mark.parametrize("name", UNITY)

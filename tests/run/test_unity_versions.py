@@ -7,7 +7,8 @@ own packages are read where SSSGEN_UNITY_INCLUDES names them.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,15 +17,13 @@ import pytest
 
 import sssgen
 from folders import EXAMPLES
-from lamp_scene import RIBS, SIZE
+from lamp_scene import RIBS
 from sssgen.run.backends import Array, Backend
-from sssgen.run.backends.unity_backend import UnityHLSL
 from sssgen.run.compilers import shaderlab
 from sssgen.run.compilers import unity_compiler as unity
 from sssgen.run.compilers.compiler_interface import Compiler, Source
-from sssgen.run.render import unity_values
-from sssgen.run.render.scene_render import render
 from sssgen.scene.scene_loading import parse_scene
+from unity_engine import drawing
 
 CLUSTERS = {
     202120: "_CLUSTERED_RENDERING",
@@ -98,6 +97,7 @@ def test_every_version_takes_every_pass(text: str, version: int, of_version: Cal
         ("GetMeshRenderingLayer()", {202220, 60000000, 60000100}),
         ("GetMeshRenderingLightLayer()", {202120}),
         ("SampleProbeVolumePixel(", {60000000, 60000100}),
+        ("unity_RendererBounds_Min", {202220, 60000000, 60000100}),
         ("UnityMetaFragment(", set(CLUSTERS)),
     ],
 )
@@ -191,30 +191,10 @@ def test_a_graph_is_compiled_for_each_pipeline(
 
 
 @pytest.fixture
-def drawn(backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Array]]:
+def drawn(backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Array]:
     """`drawn(version, keywords, values)`: the light that comes through a lantern, with the engine's values changed."""
-    machine = backend("unity-urp")
-    assert isinstance(machine, UnityHLSL)
-    if machine.unity.real:
-        pytest.skip("SSSGEN_UNITY_INCLUDES is set: only the stand-in headers let a test choose the engine's values")
-    forward, engine = machine.forward, unity_values._engine
-    described = parse_scene(
-        f'material = "paper_lantern"\nsamples = 1\n[geometry]\nkind = "ball"\n{SUNS_AND_LAMP}{RIBS}',
-        EXAMPLES / "scene.toml",
-    )
-
-    def draw(version: int, keywords: tuple[str, ...] = (), **values: float | list[float]) -> Array:
-        def with_keywords(shader: Any, stage: Any, given: Any) -> Any:
-            kept = [word for word in given if not keywords or word != "_ADDITIONAL_LIGHTS=1"]
-            return forward(shader, stage, [*kept, *keywords])
-
-        own = {name: np.array(value) for name, value in values.items()}
-        monkeypatch.setattr(machine.unity, "unity_version", version)
-        monkeypatch.setattr(machine, "forward", with_keywords)
-        monkeypatch.setattr(unity_values, "_engine", lambda *arguments: engine(*arguments) | own)
-        return render(described, machine, SIZE).linear
-
-    yield draw
+    text = f'material = "paper_lantern"\nsamples = 1\n[geometry]\nkind = "ball"\n{SUNS_AND_LAMP}{RIBS}'
+    return partial(drawing(backend("unity-urp"), monkeypatch), parse_scene(text, EXAMPLES / "scene.toml"))
 
 
 @pytest.mark.parametrize("version", ENDS)

@@ -24,8 +24,8 @@ class FramePass(NamedTuple):
     of: str
     """body (the object alone), casters (all that casts a shadow) or surroundings (the light around the scene)"""
     seen_from: str
-    """eye, light, distant light, first light, each light (the four brightest, each in a tile of 2 × 2), or everywhere: a
-    cube map"""
+    """eye, light, distant light, first light, each light (the four brightest, in tiles of 2 × 2), or everywhere (a cube
+    map)"""
     layers: tuple[str, ...]
     """For each channel the surface whose distance it has: `entry 1` is the nearest front face, `exit 1` the nearest
     back face, `entry 2` the nearest front face behind `exit 1`. () for light"""

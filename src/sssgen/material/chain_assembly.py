@@ -87,7 +87,7 @@ _APART = ("lighting", "shadow", "environment", *_LAST)
 
 TAKEN = frozenset(
     {"Surface", "surface", "light", "shade_fragment", "MAX_LIGHTS", "safe_normalize", "tangent_frame", *INPUTS}
-    | {"facet_light", "reflected_light", "coated_light", "towards_light", "way_out_of_box"}
+    | {"facet_light", "reflected_light", "coated_light", "towards_light", "way_out_of_box", "light_entry"}
     | {f"evaluate_{kind}" for kind in ("surface", "translucency", "lighting", "shadow", "environment", "color", *_LAST)}
 )
 """The names of the assembled functions, their shell, inputs and surface, which no uniform may have. The other names

@@ -35,6 +35,8 @@ class Control(TypedDict):
     default: list[float]
     value: list[float]
     drawn: str | None
+    placed: bool
+    """Whether the object places it, so that a person need not set it"""
     in_scene: bool
 
 
@@ -110,6 +112,7 @@ def controls(
             "default": [float(number) for number in uniform["default"]],
             "value": [float(number) for number in values.get(uniform["source_name"], uniform["default"])],
             "drawn": uniform["drawn"],
+            "placed": uniform["placed"],
             "in_scene": uniform["source_name"] in in_scene,
         }
         for uniform in uniforms

@@ -14,6 +14,8 @@ export interface Control {
   default: number[];
   value: number[];
   drawn: string;
+  /** Whether the object places it. */
+  placed: boolean;
   in_scene: boolean;
 }
 

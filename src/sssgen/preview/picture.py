@@ -81,7 +81,7 @@ def picture_of(scene: Scene, material: Material, choices: Choices) -> Picture:
     shell = shell_of(drawn, material, reflection)
     pieces = Pieces()
     assert scene.geometry is not None  # `_on_shape` keeps one
-    head = emitted_head(material, compiled, shell.parameters, scene.parameters)
+    head = emitted_head(material, compiled, shell.unplaced(compiled.reflection["uniforms"]), scene.parameters)
     head |= {
         "shape": choices.shape,
         "shapes": ["", *SHAPES, *([OWN_MESH] if choices.mesh is not None else [])],

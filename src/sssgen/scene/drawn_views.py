@@ -48,7 +48,8 @@ def light_depth(geometry: Geometry, light: Array, layers: Sequence[str] = ("entr
 def light_layers(geometry: Geometry, lights: Array, layers: Sequence[str]) -> tuple[list[Array], Array]:
     """The matrices (4, 4) of lights (n, 4), as in `light_depth`, and their maps as the tiles of one picture.
 
-    It is (rows, columns, channels). The first light's tile is at u = v = 0, the second beside it in u. Raises SssgenError for a light at the body.
+    It is (rows, columns, channels). The first light's tile is at u = v = 0, the second beside it in u. Raises
+    SssgenError for a light at the body.
     """
     matrices: list[Array] = []
     picture = np.zeros((TILES * TEXELS, TILES * TEXELS, len(layers)))

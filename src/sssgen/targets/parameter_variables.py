@@ -26,6 +26,7 @@ def uniform_variables(printer: Printer, uniform: Uniform, source: str) -> dict[s
         "property": property_name(printer.target, source),
         "default": list(uniform.default),
         "range": (*limits, None)[:3] if limits else None,
+        "placed": any(name == "placed" for name, _ in uniform.hints),
         "unit": (hint_of(uniform, "unit")[1] or ("",))[0],
         "hint": hint_of(uniform, "source_color")[0],
         "doc": " ".join(uniform.doc.split()),

@@ -68,7 +68,15 @@ def reflect(
             place: BlockPlace = {}
             if blocked:
                 place = {"offset": offsets[uniform.name].offset, "size": offsets[uniform.name].size}
-            uniforms.append({**declared, "default": list(uniform.default), "quantity": quantity, **place})
+            uniforms.append(
+                {
+                    **declared,
+                    "default": list(uniform.default),
+                    "quantity": quantity,
+                    "placed": has_hint(uniform, "placed"),
+                    **place,
+                }
+            )
     sources = {span.file for lines in emitted.lines.values() for span in lines.values()}
     names = {source: display_name(source, program.folder) for source in sources}
     return {

@@ -60,6 +60,8 @@ class UniformRecord(DeclarationRecord, BlockPlace):
     """One number for a scalar, column after column for a matrix."""
     quantity: str | None
     """thickness, thinness or transmittance."""
+    placed: bool
+    """Whether it depends on where the object is and how large it is drawn."""
 
 
 class ImportSettings(TypedDict):

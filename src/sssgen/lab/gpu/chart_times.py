@@ -127,7 +127,7 @@ def _with_parameters(scene: Scene, measured: MeasuredScene, material: Material) 
     reflection = compile(material, gpu_programs.TARGET).reflection
     texture = body.distance_texture(measured.geometry)
     values = {
-        **body.texture_parameters(measured.geometry, texture),
+        **body.texture_parameters(texture),
         **(measured.inlay.parameters if measured.inlay is not None else {}),
     }
     read = {uniform["source_name"] for uniform in reflection["uniforms"]}

@@ -25,7 +25,7 @@ from sssgen.scene.light_view import directional_view, point_view
 from sssgen.scene.measured import scene_body as body
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.measured.view_points import points
-from sssgen.scene.scene import Light
+from sssgen.scene.scene import Light, placement
 from sssgen.targets.runtime.numpy_textures import Texture
 
 RAYS = 32
@@ -70,7 +70,7 @@ def of_scene(scene: MeasuredScene) -> SceneInputs:
     typical = max(float(np.median(chord)), 1e-9) if visible.count else 1.0
 
     # one lane for all points, so that a vector of three components does not become three lanes
-    parameters = body.texture_parameters(geometry, distances) | {"stored_range": distances.range}
+    parameters = body.texture_parameters(distances) | placement(geometry) | {"stored_range": distances.range}
     values = {
         name: np.array(value)[:, None] if isinstance(value, list) else value for name, value in parameters.items()
     }

@@ -21,6 +21,7 @@ HINTS = {
     "source_color": (0, 0, str, None),
     "unit": (1, 1, str, False),
     "spans_body": (0, 0, str, False),
+    "placed": (0, 0, str, False),
     "alias": (1, 8, str, None),
     "default_white": (0, 0, str, True),
     "default_black": (0, 0, str, True),
@@ -55,6 +56,8 @@ def check_hints(
             raise context.fail(span, f"{name} is for {'textures' if for_texture else 'values'} only")
         if name == "source_color" and not isinstance(type_, Sampler) and type_ not in (VEC3, VEC4):
             raise context.fail(span, "source_color is for vec3, vec4 and textures only")
+        if name == "placed" and type_ not in (Matrix(4, 4), FLOAT):
+            raise context.fail(span, "placed is for the mat4 of a view from the world, and for a length")
         if name == "hint_range":
             _check_range(context, span, hint.args, type_, default, uniform.value is not None)
         if name in ("sample_range", "bound_range"):

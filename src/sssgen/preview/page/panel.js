@@ -39,7 +39,7 @@ export class Panel {
     }
     this.controls = controls;
     this.root.replaceChildren();
-    const groups = Map.groupBy(controls.filter((control) => !control.drawn && !control.type.startsWith('mat')), (control) => control.technique);
+    const groups = Map.groupBy(controls.filter((control) => !control.drawn && !control.placed && !control.type.startsWith('mat')), (control) => control.technique);
     for (const [technique, members] of groups) {
       this.root.append(make('h2', { textContent: technique || 'uniforms' }), ...members.map((control) => this.row(control)));
     }

@@ -5,6 +5,10 @@ import { Engine } from '@babylonjs/core/Engines/engine.js';
 import { WebGPUEngine } from '@babylonjs/core/Engines/webgpuEngine.js';
 import { DirectionalLight } from '@babylonjs/core/Lights/directionalLight.js';
 import { PointLight } from '@babylonjs/core/Lights/pointLight.js';
+import { CascadedShadowGenerator } from '@babylonjs/core/Lights/Shadows/cascadedShadowGenerator.js';
+import { ShadowGenerator } from '@babylonjs/core/Lights/Shadows/shadowGenerator.js';
+import '@babylonjs/core/Lights/Shadows/shadowGeneratorSceneComponent.js';
+import { SpotLight } from '@babylonjs/core/Lights/spotLight.js';
 import { RawTexture } from '@babylonjs/core/Materials/Textures/rawTexture.js';
 import { RawTexture3D } from '@babylonjs/core/Materials/Textures/rawTexture3D.js';
 import { RenderTargetTexture } from '@babylonjs/core/Materials/Textures/renderTargetTexture.js';
@@ -12,12 +16,15 @@ import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
 import { Color3, Color4 } from '@babylonjs/core/Maths/math.color.js';
 import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
+import { CreateBoxVertexData } from '@babylonjs/core/Meshes/Builders/boxBuilder.js';
 import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
+import '@babylonjs/core/Meshes/thinInstanceMesh.js';
 import { Scene } from '@babylonjs/core/scene.js';
 import { floats, halves, imported, indices, serve } from './engine_page.js';
 
 /** @typedef {import('./engine_page.js').Plan} Plan */
 /** @typedef {import('./engine_page.js').PieceOf} PieceOf */
+/** @typedef {import('./engine_page.js').Stage} Stage */
 
 const RGBA = 5, FLOAT = 1, HALF_FLOAT = 2, COUNTER_CLOCKWISE = 1;
 const WRAPS = { clamp: 0, repeat: 1, mirror: 2 };
@@ -37,8 +44,11 @@ class GivenCamera extends Camera {
   /** @param {Plan} plan @param {Scene} scene */
   constructor(plan, scene) {
     super('given', Vector3.Zero(), scene);
-    this.view = Matrix.FromArray(plan.view);
-    this.freezeProjectionMatrix(Matrix.FromArray(plan.projection));
+    const whole = Matrix.FromArray(plan.view).multiply(Matrix.FromArray(plan.projection));
+    const [x, y, z] = plan.eye;
+    // cascades are chosen by the depth in view space, so that it must not be turned
+    this.view = plan.properties.stage?.cascades ? Matrix.Translation(-x, -y, -z) : Matrix.FromArray(plan.view);
+    this.freezeProjectionMatrix(Matrix.Invert(this.view).multiply(whole));
   }
 
   _getViewMatrix() {
@@ -57,11 +67,12 @@ async function draw(plan, piece) {
   scene.ambientColor = Color3.FromArray(plan.ambient.length ? plan.ambient : [0, 0, 0]);
   scene.imageProcessingConfiguration.applyByPostProcess = true; // linear light
   const camera = new GivenCamera(plan, scene);
-  plan.lights.forEach((light) => lightOf(light, scene));
+  const { stage = {}, ...properties } = plan.properties;
+  const lights = plan.lights.map((light) => lightOf(light, stage, scene));
   const { createMaterial } = await imported(plan.modules);
   const textures = Object.fromEntries(Object.entries(plan.textures).map(([name, one]) => [name, textureOf(one, piece, scene)]));
   const material = createMaterial({ ambientColor: Color3.White(), ...plan.values, ...textures }, scene);
-  for (const [path, value] of Object.entries(plan.properties)) {
+  for (const [path, value] of Object.entries(properties)) {
     const names = path.split('.');
     const last = names[names.length - 1];
     const one = names.slice(0, -1).reduce((object, name) => object[name], material);
@@ -69,24 +80,38 @@ async function draw(plan, piece) {
   }
   if (material.light === null) material.light = scene.lights[0] ?? null;
 
-  const mesh = new Mesh('drawn', scene);
-  vertexDataOf(plan, piece).applyToMesh(mesh);
-  mesh.material = material;
-  mesh.sideOrientation = COUNTER_CLOCKWISE;
-  mesh.alwaysSelectAsActiveMesh = true;
-  mesh.freezeWorldMatrix(Matrix.FromArray(plan.model));
-  mesh._updateNonUniformScalingState(true); // Babylon derives it from mesh.scaling
+  const placed = (/** @type {VertexData} */ data, /** @type {number[]} */ model) => {
+    const mesh = new Mesh('drawn', scene);
+    data.applyToMesh(mesh);
+    mesh.material = material;
+    mesh.sideOrientation = COUNTER_CLOCKWISE;
+    mesh.alwaysSelectAsActiveMesh = true;
+    mesh.receiveShadows = true;
+    mesh.freezeWorldMatrix(Matrix.FromArray(model));
+    mesh._updateNonUniformScalingState(true); // Babylon derives it from mesh.scaling
+    return mesh;
+  };
+  const meshes = [placed(vertexDataOf(plan, piece), plan.model)];
+  for (const model of stage.instances ?? []) meshes[0].thinInstanceAdd(Matrix.FromArray(model));
+  for (const { size, model } of stage.copies ?? []) meshes.push(placed(vertexDataOf(plan, piece, size), model));
+  const walls = (stage.walls ?? []).map((model) => placed(CreateBoxVertexData({}), model));
+  const generators = stage.shadows ? lights.map((light) => shadowOf(light, stage, [...meshes, ...walls], camera)) : [];
 
   const size = { width: plan.width, height: plan.height };
   const target = new RenderTargetTexture('target', size, scene, { type: FLOAT, samplingMode: Texture.NEAREST_SAMPLINGMODE, generateMipMaps: false });
   target.clearColor = scene.clearColor;
   target.activeCamera = camera;
-  target.renderList = [mesh];
+  target.renderList = meshes;
   scene.activeCamera = camera;
-  while (!mesh.isReady(true)) {
-    const wrong = mesh.subMeshes[0].effect?.getCompilationError();
+  const ready = (/** @type {Mesh} */ mesh) => mesh.isReady(true) && generators.every((one) => one.isReady(mesh.subMeshes[0], mesh.hasThinInstances, false));
+  while (![...meshes, ...walls].every(ready)) {
+    const wrong = meshes[0].subMeshes[0].effect?.getCompilationError();
     if (wrong) throw new Error(wrong);
     await new Promise((resume) => setTimeout(resume, 1));
+  }
+  for (const generator of generators) {
+    const map = generator.getShadowMap();
+    if (map) scene.customRenderTargets.push(map); // before what reads it
   }
   scene.customRenderTargets.push(target);
   engine.beginFrame();
@@ -100,8 +125,8 @@ async function draw(plan, piece) {
   return new Float32Array(pixels.buffer, pixels.byteOffset, plan.width * plan.height * 4);
 }
 
-/** @param {Plan} plan @param {PieceOf} piece */
-function vertexDataOf(plan, piece) {
+/** @param {Plan} plan @param {PieceOf} piece @param {number} [size] */
+function vertexDataOf(plan, piece, size = 1) {
   const vertices = floats(piece(plan.vertices));
   const part = (/** @type {string} */ name) => {
     const [offset, size] = plan.attributes[name];
@@ -109,18 +134,33 @@ function vertexDataOf(plan, piece) {
     return Float32Array.from({ length: count * size }, (_, i) => vertices[Math.floor(i / size) * plan.vertexSize + offset + (i % size)]);
   };
   return Object.assign(new VertexData(), {
-    positions: part('position'), normals: part('normal'), tangents: plan.withoutTangents ? null : part('tangent'), uvs: part('uv'),
+    positions: part('position').map((one) => one * size), normals: part('normal'), tangents: plan.withoutTangents ? null : part('tangent'), uvs: part('uv'),
     uvs2: part('uv2'), colors: part('color'), indices: indices(piece(plan.triangles)),
   });
 }
 
-/** @param {import('./engine_page.js').Light} light @param {Scene} scene */
-function lightOf({ position, color }, scene) {
+/** @param {import('./engine_page.js').Light} light @param {Stage} stage @param {Scene} scene */
+function lightOf({ position, color }, { spot }, scene) {
   const [x, y, z, w] = position;
-  const light = w ? new PointLight('point', new Vector3(x, y, z), scene) : new DirectionalLight('direction', new Vector3(-x, -y, -z), scene);
+  const place = new Vector3(x, y, z);
+  const towards = place.scale(-1).normalize();
+  const light = !w ? new DirectionalLight('direction', towards, scene)
+    : spot ? new SpotLight('spot', place, towards, spot, 1, scene) : new PointLight('point', place, scene);
   light.diffuse = light.specular = Color3.FromArray(color);
   light.intensity = Math.PI; // Babylon's lights are irradiance, those of the other shells radiance
   return light;
+}
+
+/** @param {DirectionalLight | PointLight | SpotLight} light @param {Stage} stage @param {Mesh[]} casters @param {Camera} camera */
+function shadowOf(light, { cascades }, casters, camera) {
+  const directional = light instanceof DirectionalLight;
+  if (directional) light.autoCalcShadowZBounds = true;
+  else Object.assign(light, { shadowMinZ: 0.1, shadowMaxZ: 20 });
+  Object.assign(camera, { minZ: 0.5, maxZ: 20 }); // where cascades begin and end
+  const generator = directional && cascades ? new CascadedShadowGenerator(1024, light, false, camera) : new ShadowGenerator(512, light);
+  generator.usePercentageCloserFiltering = !(light instanceof PointLight);
+  casters.forEach((one) => generator.addShadowCaster(one));
+  return generator;
 }
 
 /** @param {import('./engine_page.js').Texels} texels @param {PieceOf} piece @param {Scene} scene */

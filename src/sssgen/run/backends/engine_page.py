@@ -46,10 +46,12 @@ class Engine(NamedTuple):
     modules: Callable[[Path], Mapping[str, Path]]
     """What scripts import, name → file, in the folder of npm's packages; files that are missing: the engine is."""
     script: str
-    """Its file beside this one."""
+    """Its file: beside this one, or an absolute path."""
     renderers: Mapping[str, Renderer]
     v_down: bool = False
     """Whether v is 0 at the top of the engine's own meshes."""
+    places_values: bool = False
+    """Whether the engine's runtime places parameters with the hint `placed` by the object's matrix."""
 
 
 class EngineDrawing(NamedTuple):
@@ -94,7 +96,7 @@ class EnginePage:
 
     def _start(self) -> None:
         adapter = os.environ.get("SSSGEN_BROWSER_ADAPTER", "swiftshader")
-        script = Path(__file__).with_name(self.engine.script).read_text(encoding="utf-8")
+        script = (Path(__file__).parent / self.engine.script).read_text(encoding="utf-8")
         modules = {**self.modules, "./engine_page.js": Path(__file__).with_name("engine_page.js")}
         self.page = Page(self.program, adapter, script, self.renderer.switches, modules)
         facts, _ = self.page.receive(START)

@@ -5,6 +5,7 @@ import { floats, halves, imported, indices, serve } from './engine_page.js';
 
 /** @typedef {import('./engine_page.js').Plan} Plan */
 /** @typedef {import('./engine_page.js').PieceOf} PieceOf */
+/** @typedef {import('./engine_page.js').Stage} Stage */
 
 /** @type {Map<string, pc.AppBase>} */
 const apps = new Map();
@@ -57,7 +58,7 @@ fn getFalloffInvSquared(radius: f32, d: vec3f) -> f32 { return 1.0 / max(dot(d, 
 
 /** @param {Plan} plan @param {PieceOf} piece */
 async function draw(plan, piece) {
-  const { clustered = true, shadows = false, ...properties } = plan.properties;
+  const { clustered = true, stage = {}, ...properties } = plan.properties;
   const app = await appFor(plan.renderer, clustered);
   const { scene, graphicsDevice: device } = app;
   const { createMaterial } = await imported(plan.modules);
@@ -69,12 +70,19 @@ async function draw(plan, piece) {
   }
   scene.ambientLight = colorOf(plan.ambient.length ? plan.ambient : [0, 0, 0]);
 
-  const entity = new pc.Entity('', app);
-  const instance = new pc.MeshInstance(meshOf(device, plan, piece), material, entity);
-  instance.cull = false;
-  entity.addComponent('render', { meshInstances: [instance], castShadows: shadows, receiveShadows: shadows });
-  placed(entity, plan.model);
-  const lights = plan.lights.map((light) => lightOf(app, light, shadows));
+  const placed = (/** @type {pc.Mesh} */ mesh, /** @type {number[]} */ model) => {
+    const entity = new pc.Entity('', app);
+    const instance = new pc.MeshInstance(mesh, material, entity);
+    instance.cull = false;
+    entity.addComponent('render', { meshInstances: [instance], castShadows: stage.shadows, receiveShadows: stage.shadows });
+    setMatrix(entity, model);
+    return entity;
+  };
+  const bodies = [placed(meshOf(device, plan, piece), plan.model)];
+  if (stage.instances) instancesOf(bodies[0], device, stage.instances);
+  for (const { size, model } of stage.copies ?? []) bodies.push(placed(meshOf(device, plan, piece, size), model));
+  for (const model of stage.walls ?? []) bodies.push(placed(pc.Mesh.fromGeometry(device, new pc.BoxGeometry()), model));
+  const lights = plan.lights.map((light) => lightOf(app, light, stage));
   if (material.light === null && lights.length) material.light = lights[0].light;
   material.update();
 
@@ -84,7 +92,7 @@ async function draw(plan, piece) {
   });
   const renderTarget = new pc.RenderTarget({ colorBuffer, depth: true, samples: 1 });
   const camera = cameraOf(app, plan, renderTarget);
-  const all = [entity, camera, ...lights];
+  const all = [...bodies, camera, ...lights];
   all.forEach((one) => app.root.addChild(one));
   app.render();
   const pixels = /** @type {Float32Array} */ (await colorBuffer.read(0, 0, plan.width, plan.height, { renderTarget, immediate: true }));
@@ -101,15 +109,15 @@ const SEMANTICS = {
   uv: pc.SEMANTIC_TEXCOORD0, uv2: pc.SEMANTIC_TEXCOORD1, color: pc.SEMANTIC_COLOR,
 };
 
-/** @param {pc.GraphicsDevice} device @param {Plan} plan @param {PieceOf} piece */
-function meshOf(device, plan, piece) {
+/** @param {pc.GraphicsDevice} device @param {Plan} plan @param {PieceOf} piece @param {number} [scale] of positions */
+function meshOf(device, plan, piece, scale = 1) {
   const rows = floats(piece(plan.vertices));
   const count = rows.length / plan.vertexSize;
   const mesh = new pc.Mesh(device);
   for (const [name, [first, size]] of Object.entries(plan.attributes)) {
     if (name === 'tangent' && plan.withoutTangents) continue;
     const part = Float32Array.from({ length: count * size }, (_, i) => rows[Math.floor(i / size) * plan.vertexSize + first + i % size]);
-    mesh.setVertexStream(SEMANTICS[name], part, size);
+    mesh.setVertexStream(SEMANTICS[name], name === 'position' ? part.map((one) => one * scale) : part, size);
   }
   mesh.setIndices(indices(piece(plan.triangles)));
   mesh.update();
@@ -119,19 +127,32 @@ function meshOf(device, plan, piece) {
 // PlayCanvas keeps colours encoded.
 const colorOf = (/** @type {number[]} */ values) => new pc.Color(values.map((value) => value ** (1 / 2.2)));
 
-/** @param {pc.AppBase} app @param {import('./engine_page.js').Light} light @param {boolean} castShadows */
-function lightOf(app, { position, color }, castShadows) {
+/** @param {pc.AppBase} app @param {import('./engine_page.js').Light} light @param {Stage} stage */
+function lightOf(app, { position, color }, { shadows, cascades, spot }) {
   const [x, y, z, w] = position;
   const entity = new pc.Entity('', app);
-  entity.addComponent('light', { type: w ? 'omni' : 'directional', color: colorOf(color), intensity: 1, range: 50, falloffMode: pc.LIGHTFALLOFF_INVERSESQUARED, castShadows });
+  const angle = ((spot ?? 0) * 90) / Math.PI; // from the axis, in degrees
+  entity.addComponent('light', {
+    type: !w ? 'directional' : spot ? 'spot' : 'omni', color: colorOf(color), intensity: 1, range: 50, innerConeAngle: angle, outerConeAngle: angle,
+    falloffMode: pc.LIGHTFALLOFF_INVERSESQUARED, castShadows: shadows, shadowResolution: 1024, shadowDistance: 10, numCascades: cascades ? 4 : 1,
+  });
   if (w) entity.setPosition(x, y, z);
-  else entity.setRotation(new pc.Quat().setFromDirections(pc.Vec3.UP, new pc.Vec3(x, y, z).normalize()));
+  // a light shines down its own y
+  if (!w || spot) entity.setRotation(new pc.Quat().setFromDirections(pc.Vec3.UP, new pc.Vec3(x, y, z).normalize()));
   return entity;
+}
+
+/** Draws an entity's mesh with these matrices.
+ * @param {pc.Entity} entity @param {pc.GraphicsDevice} device @param {number[][]} matrices */
+function instancesOf(entity, device, matrices) {
+  const data = new Float32Array(matrices.flat()).buffer;
+  const format = pc.VertexFormat.getDefaultInstancingFormat(device);
+  entity.render?.meshInstances[0].setInstancing(new pc.VertexBuffer(device, format, matrices.length, { data }));
 }
 
 /** Gives an entity a matrix that may stretch and mirror along any axes: not one of position, rotation and scale.
  * @param {pc.Entity} entity @param {number[]} matrix */
-function placed(entity, matrix) {
+function setMatrix(entity, matrix) {
   entity.getLocalTransform();
   internalsOf(entity).localTransform.set(matrix);
 }

@@ -35,7 +35,15 @@ _NODES = {"webgpu": _WEBGPU, "webgl2": _WEBGL}
 """The renderers of three.js that build shaders of nodes: WebGPURenderer, and its WebGL 2 fallback."""
 _INSTALL_THREE = f"npm package three: {npm_hint('three')}"
 
-THREE = Engine("threejs", "three.js", _INSTALL_THREE, _three_modules, "three_page.js", {"webgl": _WEBGL, **_NODES})
+THREE = Engine(
+    "threejs",
+    "three.js",
+    _INSTALL_THREE,
+    _three_modules,
+    "three_page.js",
+    {"webgl": _WEBGL, **_NODES},
+    places_values=True,
+)
 TSL = Engine("tsl", "three.js", _INSTALL_THREE, _three_modules, "tsl_page.js", _NODES)
 BABYLON = Engine(
     "babylonjs", "Babylon.js", "npm package @babylonjs/core, bundled: make setup, in a checkout", _babylon_modules,

@@ -62,7 +62,10 @@ _LIBRARY_HEADERS = {
 _BUILTIN_MACROS = (
     "SHADER_API_D3D11=1", "SHADER_TARGET=30", "UNITY_VERSION=201940", "UNITY_PBS_USE_BRDF1=1", "float1=float2",
 )  # fmt: skip
-_URP_MACROS = ("SHADER_API_D3D11=1", "SHADER_TARGET=45", "UNITY_COMPILER_DXC=1")
+# The last one is what the editor adds for instances, which have their boxes in an array.
+_URP_MACROS = (
+    "SHADER_API_D3D11=1", "SHADER_TARGET=45", "UNITY_COMPILER_DXC=1", "UNITY_INSTANCED_RENDERER_BOUNDS=1",
+)  # fmt: skip
 _KEYWORDS_ARE_VALUES = 60000000
 """UNITY_VERSION from which headers read a declared keyword that is off as a value, `if (FOG_LINEAR)`."""
 OLDEST = 202120

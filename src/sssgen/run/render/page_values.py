@@ -34,10 +34,11 @@ def shade(
     if points is None and page.engine.v_down:
         vertices[:, 11] = 1.0 - vertices[:, 11]
     triangles = [[0, 1, 2]] if points is None else pixel_mesh.triangles(size, shell.front == upright)
+    parameters = shell.unplaced(reflection["uniforms"]) if page.engine.places_values else shell.parameters
     values = {
-        uniform["property"]: _value(shell.parameters[uniform["source_name"]])
+        uniform["property"]: _value(parameters[uniform["source_name"]])
         for uniform in reflection["uniforms"]
-        if uniform["source_name"] in shell.parameters
+        if uniform["source_name"] in parameters
     }
     if any("time" in entry["inputs"] for entry in reflection["entries"].values()):
         values["time"] = shell.time

@@ -33,7 +33,7 @@ from sssgen.scene.arrays import Array
 from sssgen.scene.drawn_views import brightest, light_depth, light_layers
 from sssgen.scene.environment import read_environment
 from sssgen.scene.geometry import Distance, Geometry
-from sssgen.scene.scene import DistanceTexture, Picture, Scene, placement
+from sssgen.scene.scene import DistanceTexture, Picture, Scene
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.file_memo import CachedResult, note, remember
 from sssgen.support.paths import posix
@@ -171,7 +171,17 @@ def _parameters(
             for diagnostic in error.diagnostics:
                 document.error(place.value, diagnostic.message, diagnostic.hint)
     document.reporter.check()
+    if scene.geometry is not None:
+        placed = {name: uniform["default"] for name, uniform in uniforms.items() if uniform["placed"]}
+        values |= {name: _placed(values.get(name, start), scene.geometry) for name, start in placed.items()}
     return values
+
+
+def _placed(value: Sequence[float], geometry: Geometry) -> tuple[float, ...]:
+    """The value in world space of a parameter with the hint `placed`: a matrix from the world, or a length."""
+    if len(value) == 1:
+        return (value[0] * geometry.scale,)
+    return (*(np.array(value).reshape(4, 4).T @ geometry.to_object()).T.ravel(),)
 
 
 def _check_own(
@@ -233,7 +243,8 @@ def _check_scene(sidecar: BakeFile, scene: Scene, geometry: Geometry, material: 
 
 
 def _in_world_space(sidecar: BakeFile, geometry: Geometry | None) -> dict[str, Any]:
-    """The parameters of a JSON file, transformed from object space to world space where techniques need that.
+    """The parameters of a JSON file, transformed from object space to world space where techniques need that and do not
+    declare it by the hint `placed`.
 
     Raises SssgenError for a depth map of a body that the scene scales, as its lengths are in the units of the bake.
     """
@@ -241,8 +252,6 @@ def _in_world_space(sidecar: BakeFile, geometry: Geometry | None) -> dict[str, A
     if geometry is None:
         return values
     to_object = geometry.to_object()
-    if sidecar.kind == "distance":
-        values |= placement(geometry)
     if isinstance(factor := values.get("thickness_factor"), int | float) and sidecar.kind == "thickness":
         values["thickness_factor"] = factor * geometry.scale
     if isinstance(length := values.get("fade_length"), int | float) and sidecar.kind == "view_thickness":
@@ -251,8 +260,6 @@ def _in_world_space(sidecar: BakeFile, geometry: Geometry | None) -> dict[str, A
         if geometry.scale != 1.0:
             raise failure("the depth map is for the unscaled body, but the scene scales it", "scale the mesh itself")
         values["light_matrix"] = [*(np.array(matrix).reshape(4, 4).T @ to_object).T.ravel()]
-    if isinstance(matrix := values.get("world_to_volume"), list) and sidecar.kind == "fluence" and len(matrix) == 16:
-        values["world_to_volume"] = [*(np.array(matrix).reshape(4, 4).T @ to_object).T.ravel()]
     return values
 
 

@@ -15,7 +15,7 @@ from sssgen.ir.types import BY_NAME, column_size, kind_of
 from sssgen.pipeline.compiler import Compiled
 from sssgen.run.backends import Array, Block, Bound, Drawing, Place, Stage, file_text
 from sssgen.run.evaluate.evaluation import default_texture
-from sssgen.targets.reflection_record import BlockMember, Reflection, TextureBinding, TextureRecord
+from sssgen.targets.reflection_record import BlockMember, Reflection, TextureBinding, TextureRecord, UniformRecord
 from sssgen.targets.runtime.numpy_textures import Texture
 
 LIGHTS = 4
@@ -46,6 +46,16 @@ class Shell:
     """Likewise, textures that cover the screen; row 0 is at the bottom."""
     front: bool = True
     """Whether front faces are drawn, otherwise back faces."""
+
+    def unplaced(self, uniforms: Sequence[UniformRecord]) -> dict[str, Sequence[float]]:
+        """The parameters for a host that places those with the hint `placed` itself, by its object's matrix."""
+        values = dict(self.parameters)
+        for name in (uniform["source_name"] for uniform in uniforms if uniform["placed"]):
+            if len(own := values.get(name, ())) == 16:
+                values[name] = (np.array(own).reshape(4, 4).T @ self.model).T.ravel().tolist()
+            elif own:
+                values[name] = [own[0] / float(np.cbrt(abs(np.linalg.det(self.model[:3, :3]))))]
+        return values
 
 
 def inverse(matrix: Array) -> Array:

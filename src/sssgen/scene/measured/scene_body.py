@@ -17,7 +17,7 @@ from sssgen.material import slots
 from sssgen.scene.arrays import Array, Vector
 from sssgen.scene.bounds import bounds
 from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
-from sssgen.scene.scene import DistanceTexture, placement
+from sssgen.scene.scene import DistanceTexture
 from sssgen.support.diagnostics import failure
 
 TEXELS = 64
@@ -162,9 +162,6 @@ def _vector_of(corner: Array) -> Vector:
     return x, y, z
 
 
-def texture_parameters(geometry: Geometry, texture: DistanceTexture) -> dict[str, object]:
+def texture_parameters(texture: DistanceTexture) -> dict[str, object]:
     """The parameters of a shape's distance texture by their names in techniques, as TOML values."""
-    return {
-        "box_min": [*texture.box_min], "box_max": [*texture.box_max], "distance_range": texture.range,
-        **placement(geometry),
-    }  # fmt: skip
+    return {"box_min": [*texture.box_min], "box_max": [*texture.box_max], "distance_range": texture.range}

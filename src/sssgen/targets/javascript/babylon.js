@@ -39,6 +39,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {string} vertex the varyings' values
  * @property {string} begin the variables' values, and the surface
  * @property {string} [translucency] the share of a light that comes through
+ * @property {string} [entry] the value of sss_entry: where that light entered the body
  * @property {Record<string, string>} places place in Babylon's fragment shader → the way of the surface into it
  */
 
@@ -73,41 +74,79 @@ const ARGUMENTS = {
   sss_coat: ['!,viewDirectionW\\s*,(?:uniforms\\.)?vClearCoatParams', ',viewDirectionW\n,sss_coat'],
 };
 
-/** The places of the light that comes through: where Babylon begins a light, the one before it is complete. */
-function lightPlaces(translucency, uniform) {
-  const add = `
-if (sss_pending) {
-  sss_lights += sss_light_color * preInfo.attenuation * ${translucency};
-}`;
-  return {
-    // without the light's shadow: light that comes through entered on the far side
-    '!#define CUSTOM_LIGHT(\\d+)_COLOR': `${add}
-sss_light_color = diffuse$1.rgb;
+/** A light of Babylon's fragment shader behind its shadow: the text of the shadow, and the number of the light. */
+const BEHIND_SHADOW = '!(#ifdef SHADOW(\\d+)\\s(?:(?!#ifdef SHADOW\\d+\\s)[^])*?)aggShadow\\s*\\+=\\s*shadow;';
+
+/**
+ * Babylon's text of a light's shadow a second time, read where the light entered the body, in GLSL and in WGSL: the names of
+ * what it reads stand for values of this place. TO_LIGHT is Babylon's way into the shadow map, from its vertex shader.
+ */
+const SHADOWS = [`{
+vec4 worldPos = vec4(sss_entry, 1.0);
+vec3 vPositionW = sss_entry;
+float shadow = 1.0;
+#ifdef SHADOWCSM$2
+vec4 vPositionFromLight$2[SHADOWCSMNUM_CASCADES$2];
+float vDepthMetric$2[SHADOWCSMNUM_CASCADES$2];
+#else
+vec4 vPositionFromLight$2;
+float vDepthMetric$2;
+#endif
+TO_LIGHT
+$1
+sss_shadow = shadow;
+}`, `{
+let sss_inputs = fragmentInputs;
+let worldPos = vec4f(sss_entry, 1.0);
+var shadow = 1.0;
+fragmentInputs.vPositionW = sss_entry;
+TO_LIGHT
+$1
+sss_shadow = shadow;
+fragmentInputs = sss_inputs;
+}`];
+
+const TO_LIGHT = 'vPositionFromLight\\{X\\}[^;]*=[^;]*worldPos';
+/** Babylon's way from `worldPos` into a shadow map. A cascade is that of the seen point: the light's way has one place in it. */
+const wayToLight = (vertexText) => vertexText
+  .replace(/[\w.]*vPositionFromCamera\{X\}\s*=[^;]*;/g, '').replaceAll('vertexOutputs.', 'fragmentInputs.').replaceAll('{X}', '$2');
+
+/** The places of the light that comes through. */
+const lightPlaces = ({ translucency, entry }, language) => ({
+  [BEHIND_SHADOW]: `$1
+#if defined(DIRLIGHT$2) || defined(POINTLIGHT$2) || defined(SPOTLIGHT$2)
+#if defined(LIGHTMAP) && defined(LIGHTMAPEXCLUDED$2) && defined(LIGHTMAPNOSPECULAR$2)
+#else
+sss_light_color = diffuse$2.rgb;
+#ifdef DIRLIGHT$2
 sss_light_nearness = 0.0;
-#if defined(POINTLIGHT$1) || defined(SPOTLIGHT$1)
+#else
 sss_light_nearness = 1.0;
 #endif
-sss_pending = true;
-#if defined(HEMILIGHT$1) || defined(AREALIGHT$1) || defined(CLUSTLIGHT$1)
-sss_pending = false;
+sss_shadow = 1.0;
+#ifdef SHADOW$2
+${entry}
+${SHADOWS[language]}
 #endif
-#define CUSTOM_LIGHT$1_COLOR
+sss_lights += sss_light_color * preInfo.attenuation * sss_shadow * ${translucency};
+#endif
+#endif
+aggShadow+=shadow;
 `,
-    CUSTOM_FRAGMENT_BEFORE_FINALCOLORCOMPOSITION: `
-#ifndef UNLIT${add}
-finalDiffuse += sss_lights * ${uniform}vLightingIntensity.x / 3.14159265;
+  CUSTOM_FRAGMENT_BEFORE_FINALCOLORCOMPOSITION: `
+#ifndef UNLIT
+finalDiffuse += sss_lights * ${['', 'uniforms.'][language]}vLightingIntensity.x / 3.14159265;
 #endif
 `,
-  };
-}
+});
 
 /** What goes into Babylon's shaders in one language: place → text. */
 function placesOf({ textures, varyings, variables, shells }, language) {
-  const { functions, vertex, begin, translucency, places } = shells[language];
+  const { functions, vertex, begin, places } = shells[language];
   const { texture, varying, variable } = DECLARATIONS[language];
   const samplers = Object.fromEntries(Object.values(textures).map(({ name, type }) => [name, type]));
   const passed = declared(varying, varyings);
-  const lights = translucency ? lightPlaces(translucency, ['', 'uniforms.'][language]) : {};
+  const lights = shells[language].translucency ? lightPlaces(shells[language], language) : {};
   const fragment = {
     CUSTOM_FRAGMENT_DEFINITIONS: declared(texture, samplers) + passed + functions + declared(variable, variables),
     CUSTOM_FRAGMENT_MAIN_BEGIN: begin,
@@ -128,18 +167,21 @@ const withoutComments = (places) => Object.fromEntries(
 
 /** The plug-in of a material. */
 function pluginClass(description, { moves, takesLight }) {
-  const { name: materialName, parameters, textures } = description;
+  const { name: materialName, parameters, textures, shells } = description;
   const code = [0, 1].map((language) => placesOf(description, language));
   // Babylon keeps one program for each name of a plug-in
   const key = `Sssgen_${materialName}_${Properties.hashOf(JSON.stringify(code))}`;
   const uniforms = Object.values(parameters).map(({ name, type }) => [name, uniformType(type)]);
   if (moves) uniforms.push(['sss_time', 'float']);
   if (takesLight) uniforms.push(['sss_light_place', 'vec4'], ['sss_light_radiance', 'vec3']);
+  if (shells[0].entry) uniforms.push(['sss_body_min', 'vec3'], ['sss_body_max', 'vec3']);
 
   return class extends MaterialPluginBase {
     constructor(material) {
-      super(material, key, 200, undefined, true, true);
+      super(material, key, 200);
       this.doNotSerialize = true;
+      this.registerForExtraEvents = true; // calls hardBindForSubMesh
+      this._enable(true);
     }
 
     getClassName() {
@@ -163,12 +205,17 @@ function pluginClass(description, { moves, takesLight }) {
 
     getCustomCode(stage, language) {
       const places = code[language][stage];
-      const whole = ShaderStore.GetShadersStore(language).pbrPixelShader ?? '';
-      for (const place of Object.keys(places)) { // those without a name in Babylon
-        const absent = whole && /^![^#]/.test(place) && !new RegExp(place.slice(1)).test(whole);
-        if (absent) throw new Error(`${materialName}: this version of Babylon.js has no ${place}`);
-      }
-      return places;
+      const { pbrPixelShader } = ShaderStore.GetShadersStore(language);
+      if (stage === 'vertex' || !pbrPixelShader) return places;
+      const { lightFragment = '', shadowsVertex = '' } = ShaderStore.GetIncludesShadersStore(language);
+      const need = (sought, text) => {
+        if (!new RegExp(sought).test(text)) throw new Error(`${materialName}: this version of Babylon.js has no ${sought}`);
+      };
+      const whole = pbrPixelShader + lightFragment.replaceAll('{X}', '0');
+      for (const place of Object.keys(places)) if (place.startsWith('!')) need(place.slice(1), whole); // without a name in Babylon
+      if (!(BEHIND_SHADOW in places)) return places;
+      need(TO_LIGHT, shadowsVertex);
+      return { ...places, [BEHIND_SHADOW]: places[BEHIND_SHADOW].replace('TO_LIGHT', () => wayToLight(shadowsVertex)) };
     }
 
     prepareDefinesBeforeAttributes(defines) {
@@ -194,6 +241,14 @@ function pluginClass(description, { moves, takesLight }) {
 
     #used() {
       return Object.keys(textures).map((property) => this._material[property]).filter((texture) => texture);
+    }
+
+    /** Babylon calls this for each body, bindForSubMesh for the first of those that have the material. */
+    hardBindForSubMesh(buffer, scene, engine, subMesh) {
+      if (!shells[0].entry) return;
+      const { minimum, maximum } = subMesh.getMesh().getRawBoundingInfo().boundingBox; // without the places of thin instances
+      buffer.updateVector3('sss_body_min', minimum);
+      buffer.updateVector3('sss_body_max', maximum);
     }
 
     bindForSubMesh(buffer) {

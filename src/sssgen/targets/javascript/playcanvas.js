@@ -2,6 +2,7 @@
 // this file beside the materials; it is the same for all of them.
 
 import * as pc from 'playcanvas';
+import { setChunks } from './playcanvas_chunks.js';
 import { Properties, TEXELS } from './values.js';
 
 /**
@@ -13,6 +14,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {{ front?: string, opacity?: string, ambient?: string }} places the surface's way into PlayCanvas's arguments of
  *   the light, into its opacity, and into the ambient light
  * @property {string} [translucency] the share of a light that comes through
+ * @property {string} [entry] the value of sss_entry: where that light entered the body
  * @property {string} [lighting] the reflected light
  */
 
@@ -42,211 +44,6 @@ import { Properties, TEXELS } from './values.js';
  * @property {Record<string, string>} variables of the fragment shader: name → type
  * @property {Shell[]} shells in GLSL and in WGSL
  */
-
-// Chunks: PlayCanvas's own text stays, and the material's text is added.
-
-const SCALARS = { float: 'f32', int: 'i32', uint: 'u32', bool: 'u32' };
-const TEXTURE_TYPES = { sampler2D: '2d', sampler3D: '3d', samplerCube: 'cube', sampler2DArray: '2d_array' };
-const wgslType = (type) => SCALARS[type]
-  ?? type.replace(/^([iu]?)vec(\d)/, (_, kind, size) => `vec${size}${kind || 'f'}`).replace(/^mat(\d)/, 'mat$1x$1f');
-
-/** GLSL, and the same in WGSL: a declaration with a keyword, a variable, and the head of a function. */
-const LANGUAGES = [
-  {
-    declared: (keyword, type, name) => `${keyword} ${type} ${name};`,
-    variable: (type, name) => `${type} ${name};`,
-    head: (text) => text,
-  },
-  {
-    declared: (keyword, type, name) => `${keyword} ${name}: ${wgslType(type)};`,
-    variable: (type, name) => `var<private> ${name}: ${wgslType(type)};`,
-    head(text) {
-      const [, result, name, params] = /** @type {RegExpMatchArray} */ (text.match(/^(\w+) (\w+)\((.*)\)$/));
-      const typed = params.replace(/(\w+) (\w+)/g, (_, type, param) => `${param}: ${wgslType(type)}`);
-      return `fn ${name}(${typed})${result === 'void' ? '' : ` -> ${wgslType(result)}`}`;
-    },
-  },
-];
-
-/** The declarations of the uniforms and textures. */
-function declarations({ parameters, textures }, { moves, takesLight }, gpu) {
-  const uniforms = Object.values(parameters).map(({ type, name }) => [type, name]);
-  if (moves) uniforms.push(['float', 'sss_time']);
-  if (takesLight) uniforms.push(['vec4', 'sss_light_place'], ['vec3', 'sss_light_radiance']);
-  const read = Object.values(textures);
-  const { declared } = LANGUAGES[Number(gpu)];
-  const lines = uniforms.map(([type, name]) => declared('uniform', type, name));
-  if (gpu) return [...lines, ...read.map(({ type, name }) => `var ${name}: texture_${TEXTURE_TYPES[type]}<f32>;\nvar ${name}_sampler: sampler;`)];
-  return [
-    ...[...new Set(read.map(({ type }) => type))].map((type) => `precision highp ${type};`),
-    ...lines,
-    ...read.map(({ type, name }) => `uniform highp ${type} ${name};`),
-  ];
-}
-
-/** The variables of the light that comes through, and of that which the material reflects itself. */
-const LIGHT = { sss_L: 'vec3', sss_light_color: 'vec3', sss_light_nearness: 'float', sss_light_sum: 'vec3' };
-
-/** What is added to PlayCanvas's chunks as it is: the declarations, and the varyings' values. */
-function additions(description, properties, gpu) {
-  const own = description.shells[Number(gpu)];
-  const { declared, variable } = LANGUAGES[Number(gpu)];
-  const varyings = Object.entries(description.varyings);
-  const attributes = varyings.filter(([, { attribute }]) => attribute);
-  const passed = varyings.map(([name, { type }]) => declared('varying', type, name));
-  const variables = Object.entries({ ...description.variables, ...(description.lit ? LIGHT : {}) });
-  const out = gpu ? 'output.' : '';
-  // in a cluster each pixel has lights of its own, and WGSL refuses reads with derivatives there
-  const perLight = `${own.translucency} ${own.lighting}`;
-  const readsPerLight = Object.values(description.textures).some(({ name }) => perLight.includes(name));
-  const functions = gpu && readsPerLight ? own.functions.replaceAll('\nfn ', '\n@diagnostic(off, derivative_uniformity) fn ') : own.functions;
-  const texts = {
-    litUserDeclarationVS: [
-      ...passed,
-      ...attributes.map(([, { type, attribute, semantic, define }]) => `
-#if defined(SSS_${semantic}) && !defined(${define})
-${declared('attribute', type, attribute)}
-#endif`),
-    ],
-    litUserMainEndVS: [
-      ...attributes.map(([name, { type, attribute, semantic, default: other }]) => `
-#ifdef SSS_${semantic}
-${out}${name} = ${attribute};
-#else
-${out}${name} = ${type}(${other}.0);
-#endif`),
-      own.vertex,
-    ],
-    litUserDeclarationPS: [
-      ...declarations(description, properties, gpu), ...passed, functions, ...variables.map(([name, type]) => variable(type, name)),
-    ],
-  };
-  return Object.entries(texts).map(([chunk, lines]) => [chunk, `\n${lines.join('\n')}\n`]);
-}
-
-/**
- * Changes of PlayCanvas's chunks: a chunk, what is sought in it, what it becomes, and what follows the chunk.
- * @returns {[string, RegExp, string, string][]}
- */
-function changes({ lit, shells }, gpu) {
-  const own = shells[Number(gpu)];
-  const { front = '', opacity = '', ambient = '' } = own.places;
-  const { head } = LANGUAGES[Number(gpu)];
-  return [
-    ['stdFrontEndPS', /evaluateFrontend/, 'sss_engine_front', `
-${head('void evaluateFrontend()')} {
-${lit ? 'sss_light_sum = vec3(0.0);' : ''}
-${own.begin}
-  sss_engine_front();
-#ifdef FORWARD_PASS
-${front}
-#endif
-}
-${lit ? lightFunctions(own, head) : ''}`],
-    ['opacityPS', /getOpacity/, 'sss_engine_opacity', `
-${head('void getOpacity()')} {
-  sss_engine_opacity();
-${opacity}
-}
-`],
-    ['combinePS', /combineColor/, 'sss_engine_combine', `
-${lit && !gpu ? AMBIENT_DECLARATION : ''}
-${head('vec3 combineColor(vec3 albedo, vec3 sheenSpecularity, float clearcoatSpecularity)')} {
-${lit ? lightSum(ambient) : 'return vec3(0.0);'}
-}
-`],
-    ...(lit ? lightChanges(gpu, head) : []),
-  ];
-}
-
-const AMBIENT_DECLARATION = `
-#if defined(SSS_OWN_LIGHT) && defined(LIT_ADD_AMBIENT)
-void addAmbient(vec3 worldNormal);
-#endif`;
-
-const lightSum = (ambient) => `
-#ifdef SSS_OWN_LIGHT
-#ifdef LIT_ADD_AMBIENT
-dDiffuseLight = vec3(0.0);
-addAmbient(litArgs_worldNormal);
-${ambient}
-sss_light_sum += dDiffuseLight;
-#endif
-return sss_light_sum;
-#else
-return sss_engine_combine(albedo, sheenSpecularity, clearcoatSpecularity) + sss_light_sum;
-#endif`;
-
-/** One of PlayCanvas's lights: what comes through has no shadow, as it entered on the far side. */
-const lightFunctions = ({ translucency, lighting }, head) => `
-${head('void sss_light_through(vec3 L, vec3 color, float nearness)')} {
-  sss_L = L;
-  sss_light_color = color;
-  sss_light_nearness = nearness;
-${translucency ? `sss_light_sum += color * ${translucency};` : ''}
-}
-#ifdef SSS_OWN_LIGHT
-${head('void sss_light_reflected(vec3 color)')} {
-  sss_light_color = color;
-  sss_light_sum += ${lighting};
-}
-#endif
-`;
-
-/**
- * Those of a lit material.
- * @returns {[string, RegExp, string, string][]}
- */
-const lightChanges = (gpu, head) => [
-  ['lightDiffuseLambertPS', /getLightDiffuse/, 'sss_engine_lambert', `
-${head('float getLightDiffuse(vec3 worldNormal, vec3 viewDir, vec3 lightDirNorm)')} {
-#ifdef SSS_OWN_LIGHT
-  return 1.0;
-#else
-  return sss_engine_lambert(worldNormal, viewDir, lightDirNorm);
-#endif
-}
-`],
-  ['lightFunctionLightPS', /(?=dAtten\b[^;\n]*getLightDiffuse)/, `
-#if LIGHT{i}TYPE == DIRECTIONAL
-sss_light_through(-dLightDirNormW, lightColor * dAtten, 0.0);
-#else
-sss_light_through(-dLightDirNormW, lightColor * dAtten, 1.0 / max(length(lightDirW), 0.01));
-#endif
-`, ''],
-  ['lightFunctionLightPS', /(?=#ifdef LIGHT\{i\}AFFECT_SPECULARITY)/, `
-#if defined(SSS_OWN_LIGHT) && LIGHT{i}SHAPE == PUNCTUAL
-sss_light_reflected(lightColor * dAtten);
-#endif
-`, ''],
-  ['clusteredLightPS', /(?=falloffAttenuation\b[^;\n]*getLightDiffuse)/, `
-${gpu ? 'var' : 'float'} sss_arriving = falloffAttenuation;
-if (light.isSpot) {
-  ${gpu ? 'let' : 'ClusterLightSpotData'} spot = decodeClusterLightSpot();
-  sss_arriving *= getSpotEffect(light.direction, spot.innerConeAngleCos, spot.outerConeAngleCos, lightDirNormW);
-}
-sss_light_through(-lightDirNormW, light.color * sss_arriving, 1.0 / max(length(lightDirW), 0.01));
-`, ''],
-  ['clusteredLightPS', /(?=dAtten = falloffAttenuation;)/, `
-#ifdef SSS_OWN_LIGHT
-if (light.shape == {LIGHTSHAPE_PUNCTUAL}) { sss_light_reflected(light.color * cookieAttenuation * falloffAttenuation); }
-#endif
-`, ''],
-];
-
-/** Gives a material its chunks. */
-function setChunks(material, device, description, properties) {
-  const gpu = device.isWebGPU;
-  const language = gpu ? pc.SHADERLANGUAGE_WGSL : pc.SHADERLANGUAGE_GLSL;
-  const engine = pc.ShaderChunks.get(device, language);
-  const chunks = material.getShaderChunks(language);
-  for (const [name, text] of additions(description, properties, gpu)) chunks.set(name, (engine.get(name) ?? '') + text);
-  for (const [name, sought, instead, after] of changes(description, gpu)) {
-    const chunk = chunks.get(name) ?? engine.get(name) ?? '';
-    if (!sought.test(chunk)) throw new Error(`${description.name}: this version of PlayCanvas has no ${sought.source} in its chunk ${name}`);
-    chunks.set(name, chunk.replace(sought, () => instead) + after);
-  }
-}
 
 // Textures and values.
 
@@ -296,7 +93,7 @@ function numbersOf(value, type) {
  * @param {Description} description
  */
 export function materialClass(description) {
-  const { name: materialName, lit, twoSided, alphaMode, fields = [], parameters, textures } = description;
+  const { name: materialName, lit, twoSided, alphaMode, fields = [], parameters, textures, shells } = description;
   const properties = new Properties(description, 'StandardMaterial');
   const { moves, takesLight } = properties;
 
@@ -397,7 +194,17 @@ export function materialClass(description) {
     setParameters(device, names) {
       if (moves) this.setParameter('sss_time', this.time ?? performance.now() / 1000);
       if (takesLight) this.#setLight(this.light);
+      if (shells[0].entry && !names) this.#setBodies();
       super.setParameters(device, names);
+    }
+
+    /** The box of each body that has the material: two may share it. */
+    #setBodies() {
+      for (const instance of /** @type {any} */ (this).meshInstances) {
+        const { aabb } = instance.mesh;
+        instance.setParameter('sss_body_min', aabb.getMin().toArray());
+        instance.setParameter('sss_body_max', aabb.getMax().toArray());
+      }
     }
 
     #setLight(light) {

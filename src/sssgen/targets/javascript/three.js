@@ -4,7 +4,9 @@
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
 import { nodesOf } from './three_nodes.js';
+import { ObjectUniforms, placedValue } from './three_object.js';
 import { Passes } from './three_passes.js';
+import { entryChunks, entryFunction } from './three_shadows.js';
 import { Properties, TEXELS } from './values.js';
 
 /**
@@ -35,6 +37,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {string} variables
  * @property {string} fragment statements of the fragment shader
  * @property {string} [light] statements for each light, where light comes through
+ * @property {string} [entry] the same for the function of the point where it entered
  * @property {Record<string, string>} includes three's include → the statements behind it
  */
 
@@ -45,13 +48,15 @@ const OWN_UNIFORMS = {
   time: { type: 'float', name: 'sss_time' },
   lightPlace: { type: 'vec4', name: 'sss_light_place' },
   lightRadiance: { type: 'vec3', name: 'sss_light_radiance' },
+  bodyMin: { type: 'vec3', name: 'sss_body_min' },
+  bodyMax: { type: 'vec3', name: 'sss_body_max' },
 };
 
 /**
  * What three calls for each light: its own reflection, then the light that comes through. The macros remember the light's
- * colour before its shadow: light that comes through entered on the far side.
+ * colour before its shadow: light that comes through has that of the point where it entered.
  */
-const lightFunction = (statements) => /* glsl */ `
+const lightFunction = ({ light, entry }) => /* glsl */ `
 vec3 sss_light_color;
 float sss_light_nearness;
 #define SSS_LIGHT(direct, nearness) sss_light_color = direct.color; sss_light_nearness = nearness
@@ -62,12 +67,13 @@ float sss_light_nearness;
 
 void sss_direct(const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight) {
   RE_Direct_Physical(directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight);
-${statements}}
+${light}}
+${entryFunction(entry)}
 #undef RE_Direct
 #define RE_Direct sss_direct
 `;
 
-/** Adds a material's text to a shader of three: behind its includes. */
+/** Adds a material's text to a shader of three: behind its includes, and in place of two of them. */
 function patch(shader, { name, parameters, textures, webgl, glsl }, uniforms) {
   const declarations = [];
   for (const [property, declared] of Object.entries({ ...parameters, ...textures, ...OWN_UNIFORMS })) {
@@ -75,20 +81,23 @@ function patch(shader, { name, parameters, textures, webgl, glsl }, uniforms) {
     declarations.push(`uniform ${declared.type} ${declared.name};`);
     shader.uniforms[declared.name] = uniforms[property];
   }
+  const replace = (stage, file, textOf) => {
+    const include = `#include <${file}>`;
+    if (!shader[stage].includes(include)) throw new Error(`${name}: this version of three.js has no ${include}`);
+    shader[stage] = shader[stage].replace(include, () => textOf(include));
+  };
   const texts = {
     vertexShader: { common: webgl.varyings + webgl.vertex_attributes, project_vertex: webgl.vertex },
     fragmentShader: {
       common: declarations.join('\n') + webgl.varyings + glsl + webgl.variables, map_fragment: webgl.fragment, ...webgl.includes,
     },
   };
-  if (webgl.light) texts.fragmentShader.lights_physical_pars_fragment = lightFunction(webgl.light);
+  if (webgl.light) texts.fragmentShader.lights_physical_pars_fragment = lightFunction(webgl);
   for (const [stage, behind] of Object.entries(texts)) {
-    for (const [file, text] of Object.entries(behind)) {
-      const include = `#include <${file}>`;
-      if (!shader[stage].includes(include)) throw new Error(`${name}: this version of three.js has no ${include}`);
-      shader[stage] = shader[stage].replace(include, () => `${include}\n${text}`);
-    }
+    for (const [file, text] of Object.entries(behind)) replace(stage, file, (include) => `${include}\n${text}`);
   }
+  if (!webgl.light) return;
+  for (const [file, text] of Object.entries(entryChunks(name))) replace('fragmentShader', file, () => text);
 }
 
 // The class of materials.
@@ -118,11 +127,17 @@ function texel({ type, default: name }) {
 
 const TEXTURE_NODES = { sampler3D: TSL.texture3D, samplerCube: TSL.cubeTexture };
 
-/** The uniforms of a material, as nodes that both renderers read. */
-function uniformsOf({ parameters, textures }, moves, takesLight) {
+/**
+ * The uniforms of a material, as nodes that both renderers read. `own` gets what a page sets: of a parameter that is placed with
+ * the object, the value before.
+ */
+function uniformsOf({ parameters, textures, calls }, moves, takesLight, ofObject, own) {
   const uniforms = {};
   for (const [name, declared] of Object.entries(parameters)) {
-    uniforms[name] = ['int', 'uint'].includes(declared.type) ? TSL.uniform(startOf(declared), declared.type) : TSL.uniform(startOf(declared));
+    const start = startOf(declared);
+    if (declared.placed) uniforms[name] = ofObject.uniform(start, (object) => placedValue(own[name].value, object));
+    else uniforms[name] = ['int', 'uint'].includes(declared.type) ? TSL.uniform(start, declared.type) : TSL.uniform(start);
+    own[name] = declared.placed ? { value: startOf(declared) } : uniforms[name];
   }
   for (const [name, declared] of Object.entries(textures)) {
     uniforms[name] = (TEXTURE_NODES[declared.type] ?? TSL.texture)(texel(declared));
@@ -130,6 +145,7 @@ function uniformsOf({ parameters, textures }, moves, takesLight) {
   if (moves) uniforms.time = TSL.uniform(0);
   if (takesLight) uniforms.lightPlace = TSL.uniform(new THREE.Vector4(0, 1, 0, 0));
   if (takesLight) uniforms.lightRadiance = TSL.uniform(new THREE.Color(0, 0, 0));
+  if (calls.translucency) Object.assign(uniforms, ofObject.box());
   return uniforms;
 }
 
@@ -149,7 +165,10 @@ export function materialClass(description) {
   const key = `sssgen ${name} ${Properties.hashOf(JSON.stringify([description.glsl, description.webgl]))}`;
 
   return class extends THREE[base] {
-    #uniforms = uniformsOf(description, moves, takesLight);
+    #ofObject = new ObjectUniforms();
+    /** @type {Record<string, { value: any }>} */
+    #own = {};
+    #uniforms = uniformsOf(description, moves, takesLight, this.#ofObject, this.#own);
     #passes = new Passes(passes);
     /** The textures that the page has set. */
     #given = new Set();
@@ -185,7 +204,7 @@ export function materialClass(description) {
     static {
       for (const property of Object.keys(parameters)) {
         properties.define(this.prototype, property, {
-          get() { return this.#uniforms[property].value; },
+          get() { return this.#own[property].value; },
           set(value) { this.#setParameter(property, value); },
         });
       }
@@ -198,7 +217,7 @@ export function materialClass(description) {
     }
 
     #setParameter(property, value) {
-      const node = this.#uniforms[property];
+      const node = this.#own[property];
       const isColor = node.value.isColor && (typeof value === 'string' || typeof value === 'number');
       const color = isColor && new THREE.Color(NaN, NaN, NaN).set(value); // which a string that it does not know leaves
       const given = color && Number.isFinite(color.r) ? color : value;
@@ -263,6 +282,7 @@ export function materialClass(description) {
 
     onBeforeRender(renderer, scene, camera, geometry, object) {
       if (passes.length) this.#drawPasses({ renderer, scene, camera, object });
+      this.#ofObject.place(object, renderer);
       if (moves) this.#uniforms.time.value = this.#seconds();
       if (takesLight) this.#placeLight();
       if (moves || takesLight || passes.length) this.uniformsNeedUpdate = true;

@@ -2,6 +2,7 @@
 
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
+import { entryShadow, hasEntryShadow } from './three_shadows.js';
 
 /**
  * A function of the texts, and its arguments in order.
@@ -23,6 +24,37 @@ const viewDirection = turned(TSL.cameraWorldMatrix, TSL.positionViewDirection);
 const side = TSL.Fn((_, { material }) => (material.side === THREE.DoubleSide ? TSL.faceDirection : TSL.float(1)), 'float')();
 const geometryNormal = turned(TSL.cameraWorldMatrix, TSL.negateOnBackSide(TSL.normalViewGeometry));
 
+/**
+ * The matrix of one of the bodies that an object draws, in the vertex shader: to the object's space.
+ * @returns {any} a node; null where the object is the body
+ */
+function matrixOfInstance(object) {
+  if (object.isInstancedMesh) return TSL.referenceAttribute('instanceMatrix', 'mat4');
+  if (!object.isBatchedMesh) return null;
+  const texels = TSL.textureLoad(object._matricesTexture), first = TSL.int(TSL.batchIndirectIndex).mul(4);
+  /** @type {any} three's types have no size in components */
+  const size = TSL.textureSize(texels, TSL.int(0));
+  const width = TSL.int(size.x);
+  const column = (number) => texels.sample(TSL.ivec2(first.add(number).mod(width), first.add(number).div(width)));
+  return TSL.mat4(column(0), column(1), column(2), column(3));
+}
+
+/** From the space of the body to the world, in the vertex shader. */
+const bodyToWorld = TSL.Fn((_, { object }) => {
+  const matrix = matrixOfInstance(object);
+  return matrix ? TSL.modelWorldMatrix.mul(matrix) : TSL.modelWorldMatrix;
+}, 'mat4')();
+/** The inverse, in the fragment shader. */
+const worldToBody = TSL.Fn((_, { object }) => {
+  const matrix = matrixOfInstance(object);
+  if (!matrix) return TSL.modelWorldMatrixInverse;
+  /** @type {any} three's types take it for one of two columns */
+  const inverse = TSL.inverse(matrix);
+  /** @returns {any} */
+  const column = (number) => TSL.varying(inverse.element(number)).setInterpolation('flat');
+  return TSL.mat4(column(0), column(1), column(2), column(3)).mul(TSL.modelWorldMatrixInverse);
+}, 'mat4')();
+
 /** The position on the screen in the texture coordinates of a render target: v counts as its rows do. */
 const textureScreenUV = TSL.Fn((_, builder) => {
   const screen = TSL.screenUV;
@@ -33,8 +65,8 @@ const textureScreenUV = TSL.Fn((_, builder) => {
 const tangentFrame = (bitangent) => TSL.Fn((_, builder) => {
   const N = geometryNormal;
   if (builder.geometry.hasAttribute('tangent')) {
-    const T = unit(TSL.varying(TSL.modelWorldMatrix.mul(TSL.vec4(TSL.tangentGeometry.xyz, 0)).xyz));
-    const handedness = TSL.tangentGeometry.w.mul(TSL.modelWorldMatrix.determinant().sign());
+    const T = unit(TSL.varying(bodyToWorld.mul(TSL.vec4(TSL.tangentGeometry.xyz, 0)).xyz));
+    const handedness = TSL.varying(TSL.tangentGeometry.w.mul(bodyToWorld.determinant().sign()));
     return bitangent ? N.mul(side).cross(T).mul(handedness) : T;
   }
   const across = TSL.positionWorld.dFdx(), up = TSL.positionWorld.dFdy();
@@ -58,7 +90,7 @@ const INPUTS = {
   B: [bitangent, 'vec3'],
   P_object: [TSL.positionGeometry, 'vec3'],
   N_object: [unit(TSL.normalGeometry).mul(side), 'vec3'],
-  V_object: [turned(TSL.modelWorldMatrixInverse, viewDirection), 'vec3'],
+  V_object: [turned(worldToBody, viewDirection), 'vec3'],
   screen_uv: [textureScreenUV(), 'vec2'],
   eye_distance: [TSL.positionView.length(), 'float'],
   ray_origin: [TSL.cameraPosition, 'vec3'],
@@ -68,7 +100,7 @@ const INPUTS = {
 /** The values of a light. */
 const lightInputs = (L, color, nearness) => ({
   L: [L, 'vec3'],
-  L_object: [turned(TSL.modelWorldMatrixInverse, L), 'vec3'],
+  L_object: [turned(worldToBody, L), 'vec3'],
   light_color: [color, 'vec3'],
   light_nearness: [nearness, 'float'],
 });
@@ -81,12 +113,14 @@ function ownLight(lightPlace, lightRadiance, onScreen) {
   return lightInputs(toLight.mul(nearness), color, nearness.mul(lightPlace.w));
 }
 
-/** One of three's lights. Its colour is without shadow: light that comes through entered on the far side. */
-function engineLight({ lightDirection, lightNode, lightColor }, builder) {
+/** One of three's lights. Its shadow is that of the point where the light entered the body. */
+function engineLight({ lightDirection, lightNode, lightColor }, builder, box) {
   const near = lightNode.light.isPointLight || lightNode.light.isSpotLight;
   const nearness = near ? lightNode.getLightVector(builder).length().max(0.01).reciprocal() : TSL.float(0);
-  const color = unshadowed(lightNode, builder) ?? lightColor;
-  return { ...lightInputs(turned(TSL.cameraWorldMatrix, lightDirection), color, nearness), N: [TSL.normalWorld, 'vec3'] };
+  const L = turned(TSL.cameraWorldMatrix, lightDirection);
+  let color = unshadowed(lightNode, builder) ?? lightColor;
+  if (hasEntryShadow(lightNode)) color = color.mul(entryShadow(lightNode, { L, nearness, worldToBody, box }));
+  return { ...lightInputs(L, color, nearness), N: [TSL.normalWorld, 'vec3'] };
 }
 
 /** The light's colour where it arrives, without shadow. */
@@ -199,7 +233,7 @@ export function nodesOf({ calls, parameters, textures, fields = [], screen }, te
       const { direct } = model;
       model.direct = function (data, builder) {
         direct.call(this, data, builder);
-        const given = { ...point, ...engineLight(data, builder) };
+        const given = { ...point, ...engineLight(data, builder, uniforms) };
         /** @type {any} */
         const through = new CallNode('vec3', calls.translucency.name, texts, argumentsOf(calls.translucency, given), surface);
         data.reflectedLight.directDiffuse.addAssign(through.mul(given.light_color[0]).mul(1 / Math.PI));

@@ -98,7 +98,9 @@ function packingMaterial(nodes) {
     return { uniforms, material: new THREE.ShaderMaterial({ ...settings, uniforms, vertexShader, fragmentShader: PACKING }) };
   }
   const uniforms = Object.fromEntries(names.map((name) => [name, TSL.textureLoad(emptyPicture(), TSL.ivec2(TSL.screenCoordinate))]));
-  const fragmentNode = TSL.vec4(...names.map((name) => uniforms[name].r));
+  /** @type {any} */
+  const layers = names.map((name) => uniforms[name].r);
+  const fragmentNode = TSL.vec4(...layers);
   const vertexNode = TSL.vec4(TSL.positionGeometry.xy, 0, 1);
   return { uniforms, material: Object.assign(new THREE.NodeMaterial(), { ...settings, vertexNode, fragmentNode }) };
 }

@@ -8,6 +8,7 @@
  * @property {boolean} [color] whether it is a colour, in linear light
  * @property {number[]} [range] the lowest and the highest value
  * @property {string} [unit]
+ * @property {boolean} [placed] whether it is a value of the body before the object places it
  * @property {string} name the name in the shader
  */
 

@@ -128,6 +128,30 @@ mat3 sss_tangent_frame(vec3 P, vec3 V, vec3 N, float side, vec2 uv, vec4 tangent
     return mat3(T, B, N);
 }
 
+// How far light travelled inside a box that contains the body: from where it entered the box to a point \`at\`
+// of the body, in lengths of \`towards\`, which points to the light.
+float sss_way_out_of_box(vec3 at, vec3 towards, vec3 box_min, vec3 box_max) {
+    // a component of 0 never leaves the box
+    vec3 slopes = max(abs(towards), vec3(1.0e-12));
+    vec3 side = mix(at - box_min, box_max - at, greaterThan(towards, vec3(0.0)));
+    vec3 ways = max(side, 0.0) / slopes;
+    return min(min(ways.x, ways.y), ways.z);
+}
+
+// Where the light that reaches \`P\` entered a box around the body, in world space: there an engine's shadow
+// map says what lies between the light and the body.
+vec3 sss_light_entry(vec3 P, vec3 L, float nearness, vec3 P_object, mat3 to_object, vec3 box_min,
+    vec3 box_max) {
+    // A shadow is read over some texels. While these are within the margin, none of them has a part of the
+    // body before this place, also where light grazes a side of the box.
+    float margin = 0.02 * distance(box_min, box_max);
+    float way = sss_way_out_of_box(P_object, L * to_object, box_min - margin, box_max + margin);
+    // to world space: a matrix of cofactors is the inverse times a determinant, whose square it has
+    way *= sqrt(abs(determinant(to_object)));
+    // before the light, where no shadow map begins
+    return P + L * min(way, nearness > 0.0 ? 0.99 / max(nearness, 1.0e-20) : way);
+}
+
 // The direction of \`x\`; of a zero vector, 0.
 vec2 sss_safe_normalize(vec2 x) {
     return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
@@ -380,6 +404,30 @@ fn sss_tangent_frame(P: vec3f, V: vec3f, N: vec3f, side: f32, uv: vec2f, tangent
     return mat3x3f(T, B, N);
 }
 
+// How far light travelled inside a box that contains the body: from where it entered the box to a point \`at\`
+// of the body, in lengths of \`towards\`, which points to the light.
+fn sss_way_out_of_box(at: vec3f, towards: vec3f, box_min: vec3f, box_max: vec3f) -> f32 {
+    // a component of 0 never leaves the box
+    let slopes = max(abs(towards), vec3f(1.0e-12));
+    let side = select(at - box_min, box_max - at, towards > vec3f(0.0));
+    let ways = max(side, vec3f(0.0)) / slopes;
+    return min(min(ways.x, ways.y), ways.z);
+}
+
+// Where the light that reaches \`P\` entered a box around the body, in world space: there an engine's shadow
+// map says what lies between the light and the body.
+fn sss_light_entry(P: vec3f, L: vec3f, nearness: f32, P_object: vec3f, to_object: mat3x3f, box_min: vec3f,
+    box_max: vec3f) -> vec3f {
+    // A shadow is read over some texels. While these are within the margin, none of them has a part of the
+    // body before this place, also where light grazes a side of the box.
+    let margin = 0.02 * distance(box_min, box_max);
+    var way = sss_way_out_of_box(P_object, L * to_object, box_min - margin, box_max + margin);
+    // to world space: a matrix of cofactors is the inverse times a determinant, whose square it has
+    way *= sqrt(abs(determinant(to_object)));
+    // before the light, where no shadow map begins
+    return P + L * min(way, select(way, 0.99 / max(nearness, 1.0e-20), nearness > 0.0));
+}
+
 // The direction of \`x\`; of a zero vector, 0.
 fn sss_safe_normalize_vec2(x: vec2f) -> vec2f {
     return x * select(0.0, inverseSqrt(dot(x, x)), dot(x, x) > 1.0e-30);
@@ -598,6 +646,14 @@ const SHELLS = [{
   functions: GLSL,
   vertex: `
 sss_uv = uvUpdated;
+sss_row_x = vec4(cross(finalWorld[1].xyz, finalWorld[2].xyz), positionUpdated.x);
+sss_row_y = vec4(cross(finalWorld[2].xyz, finalWorld[0].xyz), positionUpdated.y);
+sss_row_z = vec4(cross(finalWorld[0].xyz, finalWorld[1].xyz), positionUpdated.z);
+if (dot(finalWorld[0].xyz, sss_row_x.xyz) < 0.0) {
+  sss_row_x = vec4(-sss_row_x.xyz, positionUpdated.x);
+  sss_row_y = vec4(-sss_row_y.xyz, positionUpdated.y);
+  sss_row_z = vec4(-sss_row_z.xyz, positionUpdated.z);
+}
 #ifdef TANGENT
 sss_tangent = vec4((finalWorld * vec4(tangentUpdated.xyz, 0.0)).xyz, tangentUpdated.w);
 sss_tangent.w *= sign(dot(finalWorld[0].xyz, cross(finalWorld[1].xyz, finalWorld[2].xyz)));
@@ -620,8 +676,9 @@ sss_N = sss_safe_normalize(cross(dFdx(vPositionW), dFdy(vPositionW))) * vEyePosi
 #endif
 sss_V = sss_safe_normalize(vEyePosition.xyz - vPositionW);
 sss_frame = sss_tangent_frame(vPositionW, sss_V, sss_N, sss_side, sss_uv, sss_tangent);
+sss_P_object = vec3(sss_row_x.w, sss_row_y.w, sss_row_z.w);
+sss_to_object = mat3(sss_row_x.xyz, sss_row_y.xyz, sss_row_z.xyz);
 sss_lights = vec3(0.0);
-sss_pending = false;
 sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count,
             sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint,
             sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief,
@@ -631,6 +688,10 @@ sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_cou
 `,
   translucency: `sss_evaluate_translucency(sss_surface, sss_V, normalW, preInfo.L, sss_distortion,
             sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power)`,
+  entry: `
+sss_entry = sss_light_entry(vPositionW, preInfo.L, sss_light_nearness / max(preInfo.lightDistance, 0.01),
+  sss_P_object, sss_to_object, sss_body_min, sss_body_max);
+`,
   places: {
     CUSTOM_FRAGMENT_UPDATE_ALBEDO: `
 surfaceAlbedo *= sss_surface.albedo;
@@ -651,6 +712,14 @@ finalEmissive += sss_surface.emission * vLightingIntensity.y;
   functions: WGSL,
   vertex: `
 vertexOutputs.sss_uv = uvUpdated;
+vertexOutputs.sss_row_x = vec4(cross(finalWorld[1].xyz, finalWorld[2].xyz), positionUpdated.x);
+vertexOutputs.sss_row_y = vec4(cross(finalWorld[2].xyz, finalWorld[0].xyz), positionUpdated.y);
+vertexOutputs.sss_row_z = vec4(cross(finalWorld[0].xyz, finalWorld[1].xyz), positionUpdated.z);
+if (dot(finalWorld[0].xyz, vertexOutputs.sss_row_x.xyz) < 0.0) {
+  vertexOutputs.sss_row_x = vec4(-vertexOutputs.sss_row_x.xyz, positionUpdated.x);
+  vertexOutputs.sss_row_y = vec4(-vertexOutputs.sss_row_y.xyz, positionUpdated.y);
+  vertexOutputs.sss_row_z = vec4(-vertexOutputs.sss_row_z.xyz, positionUpdated.z);
+}
 #ifdef TANGENT
 vertexOutputs.sss_tangent = vec4((finalWorld * vec4(tangentUpdated.xyz, 0.0)).xyz, tangentUpdated.w);
 vertexOutputs.sss_tangent.w *= sign(dot(finalWorld[0].xyz, cross(finalWorld[1].xyz, finalWorld[2].xyz)));
@@ -673,8 +742,9 @@ sss_N = sss_safe_normalize_vec3(cross(dpdx(fragmentInputs.vPositionW), dpdy(frag
 #endif
 sss_V = sss_safe_normalize_vec3(scene.vEyePosition.xyz - fragmentInputs.vPositionW);
 sss_frame = sss_tangent_frame(fragmentInputs.vPositionW, sss_V, sss_N, sss_side, fragmentInputs.sss_uv, fragmentInputs.sss_tangent);
+sss_P_object = vec3(fragmentInputs.sss_row_x.w, fragmentInputs.sss_row_y.w, fragmentInputs.sss_row_z.w);
+sss_to_object = mat3x3f(fragmentInputs.sss_row_x.xyz, fragmentInputs.sss_row_y.xyz, fragmentInputs.sss_row_z.xyz);
 sss_lights = vec3(0.0);
-sss_pending = false;
 sss_surface = sss_evaluate_surface(fragmentInputs.sss_uv, uniforms.sss_time,
             uniforms.sss_variation, uniforms.sss_cell_count, uniforms.sss_thickness_factor,
             uniforms.sss_bevel, uniforms.sss_attenuation_distance, uniforms.sss_tint,
@@ -690,6 +760,10 @@ sss_surface = sss_evaluate_surface(fragmentInputs.sss_uv, uniforms.sss_time,
   translucency: `sss_evaluate_translucency(sss_surface, sss_V, normalW, preInfo.L,
             uniforms.sss_distortion, uniforms.sss_subsurface_color, uniforms.sss_attenuation,
             uniforms.sss_scale, uniforms.sss_ambient, uniforms.sss_power)`,
+  entry: `
+sss_entry = sss_light_entry(fragmentInputs.vPositionW, preInfo.L, sss_light_nearness / max(preInfo.lightDistance, 0.01),
+  sss_P_object, sss_to_object, uniforms.sss_body_min, uniforms.sss_body_max);
+`,
   places: {
     CUSTOM_FRAGMENT_UPDATE_ALBEDO: `
 surfaceAlbedo *= sss_surface.albedo;
@@ -715,6 +789,7 @@ export class IceMaterial extends materialClass({
   inputs: ['L', 'N', 'time', 'uv', 'V'],
   varyings: {
     sss_uv: 'vec2',
+    sss_row_x: 'vec4', sss_row_y: 'vec4', sss_row_z: 'vec4',
     sss_tangent: 'vec4',
   },
   variables: {
@@ -723,7 +798,10 @@ export class IceMaterial extends materialClass({
     sss_V: 'vec3',
     sss_side: 'float',
     sss_frame: 'mat3',
-    sss_lights: 'vec3', sss_light_color: 'vec3', sss_light_nearness: 'float', sss_pending: 'bool',
+    sss_P_object: 'vec3',
+    sss_to_object: 'mat3',
+    sss_lights: 'vec3', sss_light_color: 'vec3', sss_light_nearness: 'float', sss_shadow: 'float',
+    sss_entry: 'vec3',
   },
   parameters, textures, shells: SHELLS,
 }) {}

@@ -128,6 +128,16 @@ mat3 sss_tangent_frame(vec3 P, vec3 V, vec3 N, float side, vec2 uv, vec4 tangent
     return mat3(T, B, N);
 }
 
+// How far light travelled inside a box that contains the body: from where it entered the box to a point \`at\`
+// of the body, in lengths of \`towards\`, which points to the light.
+float sss_way_out_of_box(vec3 at, vec3 towards, vec3 box_min, vec3 box_max) {
+    // a component of 0 never leaves the box
+    vec3 slopes = max(abs(towards), vec3(1.0e-12));
+    vec3 side = mix(at - box_min, box_max - at, greaterThan(towards, vec3(0.0)));
+    vec3 ways = max(side, 0.0) / slopes;
+    return min(min(ways.x, ways.y), ways.z);
+}
+
 // The direction of \`x\`; of a zero vector, 0.
 vec2 sss_safe_normalize(vec2 x) {
     return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
@@ -574,11 +584,13 @@ fn sss_evaluate_translucency(surface: sss_Surface, V: vec3f, N: vec3f, L: vec3f,
 var<private> sss_surface: sss_Surface;
 `;
 
-/** WebGLRenderer: what goes into three's shaders: `light` for each light, and the others once. */
+/** WebGLRenderer: what goes into three's shaders: `light` and `entry` for each light, and the others once. */
 const WEBGL = {
   varyings: /* glsl */ `
 varying vec3 sss_view_position;
 varying vec2 sss_uv;
+varying vec3 sss_P_body;
+flat varying mat3 sss_to_object;
 varying vec4 sss_tangent;
 `,
   vertex_attributes: /* glsl */ `
@@ -589,10 +601,19 @@ attribute vec4 tangent;
   vertex: /* glsl */ `
 sss_view_position = mvPosition.xyz;
 sss_uv = uv;
+sss_P_body = transformed;
+mat4 sss_placement = modelMatrix;
+#ifdef USE_INSTANCING
+sss_placement *= instanceMatrix;
+#endif
+#ifdef USE_BATCHING
+sss_placement *= batchingMatrix;
+#endif
+sss_to_object = inverse(mat3(sss_placement));
 #ifdef USE_SKINNING
 sss_tangent = vec4(0.0);
 #else
-sss_tangent = vec4((modelMatrix * vec4(tangent.xyz, 0.0)).xyz, tangent.w * sign(determinant(mat3(modelMatrix))));
+sss_tangent = vec4((sss_placement * vec4(tangent.xyz, 0.0)).xyz, tangent.w * sign(determinant(mat3(sss_placement))));
 #endif
 `,
   variables: /* glsl */ `
@@ -629,6 +650,11 @@ vec3 L = sss_safe_normalize(directLight.direction * mat3(viewMatrix));
 vec3 N = sss_safe_normalize(geometryNormal * mat3(viewMatrix));
 reflectedLight.directDiffuse += RECIPROCAL_PI * sss_light_color * sss_evaluate_translucency(sss_surface, sss_V, N, L, sss_distortion,
             sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power);
+`,
+  entry: /* glsl */ `
+vec3 towards = directLight.direction * mat3(viewMatrix);
+float way = sss_way_out_of_box(sss_P_body, sss_to_object * towards, sss_body_min, sss_body_max);
+return vec4(sss_P + towards * min(way, 0.99 / max(sss_light_nearness, 1e-30)), 1.0);
 `,
   includes: {
     color_fragment: /* glsl */ `

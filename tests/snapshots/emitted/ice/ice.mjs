@@ -128,6 +128,30 @@ mat3 sss_tangent_frame(vec3 P, vec3 V, vec3 N, float side, vec2 uv, vec4 tangent
     return mat3(T, B, N);
 }
 
+// How far light travelled inside a box that contains the body: from where it entered the box to a point \`at\`
+// of the body, in lengths of \`towards\`, which points to the light.
+float sss_way_out_of_box(vec3 at, vec3 towards, vec3 box_min, vec3 box_max) {
+    // a component of 0 never leaves the box
+    vec3 slopes = max(abs(towards), vec3(1.0e-12));
+    vec3 side = mix(at - box_min, box_max - at, greaterThan(towards, vec3(0.0)));
+    vec3 ways = max(side, 0.0) / slopes;
+    return min(min(ways.x, ways.y), ways.z);
+}
+
+// Where the light that reaches \`P\` entered a box around the body, in world space: there an engine's shadow
+// map says what lies between the light and the body.
+vec3 sss_light_entry(vec3 P, vec3 L, float nearness, vec3 P_object, mat3 to_object, vec3 box_min,
+    vec3 box_max) {
+    // A shadow is read over some texels. While these are within the margin, none of them has a part of the
+    // body before this place, also where light grazes a side of the box.
+    float margin = 0.02 * distance(box_min, box_max);
+    float way = sss_way_out_of_box(P_object, L * to_object, box_min - margin, box_max + margin);
+    // to world space: a matrix of cofactors is the inverse times a determinant, whose square it has
+    way *= sqrt(abs(determinant(to_object)));
+    // before the light, where no shadow map begins
+    return P + L * min(way, nearness > 0.0 ? 0.99 / max(nearness, 1.0e-20) : way);
+}
+
 // The direction of \`x\`; of a zero vector, 0.
 vec2 sss_safe_normalize(vec2 x) {
     return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
@@ -408,6 +432,30 @@ fn sss_tangent_frame(P: vec3f, V: vec3f, N: vec3f, side: f32, uv: vec2f, tangent
     return mat3x3f(T, B, N);
 }
 
+// How far light travelled inside a box that contains the body: from where it entered the box to a point \`at\`
+// of the body, in lengths of \`towards\`, which points to the light.
+fn sss_way_out_of_box(at: vec3f, towards: vec3f, box_min: vec3f, box_max: vec3f) -> f32 {
+    // a component of 0 never leaves the box
+    let slopes = max(abs(towards), vec3f(1.0e-12));
+    let side = select(at - box_min, box_max - at, towards > vec3f(0.0));
+    let ways = max(side, vec3f(0.0)) / slopes;
+    return min(min(ways.x, ways.y), ways.z);
+}
+
+// Where the light that reaches \`P\` entered a box around the body, in world space: there an engine's shadow
+// map says what lies between the light and the body.
+fn sss_light_entry(P: vec3f, L: vec3f, nearness: f32, P_object: vec3f, to_object: mat3x3f, box_min: vec3f,
+    box_max: vec3f) -> vec3f {
+    // A shadow is read over some texels. While these are within the margin, none of them has a part of the
+    // body before this place, also where light grazes a side of the box.
+    let margin = 0.02 * distance(box_min, box_max);
+    var way = sss_way_out_of_box(P_object, L * to_object, box_min - margin, box_max + margin);
+    // to world space: a matrix of cofactors is the inverse times a determinant, whose square it has
+    way *= sqrt(abs(determinant(to_object)));
+    // before the light, where no shadow map begins
+    return P + L * min(way, select(way, 0.99 / max(nearness, 1.0e-20), nearness > 0.0));
+}
+
 // The direction of \`x\`; of a zero vector, 0.
 fn sss_safe_normalize_vec2(x: vec2f) -> vec2f {
     return x * select(0.0, inverseSqrt(dot(x, x)), dot(x, x) > 1.0e-30);
@@ -654,6 +702,11 @@ fn sss_evaluate_lighting(surface: sss_Surface, N: vec3f, V: vec3f, L: vec3f, lig
 const SHELLS = [{
   functions: GLSL,
   vertex: `
+sss_P_object = vertex_position.xyz;
+sss_row_x = cross(dModelMatrix[1].xyz, dModelMatrix[2].xyz);
+sss_row_y = cross(dModelMatrix[2].xyz, dModelMatrix[0].xyz);
+sss_row_z = cross(dModelMatrix[0].xyz, dModelMatrix[1].xyz);
+if (dot(dModelMatrix[0].xyz, sss_row_x) < 0.0) { sss_row_x *= -1.0; sss_row_y *= -1.0; sss_row_z *= -1.0; }
 sss_tangent = vec4((dModelMatrix * vec4(sss_tangent.xyz, 0.0)).xyz, sss_tangent.w);
 sss_tangent.w *= sign(dot(dModelMatrix[0].xyz, cross(dModelMatrix[1].xyz, dModelMatrix[2].xyz)));
 `,
@@ -675,6 +728,7 @@ sss_V = sss_N;
 sss_eye_position = vPositionW + sss_V;
 #endif
 sss_frame = sss_tangent_frame(vPositionW, sss_V, sss_N, sss_side, sss_uv, sss_tangent);
+sss_to_object = mat3(sss_row_x, sss_row_y, sss_row_z);
 sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count,
             sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint,
             sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief,
@@ -686,6 +740,10 @@ sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_cou
             sss_distortion, sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient,
             sss_power)`,
   lighting: `sss_evaluate_lighting(sss_surface, litArgs_worldNormal, sss_V, sss_L, sss_light_color)`,
+  entry: `
+sss_entry = sss_light_entry(vPositionW, sss_L, sss_light_nearness,
+  sss_P_object, sss_to_object, sss_body_min, sss_body_max);
+`,
   places: {
     front: `
 litArgs_albedo *= sss_surface.albedo;
@@ -704,6 +762,11 @@ dDiffuseLight *= sss_surface.albedo;
 }, {
   functions: WGSL,
   vertex: `
+output.sss_P_object = vertex_position.xyz;
+output.sss_row_x = cross(dModelMatrix[1].xyz, dModelMatrix[2].xyz);
+output.sss_row_y = cross(dModelMatrix[2].xyz, dModelMatrix[0].xyz);
+output.sss_row_z = cross(dModelMatrix[0].xyz, dModelMatrix[1].xyz);
+if (dot(dModelMatrix[0].xyz, output.sss_row_x) < 0.0) { output.sss_row_x *= -1.0; output.sss_row_y *= -1.0; output.sss_row_z *= -1.0; }
 output.sss_tangent = vec4f((dModelMatrix * vec4f(output.sss_tangent.xyz, 0.0)).xyz, output.sss_tangent.w);
 output.sss_tangent.w *= sign(dot(dModelMatrix[0].xyz, cross(dModelMatrix[1].xyz, dModelMatrix[2].xyz)));
 `,
@@ -725,6 +788,7 @@ sss_V = sss_N;
 sss_eye_position = vPositionW + sss_V;
 #endif
 sss_frame = sss_tangent_frame(vPositionW, sss_V, sss_N, sss_side, sss_uv, sss_tangent);
+sss_to_object = mat3x3f(sss_row_x, sss_row_y, sss_row_z);
 sss_surface = sss_evaluate_surface(sss_uv, uniform.sss_time, uniform.sss_variation,
             uniform.sss_cell_count, uniform.sss_thickness_factor, uniform.sss_bevel,
             uniform.sss_attenuation_distance, uniform.sss_tint, sss_base_color_texture,
@@ -741,6 +805,10 @@ sss_surface = sss_evaluate_surface(sss_uv, uniform.sss_time, uniform.sss_variati
             uniform.sss_distortion, uniform.sss_subsurface_color, uniform.sss_attenuation,
             uniform.sss_scale, uniform.sss_ambient, uniform.sss_power)`,
   lighting: `sss_evaluate_lighting(sss_surface, litArgs_worldNormal, sss_V, sss_L, sss_light_color)`,
+  entry: `
+sss_entry = sss_light_entry(vPositionW, sss_L, sss_light_nearness,
+  sss_P_object, sss_to_object, uniform.sss_body_min, uniform.sss_body_max);
+`,
   places: {
     front: `
 litArgs_albedo *= sss_surface.albedo;
@@ -766,6 +834,8 @@ export class IceMaterial extends materialClass({
   varyings: {
     sss_uv: { type: 'vec2', attribute: 'vertex_texCoord0', semantic: 'TEXCOORD0', define: 'UV0', default: 0 },
     sss_tangent: { type: 'vec4', attribute: 'vertex_tangent', semantic: 'TANGENT', define: 'TANGENTS', default: 0 },
+    sss_P_object: { type: 'vec3' },
+    sss_row_x: { type: 'vec3' }, sss_row_y: { type: 'vec3' }, sss_row_z: { type: 'vec3' },
   },
   variables: {
     sss_surface: 'sss_Surface',
@@ -774,6 +844,8 @@ export class IceMaterial extends materialClass({
     sss_V: 'vec3',
     sss_eye_position: 'vec3',
     sss_frame: 'mat3',
+    sss_to_object: 'mat3',
+    sss_entry: 'vec3', sss_shadow_place: 'vec3',
   },
   parameters, textures, shells: SHELLS,
 }) {}

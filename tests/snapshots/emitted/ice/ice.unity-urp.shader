@@ -69,7 +69,7 @@ Shader "sssgen/Ice (URP)" {
             float _Scale;  // Strength of the glow towards the light
             float _Ambient;  // Glow that does not depend on the direction
             float _Power;  // How narrow the glow around the light is: the larger, the smaller the spot
-            float _TransmissionShadowOffset;  // Towards the light, at least the size of the body; 0: no shadows of other bodies
+            float _TransmissionShadowOffset;  // Towards the light, at least the size of the body; 0: that of the renderer's box
         CBUFFER_END
 
         TEXTURE2D(_BaseColorTexture); SAMPLER(sampler_BaseColorTexture);
@@ -97,6 +97,20 @@ Shader "sssgen/Ice (URP)" {
         static const float OPAQUE_DISTANCE = 1.0e-6;
         static const float ENDLESS = 10000.0;
         static const float OPAQUE_DEPTH = 80.0;
+
+        float3 mix_(float3 x, float3 y, bool3 a) {
+            return float3(a.x ? y.x : x.x, a.y ? y.y : x.y, a.z ? y.z : x.z);
+        }
+
+        // How far light travelled inside a box that contains the body: from where it entered the box to a point `at`
+        // of the body, in lengths of `towards`, which points to the light.
+        float way_out_of_box(float3 at, float3 towards, float3 box_min, float3 box_max) {
+            // a component of 0 never leaves the box
+            float3 slopes = max(abs(towards), (float3)1.0e-12);
+            float3 side = mix_(at - box_min, box_max - at, towards > (float3)0.0);
+            float3 ways = max(side, 0.0) / slopes;
+            return min(min(ways.x, ways.y), ways.z);
+        }
 
         // The direction of `x`; of a zero vector, 0.
         float2 safe_normalize(float2 x) {
@@ -394,6 +408,66 @@ Shader "sssgen/Ice (URP)" {
             #endif
             }
 
+            // The index in URP's arrays of a light that has the index `number` for GetAdditionalLight.
+            int light_index(uint number) {
+            #if !defined(_ADDITIONAL_LIGHTS) || USE_FORWARD_PLUS || USE_CLUSTERED_LIGHTING || USE_CLUSTER_LIGHT_LOOP
+                return int(number);
+            #else
+                return GetPerObjectLightIndex(number);
+            #endif
+            }
+
+            // 1 over the distance of such a light, 0 for one from afar.
+            float light_nearness_at(uint number, float3 place) {
+            #if defined(_ADDITIONAL_LIGHTS)
+            #if USE_STRUCTURED_BUFFER_FOR_LIGHT_DATA
+                float4 light_place = _AdditionalLightsBuffer[light_index(number)].position;
+            #else
+                float4 light_place = _AdditionalLightsPosition[light_index(number)];
+            #endif
+                return light_place.w / max(distance(light_place.xyz, place), 0.01);
+            #else
+                return 0.0;
+            #endif
+            }
+
+            // How far from a place of the body, towards a light, the shadow map is read: where the light enters the
+            // renderer's box. The place itself lies in the shadow of its own body. 0: the box is unknown.
+            float way_to_entry(float3 place, float3 L) {
+                float way = _TransmissionShadowOffset;
+            #if UNITY_VERSION >= 202220
+                // The margin: where the body touches the box, texels of the shadow map are partly its own.
+                float margin = 0.02 * distance(unity_RendererBounds_Min.xyz, unity_RendererBounds_Max.xyz);
+                if (way <= 0.0 && margin > 0.0) {
+                    way = margin + way_out_of_box(place, L, unity_RendererBounds_Min.xyz, unity_RendererBounds_Max.xyz);
+                }
+            #endif
+                return way;
+            }
+
+            // The shares of the main light and of an additional one that are not in the shadow of other bodies.
+            float main_light_at_entry(float3 place, float3 L) {
+                float share = 1.0;
+            #if !defined(_MAIN_LIGHT_SHADOWS_SCREEN)  // screen space has the shadow at the surface alone
+                float way = way_to_entry(place, L);
+                if (way > 0.0) {
+                    float3 entry = place + L * way;
+                    share = MainLightShadow(TransformWorldToShadowCoord(entry), entry, 1.0, 1.0);
+                }
+            #endif
+                return share;
+            }
+
+            float additional_light_at_entry(uint number, float3 place, float3 L) {
+                float share = 1.0;
+                float way = way_to_entry(place, L);
+                if (way > 0.0) {
+                    way /= max(1.0, way * light_nearness_at(number, place) / 0.99);  // not beyond a lamp in the box
+                    share = AdditionalLightShadow(light_index(number), place + L * way, L, 1.0, 1.0);
+                }
+                return share;
+            }
+
             float4 frag(Varyings input) : SV_Target {
                 UNITY_SETUP_INSTANCE_ID(input);
                 UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input);
@@ -425,15 +499,9 @@ Shader "sssgen/Ice (URP)" {
                 float4 color = UniversalFragmentPBR(inputData, surface_data(surface));
 
                 // Without the object's own shadow: light that comes through entered on the far side.
-                // The shadow map is read beyond the object, where only the shadows of others are.
                 Light light = GetMainLight(inputData.shadowCoord, input.positionWS, inputData.shadowMask);  // with its cookie
                 float3 light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
-            #if !defined(_MAIN_LIGHT_SHADOWS_SCREEN)
-                if (_TransmissionShadowOffset > 0.0) {
-                    float3 beyond = input.positionWS + light.direction * _TransmissionShadowOffset;
-                    light_color *= MainLightRealtimeShadow(TransformWorldToShadowCoord(beyond));
-                }
-            #endif
+                light_color *= main_light_at_entry(input.positionWS, light.direction);
                 color.rgb += evaluate_translucency(surface, V, N, light.direction) * light_color;
             #if defined(_ADDITIONAL_LIGHTS)
             #if USE_CLUSTER_LIGHT_LOOP || USE_FORWARD_PLUS || USE_CLUSTERED_LIGHTING
@@ -446,6 +514,7 @@ Shader "sssgen/Ice (URP)" {
                 for (uint number = 0u; number < directional_count; number++) {
                     light = GetAdditionalLight(number, input.positionWS, inputData.shadowMask);
                     light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
+                    light_color *= additional_light_at_entry(number, input.positionWS, light.direction);
                     color.rgb += evaluate_translucency(surface, V, N, light.direction) * light_color;
                 }
             #endif
@@ -453,6 +522,7 @@ Shader "sssgen/Ice (URP)" {
                 LIGHT_LOOP_BEGIN(light_count)
                     light = GetAdditionalLight(lightIndex, input.positionWS, inputData.shadowMask);
                     light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
+                    light_color *= additional_light_at_entry(lightIndex, input.positionWS, light.direction);
                     color.rgb += evaluate_translucency(surface, V, N, light.direction) * light_color;
                 LIGHT_LOOP_END
             #endif

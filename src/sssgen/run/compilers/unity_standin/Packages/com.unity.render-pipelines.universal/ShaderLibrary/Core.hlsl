@@ -30,6 +30,10 @@ float unity_RenderingLayer;
 uint _MainLightLayerMask;
 uint _AdditionalLightsLayerMask;  // of all of them
 half3 standin_cookie;             // of every light
+#if UNITY_VERSION >= 202220
+float4 unity_RendererBounds_Min;  // the box of the object in the world
+float4 unity_RendererBounds_Max;
+#endif
 #if STANDIN_TILES && UNITY_VERSION >= 202220
 float4 _FPParams0;
 #define URP_FP_DIRECTIONAL_LIGHTS_COUNT ((uint)_FPParams0.w)

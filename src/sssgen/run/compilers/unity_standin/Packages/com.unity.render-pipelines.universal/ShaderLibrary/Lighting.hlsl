@@ -109,7 +109,7 @@ Light GetAdditionalLight(uint i, float3 positionWS)
 Light GetAdditionalLight(uint i, float3 positionWS, half4 shadowMask)
 {
     Light light = GetAdditionalLight(i, positionWS);
-    light.shadowAttenuation = shadowMask.x;
+    light.shadowAttenuation = AdditionalLightShadow(GetPerObjectLightIndex(i), positionWS, light.direction, shadowMask, 1.0);
     return standin_through_cookie(light);
 }
 
