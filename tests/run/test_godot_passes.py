@@ -37,10 +37,8 @@ func _process(_delta):
     var still := frame == 3
     body.position.x = 0.0 if still else 0.4
     var view := body.get_viewport()
-    view.get_camera_3d().fov = own_fov() if still else 50.0
-    view.size = Vector2i(96, 72) if still else Vector2i(80, 80)
-func own_fov() -> float:
-    return FOV
+    view.get_camera_3d().fov = FOV if still else 50.0
+    view.size = Vector2i(SIZE) if still else Vector2i(80, 80)
 """
 """Body, camera and picture differ in the frames before the one that is read."""
 
@@ -76,7 +74,8 @@ def test_the_script_draws_the_passes(
     view = godot_values.view_of(mesh.shell, mesh.size, *torus_mesh(scene.geometry))
     scripts = {name: text for name, text in compiled.files.items() if name.endswith(".gd")}
     if case == "moved before":
-        scripts = {"shaken.gd": SHAKEN.replace("FOV", str(view.field_of_view)), **scripts}
+        text = SHAKEN.replace("FOV", str(view.field_of_view)).replace("SIZE", f"{mesh.size[0]}, {mesh.size[1]}")
+        scripts = {"shaken.gd": text, **scripts}
     values = godot_values.values_of(compiled.reflection, dataclasses.replace(mesh.shell, parameters={}))
     drawn = Godot(renderer).draw(text_of(compiled, THROUGH), view, values, {}, scripts)[::-1]
     expected = through(scene.material, mesh)

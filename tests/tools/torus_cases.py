@@ -38,7 +38,7 @@ color = [0.2, 0.3, 0.6]
 
 
 def torus_scene(folder: Path, lights: str) -> str:
-    """The scene of jade_ring and its material in `folder`; with more `lights`, such as SEVERAL, it has a map for each."""
+    """The scene and material of jade_ring in `folder`; with more `lights`, such as SEVERAL, it has a map for each."""
     example = ROOT / "examples/jade_ring"
     material = (example / "jade_ring.toml").read_text(encoding="utf-8")
     scene = (example / "scene.toml").read_text(encoding="utf-8").replace('"jade_ring"', '"jade.toml"')
