@@ -4,12 +4,10 @@ extends Node
 
 ## The distance where there is no surface: it fits into half a float.
 const FAR := 60000.0
-## The width of what one light sees, in texels.
+## The width of a picture of what lights see, in texels: of one light, or of four in 2 × 2 tiles.
 const SIDE := 1024
 ## A surface behind another is at least this share of the body's radius farther away: more than half floats round.
 const MARGIN := 2e-3
-## The name under which a material knows whose pictures it has.
-const OWNER := &"sssgen_passes"
 
 ## The distance from the eye or from a plane in front of the light, of what is behind the surface before.
 const DISTANCE := "shader_type spatial;
@@ -69,6 +67,8 @@ void fragment() {
 ## The camera whose view the pictures of the eye have; without one it is the current camera of the body's viewport.
 @export var eye: Camera3D
 
+## Material → the node whose pictures it has.
+static var _owners := {}
 var _pictures: Array[Picture] = []
 var _lights: Array[Light3D] = []
 var _materials: Array[ShaderMaterial] = []
@@ -101,7 +101,8 @@ func _exit_tree() -> void:
 	for picture in _pictures:
 		picture.release()
 	for material in _materials:
-		material.remove_meta(OWNER)
+		if _owners[material] == self:
+			_owners.erase(material)
 	_pictures.clear()
 	_materials.clear()
 
@@ -112,11 +113,11 @@ func _note_light(node: Node) -> void:
 
 
 func _draw() -> void:
-	if not is_instance_valid(body) or not body.is_inside_tree():
-		return
-	var camera := eye if is_instance_valid(eye) else body.get_viewport().get_camera_3d()
-	var seen := camera != null and body.is_visible_in_tree()
+	var seen := is_instance_valid(body) and body.is_visible_in_tree()
+	var camera: Camera3D
 	if seen:
+		camera = eye if is_instance_valid(eye) else body.get_viewport().get_camera_3d()
+		seen = camera != null
 		_find_materials()
 	for picture in _pictures:
 		if seen:
@@ -138,10 +139,11 @@ func _find_materials() -> void:
 		var material := one as ShaderMaterial
 		if material == null or material in _materials or not _reads(material.shader):
 			continue
-		if material.has_meta(OWNER):
-			push_warning("%s shares its material with another body: make it unique" % body.name)
-		material.set_meta(OWNER, true)
 		_materials.append(material)
+		if material in _owners:
+			push_warning("%s shares its material with another body: make it unique" % body.name)
+			continue
+		_owners[material] = self
 		for picture in _pictures:
 			picture.take(material)
 
@@ -329,6 +331,8 @@ class Packing extends FloatView:
 
 ## A pass: the layers that it draws for each light, and the picture that they make. The eye is one light here.
 class Picture:
+	## The textures of all pictures: a copy of a material has those of the other one.
+	static var drawn := {}
 	var data: Dictionary
 	var users: Array[ShaderMaterial] = []
 	var tiles: Array[Array] = []
@@ -342,6 +346,7 @@ class Picture:
 			tiles.append(_layers(above))
 		if tiles.size() > 1 or tiles[0].size() > 1:
 			packing = Packing.new(above, tiles, columns)
+		drawn[view().get_texture()] = true
 
 	func _layers(above: Node) -> Array:
 		var layers: Array[Layer] = []
@@ -358,11 +363,13 @@ class Picture:
 		return packing if packing != null else tiles[0][0]
 
 	func take(material: ShaderMaterial) -> void:
-		if material.get_shader_parameter(data["texture"]) == null:
+		var given: Variant = material.get_shader_parameter(data["texture"])
+		if given == null or given in drawn:
 			material.set_shader_parameter(data["texture"], view().get_texture())
 			users.append(material)
 
 	func release() -> void:
+		drawn.erase(view().get_texture())
 		for material in users:
 			material.set_shader_parameter(data["texture"], null)
 		for one in _views():
