@@ -286,10 +286,11 @@ def test_shells_and_reflection_say_how(target: str, form: str, folder: Path) -> 
         texture["source_name"]: texture.get("property") or texture["name"]
         for texture in compiled.reflection["textures"]
     }
-    runtimes = {file.name for file in load_target(target).files[form] if file.sources}  # the same for all materials
+    files = [file for file in load_target(target).files[form] if file.sources or file.needs]
+    others = {file.name.replace("{material}", "shown") for file in files}  # no shaders
     for name, text in compiled.files.items():
         commented = not name.endswith((".json", ".txt", ".shadersubgraph", ".meta"))
-        if commented and name not in runtimes:
+        if commented and name not in others:
             mark = "# " if target == "numpy" else "// "
             comment = " ".join(line.removeprefix(mark) for line in text.splitlines() if line.startswith(mark))
             assert f"{names['back_face_map']}: draw the translucent body alone with its front faces culled" in comment

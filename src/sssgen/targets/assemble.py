@@ -22,7 +22,7 @@ from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.targets.descriptor import OutputFile, Target
 from sssgen.targets.frame import LIBRARY, library
-from sssgen.targets.javascript_runtime import inlined_text, runtime_text
+from sssgen.targets.javascript_runtime import inlined_text, is_module, runtime_text
 from sssgen.targets.parameter_variables import (
     check_properties,
     pass_variables,
@@ -205,8 +205,10 @@ def emit(
     context["runtime"] = _runtime(target, outputs, standalone)
     for output in outputs:
         name = target.file_name(output, program.about.name)
+        if output.needs and not context[output.needs]:
+            continue
         if output.sources:
-            if not standalone:
+            if not (standalone and is_module(output.sources)):
                 files[name] = runtime_text(output.sources, target.folder)
             continue
         own = context
@@ -237,7 +239,8 @@ def _runtime(target: Target, outputs: Sequence[OutputFile], standalone: bool) ->
     """The file that a module imports, and its text where the module contains it; empty where there is none."""
     for output in outputs:
         if output.sources:
-            return {"file": output.name, "text": inlined_text(output.sources, target.folder) if standalone else ""}
+            inlined = standalone and is_module(output.sources)
+            return {"file": output.name, "text": inlined_text(output.sources, target.folder) if inlined else ""}
     return {}
 
 

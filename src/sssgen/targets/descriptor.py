@@ -50,8 +50,10 @@ class OutputFile(NamedTuple):
     without: tuple[str, ...] = ()
     """Kinds of entries that this file does not call: functions that only these need are left out."""
     sources: tuple[str, ...] = ()
-    """In place of a template: the JavaScript of which the file consists (`javascript_runtime`), the same for every
-    material: the runtime of their modules."""
+    """In place of a template: the files of which this one consists (`javascript_runtime`), the same for every
+    material: their runtime."""
+    needs: str = ""
+    """A list of the template's variables, such as `passes`: where it is empty, there is no such file."""
 
 
 class Names(NamedTuple):

@@ -1,7 +1,7 @@
-"""The runtime of modules for the web: what the materials of an engine share, as one module beside them.
+"""The runtime of an engine: what its materials share, as one file beside them, the same for every material.
 
-Its sources are plain ES modules in `javascript/`, which import each other. They are joined into one text, which is the
-same for every material.
+For the web its sources are plain ES modules in `javascript/`, which import each other and are joined into one text. For
+Godot it is one script in `gdscript/`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,9 @@ import re
 from sssgen.support.diagnostics import failure
 
 FOLDER = os.path.join(os.path.dirname(__file__), "javascript")
-"""The folder of the project's own sources."""
+"""The folder of the project's own modules."""
+SCRIPTS = os.path.join(os.path.dirname(__file__), "gdscript")
+"""The folder of its scripts."""
 _IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
 _TYPE = re.compile(r"import\('\./[^']*'\)\.")
 _EXPORT = re.compile(r"^export (?!default|\{|\*)", re.MULTILINE)
@@ -21,8 +23,9 @@ _EXPORT = re.compile(r"^export (?!default|\{|\*)", re.MULTILINE)
 
 @functools.cache
 def runtime_text(sources: tuple[str, ...], folder: str) -> str:
-    """The module of these files. A file is in `folder`, or else in the project's own; the exports are the first one's.
+    """The module, or script, of these files; the exports are the first one's.
 
+    A file is in `folder`, or else in the project's own.
     Imports of packages are written once, at the top; those of other files of the runtime and their types are left out.
     Raises SssgenError for a file that there is not.
     """
@@ -30,8 +33,14 @@ def runtime_text(sources: tuple[str, ...], folder: str) -> str:
     imports = [line for text in (first, *others) for line in _IMPORT.findall(text) if "'./" not in line]
     head, _, body = _IMPORT.sub("", first).partition("\n\n")
     parts = [body, *(_EXPORT.sub("", _IMPORT.sub("", text)) for text in others)]
-    text = "\n\n".join([head, "".join(dict.fromkeys(imports)).rstrip(), *map(str.strip, parts)])
+    pieces = [head, "".join(dict.fromkeys(imports)).rstrip(), *map(str.strip, parts)]
+    text = "\n\n".join(piece for piece in pieces if piece)
     return _TYPE.sub("", text) + "\n"
+
+
+def is_module(sources: tuple[str, ...]) -> bool:
+    """Whether these files make a module of JavaScript, which can stand in another one."""
+    return bool(sources) and sources[0].endswith(".js")
 
 
 def inlined_text(sources: tuple[str, ...], folder: str) -> str:
@@ -41,8 +50,9 @@ def inlined_text(sources: tuple[str, ...], folder: str) -> str:
 
 def _read(name: str, folder: str) -> str:
     own = os.path.join(folder, name)
+    project = os.path.join(SCRIPTS if name.endswith(".gd") else FOLDER, name)
     try:
-        with open(own if os.path.isfile(own) else os.path.join(FOLDER, name), encoding="utf-8") as file:
+        with open(own if os.path.isfile(own) else project, encoding="utf-8") as file:
             return file.read()
     except (OSError, ValueError) as error:
         raise failure(f"cannot read '{name}', a source of a target's descriptor: {error}") from None

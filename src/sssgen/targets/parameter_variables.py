@@ -57,7 +57,10 @@ def texture_variables(printer: Printer, uniform: Uniform, type_: Sampler, source
 
 
 def pass_variables(target: Target, uniforms: Iterable[Uniform], sources: Mapping[str, str]) -> list[dict[str, Any]]:
-    """The passes that draw the body alone, with the engine's properties; `sources` are the techniques' own names."""
+    """The passes that draw the body alone, with the engine's properties and the names in its text.
+
+    `sources` are the techniques' own names.
+    """
 
     def of(uniform: Uniform) -> str:
         return property_name(target, sources.get(uniform.name, uniform.name))
@@ -66,6 +69,7 @@ def pass_variables(target: Target, uniforms: Iterable[Uniform], sources: Mapping
         {
             "name": use.name, "seen_from": drawn.seen_from, "layers": list(drawn.layers), "empty": drawn.empty,
             "texture": of(use.texture), "views": [of(view) for view in use.views],
+            "texture_uniform": use.texture.name, "view_uniforms": [view.name for view in use.views],
         }
         for use in passes_of(uniforms)
         for drawn in [FRAME_PASSES[use.name]]

@@ -92,7 +92,7 @@ def reflect(
         "files": [
             {"name": target.file_name(output, program.about.name), "stages": output.stages}
             for output in target.files.get(form, ())
-            if not output.sources or output.name in emitted.files
+            if not (output.sources or output.needs) or target.file_name(output, program.about.name) in emitted.files
         ],
         **_stage(program),
         **_compute(target, program),

@@ -52,15 +52,24 @@ class Godot:
         """Whether the renderer passes colours as they are stored, in sRGB."""
         return self.renderer == "gl_compatibility"
 
-    def draw(self, shader: str, view: View, values: Mapping[str, Any], textures: Mapping[str, Array]) -> Array:
+    def draw(
+        self,
+        shader: str,
+        view: View,
+        values: Mapping[str, Any],
+        textures: Mapping[str, Array],
+        scripts: Mapping[str, str] | None = None,
+    ) -> Array:
         """The picture, (height, width, 4) float64, row 0 at the top, in linear light; alpha is 0 behind the body.
 
         `values` are parameters as JSON values with their kind, `textures` (height, width, 4) or (depth, height, width,
-        4) of float32, row 0 at v = 0. An empty `shader` means Godot's standard material with `values`. Raises
-        SssgenError where Godot refuses the shader or draws nothing.
+        4) of float32, row 0 at v = 0. The first of the `scripts` is that of a node below the body. An empty `shader`
+        means Godot's standard material with `values`. Raises SssgenError where Godot refuses the shader or draws
+        nothing.
         """
         plan, files = _plan(view, values, textures)
-        files |= {"plan.json": json.dumps(plan), "draw.gd": _SCRIPT, "shader.gdshader": shader}
+        plan["script"] = next(iter(scripts or {}), "")
+        files |= {**(scripts or {}), "plan.json": json.dumps(plan), "draw.gd": _SCRIPT, "shader.gdshader": shader}
         options = ["--rendering-method", self.renderer, "--rendering-driver", RENDERERS[self.renderer]]
         with self.program.display() as display, self.program.project(files) as project:
             try:
@@ -68,7 +77,7 @@ class Godot:
             except subprocess.TimeoutExpired:
                 raise backend_failure(self.name, f"no picture after {SECONDS:.0f} s") from None
             picture = project / "picture.bin"
-            if "SHADER ERROR" in said or not picture.is_file():
+            if "SHADER ERROR" in said or "SCRIPT ERROR" in said or not picture.is_file():
                 raise backend_failure(self.name, f"no picture: {said.strip()[-600:]}")
             data = np.fromfile(picture, np.float32)
         width, height = view.size
@@ -244,6 +253,10 @@ func draw():
         body.mesh.size = Vector2(height * view.size.x / view.size.y, height)
         body.transform = camera.transform.translated_local(Vector3(0.0, 0.0, -1.0))
     body.material_override = material(plan)
+    if plan["script"] != "":
+        var node = Node.new()
+        node.set_script(load("res://" + plan["script"]))
+        body.add_child(node)
     view.add_child(body)
     for entry in plan["lights"]:
         view.add_child(light(entry))

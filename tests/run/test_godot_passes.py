@@ -1,0 +1,84 @@
+"""Godot draws the passes of a material with the emitted script. With a Godot, in its three renderers: slow."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import sssgen
+from engine_cases import mesh_of, through
+from godot_scenes import THROUGH, text_of
+from sssgen.run.backends.godot_drawing import RENDERERS, Godot
+from sssgen.run.compilers import Compiler
+from sssgen.run.render import godot_values
+from sssgen.scene import scene_loading
+from sssgen.scene.solids import Torus
+from torus_cases import inner_pixels, torus_mesh, torus_scene
+
+LIGHTS = """
+[[light]]
+position = [6.4, -1.6, -5.6]
+color = [75.0, 38.0, 18.0]
+
+[[light]]
+direction = [0.5, -0.62, 0.66]
+color = [0.2, 0.3, 0.6]
+"""
+"""Lights for jade_ring. The second is not near, as Godot takes each light for one from afar."""
+SHAKEN = """extends "jade_ring_passes.gd"
+var frame := 0
+func _process(_delta):
+    frame += 1
+    var still := frame == 3
+    body.position.x = 0.0 if still else 0.4
+    var view := body.get_viewport()
+    view.get_camera_3d().fov = FOV if still else 50.0
+    view.size = Vector2i(SIZE) if still else Vector2i(80, 80)
+"""
+"""Body, camera and picture differ in the frames before the one that is read."""
+
+
+def test_the_script_names_all_passes() -> None:
+    compiled = sssgen.compile("jade_ring", "godot")
+    script = compiled.files["jade_ring_passes.gd"]
+    assert "class_name JadeRingPasses" in script and 'extends "sssgen_passes.gd"' in script
+    rows = [json.loads(line.strip().rstrip(",")) for line in script.splitlines() if line.startswith("\t\t{")]
+    assert [row["name"] for row in rows] == ["back_faces", "distant_light_depth"]
+    keys = ("name", "seen_from", "layers", "empty", "texture", "views")
+    assert rows == [{key: row[key] for key in keys} for row in compiled.reflection["passes"]]
+    listed = {file["name"] for file in compiled.reflection["files"]}
+    assert {"jade_ring_passes.gd", "sssgen_passes.gd"} <= listed
+
+
+def test_without_passes_there_is_no_script() -> None:
+    assert not [name for name in sssgen.compile("ice", "godot").files if name.endswith(".gd")]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("renderer", RENDERERS)
+@pytest.mark.parametrize("case", ["one light", "several lights", "moved before"])
+def test_the_script_draws_the_passes(
+    case: str, renderer: str, tmp_path: Path, compiler: Callable[[str], Compiler]
+) -> None:
+    """The light that comes through is that of the oracle, also where all has moved in the frame before."""
+    compiler("godot")
+    path = torus_scene(tmp_path, LIGHTS if case == "several lights" else "")
+    mesh, scene = mesh_of(path), scene_loading.load(path)
+    assert isinstance(scene.geometry, Torus)
+    compiled = sssgen.compile(scene.material, "godot")
+    view = godot_values.view_of(mesh.shell, mesh.size, *torus_mesh(scene.geometry))
+    scripts = {name: text for name, text in compiled.files.items() if name.endswith(".gd")}
+    if case == "moved before":
+        text = SHAKEN.replace("FOV", str(view.field_of_view)).replace("SIZE", f"{mesh.size[0]}, {mesh.size[1]}")
+        scripts = {"shaken.gd": text, **scripts}
+    values = godot_values.values_of(compiled.reflection, dataclasses.replace(mesh.shell, parameters={}))
+    drawn = Godot(renderer).draw(text_of(compiled, THROUGH), view, values, {}, scripts)[::-1]
+    expected = through(scene.material, mesh)
+    difference = np.abs(drawn - expected)[..., :3][inner_pixels(mesh.hit)].max(axis=-1)
+    print(f"{case}, {renderer}: {255 * np.quantile(difference, 0.98):.2f}")
+    assert np.quantile(difference, 0.98) < 1.0 / 255.0 and expected.mean() > 0.01
