@@ -100,11 +100,10 @@ async function draw(plan, piece) {
   const size = { width: plan.width, height: plan.height };
   const target = new RenderTargetTexture('target', size, scene, { type: FLOAT, samplingMode: Texture.NEAREST_SAMPLINGMODE, generateMipMaps: false });
   target.clearColor = scene.clearColor;
-  target.activeCamera = camera;
-  target.renderList = meshes;
+  camera.outputRenderTarget = target;
   scene.activeCamera = camera;
   const ready = (/** @type {Mesh} */ mesh) => mesh.isReady(true) && generators.every((one) => one.isReady(mesh.subMeshes[0], mesh.hasThinInstances, false));
-  while (![...meshes, ...walls].every(ready)) {
+  while (![...meshes, ...walls].every(ready) || !scene.isReady(true)) {
     const wrong = meshes[0].subMeshes[0].effect?.getCompilationError();
     if (wrong) throw new Error(wrong);
     await new Promise((resume) => setTimeout(resume, 1));
@@ -113,7 +112,6 @@ async function draw(plan, piece) {
     const map = generator.getShadowMap();
     if (map) scene.customRenderTargets.push(map); // before what reads it
   }
-  scene.customRenderTargets.push(target);
   engine.beginFrame();
   scene.render();
   engine.endFrame();
