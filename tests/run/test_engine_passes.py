@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from functools import partial
+from collections.abc import Callable, Iterator
+from functools import cache, partial
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -29,9 +30,14 @@ BLACK = {
 """Without the engine's own reflection."""
 
 
-@pytest.fixture(scope="module", params=[(engine, name) for engine in (THREE, BABYLON) for name in engine.renderers])
+ENGINES = {engine.target: engine for engine in (THREE, BABYLON)}
+RENDERERS = [(target, name) for target, engine in ENGINES.items() for name in engine.renderers]
+
+
+@pytest.fixture(scope="module")
 def page(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
-    renderer: EnginePage = or_skip(partial(EnginePage, request.param[0]), request.param[1])
+    target, name = request.param
+    renderer: EnginePage = or_skip(partial(EnginePage, ENGINES[target]), name)
     yield renderer
     renderer.page.close()
 
@@ -73,31 +79,62 @@ def torus_scene(folder: Path, several: bool) -> str:
     return str(folder / "scene.toml")
 
 
-@pytest.fixture(scope="module", params=["one light", "several lights"])
-def case(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, PlacedMesh, Array]:
-    """A scene with the mesh of its points, and the light that comes through by the oracle."""
-    path = torus_scene(tmp_path_factory.mktemp("torus"), request.param == "several lights")
-    mesh = mesh_of(path)
-    return path, mesh, through(str(Path(path).with_name("jade.toml")), mesh)
+class Case(NamedTuple):
+    """A scene with the mesh of its points."""
+
+    path: str
+    mesh: PlacedMesh
+    expected: Array
+    """The light that comes through by the oracle."""
 
 
-def test_the_engine_draws_the_passes(page: EnginePage, case: tuple[str, PlacedMesh, Array]) -> None:
-    """Without textures from the page, the light that comes through is that of the oracle."""
-    path, mesh, expected = case
-    scene = scene_loading.load(path)
+@pytest.fixture(scope="module")
+def case_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[bool], Case]:
+    """The scene with one light or with several."""
+
+    @cache
+    def case(several: bool) -> Case:
+        path = torus_scene(tmp_path_factory.mktemp("torus"), several)
+        mesh = mesh_of(path)
+        return Case(path, mesh, through(str(Path(path).with_name("jade.toml")), mesh))
+
+    return case
+
+
+def differences(page: EnginePage, case: Case, **properties: Any) -> Array:
+    """Of the light that comes through from that of the oracle, in each pixel but those at the edge."""
+    scene = scene_loading.load(case.path)
     assert isinstance(scene.geometry, Torus)
     vertices, triangles = torus_mesh(scene.geometry)
     compiled = sssgen.compile(scene.material, page.engine.target)
+    mesh, shell = case.mesh, case.mesh.shell
     drawing = EngineDrawing(
-        page_values.modules_of(compiled), mesh.size, vertices, triangles, mesh.shell.view_projection,
-        mesh.shell.camera_position, mesh.shell.model, mesh.shell.light_positions, mesh.shell.light_colors,
-        properties=BLACK[page.engine.target],
+        page_values.modules_of(compiled), mesh.size, vertices, triangles, shell.view_projection, shell.camera_position,
+        shell.model, shell.light_positions, shell.light_colors, properties=BLACK[page.engine.target] | properties,
     )  # fmt: skip
     drawn = page.draw(drawing)
-    inner = mesh.hit.copy()  # without the pixels at the edge, where triangles replace the round body
+    inner = mesh.hit.copy()  # at the edge, triangles replace the round body
     for axis, step in ((0, -1), (0, 1), (1, -1), (1, 1)):
         inner &= np.roll(mesh.hit, step, axis)
-    difference = np.abs(drawn - expected)[..., :3][inner].max(axis=-1)
-    print(page.name, np.quantile(difference, [0.5, 0.9, 0.98, 1.0]) * 255)
+    assert case.expected[..., :3][inner].mean() > 0.05
+    result: Array = np.abs(drawn - case.expected)[..., :3][inner].max(axis=-1)
+    return result
+
+
+@pytest.mark.parametrize("several", [False, True], ids=["one light", "several lights"])
+@pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
+def test_the_engine_draws_the_passes(page: EnginePage, several: bool, case_of: Callable[[bool], Case]) -> None:
+    """Without textures from the page, the light that comes through is that of the oracle."""
     # the oracle's depths are half floats, so that every back end has the same
-    assert np.quantile(difference, 0.98) < 1.0 / 255.0 and expected[..., :3][inner].mean() > 0.05
+    assert np.quantile(differences(page, case_of(several)), 0.98) < 1.0 / 255.0
+
+
+ELSEWHERE = {"size": 2.0, "model": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 9, 3, -5, 1]}
+"""A copy of the body."""
+
+
+@pytest.mark.parametrize("page", [("babylonjs", name) for name in BABYLON.renderers], ids="-".join, indirect=True)
+@pytest.mark.parametrize("stage", [{"leftHanded": True}, {"copies": [ELSEWHERE]}], ids=["left-handed", "two bodies"])
+def test_other_scenes(page: EnginePage, stage: dict[str, Any], case_of: Callable[[bool], Case]) -> None:
+    """A left-handed scene, as Babylon.js has it by itself; a second body of the material, whose pictures are its own."""
+    assert np.quantile(differences(page, case_of(False), stage=stage), 0.98) < 1.0 / 255.0

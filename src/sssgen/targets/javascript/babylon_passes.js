@@ -10,7 +10,7 @@ import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Viewport } from '@babylonjs/core/Maths/math.viewport.js';
 import '@babylonjs/core/Shaders/depth.vertex.js';
 import '@babylonjs/core/ShadersWGSL/depth.vertex.js';
-import { LAYER_GAP, SIDE, columnsOf, emptyOf, layersOf, lightsOf, viewNumbers } from './frame_passes.js';
+import { LAYER_GAP, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
 
 // The shaders, in GLSL and in WGSL. The vertices are those of Babylon's own depth maps: with bones, morph targets and instances.
 
@@ -85,11 +85,29 @@ export function lightOf(light) {
   return [[...place.asArray(), directional ? 0 : 1], light.diffuse.scale(light.getScaledIntensity() / Math.PI).asArray()];
 }
 
-/** The box of a body and its instances: the corners in world space, and the ball around them. */
+/** How far vertices reach from the center of their box, by that box. @type {WeakMap<any, number>} */
+const REACHES = new WeakMap();
+
+/** The same in world space. A round body reaches much less far than its corners; of one that moves in the shader it is unknown. */
+function reachOf([mesh, ...others]) {
+  const box = mesh.geometry?.extend; // another object when positions change
+  if (others.length || !box || mesh.hasThinInstances || mesh.skeleton || mesh.morphTargetManager || mesh.bakedVertexAnimationManager) return Infinity;
+  if (!REACHES.has(box)) {
+    const center = Vector3.Center(box.minimum, box.maximum).asArray(), positions = mesh.getVerticesData('position');
+    let most = positions ? 0 : Infinity;
+    for (let at = 0; at < positions?.length; at += 3) most = Math.max(most, Math.hypot(...center.map((middle, axis) => positions[at + axis] - middle)));
+    REACHES.set(box, most);
+  }
+  return REACHES.get(box) * Math.max(...mesh.getBoundingInfo().boundingBox.directions.map((edge) => edge.length()));
+}
+
+/** The box of a body and its instances: the corners in world space, the ball around them, and the directions of the body's edges. */
 function boxOf(meshes) {
-  const corners = meshes.flatMap((mesh) => mesh.getBoundingInfo().boundingBox.vectorsWorld);
+  const boxes = meshes.map((mesh) => mesh.getBoundingInfo().boundingBox);
+  const corners = boxes.flatMap(({ vectorsWorld }) => vectorsWorld);
   const [least, most] = [Vector3.Minimize, Vector3.Maximize].map((bound) => corners.reduce((a, b) => bound(a, b)));
-  return { corners, center: Vector3.Center(least, most), radius: Vector3.Distance(least, most) / 2 };
+  const edges = boxes[0].directions.map((edge) => edge.normalizeToNew());
+  return { corners, edges, reach: reachOf(meshes), center: Vector3.Center(least, most), radius: Vector3.Distance(least, most) / 2 };
 }
 
 const POINT = 0, DIRECTIONAL = 1, SPOT = 2;
@@ -105,69 +123,88 @@ function lightsAt(mesh, { center }, pass) {
   return lightsOf(lights, pass);
 }
 
-/** What a light sees of a body; `distant`: as if it were far away. */
-function viewOf(light, { corners, center, radius }, distant, scene) {
+/** What a light sees of a body; `distant`: as if it were far away. Upwards is an edge of the body, so that it fills the picture. */
+function viewOf(light, { corners, edges, reach, center, radius }, distant, scene) {
   const engine = scene.getEngine(), hand = scene.useRightHandedSystem ? 'RH' : 'LH';
   const afar = distant || !light[3];
   const place = Vector3.FromArray(light);
   const way = (light[3] ? place.subtract(center) : place).normalize();
-  const up = Math.abs(way.y) > 0.99 ? new Vector3(0, 0, 1) : Vector3.Up();
-  const view = Matrix[`LookAt${hand}`](afar ? center.add(way.scale(2 * radius)) : place, center, up);
-  const seen = corners.map((corner) => Vector3.TransformCoordinates(corner, view));
-  const depths = seen.map(({ z }) => Math.max(Math.abs(z), 0.01 * radius));
-  const half = 1.02 * Math.max(...seen.map(({ x, y }, index) => Math.max(Math.abs(x), Math.abs(y)) / (afar ? 1 : depths[index])));
-  const range = [0.99 * Math.min(...depths), 1.01 * Math.max(...depths)];
+  const distance = afar ? Infinity : Vector3.Distance(place, center);
+  const round = afar ? reach : reach < distance ? reach / Math.sqrt(distance ** 2 - reach ** 2) : Infinity;
+  const fits = edges.filter((up) => Math.abs(Vector3.Dot(up, way)) < 0.99).map((up) => {
+    const view = Matrix[`LookAt${hand}`](afar ? center.add(way.scale(2 * radius)) : place, center, up);
+    const seen = corners.map((corner) => Vector3.TransformCoordinates(corner, view));
+    const depths = seen.map(({ z }) => Math.max(Math.abs(z), 0.01 * radius));
+    const [width, height] = ['x', 'y'].map((axis) => 1.02 * Math.min(round, Math.max(...seen.map((corner, index) => Math.abs(corner[axis]) / (afar ? 1 : depths[index])))));
+    return { view, width, height, range: [0.99 * Math.min(...depths), 1.01 * Math.max(...depths)] };
+  });
+  const { view, width, height, range } = fits.reduce((a, b) => (b.width + b.height < a.width + a.height ? b : a));
   if (engine.useReverseDepthBuffer) range.reverse();
   const projection = afar
-    ? Matrix[`OrthoOffCenter${hand}`](-half, half, -half, half, ...range, engine.isNDCHalfZRange)
-    : Matrix[`PerspectiveFov${hand}`](2 * Math.atan(half), 1, ...range, engine.isNDCHalfZRange, 0, engine.useReverseDepthBuffer);
+    ? Matrix[`OrthoOffCenter${hand}`](-width, width, -height, height, ...range, engine.isNDCHalfZRange)
+    : Matrix[`PerspectiveFov${hand}`](2 * Math.atan(height), width / height, ...range, engine.isNDCHalfZRange, 0, engine.useReverseDepthBuffer);
   return { view, clip: view.multiply(projection) };
 }
 
 // The pictures of a body.
 
 /** A picture of floats, without filters. */
-function settingsOf(scene, generateDepthBuffer) {
-  const type = scene.getEngine().getCaps().textureFloatRender ? 1 : 2; // else half floats
-  return { type, generateDepthBuffer, generateMipMaps: false, samplingMode: Texture.NEAREST_SAMPLINGMODE };
+class Picture extends RenderTargetTexture {
+  constructor(name, size, scene, settings) {
+    const type = scene.getEngine().getCaps().textureFloatRender ? 1 : 2; // else half floats
+    super(name, size, scene, { type, generateMipMaps: false, samplingMode: Texture.NEAREST_SAMPLINGMODE, ...settings });
+    this.doNotSerialize = true;
+  }
+
+  /** Takes a size, if it has another one. */
+  fit({ width, height }) {
+    if (this.getRenderWidth() !== width || this.getRenderHeight() !== height) this.resize({ width, height });
+  }
 }
 
-/** A layer of a pass: the distances of its surfaces in the first channel. */
-class Layer extends RenderTargetTexture {
-  #mesh;
+const RED = 6;
+
+/** A layer of a pass: the distances of its surfaces. */
+class Layer extends Picture {
   #material;
-  #columns;
   #tile = 0;
 
   /** @param {import('./frame_passes.js').Pass} pass @param {Layer} [front] the layer that its surfaces are behind */
-  constructor(mesh, pass, back, front, size) {
-    const scene = mesh.getScene(), engine = scene.getEngine();
-    super(`${mesh.name} ${pass.name}`, size, scene, settingsOf(scene, true));
+  constructor(pass, back, front, size, scene) {
+    super(`sssgen ${pass.name}`, size, scene, { format: RED });
+    const engine = scene.getEngine(), shaderLanguage = languageOf(engine);
     const defines = ['STORE_CAMERASPACE_Z', pass.seenFrom !== 'eye' && 'FROM_PLANE', front && 'PEELS'].filter(Boolean);
-    const language = languageOf(engine);
-    this.#mesh = mesh;
-    this.#columns = columnsOf(pass);
-    this.#material = new ShaderMaterial(this.name, scene, { vertex: 'depth', fragmentSource: DISTANCE[language] }, {
-      attributes: ['position'], uniforms: ['world', 'view', 'viewProjection', 'margin'], samplers: ['front'], defines, shaderLanguage: language, useClipPlane: false,
+    this.#material = new ShaderMaterial(this.name, scene, { vertex: 'depth', fragmentSource: DISTANCE[shaderLanguage] }, {
+      attributes: ['position'], uniforms: ['world', 'view', 'viewProjection', 'margin'], samplers: ['front'], defines, shaderLanguage, useClipPlane: false,
     });
     if (front) this.#material.setTexture('front', front);
-    this.#material.cullBackFaces = !back;
-    this.#material.doNotSerialize = this.doNotSerialize = true;
-    this.renderList = [mesh];
-    this.setMaterialForRendering(mesh, this.#material);
-    const empty = emptyOf(pass), color = new Color4(empty, empty, empty, 1);
+    Object.assign(this.#material, { cullBackFaces: !back, doNotSerialize: true });
+    const empty = emptyOf(pass), columns = columnsOf(pass);
     this.onClearObservable.add(() => {
-      if (!this.#tile) engine.clear(color, true, true, true);
-      const width = 1 / this.#columns;
-      const corner = [this.#tile % this.#columns, Math.floor(this.#tile / this.#columns)].map((place) => place * width);
-      engine.setViewport(new Viewport(corner[0], corner[1], width, width), this.getRenderWidth(), this.getRenderHeight());
+      if (!this.#tile) engine.clear(new Color4(empty, empty, empty, 1), true, true, true);
+      const { x, y } = tileOf(this.#tile, columns);
+      engine.setViewport(new Viewport(x / columns, y / columns, 1 / columns, 1 / columns), this.getRenderWidth(), this.getRenderHeight());
     });
+  }
+
+  /** From now on draws a mesh with the material of the layer. */
+  take(mesh) {
+    this.setMaterialForRendering(mesh, this.#material);
+  }
+
+  leave(mesh) {
+    this.setMaterialForRendering(mesh, undefined);
+  }
+
+  isReadyFor(mesh) {
+    this.renderList = [mesh];
+    return this.isReadyForRendering();
   }
 
   /** Draws meshes as each of some views shows them, a tile for each. */
   draw(meshes, views, margin) {
     this.renderList = meshes;
-    this.#material.sideOrientation = this.#mesh.material.sideOrientation;
+    this.#material.sideOrientation = meshes[0].material.sideOrientation;
     this.#material.setFloat('margin', margin);
     views.forEach(({ view, clip }, tile) => {
       this.#material.setMatrix('view', view).setMatrix('viewProjection', clip);
@@ -177,13 +214,12 @@ class Layer extends RenderTargetTexture {
   }
 
   dispose() {
-    this.setMaterialForRendering(this.#mesh, undefined);
     this.#material.dispose();
     super.dispose();
   }
 }
 
-/** What writes layers into one picture. */
+/** What writes the layers of a pass into one picture. */
 class Packing {
   #layers = [];
 
@@ -215,9 +251,10 @@ export class Passes extends RenderTargetTexture {
   #material;
   #passes;
   #isGiven;
-  /** @type {Packing | undefined} */
   #packing;
-  /** @type {Map<any, { values: Record<string, any>, pictures: Record<string, { layers: Layer[], packed: RenderTargetTexture }> }>} */
+  /** The layers of a pass, by its name: all bodies share them. @type {Record<string, Layer[]>} */
+  #layers = {};
+  /** For each mesh: its pictures by the names of passes, and the values of properties. */
   #bodies = new Map();
 
   /**
@@ -231,7 +268,7 @@ export class Passes extends RenderTargetTexture {
     this.#material = material;
     this.#passes = passes;
     this.#isGiven = isGiven;
-    if (passes.some(({ layers }) => layers.length > 1)) this.#packing = new Packing(material.getScene().getEngine());
+    this.#packing = new Packing(material.getScene().getEngine());
   }
 
   /** The passes that it draws. */
@@ -255,8 +292,8 @@ export class Passes extends RenderTargetTexture {
 
   isReadyForRendering() {
     const meshes = this.getScene().meshes.filter((mesh) => this.#has(mesh));
-    const layers = meshes.flatMap((mesh) => this.#drawn.flatMap((pass) => this.#picturesOf(mesh, pass).layers));
-    return layers.map((layer) => layer.isReadyForRendering()).every(Boolean) && (this.#packing?.shader.isReady() ?? true);
+    const ready = meshes.flatMap((mesh) => this.#drawn.flatMap((pass) => this.#partsOf(mesh, pass).layers.map((layer) => layer.isReadyFor(mesh))));
+    return ready.every(Boolean) && this.#packing.shader.isReady();
   }
 
   render() {
@@ -269,55 +306,58 @@ export class Passes extends RenderTargetTexture {
   }
 
   #drawPass(pass, mesh) {
-    const scene = this.getScene(), eye = pass.seenFrom === 'eye', distant = pass.seenFrom === 'distant light';
+    const scene = this.getScene(), columns = columnsOf(pass);
     const meshes = [mesh, ...mesh.instances].filter((one) => one.isEnabled() && one.isVisible);
     const box = boxOf(meshes);
-    const views = eye
+    const views = pass.seenFrom === 'eye'
       ? [{ view: scene.getViewMatrix(), clip: scene.getTransformMatrix() }]
-      : lightsAt(mesh, box, pass).map((light) => viewOf(light, box, distant, scene));
-    const { layers, packed } = this.#picturesOf(mesh, pass), { values } = this.#bodies.get(mesh);
+      : lightsAt(mesh, box, pass).map((light) => viewOf(light, box, pass.seenFrom === 'distant light', scene));
+    const { layers, picture, values } = this.#partsOf(mesh, pass);
     for (const layer of layers) layer.draw(meshes, views, LAYER_GAP * box.radius);
-    if (packed !== layers[0]) this.#packing.draw(layers, packed);
-    const columns = columnsOf(pass), forwards = scene.useRightHandedSystem ? -1 : 1;
-    values[pass.texture] = packed;
+    this.#packing.draw(layers, picture);
+    values[pass.texture] = picture;
     pass.views.forEach((property, index) => {
-      const tile = { x: index % columns, y: Math.floor(index / columns) };
-      // a view of zeros shows nothing
-      values[property] = views[index] ? Matrix.FromArray(viewNumbers(views[index].clip.m, views[index].view.m, forwards, 1, tile, columns)) : Matrix.Zero();
+      const { clip, view } = views[index] ?? { clip: Matrix.Zero(), view: Matrix.Zero() }; // it shows nothing
+      values[property] = Matrix.FromArray(viewNumbers(clip.m, view.m, scene.useRightHandedSystem ? -1 : 1, 1, tileOf(index, columns), columns));
     });
   }
 
-  #picturesOf(mesh, pass) {
+  /** The layers of a pass; the picture of a mesh, and the values of its properties. */
+  #partsOf(mesh, pass) {
+    const scene = this.getScene(), size = pass.seenFrom === 'eye' ? sizeOf(scene) : { width: SIDE * columnsOf(pass), height: SIDE * columnsOf(pass) };
     if (!this.#bodies.has(mesh)) {
       this.#bodies.set(mesh, { values: {}, pictures: {} });
       for (const end of [mesh.onDisposeObservable, mesh.onMaterialChangedObservable]) end.addOnce(() => this.#forget(mesh));
     }
-    const { pictures } = this.#bodies.get(mesh);
-    const size = pass.seenFrom === 'eye' ? sizeOf(this.getScene()) : { width: SIDE * columnsOf(pass), height: SIDE * columnsOf(pass) };
-    const own = (pictures[pass.name] ??= this.#newPictures(mesh, pass, size));
-    for (const picture of [...own.layers, own.packed]) {
-      if (picture.getRenderWidth() !== size.width || picture.getRenderHeight() !== size.height) picture.resize(size);
+    const layers = (this.#layers[pass.name] ??= this.#newLayers(pass, size));
+    const { values, pictures } = this.#bodies.get(mesh);
+    if (!pictures[pass.name]) {
+      pictures[pass.name] = new Picture(`sssgen ${pass.name}`, size, scene, { generateDepthBuffer: false });
+      layers.forEach((layer) => layer.take(mesh));
     }
-    return own;
+    const picture = pictures[pass.name];
+    for (const one of [...layers, picture]) one.fit(size);
+    return { layers, picture, values };
   }
 
-  #newPictures(mesh, pass, size) {
+  #newLayers(pass, size) {
     const layers = [];
-    for (const { back, before } of layersOf(pass)) layers.push(new Layer(mesh, pass, back, layers[before], size));
-    if (layers.length === 1) return { layers, packed: layers[0] };
-    const packed = new RenderTargetTexture(`${mesh.name} ${pass.name}`, size, this.getScene(), settingsOf(this.getScene(), false));
-    packed.doNotSerialize = true;
-    return { layers, packed };
+    for (const { back, before } of layersOf(pass)) layers.push(new Layer(pass, back, layers[before], size, this.getScene()));
+    return layers;
   }
 
   #forget(mesh) {
-    for (const { layers, packed } of Object.values(this.#bodies.get(mesh)?.pictures ?? {})) new Set([...layers, packed]).forEach((picture) => picture.dispose());
+    for (const [name, picture] of Object.entries(this.#bodies.get(mesh)?.pictures ?? {})) {
+      picture.dispose();
+      this.#layers[name].forEach((layer) => layer.leave(mesh));
+    }
     this.#bodies.delete(mesh);
   }
 
   dispose() {
     for (const mesh of [...this.#bodies.keys()]) this.#forget(mesh);
-    this.#packing?.dispose();
+    Object.values(this.#layers).flat().forEach((layer) => layer.dispose());
+    this.#packing.dispose();
     super.dispose();
   }
 }

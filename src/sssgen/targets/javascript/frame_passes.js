@@ -24,6 +24,9 @@ export const emptyOf = ({ empty }) => (empty === 'far' ? FAR : 0);
 /** The tiles along a side of a picture. */
 export const columnsOf = ({ views }) => (views.length > 1 ? 2 : 1);
 
+/** The tile of a light in a picture with so many columns. */
+export const tileOf = (light, columns) => ({ x: light % columns, y: Math.floor(light / columns) });
+
 /**
  * The layers of a pass: whether one has back faces, and the number of the layer that its surfaces are behind; -1 for none.
  * @param {Pass} pass
