@@ -136,5 +136,5 @@ ELSEWHERE = {"size": 2.0, "model": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 9, 3, -5
 @pytest.mark.parametrize("page", [("babylonjs", name) for name in BABYLON.renderers], ids="-".join, indirect=True)
 @pytest.mark.parametrize("stage", [{"leftHanded": True}, {"copies": [ELSEWHERE]}], ids=["left-handed", "two bodies"])
 def test_other_scenes(page: EnginePage, stage: dict[str, Any], case_of: Callable[[bool], Case]) -> None:
-    """A left-handed scene, as Babylon.js has it by itself; a second body of the material, whose pictures are its own."""
+    """A left-handed scene, which is Babylon's default; a second body of the material, with pictures of its own."""
     assert np.quantile(differences(page, case_of(False), stage=stage), 0.98) < 1.0 / 255.0

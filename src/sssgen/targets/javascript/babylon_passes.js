@@ -98,7 +98,7 @@ function reachOf([mesh, ...others]) {
     for (let at = 0; at < positions?.length; at += 3) most = Math.max(most, Math.hypot(...center.map((middle, axis) => positions[at + axis] - middle)));
     REACHES.set(box, most);
   }
-  return REACHES.get(box) * Math.max(...mesh.getBoundingInfo().boundingBox.directions.map((edge) => edge.length()));
+  return /** @type {number} */ (REACHES.get(box)) * Math.max(...mesh.getBoundingInfo().boundingBox.directions.map((edge) => edge.length()));
 }
 
 /** The box of a body and its instances: the corners in world space, the ball around them, and the directions of the body's edges. */
@@ -139,10 +139,10 @@ function viewOf(light, { corners, edges, reach, center, radius }, distant, scene
     return { view, width, height, range: [0.99 * Math.min(...depths), 1.01 * Math.max(...depths)] };
   });
   const { view, width, height, range } = fits.reduce((a, b) => (b.width + b.height < a.width + a.height ? b : a));
-  if (engine.useReverseDepthBuffer) range.reverse();
+  const [near, far] = engine.useReverseDepthBuffer ? range.reverse() : range;
   const projection = afar
-    ? Matrix[`OrthoOffCenter${hand}`](-width, width, -height, height, ...range, engine.isNDCHalfZRange)
-    : Matrix[`PerspectiveFov${hand}`](2 * Math.atan(height), width / height, ...range, engine.isNDCHalfZRange, 0, engine.useReverseDepthBuffer);
+    ? Matrix[`OrthoOffCenter${hand}`](-width, width, -height, height, near, far, engine.isNDCHalfZRange)
+    : Matrix[`PerspectiveFov${hand}`](2 * Math.atan(height), width / height, near, far, engine.isNDCHalfZRange, 0, engine.useReverseDepthBuffer);
   return { view, clip: view.multiply(projection) };
 }
 
@@ -169,11 +169,11 @@ class Layer extends Picture {
   #material;
   #tile = 0;
 
-  /** @param {import('./frame_passes.js').Pass} pass @param {Layer} [front] the layer that its surfaces are behind */
+  /** @param {import('./frame_passes.js').Pass} pass @param {boolean} back @param {Layer | undefined} front the layer that its surfaces are behind */
   constructor(pass, back, front, size, scene) {
     super(`sssgen ${pass.name}`, size, scene, { format: RED });
     const engine = scene.getEngine(), shaderLanguage = languageOf(engine);
-    const defines = ['STORE_CAMERASPACE_Z', pass.seenFrom !== 'eye' && 'FROM_PLANE', front && 'PEELS'].filter(Boolean);
+    const defines = ['STORE_CAMERASPACE_Z', pass.seenFrom === 'eye' ? '' : 'FROM_PLANE', front ? 'PEELS' : ''].filter((one) => one);
     this.#material = new ShaderMaterial(this.name, scene, { vertex: 'depth', fragmentSource: DISTANCE[shaderLanguage] }, {
       attributes: ['position'], uniforms: ['world', 'view', 'viewProjection', 'margin'], samplers: ['front'], defines, shaderLanguage, useClipPlane: false,
     });
@@ -248,6 +248,8 @@ class Packing {
  * it is known which meshes these are.
  */
 export class Passes extends RenderTargetTexture {
+  /** @type {any} */
+  #scene;
   #material;
   #passes;
   #isGiven;
@@ -265,10 +267,11 @@ export class Passes extends RenderTargetTexture {
   constructor(material, passes, isGiven) {
     super(`${material.name} passes`, 1, material.getScene());
     this.doNotSerialize = true;
+    this.#scene = material.getScene();
     this.#material = material;
     this.#passes = passes;
     this.#isGiven = isGiven;
-    this.#packing = new Packing(material.getScene().getEngine());
+    this.#packing = new Packing(this.#scene.getEngine());
   }
 
   /** The passes that it draws. */
@@ -291,22 +294,22 @@ export class Passes extends RenderTargetTexture {
   }
 
   isReadyForRendering() {
-    const meshes = this.getScene().meshes.filter((mesh) => this.#has(mesh));
+    const meshes = this.#scene.meshes.filter((mesh) => this.#has(mesh));
     const ready = meshes.flatMap((mesh) => this.#drawn.flatMap((pass) => this.#partsOf(mesh, pass).layers.map((layer) => layer.isReadyFor(mesh))));
     return ready.every(Boolean) && this.#packing.shader.isReady();
   }
 
   render() {
-    const scene = this.getScene(), { data, length } = scene.getActiveMeshes();
-    const meshes = new Set(data.slice(0, length).map((mesh) => /** @type {any} */ (mesh).sourceMesh ?? mesh));
+    const { data, length } = this.#scene.getActiveMeshes();
+    const meshes = new Set(data.slice(0, length).map((mesh) => mesh.sourceMesh ?? mesh));
     for (const mesh of meshes) {
       if (this.#has(mesh)) for (const pass of this.#drawn) this.#drawPass(pass, mesh);
     }
-    scene.getEngine().setViewport(scene.activeCamera.viewport);
+    this.#scene.getEngine().setViewport(this.#scene.activeCamera.viewport);
   }
 
   #drawPass(pass, mesh) {
-    const scene = this.getScene(), columns = columnsOf(pass);
+    const scene = this.#scene, columns = columnsOf(pass);
     const meshes = [mesh, ...mesh.instances].filter((one) => one.isEnabled() && one.isVisible);
     const box = boxOf(meshes);
     const views = pass.seenFrom === 'eye'
@@ -324,7 +327,7 @@ export class Passes extends RenderTargetTexture {
 
   /** The layers of a pass; the picture of a mesh, and the values of its properties. */
   #partsOf(mesh, pass) {
-    const scene = this.getScene(), size = pass.seenFrom === 'eye' ? sizeOf(scene) : { width: SIDE * columnsOf(pass), height: SIDE * columnsOf(pass) };
+    const side = SIDE * columnsOf(pass), size = pass.seenFrom === 'eye' ? sizeOf(this.#scene) : { width: side, height: side };
     if (!this.#bodies.has(mesh)) {
       this.#bodies.set(mesh, { values: {}, pictures: {} });
       for (const end of [mesh.onDisposeObservable, mesh.onMaterialChangedObservable]) end.addOnce(() => this.#forget(mesh));
@@ -332,7 +335,7 @@ export class Passes extends RenderTargetTexture {
     const layers = (this.#layers[pass.name] ??= this.#newLayers(pass, size));
     const { values, pictures } = this.#bodies.get(mesh);
     if (!pictures[pass.name]) {
-      pictures[pass.name] = new Picture(`sssgen ${pass.name}`, size, scene, { generateDepthBuffer: false });
+      pictures[pass.name] = new Picture(`sssgen ${pass.name}`, size, this.#scene, { generateDepthBuffer: false });
       layers.forEach((layer) => layer.take(mesh));
     }
     const picture = pictures[pass.name];
@@ -342,7 +345,7 @@ export class Passes extends RenderTargetTexture {
 
   #newLayers(pass, size) {
     const layers = [];
-    for (const { back, before } of layersOf(pass)) layers.push(new Layer(pass, back, layers[before], size, this.getScene()));
+    for (const { back, before } of layersOf(pass)) layers.push(new Layer(pass, back, layers[before], size, this.#scene));
     return layers;
   }
 

@@ -3,7 +3,7 @@
 
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
-import { LAYER_GAP, SIDE, columnsOf, emptyOf, layersOf, lightsOf, viewNumbers } from './frame_passes.js';
+import { LAYER_GAP, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
 
 /** The layer of three that only a pass draws. */
 const ALONE = 31;
@@ -204,8 +204,9 @@ class Drawing {
       picture.scissor.set(0, 0, picture.width, picture.height);
       renderer.setRenderTarget(picture);
       renderer.clear();
-      cameras.forEach((camera, tile) => {
-        picture.viewport.set(tileSize.x * (tile % pictures.columns), tileSize.y * Math.floor(tile / pictures.columns), tileSize.x, tileSize.y);
+      cameras.forEach((camera, index) => {
+        const tile = tileOf(index, pictures.columns);
+        picture.viewport.set(tileSize.x * tile.x, tileSize.y * tile.y, tileSize.x, tileSize.y);
         picture.scissor.copy(picture.viewport);
         renderer.setRenderTarget(picture);
         this.alone(renderer, object, material, camera);
@@ -244,7 +245,7 @@ export class Passes {
   /** @type {Map<THREE.Object3D, Record<string, { layers: THREE.RenderTarget[], packed: THREE.RenderTarget, columns: number }>>} */
   #pictures = new Map();
 
-  /** @param {Pass[]} passes */
+  /** @param {import('./frame_passes.js').Pass[]} passes */
   constructor(passes) {
     this.passes = passes;
   }
@@ -280,9 +281,9 @@ export class Passes {
       const distant = pass.seenFrom === 'distant light';
       cameras = lightsAt(ball, scene, camera, pass).map((light) => lampOf(light, ball, distant, system));
       pass.views.forEach((view, index) => {
-        const row = Math.floor(index / columns);
+        const { x, y } = tileOf(index, columns);
         // the rows of WebGPURenderer's fallback count upwards, its viewports downwards
-        const corner = { x: index % columns, y: drawing.nodes && !drawing.gpu ? columns - 1 - row : row };
+        const corner = { x, y: drawing.nodes && !drawing.gpu ? columns - 1 - y : y };
         // a view of zeros shows nothing
         set(view, cameras[index] ? viewOf(cameras[index], corner, columns, drawing.gpu ? -1 : 1) : new THREE.Matrix4().multiplyScalar(0));
       });
