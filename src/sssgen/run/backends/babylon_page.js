@@ -26,7 +26,7 @@ import { floats, halves, imported, indices, serve } from './engine_page.js';
 /** @typedef {import('./engine_page.js').PieceOf} PieceOf */
 /** @typedef {import('./engine_page.js').Stage} Stage */
 
-const RGBA = 5, FLOAT = 1, HALF_FLOAT = 2, COUNTER_CLOCKWISE = 1;
+const RGBA = 5, FLOAT = 1, HALF_FLOAT = 2, CLOCKWISE = 0, COUNTER_CLOCKWISE = 1;
 const WRAPS = { clamp: 0, repeat: 1, mirror: 2 };
 /** @type {Engine | WebGPUEngine} */
 let engine;
@@ -40,14 +40,18 @@ async function engineFor(kind) {
   return made;
 }
 
+/** The matrix from the plan's world, which is right-handed, to that of a scene. @param {Scene} scene */
+const handOf = (scene) => Matrix.Scaling(1, 1, scene.useRightHandedSystem ? 1 : -1);
+
 class GivenCamera extends Camera {
   /** @param {Plan} plan @param {Scene} scene */
   constructor(plan, scene) {
     super('given', Vector3.Zero(), scene);
-    const whole = Matrix.FromArray(plan.view).multiply(Matrix.FromArray(plan.projection));
+    const hand = handOf(scene);
+    const whole = hand.multiply(Matrix.FromArray(plan.view)).multiply(Matrix.FromArray(plan.projection));
     const [x, y, z] = plan.eye;
     // cascades are chosen by the depth in view space, so that it must not be turned
-    this.view = plan.properties.stage?.cascades ? Matrix.Translation(-x, -y, -z) : Matrix.FromArray(plan.view);
+    this.view = plan.properties.stage?.cascades ? Matrix.Translation(-x, -y, -z) : hand.multiply(Matrix.FromArray(plan.view)).multiply(hand);
     this.freezeProjectionMatrix(Matrix.Invert(this.view).multiply(whole));
   }
 
@@ -62,12 +66,12 @@ async function draw(plan, piece) {
   const device = engine instanceof WebGPUEngine ? engine._device : null;
   device?.pushErrorScope('validation');
   const scene = new Scene(engine);
-  scene.useRightHandedSystem = true;
+  const { stage = {}, ...properties } = plan.properties;
+  scene.useRightHandedSystem = !stage.leftHanded;
   scene.clearColor = new Color4(0, 0, 0, 0);
   scene.ambientColor = Color3.FromArray(plan.ambient.length ? plan.ambient : [0, 0, 0]);
   scene.imageProcessingConfiguration.applyByPostProcess = true; // linear light
   const camera = new GivenCamera(plan, scene);
-  const { stage = {}, ...properties } = plan.properties;
   const lights = plan.lights.map((light) => lightOf(light, stage, scene));
   const { createMaterial } = await imported(plan.modules);
   const textures = Object.fromEntries(Object.entries(plan.textures).map(([name, one]) => [name, textureOf(one, piece, scene)]));
@@ -84,10 +88,10 @@ async function draw(plan, piece) {
     const mesh = new Mesh('drawn', scene);
     data.applyToMesh(mesh);
     mesh.material = material;
-    mesh.sideOrientation = COUNTER_CLOCKWISE;
+    mesh.sideOrientation = stage.leftHanded ? CLOCKWISE : COUNTER_CLOCKWISE; // its matrix mirrors it
     mesh.alwaysSelectAsActiveMesh = true;
     mesh.receiveShadows = true;
-    mesh.freezeWorldMatrix(Matrix.FromArray(model));
+    mesh.freezeWorldMatrix(Matrix.FromArray(model).multiply(handOf(scene)));
     mesh._updateNonUniformScalingState(true); // Babylon derives it from mesh.scaling
     return mesh;
   };
@@ -100,11 +104,10 @@ async function draw(plan, piece) {
   const size = { width: plan.width, height: plan.height };
   const target = new RenderTargetTexture('target', size, scene, { type: FLOAT, samplingMode: Texture.NEAREST_SAMPLINGMODE, generateMipMaps: false });
   target.clearColor = scene.clearColor;
-  target.activeCamera = camera;
-  target.renderList = meshes;
+  camera.outputRenderTarget = target;
   scene.activeCamera = camera;
   const ready = (/** @type {Mesh} */ mesh) => mesh.isReady(true) && generators.every((one) => one.isReady(mesh.subMeshes[0], mesh.hasThinInstances, false));
-  while (![...meshes, ...walls].every(ready)) {
+  while (![...meshes, ...walls].every(ready) || !scene.isReady(true)) {
     const wrong = meshes[0].subMeshes[0].effect?.getCompilationError();
     if (wrong) throw new Error(wrong);
     await new Promise((resume) => setTimeout(resume, 1));
@@ -113,7 +116,6 @@ async function draw(plan, piece) {
     const map = generator.getShadowMap();
     if (map) scene.customRenderTargets.push(map); // before what reads it
   }
-  scene.customRenderTargets.push(target);
   engine.beginFrame();
   scene.render();
   engine.endFrame();
@@ -142,7 +144,7 @@ function vertexDataOf(plan, piece, size = 1) {
 /** @param {import('./engine_page.js').Light} light @param {Stage} stage @param {Scene} scene */
 function lightOf({ position, color }, { spot }, scene) {
   const [x, y, z, w] = position;
-  const place = new Vector3(x, y, z);
+  const place = Vector3.TransformCoordinates(new Vector3(x, y, z), handOf(scene));
   const towards = place.scale(-1).normalize();
   const light = !w ? new DirectionalLight('direction', towards, scene)
     : spot ? new SpotLight('spot', place, towards, spot, 1, scene) : new PointLight('point', place, scene);

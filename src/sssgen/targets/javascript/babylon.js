@@ -11,8 +11,10 @@ import { RawTexture2DArray } from '@babylonjs/core/Materials/Textures/rawTexture
 import { RawTexture3D } from '@babylonjs/core/Materials/Textures/rawTexture3D.js';
 import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
 import { Color3 } from '@babylonjs/core/Maths/math.color.js';
-import { Matrix, Vector2, Vector3, Vector4 } from '@babylonjs/core/Maths/math.vector.js';
+import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
+import { Vector2, Vector4 } from '@babylonjs/core/Maths/math.vector.js';
 import { SerializationHelper } from '@babylonjs/core/Misc/decorators.serialization.js';
+import { Passes, lightOf } from './babylon_passes.js';
 import { Properties, TEXELS } from './values.js';
 
 /**
@@ -27,6 +29,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {string[]} inputs the values that its functions read
  * @property {Record<string, import('./values.js').Parameter>} parameters
  * @property {Record<string, import('./values.js').TextureParameter>} textures
+ * @property {import('./frame_passes.js').Pass[]} [passes] what is drawn before it, in order
  * @property {Record<string, string>} varyings name → type
  * @property {Record<string, string>} variables of the fragment shader: the same
  * @property {Shell[]} shells in GLSL and in WGSL
@@ -167,7 +170,7 @@ const withoutComments = (places) => Object.fromEntries(
 
 /** The plug-in of a material. */
 function pluginClass(description, { moves, takesLight }) {
-  const { name: materialName, parameters, textures, shells } = description;
+  const { name: materialName, parameters, textures, shells, passes } = description;
   const code = [0, 1].map((language) => placesOf(description, language));
   // Babylon keeps one program for each name of a plug-in
   const key = `Sssgen_${materialName}_${Properties.hashOf(JSON.stringify(code))}`;
@@ -177,10 +180,14 @@ function pluginClass(description, { moves, takesLight }) {
   if (shells[0].entry) uniforms.push(['sss_body_min', 'vec3'], ['sss_body_max', 'vec3']);
 
   return class extends MaterialPluginBase {
-    constructor(material) {
+    /** @type {Passes | undefined} */
+    #passes;
+
+    constructor(material, isGiven) {
       super(material, key, 200);
+      if (passes) this.#passes = new Passes(material, passes, isGiven);
       this.doNotSerialize = true;
-      this.registerForExtraEvents = true; // calls hardBindForSubMesh
+      this.registerForExtraEvents = true; // calls hardBindForSubMesh and fillRenderTargetTextures
       this._enable(true);
     }
 
@@ -235,7 +242,16 @@ function pluginClass(description, { moves, takesLight }) {
       return this.#used().every((texture) => texture.isReadyOrNotBlocking());
     }
 
+    hasRenderTargetTextures() {
+      return Boolean(passes);
+    }
+
+    fillRenderTargetTextures(targets) {
+      if (this.#passes?.properties.length) targets.push(this.#passes);
+    }
+
     dispose(forceDisposeTextures) {
+      this.#passes?.dispose();
       if (forceDisposeTextures) this.#used().forEach((texture) => texture.dispose());
     }
 
@@ -245,43 +261,42 @@ function pluginClass(description, { moves, takesLight }) {
 
     /** Babylon calls this for each body, bindForSubMesh for the first of those that have the material. */
     hardBindForSubMesh(buffer, scene, engine, subMesh) {
+      const mesh = subMesh.getMesh(), drawn = this.#passes?.valuesOf(mesh);
+      for (const property of this.#passes?.properties ?? []) this.#write(buffer, property, drawn[property]);
       if (!shells[0].entry) return;
-      const { minimum, maximum } = subMesh.getMesh().getRawBoundingInfo().boundingBox; // without the places of thin instances
+      const { minimum, maximum } = mesh.getRawBoundingInfo().boundingBox; // without the places of thin instances
       buffer.updateVector3('sss_body_min', minimum);
       buffer.updateVector3('sss_body_max', maximum);
     }
 
     bindForSubMesh(buffer) {
-      const material = /** @type {any} */ (this._material);
-      const write = (name, type, numbers) => {
-        const size = SIZES[uniformType(type)];
-        if (size === 16) buffer.updateMatrices(name, Float32Array.from(numbers));
-        else buffer[`updateFloat${size === 1 ? '' : size}`](name, ...numbers);
-      };
-      for (const [property, { name, type }] of Object.entries(parameters)) write(name, type, numbersOf(material[property]));
-      for (const [property, { name }] of Object.entries(textures)) buffer.setTexture(name, material[property]);
-      if (moves) write('sss_time', 'float', [material.time ?? performance.now() / 1000]);
+      const material = /** @type {any} */ (this._material), drawn = this.#passes?.properties ?? [];
+      for (const property of [...Object.keys(parameters), ...Object.keys(textures)]) {
+        if (!drawn.includes(property)) this.#write(buffer, property);
+      }
+      if (moves) writeNumbers(buffer, 'sss_time', 'float', [material.time ?? performance.now() / 1000]);
       if (takesLight) {
         const [place, radiance] = lightOf(material.light);
-        write('sss_light_place', 'vec4', place);
-        write('sss_light_radiance', 'vec3', radiance);
+        writeNumbers(buffer, 'sss_light_place', 'vec4', place);
+        writeNumbers(buffer, 'sss_light_radiance', 'vec3', radiance);
       }
+    }
+
+    #write(buffer, property, value = this._material[property]) {
+      if (property in textures) buffer.setTexture(textures[property].name, value);
+      else writeNumbers(buffer, parameters[property].name, parameters[property].type, numbersOf(value));
     }
   };
 }
 
+function writeNumbers(buffer, name, type, numbers) {
+  const size = SIZES[uniformType(type)];
+  if (size === 16) buffer.updateMatrices(name, Float32Array.from(numbers));
+  else buffer[`updateFloat${size === 1 ? '' : size}`](name, ...numbers);
+}
+
 /** The numbers of a property: a number, a boolean, or one of Babylon's vectors, colours and matrices. */
 const numbersOf = (value) => (typeof value === 'object' ? [...value.asArray()].map(Number) : [Number(value)]);
-
-/** The position of a light, or the direction towards it, as a homogeneous vector; and its radiance. */
-function lightOf(light) {
-  if (!light) return [[0, 1, 0, 0], [0, 0, 0]];
-  const directional = light.getTypeID() === 1;
-  const place = directional
-    ? (light.computeTransformedInformation() ? light.transformedDirection : light.direction).scale(-1)
-    : light.getAbsolutePosition();
-  return [[...place.asArray(), directional ? 0 : 1], light.diffuse.scale(light.getScaledIntensity() / Math.PI).asArray()];
-}
 
 /**
  * The first value of a parameter, as a user gets it.
@@ -347,7 +362,7 @@ export function materialClass(description) {
       if (moves) this.time = null;
       /** One of Babylon's lights, which lights this unlit material; null: none. */
       if (takesLight) this.light = null;
-      new Plugin(this);
+      new Plugin(this, (property) => this.#given[property] != null);
       properties.checkNames(this, values);
       Object.assign(this, values);
     }

@@ -21,7 +21,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {string[]} [fields] the members of its surface
  * @property {Record<string, import('./values.js').Parameter>} parameters
  * @property {Record<string, import('./values.js').TextureParameter>} textures
- * @property {import('./three_passes.js').Pass[]} [passes] what is drawn before it, in order
+ * @property {import('./frame_passes.js').Pass[]} [passes] what is drawn before it, in order
  * @property {string} glsl functions
  * @property {string} wgsl the same
  * @property {Record<string, import('./three_nodes.js').Call>} calls `color` of an unlit material; `surface` and `translucency` of a lit one

@@ -3,22 +3,8 @@
 
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
+import { LAYER_GAP, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
 
-/**
- * A pass, as a material's module lists it.
- * @typedef {object} Pass
- * @property {string} name
- * @property {string} seenFrom `eye`, `light` or `distant light`
- * @property {string[]} layers for each channel `entry N` or `exit N`: the N-th front or back face
- * @property {'0' | 'far'} empty what a texel without a surface has
- * @property {string} texture the property of the picture
- * @property {string[]} views the properties of the matrices from world space to the picture, one for each light
- */
-
-/** The distance where there is no surface: it fits into half a float. */
-const FAR = 60000;
-/** The width of what one light sees, in texels. */
-const SIDE = 1024;
 /** The layer of three that only a pass draws. */
 const ALONE = 31;
 
@@ -121,17 +107,16 @@ function ballOf(object) {
   return (object.boundingSphere ?? object.geometry.boundingSphere).clone().applyMatrix4(object.matrixWorld);
 }
 
-/** The lights that are brightest at a ball, at most `count`; `distant`: those from afar, if there are any. */
-function lightsAt(ball, scene, camera, distant, count) {
+/** The lights of a scene that a pass shows. */
+function lightsAt(ball, scene, camera, pass) {
   const lights = [];
   scene.traverseVisible((light) => {
-    const near = light.isPointLight || light.isSpotLight;
-    if (!(light.isDirectionalLight || near) || !light.layers.test(camera.layers)) return;
+    const near = light.isPointLight || light.isSpotLight, directional = light.isDirectionalLight;
+    if (!(directional || near) || !light.layers.test(camera.layers)) return;
     const fall = near ? Math.max(placeOf(light).distanceToSquared(ball.center), 1e-6) : 1;
-    lights.push({ light, strength: (light.intensity * Math.max(light.color.r, light.color.g, light.color.b)) / fall });
+    lights.push({ light, directional, strength: (light.intensity * Math.max(light.color.r, light.color.g, light.color.b)) / fall });
   });
-  const fitting = distant ? lights.filter(({ light }) => light.isDirectionalLight) : lights;
-  return (fitting.length ? fitting : lights).filter(({ strength }) => strength > 0).sort((a, b) => b.strength - a.strength).slice(0, count).map(({ light }) => light);
+  return lightsOf(lights, pass);
 }
 
 /** A camera that sees all of a ball from a light; `distant`: as if it were far away. */
@@ -153,15 +138,10 @@ function lampOf(light, ball, distant, coordinateSystem) {
   return lamp;
 }
 
-/** World space to (u w, v w, distance from the light's plane, w), in a tile of the picture. */
+/** World space to a tile of the picture. */
 function viewOf(lamp, tile, columns, up) {
-  const { elements: clip } = new THREE.Matrix4().multiplyMatrices(lamp.projectionMatrix, lamp.matrixWorldInverse);
-  const { elements: view } = lamp.matrixWorldInverse;
-  const rows = [0, 1, 2, 3].map((column) => {
-    const [x, y, , w] = clip.slice(4 * column, 4 * column + 4);
-    return [((tile.x + 0.5) * w + 0.5 * x) / columns, ((tile.y + 0.5) * w + 0.5 * up * y) / columns, -view[4 * column + 2], w];
-  });
-  return new THREE.Matrix4().fromArray(rows.flat());
+  const clip = new THREE.Matrix4().multiplyMatrices(lamp.projectionMatrix, lamp.matrixWorldInverse);
+  return new THREE.Matrix4().fromArray(viewNumbers(clip.elements, lamp.matrixWorldInverse.elements, -1, up, tile, columns));
 }
 
 /** The passes of a material, in one renderer. */
@@ -211,24 +191,22 @@ class Drawing {
 
   /** Draws one pass of an object into its pictures. */
   draw(renderer, pass, pictures, object, cameras, tileSize) {
-    const empty = pass.empty === 'far' ? FAR : 0;
-    const margin = 1e-3 * ballOf(object).radius;
+    const empty = emptyOf(pass);
+    const margin = LAYER_GAP * ballOf(object).radius;
     renderer.setClearColor(new THREE.Color(empty, empty, empty), 1);
-    pass.layers.forEach((layer, index) => {
-      const [side, count] = layer.split(' ');
-      const { material, uniforms } = side === 'exit' ? this.backs : this.fronts;
-      const before = side === 'exit' ? index - 1 : pass.layers.indexOf(`exit ${Number(count) - 1}`);
-      const peels = (side === 'entry' && Number(count) > 1) || (side === 'exit' && Number(count) > 1);
+    layersOf(pass).forEach(({ back, before }, index) => {
+      const { material, uniforms } = back ? this.backs : this.fronts;
       uniforms.fromPlane.value = this.nodes ? Number(pass.seenFrom !== 'eye') : pass.seenFrom !== 'eye';
-      uniforms.margin.value = peels ? margin : 0;
-      uniforms.front.value = peels ? pictures.layers[before].texture : this.blank;
+      uniforms.margin.value = before < 0 ? 0 : margin;
+      uniforms.front.value = before < 0 ? this.blank : pictures.layers[before].texture;
       const picture = pictures.layers[index];
       picture.viewport.set(0, 0, picture.width, picture.height);
       picture.scissor.set(0, 0, picture.width, picture.height);
       renderer.setRenderTarget(picture);
       renderer.clear();
-      cameras.forEach((camera, tile) => {
-        picture.viewport.set(tileSize.x * (tile % pictures.columns), tileSize.y * Math.floor(tile / pictures.columns), tileSize.x, tileSize.y);
+      cameras.forEach((camera, index) => {
+        const tile = tileOf(index, pictures.columns);
+        picture.viewport.set(tileSize.x * tile.x, tileSize.y * tile.y, tileSize.x, tileSize.y);
         picture.scissor.copy(picture.viewport);
         renderer.setRenderTarget(picture);
         this.alone(renderer, object, material, camera);
@@ -267,7 +245,7 @@ export class Passes {
   /** @type {Map<THREE.Object3D, Record<string, { layers: THREE.RenderTarget[], packed: THREE.RenderTarget, columns: number }>>} */
   #pictures = new Map();
 
-  /** @param {Pass[]} passes */
+  /** @param {import('./frame_passes.js').Pass[]} passes */
   constructor(passes) {
     this.passes = passes;
   }
@@ -291,7 +269,7 @@ export class Passes {
   }
 
   #drawPass(drawing, pass, { renderer, scene, camera, object }, set) {
-    const columns = pass.views.length > 1 ? 2 : 1;
+    const columns = columnsOf(pass);
     const eye = pass.seenFrom === 'eye';
     const size = eye ? sizeOf(renderer) : new THREE.Vector2(SIDE, SIDE).multiplyScalar(columns);
     const tile = size.clone().divideScalar(columns);
@@ -301,11 +279,11 @@ export class Passes {
       const ball = ballOf(object);
       const system = drawing.gpu ? THREE.WebGPUCoordinateSystem : THREE.WebGLCoordinateSystem;
       const distant = pass.seenFrom === 'distant light';
-      cameras = lightsAt(ball, scene, camera, distant, Math.max(pass.views.length, 1)).map((light) => lampOf(light, ball, distant, system));
+      cameras = lightsAt(ball, scene, camera, pass).map((light) => lampOf(light, ball, distant, system));
       pass.views.forEach((view, index) => {
-        const row = Math.floor(index / columns);
+        const { x, y } = tileOf(index, columns);
         // the rows of WebGPURenderer's fallback count upwards, its viewports downwards
-        const corner = { x: index % columns, y: drawing.nodes && !drawing.gpu ? columns - 1 - row : row };
+        const corner = { x, y: drawing.nodes && !drawing.gpu ? columns - 1 - y : y };
         // a view of zeros shows nothing
         set(view, cameras[index] ? viewOf(cameras[index], corner, columns, drawing.gpu ? -1 : 1) : new THREE.Matrix4().multiplyScalar(0));
       });

@@ -1,0 +1,372 @@
+// What Babylon.js draws before a material: pictures of the body alone, as the eye or a light sees it. A picture that the page
+// sets itself is not drawn.
+
+import { EffectRenderer, EffectWrapper } from '@babylonjs/core/Materials/effectRenderer.js';
+import { ShaderMaterial } from '@babylonjs/core/Materials/shaderMaterial.js';
+import { RenderTargetTexture } from '@babylonjs/core/Materials/Textures/renderTargetTexture.js';
+import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
+import { Color4 } from '@babylonjs/core/Maths/math.color.js';
+import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
+import { Viewport } from '@babylonjs/core/Maths/math.viewport.js';
+import '@babylonjs/core/Shaders/depth.vertex.js';
+import '@babylonjs/core/ShadersWGSL/depth.vertex.js';
+import { LAYER_GAP, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
+
+// The shaders, in GLSL and in WGSL. The vertices are those of Babylon's own depth maps: with bones, morph targets and instances.
+
+/** The distance from the eye or from the light's plane, of surfaces behind those of the layer `front`. */
+const DISTANCE = [/* glsl */ `
+varying vec4 vViewPos;
+#ifdef PEELS
+uniform float margin;
+uniform highp sampler2D front;
+#endif
+void main(void) {
+#ifdef FROM_PLANE
+  float way = abs(vViewPos.z);
+#else
+  float way = length(vViewPos.xyz);
+#endif
+#ifdef PEELS
+  if (way < texelFetch(front, ivec2(gl_FragCoord.xy), 0).r + margin) discard;
+#endif
+  gl_FragColor = vec4(way, 0.0, 0.0, 1.0);
+}`, /* wgsl */ `
+varying vViewPos: vec4f;
+#ifdef PEELS
+uniform margin: f32;
+var front: texture_2d<f32>;
+#endif
+@fragment
+fn main(input: FragmentInputs) -> FragmentOutputs {
+#ifdef FROM_PLANE
+  let way = abs(fragmentInputs.vViewPos.z);
+#else
+  let way = length(fragmentInputs.vViewPos.xyz);
+#endif
+#ifdef PEELS
+  if (way < textureLoad(front, vec2i(fragmentInputs.position.xy), 0).r + uniforms.margin) { discard; }
+#endif
+  fragmentOutputs.color = vec4f(way, 0.0, 0.0, 1.0);
+}`];
+
+const CHANNELS = ['layer0', 'layer1', 'layer2', 'layer3'];
+
+/** Four layers in one picture: vertex shader and fragment shader. */
+const PACKING = [[/* glsl */ `
+attribute vec2 position;
+void main(void) { gl_Position = vec4(position, 0.0, 1.0); }`, /* glsl */ `
+${CHANNELS.map((name) => `uniform highp sampler2D ${name};`).join('\n')}
+void main(void) {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  gl_FragColor = vec4(${CHANNELS.map((name) => `texelFetch(${name}, at, 0).r`).join(', ')});
+}`], [/* wgsl */ `
+attribute position: vec2f;
+@vertex
+fn main(input: VertexInputs) -> FragmentInputs { vertexOutputs.position = vec4f(vertexInputs.position, 0.0, 1.0); }`, /* wgsl */ `
+${CHANNELS.map((name) => `var ${name}: texture_2d<f32>;`).join('\n')}
+@fragment
+fn main(input: FragmentInputs) -> FragmentOutputs {
+  let at = vec2i(fragmentInputs.position.xy);
+  fragmentOutputs.color = vec4f(${CHANNELS.map((name) => `textureLoad(${name}, at, 0).r`).join(', ')});
+}`]];
+
+const languageOf = (engine) => Number(engine.isWebGPU);
+
+// The lights of a body.
+
+/** The position of a light, or the direction towards it, as a homogeneous vector; and its radiance. */
+export function lightOf(light) {
+  if (!light) return [[0, 1, 0, 0], [0, 0, 0]];
+  const directional = light.getTypeID() === 1;
+  const place = directional
+    ? (light.computeTransformedInformation() ? light.transformedDirection : light.direction).scale(-1)
+    : light.getAbsolutePosition();
+  return [[...place.asArray(), directional ? 0 : 1], light.diffuse.scale(light.getScaledIntensity() / Math.PI).asArray()];
+}
+
+/** How far vertices reach from the center of their box, by that box. @type {WeakMap<any, number>} */
+const REACHES = new WeakMap();
+
+/** The same in world space. A round body reaches much less far than its corners; of one that moves in the shader it is unknown. */
+function reachOf([mesh, ...others]) {
+  const box = mesh.geometry?.extend; // another object when positions change
+  if (others.length || !box || mesh.hasThinInstances || mesh.skeleton || mesh.morphTargetManager || mesh.bakedVertexAnimationManager) return Infinity;
+  if (!REACHES.has(box)) {
+    const center = Vector3.Center(box.minimum, box.maximum).asArray(), positions = mesh.getVerticesData('position');
+    let most = positions ? 0 : Infinity;
+    for (let at = 0; at < positions?.length; at += 3) most = Math.max(most, Math.hypot(...center.map((middle, axis) => positions[at + axis] - middle)));
+    REACHES.set(box, most);
+  }
+  return /** @type {number} */ (REACHES.get(box)) * Math.max(...mesh.getBoundingInfo().boundingBox.directions.map((edge) => edge.length()));
+}
+
+/** The box of a body and its instances: the corners in world space, the ball around them, and the directions of the body's edges. */
+function boxOf(meshes) {
+  const boxes = meshes.map((mesh) => mesh.getBoundingInfo().boundingBox);
+  const corners = boxes.flatMap(({ vectorsWorld }) => vectorsWorld);
+  const [least, most] = [Vector3.Minimize, Vector3.Maximize].map((bound) => corners.reduce((a, b) => bound(a, b)));
+  const edges = boxes[0].directions.map((edge) => edge.normalizeToNew());
+  return { corners, edges, reach: reachOf(meshes), center: Vector3.Center(least, most), radius: Vector3.Distance(least, most) / 2 };
+}
+
+const POINT = 0, DIRECTIONAL = 1, SPOT = 2;
+
+/** The lights of a scene that a pass shows, as homogeneous vectors. */
+function lightsAt(mesh, { center }, pass) {
+  const shining = mesh.getScene().lights.filter((light) => [POINT, DIRECTIONAL, SPOT].includes(light.getTypeID()) && light.isEnabled() && light.canAffectMesh(mesh));
+  const lights = shining.map((light) => {
+    const [place, radiance] = lightOf(light);
+    const fall = place[3] ? Math.max(Vector3.DistanceSquared(Vector3.FromArray(place), center), 1e-6) : 1;
+    return { light: place, directional: !place[3], strength: Math.max(...radiance) / fall };
+  });
+  return lightsOf(lights, pass);
+}
+
+/** What a light sees of a body; `distant`: as if it were far away. Upwards is an edge of the body, so that it fills the picture. */
+function viewOf(light, { corners, edges, reach, center, radius }, distant, scene) {
+  const engine = scene.getEngine(), hand = scene.useRightHandedSystem ? 'RH' : 'LH';
+  const afar = distant || !light[3];
+  const place = Vector3.FromArray(light);
+  const way = (light[3] ? place.subtract(center) : place).normalize();
+  const distance = afar ? Infinity : Vector3.Distance(place, center);
+  const round = afar ? reach : reach < distance ? reach / Math.sqrt(distance ** 2 - reach ** 2) : Infinity;
+  const fits = edges.filter((up) => Math.abs(Vector3.Dot(up, way)) < 0.99).map((up) => {
+    const view = Matrix[`LookAt${hand}`](afar ? center.add(way.scale(2 * radius)) : place, center, up);
+    const seen = corners.map((corner) => Vector3.TransformCoordinates(corner, view));
+    const depths = seen.map(({ z }) => Math.max(Math.abs(z), 0.01 * radius));
+    const [width, height] = ['x', 'y'].map((axis) => 1.02 * Math.min(round, Math.max(...seen.map((corner, index) => Math.abs(corner[axis]) / (afar ? 1 : depths[index])))));
+    return { view, width, height, range: [0.99 * Math.min(...depths), 1.01 * Math.max(...depths)] };
+  });
+  const { view, width, height, range } = fits.reduce((a, b) => (b.width + b.height < a.width + a.height ? b : a));
+  const [near, far] = engine.useReverseDepthBuffer ? range.reverse() : range;
+  const projection = afar
+    ? Matrix[`OrthoOffCenter${hand}`](-width, width, -height, height, near, far, engine.isNDCHalfZRange)
+    : Matrix[`PerspectiveFov${hand}`](2 * Math.atan(height), width / height, near, far, engine.isNDCHalfZRange, 0, engine.useReverseDepthBuffer);
+  return { view, clip: view.multiply(projection) };
+}
+
+// The pictures of a body.
+
+/** A picture of floats, without filters. */
+class Picture extends RenderTargetTexture {
+  constructor(name, size, scene, settings) {
+    const type = scene.getEngine().getCaps().textureFloatRender ? 1 : 2; // else half floats
+    super(name, size, scene, { type, generateMipMaps: false, samplingMode: Texture.NEAREST_SAMPLINGMODE, ...settings });
+    this.doNotSerialize = true;
+  }
+
+  /** Takes a size, if it has another one. */
+  fit({ width, height }) {
+    if (this.getRenderWidth() !== width || this.getRenderHeight() !== height) this.resize({ width, height });
+  }
+}
+
+const RED = 6;
+
+/** A layer of a pass: the distances of its surfaces. */
+class Layer extends Picture {
+  #material;
+  #tile = 0;
+
+  /** @param {import('./frame_passes.js').Pass} pass @param {boolean} back @param {Layer | undefined} front the layer that its surfaces are behind */
+  constructor(pass, back, front, size, scene) {
+    super(`sssgen ${pass.name}`, size, scene, { format: RED });
+    const engine = scene.getEngine(), shaderLanguage = languageOf(engine);
+    const defines = ['STORE_CAMERASPACE_Z', pass.seenFrom === 'eye' ? '' : 'FROM_PLANE', front ? 'PEELS' : ''].filter((one) => one);
+    this.#material = new ShaderMaterial(this.name, scene, { vertex: 'depth', fragmentSource: DISTANCE[shaderLanguage] }, {
+      attributes: ['position'], uniforms: ['world', 'view', 'viewProjection', 'margin'], samplers: ['front'], defines, shaderLanguage, useClipPlane: false,
+    });
+    if (front) this.#material.setTexture('front', front);
+    Object.assign(this.#material, { cullBackFaces: !back, doNotSerialize: true });
+    const empty = emptyOf(pass), columns = columnsOf(pass);
+    this.onClearObservable.add(() => {
+      if (!this.#tile) engine.clear(new Color4(empty, empty, empty, 1), true, true, true);
+      const { x, y } = tileOf(this.#tile, columns);
+      engine.setViewport(new Viewport(x / columns, y / columns, 1 / columns, 1 / columns), this.getRenderWidth(), this.getRenderHeight());
+    });
+  }
+
+  /** From now on draws a mesh with the material of the layer. */
+  take(mesh) {
+    this.setMaterialForRendering(mesh, this.#material);
+  }
+
+  leave(mesh) {
+    this.setMaterialForRendering(mesh, undefined);
+  }
+
+  isReadyFor(mesh) {
+    this.renderList = [mesh];
+    return this.isReadyForRendering();
+  }
+
+  /** Draws meshes as each of some views shows them, a tile for each. */
+  draw(meshes, views, margin) {
+    this.renderList = meshes;
+    this.#material.sideOrientation = meshes[0].material.sideOrientation;
+    this.#material.setFloat('margin', margin);
+    views.forEach(({ view, clip }, tile) => {
+      this.#material.setMatrix('view', view).setMatrix('viewProjection', clip);
+      this.#tile = tile;
+      this.render();
+    });
+  }
+
+  dispose() {
+    this.#material.dispose();
+    super.dispose();
+  }
+}
+
+/** What writes the layers of a pass into one picture. */
+class Packing {
+  #layers = [];
+
+  constructor(engine) {
+    const shaderLanguage = languageOf(engine), [vertexShader, fragmentShader] = PACKING[shaderLanguage];
+    this.renderer = new EffectRenderer(engine);
+    this.shader = new EffectWrapper({ engine, name: 'sssgen layers', vertexShader, fragmentShader, samplerNames: CHANNELS, shaderLanguage });
+    this.shader.onApplyObservable.add(() => {
+      CHANNELS.forEach((name, channel) => this.shader.effect.setTexture(name, this.#layers[channel] ?? this.#layers[0]));
+    });
+  }
+
+  draw(layers, picture) {
+    this.#layers = layers;
+    this.renderer.render(this.shader, picture);
+  }
+
+  dispose() {
+    this.shader.dispose();
+    this.renderer.dispose();
+  }
+}
+
+/**
+ * The passes of a material. To Babylon it is a render target of the material: each camera renders it before what it sees, when
+ * it is known which meshes these are.
+ */
+export class Passes extends RenderTargetTexture {
+  /** @type {any} */
+  #scene;
+  #material;
+  #passes;
+  #isGiven;
+  #packing;
+  /** The layers of a pass, by its name: all bodies share them. @type {Record<string, Layer[]>} */
+  #layers = {};
+  /** For each mesh: its pictures by the names of passes, and the values of properties. */
+  #bodies = new Map();
+
+  /**
+   * @param {import('@babylonjs/core/Materials/material.js').Material} material
+   * @param {import('./frame_passes.js').Pass[]} passes
+   * @param {(property: string) => boolean} isGiven whether the page has set a picture
+   */
+  constructor(material, passes, isGiven) {
+    super(`${material.name} passes`, 1, material.getScene());
+    this.doNotSerialize = true;
+    this.#scene = material.getScene();
+    this.#material = material;
+    this.#passes = passes;
+    this.#isGiven = isGiven;
+    this.#packing = new Packing(this.#scene.getEngine());
+  }
+
+  /** The passes that it draws. */
+  get #drawn() {
+    return this.#passes.filter((pass) => !this.#isGiven(pass.texture));
+  }
+
+  /** The properties that it sets. */
+  get properties() {
+    return this.#drawn.flatMap((pass) => [pass.texture, ...pass.views]);
+  }
+
+  /** Their values for a mesh. */
+  valuesOf(mesh) {
+    return this.#bodies.get(mesh)?.values ?? {};
+  }
+
+  #has(mesh) {
+    return !mesh.isAnInstance && mesh.subMeshes?.some((part) => part.getMaterial() === this.#material);
+  }
+
+  isReadyForRendering() {
+    const meshes = this.#scene.meshes.filter((mesh) => this.#has(mesh));
+    const ready = meshes.flatMap((mesh) => this.#drawn.flatMap((pass) => this.#partsOf(mesh, pass).layers.map((layer) => layer.isReadyFor(mesh))));
+    return ready.every(Boolean) && this.#packing.shader.isReady();
+  }
+
+  render() {
+    const { data, length } = this.#scene.getActiveMeshes();
+    const meshes = new Set(data.slice(0, length).map((mesh) => mesh.sourceMesh ?? mesh));
+    for (const mesh of meshes) {
+      if (this.#has(mesh)) for (const pass of this.#drawn) this.#drawPass(pass, mesh);
+    }
+    this.#scene.getEngine().setViewport(this.#scene.activeCamera.viewport);
+  }
+
+  #drawPass(pass, mesh) {
+    const scene = this.#scene, columns = columnsOf(pass);
+    const meshes = [mesh, ...mesh.instances].filter((one) => one.isEnabled() && one.isVisible);
+    const box = boxOf(meshes);
+    const views = pass.seenFrom === 'eye'
+      ? [{ view: scene.getViewMatrix(), clip: scene.getTransformMatrix() }]
+      : lightsAt(mesh, box, pass).map((light) => viewOf(light, box, pass.seenFrom === 'distant light', scene));
+    const { layers, picture, values } = this.#partsOf(mesh, pass);
+    for (const layer of layers) layer.draw(meshes, views, LAYER_GAP * box.radius);
+    this.#packing.draw(layers, picture);
+    values[pass.texture] = picture;
+    pass.views.forEach((property, index) => {
+      const { clip, view } = views[index] ?? { clip: Matrix.Zero(), view: Matrix.Zero() }; // it shows nothing
+      values[property] = Matrix.FromArray(viewNumbers(clip.m, view.m, scene.useRightHandedSystem ? -1 : 1, 1, tileOf(index, columns), columns));
+    });
+  }
+
+  /** The layers of a pass; the picture of a mesh, and the values of its properties. */
+  #partsOf(mesh, pass) {
+    const side = SIDE * columnsOf(pass), size = pass.seenFrom === 'eye' ? sizeOf(this.#scene) : { width: side, height: side };
+    if (!this.#bodies.has(mesh)) {
+      this.#bodies.set(mesh, { values: {}, pictures: {} });
+      for (const end of [mesh.onDisposeObservable, mesh.onMaterialChangedObservable]) end.addOnce(() => this.#forget(mesh));
+    }
+    const layers = (this.#layers[pass.name] ??= this.#newLayers(pass, size));
+    const { values, pictures } = this.#bodies.get(mesh);
+    if (!pictures[pass.name]) {
+      pictures[pass.name] = new Picture(`sssgen ${pass.name}`, size, this.#scene, { generateDepthBuffer: false });
+      layers.forEach((layer) => layer.take(mesh));
+    }
+    const picture = pictures[pass.name];
+    for (const one of [...layers, picture]) one.fit(size);
+    return { layers, picture, values };
+  }
+
+  #newLayers(pass, size) {
+    const layers = [];
+    for (const { back, before } of layersOf(pass)) layers.push(new Layer(pass, back, layers[before], size, this.#scene));
+    return layers;
+  }
+
+  #forget(mesh) {
+    for (const [name, picture] of Object.entries(this.#bodies.get(mesh)?.pictures ?? {})) {
+      picture.dispose();
+      this.#layers[name].forEach((layer) => layer.leave(mesh));
+    }
+    this.#bodies.delete(mesh);
+  }
+
+  dispose() {
+    for (const mesh of [...this.#bodies.keys()]) this.#forget(mesh);
+    Object.values(this.#layers).flat().forEach((layer) => layer.dispose());
+    this.#packing.dispose();
+    super.dispose();
+  }
+}
+
+/** The size of what the camera draws into. */
+function sizeOf(scene) {
+  const engine = scene.getEngine(), target = scene.activeCamera.outputRenderTarget;
+  return { width: target?.getRenderWidth() ?? engine.getRenderWidth(true), height: target?.getRenderHeight() ?? engine.getRenderHeight(true) };
+}

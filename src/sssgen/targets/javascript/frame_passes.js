@@ -1,0 +1,66 @@
+// The passes of a material, as every engine draws them: pictures of the body alone, as the eye or a light sees it.
+
+/**
+ * A pass, as a material's module lists it.
+ * @typedef {object} Pass
+ * @property {string} name
+ * @property {string} seenFrom `eye`, `light`, `distant light` or `each light`
+ * @property {string[]} layers for each channel `entry N` or `exit N`: the N-th front or back face
+ * @property {'0' | 'far'} empty what a texel without a surface has
+ * @property {string} texture the property of the picture
+ * @property {string[]} views the properties of the matrices from world space to the picture, one for each light
+ */
+
+/** The distance where there is no surface: it fits into half a float. */
+const FAR = 60000;
+/** The width of what one light sees, in texels. */
+export const SIDE = 1024;
+/** The least distance between two layers, in radii of the body. */
+export const LAYER_GAP = 1e-3;
+
+/** What a texel without a surface has. */
+export const emptyOf = ({ empty }) => (empty === 'far' ? FAR : 0);
+
+/** The tiles along a side of a picture. */
+export const columnsOf = ({ views }) => (views.length > 1 ? 2 : 1);
+
+/** The tile of a light in a picture with so many columns. */
+export const tileOf = (light, columns) => ({ x: light % columns, y: Math.floor(light / columns) });
+
+/**
+ * The layers of a pass: whether one has back faces, and the number of the layer that its surfaces are behind; -1 for none.
+ * @param {Pass} pass
+ */
+export function layersOf({ layers }) {
+  return layers.map((layer) => {
+    const [side, count] = layer.split(' ');
+    const back = side === 'exit';
+    return { back, before: Number(count) > 1 ? layers.indexOf(back ? `entry ${count}` : `exit ${Number(count) - 1}`) : -1 };
+  });
+}
+
+/**
+ * Those of some lights that a pass shows, the brightest at the body first. From afar: directional lights, if there are any.
+ * @template Light
+ * @param {{ light: Light, strength: number, directional: boolean }[]} lights
+ * @param {Pass} pass
+ */
+export function lightsOf(lights, { seenFrom, views }) {
+  const afar = seenFrom === 'distant light' ? lights.filter(({ directional }) => directional) : [];
+  const shining = (afar.length ? afar : lights).filter(({ strength }) => strength > 0);
+  return shining.sort((a, b) => b.strength - a.strength).slice(0, Math.max(views.length, 1)).map(({ light }) => light);
+}
+
+/**
+ * World space to (u w, v w, distance from the light's plane, w) in a tile of a picture.
+ * @param {ArrayLike<number>} clip world space to clip space, by columns
+ * @param {ArrayLike<number>} view world space to the light's
+ * @param {number} forwards the sign of z in front of the light
+ * @param {number} up the sign of v upwards in clip space
+ */
+export function viewNumbers(clip, view, forwards, up, { x: column, y: row }, columns) {
+  return [0, 4, 8, 12].flatMap((at) => {
+    const [x, y, w] = [clip[at], clip[at + 1], clip[at + 3]];
+    return [((column + 0.5) * w + 0.5 * x) / columns, ((row + 0.5) * w + 0.5 * up * y) / columns, forwards * view[at + 2], w];
+  });
+}
