@@ -28,7 +28,7 @@ _FUNCTION = re.compile(
 )
 _TSL = re.compile(r"^export const (?P<name>\w+) = /\*@__PURE__\*/ Fn\(\(\[(?P<params>.*?)\]\) => \{", re.MULTILINE)
 _PYTHON = re.compile(r"^def (\w+)\((.*?)\)(?: ->.*)?:\n((?:    .*\n|\n)+)", re.MULTILINE)
-_TYPES = re.compile(r", [^;]*\);")
+_TYPES = re.compile(r"\)\.setLayout\(\{ name: '\w+'(.*?)\);")
 _OVERLOAD = re.compile(r"_(?:vec\d|float|mat\d)$")
 _COMMENT = re.compile(r'"""(?:.|\n)*?"""|//.*|#.*')
 
@@ -87,7 +87,7 @@ def bodies(text: str) -> Iterator[tuple[str, str]]:
             depth += (text[end] == "{") - (text[end] == "}")
             end += 1
         types = _TYPES.match(text, end)  # of TSL they follow the body
-        yield match["name"], f"{match['params']} {text[match.end() : end]} {types[0] if types else ''}"
+        yield match["name"], f"{match['params']} {text[match.end() : end]} {types[1] if types else ''}"
     for name, params, body in _PYTHON.findall(text):
         overload = _OVERLOAD.search(name)  # the parameters have no types there
         yield name, f"{overload[0] if overload else ''} {params} {body}"
