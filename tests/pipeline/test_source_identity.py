@@ -97,12 +97,14 @@ def copies(name: str, target: str, form: str) -> list[list[str]]:
     """The functions of equal bodies in the files of an example."""
     found, count = [], 0
     for file, text in sssgen.compile(name, target, form).files.items():
-        groups = defaultdict(list)
-        runtime = file.startswith("sssgen-")  # the same for all materials, with braces in its strings
-        for function, body in bodies(text) if not (runtime or file.endswith(".json")) else ():
-            groups[" ".join(_COMMENT.sub("", body).split())].append(function)
-            count += 1
-        found += [group for group in groups.values() if len(group) > 1]
+        if file.endswith(".json") or file.startswith("sssgen-"):  # a runtime, with braces in its strings
+            continue
+        for program in text.split("ENDHLSL"):  # each pass of Unity is a program of its own
+            groups = defaultdict(list)
+            for function, body in bodies(program):
+                groups[" ".join(_COMMENT.sub("", body).split())].append(function)
+                count += 1
+            found += [group for group in groups.values() if len(group) > 1]
     assert count
     return found
 
