@@ -55,6 +55,12 @@ def test_values_of_random_programs_are_in_their_ranges() -> None:
     assert len(chosen) > 0.9 * PROGRAMS and values > 200 * PROGRAMS
 
 
+def test_a_member_has_the_length_of_a_vector_only_if_it_is_that_vector() -> None:
+    """Seed 3243: a member that begins with the same component as a unit vector, N.xxx, was as short as N."""
+    (case,) = programs(3243, 1)
+    assert_values_lie_in_ranges("f", *case)
+
+
 CALLER = """
 float caller(float a, float b, int n, inout float c, out float d, vec3 N, vec3 P) {
     float total = 0.5;

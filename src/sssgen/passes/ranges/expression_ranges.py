@@ -402,9 +402,10 @@ class ExpressionRanges(CallRanges):
         count = self.check_index(node, index)
         if isinstance(node.value.type, Array):
             numbers = tuple([self.numbers.fresh() for _ in value.parts])
-            for old, new in zip(value.numbers, numbers, strict=True) if self.lengths else ():
-                if old in self.lengths:  # the first of a vector
-                    self.lengths[new] = self.lengths[old]
+            for at, old in enumerate(value.numbers) if self.lengths else ():
+                vector, length = self.lengths.get(old, ((), ANY))
+                if vector and value.numbers[at : at + len(vector)] == vector:
+                    self.lengths[numbers[at]] = numbers[at : at + len(vector)], length
             return self.value(value.parts, numbers, value.length)
         size = scalars(node.type)
         if index.low == index.high and 0 <= index.low < count:
@@ -431,8 +432,8 @@ class ExpressionRanges(CallRanges):
         value = self.expr(node.value)
         start, count = field_at(cast(Struct, node.value.type), node.field)
         numbers = value.numbers[start : start + count]
-        size, length = self.lengths.get(numbers[0], (0, ANY)) if numbers else (0, ANY)
-        return self.value(value.parts[start : start + count], numbers, length if size == count else ANY)
+        vector, length = self.lengths.get(numbers[0], ((), ANY)) if numbers else ((), ANY)
+        return self.value(value.parts[start : start + count], numbers, length if vector == numbers else ANY)
 
 
 def _components(left: Value, right: Value) -> Iterator[tuple[Range, int, Range, int]]:

@@ -96,8 +96,8 @@ class AnalysisState:
         """Numbers that are sums and products, as polynomials of others; used where no guards are inserted."""
         self.spans: dict[int, Range] = {}
         """The hull of the ranges in which the operands of these were."""
-        self.lengths: dict[int, tuple[int, Range]] = {}
-        """The first number of a vector in an input that is a struct or an array → its components, and its length."""
+        self.lengths: dict[int, tuple[tuple[int, ...], Range]] = {}
+        """The first number of a vector in an input that is a struct or an array → all its numbers, and its length."""
         self.sites: dict[tuple[int, str], Site] = {}
         self.compounds: dict[int, ir.Binary] = {}
         self.frames: list[Frame] = []
@@ -175,7 +175,7 @@ class AnalysisState:
         is_matrix = isinstance(type_, Matrix)
         value = self.value(parts, tuple([self.numbers.fresh() for _ in parts]), ANY if is_matrix else size)
         if count > 1 and size is not ANY and not is_matrix:
-            self.lengths[value.numbers[0]] = count, size
+            self.lengths[value.numbers[0]] = value.numbers, size
         is_square = isinstance(type_, Matrix) and type_.columns == type_.rows
         return value._replace(stretch=size) if is_square else value
 
