@@ -147,7 +147,7 @@ def test_a_body_that_receives_no_shadow_is_lit(scenes: Scenes) -> None:
 
 def test_a_sun_with_cascades_in_webgl(scenes: Scenes) -> None:
     if scenes.page.name != "webgl":
-        pytest.skip("its nodes cannot be read elsewhere")
+        pytest.skip("WebGPURenderer's shadow of a SunLight cannot be read at a second place (docs/engines/threejs.md)")
     lit, dark = scenes.draw("sun"), scenes.draw("sun", BETWEEN)
     assert np.abs(lit - scenes.draw("sun", shadows=False)).max() < STEP and lit.max() > 0.5
     assert dark.sum() < 0.1 * lit.sum()
@@ -162,7 +162,7 @@ def test_other_kinds_of_shadow_maps(scenes: Scenes, kind: str) -> None:
 
 def test_a_version_of_three_without_a_line_is_an_error(scenes: Scenes) -> None:
     if scenes.page.name != "webgl":
-        pytest.skip("nodes have no lines")
+        pytest.skip("only WebGLRenderer's shader text is changed line by line; WebGPURenderer builds nodes")
     with pytest.raises(SssgenError, match=r"made: this version of three\.js has no .*vSpotLightCoord"):
         scenes.draw("directional", missing="vSpotLightCoord")
     scenes.page.restart()

@@ -191,42 +191,42 @@ def test_a_graph_is_compiled_for_each_pipeline(
 
 
 @pytest.fixture
-def drawn(backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Array]:
-    """`drawn(version, keywords, values)`: the light that comes through a lantern, with the engine's values changed."""
+def light_through(backend: Callable[[str], Backend], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Array]:
+    """The light that comes through a lantern, for `(version, keywords, values)`: values of the engine that change."""
     text = f'material = "paper_lantern"\nsamples = 1\n[geometry]\nkind = "ball"\n{SUNS_AND_LAMP}{RIBS}'
     return partial(drawing(backend("unity-urp"), monkeypatch), parse_scene(text, EXAMPLES / "scene.toml"))
 
 
 @pytest.mark.parametrize("version", ENDS)
-def test_every_light_counts_once(drawn: Callable[..., Array], version: int) -> None:
+def test_every_light_counts_once(light_through: Callable[..., Array], version: int) -> None:
     """With lists of lights per part of the screen, directional lights are apart; the picture is the same."""
-    plain = drawn(version)
+    plain = light_through(version)
     count: dict[str, Any] = (
         {"_AdditionalLightsDirectionalCount": 1} if version < 202220 else {"_FPParams0": [0, 0, 0, 1]}
     )
-    listed = drawn(version, (f"{CLUSTERS[version]}=1",), **count)
+    listed = light_through(version, (f"{CLUSTERS[version]}=1",), **count)
     np.testing.assert_allclose(listed, plain, atol=1e-5)
     assert plain.max(axis=(0, 1)).min() > 0.05
 
 
 @pytest.mark.parametrize("version", [pytest.param(202120, marks=pytest.mark.slow), NEWEST])
-def test_cookies_color_every_light(drawn: Callable[..., Array], version: int) -> None:
-    plain, keywords = drawn(version), ("_ADDITIONAL_LIGHTS=1", "_LIGHT_COOKIES=1")
+def test_cookies_color_every_light(light_through: Callable[..., Array], version: int) -> None:
+    plain, keywords = light_through(version), ("_ADDITIONAL_LIGHTS=1", "_LIGHT_COOKIES=1")
     cookie = np.array([0.5, 0.25, 0.125])
-    np.testing.assert_allclose(drawn(version, keywords, standin_cookie=list(cookie)), cookie * plain, atol=1e-5)
+    np.testing.assert_allclose(light_through(version, keywords, standin_cookie=list(cookie)), cookie * plain, atol=1e-5)
 
 
 @pytest.mark.parametrize("version", [pytest.param(202120, marks=pytest.mark.slow), NEWEST])
-def test_lights_of_other_layers_do_not_come_through(drawn: Callable[..., Array], version: int) -> None:
+def test_lights_of_other_layers_do_not_come_through(light_through: Callable[..., Array], version: int) -> None:
     keywords = ("_ADDITIONAL_LIGHTS=1", "_LIGHT_LAYERS=1")
     layer = float(np.array([2], np.uint32).view(np.float32)[0])
 
     def lit(main: int, additional: int) -> Array:
         masks: dict[str, Any] = {"_MainLightLayerMask": main, "_AdditionalLightsLayerMask": additional}
-        return drawn(version, keywords, unity_RenderingLayer=layer, **masks)
+        return light_through(version, keywords, unity_RenderingLayer=layer, **masks)
 
     both, one, others, none = lit(3, 2), lit(3, 1), lit(4, 2), lit(1, 4)
-    np.testing.assert_allclose(both, drawn(version), atol=1e-5)
+    np.testing.assert_allclose(both, light_through(version), atol=1e-5)
     np.testing.assert_allclose(one + others, both, atol=1e-4)
     assert one.max() > 0.05 < others.max()
     assert none.max() == 0.0

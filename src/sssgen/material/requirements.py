@@ -43,18 +43,17 @@ def requirements(uses: Iterable[TechniqueUse]) -> tuple[str, ...]:
             volume = any(is_volume(uniform) for uniform in textures)
             slots = needs(module, function)[1]
             for texture in textures:
-                required.update(*(needed_for(name) for name in [pass_name(texture)] if name))
+                required.update(needed_for(pass_name(texture)))
             required.update({"bake"} if any(map(is_baked, textures)) else ())
             required.update({"rigid"} if volume or any(map(_is_distance, slots)) else ())
     return tuple(name for name in REQUIREMENTS if name in required)
 
 
 def needed_for(name: str) -> tuple[str, ...]:
-    """The requirements of a pass."""
-    frame_pass = FRAME_PASSES[name]
+    """The requirements of a pass; '' has none."""
     if name in LIGHT_VIEWS:
-        return ("depth-map", "depth-layers") if len(frame_pass.layers) > 1 else ("depth-map",)
-    return ("back-faces",) if frame_pass.seen_from == "eye" else ()
+        return ("depth-map", "depth-layers") if len(FRAME_PASSES[name].layers) > 1 else ("depth-map",)
+    return ("back-faces",) if name and FRAME_PASSES[name].seen_from == "eye" else ()
 
 
 def describe(uses: Sequence[TechniqueUse]) -> list[str]:

@@ -270,8 +270,7 @@ class Target(NamedTuple):
     engine_encodes: bool = False
     """Whether the engine encodes the final colour for a display, so that `output` techniques are left out."""
     clustered_lights: bool = False
-    """Whether the number of lights differs from pixel to pixel, and the language refuses texture reads without a level
-    where it does: the functions that are called per light read textures at level 0."""
+    """Whether the number of lights differs from pixel to pixel: functions per light then read textures at level 0."""
     uniform_style: str = "plain"
     """plain keeps `distortion`; unity makes `_Distortion`."""
     layout: str = ""

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 
-from sssgen.ir.frame_passes import DISTANT_VIEWS
+from sssgen.ir.frame_passes import DISTANT_VIEWS, pass_name
 from sssgen.ir.nodes import Function, Uniform
 from sssgen.ir.types import Sampler, kind_of
 from sssgen.lab.measure.fluence_inputs import PREFIX
@@ -360,7 +360,7 @@ def needs_distant_light(candidate: Candidate) -> bool:
     """Whether the chain reads a texture that a program draws for a light from afar."""
     names = [*candidate.techniques, *([candidate.path.partition(":")[0]] if candidate.path else [])]
     uniforms = [uniform for name in names for uniform in load(name).uniforms]
-    return any(view in DISTANT_VIEWS for uniform in uniforms for view in dict(uniform.hints).get("drawn", ()))
+    return any(pass_name(uniform) in DISTANT_VIEWS for uniform in uniforms)
 
 
 def of_role(role: str) -> list[Technique]:
