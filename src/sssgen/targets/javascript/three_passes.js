@@ -245,6 +245,9 @@ export class Passes {
   /** @type {Map<THREE.Object3D, Record<string, { layers: THREE.RenderTarget[], packed: THREE.RenderTarget, columns: number }>>} */
   #pictures = new Map();
 
+  /** @param {{ target: any }} event */
+  #onRemoved = ({ target }) => this.#forget(target);
+
   /** @param {import('./frame_passes.js').Pass[]} passes */
   constructor(passes) {
     this.passes = passes;
@@ -296,7 +299,7 @@ export class Passes {
     let own = this.#pictures.get(object);
     if (!own) {
       this.#pictures.set(object, (own = {}));
-      object.addEventListener('removed', () => this.#forget(object));
+      object.addEventListener('removed', this.#onRemoved);
     }
     const layers = own[pass.name]?.layers ?? pass.layers.map(() => pictureOf(size.x, size.y, type));
     const packed = own[pass.name]?.packed ?? (layers.length > 1 ? pictureOf(size.x, size.y, type) : layers[0]);
@@ -310,6 +313,7 @@ export class Passes {
   #forget(object) {
     for (const { layers, packed } of Object.values(this.#pictures.get(object) ?? {})) [...layers, packed].forEach((picture) => picture.dispose());
     this.#pictures.delete(object);
+    object.removeEventListener('removed', this.#onRemoved);
   }
 
   dispose() {
