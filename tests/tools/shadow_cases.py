@@ -93,7 +93,7 @@ class Scene(NamedTuple):
         place = np.array([[*LAMP, 0.0 if self.lamp in DIRECTIONS else 1.0]])
         strength = 1.0 if self.lamp in DIRECTIONS else float(LAMP @ LAMP)
         drawing = EngineDrawing(
-            self.modules, SIZE, vertices, body.triangles, _view_projection(), EYE, body.model, place,
+            self.modules, SIZE, vertices, body.triangles, view_projection(), EYE, body.model, place,
             np.full((1, 3), strength), properties={**self.properties, "stage": {**LAMPS[self.lamp], **stage}},
         )  # fmt: skip
         picture = self.page.draw(drawing)
@@ -190,7 +190,7 @@ def _turned(angle: float, axes: tuple[int, int]) -> Array:
     return turn
 
 
-def _view_projection() -> Array:
+def view_projection() -> Array:
     near, far, slope = 0.5, 20.0, 2.5
     projection = np.array(
         [

@@ -13,7 +13,7 @@ from sssgen.ir.types import Array, Matrix, Sampler, components, kind_of
 from sssgen.material import library, roles, slots
 from sssgen.material.library import Technique
 from sssgen.material.material_loading import examples
-from sssgen.material.material_reader import CHOICES, MATERIAL_KEYS, STAGE_KEYS, parameter_names
+from sssgen.material.material_reader import CHOICES, FLAGS, MATERIAL_KEYS, STAGE_KEYS, parameter_names
 from sssgen.material.model import NAME, UV_SETS
 from sssgen.material.shell_stages import choices
 from sssgen.material.technique_facts import uniform_facts, uniform_text
@@ -47,7 +47,7 @@ def material_schema() -> Schema:
 def _head() -> Schema:
     keys: dict[str, Schema] = {key: {"type": "string"} for key in MATERIAL_KEYS}
     keys["name"] = {"type": "string", "pattern": f"^(?:{NAME.pattern})$"}
-    keys["two_sided"] = {"type": "boolean"}
+    keys |= {flag: {"type": "boolean"} for flag in FLAGS}
     for key, (words, meaning) in CHOICES.items():
         keys[key] = {"enum": list(words), "description": meaning}
     return _table(keys, required=["name"])

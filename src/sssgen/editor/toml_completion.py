@@ -14,7 +14,7 @@ from sssgen.ir.types import Sampler
 from sssgen.material import library, roles, slots
 from sssgen.material.library import OF_SHELLS, Technique
 from sssgen.material.material_loading import examples
-from sssgen.material.material_reader import CHOICES, MATERIAL_KEYS, STAGE_KEYS, parameter_names
+from sssgen.material.material_reader import CHOICES, FLAGS, MATERIAL_KEYS, STAGE_KEYS, parameter_names
 from sssgen.material.model import UV_SETS
 from sssgen.material.shell_stages import choices
 from sssgen.material.technique_facts import uniform_facts, uniform_text
@@ -50,7 +50,7 @@ def _head_items(place: TomlPlace) -> list[Item]:
         return _keys(MATERIAL_KEYS, place)
     if place.key in CHOICES:
         return _quoted_items(CHOICES[place.key][0], place)
-    return items_of(("true", "false"), "value") if place.key == "two_sided" else []
+    return items_of(("true", "false"), "value") if place.key in FLAGS else []
 
 
 def _techniques(document: Document, place: TomlPlace) -> list[Item]:

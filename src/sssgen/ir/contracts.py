@@ -38,7 +38,7 @@ INTEGERS = {"int": (-(2.0**31), 2.0**31 - 1.0), "uint": (0.0, 2.0**32 - 1.0), "b
 
 _UNIT = {"thinness", "transmittance"}
 _LENGTHS = {"thickness", "view_thickness"}
-_COLORS = COLORS | {"light_color", "color", "translucency"}
+_COLORS = COLORS | {"light_color", "color", "translucency", "irradiance", "irradiance_behind"}
 _FRAME = {"N", "V", "L", "T", "B", "normal"}
 
 

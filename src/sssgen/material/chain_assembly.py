@@ -5,6 +5,7 @@
 - `evaluate_lighting(surface, …)` is the lighting of targets without their own;
 - `evaluate_shadow(…)` is the share of the first light that arrives;
 - `evaluate_environment(surface, …)` is the reflected light of the surroundings;
+- `evaluate_irradiance(N)` is their light on a white matte surface, where it comes through the body;
 - `evaluate_color(…)` is a complete unlit material;
 - `evaluate_tone_mapping(color)` brings a colour into the range of a display;
 - `evaluate_output(color)` encodes for the display.
@@ -47,12 +48,17 @@ from sssgen.ir.types import BOOL, FLOAT, VEC2, VEC3, VEC4, VOID, Field, Struct, 
 from sssgen.lang.check.quantities import SCALARS
 from sssgen.passes.link import LinkError
 
+IRRADIANCE, IRRADIANCE_BEHIND = "irradiance", "irradiance_behind"
+SURROUNDINGS = "surroundings"
+"""The role of the light of the surroundings that comes through. It is left out where a lamp decides a value that it
+reads, as a length towards this lamp."""
+
 INPUTS: dict[str, Type] = {
     "uv": VEC2, "P": VEC3, "N": VEC3, "V": VEC3, "T": VEC3, "B": VEC3, "L": VEC3,
     "P_object": VEC3, "N_object": VEC3, "V_object": VEC3, "L_object": VEC3,
     "screen_uv": VEC2, "eye_distance": FLOAT,
     "time": FLOAT, "light_color": VEC3, "light_nearness": FLOAT, "ray_origin": VEC3, "ray_direction": VEC3,
-    "uv2": VEC2, "vertex_color": VEC4,
+    "uv2": VEC2, "vertex_color": VEC4, IRRADIANCE: VEC3, IRRADIANCE_BEHIND: VEC3,
 }  # fmt: skip
 """The inputs that a shell can supply."""
 
@@ -65,6 +71,7 @@ RAYS = frozenset({"ray_origin", "ray_direction"})
 
 OF_MESH = frozenset({
     "P", "N", "V", "T", "B", "P_object", "N_object", "V_object", "L_object", EYE_DISTANCE, "uv2", "vertex_color",
+    IRRADIANCE, IRRADIANCE_BEHIND,
 })  # fmt: skip
 """The inputs that a shell computes from a mesh."""
 
@@ -76,19 +83,19 @@ DEFAULTS: dict[str, tuple[Type, tuple[float, ...]]] = {
 """The values that a chain computes, with their defaults where no technique writes them."""
 
 _RESULT_OF_ROLE = {
-    "geometry": "hit", "lighting": "color", "shadow": "shadow", "environment": "color",
+    "geometry": "hit", "lighting": "color", "shadow": "shadow", "environment": "color", IRRADIANCE: "color",
     "tone_mapping": "color", "output": "color",
 }  # fmt: skip
 _LAST = ("tone_mapping", "output")
 """The roles that change the final colour."""
-_APART = ("lighting", "shadow", "environment", *_LAST)
+_APART = ("lighting", "shadow", "environment", IRRADIANCE, *_LAST)
 """The roles with functions of their own."""
 
 
 TAKEN = frozenset(
     {"Surface", "surface", "light", "shade_fragment", "MAX_LIGHTS", "safe_normalize", "tangent_frame", *INPUTS}
     | {"facet_light", "reflected_light", "coated_light", "towards_light", "way_out_of_box", "light_entry"}
-    | {f"evaluate_{kind}" for kind in ("surface", "translucency", "lighting", "shadow", "environment", "color", *_LAST)}
+    | {f"evaluate_{kind}" for kind in ("surface", "translucency", "color", *_APART)}
 )
 """The names of the assembled functions, their shell, inputs and surface, which no uniform may have. The other names
 that a shell declares are reserved by its descriptor."""
@@ -131,6 +138,8 @@ def assemble(module: Module, stages: Sequence[ChainFunction], lit: bool, opaque:
         entry = _color_entry(stages, opaque)
         return Chain(module._replace(functions=(*module.functions, entry.function)), {"color": entry}, None)
     chained = [stage for stage in stages if stage.role not in _APART]
+    reads = zip(chained, _per_light(chained), strict=True)
+    chained = [stage for stage, names in reads if not (stage.role == SURROUNDINGS and names)]
     per_light = _per_light(chained)
     surface = _Body("evaluate_surface", lit=True)
     for stage, late in zip(chained, per_light, strict=True):
@@ -144,6 +153,8 @@ def assemble(module: Module, stages: Sequence[ChainFunction], lit: bool, opaque:
             _check_late(stage, names)
             light.add(stage)
     apart = {role: _Body(f"evaluate_{role}", surface) for role in ("lighting", "shadow", "environment")}
+    if IRRADIANCE_BEHIND in surface.inputs:
+        apart[IRRADIANCE] = _Body(f"evaluate_{IRRADIANCE}")
     for role in _LAST:
         apart[role] = _Body(f"evaluate_{role}")
         apart[role].supply("color", VEC3)
@@ -392,6 +403,7 @@ class _Body:
             "evaluate_lighting": "The reflected light of one light.",
             "evaluate_shadow": "The share of the first light that arrives, 0 to 1.",
             "evaluate_environment": "The reflected light of the surroundings.",
+            "evaluate_irradiance": "The light of the surroundings on a white matte surface.",
             "evaluate_tone_mapping": "Brings a linear colour into the range of a display.",
             "evaluate_output": "Encodes a linear colour for the display.",
         }.get(name if name == "translucency" else self.name, "")

@@ -53,6 +53,14 @@ class Technique(NamedTuple):
     """The values of the sections that are more than text."""
 
     @property
+    def surroundings(self) -> Function | None:
+        """The function NAME_surroundings of a translucency technique, for the light from everywhere that comes through;
+        of an environment technique, for the light from everywhere on a white matte surface.
+        """
+        name = f"{self.name}_surroundings" if self.role in ("translucency", "environment") else ""
+        return next((function for function in self.module.functions if function.name == name), None)
+
+    @property
     def baseline(self) -> bool:
         """Whether this is a formula as its source published it."""
         return self.attributes.baseline

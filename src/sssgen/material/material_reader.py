@@ -18,7 +18,8 @@ from sssgen.support.paths import display_name
 from sssgen.support.toml_source import Document, parse
 
 _TEXTS = ("name", "title", "doc", "shading", "alpha_mode")
-MATERIAL_KEYS = (*_TEXTS, "two_sided")
+FLAGS = ("two_sided", "surroundings")
+MATERIAL_KEYS = (*_TEXTS, *FLAGS)
 STAGE_KEYS = ("technique", "bind", "uv")
 """The keys of a stage that are not parameters."""
 CHOICES = {
@@ -86,7 +87,8 @@ class _Reader:
             roles.check_chain(links, shading, error)
         sides = self.two_sided(data.get("material"), stages)
         title = title or name.replace("_", " ").capitalize()
-        return Material(name, title, doc, shading, tuple(stages), self.path, alpha_mode, sides)
+        around = self.flag(data.get("material"), "surroundings", True)
+        return Material(name, title, doc, shading, tuple(stages), self.path, alpha_mode, sides, around)
 
     # The head
 
@@ -119,15 +121,23 @@ class _Reader:
 
     def two_sided(self, table: Any, stages: Sequence[TechniqueUse]) -> bool:
         """Whether the material has back faces; a raymarched one has no mesh that could have any."""
-        value = table.get("two_sided", False) if isinstance(table, dict) else False
-        place = self.document.place("material", "two_sided")
-        if not isinstance(value, bool):
-            self.document.error(place.value, "'two_sided' takes true or false", "write two_sided = true")
-            return False
+        value = self.flag(table, "two_sided", False)
         if value and any(stage.technique.role == "geometry" for stage in stages):
             message = "a raymarched material has no back faces"
+            place = self.document.place("material", "two_sided")
             self.document.error(place.key, message, "omit two_sided, or omit [geometry]")
         return value
+
+    def flag(self, table: Any, key: str, default: bool) -> bool:
+        """A key of the [material] section that is true or false."""
+        value = table.get(key, default) if isinstance(table, dict) else default
+        if isinstance(value, bool):
+            return value
+        wanted = str(not default).lower()
+        self.document.error(
+            self.document.place("material", key).value, f"'{key}' takes true or false", f"write {key} = {wanted}"
+        )
+        return default
 
     def text(self, raw: object, key: str) -> str:
         """A text of the [material] section; only `doc` may have several lines."""

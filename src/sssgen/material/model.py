@@ -53,6 +53,8 @@ class Material(NamedTuple):
     """opaque, mask or blend, as in glTF: how the engine uses the alpha that techniques write"""
     two_sided: bool = False
     """Whether back faces are drawn, too, and lit with the reversed normal"""
+    surroundings: bool = True
+    """Whether light of the surroundings comes through, where the techniques say how"""
 
     @property
     def path(self) -> Path:

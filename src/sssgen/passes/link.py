@@ -34,6 +34,8 @@ class LinkInput(NamedTuple):
     """Uniform → the default that the material gives it."""
     fixed: frozenset[str]
     """Uniforms that the material folds into the text."""
+    number: int = 0
+    """The stage of the material: functions with the same number share its parameters."""
 
 
 class LinkedModule(NamedTuple):
@@ -47,7 +49,8 @@ class LinkedModule(NamedTuple):
     owners: dict[str, tuple[str, str]]
     """Each uniform's technique and its name there."""
     settings: dict[str, list[tuple[int, str]]]
-    """Each uniform's stages, in their order, and its name there: the last one to give it a value decides."""
+    """The numbers of each uniform's stages, in their order, and its name there: the last one to give it a value
+    decides."""
 
 
 class LinkError(Exception):
@@ -64,7 +67,7 @@ def link(stages: Sequence[LinkInput], taken: Collection[str] = ()) -> LinkedModu
     Raises LinkError for an unbound slot or two structs of one name.
     """
     linker = _Linker(taken)
-    functions = tuple(linker.stage(index, stage) for index, stage in enumerate(stages))
+    functions = tuple(linker.stage(stage) for stage in stages)
     module = Module(
         tuple(linker.structs.values()),
         tuple(linker.constants.values()),
@@ -93,8 +96,8 @@ class _Linker:
         self.modules: dict[int, tuple[Module, Module]] = {}
         """By its id: a module with structs of taken names, and the same without."""
 
-    def stage(self, index: int, stage: LinkInput) -> Function:
-        return self.function(stage.function, stage.module, index, stage)
+    def stage(self, stage: LinkInput) -> Function:
+        return self.function(stage.function, stage.module, stage.number, stage)
 
     def function(self, function: Function, module: Module, index: int, stage: LinkInput) -> Function:
         """The linked instance of a function as this stage uses it."""

@@ -242,7 +242,12 @@ def _bare(stage: TechniqueUse, fixed: set[str]) -> TechniqueUse:
 def _structure(structural: Material, target: Target) -> str:
     """Everything that the program of a material depends on, as text; '' where this is unknown."""
     modules = [library.load(target.lighting).module] if target.lighting else []
-    parts: list[object] = [structural.shading, structural.alpha_mode, structural.two_sided]
+    parts: list[object] = [
+        structural.shading,
+        structural.alpha_mode,
+        structural.two_sided,
+        structural.surroundings,
+    ]
     for stage in structural.stages:
         technique, bindings = stage.technique, stage.bindings
         modules += [technique.module, *(binding.module for binding in bindings.values())]

@@ -7,11 +7,15 @@ from typing import NamedTuple
 from sssgen.ir.nodes import Module, Span
 from sssgen.lang.source_lines import source_line
 from sssgen.material import library
+from sssgen.material.chain_assembly import IRRADIANCE, SURROUNDINGS
 from sssgen.material.model import Material, TechniqueUse
 from sssgen.material.unwritten import unwritten, with_constants
 from sssgen.passes.link import LinkInput
 from sssgen.support.diagnostics import Diagnostic, UnsupportedError
 from sssgen.targets.descriptor import Target
+
+_AROUND = {"translucency": SURROUNDINGS, "environment": IRRADIANCE}
+"""The role of a technique's second function."""
 
 
 class TargetTechnique(NamedTuple):
@@ -20,8 +24,6 @@ class TargetTechnique(NamedTuple):
     link: LinkInput
     span: Span
     """The place that names it."""
-    number: int
-    """Its position in the material; a stage that the target adds comes after all of them."""
     glows: bool = False
     """Whether its technique is documented to glow: its light needs no lamp."""
     uv: str = "uv"
@@ -30,15 +32,23 @@ class TargetTechnique(NamedTuple):
 
 def stages_for(material: Material, target: Target) -> list[TargetTechnique]:
     """The material's stages without what the engine does, with the lighting that the target adds."""
-    stages = [
-        TargetTechnique(_link_input(stage), stage.span, number, stage.technique.attributes.glows, stage.uv)
-        for number, stage in enumerate(material.stages)
-    ]
     lit = material.shading == "lit"
+    transmits = lit and material.surroundings and target.has_surroundings
+    stages = []
+    for number, stage in enumerate(material.stages):
+        link = _link_input(stage, number)
+        stages.append(TargetTechnique(link, stage.span, stage.technique.attributes.glows, stage.uv))
+        around = stage.technique.surroundings
+        if transmits and around is not None:
+            role = _AROUND[link.role]
+            added = link._replace(role=role, function=around)
+            stages.append(TargetTechnique(added, stage.span, role == SURROUNDINGS, stage.uv))
     if lit and target.lighting and all(stage.link.role != "lighting" for stage in stages):
         technique = library.load(target.lighting)
-        added = LinkInput(technique.name, "lighting", technique.module, technique.function, {}, {}, frozenset())
-        stages.append(TargetTechnique(added, technique.function.span, len(stages)))
+        added = LinkInput(
+            technique.name, "lighting", technique.module, technique.function, {}, {}, frozenset(), len(material.stages)
+        )
+        stages.append(TargetTechnique(added, technique.function.span))
     engine = {"lighting"} if lit and not target.lighting else set()
     engine |= {"output"} if target.engine_encodes else set()
     stages = [stage for stage in stages if stage.link.role not in engine]
@@ -81,11 +91,18 @@ def check_shell(material: Material, target: Target) -> None:
 _WHY = {False: ": the engine does this", True: ": its shell cannot carry it"}
 
 
-def _link_input(stage: TechniqueUse) -> LinkInput:
+def _link_input(stage: TechniqueUse, number: int) -> LinkInput:
     technique = stage.technique
     bindings = {name: (binding.module, binding.function) for name, binding in stage.bindings.items()}
     return LinkInput(
-        technique.name, technique.role, technique.module, technique.function, bindings, stage.values, stage.fixed
+        technique.name,
+        technique.role,
+        technique.module,
+        technique.function,
+        bindings,
+        stage.values,
+        stage.fixed,
+        number,
     )
 
 

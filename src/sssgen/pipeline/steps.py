@@ -60,8 +60,7 @@ def link_stages(state: State) -> Module:
     own = range(len(material.stages))
     state.linked, state.fixed, state.owners = linked.functions, linked.fixed, linked.owners
     state.settings = {
-        name: [(state.stages[index].number, old) for index, old in places if state.stages[index].number in own]
-        for name, places in linked.settings.items()
+        name: [(number, old) for number, old in places if number in own] for name, places in linked.settings.items()
     }
     state.slots = slot_functions(material, linked.module)
     return linked.module

@@ -35,6 +35,8 @@ CHAIN_INPUTS: Mapping[str, ChainInput] = {
     "ray_direction": ChainInput("the unit direction of the eye's ray", "world"),
     "uv2": ChainInput("the texture coordinate of the second set; 0 where the mesh has none", "texture"),
     "vertex_color": ChainInput("the linear colour and opacity of the vertices; white where the mesh has none"),
+    "irradiance": ChainInput("the light of the surroundings on a white matte surface that faces N"),
+    "irradiance_behind": ChainInput("the same on one that faces -N"),
     "surface": ChainInput("the result of evaluate_surface"),
     "color": ChainInput("the final color"),
 }

@@ -308,6 +308,11 @@ class Target(NamedTuple):
         """The values with an expression of the target's own: a shell does not compute them."""
         return tuple([name for name, text in self.inputs.items() if text != name])
 
+    @property
+    def has_surroundings(self) -> bool:
+        """Whether its shell knows the light of the surroundings: one of the language does, an engine's has a text."""
+        return bool(self.fragment_shell) or "irradiance_behind" in self.given_inputs
+
     def declares(self, form: str) -> bool:
         """Whether the text of a form declares the uniforms and textures."""
         return form not in self.parameters or form in self.declared

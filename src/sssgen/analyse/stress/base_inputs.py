@@ -22,6 +22,7 @@ _PLAIN: dict[str, Any] = {
     "P_object": (0.1, 0.2, 0.5), "V_object": (0, 0, 1), "L_object": (0, 0, -1), "alpha": 1, "time": 1,
     "screen_uv": (0.3, 0.6), "eye_distance": 3, "light_nearness": 0.25, "uv2": (0.7, 0.4),
     "vertex_color": (0.8, 0.6, 0.4, 0.9), "specular": 0.04,
+    "irradiance": (0.6, 0.7, 0.8), "irradiance_behind": (0.3, 0.2, 0.1),
 }  # fmt: skip
 _OF_QUANTITY = {"thickness": 0.1, "view_thickness": 0.1, "thinness": 0.5, "transmittance": 0.5}
 

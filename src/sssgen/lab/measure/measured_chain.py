@@ -110,5 +110,10 @@ def _reshape(type_name: str, data: Any, dtype: Any) -> Any:
 
 
 def material_of(stages: Sequence[MaterialSection], folder: str, name: str = NAME) -> Material:
-    """The material of a chain; paths in it are relative to `folder`. Raises SssgenError."""
-    return parse_material(material_text(name, stages), os.path.join(folder, f"{name}.toml"))
+    """The material of a chain; paths in it are relative to `folder`. Raises SssgenError.
+
+    It is measured light by light: an environment is a number of lights.
+    """
+    return parse_material(
+        material_text(name, stages, settings={"surroundings": False}), os.path.join(folder, f"{name}.toml")
+    )

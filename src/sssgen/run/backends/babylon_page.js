@@ -3,18 +3,21 @@
 import { Camera } from '@babylonjs/core/Cameras/camera.js';
 import { Engine } from '@babylonjs/core/Engines/engine.js';
 import { WebGPUEngine } from '@babylonjs/core/Engines/webgpuEngine.js';
+import { HemisphericLight } from '@babylonjs/core/Lights/hemisphericLight.js';
 import { DirectionalLight } from '@babylonjs/core/Lights/directionalLight.js';
 import { PointLight } from '@babylonjs/core/Lights/pointLight.js';
 import { CascadedShadowGenerator } from '@babylonjs/core/Lights/Shadows/cascadedShadowGenerator.js';
 import { ShadowGenerator } from '@babylonjs/core/Lights/Shadows/shadowGenerator.js';
 import '@babylonjs/core/Lights/Shadows/shadowGeneratorSceneComponent.js';
 import { SpotLight } from '@babylonjs/core/Lights/spotLight.js';
+import { RawCubeTexture } from '@babylonjs/core/Materials/Textures/rawCubeTexture.js';
 import { RawTexture } from '@babylonjs/core/Materials/Textures/rawTexture.js';
 import { RawTexture3D } from '@babylonjs/core/Materials/Textures/rawTexture3D.js';
 import { RenderTargetTexture } from '@babylonjs/core/Materials/Textures/renderTargetTexture.js';
 import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
 import { Color3, Color4 } from '@babylonjs/core/Maths/math.color.js';
 import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
+import { CubeMapToSphericalPolynomialTools } from '@babylonjs/core/Misc/HighDynamicRange/cubemapToSphericalPolynomial.js';
 import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
 import { CreateBoxVertexData } from '@babylonjs/core/Meshes/Builders/boxBuilder.js';
 import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
@@ -73,6 +76,8 @@ async function draw(plan, piece) {
   scene.imageProcessingConfiguration.applyByPostProcess = true; // linear light
   const camera = new GivenCamera(plan, scene);
   const lights = plan.lights.map((light) => lightOf(light, stage, scene));
+  if (stage.around === 'hemisphere') new HemisphericLight('above', new Vector3(0, 1, 0), scene);
+  if (stage.around === 'environment') scene.environmentTexture = skyOf(scene);
   const { createMaterial } = await imported(plan.modules);
   const textures = Object.fromEntries(Object.entries(plan.textures).map(([name, one]) => [name, textureOf(one, piece, scene)]));
   const material = createMaterial({ ambientColor: Color3.White(), ...plan.values, ...textures }, scene);
@@ -139,6 +144,19 @@ function vertexDataOf(plan, piece, size = 1) {
     positions: part('position').map((one) => one * size), normals: part('normal'), tangents: plan.withoutTangents ? null : part('tangent'), uvs: part('uv'),
     uvs2: part('uv2'), colors: part('color'), indices: indices(piece(plan.triangles)),
   });
+}
+
+/** A cube whose upper half is white. @param {Scene} scene */
+function skyOf(scene) {
+  const size = 32, full = () => new Float32Array(size * size * 4).fill(1);
+  const half = () => full().fill(0, size * size * 2); // its first row is up
+  const [right, left, up, down, front, back] = [half(), half(), full(), full().fill(0), half(), half()];
+  const faces = [right, left, up, down, front, back];
+  const sky = new RawCubeTexture(scene, faces, size, RGBA, FLOAT, true);
+  sky.sphericalPolynomial = CubeMapToSphericalPolynomialTools.ConvertCubeMapToSphericalPolynomial({
+    size, right, left, up, down, front, back, format: RGBA, type: FLOAT, gammaSpace: false,
+  });
+  return sky;
 }
 
 /** @param {import('./engine_page.js').Light} light @param {Stage} stage @param {Scene} scene */

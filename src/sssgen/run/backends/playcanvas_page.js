@@ -71,6 +71,9 @@ async function draw(plan, piece) {
   }
   scene.ambientLight = colorOf(plan.ambient.length ? plan.ambient : [0, 0, 0]);
 
+  const sky = stage.around === 'environment' ? skyOf(device) : null;
+  scene.envAtlas = sky;
+
   const placed = (/** @type {pc.Mesh} */ mesh, /** @type {number[]} */ model) => {
     const entity = new pc.Entity('', app);
     const instance = new pc.MeshInstance(mesh, material, entity);
@@ -100,8 +103,25 @@ async function draw(plan, piece) {
   await internalsOf(device).wgpu?.queue.onSubmittedWorkDone();
   all.forEach((one) => one.destroy());
   renderTarget.destroy();
+  scene.envAtlas = null;
+  sky?.destroy();
   [colorBuffer, material, ...Object.values(textures)].forEach((one) => one.destroy());
   return pixels;
+}
+
+/** The light of a cube whose upper half is white. @param {pc.GraphicsDevice} device */
+function skyOf(device) {
+  const size = 32, white = pc.math.float2Half?.(1) ?? 0x3c00;
+  const full = () => new Uint16Array(size * size * 4).fill(white);
+  const half = () => full().fill(0, size * size * 2); // its first row is up
+  const cube = new pc.Texture(device, {
+    cubemap: true, width: size, height: size, format: pc.PIXELFORMAT_RGBA16F, mipmaps: false,
+    levels: [[half(), half(), full(), full().fill(0), half(), half()]],
+  });
+  const lit = pc.EnvLighting.generateLightingSource(cube, { size });
+  const atlas = pc.EnvLighting.generateAtlas(lit);
+  [cube, lit].forEach((one) => one.destroy());
+  return atlas;
 }
 
 /** @type {Record<string, string>} */

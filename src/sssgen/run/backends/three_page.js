@@ -55,6 +55,8 @@ async function draw(plan, piece) {
   const lights = plan.lights.map(lightOf);
   scene.add(mesh, ...lights);
   if (material.light === null) material.light = lights[0] ?? null;
+  if (stage.around === 'environment') scene.environment = sky();
+  else if (stage.around) scene.add(SURROUNDINGS[stage.around]());
   if (plan.ambient.length) scene.add(new THREE.AmbientLight(new THREE.Color().fromArray(plan.ambient), Math.PI));
   // WebGLRenderer draws into no other target, and WebGPURenderer takes it, too
   const target = new THREE.WebGLRenderTarget(plan.width, plan.height, { type: THREE.FloatType, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter });
@@ -72,6 +74,25 @@ async function draw(plan, piece) {
   renderer.setRenderTarget(null);
   [geometry, material, target, ...Object.values(textures)].forEach((one) => one.dispose());
   return pixels;
+}
+
+/** @type {Record<string, () => THREE.Light>} (1 + y) / 2 on a white matte surface. */
+const SURROUNDINGS = {
+  hemisphere: () => new THREE.HemisphereLight(0xffffff, 0x000000, Math.PI),
+  probe() {
+    const light = new THREE.LightProbe(undefined, 0.5 * Math.PI);
+    light.sh.coefficients[0].setScalar(1 / 0.886227);
+    light.sh.coefficients[1].setScalar(0.5 / 0.511664);
+    return light;
+  },
+};
+
+/** Its upper half is white. */
+function sky() {
+  const texels = new Uint16Array(64 * 32 * 4).fill(THREE.DataUtils.toHalfFloat(1), 64 * 16 * 4);
+  const texture = new THREE.DataTexture(texels, 64, 32, THREE.RGBAFormat, THREE.HalfFloatType, THREE.EquirectangularReflectionMapping);
+  texture.needsUpdate = true;
+  return texture;
 }
 
 /** @param {import('./engine_page.js').Light} light */

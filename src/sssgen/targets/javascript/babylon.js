@@ -15,6 +15,7 @@ import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Vector2, Vector4 } from '@babylonjs/core/Maths/math.vector.js';
 import { SerializationHelper } from '@babylonjs/core/Misc/decorators.serialization.js';
 import { Passes, lightOf } from './babylon_passes.js';
+import { SKY, SURROUNDINGS, skyOf } from './babylon_surroundings.js';
 import { Properties, TEXELS } from './values.js';
 
 /**
@@ -143,15 +144,18 @@ finalDiffuse += sss_lights * ${['', 'uniforms.'][language]}vLightingIntensity.x 
 `,
 });
 
+const readsSurroundings = ({ begin }) => begin.includes('sss_surroundings(');
+
 /** What goes into Babylon's shaders in one language: place → text. */
 function placesOf({ textures, varyings, variables, shells }, language) {
   const { functions, vertex, begin, places } = shells[language];
   const { texture, varying, variable } = DECLARATIONS[language];
   const samplers = Object.fromEntries(Object.values(textures).map(({ name, type }) => [name, type]));
   const passed = declared(varying, varyings);
+  const around = readsSurroundings(shells[language]) ? SURROUNDINGS[language] : '';
   const lights = shells[language].translucency ? lightPlaces(shells[language], language) : {};
   const fragment = {
-    CUSTOM_FRAGMENT_DEFINITIONS: declared(texture, samplers) + passed + functions + declared(variable, variables),
+    CUSTOM_FRAGMENT_DEFINITIONS: declared(texture, samplers) + passed + around + functions + declared(variable, variables),
     CUSTOM_FRAGMENT_MAIN_BEGIN: begin,
     ...Object.fromEntries(Object.keys(variables).filter((name) => name in ARGUMENTS).map((name) => ARGUMENTS[name])),
     ...lights,
@@ -177,6 +181,8 @@ function pluginClass(description, { moves, takesLight }) {
   const uniforms = Object.values(parameters).map(({ name, type }) => [name, uniformType(type)]);
   if (moves) uniforms.push(['sss_time', 'float']);
   if (takesLight) uniforms.push(['sss_light_place', 'vec4'], ['sss_light_radiance', 'vec3']);
+  const around = readsSurroundings(shells[0]);
+  if (around) uniforms.push(...SKY.map((name) => [name, 'vec4']));
   if (shells[0].entry) uniforms.push(['sss_body_min', 'vec3'], ['sss_body_max', 'vec3']);
 
   return class extends MaterialPluginBase {
@@ -263,6 +269,7 @@ function pluginClass(description, { moves, takesLight }) {
     hardBindForSubMesh(buffer, scene, engine, subMesh) {
       const mesh = subMesh.getMesh(), drawn = this.#passes?.valuesOf(mesh);
       for (const property of this.#passes?.properties ?? []) this.#write(buffer, property, drawn[property]);
+      if (around) skyOf(mesh).forEach((numbers, channel) => writeNumbers(buffer, SKY[channel], 'vec4', numbers));
       if (!shells[0].entry) return;
       const { minimum, maximum } = mesh.getRawBoundingInfo().boundingBox; // without the places of thin instances
       buffer.updateVector3('sss_body_min', minimum);

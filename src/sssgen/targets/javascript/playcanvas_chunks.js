@@ -92,6 +92,7 @@ function changes({ lit, shells }, gpu) {
   const { head } = LANGUAGES[Number(gpu)];
   return [
     ['stdFrontEndPS', /evaluateFrontend/, 'sss_engine_front', `
+${own.begin.includes('sss_surroundings(') ? surroundings(gpu, head) : ''}
 ${head('void evaluateFrontend()')} {
 ${lit ? 'sss_light_sum = vec3(0.0);' : ''}
 ${own.entry ? 'sss_shadow_place = vPositionW;' : ''}
@@ -109,7 +110,7 @@ ${opacity}
 }
 `],
     ['combinePS', /combineColor/, 'sss_engine_combine', `
-${lit && !gpu ? AMBIENT_DECLARATION : ''}
+${lit && !gpu ? ambientDeclaration('SSS_OWN_LIGHT') : ''}
 ${head('vec3 combineColor(vec3 albedo, vec3 sheenSpecularity, float clearcoatSpecularity)')} {
 ${lit ? lightSum(ambient) : 'return vec3(0.0);'}
 }
@@ -118,10 +119,25 @@ ${lit ? lightSum(ambient) : 'return vec3(0.0);'}
   ];
 }
 
-const AMBIENT_DECLARATION = `
-#if defined(SSS_OWN_LIGHT) && defined(LIT_ADD_AMBIENT)
+/** GLSL needs it before the function is called. */
+const ambientDeclaration = (where) => `
+#if defined(${where}) && defined(LIT_ADD_AMBIENT)
 void addAmbient(vec3 worldNormal);
 #endif`;
+
+/** The light of the surroundings on a white matte surface that faces a direction of the world, as PlayCanvas adds it. */
+const surroundings = (gpu, head) => `
+${gpu ? '' : ambientDeclaration('FORWARD_PASS')}
+${head('vec3 sss_surroundings(vec3 direction)')} {
+#if defined(FORWARD_PASS) && defined(LIT_ADD_AMBIENT)
+dDiffuseLight = ${gpu ? 'vec3f' : 'vec3'}(0.0);
+addAmbient(direction);
+return dDiffuseLight;
+#else
+return ${gpu ? 'vec3f' : 'vec3'}(0.0);
+#endif
+}
+`;
 
 const lightSum = (ambient) => `
 #ifdef SSS_OWN_LIGHT

@@ -7,6 +7,7 @@ import { nodesOf } from './three_nodes.js';
 import { ObjectUniforms, placedValue } from './three_object.js';
 import { Passes } from './three_passes.js';
 import { entryChunks, entryFunction } from './three_shadows.js';
+import { SURROUNDINGS } from './three_surroundings.js';
 import { Properties, TEXELS } from './values.js';
 
 /**
@@ -68,7 +69,7 @@ float sss_light_nearness;
 void sss_direct(const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight) {
   RE_Direct_Physical(directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight);
 ${light}}
-${entryFunction(entry)}
+${entryFunction(entry)}${SURROUNDINGS}
 #undef RE_Direct
 #define RE_Direct sss_direct
 `;

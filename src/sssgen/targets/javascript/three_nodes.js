@@ -3,6 +3,7 @@
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
 import { entryShadow, hasEntryShadow } from './three_shadows.js';
+import { surroundings } from './three_surroundings.js';
 
 /**
  * A function of the texts, and its arguments in order.
@@ -95,6 +96,8 @@ const INPUTS = {
   eye_distance: [TSL.positionView.length(), 'float'],
   ray_origin: [TSL.cameraPosition, 'vec3'],
   ray_direction: [viewDirection.negate(), 'vec3'],
+  irradiance: [surroundings(geometryNormal), 'vec3'],
+  irradiance_behind: [surroundings(geometryNormal.negate()), 'vec3'],
 };
 
 /** The values of a light. */
