@@ -32,7 +32,8 @@ async function draw(plan, piece) {
   const { createMaterial } = await imported(plan.modules);
   const textures = Object.fromEntries(Object.entries(plan.textures).map(([name, one]) => [name, textureOf(one, piece)]));
   const material = createMaterial({ ...plan.values, ...textures });
-  for (const [name, value] of Object.entries(plan.properties)) {
+  const { stage = {}, ...properties } = plan.properties;
+  for (const [name, value] of Object.entries(properties)) {
     if (material[name]?.isColor) material[name].setScalar(value);
     else material[name] = value;
   }
@@ -45,15 +46,19 @@ async function draw(plan, piece) {
   }
   if (plan.withoutTangents) geometry.deleteAttribute('tangent');
   geometry.setIndex(new THREE.BufferAttribute(indices(piece(plan.triangles)), 1));
-  const mesh = new THREE.Mesh(geometry, material);
-  mesh.frustumCulled = false;
-  mesh.matrixAutoUpdate = false;
-  mesh.matrix.fromArray(plan.model);
-  mesh.castShadow = mesh.receiveShadow = true;
+  const placed = (/** @type {number[]} */ model, size = 1) => {
+    const mesh = new THREE.Mesh(size === 1 ? geometry : geometry.clone().scale(size, size, size), material);
+    mesh.frustumCulled = false;
+    mesh.matrixAutoUpdate = false;
+    mesh.matrix.fromArray(model);
+    mesh.castShadow = mesh.receiveShadow = true;
+    return mesh;
+  };
 
   const scene = new THREE.Scene();
   const lights = plan.lights.map(lightOf);
-  scene.add(mesh, ...lights);
+  const meshes = [placed(plan.model), ...(stage.copies ?? []).map(({ model, size }) => placed(model, size))];
+  scene.add(...meshes, ...lights);
   if (material.light === null) material.light = lights[0] ?? null;
   if (plan.ambient.length) scene.add(new THREE.AmbientLight(new THREE.Color().fromArray(plan.ambient), Math.PI));
   // WebGLRenderer draws into no other target, and WebGPURenderer takes it, too
@@ -70,7 +75,7 @@ async function draw(plan, piece) {
     pixels = await renderer.readRenderTargetPixelsAsync(target, 0, 0, plan.width, plan.height);
   }
   renderer.setRenderTarget(null);
-  [geometry, material, target, ...Object.values(textures)].forEach((one) => one.dispose());
+  [...meshes.map(({ geometry }) => geometry), material, target, ...Object.values(textures)].forEach((one) => one.dispose());
   return pixels;
 }
 
