@@ -102,6 +102,13 @@ def test_other_scenes(page: EnginePage, stage: dict[str, Any], case_of: Callable
     assert np.quantile(differences(page, case_of(False), stage=stage), 0.98) < 1.0 / 255.0
 
 
+@pytest.mark.parametrize("page", [("threejs", "webgl"), ("threejs", "webgl2")], ids="-".join, indirect=True)
+def test_two_renderers(page: EnginePage, case_of: Callable[[bool], Case]) -> None:
+    """Another renderer has drawn the object before, with pictures of its own."""
+    first = "webgl2" if page.name == "webgl" else "webgl"
+    assert np.quantile(differences(page, case_of(True), stage={"first": first}), 0.98) < 1.0 / 255.0
+
+
 @pytest.mark.parametrize("size", [1.0, 0.5])
 @pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
 def test_values_of_the_object_come_from_its_matrix(page: EnginePage, size: float) -> None:

@@ -29,7 +29,7 @@ async function rendererFor(kind) {
 async function draw(plan, piece) {
   const renderer = await rendererFor(plan.renderer);
   const gpu = plan.renderer === 'webgpu';
-  const { createMaterial } = await imported(plan.modules);
+  const { createMaterial, textures: declared } = await imported(plan.modules);
   const textures = Object.fromEntries(Object.entries(plan.textures).map(([name, one]) => [name, textureOf(one, piece)]));
   const material = createMaterial({ ...plan.values, ...textures });
   const { stage = {}, ...properties } = plan.properties;
@@ -61,12 +61,11 @@ async function draw(plan, piece) {
   scene.add(...meshes, ...lights);
   if (material.light === null) material.light = lights[0] ?? null;
   if (plan.ambient.length) scene.add(new THREE.AmbientLight(new THREE.Color().fromArray(plan.ambient), Math.PI));
-  // WebGLRenderer draws into no other target, and WebGPURenderer takes it, too
-  const target = new THREE.WebGLRenderTarget(plan.width, plan.height, { type: THREE.FloatType, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter });
-  renderer.setClearColor(0x000000, 0);
-  renderer.setRenderTarget(target);
-  renderer.clear();
-  renderer.render(scene, cameraOf(plan, gpu));
+  const pictures = () => Object.keys(declared).map((name) => material[name]).filter((texture) => texture.isRenderTargetTexture);
+  if (stage.first) render(await rendererFor(stage.first), scene, cameraOf(plan, stage.first === 'webgpu'), 5, 4).dispose();
+  const foreign = pictures();
+  const target = render(renderer, scene, cameraOf(plan, gpu), plan.width, plan.height);
+  if (pictures().some((texture) => foreign.includes(texture))) throw new Error('two renderers draw into one picture');
   let pixels;
   if (renderer instanceof THREE.WebGLRenderer) {
     pixels = new Float32Array(plan.width * plan.height * 4);
@@ -77,6 +76,17 @@ async function draw(plan, piece) {
   renderer.setRenderTarget(null);
   [...meshes.map(({ geometry }) => geometry), material, target, ...Object.values(textures)].forEach((one) => one.dispose());
   return pixels;
+}
+
+/** @param {THREE.WebGLRenderer | WebGPURenderer} renderer @param {THREE.Scene} scene @param {THREE.Camera} camera @param {number} width @param {number} height */
+function render(renderer, scene, camera, width, height) {
+  // WebGLRenderer draws into no other target, and WebGPURenderer takes it, too
+  const target = new THREE.WebGLRenderTarget(width, height, { type: THREE.FloatType, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter });
+  renderer.setClearColor(0x000000, 0);
+  renderer.setRenderTarget(target);
+  renderer.clear();
+  renderer.render(scene, camera);
+  return target;
 }
 
 /** @param {import('./engine_page.js').Light} light */

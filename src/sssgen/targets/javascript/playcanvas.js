@@ -44,7 +44,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {Record<string, Varying>} varyings
  * @property {Record<string, string>} variables of the fragment shader: name → type
  * @property {Shell[]} shells in GLSL and in WGSL
- * @property {import('./playcanvas_passes.js').Pass[]} [passes] what is drawn before it
+ * @property {import('./frame_passes.js').Pass[]} [passes] what is drawn before it
  */
 
 // Textures and values.
