@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import mesh_of, through
+from engine_cases import HEAD, mesh_of, through
 from skips import or_skip
 from sssgen.run.backends import Array
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
@@ -102,23 +102,67 @@ def test_other_scenes(page: EnginePage, stage: dict[str, Any], case_of: Callable
     assert np.quantile(differences(page, case_of(False), stage=stage), 0.98) < 1.0 / 255.0
 
 
-@pytest.mark.parametrize("page", [("threejs", name) for name in THREE.renderers], ids="-".join, indirect=True)
-def test_values_of_the_object_come_from_its_matrix(page: EnginePage) -> None:
-    """wax_mouse half as large and in another place: the page sets no scale."""
-    mesh, compiled = mesh_of("wax_mouse"), sssgen.compile("wax_mouse", "threejs")
-    moved = np.diag([0.5, 0.5, 0.5, 1.0])
-    moved[:3, 3] = [0.3, -0.2, 0.1]
+@pytest.mark.parametrize("page", [("threejs", "webgl"), ("threejs", "webgl2")], ids="-".join, indirect=True)
+def test_two_renderers(page: EnginePage, case_of: Callable[[bool], Case]) -> None:
+    """Another renderer has drawn the object before, with pictures of its own."""
+    first = "webgl2" if page.name == "webgl" else "webgl"
+    assert np.quantile(differences(page, case_of(True), stage={"first": first}), 0.98) < 1.0 / 255.0
+
+
+@pytest.mark.parametrize("size", [1.0, 0.5])
+@pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
+def test_values_of_the_object_come_from_its_matrix(page: EnginePage, size: float) -> None:
+    """wax_mouse and another one of half its size have one material; the page sets no scale."""
+    mesh, target = mesh_of("wax_mouse"), page.engine.target
+    compiled = sssgen.compile("wax_mouse", target)
+    half = np.diag([0.5, 0.5, 0.5, 1.0])
+    half[:3, 3] = [0.3, -0.2, 0.1]
     own = mesh.shell
+    moved, other = (half, np.eye(4)) if size == 0.5 else (np.eye(4), half)
     shell = dataclasses.replace(
         own,
         model=moved @ own.model,
         camera_position=tuple(moved[:3, :3] @ own.camera_position + moved[:3, 3]),
         view_projection=own.view_projection @ np.linalg.inv(moved),
-        parameters={**own.parameters, "object_scale": (0.5 * own.parameters["object_scale"][0],)},
+        parameters={**own.parameters, "object_scale": (size * own.parameters["object_scale"][0],)},
         ambient=(0.0, 0.0, 0.0),
     )
     assert shell.unplaced(compiled.reflection["uniforms"])["object_scale"] == pytest.approx([1.0])
-    drawn = page_values.shade(compiled, shell, page, mesh.size, mesh.points, BLACK["threejs"])
+    elsewhere = other @ own.model
+    elsewhere[:3, 3] += [9.0, 3.0, -5.0]
+    stage = {"copies": [{"size": 1.0, "model": elsewhere.T.ravel().tolist()}]}
+    drawn = page_values.shade(compiled, shell, page, mesh.size, mesh.points, BLACK[target] | {"stage": stage})
     expected, whole = (through("wax_mouse", mesh._replace(shell=one)) for one in (shell, own))
     assert np.abs(drawn - expected)[..., :3][mesh.hit].max() < 1.0 / 255.0
-    assert np.abs(whole - expected)[..., :3][mesh.hit].max() > 0.02, "the size matters"
+    assert (np.abs(whole - expected)[..., :3][mesh.hit].max() > 0.02) == (size == 0.5), "the size matters"
+
+
+PLACED = f"""/// To a texture of the body.
+uniform mat4 to_texture : placed = mat4(1.0);
+{HEAD.format("surface")}void shown(world_position P, out vec3 emission)
+{{ emission = abs((to_texture * vec4(vec3(P), 1.0)).xyz); }}
+"""
+
+
+@pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
+def test_matrices_of_the_object_come_from_its_matrix(page: EnginePage, tmp_path: Path) -> None:
+    """A body that is turned, stretched and mirrored, and one elsewhere."""
+    (tmp_path / "shown.sss").write_text(PLACED, encoding="utf-8")
+    material = tmp_path / "made.toml"
+    material.write_text('[material]\nname = "made"\n[[surface]]\ntechnique = "./shown.sss"\n', encoding="utf-8")
+    mesh, target = mesh_of("wax_mouse"), page.engine.target
+    changed = np.array([[0.0, -1.5, 0.0, 0.3], [-2.0, 0.0, 0.0, 0.1], [0.0, 0.0, 0.5, 0.2], [0.0, 0.0, 0.0, 1.0]])
+    to_texture = np.diag([0.2, 0.4, 0.3, 1.0]) @ np.linalg.inv(changed)
+    points = mesh.points.copy()
+    moved = np.linalg.inv(changed) @ mesh.shell.model  # the same points in the world
+    points[:, :3] = points[:, :3] @ moved[:3, :3].T + moved[:3, 3]
+    points[:, 3:6] = points[:, 3:6] @ np.linalg.inv(moved[:3, :3])
+    shell = dataclasses.replace(
+        mesh.shell, model=changed, parameters={"to_texture": to_texture.T.ravel()}, textures={}, ambient=(0.0, 0.0, 0.0)
+    )
+    compiled = sssgen.compile(str(material), target)
+    properties = BLACK[target] | {"stage": {"copies": [ELSEWHERE]}}
+    drawn = page_values.shade(compiled, shell, page, mesh.size, points, properties)
+    expected = through(str(material), mesh._replace(shell=shell, points=points))
+    assert np.abs(drawn - expected)[..., :3][mesh.hit].max() < 1.0 / 255.0
+    assert expected[..., :3][mesh.hit].std() > 0.02

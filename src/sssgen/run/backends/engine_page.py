@@ -50,8 +50,6 @@ class Engine(NamedTuple):
     renderers: Mapping[str, Renderer]
     v_down: bool = False
     """Whether v is 0 at the top of the engine's own meshes."""
-    places_values: bool = False
-    """Whether the engine's runtime places parameters with the hint `placed` by the object's matrix."""
 
 
 class EngineDrawing(NamedTuple):

@@ -29,10 +29,11 @@ async function rendererFor(kind) {
 async function draw(plan, piece) {
   const renderer = await rendererFor(plan.renderer);
   const gpu = plan.renderer === 'webgpu';
-  const { createMaterial } = await imported(plan.modules);
+  const { createMaterial, textures: declared } = await imported(plan.modules);
   const textures = Object.fromEntries(Object.entries(plan.textures).map(([name, one]) => [name, textureOf(one, piece)]));
   const material = createMaterial({ ...plan.values, ...textures });
-  for (const [name, value] of Object.entries(plan.properties)) {
+  const { stage = {}, ...properties } = plan.properties;
+  for (const [name, value] of Object.entries(properties)) {
     if (material[name]?.isColor) material[name].setScalar(value);
     else material[name] = value;
   }
@@ -45,25 +46,28 @@ async function draw(plan, piece) {
   }
   if (plan.withoutTangents) geometry.deleteAttribute('tangent');
   geometry.setIndex(new THREE.BufferAttribute(indices(piece(plan.triangles)), 1));
-  const mesh = new THREE.Mesh(geometry, material);
-  mesh.frustumCulled = false;
-  mesh.matrixAutoUpdate = false;
-  mesh.matrix.fromArray(plan.model);
-  mesh.castShadow = mesh.receiveShadow = true;
+  const placed = (/** @type {number[]} */ model, size = 1) => {
+    const mesh = new THREE.Mesh(size === 1 ? geometry : geometry.clone().scale(size, size, size), material);
+    mesh.frustumCulled = false;
+    mesh.matrixAutoUpdate = false;
+    mesh.matrix.fromArray(model);
+    mesh.castShadow = mesh.receiveShadow = true;
+    return mesh;
+  };
 
   const scene = new THREE.Scene();
   const lights = plan.lights.map(lightOf);
-  scene.add(mesh, ...lights);
+  const meshes = [placed(plan.model), ...(stage.copies ?? []).map(({ model, size }) => placed(model, size))];
+  scene.add(...meshes, ...lights);
   if (material.light === null) material.light = lights[0] ?? null;
   if (stage.around === 'environment') scene.environment = sky();
   else if (stage.around) scene.add(SURROUNDINGS[stage.around]());
   if (plan.ambient.length) scene.add(new THREE.AmbientLight(new THREE.Color().fromArray(plan.ambient), Math.PI));
-  // WebGLRenderer draws into no other target, and WebGPURenderer takes it, too
-  const target = new THREE.WebGLRenderTarget(plan.width, plan.height, { type: THREE.FloatType, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter });
-  renderer.setClearColor(0x000000, 0);
-  renderer.setRenderTarget(target);
-  renderer.clear();
-  renderer.render(scene, cameraOf(plan, gpu));
+  const pictures = () => Object.keys(declared).map((name) => material[name]).filter((texture) => texture.isRenderTargetTexture);
+  if (stage.first) render(await rendererFor(stage.first), scene, cameraOf(plan, stage.first === 'webgpu'), 5, 4).dispose();
+  const foreign = pictures();
+  const target = render(renderer, scene, cameraOf(plan, gpu), plan.width, plan.height);
+  if (pictures().some((texture) => foreign.includes(texture))) throw new Error('two renderers draw into one picture');
   let pixels;
   if (renderer instanceof THREE.WebGLRenderer) {
     pixels = new Float32Array(plan.width * plan.height * 4);
@@ -72,7 +76,7 @@ async function draw(plan, piece) {
     pixels = await renderer.readRenderTargetPixelsAsync(target, 0, 0, plan.width, plan.height);
   }
   renderer.setRenderTarget(null);
-  [geometry, material, target, ...Object.values(textures)].forEach((one) => one.dispose());
+  [...meshes.map(({ geometry }) => geometry), material, target, ...Object.values(textures)].forEach((one) => one.dispose());
   return pixels;
 }
 
@@ -93,6 +97,17 @@ function sky() {
   const texture = new THREE.DataTexture(texels, 64, 32, THREE.RGBAFormat, THREE.HalfFloatType, THREE.EquirectangularReflectionMapping);
   texture.needsUpdate = true;
   return texture;
+}
+
+/** @param {THREE.WebGLRenderer | WebGPURenderer} renderer @param {THREE.Scene} scene @param {THREE.Camera} camera @param {number} width @param {number} height */
+function render(renderer, scene, camera, width, height) {
+  // WebGLRenderer draws into no other target, and WebGPURenderer takes it, too
+  const target = new THREE.WebGLRenderTarget(width, height, { type: THREE.FloatType, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter });
+  renderer.setClearColor(0x000000, 0);
+  renderer.setRenderTarget(target);
+  renderer.clear();
+  renderer.render(scene, camera);
+  return target;
 }
 
 /** @param {import('./engine_page.js').Light} light */

@@ -42,7 +42,6 @@ THREE = Engine(
     _three_modules,
     "three_page.js",
     {"webgl": _WEBGL, **_NODES},
-    places_values=True,
 )
 TSL = Engine("tsl", "three.js", _INSTALL_THREE, _three_modules, "tsl_page.js", _NODES)
 BABYLON = Engine(

@@ -34,7 +34,7 @@ def shade(
     if points is None and page.engine.v_down:
         vertices[:, 11] = 1.0 - vertices[:, 11]
     triangles = [[0, 1, 2]] if points is None else pixel_mesh.triangles(size, shell.front == upright)
-    parameters = shell.unplaced(reflection["uniforms"]) if page.engine.places_values else shell.parameters
+    parameters = shell.unplaced(reflection["uniforms"])
     values = {
         uniform["property"]: _value(parameters[uniform["source_name"]])
         for uniform in reflection["uniforms"]

@@ -172,6 +172,11 @@ const withoutComments = (places) => Object.fromEntries(
   Object.entries(places).map(([place, text]) => [place, text.replace(/\/\/.*$/gm, '')]),
 );
 
+/** A value in the space of a body, for the world: a matrix takes positions of the world, a length is one there. */
+const placedValue = (value, world) => (
+  value instanceof Matrix ? Matrix.Invert(world).multiply(value) : value * Math.cbrt(Math.abs(world.determinant()))
+);
+
 /** The plug-in of a material. */
 function pluginClass(description, { moves, takesLight }) {
   const { name: materialName, parameters, textures, shells, passes } = description;
@@ -179,6 +184,7 @@ function pluginClass(description, { moves, takesLight }) {
   // Babylon keeps one program for each name of a plug-in
   const key = `Sssgen_${materialName}_${Properties.hashOf(JSON.stringify(code))}`;
   const uniforms = Object.values(parameters).map(({ name, type }) => [name, uniformType(type)]);
+  const placed = Object.keys(parameters).filter((property) => parameters[property].placed);
   if (moves) uniforms.push(['sss_time', 'float']);
   if (takesLight) uniforms.push(['sss_light_place', 'vec4'], ['sss_light_radiance', 'vec3']);
   const around = readsSurroundings(shells[0]);
@@ -269,6 +275,7 @@ function pluginClass(description, { moves, takesLight }) {
     hardBindForSubMesh(buffer, scene, engine, subMesh) {
       const mesh = subMesh.getMesh(), drawn = this.#passes?.valuesOf(mesh);
       for (const property of this.#passes?.properties ?? []) this.#write(buffer, property, drawn[property]);
+      for (const property of placed) this.#write(buffer, property, placedValue(this._material[property], mesh.getWorldMatrix()));
       if (around) skyOf(mesh).forEach((numbers, channel) => writeNumbers(buffer, SKY[channel], 'vec4', numbers));
       if (!shells[0].entry) return;
       const { minimum, maximum } = mesh.getRawBoundingInfo().boundingBox; // without the places of thin instances
@@ -277,9 +284,9 @@ function pluginClass(description, { moves, takesLight }) {
     }
 
     bindForSubMesh(buffer) {
-      const material = /** @type {any} */ (this._material), drawn = this.#passes?.properties ?? [];
+      const material = /** @type {any} */ (this._material), ofBody = [...(this.#passes?.properties ?? []), ...placed];
       for (const property of [...Object.keys(parameters), ...Object.keys(textures)]) {
-        if (!drawn.includes(property)) this.#write(buffer, property);
+        if (!ofBody.includes(property)) this.#write(buffer, property);
       }
       if (moves) writeNumbers(buffer, 'sss_time', 'float', [material.time ?? performance.now() / 1000]);
       if (takesLight) {

@@ -10,7 +10,7 @@ import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Viewport } from '@babylonjs/core/Maths/math.viewport.js';
 import '@babylonjs/core/Shaders/depth.vertex.js';
 import '@babylonjs/core/ShadersWGSL/depth.vertex.js';
-import { LAYER_GAP, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, PACKED_WGSL, PACKING_GLSL, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
 
 // The shaders, in GLSL and in WGSL. The vertices are those of Babylon's own depth maps: with bones, morph targets and instances.
 
@@ -50,25 +50,18 @@ fn main(input: FragmentInputs) -> FragmentOutputs {
   fragmentOutputs.color = vec4f(way, 0.0, 0.0, 1.0);
 }`];
 
-const CHANNELS = ['layer0', 'layer1', 'layer2', 'layer3'];
-
 /** Four layers in one picture: vertex shader and fragment shader. */
 const PACKING = [[/* glsl */ `
 attribute vec2 position;
-void main(void) { gl_Position = vec4(position, 0.0, 1.0); }`, /* glsl */ `
-${CHANNELS.map((name) => `uniform highp sampler2D ${name};`).join('\n')}
-void main(void) {
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  gl_FragColor = vec4(${CHANNELS.map((name) => `texelFetch(${name}, at, 0).r`).join(', ')});
-}`], [/* wgsl */ `
+void main(void) { gl_Position = vec4(position, 0.0, 1.0); }`, PACKING_GLSL], [/* wgsl */ `
 attribute position: vec2f;
 @vertex
 fn main(input: VertexInputs) -> FragmentInputs { vertexOutputs.position = vec4f(vertexInputs.position, 0.0, 1.0); }`, /* wgsl */ `
-${CHANNELS.map((name) => `var ${name}: texture_2d<f32>;`).join('\n')}
+${LAYERS.map((name) => `var ${name}: texture_2d<f32>;`).join('\n')}
 @fragment
 fn main(input: FragmentInputs) -> FragmentOutputs {
   let at = vec2i(fragmentInputs.position.xy);
-  fragmentOutputs.color = vec4f(${CHANNELS.map((name) => `textureLoad(${name}, at, 0).r`).join(', ')});
+  fragmentOutputs.color = ${PACKED_WGSL};
 }`]];
 
 const languageOf = (engine) => Number(engine.isWebGPU);
@@ -226,9 +219,9 @@ class Packing {
   constructor(engine) {
     const shaderLanguage = languageOf(engine), [vertexShader, fragmentShader] = PACKING[shaderLanguage];
     this.renderer = new EffectRenderer(engine);
-    this.shader = new EffectWrapper({ engine, name: 'sssgen layers', vertexShader, fragmentShader, samplerNames: CHANNELS, shaderLanguage });
+    this.shader = new EffectWrapper({ engine, name: 'sssgen layers', vertexShader, fragmentShader, samplerNames: LAYERS, shaderLanguage });
     this.shader.onApplyObservable.add(() => {
-      CHANNELS.forEach((name, channel) => this.shader.effect.setTexture(name, this.#layers[channel] ?? this.#layers[0]));
+      LAYERS.forEach((name, channel) => this.shader.effect.setTexture(name, this.#layers[channel] ?? this.#layers[0]));
     });
   }
 

@@ -44,7 +44,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {Record<string, Varying>} varyings
  * @property {Record<string, string>} variables of the fragment shader: name → type
  * @property {Shell[]} shells in GLSL and in WGSL
- * @property {import('./playcanvas_passes.js').Pass[]} [passes] what is drawn before it
+ * @property {import('./frame_passes.js').Pass[]} [passes] what is drawn before it
  */
 
 // Textures and values.
@@ -88,6 +88,13 @@ function numbersOf(value, type) {
   return value?.data ? Array.from(value.data) : value?.toArray ? value.toArray([]) : value;
 }
 
+/** A value in the space of a body, for the world: a matrix takes positions of the world, a length is one there. */
+function placedValue(value, world) {
+  if (value.length) return Array.from(new pc.Mat4().mul2(new pc.Mat4().set(value), world.clone().invert()).data);
+  const [x, y, z] = [world.getX(), world.getY(), world.getZ()];
+  return value * Math.cbrt(Math.abs(x.dot(new pc.Vec3().cross(y, z))));
+}
+
 // The class of materials.
 
 /**
@@ -98,6 +105,7 @@ export function materialClass(description) {
   const { name: materialName, lit, twoSided, alphaMode, fields = [], parameters, textures, shells } = description;
   const properties = new Properties(description, 'StandardMaterial');
   const { moves, takesLight } = properties;
+  const placed = Object.keys(parameters).filter((property) => parameters[property].placed);
 
   return class extends pc.StandardMaterial {
     #device;
@@ -203,17 +211,19 @@ export function materialClass(description) {
     setParameters(device, names) {
       if (moves) this.setParameter('sss_time', this.time ?? performance.now() / 1000);
       if (takesLight) this.#setLight(this.light);
-      if (shells[0].entry && !names) this.#setBodies();
+      if (!names) this.#setBodies();
       this.#passes.follow();
       super.setParameters(device, names);
     }
 
-    /** The box of each body that has the material: two may share it. */
+    /** The values of each body that has the material: several may share it. */
     #setBodies() {
       for (const instance of /** @type {any} */ (this).meshInstances) {
-        const { aabb } = instance.mesh;
-        instance.setParameter('sss_body_min', aabb.getMin().toArray());
-        instance.setParameter('sss_body_max', aabb.getMax().toArray());
+        const { mesh, node } = instance, world = node.getWorldTransform();
+        for (const property of placed) instance.setParameter(parameters[property].name, placedValue(this[property], world));
+        if (!shells[0].entry) continue;
+        instance.setParameter('sss_body_min', mesh.aabb.getMin().toArray());
+        instance.setParameter('sss_body_max', mesh.aabb.getMax().toArray());
       }
     }
 

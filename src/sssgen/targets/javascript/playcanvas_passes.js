@@ -2,22 +2,9 @@
 // sets itself is not drawn.
 
 import * as pc from 'playcanvas';
+import { LAYERS, LAYER_GAP, PACKED_WGSL, PACKING_GLSL, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
 
-/**
- * A pass, as a material's module lists it.
- * @typedef {object} Pass
- * @property {string} name
- * @property {string} seenFrom `eye`, `light`, `distant light` or `each light`
- * @property {string[]} layers for each channel `entry N` or `exit N`: the N-th front or back face
- * @property {'0' | 'far'} empty what a texel without a surface has
- * @property {string} texture the property of the picture
- * @property {string[]} views the properties of the matrices from world space to the picture, one for each light
- */
-
-/** The distance where there is no surface: it fits into half a float. */
-const FAR = 60000;
-/** The width of what one light sees, in texels. */
-const SIDE = 1024;
+/** @typedef {import('./frame_passes.js').Pass} Pass */
 
 /**
  * An object with what PlayCanvas's types keep to the engine.
@@ -108,26 +95,19 @@ function distanceMaterial(device, back, peels) {
   return material;
 }
 
-const LAYERS = ['sss_layer0', 'sss_layer1', 'sss_layer2', 'sss_layer3'];
-
 /** Writes four layers into one picture. */
 function packingPass(device) {
   const pass = new pc.RenderPassShaderQuad(device);
   pass.shader = pc.ShaderUtils.createShader(device, {
     uniqueName: 'sss_packing', attributes: { vertex_position: pc.SEMANTIC_POSITION }, vertexChunk: 'fullscreenQuadVS',
-    fragmentGLSL: `
-${LAYERS.map((name) => `uniform highp sampler2D ${name};`).join('\n')}
-void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  gl_FragColor = vec4(${LAYERS.map((name) => `texelFetch(${name}, at, 0).r`).join(', ')});
-}`,
+    fragmentGLSL: PACKING_GLSL,
     fragmentWGSL: `
 ${LAYERS.map((name) => `var ${name}: texture_2d<uff>;`).join('\n')}
 @fragment
 fn fragmentMain(input: FragmentInput) -> FragmentOutput {
   var output: FragmentOutput;
   let at = vec2i(pcPosition.xy);
-  output.color = vec4f(${LAYERS.map((name) => `textureLoad(${name}, at, 0).r`).join(', ')});
+  output.color = ${PACKED_WGSL};
   return output;
 }`,
   });
@@ -165,12 +145,12 @@ function ballOf(instance) {
   return { center: world.transformPoint(mesh.aabb.center), radius: radiusOf(mesh) * Math.max(x, y, z) };
 }
 
-/** The lights that are brightest at a ball, at most `count`; `distant`: those from afar, if there are any. */
-function lightsAt(ball, lights, distant, count) {
-  const bright = [...lights].filter(({ enabled }) => enabled).map((light) => ({ light, strength: Math.max(...light._colorLinear) * nearness(light, ball) }));
-  const afar = bright.filter(({ light }) => light.type === pc.LIGHTTYPE_DIRECTIONAL);
-  return (distant && afar.length ? afar : bright).filter(({ strength }) => strength > 0)
-    .sort((a, b) => b.strength - a.strength).slice(0, count).map(({ light }) => light);
+/** Those of some lights that a pass shows of a ball. */
+function lightsAt(ball, lights, pass) {
+  const shining = [...lights].filter(({ enabled }) => enabled).map((light) => ({
+    light, directional: light.type === pc.LIGHTTYPE_DIRECTIONAL, strength: Math.max(...light._colorLinear) * nearness(light, ball),
+  }));
+  return lightsOf(shining, pass);
 }
 
 /** The share of a light that arrives at a ball. */
@@ -214,12 +194,8 @@ function aim(camera, light, { center, radius: tight }, distant) {
 function viewOf(camera, tile, columns, down) {
   const view = camera.node.getWorldTransform().clone().invert();
   const clip = new pc.Mat4().mul2(camera.projectionMatrix, view);
-  const [column, row] = [tile % columns, Math.floor(tile / columns)];
-  return [0, 1, 2, 3].flatMap((index) => {
-    const [x, y, , w] = clip.data.slice(4 * index, 4 * index + 4);
-    const v = ((row + 0.5) * w + 0.5 * y) / columns;
-    return [((column + 0.5) * w + 0.5 * x) / columns, down ? w - v : v, -view.data[4 * index + 2], w];
-  });
+  const { x, y } = tileOf(tile, columns);
+  return viewNumbers(clip.data, view.data, -1, down ? -1 : 1, { x, y: down ? columns - 1 - y : y }, columns);
 }
 
 /** Draws mesh instances into tiles of a picture, each tile as a camera sees them. */
@@ -238,7 +214,8 @@ class TilePass extends pc.RenderPass {
   execute() {
     const { renderer, renderTarget, meshInstances, columns } = this;
     this.cameras.forEach((camera, tile) => {
-      const rect = new pc.Vec4(tile % columns, Math.floor(tile / columns), 1, 1).mulScalar(1 / columns);
+      const { x, y } = tileOf(tile, columns);
+      const rect = new pc.Vec4(x, y, 1, 1).mulScalar(1 / columns);
       const kept = { rect: camera.rect.clone(), scissorRect: camera.scissorRect.clone(), cullFaces: camera.cullFaces };
       Object.assign(camera, { rect, scissorRect: rect, cullFaces: true });
       renderer.renderForwardLayer(camera, renderTarget, null, undefined, pc.SHADER_FORWARD, { meshInstances });
@@ -426,7 +403,7 @@ export class Passes {
   #drawPass(pass, body, camera, lights) {
     const { device } = this;
     const eye = pass.seenFrom === 'eye';
-    const columns = pass.views.length > 1 ? 2 : 1;
+    const columns = columnsOf(pass);
     const pictures = body.picturesOf(pass, eye ? camera : null, device, eye ? sizeOf(camera, device) : { width: SIDE * columns, height: SIDE * columns });
     body.instance.setParameter(this.nameOf(pass.texture), pictures.packed.colorBuffer);
     if (!eye && pictures.version === device.renderVersion) return; // they are the same for all cameras of a frame
@@ -435,27 +412,24 @@ export class Passes {
     let cameras = [camera.camera];
     if (!eye) {
       const distant = pass.seenFrom === 'distant light';
-      const brightest = lightsAt(ball, lights, distant, Math.max(pass.views.length, 1));
-      cameras = brightest.map((light, index) => aim(this.#lamps[index], light, ball, distant));
+      cameras = lightsAt(ball, lights, pass).map((light, index) => aim(this.#lamps[index], light, ball, distant));
     }
     pass.views.forEach((view, index) => {
       // a view of zeros shows nothing
       const matrix = cameras[index] ? viewOf(cameras[index], index, columns, device.isWebGPU) : Array(16).fill(0);
       body.instance.setParameter(this.nameOf(view), matrix);
     });
-    this.#drawLayers(pass, body, pictures, cameras, columns, 1e-3 * ball.radius);
+    this.#drawLayers(pass, body, pictures, cameras, columns, LAYER_GAP * ball.radius);
   }
 
   #drawLayers(pass, body, { layers, packed }, cameras, columns, margin) {
     const tiles = (this.#tiles ??= new TilePass(this.device, this.#app.renderer));
-    const empty = pass.empty === 'far' ? FAR : 0;
-    pass.layers.forEach((layer, index) => {
-      const [side, number] = layer.split(' ');
-      const before = side === 'exit' ? index - 1 : pass.layers.indexOf(`exit ${Number(number) - 1}`);
-      const material = this.#materialOf(side === 'exit', Number(number) > 1);
+    const empty = emptyOf(pass);
+    layersOf(pass).forEach(({ back, before }, index) => {
+      const material = this.#materialOf(back, before >= 0);
       material.setParameter('sss_from_plane', Number(pass.seenFrom !== 'eye'));
       material.setParameter('sss_margin', margin);
-      if (Number(number) > 1) material.setParameter('sss_front', layers[before].colorBuffer);
+      if (before >= 0) material.setParameter('sss_front', layers[before].colorBuffer);
       tiles.init(layers[index]);
       tiles.setClearColor(new pc.Color(empty, empty, empty, 1));
       tiles.setClearDepth(1);

@@ -3,7 +3,7 @@
 
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
-import { LAYER_GAP, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, PACKING_GLSL, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
 
 /** The layer of three that only a pass draws. */
 const ALONE = 31;
@@ -39,16 +39,6 @@ void main() {
   gl_FragColor = vec4(distance, 0.0, 0.0, 1.0);
 }`;
 
-const PACKING = /* glsl */ `
-uniform sampler2D layer0;
-uniform sampler2D layer1;
-uniform sampler2D layer2;
-uniform sampler2D layer3;
-void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  gl_FragColor = vec4(texelFetch(layer0, at, 0).r, texelFetch(layer1, at, 0).r, texelFetch(layer2, at, 0).r, texelFetch(layer3, at, 0).r);
-}`;
-
 const emptyPicture = () => new THREE.DataTexture(new Float32Array(4), 1, 1, THREE.RGBAFormat, THREE.FloatType);
 /** The uniforms of a ShaderMaterial. */
 const glslUniforms = (values) => Object.fromEntries(Object.entries(values).map(([name, value]) => [name, { value }]));
@@ -76,16 +66,15 @@ function distanceMaterial(nodes, side) {
  * @returns {{ uniforms: Record<string, any>, material: THREE.Material }}
  */
 function packingMaterial(nodes) {
-  const names = ['layer0', 'layer1', 'layer2', 'layer3'];
   const settings = { depthTest: false, depthWrite: false };
   if (!nodes) {
-    const uniforms = glslUniforms(Object.fromEntries(names.map((name) => [name, emptyPicture()])));
+    const uniforms = glslUniforms(Object.fromEntries(LAYERS.map((name) => [name, emptyPicture()])));
     const vertexShader = 'void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }';
-    return { uniforms, material: new THREE.ShaderMaterial({ ...settings, uniforms, vertexShader, fragmentShader: PACKING }) };
+    return { uniforms, material: new THREE.ShaderMaterial({ ...settings, uniforms, vertexShader, fragmentShader: PACKING_GLSL }) };
   }
-  const uniforms = Object.fromEntries(names.map((name) => [name, TSL.textureLoad(emptyPicture(), TSL.ivec2(TSL.screenCoordinate))]));
+  const uniforms = Object.fromEntries(LAYERS.map((name) => [name, TSL.textureLoad(emptyPicture(), TSL.ivec2(TSL.screenCoordinate))]));
   /** @type {any} */
-  const layers = names.map((name) => uniforms[name].r);
+  const layers = LAYERS.map((name) => uniforms[name].r);
   const fragmentNode = TSL.vec4(...layers);
   const vertexNode = TSL.vec4(TSL.positionGeometry.xy, 0, 1);
   return { uniforms, material: Object.assign(new THREE.NodeMaterial(), { ...settings, vertexNode, fragmentNode }) };
@@ -144,8 +133,16 @@ function viewOf(lamp, tile, columns, up) {
   return new THREE.Matrix4().fromArray(viewNumbers(clip.elements, lamp.matrixWorldInverse.elements, -1, up, tile, columns));
 }
 
+/**
+ * The pictures of a pass of an object: each layer, and all in one.
+ * @typedef {{ layers: THREE.RenderTarget[], packed: THREE.RenderTarget, columns: number }} Pictures
+ */
+
 /** The passes of a material, in one renderer. */
 class Drawing {
+  /** For each object, by the names of passes. @type {Map<THREE.Object3D, Record<string, Pictures>>} */
+  #pictures = new Map();
+
   constructor(renderer) {
     this.nodes = renderer.isWebGPURenderer === true;
     this.gpu = this.nodes && renderer.backend.isWebGPUBackend === true;
@@ -213,7 +210,7 @@ class Drawing {
       });
     });
     if (pictures.layers.length === 1) return;
-    pictures.layers.forEach(({ texture }, index) => (this.packing.uniforms[`layer${index}`].value = texture));
+    pictures.layers.forEach(({ texture }, index) => (this.packing.uniforms[LAYERS[index]].value = texture));
     renderer.setRenderTarget(pictures.packed);
     this.scene.overrideMaterial = null;
     this.scene.children = [this.quad];
@@ -232,6 +229,25 @@ class Drawing {
     [object.layers.mask, camera.layers.mask] = masks;
   }
 
+  /** The pictures of a pass of an object, in a size. */
+  picturesOf(object, pass, size, columns) {
+    if (!this.#pictures.has(object)) this.#pictures.set(object, {});
+    const own = /** @type {Record<string, Pictures>} */ (this.#pictures.get(object));
+    const layers = own[pass.name]?.layers ?? pass.layers.map(() => pictureOf(size.x, size.y, this.type));
+    const packed = own[pass.name]?.packed ?? (layers.length > 1 ? pictureOf(size.x, size.y, this.type) : layers[0]);
+    for (const picture of [...layers, packed]) {
+      if (picture.width !== size.x || picture.height !== size.y) picture.setSize(size.x, size.y);
+      picture.scissorTest = picture !== packed || layers.length === 1;
+    }
+    return (own[pass.name] = { layers, packed, columns });
+  }
+
+  /** Frees the pictures of an object. */
+  forget(object) {
+    for (const { layers, packed } of Object.values(this.#pictures.get(object) ?? {})) [...layers, packed].forEach((picture) => picture.dispose());
+    this.#pictures.delete(object);
+  }
+
   dispose() {
     for (const { material } of [this.fronts, this.backs, this.packing]) material.dispose();
     this.quad.geometry.dispose();
@@ -242,8 +258,8 @@ class Drawing {
 export class Passes {
   /** @type {Map<any, Drawing>} */
   #drawings = new Map();
-  /** @type {Map<THREE.Object3D, Record<string, { layers: THREE.RenderTarget[], packed: THREE.RenderTarget, columns: number }>>} */
-  #pictures = new Map();
+  /** Those that have pictures. @type {Set<THREE.Object3D>} */
+  #objects = new Set();
 
   /** @param {{ target: any }} event */
   #onRemoved = ({ target }) => this.#forget(target);
@@ -264,6 +280,8 @@ export class Passes {
     if (!passes.length) return;
     let drawing = this.#drawings.get(renderer);
     if (!drawing) this.#drawings.set(renderer, (drawing = new Drawing(renderer)));
+    this.#objects.add(object);
+    object.addEventListener('removed', this.#onRemoved); // which has it once
     drawing.apart(renderer, () => {
       for (const pass of passes) this.#drawPass(drawing, pass, { renderer, scene, camera, object }, set);
     });
@@ -276,7 +294,7 @@ export class Passes {
     const eye = pass.seenFrom === 'eye';
     const size = eye ? sizeOf(renderer) : new THREE.Vector2(SIDE, SIDE).multiplyScalar(columns);
     const tile = size.clone().divideScalar(columns);
-    const pictures = this.#picturesOf(object, pass, size, columns, drawing.type);
+    const pictures = drawing.picturesOf(object, pass, size, columns);
     let cameras = [camera];
     if (!eye) {
       const ball = ballOf(object);
@@ -295,29 +313,14 @@ export class Passes {
     set(pass.texture, pictures.packed.texture);
   }
 
-  #picturesOf(object, pass, size, columns, type) {
-    let own = this.#pictures.get(object);
-    if (!own) {
-      this.#pictures.set(object, (own = {}));
-      object.addEventListener('removed', this.#onRemoved);
-    }
-    const layers = own[pass.name]?.layers ?? pass.layers.map(() => pictureOf(size.x, size.y, type));
-    const packed = own[pass.name]?.packed ?? (layers.length > 1 ? pictureOf(size.x, size.y, type) : layers[0]);
-    for (const picture of [...layers, packed]) {
-      if (picture.width !== size.x || picture.height !== size.y) picture.setSize(size.x, size.y);
-      picture.scissorTest = picture !== packed || layers.length === 1;
-    }
-    return (own[pass.name] = { layers, packed, columns });
-  }
-
   #forget(object) {
-    for (const { layers, packed } of Object.values(this.#pictures.get(object) ?? {})) [...layers, packed].forEach((picture) => picture.dispose());
-    this.#pictures.delete(object);
+    for (const drawing of this.#drawings.values()) drawing.forget(object);
+    this.#objects.delete(object);
     object.removeEventListener('removed', this.#onRemoved);
   }
 
   dispose() {
-    for (const object of [...this.#pictures.keys()]) this.#forget(object);
+    for (const object of [...this.#objects]) this.#forget(object);
     for (const drawing of this.#drawings.values()) drawing.dispose();
     this.#drawings.clear();
   }
