@@ -25,7 +25,9 @@ def test_the_shell_calls_as_the_reflection_says(name: str, target: str) -> None:
     text = "\n".join(text for file, text in compiled.files.items() if not file.endswith(".json"))
     text = re.sub(r"\s+", " ", text)  # long calls are on several lines
     for entry in compiled.reflection["entries"].values():
-        assert f"{entry['function']}({', '.join(param['expression'] for param in entry['params'])})" in text
+        call = f"{entry['function']}({', '.join(param['expression'] for param in entry['params'])})"
+        # without a technique for the surroundings, both are this variable
+        assert call in text or re.sub(r"\birradiance(_behind)?\b", "ambient_color", call) in text
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

@@ -35,6 +35,7 @@ from sssgen.run.render import page_values, shade_numpy
 from sssgen.run.render.scene_render import PlacedMesh
 from sssgen.run.render.scene_values import shell_of
 from sssgen.scene import scene_loading
+from surroundings_cases import check_surroundings
 
 LEAF = """
 [material]
@@ -281,3 +282,7 @@ def test_parameters_are_properties() -> None:
     assert "set veinColor(value: Color3 | string | number[]);" in compiled.files["ice.babylon.d.ts"]
     names = {uniform["source_name"]: uniform["property"] for uniform in compiled.reflection["uniforms"]}
     assert names["cell_count"] == "cellCount"
+
+
+def test_light_of_the_surroundings_comes_through(babylon: EnginePage, tmp_path: Path) -> None:
+    check_surroundings(babylon, "babylonjs", BLACK, {"hemisphere": 1.0 / 255.0, "environment": 0.03}, tmp_path)

@@ -37,6 +37,7 @@ from sssgen.run.render.scene_render import PlacedMesh
 from sssgen.run.render.scene_values import shell_of
 from sssgen.scene import scene_loading
 from sssgen.support.diagnostics import SssgenError
+from surroundings_cases import check_surroundings
 
 BLACK: Mapping[str, Any] = {"diffuse": 0.0, "useMetalness": False, "specular": 0.0, "enableGGXSpecular": False}
 """PlayCanvas's own reflection is gone: what is left is emission, and the light that comes through."""
@@ -373,3 +374,7 @@ def test_parameters_are_properties() -> None:
     assert "set veinColor(value: number[] | pc.Color | string | pc.Vec3);" in compiled.files["ice.d.mts"]
     names = {uniform["source_name"]: uniform["property"] for uniform in compiled.reflection["uniforms"]}
     assert (names["cell_count"], names["metalness"]) == ("cellCount", "sssMetalness")  # PlayCanvas has a metalness
+
+
+def test_light_of_the_surroundings_comes_through(playcanvas: EnginePage, tmp_path: Path) -> None:
+    check_surroundings(playcanvas, "playcanvas", BLACK, {"environment": 0.03}, tmp_path)

@@ -31,6 +31,7 @@ from sssgen.run.compilers import Compiler
 from sssgen.run.render import page_values, shade_numpy
 from sssgen.run.render.scene_values import shell_of
 from sssgen.scene import scene_loading
+from surroundings_cases import check_surroundings
 
 BLACK = {"color": 0.0, "specularIntensity": 0.0}
 """three's own reflection is gone: what is left is emission, and the light that comes through."""
@@ -164,3 +165,9 @@ def test_the_head_names_properties() -> None:
     """Those of the module, not the names in the shaders; a material without a number has an example without values."""
     head = sssgen.compile("jade_ring", "threejs").files["jade_ring.js"].split("\nimport ")[0]
     assert "// lightDepthMap: draw " in head and "sss_light_depth_map" not in head and "createMaterial())" in head
+
+
+def test_light_of_the_surroundings_comes_through(three: EnginePage, tmp_path: Path) -> None:
+    check_surroundings(
+        three, "threejs", BLACK, {"hemisphere": 1.0 / 255.0, "probe": 1.0 / 255.0, "environment": 0.03}, tmp_path
+    )

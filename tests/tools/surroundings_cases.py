@@ -10,10 +10,10 @@ import numpy as np
 
 import sssgen
 from engine_cases import HEAD
+from shadow_cases import EYE, LEVEL, SIZE, ball, view_projection
 from sssgen.run.backends import Array
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
 from sssgen.run.render import page_values
-from shadow_cases import EYE, LEVEL, SIZE, ball, view_projection
 
 BOTH_SIDES = HEAD.format("translucency") + (
     "vec3 made(world_direction L) { return vec3(0.0); }\n"

@@ -1,8 +1,6 @@
 // The light of the surroundings for a body that it comes through: Babylon's hemispheric lights, its ambient colour and its
 // environment, as the light of a white matte surface that faces a direction of the world.
 
-import { HemisphericLight } from '@babylonjs/core/Lights/hemisphericLight.js';
-
 /** For red, green and blue: xyz is what a component of the direction adds, w what all directions have. */
 export const SKY = ['sss_sky_red', 'sss_sky_green', 'sss_sky_blue'];
 
@@ -36,7 +34,7 @@ return max(light, ${vec3}(0.0));
 export function skyOf(mesh) {
   const sky = SKY.map(() => [0, 0, 0, 0]);
   for (const light of mesh.lightSources) {
-    if (!(light instanceof HemisphericLight)) continue;
+    if (light.getClassName() !== 'HemisphericLight') continue;
     const above = light.diffuse.asArray(), below = light.groundColor.asArray(), up = light.direction.normalizeToNew().asArray();
     sky.forEach((row, channel) => {
       const half = 0.5 * light.getScaledIntensity();

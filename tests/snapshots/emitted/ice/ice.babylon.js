@@ -320,13 +320,30 @@ vec3 sss_lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion
         scale, ambient);
 }
 
+// The light of the surroundings that comes through, for the mean of a lobe over the directions behind the
+// body.
+vec3 sss_lobe_surroundings(float mean_lobe, float through, vec3 irradiance_behind, vec3 subsurface_color,
+    float attenuation, float scale, float ambient) {
+    // the light of half a sphere is 2 where the irradiance is 1
+    return 2.0 * sss_glow(mean_lobe, through, subsurface_color, attenuation, scale, ambient)
+        * irradiance_behind;
+}
+
+// The light of the surroundings that comes through.
+vec3 sss_lobe_normalized_surroundings(float through, vec3 irradiance_behind, vec3 subsurface_color,
+    float attenuation, float scale, float ambient, float power) {
+    return sss_lobe_surroundings(1.0 / (power + 1.0), through, irradiance_behind, subsurface_color,
+        attenuation, scale, ambient);
+}
+
 // The values of the surface that do not depend on a light.
-sss_Surface sss_evaluate_surface(vec2 uv, float time, float variation, float cell_count,
-    float thickness_factor, float bevel, float attenuation_distance, vec4 tint, sampler2D base_color_texture,
-    float metalness, float surface_roughness, float relief, vec2 uv_per_unit, float cover,
-    sampler2D cover_texture, sampler2D packed_texture, vec2 red_speed, vec2 green_speed, vec2 blue_speed,
-    vec3 vein_color, vec3 spark_color, float texel_size, float edge, float erosion,
-    sampler2D erosion_texture, float edge_height) {
+sss_Surface sss_evaluate_surface(vec2 uv, float time, vec3 irradiance_behind, float variation,
+    float cell_count, float thickness_factor, float bevel, float attenuation_distance, vec4 tint,
+    sampler2D base_color_texture, float metalness, float surface_roughness, float relief, vec2 uv_per_unit,
+    float cover, sampler2D cover_texture, sampler2D packed_texture, vec2 red_speed, vec2 green_speed,
+    vec2 blue_speed, vec3 vein_color, vec3 spark_color, float texel_size, float edge, float erosion,
+    sampler2D erosion_texture, float edge_height, vec3 subsurface_color, float attenuation, float scale,
+    float ambient, float power) {
     float thickness = sss_voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
     float transmittance = sss_beer_lambert(thickness, attenuation_distance);
     vec3 albedo;
@@ -343,6 +360,8 @@ sss_Surface sss_evaluate_surface(vec2 uv, float time, float variation, float cel
         spark_color);
     sss_alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
         edge_height);
+    emission += sss_lobe_normalized_surroundings(transmittance, irradiance_behind, subsurface_color,
+        attenuation, scale, ambient, power);
     return sss_Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
 }
 
@@ -606,14 +625,32 @@ fn sss_lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32, distortion: f
         scale, ambient);
 }
 
+// The light of the surroundings that comes through, for the mean of a lobe over the directions behind the
+// body.
+fn sss_lobe_surroundings(mean_lobe: f32, through: f32, irradiance_behind: vec3f, subsurface_color: vec3f,
+    attenuation: f32, scale: f32, ambient: f32) -> vec3f {
+    // the light of half a sphere is 2 where the irradiance is 1
+    return 2.0 * sss_glow(mean_lobe, through, subsurface_color, attenuation, scale, ambient)
+        * irradiance_behind;
+}
+
+// The light of the surroundings that comes through.
+fn sss_lobe_normalized_surroundings(through: f32, irradiance_behind: vec3f, subsurface_color: vec3f,
+    attenuation: f32, scale: f32, ambient: f32, power: f32) -> vec3f {
+    return sss_lobe_surroundings(1.0 / (power + 1.0), through, irradiance_behind, subsurface_color,
+        attenuation, scale, ambient);
+}
+
 // The values of the surface that do not depend on a light.
-fn sss_evaluate_surface(uv: vec2f, time: f32, variation: f32, cell_count: f32, thickness_factor: f32,
-    bevel: f32, attenuation_distance: f32, tint: vec4f, base_color_texture: texture_2d<f32>,
-    base_color_texture_sampler: sampler, metalness: f32, surface_roughness: f32, relief: f32,
-    uv_per_unit: vec2f, cover: f32, cover_texture: texture_2d<f32>, cover_texture_sampler: sampler,
-    packed_texture: texture_2d<f32>, packed_texture_sampler: sampler, red_speed: vec2f, green_speed: vec2f,
-    blue_speed: vec2f, vein_color: vec3f, spark_color: vec3f, texel_size: f32, edge: f32, erosion: f32,
-    erosion_texture: texture_2d<f32>, erosion_texture_sampler: sampler, edge_height: f32) -> sss_Surface {
+fn sss_evaluate_surface(uv: vec2f, time: f32, irradiance_behind: vec3f, variation: f32, cell_count: f32,
+    thickness_factor: f32, bevel: f32, attenuation_distance: f32, tint: vec4f,
+    base_color_texture: texture_2d<f32>, base_color_texture_sampler: sampler, metalness: f32,
+    surface_roughness: f32, relief: f32, uv_per_unit: vec2f, cover: f32, cover_texture: texture_2d<f32>,
+    cover_texture_sampler: sampler, packed_texture: texture_2d<f32>, packed_texture_sampler: sampler,
+    red_speed: vec2f, green_speed: vec2f, blue_speed: vec2f, vein_color: vec3f, spark_color: vec3f,
+    texel_size: f32, edge: f32, erosion: f32, erosion_texture: texture_2d<f32>,
+    erosion_texture_sampler: sampler, edge_height: f32, subsurface_color: vec3f, attenuation: f32,
+    scale: f32, ambient: f32, power: f32) -> sss_Surface {
     let thickness = sss_voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
     var transmittance = sss_beer_lambert(thickness, attenuation_distance);
     var albedo: vec3f;
@@ -630,6 +667,8 @@ fn sss_evaluate_surface(uv: vec2f, time: f32, variation: f32, cell_count: f32, t
         blue_speed, vein_color, spark_color);
     sss_alpha_erosion(uv, &alpha, &normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
         erosion_texture_sampler, edge_height);
+    emission += sss_lobe_normalized_surroundings(transmittance, irradiance_behind, subsurface_color,
+        attenuation, scale, ambient, power);
     return sss_Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
 }
 
@@ -679,12 +718,13 @@ sss_frame = sss_tangent_frame(vPositionW, sss_V, sss_N, sss_side, sss_uv, sss_ta
 sss_P_object = vec3(sss_row_x.w, sss_row_y.w, sss_row_z.w);
 sss_to_object = mat3(sss_row_x.xyz, sss_row_y.xyz, sss_row_z.xyz);
 sss_lights = vec3(0.0);
-sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count,
-            sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint,
-            sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief,
-            sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture, sss_red_speed,
-            sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color, sss_texel_size,
-            sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height);
+sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_surroundings(-sss_N), sss_variation,
+            sss_cell_count, sss_thickness_factor, sss_bevel, sss_attenuation_distance,
+            sss_tint, sss_base_color_texture, sss_metalness, sss_surface_roughness,
+            sss_relief, sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture,
+            sss_red_speed, sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color,
+            sss_texel_size, sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height,
+            sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power);
 `,
   translucency: `sss_evaluate_translucency(sss_surface, sss_V, normalW, preInfo.L, sss_distortion,
             sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power)`,
@@ -746,16 +786,19 @@ sss_P_object = vec3(fragmentInputs.sss_row_x.w, fragmentInputs.sss_row_y.w, frag
 sss_to_object = mat3x3f(fragmentInputs.sss_row_x.xyz, fragmentInputs.sss_row_y.xyz, fragmentInputs.sss_row_z.xyz);
 sss_lights = vec3(0.0);
 sss_surface = sss_evaluate_surface(fragmentInputs.sss_uv, uniforms.sss_time,
-            uniforms.sss_variation, uniforms.sss_cell_count, uniforms.sss_thickness_factor,
-            uniforms.sss_bevel, uniforms.sss_attenuation_distance, uniforms.sss_tint,
-            sss_base_color_texture, sss_base_color_textureSampler, uniforms.sss_metalness,
+            sss_surroundings(-sss_N), uniforms.sss_variation, uniforms.sss_cell_count,
+            uniforms.sss_thickness_factor, uniforms.sss_bevel,
+            uniforms.sss_attenuation_distance, uniforms.sss_tint, sss_base_color_texture,
+            sss_base_color_textureSampler, uniforms.sss_metalness,
             uniforms.sss_surface_roughness, uniforms.sss_relief, uniforms.sss_uv_per_unit,
             uniforms.sss_cover, sss_cover_texture, sss_cover_textureSampler,
             sss_packed_texture, sss_packed_textureSampler, uniforms.sss_red_speed,
             uniforms.sss_green_speed, uniforms.sss_blue_speed, uniforms.sss_vein_color,
             uniforms.sss_spark_color, uniforms.sss_texel_size, uniforms.sss_edge,
             uniforms.sss_erosion, sss_erosion_texture, sss_erosion_textureSampler,
-            uniforms.sss_edge_height);
+            uniforms.sss_edge_height, uniforms.sss_subsurface_color,
+            uniforms.sss_attenuation, uniforms.sss_scale, uniforms.sss_ambient,
+            uniforms.sss_power);
 `,
   translucency: `sss_evaluate_translucency(sss_surface, sss_V, normalW, preInfo.L,
             uniforms.sss_distortion, uniforms.sss_subsurface_color, uniforms.sss_attenuation,
@@ -786,7 +829,7 @@ finalEmissive += sss_surface.emission * uniforms.vLightingIntensity.y;
 export class IceMaterial extends materialClass({
   name: 'ice', version: 1, lit: true, alphaMode: 'mask',
   fields: ['albedo', 'alpha', 'normal', 'metallic', 'roughness', 'emission', 'transmittance'],
-  inputs: ['L', 'N', 'time', 'uv', 'V'],
+  inputs: ['irradiance_behind', 'L', 'N', 'time', 'uv', 'V'],
   varyings: {
     sss_uv: 'vec2',
     sss_row_x: 'vec4', sss_row_y: 'vec4', sss_row_z: 'vec4',

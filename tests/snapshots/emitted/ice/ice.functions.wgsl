@@ -205,6 +205,21 @@ fn lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32, distortion: f32, 
         ambient);
 }
 
+// The light of the surroundings that comes through, for the mean of a lobe over the directions behind the
+// body.
+fn lobe_surroundings(mean_lobe: f32, through: f32, irradiance_behind: vec3f, subsurface_color: vec3f,
+    attenuation: f32, scale: f32, ambient: f32) -> vec3f {
+    // the light of half a sphere is 2 where the irradiance is 1
+    return 2.0 * glow(mean_lobe, through, subsurface_color, attenuation, scale, ambient) * irradiance_behind;
+}
+
+// The light of the surroundings that comes through.
+fn lobe_normalized_surroundings(through: f32, irradiance_behind: vec3f, subsurface_color: vec3f,
+    attenuation: f32, scale: f32, ambient: f32, power: f32) -> vec3f {
+    return lobe_surroundings(1.0 / (power + 1.0), through, irradiance_behind, subsurface_color, attenuation,
+        scale, ambient);
+}
+
 // The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
 // light.
 fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
@@ -230,13 +245,15 @@ fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughnes
 }
 
 // The values of the surface that do not depend on a light.
-fn evaluate_surface(uv: vec2f, time: f32, variation: f32, cell_count: f32, thickness_factor: f32, bevel: f32,
-    attenuation_distance: f32, tint: vec4f, base_color_texture: texture_2d<f32>,
-    base_color_texture_sampler: sampler, metalness: f32, surface_roughness: f32, relief: f32,
-    uv_per_unit: vec2f, cover: f32, cover_texture: texture_2d<f32>, cover_texture_sampler: sampler,
-    packed_texture: texture_2d<f32>, packed_texture_sampler: sampler, red_speed: vec2f, green_speed: vec2f,
-    blue_speed: vec2f, vein_color: vec3f, spark_color: vec3f, texel_size: f32, edge: f32, erosion: f32,
-    erosion_texture: texture_2d<f32>, erosion_texture_sampler: sampler, edge_height: f32) -> Surface {
+fn evaluate_surface(uv: vec2f, time: f32, irradiance_behind: vec3f, variation: f32, cell_count: f32,
+    thickness_factor: f32, bevel: f32, attenuation_distance: f32, tint: vec4f,
+    base_color_texture: texture_2d<f32>, base_color_texture_sampler: sampler, metalness: f32,
+    surface_roughness: f32, relief: f32, uv_per_unit: vec2f, cover: f32, cover_texture: texture_2d<f32>,
+    cover_texture_sampler: sampler, packed_texture: texture_2d<f32>, packed_texture_sampler: sampler,
+    red_speed: vec2f, green_speed: vec2f, blue_speed: vec2f, vein_color: vec3f, spark_color: vec3f,
+    texel_size: f32, edge: f32, erosion: f32, erosion_texture: texture_2d<f32>,
+    erosion_texture_sampler: sampler, edge_height: f32, subsurface_color: vec3f, attenuation: f32,
+    scale: f32, ambient: f32, power: f32) -> Surface {
     let thickness = voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
     var transmittance = beer_lambert(thickness, attenuation_distance);
     var albedo: vec3f;
@@ -253,6 +270,8 @@ fn evaluate_surface(uv: vec2f, time: f32, variation: f32, cell_count: f32, thick
         blue_speed, vein_color, spark_color);
     alpha_erosion(uv, &alpha, &normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
         erosion_texture_sampler, edge_height);
+    emission += lobe_normalized_surroundings(transmittance, irradiance_behind, subsurface_color, attenuation,
+        scale, ambient, power);
     return Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
 }
 

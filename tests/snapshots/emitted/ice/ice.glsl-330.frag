@@ -221,6 +221,18 @@ vec3 lobe_normalized(vec3 V, vec3 N, vec3 L, float through) {
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through);
 }
 
+// The light of the surroundings that comes through, for the mean of a lobe over the directions behind the
+// body.
+vec3 lobe_surroundings(float mean_lobe, float through, vec3 irradiance_behind) {
+    // the light of half a sphere is 2 where the irradiance is 1
+    return 2.0 * glow(mean_lobe, through) * irradiance_behind;
+}
+
+// The light of the surroundings that comes through.
+vec3 lobe_normalized_surroundings(float through, vec3 irradiance_behind) {
+    return lobe_surroundings(1.0 / (power + 1.0), through, irradiance_behind);
+}
+
 // The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
 // light.
 vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
@@ -245,7 +257,7 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
 }
 
 // The values of the surface that do not depend on a light.
-Surface evaluate_surface(vec2 uv, float time) {
+Surface evaluate_surface(vec2 uv, float time, vec3 irradiance_behind) {
     float thickness = voronoi_thickness(uv);
     float transmittance = beer_lambert(thickness);
     vec3 albedo;
@@ -260,6 +272,7 @@ Surface evaluate_surface(vec2 uv, float time) {
     vec3 emission = vec3(0.0);
     packed_scroll(uv, time, emission);
     alpha_erosion(uv, alpha, normal);
+    emission += lobe_normalized_surroundings(transmittance, irradiance_behind);
     return Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
 }
 
@@ -291,7 +304,7 @@ void main() {
     vec3 N = safe_normalize(v_normal);
     vec3 T = safe_normalize(v_tangent.xyz);
     vec3 B = cross(N, T) * v_tangent.w;
-    Surface surface = evaluate_surface(v_uv, time);
+    Surface surface = evaluate_surface(v_uv, time, ambient_color);
     vec3 across = T * surface.normal.x + B * surface.normal.y;
     N = safe_normalize(across + N * surface.normal.z);
     vec3 color = ambient_color * surface.albedo + surface.emission;

@@ -198,6 +198,21 @@ vec3 lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion, ve
         ambient);
 }
 
+// The light of the surroundings that comes through, for the mean of a lobe over the directions behind the
+// body.
+vec3 lobe_surroundings(float mean_lobe, float through, vec3 irradiance_behind, vec3 subsurface_color,
+    float attenuation, float scale, float ambient) {
+    // the light of half a sphere is 2 where the irradiance is 1
+    return 2.0 * glow(mean_lobe, through, subsurface_color, attenuation, scale, ambient) * irradiance_behind;
+}
+
+// The light of the surroundings that comes through.
+vec3 lobe_normalized_surroundings(float through, vec3 irradiance_behind, vec3 subsurface_color,
+    float attenuation, float scale, float ambient, float power) {
+    return lobe_surroundings(1.0 / (power + 1.0), through, irradiance_behind, subsurface_color, attenuation,
+        scale, ambient);
+}
+
 // The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
 // light.
 vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
@@ -222,12 +237,13 @@ vec3 standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughne
 }
 
 // The values of the surface that do not depend on a light.
-Surface evaluate_surface(vec2 uv, float time, float variation, float cell_count, float thickness_factor,
-    float bevel, float attenuation_distance, vec4 tint, sampler2D base_color_texture, float metalness,
-    float surface_roughness, float relief, vec2 uv_per_unit, float cover, sampler2D cover_texture,
-    sampler2D packed_texture, vec2 red_speed, vec2 green_speed, vec2 blue_speed, vec3 vein_color,
-    vec3 spark_color, float texel_size, float edge, float erosion, sampler2D erosion_texture,
-    float edge_height) {
+Surface evaluate_surface(vec2 uv, float time, vec3 irradiance_behind, float variation, float cell_count,
+    float thickness_factor, float bevel, float attenuation_distance, vec4 tint, sampler2D base_color_texture,
+    float metalness, float surface_roughness, float relief, vec2 uv_per_unit, float cover,
+    sampler2D cover_texture, sampler2D packed_texture, vec2 red_speed, vec2 green_speed, vec2 blue_speed,
+    vec3 vein_color, vec3 spark_color, float texel_size, float edge, float erosion,
+    sampler2D erosion_texture, float edge_height, vec3 subsurface_color, float attenuation, float scale,
+    float ambient, float power) {
     float thickness = voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
     float transmittance = beer_lambert(thickness, attenuation_distance);
     vec3 albedo;
@@ -243,6 +259,8 @@ Surface evaluate_surface(vec2 uv, float time, float variation, float cell_count,
     packed_scroll(uv, time, emission, packed_texture, red_speed, green_speed, blue_speed, vein_color,
         spark_color);
     alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, erosion_texture, edge_height);
+    emission += lobe_normalized_surroundings(transmittance, irradiance_behind, subsurface_color, attenuation,
+        scale, ambient, power);
     return Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
 }
 

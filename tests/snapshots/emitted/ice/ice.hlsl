@@ -230,6 +230,18 @@ float3 lobe_normalized(float3 V, float3 N, float3 L, float through) {
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through);
 }
 
+// The light of the surroundings that comes through, for the mean of a lobe over the directions behind the
+// body.
+float3 lobe_surroundings(float mean_lobe, float through, float3 irradiance_behind) {
+    // the light of half a sphere is 2 where the irradiance is 1
+    return 2.0 * glow(mean_lobe, through) * irradiance_behind;
+}
+
+// The light of the surroundings that comes through.
+float3 lobe_normalized_surroundings(float through, float3 irradiance_behind) {
+    return lobe_surroundings(1.0 / (power + 1.0), through, irradiance_behind);
+}
+
 // The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
 // light.
 float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, float roughness,
@@ -255,7 +267,7 @@ float3 standard(float3 N, float3 V, float3 L, float3 albedo, float metallic, flo
 }
 
 // The values of the surface that do not depend on a light.
-Surface evaluate_surface(float2 uv, float time) {
+Surface evaluate_surface(float2 uv, float time, float3 irradiance_behind) {
     float thickness = voronoi_thickness(uv);
     float transmittance = beer_lambert(thickness);
     float3 albedo;
@@ -270,6 +282,7 @@ Surface evaluate_surface(float2 uv, float time) {
     float3 emission = (float3)0.0;
     packed_scroll(uv, time, emission);
     alpha_erosion(uv, alpha, normal);
+    emission += lobe_normalized_surroundings(transmittance, irradiance_behind);
     Surface surface = { albedo, alpha, normal, metallic, roughness, emission, transmittance };
     return surface;
 }
@@ -335,7 +348,7 @@ float4 fragment_main(Varyings input) : SV_Target {
     float3 N = safe_normalize(input.normal);
     float3 T = safe_normalize(input.tangent.xyz);
     float3 B = cross(N, T) * input.tangent.w;
-    Surface surface = evaluate_surface(input.uv, time);
+    Surface surface = evaluate_surface(input.uv, time, ambient_color);
     float3 across = T * surface.normal.x + B * surface.normal.y;
     N = safe_normalize(across + N * surface.normal.z);
     float3 color = ambient_color * surface.albedo + surface.emission;

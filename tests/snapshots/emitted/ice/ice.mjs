@@ -320,6 +320,22 @@ vec3 sss_lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion
         scale, ambient);
 }
 
+// The light of the surroundings that comes through, for the mean of a lobe over the directions behind the
+// body.
+vec3 sss_lobe_surroundings(float mean_lobe, float through, vec3 irradiance_behind, vec3 subsurface_color,
+    float attenuation, float scale, float ambient) {
+    // the light of half a sphere is 2 where the irradiance is 1
+    return 2.0 * sss_glow(mean_lobe, through, subsurface_color, attenuation, scale, ambient)
+        * irradiance_behind;
+}
+
+// The light of the surroundings that comes through.
+vec3 sss_lobe_normalized_surroundings(float through, vec3 irradiance_behind, vec3 subsurface_color,
+    float attenuation, float scale, float ambient, float power) {
+    return sss_lobe_surroundings(1.0 / (power + 1.0), through, irradiance_behind, subsurface_color,
+        attenuation, scale, ambient);
+}
+
 // The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
 // light.
 vec3 sss_standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
@@ -344,12 +360,13 @@ vec3 sss_standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float rou
 }
 
 // The values of the surface that do not depend on a light.
-sss_Surface sss_evaluate_surface(vec2 uv, float time, float variation, float cell_count,
-    float thickness_factor, float bevel, float attenuation_distance, vec4 tint, sampler2D base_color_texture,
-    float metalness, float surface_roughness, float relief, vec2 uv_per_unit, float cover,
-    sampler2D cover_texture, sampler2D packed_texture, vec2 red_speed, vec2 green_speed, vec2 blue_speed,
-    vec3 vein_color, vec3 spark_color, float texel_size, float edge, float erosion,
-    sampler2D erosion_texture, float edge_height) {
+sss_Surface sss_evaluate_surface(vec2 uv, float time, vec3 irradiance_behind, float variation,
+    float cell_count, float thickness_factor, float bevel, float attenuation_distance, vec4 tint,
+    sampler2D base_color_texture, float metalness, float surface_roughness, float relief, vec2 uv_per_unit,
+    float cover, sampler2D cover_texture, sampler2D packed_texture, vec2 red_speed, vec2 green_speed,
+    vec2 blue_speed, vec3 vein_color, vec3 spark_color, float texel_size, float edge, float erosion,
+    sampler2D erosion_texture, float edge_height, vec3 subsurface_color, float attenuation, float scale,
+    float ambient, float power) {
     float thickness = sss_voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
     float transmittance = sss_beer_lambert(thickness, attenuation_distance);
     vec3 albedo;
@@ -366,6 +383,8 @@ sss_Surface sss_evaluate_surface(vec2 uv, float time, float variation, float cel
         spark_color);
     sss_alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
         edge_height);
+    emission += sss_lobe_normalized_surroundings(transmittance, irradiance_behind, subsurface_color,
+        attenuation, scale, ambient, power);
     return sss_Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
 }
 
@@ -634,6 +653,22 @@ fn sss_lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32, distortion: f
         scale, ambient);
 }
 
+// The light of the surroundings that comes through, for the mean of a lobe over the directions behind the
+// body.
+fn sss_lobe_surroundings(mean_lobe: f32, through: f32, irradiance_behind: vec3f, subsurface_color: vec3f,
+    attenuation: f32, scale: f32, ambient: f32) -> vec3f {
+    // the light of half a sphere is 2 where the irradiance is 1
+    return 2.0 * sss_glow(mean_lobe, through, subsurface_color, attenuation, scale, ambient)
+        * irradiance_behind;
+}
+
+// The light of the surroundings that comes through.
+fn sss_lobe_normalized_surroundings(through: f32, irradiance_behind: vec3f, subsurface_color: vec3f,
+    attenuation: f32, scale: f32, ambient: f32, power: f32) -> vec3f {
+    return sss_lobe_surroundings(1.0 / (power + 1.0), through, irradiance_behind, subsurface_color,
+        attenuation, scale, ambient);
+}
+
 // The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
 // light.
 fn sss_standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
@@ -659,13 +694,15 @@ fn sss_standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roug
 }
 
 // The values of the surface that do not depend on a light.
-fn sss_evaluate_surface(uv: vec2f, time: f32, variation: f32, cell_count: f32, thickness_factor: f32,
-    bevel: f32, attenuation_distance: f32, tint: vec4f, base_color_texture: texture_2d<f32>,
-    base_color_texture_sampler: sampler, metalness: f32, surface_roughness: f32, relief: f32,
-    uv_per_unit: vec2f, cover: f32, cover_texture: texture_2d<f32>, cover_texture_sampler: sampler,
-    packed_texture: texture_2d<f32>, packed_texture_sampler: sampler, red_speed: vec2f, green_speed: vec2f,
-    blue_speed: vec2f, vein_color: vec3f, spark_color: vec3f, texel_size: f32, edge: f32, erosion: f32,
-    erosion_texture: texture_2d<f32>, erosion_texture_sampler: sampler, edge_height: f32) -> sss_Surface {
+fn sss_evaluate_surface(uv: vec2f, time: f32, irradiance_behind: vec3f, variation: f32, cell_count: f32,
+    thickness_factor: f32, bevel: f32, attenuation_distance: f32, tint: vec4f,
+    base_color_texture: texture_2d<f32>, base_color_texture_sampler: sampler, metalness: f32,
+    surface_roughness: f32, relief: f32, uv_per_unit: vec2f, cover: f32, cover_texture: texture_2d<f32>,
+    cover_texture_sampler: sampler, packed_texture: texture_2d<f32>, packed_texture_sampler: sampler,
+    red_speed: vec2f, green_speed: vec2f, blue_speed: vec2f, vein_color: vec3f, spark_color: vec3f,
+    texel_size: f32, edge: f32, erosion: f32, erosion_texture: texture_2d<f32>,
+    erosion_texture_sampler: sampler, edge_height: f32, subsurface_color: vec3f, attenuation: f32,
+    scale: f32, ambient: f32, power: f32) -> sss_Surface {
     let thickness = sss_voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
     var transmittance = sss_beer_lambert(thickness, attenuation_distance);
     var albedo: vec3f;
@@ -682,6 +719,8 @@ fn sss_evaluate_surface(uv: vec2f, time: f32, variation: f32, cell_count: f32, t
         blue_speed, vein_color, spark_color);
     sss_alpha_erosion(uv, &alpha, &normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
         erosion_texture_sampler, edge_height);
+    emission += sss_lobe_normalized_surroundings(transmittance, irradiance_behind, subsurface_color,
+        attenuation, scale, ambient, power);
     return sss_Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
 }
 
@@ -729,12 +768,13 @@ sss_eye_position = vPositionW + sss_V;
 #endif
 sss_frame = sss_tangent_frame(vPositionW, sss_V, sss_N, sss_side, sss_uv, sss_tangent);
 sss_to_object = mat3(sss_row_x, sss_row_y, sss_row_z);
-sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_variation, sss_cell_count,
-            sss_thickness_factor, sss_bevel, sss_attenuation_distance, sss_tint,
-            sss_base_color_texture, sss_metalness, sss_surface_roughness, sss_relief,
-            sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture, sss_red_speed,
-            sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color, sss_texel_size,
-            sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height);
+sss_surface = sss_evaluate_surface(sss_uv, sss_time, sss_surroundings(-sss_N), sss_variation,
+            sss_cell_count, sss_thickness_factor, sss_bevel, sss_attenuation_distance,
+            sss_tint, sss_base_color_texture, sss_metalness, sss_surface_roughness,
+            sss_relief, sss_uv_per_unit, sss_cover, sss_cover_texture, sss_packed_texture,
+            sss_red_speed, sss_green_speed, sss_blue_speed, sss_vein_color, sss_spark_color,
+            sss_texel_size, sss_edge, sss_erosion, sss_erosion_texture, sss_edge_height,
+            sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient, sss_power);
 `,
   translucency: `sss_evaluate_translucency(sss_surface, sss_V, litArgs_worldNormal, sss_L,
             sss_distortion, sss_subsurface_color, sss_attenuation, sss_scale, sss_ambient,
@@ -789,17 +829,18 @@ sss_eye_position = vPositionW + sss_V;
 #endif
 sss_frame = sss_tangent_frame(vPositionW, sss_V, sss_N, sss_side, sss_uv, sss_tangent);
 sss_to_object = mat3x3f(sss_row_x, sss_row_y, sss_row_z);
-sss_surface = sss_evaluate_surface(sss_uv, uniform.sss_time, uniform.sss_variation,
-            uniform.sss_cell_count, uniform.sss_thickness_factor, uniform.sss_bevel,
-            uniform.sss_attenuation_distance, uniform.sss_tint, sss_base_color_texture,
-            sss_base_color_texture_sampler, uniform.sss_metalness,
+sss_surface = sss_evaluate_surface(sss_uv, uniform.sss_time, sss_surroundings(-sss_N),
+            uniform.sss_variation, uniform.sss_cell_count, uniform.sss_thickness_factor,
+            uniform.sss_bevel, uniform.sss_attenuation_distance, uniform.sss_tint,
+            sss_base_color_texture, sss_base_color_texture_sampler, uniform.sss_metalness,
             uniform.sss_surface_roughness, uniform.sss_relief, uniform.sss_uv_per_unit,
             uniform.sss_cover, sss_cover_texture, sss_cover_texture_sampler,
             sss_packed_texture, sss_packed_texture_sampler, uniform.sss_red_speed,
             uniform.sss_green_speed, uniform.sss_blue_speed, uniform.sss_vein_color,
             uniform.sss_spark_color, uniform.sss_texel_size, uniform.sss_edge,
             uniform.sss_erosion, sss_erosion_texture, sss_erosion_texture_sampler,
-            uniform.sss_edge_height);
+            uniform.sss_edge_height, uniform.sss_subsurface_color, uniform.sss_attenuation,
+            uniform.sss_scale, uniform.sss_ambient, uniform.sss_power);
 `,
   translucency: `sss_evaluate_translucency(sss_surface, sss_V, litArgs_worldNormal, sss_L,
             uniform.sss_distortion, uniform.sss_subsurface_color, uniform.sss_attenuation,
@@ -830,7 +871,7 @@ dDiffuseLight *= sss_surface.albedo;
 export class IceMaterial extends materialClass({
   name: 'ice', version: 1, lit: true, alphaMode: 'mask',
   fields: ['albedo', 'alpha', 'normal', 'metallic', 'roughness', 'emission', 'transmittance'],
-  inputs: ['L', 'light_color', 'N', 'time', 'uv', 'V'],
+  inputs: ['irradiance_behind', 'L', 'light_color', 'N', 'time', 'uv', 'V'],
   varyings: {
     sss_uv: { type: 'vec2', attribute: 'vertex_texCoord0', semantic: 'TEXCOORD0', define: 'UV0', default: 0 },
     sss_tangent: { type: 'vec4', attribute: 'vertex_tangent', semantic: 'TANGENT', define: 'TANGENTS', default: 0 },

@@ -191,6 +191,16 @@ def lobe_normalized(V, N, L, through):
     bent = safe_normalize_vec3(L + N * distortion)
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through)
 
+def lobe_surroundings(mean_lobe, through, irradiance_behind):
+    """The light of the surroundings that comes through, for the mean of a lobe over the directions behind
+    the body."""
+    # the light of half a sphere is 2 where the irradiance is 1
+    return 2.0 * glow(mean_lobe, through) * irradiance_behind
+
+def lobe_normalized_surroundings(through, irradiance_behind):
+    """The light of the surroundings that comes through."""
+    return lobe_surroundings(divide(1.0, power + 1.0), through, irradiance_behind)
+
 def standard(N, V, L, albedo, metallic, roughness, light_color):
     """The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for
     one light."""
@@ -213,7 +223,7 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     reflected = (diffuse + facets * visible * F) * NoL
     return reflected * light_color
 
-def evaluate_surface(uv, time):
+def evaluate_surface(uv, time, irradiance_behind):
     """The values of the surface that do not depend on a light."""
     thickness = voronoi_thickness(uv)
     transmittance = beer_lambert(thickness)
@@ -225,6 +235,7 @@ def evaluate_surface(uv, time):
     emission = splat(3, 0.0)
     emission = packed_scroll(uv, time, emission)
     alpha, normal = alpha_erosion(uv, alpha, normal)
+    emission = emission + lobe_normalized_surroundings(transmittance, irradiance_behind)
     return Record(albedo=albedo, alpha=alpha, normal=normal, metallic=metallic, roughness=roughness,
         emission=emission, transmittance=transmittance)
 
@@ -244,7 +255,7 @@ def shade_fragment(P, camera_position_, vertex_normal, vertex_tangent, ambient_c
     N = safe_normalize_vec3(vertex_normal)
     T = safe_normalize_vec3(swizzle(vertex_tangent, "xyz"))
     B = cross(N, T) * vertex_tangent[3]
-    surface = evaluate_surface(uv, time)
+    surface = evaluate_surface(uv, time, ambient_color_)
     across = T * surface.normal[0] + B * surface.normal[1]
     N = safe_normalize_vec3(across + N * surface.normal[2])
     color = ambient_color_ * surface.albedo + surface.emission

@@ -202,13 +202,29 @@ float3 lobe_normalized(float3 V, float3 N, float3 L, float through, float distor
         ambient);
 }
 
+// The light of the surroundings that comes through, for the mean of a lobe over the directions behind the
+// body.
+float3 lobe_surroundings(float mean_lobe, float through, float3 irradiance_behind, float3 subsurface_color,
+    float attenuation, float scale, float ambient) {
+    // the light of half a sphere is 2 where the irradiance is 1
+    return 2.0 * glow(mean_lobe, through, subsurface_color, attenuation, scale, ambient) * irradiance_behind;
+}
+
+// The light of the surroundings that comes through.
+float3 lobe_normalized_surroundings(float through, float3 irradiance_behind, float3 subsurface_color,
+    float attenuation, float scale, float ambient, float power) {
+    return lobe_surroundings(1.0 / (power + 1.0), through, irradiance_behind, subsurface_color, attenuation,
+        scale, ambient);
+}
+
 // The values of the surface that do not depend on a light.
-Surface evaluate_surface(float2 uv, float time, float variation, float cell_count, float thickness_factor,
-    float bevel, float attenuation_distance, float4 tint, sampler2D base_color_texture, float metalness,
-    float surface_roughness, float relief, float2 uv_per_unit, float cover, sampler2D cover_texture,
-    sampler2D packed_texture, float2 red_speed, float2 green_speed, float2 blue_speed, float3 vein_color,
-    float3 spark_color, float texel_size, float edge, float erosion, sampler2D erosion_texture,
-    float edge_height) {
+Surface evaluate_surface(float2 uv, float time, float3 irradiance_behind, float variation, float cell_count,
+    float thickness_factor, float bevel, float attenuation_distance, float4 tint,
+    sampler2D base_color_texture, float metalness, float surface_roughness, float relief, float2 uv_per_unit,
+    float cover, sampler2D cover_texture, sampler2D packed_texture, float2 red_speed, float2 green_speed,
+    float2 blue_speed, float3 vein_color, float3 spark_color, float texel_size, float edge, float erosion,
+    sampler2D erosion_texture, float edge_height, float3 subsurface_color, float attenuation, float scale,
+    float ambient, float power) {
     float thickness = voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
     float transmittance = beer_lambert(thickness, attenuation_distance);
     float3 albedo;
@@ -224,6 +240,8 @@ Surface evaluate_surface(float2 uv, float time, float variation, float cell_coun
     packed_scroll(uv, time, emission, packed_texture, red_speed, green_speed, blue_speed, vein_color,
         spark_color);
     alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, erosion_texture, edge_height);
+    emission += lobe_normalized_surroundings(transmittance, irradiance_behind, subsurface_color, attenuation,
+        scale, ambient, power);
     Surface surface = { albedo, alpha, normal, metallic, roughness, emission, transmittance };
     return surface;
 }

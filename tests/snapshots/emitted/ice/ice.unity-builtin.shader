@@ -98,7 +98,7 @@ Shader "sssgen/Ice" {
 
         // Unity's first look at a surface shader understands no more than DX9's HLSL, and needs no bodies.
         #if defined(SHADER_TARGET_SURFACE_ANALYSIS_MOJOSHADER)
-        Surface evaluate_surface(float2 uv, float time);
+        Surface evaluate_surface(float2 uv, float time, float3 irradiance_behind);
         float3 evaluate_translucency(Surface surface, float3 V, float3 N, float3 L);
         #else
         // The direction of `x`; of a zero vector, 0.
@@ -268,8 +268,20 @@ Shader "sssgen/Ice" {
             return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), _Power), through);
         }
 
+        // The light of the surroundings that comes through, for the mean of a lobe over the directions behind the
+        // body.
+        float3 lobe_surroundings(float mean_lobe, float through, float3 irradiance_behind) {
+            // the light of half a sphere is 2 where the irradiance is 1
+            return 2.0 * glow(mean_lobe, through) * irradiance_behind;
+        }
+
+        // The light of the surroundings that comes through.
+        float3 lobe_normalized_surroundings(float through, float3 irradiance_behind) {
+            return lobe_surroundings(1.0 / (_Power + 1.0), through, irradiance_behind);
+        }
+
         // The values of the surface that do not depend on a light.
-        Surface evaluate_surface(float2 uv, float time) {
+        Surface evaluate_surface(float2 uv, float time, float3 irradiance_behind) {
             float thickness = voronoi_thickness(uv);
             float transmittance = beer_lambert(thickness);
             float3 albedo;
@@ -284,6 +296,7 @@ Shader "sssgen/Ice" {
             float3 emission = (float3)0.0;
             packed_scroll(uv, time, emission);
             alpha_erosion(uv, alpha, normal);
+            emission += lobe_normalized_surroundings(transmittance, irradiance_behind);
             Surface surface = { albedo, alpha, normal, metallic, roughness, emission, transmittance };
             return surface;
         }
@@ -297,6 +310,8 @@ Shader "sssgen/Ice" {
         struct Input {
             float2 texcoord;
             float3 worldPos;
+            float3 worldNormal;
+            INTERNAL_DATA
         };
 
         // Unity's standard output, and what the lights read beside it.
@@ -317,7 +332,8 @@ Shader "sssgen/Ice" {
         }
 
         void surf(Input input, inout SurfaceOutputSss o) {
-            Surface surface = evaluate_surface(input.texcoord, _Time.y);
+            float3 N = safe_normalize(WorldNormalVector(input, float3(0.0, 0.0, 1.0)));
+            Surface surface = evaluate_surface(input.texcoord, _Time.y, ShadeSH9(half4(-N, 1.0)));
             o.Albedo = surface.albedo;
             o.Alpha = surface.alpha;
             clip(surface.alpha - 0.5);

@@ -280,8 +280,20 @@ Shader "sssgen/Ice (URP)" {
             return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), _Power), through);
         }
 
+        // The light of the surroundings that comes through, for the mean of a lobe over the directions behind the
+        // body.
+        float3 lobe_surroundings(float mean_lobe, float through, float3 irradiance_behind) {
+            // the light of half a sphere is 2 where the irradiance is 1
+            return 2.0 * glow(mean_lobe, through) * irradiance_behind;
+        }
+
+        // The light of the surroundings that comes through.
+        float3 lobe_normalized_surroundings(float through, float3 irradiance_behind) {
+            return lobe_surroundings(1.0 / (_Power + 1.0), through, irradiance_behind);
+        }
+
         // The values of the surface that do not depend on a light.
-        Surface evaluate_surface(float2 uv, float time) {
+        Surface evaluate_surface(float2 uv, float time, float3 irradiance_behind) {
             float thickness = voronoi_thickness(uv);
             float transmittance = beer_lambert(thickness);
             float3 albedo;
@@ -296,6 +308,7 @@ Shader "sssgen/Ice (URP)" {
             float3 emission = (float3)0.0;
             packed_scroll(uv, time, emission);
             alpha_erosion(uv, alpha, normal);
+            emission += lobe_normalized_surroundings(transmittance, irradiance_behind);
             Surface surface = { albedo, alpha, normal, metallic, roughness, emission, transmittance };
             return surface;
         }
@@ -341,7 +354,8 @@ Shader "sssgen/Ice (URP)" {
 
         // The surface that a fragment shows.
         Surface surface_at(Varyings input) {
-            return evaluate_surface(input.uv, _Time.y);
+            float3 N = safe_normalize(input.normalWS);
+            return evaluate_surface(input.uv, _Time.y, SampleSH(-N));
         }
 
         // The surface as URP's lighting takes it.

@@ -232,6 +232,18 @@ fn lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32) -> vec3f {
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), material.power), through);
 }
 
+// The light of the surroundings that comes through, for the mean of a lobe over the directions behind the
+// body.
+fn lobe_surroundings(mean_lobe: f32, through: f32, irradiance_behind: vec3f) -> vec3f {
+    // the light of half a sphere is 2 where the irradiance is 1
+    return 2.0 * glow(mean_lobe, through) * irradiance_behind;
+}
+
+// The light of the surroundings that comes through.
+fn lobe_normalized_surroundings(through: f32, irradiance_behind: vec3f) -> vec3f {
+    return lobe_surroundings(1.0 / (material.power + 1.0), through, irradiance_behind);
+}
+
 // The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
 // light.
 fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
@@ -257,7 +269,7 @@ fn standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughnes
 }
 
 // The values of the surface that do not depend on a light.
-fn evaluate_surface(uv: vec2f, time: f32) -> Surface {
+fn evaluate_surface(uv: vec2f, time: f32, irradiance_behind: vec3f) -> Surface {
     let thickness = voronoi_thickness(uv);
     var transmittance = beer_lambert(thickness);
     var albedo: vec3f;
@@ -272,6 +284,7 @@ fn evaluate_surface(uv: vec2f, time: f32) -> Surface {
     var emission = vec3f(0.0);
     packed_scroll(uv, time, &emission);
     alpha_erosion(uv, &alpha, &normal);
+    emission += lobe_normalized_surroundings(transmittance, irradiance_behind);
     return Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
 }
 
@@ -341,7 +354,7 @@ fn fragment_main(input: Varyings) -> @location(0) vec4f {
     var N = safe_normalize_vec3(input.normal);
     let T = safe_normalize_vec3(input.tangent.xyz);
     let B = cross(N, T) * input.tangent.w;
-    let surface = evaluate_surface(input.uv, camera.time);
+    let surface = evaluate_surface(input.uv, camera.time, lights.ambient);
     let across = T * surface.normal.x + B * surface.normal.y;
     N = safe_normalize_vec3(across + N * surface.normal.z);
     var color = lights.ambient * surface.albedo + surface.emission;

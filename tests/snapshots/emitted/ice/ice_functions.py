@@ -161,6 +161,18 @@ def lobe_normalized(V, N, L, through, distortion, subsurface_color, attenuation,
     return glow(pow(clamp(dot(V, -bent), 0.0, 1.0), power), through, subsurface_color, attenuation, scale,
         ambient)
 
+def lobe_surroundings(mean_lobe, through, irradiance_behind, subsurface_color, attenuation, scale, ambient):
+    """The light of the surroundings that comes through, for the mean of a lobe over the directions behind
+    the body."""
+    # the light of half a sphere is 2 where the irradiance is 1
+    return 2.0 * glow(mean_lobe, through, subsurface_color, attenuation, scale, ambient) * irradiance_behind
+
+def lobe_normalized_surroundings(through, irradiance_behind, subsurface_color, attenuation, scale, ambient,
+    power):
+    """The light of the surroundings that comes through."""
+    return lobe_surroundings(1.0 / (power + 1.0), through, irradiance_behind, subsurface_color, attenuation,
+        scale, ambient)
+
 def standard(N, V, L, albedo, metallic, roughness, light_color):
     """The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for
     one light."""
@@ -183,10 +195,10 @@ def standard(N, V, L, albedo, metallic, roughness, light_color):
     reflected = (diffuse + facets * visible * F) * NoL
     return reflected * light_color
 
-def evaluate_surface(uv, time, variation, cell_count, thickness_factor, bevel, attenuation_distance, tint,
-    base_color_texture, metalness, surface_roughness, relief, uv_per_unit, cover, cover_texture,
-    packed_texture, red_speed, green_speed, blue_speed, vein_color, spark_color, texel_size, edge, erosion,
-    erosion_texture, edge_height):
+def evaluate_surface(uv, time, irradiance_behind, variation, cell_count, thickness_factor, bevel,
+    attenuation_distance, tint, base_color_texture, metalness, surface_roughness, relief, uv_per_unit, cover,
+    cover_texture, packed_texture, red_speed, green_speed, blue_speed, vein_color, spark_color, texel_size,
+    edge, erosion, erosion_texture, edge_height, subsurface_color, attenuation, scale, ambient, power):
     """The values of the surface that do not depend on a light."""
     thickness = voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel)
     transmittance = beer_lambert(thickness, attenuation_distance)
@@ -200,6 +212,8 @@ def evaluate_surface(uv, time, variation, cell_count, thickness_factor, bevel, a
         vein_color, spark_color)
     alpha, normal = alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
         edge_height)
+    emission = emission + lobe_normalized_surroundings(transmittance, irradiance_behind, subsurface_color,
+        attenuation, scale, ambient, power)
     return Record(albedo=albedo, alpha=alpha, normal=normal, metallic=metallic, roughness=roughness,
         emission=emission, transmittance=transmittance)
 
