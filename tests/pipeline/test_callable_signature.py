@@ -27,7 +27,8 @@ def test_the_shell_calls_as_the_reflection_says(name: str, target: str) -> None:
     for entry in compiled.reflection["entries"].values():
         call = f"{entry['function']}({', '.join(param['expression'] for param in entry['params'])})"
         # without a technique for the surroundings, both are this variable
-        assert call in text or re.sub(r"\birradiance(_behind)?\b", "ambient_color", call) in text
+        pattern = re.sub(r"\birradiance(_behind)?\b", r"(irradiance\1|[\\w.]*ambient\\w*)", re.escape(call))
+        assert re.search(pattern, text)
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
