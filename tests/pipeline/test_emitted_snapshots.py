@@ -21,9 +21,9 @@ CASES = [(target, form) for target in sssgen.all_targets() for form in ("shader"
 
 
 def emitted(target: str, form: str) -> dict[str, str]:
-    """The material's own files, without the runtime of modules, whose sources are files themselves."""
+    """The material's own files, without the runtime of engines, whose sources are files themselves."""
     files = sssgen.compile(MATERIAL, target, form).files
-    return {file: text for file, text in files.items() if not file.startswith("sssgen-")}
+    return {file: text for file, text in files.items() if not file.startswith(("sssgen-", "sssgen_"))}
 
 
 @pytest.mark.parametrize(("target", "form"), CASES)

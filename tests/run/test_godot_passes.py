@@ -41,6 +41,12 @@ func _process(_delta):
     view.size = Vector2i(SIZE) if still else Vector2i(80, 80)
 """
 """Body, camera and picture differ in the frames before the one that is read."""
+SHADOWED = """extends "jade_ring_passes.gd"
+func _process(_delta):
+    for light in body.get_parent().find_children("*", "Light3D", false, false):
+        light.shadow_enabled = true
+"""
+"""The lights cast shadows."""
 
 
 def test_the_script_names_all_passes() -> None:
@@ -48,26 +54,34 @@ def test_the_script_names_all_passes() -> None:
     script = compiled.files["jade_ring_passes.gd"]
     assert "class_name JadeRingPasses" in script and 'extends "sssgen_passes.gd"' in script
     rows = [json.loads(line.strip().rstrip(",")) for line in script.splitlines() if line.startswith("\t\t{")]
-    assert [row["name"] for row in rows] == ["back_faces", "distant_light_depth"]
-    keys = ("name", "seen_from", "layers", "empty", "texture", "views")
+    assert [row["name"] for row in rows] == ["back_faces", "distant_light_depth", "occluders"]
+    keys = ("name", "seen_from", "layers", "empty", "texture", "views", "lights")
     assert rows == [{key: row[key] for key in keys} for row in compiled.reflection["passes"]]
     listed = {file["name"] for file in compiled.reflection["files"]}
     assert {"jade_ring_passes.gd", "sssgen_passes.gd"} <= listed
 
 
-def test_without_passes_there_is_no_script() -> None:
-    assert not [name for name in sssgen.compile("ice", "godot").files if name.endswith(".gd")]
+def test_only_materials_that_light_comes_through_have_a_script() -> None:
+    scripts = {
+        name: [file for file in sssgen.compile(name, "godot").files if file.endswith(".gd")]
+        for name in ("ice", "resin_inlay", "jelly_cubes")
+    }
+    assert scripts == {"ice": ["ice_passes.gd", "sssgen_passes.gd"], "resin_inlay": [], "jelly_cubes": []}
+    assert not [file for file in sssgen.compile("ice", "godot", "functions").files if file.endswith(".gd")]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("renderer", RENDERERS)
-@pytest.mark.parametrize("case", ["one light", "several lights", "moved before"])
+@pytest.mark.parametrize("case", ["one light", "several lights", "moved before", "own shadow"])
 def test_the_script_draws_the_passes(
     case: str, renderer: str, tmp_path: Path, compiler: Callable[[str], Compiler]
 ) -> None:
-    """The light that comes through is that of the oracle, also where all has moved in the frame before."""
+    """The light that comes through is that of the oracle, also where all has moved in the frame before, and where the
+    body lies in its own shadow."""
     compiler("godot")
-    path = torus_scene(tmp_path, LIGHTS if case == "several lights" else "")
+    # Compatibility adds lights with shadows in encoded colours
+    several = case == "several lights" or (case == "own shadow" and renderer != "gl_compatibility")
+    path = torus_scene(tmp_path, LIGHTS if several else "")
     mesh, scene = mesh_of(path), scene_loading.load(path)
     assert isinstance(scene.geometry, Torus)
     compiled = sssgen.compile(scene.material, "godot")
@@ -76,6 +90,8 @@ def test_the_script_draws_the_passes(
     if case == "moved before":
         text = SHAKEN.replace("FOV", str(view.field_of_view)).replace("SIZE", f"{mesh.size[0]}, {mesh.size[1]}")
         scripts = {"shaken.gd": text, **scripts}
+    if case == "own shadow":
+        scripts = {"shadowed.gd": SHADOWED, **scripts}
     values = godot_values.values_of(compiled.reflection, dataclasses.replace(mesh.shell, parameters={}))
     drawn = Godot(renderer).draw(text_of(compiled, THROUGH), view, values, {}, scripts)[::-1]
     expected = through(scene.material, mesh)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ import sssgen
 from engine_cases import HEAD
 from sssgen.run.backends import Array
 from sssgen.run.backends.backend_interface import ATTRIBUTES, VERTEX_SIZE
-from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
+from sssgen.run.backends.engine_page import EngineDrawing
 from sssgen.run.render import page_values
 from sssgen.support.diagnostics import SssgenError
 
@@ -79,10 +79,16 @@ def scaled(size: float, place: Array) -> Array:
     return matrix
 
 
+class Page(Protocol):
+    """What draws in an engine."""
+
+    def draw(self, drawing: EngineDrawing) -> Array: ...
+
+
 class Scene(NamedTuple):
     """The lights of one kind in an engine's page, and what the bodies are made of."""
 
-    page: EnginePage
+    page: Page
     modules: Mapping[str, str]
     properties: Mapping[str, Any]
     lamp: str

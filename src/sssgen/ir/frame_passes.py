@@ -10,11 +10,11 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from sssgen.ir.nodes import Uniform
-from sssgen.ir.types import FLOAT, Matrix, Sampler
+from sssgen.ir.types import FLOAT, Array, Matrix, Sampler
 
 BACK_FACES, LIGHT, DISTANT, LAYERS = "back_faces", "light_depth", "distant_light_depth", "distant_light_layers"
 LIGHT_LAYERS = "light_layers"
-SHADOW = "shadow_depth"
+SHADOW, OCCLUDERS = "shadow_depth", "occluders"
 IRRADIANCE, REFLECTIONS = "irradiance", "reflections"
 
 
@@ -22,13 +22,15 @@ class FramePass(NamedTuple):
     """A pass: what it draws, from where, and what a texel has."""
 
     of: str
-    """body (the object alone), casters (all that casts a shadow) or surroundings (the light around the scene)"""
+    """body (the object alone), casters (all that casts a shadow), both (each in layers of its own) or surroundings (the
+    light around the scene)"""
     seen_from: str
-    """eye, light, distant light, first light, each light (the four brightest, in tiles of 2 × 2), or everywhere (a cube
-    map)"""
+    """eye, light, distant light, first light, each light (the four brightest, in tiles of 2 × 2), each shadow (the
+    same, of the lights that cast one), or everywhere (a cube map)"""
     layers: tuple[str, ...]
     """For each channel the surface whose distance it has: `entry 1` is the nearest front face, `exit 1` the nearest
-    back face, `entry 2` the nearest front face behind `exit 1`. () for light"""
+    back face, `entry 2` the nearest front face behind `exit 1`, `other 1` the nearest face of a caster that is not the
+    body. () for light"""
     empty: str
     """A texel without a surface: `0`, or `far`, which is more than any distance"""
     how: str
@@ -67,6 +69,14 @@ FRAME_PASSES = {
         "casters", "first light", ("entry 1",), "far",
         _OF_LIGHT.format("all that casts a shadow", "first light", "these"),
     ),
+    OCCLUDERS: FramePass(
+        "both", "each shadow", ("entry 1", "other 1"), "far",
+        "for each of the four lights with a shadow that are brightest at the translucent body, draw the bodies from "
+        "the light into a tile of 2 x 2 of a float texture: red has the nearest front face of the translucent body, "
+        "green the nearest face of all others that cast a shadow; each is the distance from the light's plane in "
+        "world units, and more than any of the body's where there is none. The matrix of a light that there is not has "
+        "zeros",
+    ),
     IRRADIANCE: FramePass(
         "surroundings", "everywhere", (), "0",
         "draw the light of the surroundings into a cube map in world space; each texel is the mean over the "
@@ -103,6 +113,8 @@ class PassUse(NamedTuple):
     """The picture"""
     views: tuple[Uniform, ...]
     """For each light the matrix from world space to the picture: (u w, v w, distance from the light's plane, w)"""
+    lights: Uniform | None
+    """What these lights are, where the pass says it: an array"""
     size: Uniform | None
     """The width of the picture in texels, or the last level of a cube map"""
 
@@ -120,5 +132,7 @@ def passes_of(uniforms: Iterable[Uniform]) -> list[PassUse]:
         name = pass_name(texture)
         own = [uniform for uniform in drawn if pass_name(uniform) == name]
         views = tuple(uniform for uniform in own if isinstance(uniform.type, Matrix))
-        uses.append(PassUse(name, texture, views, next((uniform for uniform in own if uniform.type == FLOAT), None)))
+        lights = next((uniform for uniform in own if isinstance(uniform.type, Array)), None)
+        size = next((uniform for uniform in own if uniform.type == FLOAT), None)
+        uses.append(PassUse(name, texture, views, lights, size))
     return uses

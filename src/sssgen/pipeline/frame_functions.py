@@ -6,7 +6,7 @@ import os
 
 from sssgen.ir.formats import Format
 from sssgen.ir.intrinsics import BUILTINS
-from sssgen.ir.nodes import Function, Module
+from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.ir.surface_fields import NAMES
 from sssgen.ir.types import VEC3
 from sssgen.lang.loader import load_file
@@ -35,17 +35,21 @@ def add_frame_functions(state: State) -> Module:
     ]
     own = {function.key for function in state.module.functions}
     added: dict[str, Function] = {}
+    uniforms: dict[str, Uniform] = {}
     whole = state.form == "shader"
     for name in dict.fromkeys(name for used in frames for name in named(used, whole)):
         if name in NAMES or name in state.target.spelling:
             continue
         check_word(state.target, name)
-        functions = _function(name, state.format, state.guards).functions
-        if functions[-1].key not in own:  # with those that it calls before it
-            added |= {function.key: function for function in functions}
-        state.frame_functions[name] = functions[-1]
+        module = _function(name, state.format, state.guards)
+        if module.functions[-1].key not in own:  # with those that it calls before it
+            added |= {function.key: function for function in module.functions}
+            uniforms |= {uniform.name: uniform for uniform in module.uniforms}
+        state.frame_functions[name] = module.functions[-1]
     others = tuple(function for function in state.module.functions if function.key not in added)
-    return state.module._replace(functions=(*added.values(), *others))
+    return state.module._replace(
+        functions=(*added.values(), *others), uniforms=(*state.module.uniforms, *uniforms.values())
+    )
 
 
 def check_word(target: Target, name: str) -> None:

@@ -57,7 +57,7 @@ def texture_variables(printer: Printer, uniform: Uniform, type_: Sampler, source
 
 
 def pass_variables(target: Target, uniforms: Iterable[Uniform], sources: Mapping[str, str]) -> list[dict[str, Any]]:
-    """The passes that draw the body alone, with the engine's properties and the names in its text.
+    """The passes that draw the body, with the engine's properties and the names in its text.
 
     `sources` are the techniques' own names.
     """
@@ -70,10 +70,11 @@ def pass_variables(target: Target, uniforms: Iterable[Uniform], sources: Mapping
             "name": use.name, "seen_from": drawn.seen_from, "layers": list(drawn.layers), "empty": drawn.empty,
             "texture": of(use.texture), "views": [of(view) for view in use.views],
             "texture_uniform": use.texture.name, "view_uniforms": [view.name for view in use.views],
+            "lights_uniform": use.lights.name if use.lights else None,
         }
         for use in passes_of(uniforms)
         for drawn in [FRAME_PASSES[use.name]]
-        if drawn.of == "body"
+        if drawn.of in ("body", "both")
     ]  # fmt: skip
 
 

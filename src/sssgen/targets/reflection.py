@@ -224,11 +224,11 @@ def _passes(program: Program) -> list[PassRecord]:
     for use in passes_of(program.module.uniforms):
         drawn = FRAME_PASSES[use.name]
         texture, *views = [program.source_names.get(one.name, one.name) for one in (use.texture, *use.views)]
-        size = program.source_names.get(use.size.name, use.size.name) if use.size else None
+        lights, size = [one and program.source_names.get(one.name, one.name) for one in (use.lights, use.size)]
         records.append(
             {
                 "name": use.name, "of": drawn.of, "seen_from": drawn.seen_from, "layers": list(drawn.layers),
-                "empty": drawn.empty, "texture": texture, "views": views, "size": size,
+                "empty": drawn.empty, "texture": texture, "views": views, "lights": lights, "size": size,
             }
         )  # fmt: skip
     return records

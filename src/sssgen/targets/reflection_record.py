@@ -111,17 +111,19 @@ class PassRecord(TypedDict):
 
     name: str
     of: str
-    """body, casters or surroundings."""
+    """body, casters, both or surroundings."""
     seen_from: str
-    """eye, light, distant light, first light, or everywhere."""
+    """eye, light, distant light, first light, each light, each shadow, or everywhere."""
     layers: list[str]
-    """For each channel of the picture `entry N` or `exit N`."""
+    """For each channel of the picture `entry N`, `exit N` or `other N`."""
     empty: str
     """What a texel without a surface has: 0, or far."""
     texture: str
     """The texture that shows the picture, by its `source_name`."""
     views: list[str]
     """The matrices of its views, one for each light, likewise."""
+    lights: str | None
+    """The array that says what these lights are, likewise."""
     size: str | None
     """The parameter with the picture's width, or with the last level of a cube map, likewise."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from sssgen.ir.frame_passes import CUBES, FRAME_PASSES
 from sssgen.ir.nodes import Span
 from sssgen.ir.rules import FLOAT_MAX
-from sssgen.ir.types import FLOAT, VEC3, VEC4, Matrix, Sampler, Type, kind_of
+from sssgen.ir.types import FLOAT, VEC3, VEC4, Array, Matrix, Sampler, Type, kind_of
 from sssgen.lang.check import quantities as q
 from sssgen.lang.check.context import CheckContext
 from sssgen.lang.syntax import tree as s
@@ -83,10 +83,10 @@ def _check_drawn(context: CheckContext, span: Span, view: str, type_: Type) -> N
             did_you_mean(view, FRAME_PASSES) or f"one of: {', '.join(FRAME_PASSES)}",
         )
     dim = "Cube" if view in CUBES else "2D"
-    if type_ not in (Matrix(4, 4), FLOAT) and not (isinstance(type_, Sampler) and type_.dim == dim):
-        raise context.fail(
-            span, f"drawn({view}) is for a sampler{dim}, the mat4 of the view in which it is drawn, and its size"
-        )
+    values = type_ in (Matrix(4, 4), FLOAT) or (isinstance(type_, Array) and type_.element == VEC4)
+    if not values and not (isinstance(type_, Sampler) and type_.dim == dim):
+        what = f"a sampler{dim}, the mat4 of the view in which it is drawn, its size, and an array of vec4 for lights"
+        raise context.fail(span, f"drawn({view}) is for {what}")
 
 
 def _check_range(

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import subprocess
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,6 +21,8 @@ from sssgen.targets import registry
 RENDERERS = {"gl_compatibility": "opengl3", "mobile": "vulkan", "forward_plus": "vulkan"}
 """Rendering method → its driver."""
 SECONDS = 240.0
+PICTURE = "picture.bin"
+"""The file of a project that has its picture."""
 
 
 class View(NamedTuple):
@@ -48,6 +51,11 @@ class Godot:
         self.program: Program = find()
 
     @property
+    def options(self) -> list[str]:
+        """Of the command line."""
+        return ["--rendering-method", self.renderer, "--rendering-driver", RENDERERS[self.renderer]]
+
+    @property
     def encodes(self) -> bool:
         """Whether the renderer passes colours as they are stored, in sRGB."""
         return self.renderer == "gl_compatibility"
@@ -67,21 +75,19 @@ class Godot:
         means Godot's standard material with `values`. Raises SssgenError where Godot refuses the shader or draws
         nothing.
         """
-        plan, files = _plan(view, values, textures)
-        plan["script"] = next(iter(scripts or {}), "")
-        files |= {**(scripts or {}), "plan.json": json.dumps(plan), "draw.gd": _SCRIPT, "shader.gdshader": shader}
-        options = ["--rendering-method", self.renderer, "--rendering-driver", RENDERERS[self.renderer]]
+        files = files_of(shader, view, values, textures, scripts or {})
         with self.program.display() as display, self.program.project(files) as project:
             try:
-                said = self.program.run(project, "draw.gd", options, SECONDS, display)
+                said = self.program.run(project, "draw.gd", self.options, SECONDS, display)
             except subprocess.TimeoutExpired:
                 raise backend_failure(self.name, f"no picture after {SECONDS:.0f} s") from None
-            picture = project / "picture.bin"
-            if "SHADER ERROR" in said or "SCRIPT ERROR" in said or not picture.is_file():
+            if "SHADER ERROR" in said or "SCRIPT ERROR" in said or not (project / PICTURE).is_file():
                 raise backend_failure(self.name, f"no picture: {said.strip()[-600:]}")
-            data = np.fromfile(picture, np.float32)
-        width, height = view.size
-        pixels = data.reshape(height, width, 4).astype(np.float64)
+            return self.read(project, view.size)
+
+    def read(self, project: Path, size: tuple[int, int]) -> Array:
+        """The picture that a project's script has written."""
+        pixels = np.fromfile(project / PICTURE, np.float32).reshape(size[1], size[0], 4).astype(np.float64)
         if self.encodes:
             pixels[..., :3] = _decode(pixels[..., :3])
         return pixels
@@ -93,14 +99,15 @@ def _decode(stored: Array) -> Array:
     return light
 
 
-def _plan(
-    view: View, values: Mapping[str, Any], textures: Mapping[str, Array]
-) -> tuple[dict[str, Any], dict[str, str | bytes]]:
-    files: dict[str, str | bytes] = {}
+def files_of(
+    shader: str, view: View, values: Mapping[str, Any], textures: Mapping[str, Array], scripts: Mapping[str, str]
+) -> dict[str, str | bytes]:
+    """The files of a project whose `draw.gd` draws one picture."""
+    files: dict[str, str | bytes] = {**scripts, "draw.gd": _SCRIPT, "shader.gdshader": shader}
     plan: dict[str, Any] = {
         "size": view.size, "camera": _transform(view.camera), "field_of_view": view.field_of_view,
         "model": _transform(view.model), "lights": view.lights, "values": dict(values),
-        "mesh": view.vertices is not None,
+        "mesh": view.vertices is not None, "script": next(iter(scripts), ""),
         "textures": {name: list(texels.shape) for name, texels in textures.items()},
     }  # fmt: skip
     if view.vertices is not None and view.triangles is not None:
@@ -120,7 +127,7 @@ def _plan(
         files["index.bin"] = np.ascontiguousarray(view.triangles[:, [0, 2, 1]], np.int32).tobytes()
     for name, texels in textures.items():
         files[f"texture_{name}.bin"] = np.ascontiguousarray(texels, np.float32).tobytes()
-    return plan, files
+    return {**files, "plan.json": json.dumps(plan)}
 
 
 def _transform(matrix: Array) -> list[float]:
@@ -223,6 +230,10 @@ func light(entry):
     return made
 
 func draw():
+    await write_picture()
+    quit()
+
+func write_picture():
     var plan = JSON.parse_string(FileAccess.get_file_as_string("res://plan.json"))
     var view = SubViewport.new()
     view.size = Vector2i(plan["size"][0], plan["size"][1])
@@ -268,5 +279,5 @@ func draw():
     var file = FileAccess.open("res://picture.bin", FileAccess.WRITE)
     file.store_buffer(picture.get_data())
     file.close()
-    quit()
+    view.free()
 """

@@ -18,6 +18,7 @@ from pathlib import Path
 from sssgen.run.compilers.compiler_interface import CompilerMissing
 from sssgen.run.machine_parts import godots, lacks
 
+_SAID = "said.txt"
 _PROJECT = 'config_version=5\n\n[application]\n\nconfig/name="sssgen"\n'
 
 
@@ -54,14 +55,22 @@ class Godot:
 
         With `display` the script draws in that X display; without one there is no renderer.
         """
+        process = self.start(project, script, options, display)
+        try:
+            process.wait(timeout=seconds)
+        finally:
+            process.kill()
+            process.wait()
+        return said_in(project)
+
+    def start(self, project: Path, script: str, options: Sequence[str], display: str = "") -> subprocess.Popen[bytes]:
+        """The process that runs a script of the project, likewise."""
         inside = project.as_posix().removeprefix(self.root) if self.root else project.as_posix()
         arguments = ["--path", inside, "--audio-driver", "Dummy", "--script", script]
         command = self.command(self.program, *([] if display else ["--headless"]), *options, *arguments)
         environment = {**os.environ, "HOME": "/tmp", **({"DISPLAY": display} if display else {})}
-        done = subprocess.run(
-            command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=seconds, check=False
-        )
-        return done.stdout.decode(errors="replace")
+        with (project / _SAID).open("wb") as said:
+            return subprocess.Popen(command, env=environment, stdout=said, stderr=subprocess.STDOUT)
 
     @contextlib.contextmanager
     def display(self) -> Iterator[str]:
@@ -80,6 +89,11 @@ class Godot:
             server.terminate()
             server.wait(timeout=30)
             server.stdout.close()
+
+
+def said_in(project: Path) -> str:
+    """What the last process of a project has printed until now."""
+    return (project / _SAID).read_text("utf-8", errors="replace")
 
 
 def find() -> Godot:

@@ -1,5 +1,5 @@
-# What Godot draws before a material: pictures of the body alone, as the eye or a light sees it, each in a SubViewport
-# with a world of its own. A texture that the scene sets itself is not drawn.
+# What Godot draws before a material: pictures of the body alone, or of all others that cast a shadow, as the eye or a
+# light sees them, each in a SubViewport with a world of its own. A texture that the scene sets itself is not drawn.
 extends Node
 
 ## The distance where there is no surface: it fits into half a float.
@@ -9,11 +9,12 @@ const SIDE := 1024
 ## A surface behind another is at least this share of the body's radius farther away: more than half floats round.
 const MARGIN := 2e-3
 
-## The distance from the eye or from a plane in front of the light, of what is behind the surface before.
+## The distance from the eye, or from a plane that touches a ball on the side of the light, of what is behind the surface
+## before; 0 in front of the plane.
 const DISTANCE := "shader_type spatial;
 render_mode unshaded, fog_disabled, shadows_disabled, cull_%s;
-uniform bool from_plane;
-uniform float plane;
+uniform vec4 ball;
+uniform float bias;
 uniform float margin;
 uniform sampler2D before : filter_nearest, repeat_disable;
 
@@ -40,7 +41,9 @@ float stored(float x) {
 }
 
 void fragment() {
-    float away = from_plane ? -VERTEX.z - plane : length(VERTEX);
+    float distant = distance(CAMERA_POSITION_WORLD, ball.xyz);
+    float plane = max(distant - ball.w, 0.001 * distant);
+    float away = ball.w > 0.0 ? max(-VERTEX.z - plane - bias, 0.0) : length(VERTEX);
     if (margin > 0.0 && away < textureLod(before, SCREEN_UV, 0.0).r + margin) {
         discard;
     }
@@ -69,12 +72,13 @@ void fragment() {
 
 ## Material → the node whose pictures it has.
 static var _owners := {}
+var _casters: Casters
 var _pictures: Array[Picture] = []
 var _lights: Array[Light3D] = []
 var _materials: Array[ShaderMaterial] = []
 
 
-## The passes of the material: `name`, `seen_from`, `layers`, `empty`, `texture` and `views`, as in its reflection.
+## The passes of the material, as in its reflection: `name`, `seen_from`, `layers`, `empty`, `texture`, `views`, `lights`.
 func passes() -> Array[Dictionary]:
 	return []
 
@@ -85,10 +89,15 @@ func _enter_tree() -> void:
 	if body == null:
 		push_error("%s has no body: add it below one" % name)
 		return
+	_casters = Casters.new()
 	for data in passes():
-		_pictures.append(Picture.new(self, data))
+		_pictures.append(Picture.new(self, data, _casters))
 	_lights.assign(get_tree().root.find_children("*", "Light3D", true, false))
 	get_tree().node_added.connect(_note_light)
+	for caster in get_tree().root.find_children("*", "GeometryInstance3D", true, false):
+		_casters.note(caster)
+	get_tree().node_added.connect(_casters.note)
+	get_tree().node_removed.connect(_casters.forget)
 	# after all scripts of the frame, so that no picture is a frame late
 	RenderingServer.frame_pre_draw.connect(_draw)
 
@@ -98,6 +107,8 @@ func _exit_tree() -> void:
 		return
 	RenderingServer.frame_pre_draw.disconnect(_draw)
 	get_tree().node_added.disconnect(_note_light)
+	get_tree().node_added.disconnect(_casters.note)
+	get_tree().node_removed.disconnect(_casters.forget)
 	for picture in _pictures:
 		picture.release()
 	for material in _materials:
@@ -128,14 +139,7 @@ func _draw() -> void:
 
 ## The materials of the body whose textures are drawn.
 func _find_materials() -> void:
-	var found: Array[Material] = [body.material_override, body.material_overlay]
-	if body is MeshInstance3D and body.mesh != null:
-		for i in body.mesh.get_surface_count():
-			found.append(body.get_active_material(i))
-	elif body is MultiMeshInstance3D and body.multimesh != null and body.multimesh.mesh != null:
-		for i in body.multimesh.mesh.get_surface_count():
-			found.append(body.multimesh.mesh.surface_get_material(i))
-	for one in found:
+	for one in Copy.materials_of(body):
 		var material := one as ShaderMaterial
 		if material == null or material in _materials or not _reads(material.shader):
 			continue
@@ -155,15 +159,16 @@ func _reads(shader: Shader) -> bool:
 	return _pictures.any(func(picture): return picture.data["texture"] in names)
 
 
-## The lights that are brightest at a ball, at most `count`; `distant`: those from afar, if there are any.
-func _brightest(center: Vector3, distant: bool, count: int) -> Array[Light3D]:
+## The lights that are brightest at a ball, at most `count`; `distant`: those from afar, if there are any; `shadowed`:
+## those that cast a shadow.
+func _brightest(center: Vector3, distant: bool, shadowed: bool, count: int) -> Array[Light3D]:
 	var found: Array[Light3D] = []
 	var strengths := {}
 	_lights = _lights.filter(func(light): return is_instance_valid(light))
 	for light in _lights:
 		if not light.is_visible_in_tree() or light.get_world_3d() != body.get_world_3d():
 			continue
-		if light.light_negative or not (light.light_cull_mask & body.layers):
+		if light.light_negative or not (light.light_cull_mask & body.layers) or (shadowed and not light.shadow_enabled):
 			continue
 		var color := light.light_color.srgb_to_linear()
 		var strength := light.light_energy * maxf(color.r, maxf(color.g, color.b))
@@ -200,6 +205,9 @@ class Ball:
 		for i in 8:
 			radius = maxf(radius, 1.02 * center.distance_to(place * box.get_endpoint(i)))
 
+	func as_vector() -> Vector4:
+		return Vector4(center.x, center.y, center.z, radius)
+
 
 ## A viewport of half floats.
 class FloatView extends SubViewport:
@@ -219,29 +227,17 @@ class FloatView extends SubViewport:
 		return material
 
 
-## What one camera sees of the body alone: a layer of a picture.
-class Layer extends FloatView:
+## What one camera sees, in a picture that is `empty` elsewhere.
+class View extends FloatView:
 	var camera := Camera3D.new()
-	var copy := GeometryInstance3D.new()
-	var material: ShaderMaterial
-	var skeleton: RID
-	var is_behind: bool
 
-	## `before`: the layer that this one is behind, or null.
-	func _init(above: Node, back: bool, empty: float, before: Layer) -> void:
+	func _init(above: Node, empty: float) -> void:
 		super(above)
-		own_world_3d = true
-		is_behind = before != null
-		material = material_of(DISTANCE % ("front" if back else "back"))
-		if is_behind:
-			material.set_shader_parameter("before", before.get_texture())
-		copy.material_override = material
 		camera.environment = Environment.new()
 		camera.environment.background_mode = Environment.BG_COLOR
 		camera.environment.background_color = Color(empty, empty, empty)
-		for node: Node3D in [copy, camera]:
-			node.physics_interpolation_mode = Node.PHYSICS_INTERPOLATION_MODE_OFF
-			add_child(node)
+		camera.physics_interpolation_mode = Node.PHYSICS_INTERPOLATION_MODE_OFF
+		add_child(camera)
 		camera.current = true
 
 	## Gives the camera the view of the eye.
@@ -266,36 +262,11 @@ class Layer extends FloatView:
 		var up := Vector3.BACK if absf(way.y) > 0.99 else Vector3.UP
 		camera.transform = Transform3D(Basis.looking_at(-way, up), ball.center + way * distance)
 
-	## Draws a body as it is in this frame.
-	func draw(body: GeometryInstance3D, place: Transform3D, new_size: Vector2i, from_plane: bool, margin: float) -> void:
-		_take_shape(body)
-		copy.transform = place
-		copy.force_update_transform()
+	func render(new_size: Vector2i) -> void:
 		camera.force_update_transform()
 		if size != new_size:
 			size = new_size
-		material.set_shader_parameter("from_plane", from_plane)
-		material.set_shader_parameter("plane", camera.near)
-		material.set_shader_parameter("margin", margin if is_behind else 0.0)
 		render_target_update_mode = SubViewport.UPDATE_ALWAYS
-
-	func _take_shape(body: GeometryInstance3D) -> void:
-		if copy.get_base() != body.get_base():
-			copy.set_base(body.get_base())
-			skeleton = RID()
-		copy.custom_aabb = body.custom_aabb
-		copy.extra_cull_margin = body.extra_cull_margin
-		copy.lod_bias = body.lod_bias
-		var mesh := body as MeshInstance3D
-		if mesh == null:
-			return
-		var skin := mesh.get_skin_reference()
-		var bones := skin.get_skeleton() if skin != null else RID()
-		if skeleton != bones:
-			skeleton = bones
-			RenderingServer.instance_attach_skeleton(copy.get_instance(), bones)
-		for i in mesh.get_blend_shape_count():
-			RenderingServer.instance_set_blend_shape_weight(copy.get_instance(), i, mesh.get_blend_shape_value(i))
 
 	## World space to (u w, v w, distance from the plane, w) in a tile of the picture.
 	func view_in(tile: Vector2i, columns: int) -> Projection:
@@ -311,6 +282,31 @@ class Layer extends FloatView:
 		return result
 
 
+## A layer of a body, in a world of its own.
+class Layer extends View:
+	var copy := Copy.new()
+	var material: ShaderMaterial
+	var is_behind: bool
+
+	## `before`: the layer that this one is behind, or null.
+	func _init(above: Node, back: bool, empty: float, before: Layer) -> void:
+		super(above, empty)
+		own_world_3d = true
+		is_behind = before != null
+		material = material_of(DISTANCE % ("front" if back else "back"))
+		if is_behind:
+			material.set_shader_parameter("before", before.get_texture())
+		copy.material_override = material
+		add_child(copy)
+
+	## Takes a body as it is in this frame; without a radius of the ball, its distances from the eye.
+	func take(body: GeometryInstance3D, ball: Vector4, margin: float) -> void:
+		copy.follow(body)
+		copy.take_bounds(body)
+		material.set_shader_parameter("ball", ball)
+		material.set_shader_parameter("margin", margin if is_behind else 0.0)
+
+
 ## Several layers as the channels of one picture, with a tile for each light.
 class Packing extends FloatView:
 	func _init(above: Node, tiles: Array[Array], columns: int) -> void:
@@ -324,7 +320,7 @@ class Packing extends FloatView:
 			square.position = square.size * Vector2(tile % columns, floori(float(tile) / columns))
 			square.material = material_of(PACKING)
 			for i in 4:
-				var layer: Layer = tiles[tile][mini(i, tiles[tile].size() - 1)]
+				var layer: View = tiles[tile][mini(i, tiles[tile].size() - 1)]
 				square.material.set_shader_parameter("layer_%d" % i, layer.get_texture())
 			add_child(square)
 
@@ -338,9 +334,11 @@ class Picture:
 	var tiles: Array[Array] = []
 	var columns := 1
 	var packing: Packing
+	var casters: Casters
 
-	func _init(above: Node, of_pass: Dictionary) -> void:
+	func _init(above: Node, of_pass: Dictionary, of_casters: Casters) -> void:
 		data = of_pass
+		casters = of_casters
 		columns = 2 if data["views"].size() > 1 else 1
 		for tile in maxi(data["views"].size(), 1):
 			tiles.append(_layers(above))
@@ -349,9 +347,12 @@ class Picture:
 		drawn[view().get_texture()] = true
 
 	func _layers(above: Node) -> Array:
-		var layers: Array[Layer] = []
+		var layers: Array[View] = []
 		var empty := FAR if data["empty"] == "far" else 0.0
 		for layer: String in data["layers"]:
+			if layer.begins_with("other"):
+				layers.append(OtherLayer.new(above, empty, casters))
+				continue
 			var back := layer.begins_with("exit")
 			var place := int(layer.get_slice(" ", 1))
 			var before: int = layers.size() - 1 if back else data["layers"].find("exit %d" % (place - 1))
@@ -371,7 +372,9 @@ class Picture:
 	func release() -> void:
 		drawn.erase(view().get_texture())
 		for material in users:
-			material.set_shader_parameter(data["texture"], null)
+			for uniform: Variant in [data["texture"], data["lights"]] + data["views"]:
+				if uniform != null:
+					material.set_shader_parameter(uniform, null)
 		for one in _views():
 			one.queue_free()
 
@@ -391,26 +394,42 @@ class Picture:
 		rest()
 		if users.is_empty():
 			return
-		var place := body.get_global_transform_interpolated()
-		var ball := Ball.new(body, place)
+		var ball := Ball.new(body, body.get_global_transform_interpolated())
+		var margin := MARGIN * ball.radius
 		var by_eye: bool = data["seen_from"] == "eye"
 		var distant: bool = data["seen_from"] == "distant light"
-		var lights: Array = [] if by_eye else brightest.call(ball.center, distant, tiles.size())
+		var lights: Array[Light3D] = []
+		if not by_eye:
+			lights = brightest.call(ball.center, distant, data["seen_from"] == "each shadow", tiles.size())
+		var size := Vector2i(SIDE, SIDE) / columns
+		if by_eye:
+			size = Vector2i(eye.get_viewport().get_texture().get_size())
+		if tiles[0].any(func(view): return view is OtherLayer) and not lights.is_empty():
+			casters.follow(body, ball, margin, eye)
 		for tile in tiles.size():
 			# a view of zeros shows nothing
 			var shown := Projection(Vector4.ZERO, Vector4.ZERO, Vector4.ZERO, Vector4.ZERO)
 			if by_eye or tile < lights.size():
-				for layer: Layer in tiles[tile]:
+				for one: View in tiles[tile]:
 					if by_eye:
-						layer.aim_as(eye)
+						one.aim_as(eye)
 					else:
-						layer.aim_from(lights[tile], distant, ball)
-					var side := Vector2i(SIDE, SIDE) / columns
-					var size := Vector2i(eye.get_viewport().get_texture().get_size()) if by_eye else side
-					layer.draw(body, place, size, not by_eye, MARGIN * ball.radius)
+						one.aim_from(lights[tile], distant, ball)
+					if one is Layer:
+						one.take(body, Vector4.ZERO if by_eye else ball.as_vector(), margin)
+					one.render(size)
 				shown = tiles[tile][0].view_in(Vector2i(tile % columns, floori(float(tile) / columns)), columns)
 			if tile < data["views"].size():
-				for material in users:
-					material.set_shader_parameter(data["views"][tile], shown)
-		if packing != null:
+				_give(data["views"][tile], shown)
+		if data["lights"] != null:
+			var facts := PackedVector4Array()
+			for light in lights:
+				facts.append_array(Casters.vectors_of(light))
+			facts.resize(3 * tiles.size())
+			_give(data["lights"], facts)
+		if packing != null and (by_eye or not lights.is_empty()):
 			packing.render_target_update_mode = SubViewport.UPDATE_ALWAYS
+
+	func _give(uniform: String, value: Variant) -> void:
+		for material in users:
+			material.set_shader_parameter(uniform, value)

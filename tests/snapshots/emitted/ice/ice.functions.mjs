@@ -199,6 +199,22 @@ vec3 sss_lobe_normalized(vec3 V, vec3 N, vec3 L, float through, float distortion
         scale, ambient);
 }
 
+// The light of the surroundings that comes through, for the mean of a lobe over the directions behind the
+// body.
+vec3 sss_lobe_surroundings(float mean_lobe, float through, vec3 irradiance_behind, vec3 subsurface_color,
+    float attenuation, float scale, float ambient) {
+    // the light of half a sphere is 2 where the irradiance is 1
+    return 2.0 * sss_glow(mean_lobe, through, subsurface_color, attenuation, scale, ambient)
+        * irradiance_behind;
+}
+
+// The light of the surroundings that comes through.
+vec3 sss_lobe_normalized_surroundings(float through, vec3 irradiance_behind, vec3 subsurface_color,
+    float attenuation, float scale, float ambient, float power) {
+    return sss_lobe_surroundings(1.0 / (power + 1.0), through, irradiance_behind, subsurface_color,
+        attenuation, scale, ambient);
+}
+
 // The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
 // light.
 vec3 sss_standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float roughness, vec3 light_color) {
@@ -223,12 +239,13 @@ vec3 sss_standard(vec3 N, vec3 V, vec3 L, vec3 albedo, float metallic, float rou
 }
 
 // The values of the surface that do not depend on a light.
-sss_Surface sss_evaluate_surface(vec2 uv, float time, float variation, float cell_count,
-    float thickness_factor, float bevel, float attenuation_distance, vec4 tint, sampler2D base_color_texture,
-    float metalness, float surface_roughness, float relief, vec2 uv_per_unit, float cover,
-    sampler2D cover_texture, sampler2D packed_texture, vec2 red_speed, vec2 green_speed, vec2 blue_speed,
-    vec3 vein_color, vec3 spark_color, float texel_size, float edge, float erosion,
-    sampler2D erosion_texture, float edge_height) {
+sss_Surface sss_evaluate_surface(vec2 uv, float time, vec3 irradiance_behind, float variation,
+    float cell_count, float thickness_factor, float bevel, float attenuation_distance, vec4 tint,
+    sampler2D base_color_texture, float metalness, float surface_roughness, float relief, vec2 uv_per_unit,
+    float cover, sampler2D cover_texture, sampler2D packed_texture, vec2 red_speed, vec2 green_speed,
+    vec2 blue_speed, vec3 vein_color, vec3 spark_color, float texel_size, float edge, float erosion,
+    sampler2D erosion_texture, float edge_height, vec3 subsurface_color, float attenuation, float scale,
+    float ambient, float power) {
     float thickness = sss_voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
     float transmittance = sss_beer_lambert(thickness, attenuation_distance);
     vec3 albedo;
@@ -245,6 +262,8 @@ sss_Surface sss_evaluate_surface(vec2 uv, float time, float variation, float cel
         spark_color);
     sss_alpha_erosion(uv, alpha, normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
         edge_height);
+    emission += sss_lobe_normalized_surroundings(transmittance, irradiance_behind, subsurface_color,
+        attenuation, scale, ambient, power);
     return sss_Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
 }
 
@@ -467,6 +486,22 @@ fn sss_lobe_normalized(V: vec3f, N: vec3f, L: vec3f, through: f32, distortion: f
         scale, ambient);
 }
 
+// The light of the surroundings that comes through, for the mean of a lobe over the directions behind the
+// body.
+fn sss_lobe_surroundings(mean_lobe: f32, through: f32, irradiance_behind: vec3f, subsurface_color: vec3f,
+    attenuation: f32, scale: f32, ambient: f32) -> vec3f {
+    // the light of half a sphere is 2 where the irradiance is 1
+    return 2.0 * sss_glow(mean_lobe, through, subsurface_color, attenuation, scale, ambient)
+        * irradiance_behind;
+}
+
+// The light of the surroundings that comes through.
+fn sss_lobe_normalized_surroundings(through: f32, irradiance_behind: vec3f, subsurface_color: vec3f,
+    attenuation: f32, scale: f32, ambient: f32, power: f32) -> vec3f {
+    return sss_lobe_surroundings(1.0 / (power + 1.0), through, irradiance_behind, subsurface_color,
+        attenuation, scale, ambient);
+}
+
 // The standard lighting of targets without an engine: Lambert and GGX with metallic and roughness, for one
 // light.
 fn sss_standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roughness: f32,
@@ -492,13 +527,15 @@ fn sss_standard(N: vec3f, V: vec3f, L: vec3f, albedo: vec3f, metallic: f32, roug
 }
 
 // The values of the surface that do not depend on a light.
-fn sss_evaluate_surface(uv: vec2f, time: f32, variation: f32, cell_count: f32, thickness_factor: f32,
-    bevel: f32, attenuation_distance: f32, tint: vec4f, base_color_texture: texture_2d<f32>,
-    base_color_texture_sampler: sampler, metalness: f32, surface_roughness: f32, relief: f32,
-    uv_per_unit: vec2f, cover: f32, cover_texture: texture_2d<f32>, cover_texture_sampler: sampler,
-    packed_texture: texture_2d<f32>, packed_texture_sampler: sampler, red_speed: vec2f, green_speed: vec2f,
-    blue_speed: vec2f, vein_color: vec3f, spark_color: vec3f, texel_size: f32, edge: f32, erosion: f32,
-    erosion_texture: texture_2d<f32>, erosion_texture_sampler: sampler, edge_height: f32) -> sss_Surface {
+fn sss_evaluate_surface(uv: vec2f, time: f32, irradiance_behind: vec3f, variation: f32, cell_count: f32,
+    thickness_factor: f32, bevel: f32, attenuation_distance: f32, tint: vec4f,
+    base_color_texture: texture_2d<f32>, base_color_texture_sampler: sampler, metalness: f32,
+    surface_roughness: f32, relief: f32, uv_per_unit: vec2f, cover: f32, cover_texture: texture_2d<f32>,
+    cover_texture_sampler: sampler, packed_texture: texture_2d<f32>, packed_texture_sampler: sampler,
+    red_speed: vec2f, green_speed: vec2f, blue_speed: vec2f, vein_color: vec3f, spark_color: vec3f,
+    texel_size: f32, edge: f32, erosion: f32, erosion_texture: texture_2d<f32>,
+    erosion_texture_sampler: sampler, edge_height: f32, subsurface_color: vec3f, attenuation: f32,
+    scale: f32, ambient: f32, power: f32) -> sss_Surface {
     let thickness = sss_voronoi_thickness(uv, variation, cell_count, thickness_factor, bevel);
     var transmittance = sss_beer_lambert(thickness, attenuation_distance);
     var albedo: vec3f;
@@ -515,6 +552,8 @@ fn sss_evaluate_surface(uv: vec2f, time: f32, variation: f32, cell_count: f32, t
         blue_speed, vein_color, spark_color);
     sss_alpha_erosion(uv, &alpha, &normal, uv_per_unit, texel_size, edge, erosion, erosion_texture,
         erosion_texture_sampler, edge_height);
+    emission += sss_lobe_normalized_surroundings(transmittance, irradiance_behind, subsurface_color,
+        attenuation, scale, ambient, power);
     return sss_Surface(albedo, alpha, normal, metallic, roughness, emission, transmittance);
 }
 
@@ -539,6 +578,7 @@ export const entries = {
     parameters: [
       { name: "uv", type: "vec2", input: "uv" },
       { name: "time", type: "float", input: "time" },
+      { name: "irradiance_behind", type: "vec3", input: "irradiance_behind" },
       { name: "variation", type: "float", uniform: "sss_variation" },
       { name: "cell_count", type: "float", uniform: "sss_cell_count" },
       { name: "thickness_factor", type: "float", uniform: "sss_thickness_factor" },
@@ -563,6 +603,11 @@ export const entries = {
       { name: "erosion", type: "float", uniform: "sss_erosion" },
       { name: "erosion_texture", type: "sampler2D", uniform: "sss_erosion_texture" },
       { name: "edge_height", type: "float", uniform: "sss_edge_height" },
+      { name: "subsurface_color", type: "vec3", uniform: "sss_subsurface_color" },
+      { name: "attenuation", type: "float", uniform: "sss_attenuation" },
+      { name: "scale", type: "float", uniform: "sss_scale" },
+      { name: "ambient", type: "float", uniform: "sss_ambient" },
+      { name: "power", type: "float", uniform: "sss_power" },
     ],
   },
   translucency: {
