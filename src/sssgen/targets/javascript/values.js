@@ -107,7 +107,7 @@ export class Properties {
     for (const [name, { needed }] of Object.entries(this.textures)) {
       const texture = given(name);
       if (needed && !texture) this.#warn(name, `is missing: ${needed}`);
-      if (texture && isTransformed(texture)) this.#warn(name, 'has a transform, which the material does not apply: its technique uv_transform does');
+      if (texture && isTransformed(texture)) this.#warn(name, 'has a transform, which has no effect: the technique uv_transform moves texture coordinates');
     }
   }
 
