@@ -175,7 +175,7 @@ def test_a_transform_of_a_texture_is_not_applied(page: EnginePage) -> None:
         textures={"coverTexture": Texture(np.ones((2, 2, 4), np.float32))}
     )
     assert np.isfinite(page.draw(drawing)).all()
-    with pytest.raises(SssgenError, match=r"ice: 'coverTexture' has a transform, which .*: the technique uv_transform moves .*$"):
+    with pytest.raises(SssgenError, match=r"ice: 'coverTexture' has a transform, .*: the technique uv_transform moves"):
         page.draw(drawing._replace(properties={TRANSFORMS[page.engine.target]: 2.0}))
 
 
