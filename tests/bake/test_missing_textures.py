@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import sssgen
 from sssgen.cli.bake import KINDS
 from sssgen.cli.commands import command_parser
 from sssgen.cli.main import main
@@ -69,6 +70,28 @@ def write(kind: str, scene: str = SCENE) -> None:
 
 def render(file: str = "scene.toml") -> int:
     return main(["render", file, "-o", "x.png", "--backend", "numpy", "--size", "16x12"])
+
+
+@pytest.mark.parametrize("kind", MATERIALS)
+def test_the_reflection_names_what_a_render_refuses(
+    kind: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With the same command, but for the user's own files; a texture that is drawn, or optional, has none."""
+    write(kind)
+    assert render() == 1
+    message = capsys.readouterr().err
+    (bake,) = set(re.findall(r"`(sssgen bake \w+) ", message))
+    textures = sssgen.compile("wax.toml", "threejs").reflection["textures"]
+    needed = {texture["technique_name"]: texture["needed"] for texture in textures if texture["needed"]}
+    assert set(needed) == {one["technique_name"] for one in textures if f"'{one['technique_name']}'" in message}
+    assert needed and all(re.fullmatch(rf"load wax_\S+, which `{bake} .*` makes", one) for one in needed.values())
+
+
+def test_the_reflection_names_the_pictures_of_the_material(folder: Path) -> None:
+    picture = 'shading = "lit"\n[[surface]]\ntechnique = "base_color"\nbase_color_texture = "oak.png"\n'
+    Path("wood.toml").write_text(f'[material]\nname = "wood"\n{picture}', encoding="utf-8")
+    (texture,) = sssgen.compile("wood.toml", "threejs").reflection["textures"]
+    assert texture["needed"] == "load oak.png, which the material names"
 
 
 @pytest.mark.parametrize("kind", MATERIALS)

@@ -15,12 +15,15 @@ import sssgen
 from engine_cases import HEAD, mesh_of, through
 from skips import or_skip
 from sssgen.run.backends import Array
+from sssgen.run.backends.backend_interface import VERTEX_SIZE
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
 from sssgen.run.backends.web_engines import BABYLON, PLAYCANVAS, THREE
 from sssgen.run.render import page_values
 from sssgen.run.render.scene_render import PlacedMesh
 from sssgen.scene import scene_loading
 from sssgen.scene.solids import Torus
+from sssgen.support.diagnostics import SssgenError
+from sssgen.targets.runtime.numpy_textures import Texture
 from torus_cases import SEVERAL, inner_pixels, torus_mesh, torus_scene
 
 BLACK: dict[str, dict[str, Any]] = {
@@ -135,6 +138,45 @@ def test_values_of_the_object_come_from_its_matrix(page: EnginePage, size: float
     expected, whole = (through("wax_mouse", mesh._replace(shell=one)) for one in (shell, own))
     assert np.abs(drawn - expected)[..., :3][mesh.hit].max() < 1.0 / 255.0
     assert (np.abs(whole - expected)[..., :3][mesh.hit].max() > 0.02) == (size == 0.5), "the size matters"
+
+
+def bare(target: str, name: str) -> EngineDrawing:
+    """A triangle with a material, without its textures."""
+    modules = page_values.modules_of(sssgen.compile(name, target))
+    vertices = np.zeros((3, VERTEX_SIZE))
+    vertices[1:, :2] = np.eye(2)
+    view = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, 2.0], [0, 0, -1, 3.0]])
+    light = np.array([[0.0, 0.0, 1.0, 0.0]])
+    return EngineDrawing(
+        modules, (4, 3), vertices, [[0, 1, 2]], view, (0.0, 0.0, 3.0), np.eye(4), light, np.ones((1, 3))
+    )
+
+
+@pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
+def test_a_texture_that_is_missing_is_named_once(page: EnginePage) -> None:
+    """The console has the command that bakes it; what is optional may be missing. A second body says nothing more."""
+    drawing = bare(page.engine.target, "wax_mouse")
+    copies = {"stage": {"copies": [ELSEWHERE]}}
+    command = r"`sssgen bake sdf MESH -o wax_mouse_sdf\.npy`"
+    missing = rf"error: \w+: wax_mouse: 'distanceMap' is missing: load wax_mouse_sdf\.npy, which {command} makes$"
+    with pytest.raises(SssgenError, match=missing):
+        page.draw(drawing._replace(properties=copies))
+    volume = Texture(np.ones((2, 2, 2, 4), np.float32))
+    assert np.isfinite(page.draw(drawing._replace(textures={"distanceMap": volume}))).all()
+    assert np.isfinite(page.draw(bare(page.engine.target, "jade_ring"))).all(), "it draws its texture itself"
+
+
+TRANSFORMS = {"threejs": "coverTexture.rotation", "babylonjs": "coverTexture.uScale"}
+
+
+@pytest.mark.parametrize("page", [one for one in RENDERERS if one[0] in TRANSFORMS], ids="-".join, indirect=True)
+def test_a_transform_of_a_texture_is_not_applied(page: EnginePage) -> None:
+    drawing = bare(page.engine.target, "ice")._replace(
+        textures={"coverTexture": Texture(np.ones((2, 2, 4), np.float32))}
+    )
+    assert np.isfinite(page.draw(drawing)).all()
+    with pytest.raises(SssgenError, match=r"ice: 'coverTexture' has a transform, .*: the technique uv_transform moves"):
+        page.draw(drawing._replace(properties={TRANSFORMS[page.engine.target]: 2.0}))
 
 
 PLACED = f"""/// To a texture of the body.

@@ -105,6 +105,26 @@ def baked_functions(uses: Iterable[TechniqueUse]) -> list[BakedFunction]:
     ]
 
 
+class NeededTextures(NamedTuple):
+    """Textures of a stage without which a picture is wrong."""
+
+    stage: TechniqueUse
+    names: tuple[str, ...]
+    function: BakedFunction | None
+    """The function that reads them, baked from the body; None for a picture that the stage names"""
+
+
+def needed_textures(uses: Sequence[TechniqueUse]) -> list[NeededTextures]:
+    """Those that are baked, then the other pictures that stages name. All other textures are optional."""
+    functions = baked_functions(uses)
+    baked = {(function.stage.technique.name, texture.name) for function in functions for texture in function.textures}
+    pictures = [(use, name) for use in uses for name in use.textures if (use.technique.name, name) not in baked]
+    return [
+        *(NeededTextures(one.stage, tuple(texture.name for texture in one.textures), one) for one in functions),
+        *(NeededTextures(use, (name,), None) for use, name in pictures),
+    ]
+
+
 def read_uniforms(use: TechniqueUse) -> Iterator[Uniform]:
     """The parameters and textures that a technique reads, itself and in the functions that are bound to its slots."""
     for module, function in _functions(use):

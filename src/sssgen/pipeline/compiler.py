@@ -14,6 +14,7 @@ from sssgen.ir.nodes import Module, Uniform
 from sssgen.ir.types import kind_of
 from sssgen.lang.loader import key_of
 from sssgen.material import library
+from sssgen.material.bake_commands import needs
 from sssgen.material.model import Material, TechniqueUse
 from sssgen.material.requirements import bodies
 from sssgen.passes.names import check_prefix
@@ -278,6 +279,7 @@ def _about(material: Material) -> About:
         frozenset(facts_of(material)),
         material.makes_rays,
         bodies=tuple(bodies(material.stages)),
+        needs=needs(material),
     )
 
 

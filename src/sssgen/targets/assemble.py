@@ -61,6 +61,8 @@ class About(NamedTuple):
     """The author's comment at the head of the file, such as a licence."""
     bodies: tuple[str, ...] = ()
     """The distance functions of the bodies that the material is made for."""
+    needs: Mapping[tuple[str, str], str] = {}
+    """What to do for each texture that a picture needs, by its technique and its name there."""
 
 
 class Program(NamedTuple):
@@ -340,7 +342,10 @@ def _context(
             for uniform, source in uniforms
             if not isinstance(uniform.type, Sampler)
         ],
-        "textures": [texture_variables(printer, *texture, index) for index, texture in enumerate(textures)],
+        "textures": [
+            {**texture_variables(printer, *texture, index), "needed": needed(program, texture[0])}
+            for index, texture in enumerate(textures)
+        ],
         "passes": pass_variables(target, program.module.uniforms, program.source_names),
         "entries": entries,
         "inputs": inputs,
@@ -377,6 +382,12 @@ def _header(target: Target, program: Program) -> list[str]:
     needed = [*([made_for] if about.bodies and not about.raymarched else []), *supplied]
     lines = [line for text in needed for line in textwrap.wrap(text, 100)]
     return [comment_text(line) for line in (*textwrap.wrap(description, 100), notice, *sides, *lines)] + head
+
+
+def needed(program: Program, texture: Uniform) -> str | None:
+    """What to do for a texture that a picture needs; None where it is optional, or drawn for each frame."""
+    source = program.source_names.get(texture.name, texture.name)
+    return None if pass_name(texture) else program.about.needs.get(program.owners.get(source, ("", source)))
 
 
 def _supplied(target: Target, program: Program, uniform: Uniform) -> str:

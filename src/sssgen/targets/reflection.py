@@ -11,7 +11,7 @@ from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.passes.stage.stage_interface import Slot
 from sssgen.passes.stage.storage_layout import extent, offsets
 from sssgen.support.paths import display_name
-from sssgen.targets.assemble import Emitted, Program, printer_for
+from sssgen.targets.assemble import Emitted, Program, needed, printer_for
 from sssgen.targets.chain_inputs import CHAIN_INPUTS
 from sssgen.targets.descriptor import Target
 from sssgen.targets.parameter_variables import property_name
@@ -61,6 +61,7 @@ def reflect(
             textures.append(
                 {
                     **declared, "holds": quantity, "default": default_color(uniform),
+                    "needed": needed(program, uniform),
                     "color_space": color_space, "import": import_of(uniform), **bound,
                 }
             )  # fmt: skip

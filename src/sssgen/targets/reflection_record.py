@@ -102,6 +102,8 @@ class TextureRecord(DeclarationRecord, _ImportRecord, BindingRecord):
     """The quantity that a channel stores."""
     default: str
     """The texture to bind if there is no picture: white, black, gray or bump."""
+    needed: str | None
+    """What to do for it, where a picture with the default is wrong; null: it is optional, or drawn for each frame."""
     color_space: str
     """sRGB or linear."""
 

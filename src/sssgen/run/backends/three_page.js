@@ -33,9 +33,11 @@ async function draw(plan, piece) {
   const textures = Object.fromEntries(Object.entries(plan.textures).map(([name, one]) => [name, textureOf(one, piece)]));
   const material = createMaterial({ ...plan.values, ...textures });
   const { stage = {}, ...properties } = plan.properties;
-  for (const [name, value] of Object.entries(properties)) {
-    if (material[name]?.isColor) material[name].setScalar(value);
-    else material[name] = value;
+  for (const [path, value] of Object.entries(properties)) {
+    const names = path.split('.'), last = names[names.length - 1];
+    const one = names.slice(0, -1).reduce((object, name) => object[name], material);
+    if (one[last]?.isColor) one[last].setScalar(value);
+    else one[last] = value;
   }
 
   const vertices = new THREE.InterleavedBuffer(floats(piece(plan.vertices)), plan.vertexSize);

@@ -6,7 +6,7 @@ import os
 from collections.abc import Collection
 
 from sssgen.material.model import Material
-from sssgen.material.requirements import baked_functions
+from sssgen.material.requirements import needed_textures
 from sssgen.scene.bake_advice import advice, is_scene
 from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import Diagnostic, SssgenError
@@ -23,8 +23,6 @@ def missing_textures(
 ) -> list[Diagnostic]:
     """An error for each function whose baked textures are missing, and for each other picture that a stage names and
     that is not there; `bound` are the textures that there are, by their names in the scene.
-
-    A texture that is not baked is optional: without a file it has its default.
     """
     lacking = {
         (texture["technique"], texture["technique_name"])
@@ -32,21 +30,18 @@ def missing_textures(
         if texture["source_name"] not in bound
     }
     errors = []
-    for function in baked_functions(material.stages):
-        stage = function.stage
-        missing = [texture.name for texture in function.textures if (stage.technique.name, texture.name) in lacking]
-        if missing:
-            lacking -= {(stage.technique.name, name) for name in missing}
-            given = {name: stage.textures[name] for name in missing if name in stage.textures}
+    for stage, names, function in needed_textures(material.stages):
+        missing = [name for name in names if (stage.technique.name, name) in lacking]
+        lacking -= {(stage.technique.name, name) for name in missing}
+        given = {name: stage.textures[name] for name in missing if name in stage.textures}
+        if missing and function is not None:
             *others, last = [f"'{name}'" for name in missing]
-            names = f"textures {', '.join(others)} and {last}" if others else f"texture {last}"
-            about = f"{function.name} reads the {names}, baked from the body, and there is no file"
+            shown = f"textures {', '.join(others)} and {last}" if others else f"texture {last}"
+            about = f"{function.name} reads the {shown}, baked from the body, and there is no file"
             hint = advice(function, material, scene, given, is_scene(scene, material) and not given)
             errors.append(Diagnostic("error", about, stage.span, hint))
-    for stage in material.stages:
-        for name, file in stage.textures.items():
-            if (stage.technique.name, name) in lacking:
-                about = f"cannot find the file '{file}' of the texture '{name}'"
-                hint = f"it is searched for next to the material, in {posix(os.path.dirname(material.file) or '.')}"
-                errors.append(Diagnostic("error", about, stage.span, hint))
+        elif missing:
+            about = f"cannot find the file '{given[names[0]]}' of the texture '{names[0]}'"
+            hint = f"it is searched for next to the material, in {posix(os.path.dirname(material.file) or '.')}"
+            errors.append(Diagnostic("error", about, stage.span, hint))
     return errors

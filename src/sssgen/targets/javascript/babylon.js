@@ -178,7 +178,8 @@ const placedValue = (value, world) => (
 );
 
 /** The plug-in of a material. */
-function pluginClass(description, { moves, takesLight }) {
+function pluginClass(description, properties) {
+  const { moves, takesLight } = properties;
   const { name: materialName, parameters, textures, shells, passes } = description;
   const code = [0, 1].map((language) => placesOf(description, language));
   // Babylon keeps one program for each name of a plug-in
@@ -195,9 +196,11 @@ function pluginClass(description, { moves, takesLight }) {
     /** @type {Passes | undefined} */
     #passes;
 
-    constructor(material, isGiven) {
+    /** @param {(property: string) => any} given the texture that the page has set */
+    constructor(material, given) {
       super(material, key, 200);
-      if (passes) this.#passes = new Passes(material, passes, isGiven);
+      this.given = given;
+      if (passes) this.#passes = new Passes(material, passes, (property) => Boolean(given(property)));
       this.doNotSerialize = true;
       this.registerForExtraEvents = true; // calls hardBindForSubMesh and fillRenderTargetTextures
       this._enable(true);
@@ -277,6 +280,7 @@ function pluginClass(description, { moves, takesLight }) {
       for (const property of this.#passes?.properties ?? []) this.#write(buffer, property, drawn[property]);
       for (const property of placed) this.#write(buffer, property, placedValue(this._material[property], mesh.getWorldMatrix()));
       if (around) skyOf(mesh).forEach((numbers, channel) => writeNumbers(buffer, SKY[channel], 'vec4', numbers));
+      properties.checkTextures(this.given, (texture) => !texture.getTextureMatrix().isIdentityAs3x2());
       if (!shells[0].entry) return;
       const { minimum, maximum } = mesh.getRawBoundingInfo().boundingBox; // without the places of thin instances
       buffer.updateVector3('sss_body_min', minimum);
@@ -376,7 +380,7 @@ export function materialClass(description) {
       if (moves) this.time = null;
       /** One of Babylon's lights, which lights this unlit material; null: none. */
       if (takesLight) this.light = null;
-      new Plugin(this, (property) => this.#given[property] != null);
+      new Plugin(this, (property) => this.#given[property]);
       properties.checkNames(this, values);
       Object.assign(this, values);
     }

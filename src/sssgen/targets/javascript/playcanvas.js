@@ -211,7 +211,10 @@ export function materialClass(description) {
     setParameters(device, names) {
       if (moves) this.setParameter('sss_time', this.time ?? performance.now() / 1000);
       if (takesLight) this.#setLight(this.light);
-      if (!names) this.#setBodies();
+      if (!names) {
+        this.#setBodies();
+        properties.checkTextures((property) => this.#given.has(property));
+      }
       this.#passes.follow();
       super.setParameters(device, names);
     }

@@ -126,6 +126,14 @@ function texel({ type, default: name }) {
   return Object.assign(new THREE[type === 'sampler3D' ? 'Data3DTexture' : 'DataArrayTexture'](data, 1, 1, 1), settings);
 }
 
+const IDENTITY = new THREE.Matrix3();
+
+/** Whether three would transform coordinates for a texture. */
+function isTransformed(texture) {
+  if (texture.matrixAutoUpdate) texture.updateMatrix();
+  return !texture.matrix.equals(IDENTITY);
+}
+
 const TEXTURE_NODES = { sampler3D: TSL.texture3D, samplerCube: TSL.cubeTexture };
 
 /**
@@ -194,11 +202,9 @@ export function materialClass(description) {
         this.light = null;
         this.#uniforms.lightPlace.onRenderUpdate(() => this.#placeLight());
       }
-      if (passes.length) { // in WebGPURenderer
-        const first = this.#uniforms[passes[0].texture];
-        Object.assign(first, { updateBeforeType: 'object', updateBefore: (frame) => this.#drawPasses(frame) });
-      }
-      Object.assign(this, nodesOf(description, texts, this.#uniforms));
+      const nodes = nodesOf(description, texts, this.#uniforms);
+      Object.assign(nodes.colorNode, { updateBeforeType: 'object', updateBefore: (frame) => this.#prepare(frame) }); // in WebGPURenderer
+      Object.assign(this, nodes);
       this.setValues(values);
     }
 
@@ -272,8 +278,9 @@ export function materialClass(description) {
       return lightPlace.value.set(place.x, place.y, place.z, light.isDirectionalLight ? 0 : 1);
     }
 
-    /** @param {{ renderer: any, scene: THREE.Scene, camera: THREE.Camera, object: THREE.Mesh }} frame */
-    #drawPasses(frame) {
+    /** Before an object is drawn: draws its passes. @param {{ renderer: any, scene: THREE.Scene, camera: THREE.Camera, object: THREE.Mesh }} frame */
+    #prepare(frame) {
+      properties.checkTextures((property) => this.#given.has(property) && this[property], isTransformed);
       this.#passes.draw(frame, (property) => this.#given.has(property), (property, value) => {
         const node = this.#uniforms[property];
         if (value.isMatrix4) node.value.copy(value);
@@ -282,7 +289,7 @@ export function materialClass(description) {
     }
 
     onBeforeRender(renderer, scene, camera, geometry, object) {
-      if (passes.length) this.#drawPasses({ renderer, scene, camera, object });
+      this.#prepare({ renderer, scene, camera, object });
       this.#ofObject.place(object, renderer);
       if (moves) this.#uniforms.time.value = this.#seconds();
       if (takesLight) this.#placeLight();

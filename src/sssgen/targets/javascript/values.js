@@ -19,6 +19,7 @@
  * @property {string} default the texel that is read where there is no texture: a key of TEXELS
  * @property {string} [colorSpace] the colour space of its texels
  * @property {boolean} [color] whether it has colours, in sRGB
+ * @property {string} [needed] what to do for it, where a picture without it is wrong
  * @property {string} name the name in the shader
  */
 
@@ -39,6 +40,9 @@ function shown(value) {
 
 /** The properties that a material adds to the engine's class. */
 export class Properties {
+  /** The textures with a warning. */
+  #warned = new Set();
+
   /**
    * @param {object} material as its module describes it
    * @param {string} material.name
@@ -92,6 +96,25 @@ export class Properties {
     const read = this.textures[name].type.replace('sampler', '');
     const given = cube ? 'Cube' : volume ? '3D' : layers ? '2DArray' : '2D';
     if (read !== given) throw new TypeError(`${this.material}: '${name}' takes a ${read} texture, not a ${given} texture`);
+  }
+
+  /**
+   * Warns when a body is drawn, once for each texture: of one that is missing, and of a transform that has no effect.
+   * @param {(name: string) => any} given the texture that the page has set
+   * @param {(texture: any) => boolean} isTransformed whether the engine would transform coordinates for it
+   */
+  checkTextures(given, isTransformed = () => false) {
+    for (const [name, { needed }] of Object.entries(this.textures)) {
+      const texture = given(name);
+      if (needed && !texture) this.#warn(name, `is missing: ${needed}`);
+      if (texture && isTransformed(texture)) this.#warn(name, 'has a transform, which has no effect: the technique uv_transform moves texture coordinates');
+    }
+  }
+
+  #warn(name, text) {
+    if (this.#warned.has(name)) return;
+    this.#warned.add(name);
+    console.warn(`${this.material}: '${name}' ${text}`);
   }
 
   /**

@@ -87,6 +87,8 @@ export interface TextureParameter {
   type: string;
   default: 'white' | 'black' | 'gray' | 'bump';
   color: boolean;
+  /** What to do for it, where a picture without it is wrong. */
+  needed?: string;
   name: string;
 }
 

@@ -85,6 +85,8 @@ export interface TextureParameter {
   type: string;
   default: 'white' | 'black' | 'gray' | 'bump';
   colorSpace: 'srgb' | 'linear';
+  /** What to do for it, where a picture without it is wrong. */
+  needed?: string;
   name: string;
 }
 
