@@ -12,11 +12,10 @@ import re
 
 from sssgen.support.diagnostics import failure
 
-FOLDERS = {
-    ending: os.path.join(os.path.dirname(__file__), name)
-    for ending, name in ((".js", "javascript"), (".gd", "gdscript"), (".cs", "csharp"))
-}
-"""The folders of the project's own modules and scripts, by the endings of their files."""
+FOLDER = os.path.join(os.path.dirname(__file__), "javascript")
+"""The folder of the project's own modules."""
+SCRIPTS = {".gd": "gdscript", ".cs": "csharp"}
+"""The folders of its scripts beside it, by the endings of their files."""
 _IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
 _TYPE = re.compile(r"import\('\./[^']*'\)\.")
 _EXPORT = re.compile(r"^export (?!default|\{|\*)", re.MULTILINE)
@@ -51,7 +50,7 @@ def inlined_text(sources: tuple[str, ...], folder: str) -> str:
 
 def _read(name: str, folder: str) -> str:
     own = os.path.join(folder, name)
-    project = os.path.join(FOLDERS.get(os.path.splitext(name)[1], FOLDERS[".js"]), name)
+    project = os.path.join(FOLDER, "..", SCRIPTS.get(os.path.splitext(name)[1], "javascript"), name)
     try:
         with open(own if os.path.isfile(own) else project, encoding="utf-8") as file:
             return file.read()
