@@ -9,7 +9,8 @@ have() { command -v "$1" >/dev/null 2>&1; }
 # What comes from outside Python, and what for.
 needed="glslangValidator (GLSL and HLSL), spirv-val and spirv-cross (HLSL that runs), node with npm (Tint), gcc and g++
 with the headers of Python, Vulkan and X11 (DXC's package, the preprocessing of Unity's shaders), drivers for OpenGL and
-Vulkan (Mesa's software drivers do), and Chromium or Chrome (WebGPU in a browser)"
+Vulkan (Mesa's software drivers do), mcs and mono (the tests of the renderer feature for Unity), and Chromium or Chrome
+(WebGPU in a browser)"
 
 if ! have dpkg-query || ! have apt-get; then
     echo "not a Debian or Ubuntu machine: please see that these are there: $needed"
@@ -26,6 +27,7 @@ want_command spirv-cross spirv-cross
 have chromium || have google-chrome || want_command chromium-browser chromium
 want_command gcc gcc
 want_command g++ g++
+want_command mcs mono-mcs
 want_command node nodejs
 want_command npm npm
 for package in libegl1 libgl1 libgl1-mesa-dri mesa-vulkan-drivers libvulkan1 libvulkan-dev libx11-dev; do

@@ -211,10 +211,12 @@ def test_an_open_mesh_has_no_back_face(tmp_path: Path) -> None:
     np.testing.assert_array_equal(distance, [0.0])
 
 
-@pytest.mark.parametrize("name", ["unity", "unity-urp"])
-def test_unitys_pass_writes_the_distance(name: str, backend: Callable[[str], Backend], folder: Path) -> None:
-    """The pass of the emitted shader that draws the back faces, alone, on a mesh with one vertex per pixel."""
-    machine = backend(name)
+def test_the_pass_of_the_builtin_pipeline_writes_the_distance(backend: Callable[[str], Backend], folder: Path) -> None:
+    """The pass of the emitted shader that draws the back faces, alone, on a mesh with one vertex per pixel.
+
+    Those for URP have a test with the feature that draws them (`run/test_unity_passes.py`).
+    """
+    machine = backend("unity")
     assert isinstance(machine, UnityHLSL)
     files = compile(load_material(str(folder / "shown.toml")), machine.target.name).files
     (text,) = [text for file, text in files.items() if file.endswith(".shader")]

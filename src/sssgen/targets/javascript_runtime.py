@@ -1,7 +1,7 @@
 """The runtime of an engine: what its materials share, as one file beside them, the same for every material.
 
 For the web its sources are plain ES modules in `javascript/`, which import each other and are joined into one text. For
-Godot it is one script in `gdscript/`.
+Godot it is one script in `gdscript/`, for Unity one in `csharp/`.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from sssgen.support.diagnostics import failure
 
 FOLDER = os.path.join(os.path.dirname(__file__), "javascript")
 """The folder of the project's own modules."""
-SCRIPTS = os.path.join(os.path.dirname(__file__), "gdscript")
-"""The folder of its scripts."""
+SCRIPTS = {".gd": "gdscript", ".cs": "csharp"}
+"""The folders of its scripts beside it, by the endings of their files."""
 _IMPORT = re.compile(r"^import [^;]*;\n", re.MULTILINE)
 _TYPE = re.compile(r"import\('\./[^']*'\)\.")
 _EXPORT = re.compile(r"^export (?!default|\{|\*)", re.MULTILINE)
@@ -50,7 +50,7 @@ def inlined_text(sources: tuple[str, ...], folder: str) -> str:
 
 def _read(name: str, folder: str) -> str:
     own = os.path.join(folder, name)
-    project = os.path.join(SCRIPTS if name.endswith(".gd") else FOLDER, name)
+    project = os.path.join(FOLDER, "..", SCRIPTS.get(os.path.splitext(name)[1], "javascript"), name)
     try:
         with open(own if os.path.isfile(own) else project, encoding="utf-8") as file:
             return file.read()

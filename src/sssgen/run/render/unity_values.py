@@ -63,7 +63,7 @@ def _passes(
 ) -> list[Drawing]:
     """The draws, whose pictures are added."""
     reflection = compiled.reflection
-    (name,) = (file["name"] for file in reflection["files"])
+    (name,) = (file["name"] for file in reflection["files"] if file["stages"])
     shader, bound_textures = file_text(compiled, reflection, name), textures(reflection, shell)
     values = _engine(shell, size) | _properties(reflection, shell)
 
