@@ -10,7 +10,7 @@ import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Viewport } from '@babylonjs/core/Maths/math.viewport.js';
 import '@babylonjs/core/Shaders/depth.vertex.js';
 import '@babylonjs/core/ShadersWGSL/depth.vertex.js';
-import { LAYERS, LAYER_GAP, PACKED_WGSL, PACKING_GLSL, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
 
 // The shaders, in GLSL and in WGSL. The vertices are those of Babylon's own depth maps: with bones, morph targets and instances.
 
@@ -51,9 +51,9 @@ fn main(input: FragmentInputs) -> FragmentOutputs {
 }`];
 
 /** Four layers in one picture: vertex shader and fragment shader. */
-const PACKING = [[/* glsl */ `
+const PACKINGS = [[/* glsl */ `
 attribute vec2 position;
-void main(void) { gl_Position = vec4(position, 0.0, 1.0); }`, PACKING_GLSL], [/* wgsl */ `
+void main(void) { gl_Position = vec4(position, 0.0, 1.0); }`, PACKING.glsl], [/* wgsl */ `
 attribute position: vec2f;
 @vertex
 fn main(input: VertexInputs) -> FragmentInputs { vertexOutputs.position = vec4f(vertexInputs.position, 0.0, 1.0); }`, /* wgsl */ `
@@ -61,7 +61,7 @@ ${LAYERS.map((name) => `var ${name}: texture_2d<f32>;`).join('\n')}
 @fragment
 fn main(input: FragmentInputs) -> FragmentOutputs {
   let at = vec2i(fragmentInputs.position.xy);
-  fragmentOutputs.color = ${PACKED_WGSL};
+  fragmentOutputs.color = ${PACKING.wgsl};
 }`]];
 
 const languageOf = (engine) => Number(engine.isWebGPU);
@@ -217,7 +217,7 @@ class Packing {
   #layers = [];
 
   constructor(engine) {
-    const shaderLanguage = languageOf(engine), [vertexShader, fragmentShader] = PACKING[shaderLanguage];
+    const shaderLanguage = languageOf(engine), [vertexShader, fragmentShader] = PACKINGS[shaderLanguage];
     this.renderer = new EffectRenderer(engine);
     this.shader = new EffectWrapper({ engine, name: 'sssgen layers', vertexShader, fragmentShader, samplerNames: LAYERS, shaderLanguage });
     this.shader.onApplyObservable.add(() => {

@@ -20,15 +20,16 @@ export const LAYER_GAP = 1e-3;
 
 /** The names of layers in the shader that writes four into one picture. */
 export const LAYERS = ['sss_layer0', 'sss_layer1', 'sss_layer2', 'sss_layer3'];
-/** That shader in GLSL. */
-export const PACKING_GLSL = /* glsl */ `
+/** That shader: in GLSL the whole, in WGSL what it writes. */
+export const PACKING = {
+  glsl: /* glsl */ `
 ${LAYERS.map((name) => `uniform highp sampler2D ${name};`).join('\n')}
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   gl_FragColor = vec4(${LAYERS.map((name) => `texelFetch(${name}, at, 0).r`).join(', ')});
-}`;
-/** What it writes in WGSL. */
-export const PACKED_WGSL = `vec4f(${LAYERS.map((name) => `textureLoad(${name}, at, 0).r`).join(', ')})`;
+}`,
+  wgsl: `vec4f(${LAYERS.map((name) => `textureLoad(${name}, at, 0).r`).join(', ')})`,
+};
 
 /** What a texel without a surface has. */
 export const emptyOf = ({ empty }) => (empty === 'far' ? FAR : 0);

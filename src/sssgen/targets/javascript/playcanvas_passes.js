@@ -2,9 +2,8 @@
 // sets itself is not drawn.
 
 import * as pc from 'playcanvas';
-import { LAYERS, LAYER_GAP, PACKED_WGSL, PACKING_GLSL, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
 
-/** @typedef {import('./frame_passes.js').Pass} Pass */
 
 /**
  * An object with what PlayCanvas's types keep to the engine.
@@ -100,14 +99,14 @@ function packingPass(device) {
   const pass = new pc.RenderPassShaderQuad(device);
   pass.shader = pc.ShaderUtils.createShader(device, {
     uniqueName: 'sss_packing', attributes: { vertex_position: pc.SEMANTIC_POSITION }, vertexChunk: 'fullscreenQuadVS',
-    fragmentGLSL: PACKING_GLSL,
+    fragmentGLSL: PACKING.glsl,
     fragmentWGSL: `
 ${LAYERS.map((name) => `var ${name}: texture_2d<uff>;`).join('\n')}
 @fragment
 fn fragmentMain(input: FragmentInput) -> FragmentOutput {
   var output: FragmentOutput;
   let at = vec2i(pcPosition.xy);
-  output.color = ${PACKED_WGSL};
+  output.color = ${PACKING.wgsl};
   return output;
 }`,
   });

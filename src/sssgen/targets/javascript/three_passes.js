@@ -3,7 +3,7 @@
 
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
-import { LAYERS, LAYER_GAP, PACKING_GLSL, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
 
 /** The layer of three that only a pass draws. */
 const ALONE = 31;
@@ -70,7 +70,7 @@ function packingMaterial(nodes) {
   if (!nodes) {
     const uniforms = glslUniforms(Object.fromEntries(LAYERS.map((name) => [name, emptyPicture()])));
     const vertexShader = 'void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }';
-    return { uniforms, material: new THREE.ShaderMaterial({ ...settings, uniforms, vertexShader, fragmentShader: PACKING_GLSL }) };
+    return { uniforms, material: new THREE.ShaderMaterial({ ...settings, uniforms, vertexShader, fragmentShader: PACKING.glsl }) };
   }
   const uniforms = Object.fromEntries(LAYERS.map((name) => [name, TSL.textureLoad(emptyPicture(), TSL.ivec2(TSL.screenCoordinate))]));
   /** @type {any} */

@@ -26,11 +26,15 @@ vec3 sss_surroundings(vec3 direction) {
 }
 `;
 
-/** A value of a light, which a page may change at any time. */
+/**
+ * A value of a light, which a page may change at any time.
+ * @returns {any} a node
+ */
 const ofLight = (value, update) => TSL.uniform(value).onRenderUpdate((_, self) => update(self.value));
 
 /** What a light of the surroundings gives to a surface that faces a direction of the world; null for other lights. */
 function lightOf(light, direction) {
+  /** @returns {any} three's types know no uniform of a colour */
   const color = (name) => ofLight(new THREE.Color(), (value) => value.copy(light[name]).multiplyScalar(light.intensity));
   if (light.isAmbientLight) return color('color');
   if (light.isHemisphereLight) {
@@ -38,6 +42,7 @@ function lightOf(light, direction) {
     return TSL.mix(color('groundColor'), color('color'), up.dot(direction).mul(0.5).add(0.5));
   }
   if (!light.isLightProbe) return null;
+  /** @type {any} */
   const harmonics = TSL.uniformArray(Array.from({ length: 9 }, () => new THREE.Vector3()));
   harmonics.onRenderUpdate((_, { array }) => {
     array.forEach((value, index) => value.copy(light.sh.coefficients[index]).multiplyScalar(light.intensity));
