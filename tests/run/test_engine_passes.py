@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Iterator
 from functools import cache, partial
 from pathlib import Path
@@ -12,7 +11,7 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import mesh_of, through
+from engine_cases import half_as_large, mesh_of, through
 from skips import or_skip
 from sssgen.run.backends import Array
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
@@ -105,18 +104,8 @@ def test_other_scenes(page: EnginePage, stage: dict[str, Any], case_of: Callable
 @pytest.mark.parametrize("page", [("threejs", name) for name in THREE.renderers], ids="-".join, indirect=True)
 def test_values_of_the_object_come_from_its_matrix(page: EnginePage) -> None:
     """wax_mouse half as large and in another place: the page sets no scale."""
-    mesh, compiled = mesh_of("wax_mouse"), sssgen.compile("wax_mouse", "threejs")
-    moved = np.diag([0.5, 0.5, 0.5, 1.0])
-    moved[:3, 3] = [0.3, -0.2, 0.1]
-    own = mesh.shell
-    shell = dataclasses.replace(
-        own,
-        model=moved @ own.model,
-        camera_position=tuple(moved[:3, :3] @ own.camera_position + moved[:3, 3]),
-        view_projection=own.view_projection @ np.linalg.inv(moved),
-        parameters={**own.parameters, "object_scale": (0.5 * own.parameters["object_scale"][0],)},
-        ambient=(0.0, 0.0, 0.0),
-    )
+    (mesh, half), compiled = half_as_large("wax_mouse"), sssgen.compile("wax_mouse", "threejs")
+    own, shell = mesh.shell, half.shell
     assert shell.unplaced(compiled.reflection["uniforms"])["object_scale"] == pytest.approx([1.0])
     drawn = page_values.shade(compiled, shell, page, mesh.size, mesh.points, BLACK["threejs"])
     expected, whole = (through("wax_mouse", mesh._replace(shell=one)) for one in (shell, own))
