@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import mesh_of, through
-from godot_scenes import THROUGH, text_of
+from engine_cases import half_as_large, mesh_of, through
+from godot_scenes import THROUGH, as_godot_stores, text_of
 from sssgen.run.backends.godot_drawing import RENDERERS, Godot
 from sssgen.run.compilers import Compiler
 from sssgen.run.render import godot_values
@@ -98,3 +98,20 @@ def test_the_script_draws_the_passes(
     difference = np.abs(drawn - expected)[..., :3][inner_pixels(mesh.hit)].max(axis=-1)
     print(f"{case}, {renderer}: {255 * np.quantile(difference, 0.98):.2f}")
     assert np.quantile(difference, 0.98) < 1.0 / 255.0 and expected.mean() > 0.01
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("renderer", RENDERERS)
+def test_values_of_the_body_come_from_its_matrix(renderer: str, compiler: Callable[[str], Compiler]) -> None:
+    """wax_mouse half as large and in another place: no parameter of the material differs."""
+    compiler("godot")
+    compiled = sssgen.compile("wax_mouse", "godot")
+    whole, half = (mesh._replace(points=as_godot_stores(mesh.points)) for mesh in half_as_large("wax_mouse"))
+    values = [godot_values.values_of(compiled.reflection, mesh.shell) for mesh in (whole, half)]
+    assert values[0]["object_scale"]["value"] == pytest.approx(values[1]["object_scale"]["value"])
+    drawn = godot_values.shade(
+        text_of(compiled, THROUGH), compiled.reflection, half.shell, Godot(renderer), half.size, half.points
+    )
+    expected = through("wax_mouse", half)
+    assert np.abs(drawn - expected)[..., :3][half.hit].max() < 1.0 / 255.0
+    assert np.abs(through("wax_mouse", whole) - expected)[..., :3][half.hit].max() > 0.02, "the size matters"

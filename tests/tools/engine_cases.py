@@ -75,6 +75,22 @@ def through(name: str, mesh: PlacedMesh) -> Array:
     return shade_numpy.shade(_without_reflection(name), dark, mesh.size, mesh.points, "float64")
 
 
+def half_as_large(name: str) -> tuple[PlacedMesh, PlacedMesh]:
+    """An example, and its body and camera half as large and in another place, where it covers the same pixels."""
+    mesh = mesh_of(name)
+    own = dataclasses.replace(mesh.shell, ambient=(0.0, 0.0, 0.0))
+    moved = np.diag([0.5, 0.5, 0.5, 1.0])
+    moved[:3, 3] = [0.3, -0.2, 0.1]
+    shell = dataclasses.replace(
+        own,
+        model=moved @ own.model,
+        camera_position=tuple(moved[:3, :3] @ own.camera_position + moved[:3, 3]),
+        view_projection=own.view_projection @ np.linalg.inv(moved),
+        parameters={**own.parameters, "object_scale": (0.5 * own.parameters["object_scale"][0],)},
+    )
+    return mesh._replace(shell=own), mesh._replace(shell=shell)
+
+
 def _without_reflection(material: str) -> Compiled:
     """The material in NumPy, without reflected light."""
     compiled = sssgen.compile(material, "numpy")

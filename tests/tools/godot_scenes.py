@@ -62,7 +62,7 @@ def _picture(name: str, engine: str, part: str) -> Array:
     def shade(_: object, compiled: Compiled, shell: Shell, size: tuple[int, int], points: Array | None) -> Array:
         reflection = compiled.reflection
         if points is not None:
-            points = _as_godot_stores(points)
+            points = as_godot_stores(points)
         if isinstance(backend, Godot):
             return godot_values.shade(text_of(compiled, part), reflection, shell, backend, size, points)
         if part == THROUGH:
@@ -87,7 +87,7 @@ def raymarched_deviation(renderer: str) -> Array:
     return difference
 
 
-def _as_godot_stores(points: Array) -> Array:
+def as_godot_stores(points: Array) -> Array:
     """The vertices with the normals and tangents that Godot's meshes have: two numbers of 16 bits each."""
     stored = points.copy()
     stored[:, 3:6], stored[:, 6:9] = _rounded(points[:, 3:6]), _rounded(points[:, 6:9])

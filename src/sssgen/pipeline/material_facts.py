@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from sssgen.ir.nodes import Uniform
 from sssgen.material.chain_assembly import RAYS
 from sssgen.material.model import Material
+from sssgen.material.requirements import read_uniforms
 
 
 def facts_of(material: Material) -> set[str]:
@@ -12,7 +14,14 @@ def facts_of(material: Material) -> set[str]:
     screen = rays or material.makes_rays
     facts = {material.shading, material.alpha_mode, "screen" if screen else "mesh"}
     facts |= {"two_sided"} if material.two_sided else set()
+    facts |= (
+        {"placed"} if any(_is_placed(uniform) for use in material.stages for uniform in read_uniforms(use)) else set()
+    )
     return facts | ({"picture"} if screen and not rays else set())
+
+
+def _is_placed(uniform: Uniform) -> bool:
+    return ("placed", ()) in uniform.hints
 
 
 def _reads_rays(material: Material) -> bool:

@@ -340,14 +340,14 @@ _NESTED = ("files", "ports", "embedded", *_FRAME)
 """The sections of sections; `_FRAME` are those of a frame."""
 _REQUIRED = ("title", "language", "types", "files")
 FACTS = (
-    "two_sided", "lit", "unlit", "mesh", "screen", "picture", "opaque", "mask", "blend",
+    "two_sided", "lit", "unlit", "mesh", "screen", "picture", "opaque", "mask", "blend", "placed",
     "normal_mapped", "tangent_frame", "translucency", "subsurface", "per_light", "lighting",
 )  # fmt: skip
 """The properties of a material for which a descriptor may have variants; the later ones win. `screen` is a material
 that makes its own picture, without a mesh, and `picture` one of these that reads no ray of the eye; `opaque`,
-`mask` and `blend` are alpha modes. The last six are those of the chain in a file: a technique writes the normal;
-one does, or reads T or B (`tangent_frame`); light comes through; it does so alike from all lights (`subsurface`),
-or depends on the light (`per_light`); a technique lights."""
+`mask` and `blend` are alpha modes, `placed` has parameters with that hint. The last six are those of the chain in a
+file: a technique writes the normal; one does, or reads T or B (`tangent_frame`); light comes through; it does so
+alike from all lights (`subsurface`), or depends on the light (`per_light`); a technique lights."""
 _KEYS: dict[str, Collection[str]] = {
     "": ("extends", "words", *Target._fields[:-1]),
     "types": (*BY_NAME, "sampler", "samplerShadow"),

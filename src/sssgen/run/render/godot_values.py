@@ -36,7 +36,8 @@ def view_of(shell: Shell, size: tuple[int, int], points: Array | None, triangles
     right, up, forward = rows / np.linalg.norm(rows, axis=1, keepdims=True)
     camera = np.eye(4)
     camera[:3, 0], camera[:3, 1], camera[:3, 2], camera[:3, 3] = right, up, -forward, shell.camera_position
-    field_of_view = 2.0 * math.degrees(math.atan(1.0 / float(np.linalg.norm(rows[1]))))
+    slope = np.linalg.norm(rows[2]) / np.linalg.norm(rows[1])  # also of a matrix that is scaled
+    field_of_view = 2.0 * math.degrees(math.atan(float(slope)))
     lights = [
         _light(position, color) for position, color in zip(shell.light_positions, shell.light_colors, strict=True)
     ]
@@ -52,8 +53,9 @@ def _light(position: Array, color: Array) -> dict[str, Any]:
 def values_of(reflection: Reflection, shell: Shell) -> dict[str, Any]:
     """The scene's parameters, colours in sRGB as in the inspector; the others have the shader's own defaults."""
     values = {}
+    parameters = shell.unplaced(reflection["uniforms"])
     for uniform in reflection["uniforms"]:
-        numbers = shell.parameters.get(uniform["source_name"])
+        numbers = parameters.get(uniform["source_name"])
         if numbers is not None:
             plain = np.asarray(numbers, np.float64).ravel()
             if uniform["color"]:

@@ -4,7 +4,6 @@
 import * as pc from 'playcanvas';
 import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
 
-
 /**
  * An object with what PlayCanvas's types keep to the engine.
  * @param {object} object
@@ -239,7 +238,7 @@ function pictureOf(device, name, channels, { width, height, origin }) {
 class Body {
   /** @type {Map<pc.Material, any>} */
   #copies = new Map();
-  /** @type {{ pass: Pass, camera: any, origin: any, layers: pc.RenderTarget[], packed: pc.RenderTarget, version: number }[]} */
+  /** @type {{ pass: import('./frame_passes.js').Pass, camera: any, origin: any, layers: pc.RenderTarget[], packed: pc.RenderTarget, version: number }[]} */
   #pictures = [];
 
   /** @param {pc.MeshInstance} instance */
@@ -313,7 +312,7 @@ export class Passes {
 
   /**
    * @param {any} device
-   * @param {{ passes?: Pass[], textures: Record<string, { name: string }>, parameters: Record<string, { name: string }> }} description
+   * @param {{ passes?: import('./frame_passes.js').Pass[], textures: Record<string, { name: string }>, parameters: Record<string, { name: string }> }} description
    * @param {Set<pc.MeshInstance>} instances those that have the material
    * @param {(property: string) => boolean} given whether the page has set a texture
    */

@@ -17,14 +17,20 @@ _DEFAULTS = {"default_black": "hint_default_black", "default_bump": "hint_normal
 
 
 class GodotPrinter(GlslPrinter):
-    """Colours pass `linear_color` where they are read: the Compatibility renderer leaves them encoded."""
+    """Colours pass `linear_color` where they are read: the Compatibility renderer leaves them encoded. Parameters with
+    the hint `placed` get the object's matrix there."""
 
     def __init__(self, target: Target, module: ir.Module) -> None:
         super().__init__(target, module)
+        self.placed = {uniform.name for uniform in module.uniforms if has_hint(uniform, "placed")}
         self.color_types = {uniform.name: uniform.type for uniform in module.uniforms if uniform.name in self.colors}
 
     def global_value(self, value: ir.Global) -> str:
         name, color = super().global_value(value), self.color_types.get(value.name)
+        if name in self.placed:  # with the object's matrices, which the descriptor declares as varyings
+            if isinstance(value.type, Matrix):
+                return f"({name} * object_from_world)"
+            return f"({name} * pow(abs(determinant(mat3(world_from_object))), 1.0 / 3.0))"
         if isinstance(color, Vector):
             return f"linear_color({name})" if color == VEC4 else f"linear_color(vec4({name}, 1.0)).rgb"
         return name
