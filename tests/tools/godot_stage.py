@@ -35,6 +35,8 @@ func _process(_delta):
 
 func build():
     body = get_parent()
+    if stage.has("sky"):
+        shine(get_viewport().get_camera_3d().environment)
     if stage.has("instances"):
         body.visible = false
         var many = MultiMeshInstance3D.new()
@@ -65,6 +67,25 @@ func build():
         body.get_parent().add_child(wall)
     for place in [stage["place"]] + stage.get("lamps", []):
         add_lamp(place)
+
+# The side of a direction is white, or the surroundings have one colour.
+func shine(environment):
+    if stage["sky"] is String:
+        environment.ambient_light_source = Environment.AMBIENT_SOURCE_COLOR
+        environment.ambient_light_color = Color(stage["sky"])
+        return
+    var way = Vector3(stage["sky"][0], stage["sky"][1], stage["sky"][2])
+    var image = Image.create(128, 64, false, Image.FORMAT_RGBH)
+    for y in 64:
+        for x in 128:
+            var around = TAU * (x + 0.5) / 128
+            var polar = PI * (y + 0.5) / 64
+            var at = Vector3(-sin(around) * sin(polar), cos(polar), cos(around) * sin(polar))
+            image.set_pixel(x, y, Color.WHITE if at.dot(way) > 0.0 else Color.BLACK)
+    environment.ambient_light_source = Environment.AMBIENT_SOURCE_SKY
+    environment.sky = Sky.new()
+    environment.sky.sky_material = PanoramaSkyMaterial.new()
+    environment.sky.sky_material.panorama = ImageTexture.create_from_image(image)
 
 func transform_of(x):
     var columns = []
@@ -126,9 +147,9 @@ _MATERIAL = '[material]\nname = "m"\n[translucency]\ntechnique = "./made.sss"\n'
 class Stage:
     """One of Godot's renderers, which runs as long as the context, as a page that `shadow_cases` draws in."""
 
-    def __init__(self, renderer: str, folder: Path) -> None:
-        (folder / "made.sss").write_text(HALF, "utf-8")
-        (folder / "m.toml").write_text(_MATERIAL, "utf-8")
+    def __init__(self, renderer: str, folder: Path, technique: str = HALF, surface: str = "") -> None:
+        (folder / "made.sss").write_text(technique, "utf-8")
+        (folder / "m.toml").write_text(_MATERIAL + surface, "utf-8")
         compiled = sssgen.compile(str(folder / "m.toml"), "godot")
         self.shader = text_of(compiled, THROUGH)
         self.scripts = {name: text for name, text in compiled.files.items() if name.endswith(".gd")}

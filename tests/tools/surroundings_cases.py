@@ -42,15 +42,15 @@ def check_surroundings(page: EnginePage, target: str, properties: Mapping[str, A
     uniform = drawn((0.25, 0.5, 1.0))
     seen = uniform[..., 3] > 0.5
     assert seen.sum() > 200 and np.abs(uniform[seen][:, :3] - (0.25, 0.5, 0.0)).max() < LEVEL
-    up = _heights(seen)
+    up = normals(seen)[1]
     for kind, error in kinds.items():
         front, behind = drawn(around=kind)[seen][:, :2].T
         assert np.abs(front - (0.5 + 0.5 * up)).max() < error, kind
         assert np.abs(behind - (0.5 - 0.5 * up)).max() < error, kind
 
 
-def _heights(seen: Array) -> Array:
-    """The y of the ball's normal in the seen pixels."""
+def normals(seen: Array) -> Array:
+    """The ball's normals in the seen pixels, (3, n)."""
     height, width = seen.shape
     x, y = np.meshgrid((np.arange(width) + 0.5) / width * 2.0 - 1.0, (np.arange(height) + 0.5) / height * 2.0 - 1.0)
     inverse = np.linalg.inv(view_projection())
@@ -59,5 +59,5 @@ def _heights(seen: Array) -> Array:
     ways /= np.linalg.norm(ways, axis=1, keepdims=True)
     along = ways @ np.array(EYE)
     length = -along - np.sqrt(np.maximum(along**2 - np.dot(EYE, EYE) + 0.7**2, 0.0))
-    heights: Array = (EYE + ways * length[:, None])[:, 1] / 0.7
-    return heights
+    result: Array = (EYE + ways * length[:, None]).T / 0.7
+    return result

@@ -73,6 +73,7 @@ void fragment() {
 ## Material → the node whose pictures it has.
 static var _owners := {}
 var _casters: Casters
+var _sky := SkyLight.new()
 var _pictures: Array[Picture] = []
 var _lights: Array[Light3D] = []
 var _materials: Array[ShaderMaterial] = []
@@ -112,6 +113,7 @@ func _exit_tree() -> void:
 	for picture in _pictures:
 		picture.release()
 	for material in _materials:
+		material.set_shader_parameter("sky_light_matrix", null)
 		if _owners[material] == self:
 			_owners.erase(material)
 	_pictures.clear()
@@ -130,6 +132,9 @@ func _draw() -> void:
 		camera = eye if is_instance_valid(eye) else body.get_viewport().get_camera_3d()
 		seen = camera != null
 		_find_materials()
+		_sky.follow(camera)
+		for material in _materials:
+			material.set_shader_parameter("sky_light_matrix", _sky.matrix)
 	for picture in _pictures:
 		if seen:
 			picture.draw(body, camera, _brightest)

@@ -1,0 +1,73 @@
+## The light of the surroundings, as a matrix: from a direction, with w = 1, to what a white matte surface shows that faces
+## it. It is linear in the direction, so that it has no more than one bright side for each channel.
+class SkyLight:
+	## Of the picture that is measured.
+	const SIZE := Vector2i(32, 16)
+	## Godot makes the light of a sky in some frames.
+	const FRAMES := 4
+	## Those of an environment that decide.
+	const PROPERTIES: Array[String] = [
+		"ambient_light_source", "ambient_light_color", "ambient_light_energy", "ambient_light_sky_contribution",
+		"background_mode", "background_color", "background_energy_multiplier", "sky",
+	]
+	var matrix := Projection(Vector4.ZERO, Vector4.ZERO, Vector4.ZERO, Vector4.ZERO)
+	var _environment: Environment
+	var _facts := []
+	var _left := 0
+
+	func follow(eye: Camera3D) -> void:
+		var world := eye.get_world_3d()
+		_environment = eye.environment
+		if _environment == null:
+			_environment = world.environment if world.environment != null else world.fallback_environment
+		var facts := [_environment]
+		if _environment != null:  # it does not tell of its changes
+			facts.append_array(PROPERTIES.map(func(property): return _environment.get(property)))
+		if facts != _facts:
+			_facts = facts
+			_left = FRAMES
+		if _left > 0:
+			_left -= 1
+			matrix = _measured()
+
+	func _measured() -> Projection:
+		var result := Projection(Vector4.ZERO, Vector4.ZERO, Vector4.ZERO, Vector4.ZERO)
+		if _environment == null:
+			return result
+		var of_background := _environment.ambient_light_source == Environment.AMBIENT_SOURCE_BG
+		var background := _environment.background_mode if of_background else Environment.BG_KEEP
+		var color := Color.BLACK
+		if background == Environment.BG_CLEAR_COLOR:
+			color = RenderingServer.get_default_clear_color().srgb_to_linear()
+		elif background == Environment.BG_COLOR:
+			color = _environment.background_color.srgb_to_linear() * _environment.background_energy_multiplier
+		elif not of_background and _environment.ambient_light_source != Environment.AMBIENT_SOURCE_DISABLED:
+			color = _environment.ambient_light_color.srgb_to_linear() * _environment.ambient_light_energy
+		var of_sky := background == Environment.BG_SKY or _environment.ambient_light_source == Environment.AMBIENT_SOURCE_SKY
+		var share := _environment.ambient_light_sky_contribution if of_sky else 0.0
+		if share > 0.0 and _environment.sky != null:
+			result = _of_sky()
+		for i in 4:
+			result[i] *= share
+		result.w += Vector4(color.r, color.g, color.b, 0.0) * (1.0 - share)
+		return result
+
+	func _of_sky() -> Projection:
+		var energy := _environment.background_energy_multiplier
+		var picture := RenderingServer.sky_bake_panorama(_environment.sky.get_rid(), energy, true, SIZE)
+		var result := Projection(Vector4.ZERO, Vector4.ZERO, Vector4.ZERO, Vector4.ZERO)
+		var whole := 0.0
+		for y in SIZE.y if picture != null and not picture.is_empty() else 0:
+			var polar := PI * (y + 0.5) / SIZE.y
+			for x in SIZE.x:
+				var around := TAU * (x + 0.5) / SIZE.x
+				var way := Vector3(sin(around) * sin(polar), -cos(polar), cos(around) * sin(polar))
+				var color := picture.get_pixel(x, y)
+				var light := Vector4(color.r, color.g, color.b, 0.0) * sin(polar)
+				whole += sin(polar)
+				for axis in 3:
+					result[axis] += 3.0 * way[axis] * light
+				result.w += light
+		for i in 4:
+			result[i] /= maxf(whole, 1e-6)
+		return result
