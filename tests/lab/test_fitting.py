@@ -188,7 +188,8 @@ def test_the_emitted_material_gives_the_measured_light(
     files = material_files(cube.scene, picked(cube.scene, point), "mine")
     for name, text in files.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
-    emitted = Chain(parse_material(files["mine.toml"], str(tmp_path / "mine.toml")))
+    material = parse_material(files["mine.toml"], str(tmp_path / "mine.toml"))
+    emitted = Chain(material._replace(surroundings=False))  # the light is that of a lamp
     albedo = emitted.surface(fit_problem.parts[0].inputs, "albedo")
     # its text contains the fitted parameters; only those of the scene's body are set
     light = fit_problem.values(emitted, {}) + albedo * fit_problem.lambert

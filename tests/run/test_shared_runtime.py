@@ -137,7 +137,9 @@ def unlit(folder: Path, declarations: str, body: str, target: str) -> Compiled:
 def shown(page: EnginePage, compiled: Compiled, **parameters: float) -> Array:
     """The colours that an unlit material without textures gives a mesh."""
     reflection = {**compiled.reflection, "textures": []}
-    bare = Compiled({**compiled.files, "m.reflection.json": json.dumps(reflection)}, [])
+    # a volume that no bake made would be a warning
+    files = {name: re.sub(r'needed: "[^"]*"', "needed: null", text) for name, text in compiled.files.items()}
+    bare = Compiled({**files, "m.reflection.json": json.dumps(reflection)}, [])
     mesh = mesh_of("wax_mouse")
     given = {name: np.array([value]) for name, value in parameters.items()}
     shell = dataclasses.replace(mesh.shell, parameters=given, ambient=(0.0, 0.0, 0.0))

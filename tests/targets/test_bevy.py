@@ -187,7 +187,8 @@ def by_the_oracle(material: str, chain: dict[str, Array], textures: dict[str, Te
     compiled = sssgen.compile(material, "numpy", form="functions")
     functions: dict[str, Any] = {}
     exec(next(iter(compiled.files.values())), functions)
-    known: dict[str, Any] = {**chain, **textures}
+    dark = dict.fromkeys(("irradiance", "irradiance_behind"), np.zeros((3, LANES)))
+    known: dict[str, Any] = {**chain, **textures, **dark}
     for row in compiled.reflection["uniforms"]:
         value = np.array(row["default"], np.float64)
         known[row["name"]] = float(value[0]) if value.size == 1 else value[:, None] * np.ones(LANES)

@@ -123,7 +123,8 @@ def by_the_oracle(material: str, chain: Mapping[str, Array], textures: Mapping[s
     compiled = sssgen.compile(material, "numpy", form="functions")
     functions: dict[str, Any] = {}
     exec(next(iter(compiled.files.values())), functions)
-    known: dict[str, Any] = {**chain, **textures}
+    dark = dict.fromkeys(("irradiance", "irradiance_behind"), np.zeros((3, LANES)))
+    known: dict[str, Any] = {**chain, **textures, **dark}
     for row in compiled.reflection["uniforms"]:
         value = np.array(row["default"], np.float64)
         shaped = value.reshape(int(row["type"][-1]), -1) if row["type"].startswith("mat") else value
