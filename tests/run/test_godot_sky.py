@@ -30,7 +30,7 @@ def stage(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
         yield opened
 
 
-def drawn(stage: Stage, **others: Any) -> Array:
+def picture(stage: Stage, **others: Any) -> Array:
     body, place = ball(), np.array([[0.0, 0.0, -3.0, 0.0]])
     properties = {"stage": {"properties": {"light_energy": 0.0}, **others}}
     return stage.draw(
@@ -41,17 +41,17 @@ def drawn(stage: Stage, **others: Any) -> Array:
 
 def test_an_ambient_colour_comes_through(stage: Stage) -> None:
     """Red has the light in front of the surface, green the one behind it. Without the node there is none."""
-    lit = drawn(stage, sky="#ffffff")
+    lit = picture(stage, sky="#ffffff")
     seen = lit[..., 3] > 0.5
     assert seen.sum() > 200
     assert np.abs(lit[seen][:, :3] - (1.0, 1.0, 0.0)).max() < 0.01
-    assert np.abs(drawn(stage, sky="#ffffff", passes=False)[seen][:, :3]).max() < 0.01
+    assert np.abs(picture(stage, sky="#ffffff", passes=False)[seen][:, :3]).max() < 0.01
 
 
 @pytest.mark.parametrize("way", [(0, 1, 0), (1, 0, 0), (0, 0, 1), (0, 0, -1)])
 def test_a_sky_comes_through(stage: Stage, way: tuple[int, int, int]) -> None:
     """Its half towards a direction is white: that of a matte surface is (1 + cos) / 2."""
-    lit = drawn(stage, sky=way)
+    lit = picture(stage, sky=way)
     seen = lit[..., 3] > 0.5
     facing = np.array(way) @ normals(seen)
     front, behind = lit[seen][:, :2].T

@@ -32,19 +32,19 @@ def check_surroundings(page: EnginePage, target: str, properties: Mapping[str, A
     modules = page_values.modules_of(sssgen.compile(str(path), target))
     body = ball()
 
-    def drawn(ambient: Any = (), **stage: Any) -> Array:
+    def picture(ambient: Any = (), **stage: Any) -> Array:
         drawing = EngineDrawing(
             modules, SIZE, body.vertices.astype(np.float32), body.triangles, view_projection(), EYE, body.model,
             np.zeros((0, 4)), np.zeros((0, 3)), ambient=ambient, properties={**properties, "stage": stage},
         )  # fmt: skip
         return page.draw(drawing)
 
-    uniform = drawn((0.25, 0.5, 1.0))
+    uniform = picture((0.25, 0.5, 1.0))
     seen = uniform[..., 3] > 0.5
     assert seen.sum() > 200 and np.abs(uniform[seen][:, :3] - (0.25, 0.5, 0.0)).max() < LEVEL
     up = normals(seen)[1]
     for kind, error in kinds.items():
-        front, behind = drawn(around=kind)[seen][:, :2].T
+        front, behind = picture(around=kind)[seen][:, :2].T
         assert np.abs(front - (0.5 + 0.5 * up)).max() < error, kind
         assert np.abs(behind - (0.5 - 0.5 * up)).max() < error, kind
 
