@@ -13,6 +13,7 @@ from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import FLOAT, Array, Matrix, Sampler
 
 BACK_FACES, LIGHT, DISTANT, LAYERS = "back_faces", "light_depth", "distant_light_depth", "distant_light_layers"
+MATT = "matt_light"
 LIGHT_LAYERS = "light_layers"
 SHADOW, OCCLUDERS = "shadow_depth", "occluders"
 IRRADIANCE, REFLECTIONS = "irradiance", "reflections"
@@ -49,6 +50,13 @@ FRAME_PASSES = {
         "draw the translucent body alone with its front faces culled and a depth test that keeps the nearest, "
         "into a float texture that covers the screen; each texel is the distance from the eye (not the depth), and 0 "
         "where there is no back face",
+    ),
+    MATT: FramePass(
+        "body", "eye", ("light", "light", "light", "entry 1"), "far",
+        "draw the translucent body alone from the eye with a white matt material, in all its lights and shadows, into "
+        "a float texture that covers the screen; each texel is the light that this reflects, and in alpha the "
+        "distance from a plane across the view in the middle of the body in world units (not the value of the depth "
+        "buffer), and more than any of the body's where there is none",
     ),
     LIGHT: FramePass(
         "body", "light", ("entry 1",), "far", _OF_LIGHT.format("the translucent body alone", "light", "the body's")
@@ -112,7 +120,8 @@ class PassUse(NamedTuple):
     texture: Uniform
     """The picture"""
     views: tuple[Uniform, ...]
-    """For each light the matrix from world space to the picture: (u w, v w, distance from the light's plane, w)"""
+    """For each light, or for the eye, the matrix from world space to the picture: (u w, v w, distance from the light's
+    plane, or from one in the middle of the body, w)"""
     lights: Uniform | None
     """What these lights are, where the pass says it: an array"""
     size: Uniform | None

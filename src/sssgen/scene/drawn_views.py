@@ -16,6 +16,8 @@ BLOCK = 1 << 18
 """The number of rays that are cast at once: many, as a march goes on for its last ray with few rays left."""
 SIDES = ("entry", "exit")
 """The ends of an interval inside a body, in the order of `intervals`."""
+SHADOW_BIAS = 1e-3
+"""How far above the surface the rays of shadows start, in diagonals of the body's box."""
 TEXELS = 512
 """Width and height of a light's depth map."""
 TILES = 2
@@ -26,6 +28,28 @@ def back_faces(geometry: Geometry, origin: Array, directions: Array) -> Array:
     """The distance from the eye at `origin` (3,) to the nearest back face along each ray, (n,); 0 without one."""
     nearest = _nearest(geometry, np.broadcast_to(origin, directions.shape), directions, 1)[:, 0]
     result: Array = np.where(np.isfinite(nearest), nearest, 0.0)
+    return result
+
+
+def matt_light(geometry: Geometry, points: Array, normals: Array, lights: Array, colors: Array) -> Array:
+    """What a white matt surface in place of a body reflects of lights (k, 4) with colours (k, 3), (n, 3).
+
+    `points` and `normals` are (n, 3). The body shadows itself.
+    """
+    corners = world_corners(geometry)
+    away = SHADOW_BIAS * float(np.linalg.norm(np.ptp(corners, axis=0)))
+    result = np.zeros(points.shape)
+    for light, color in zip(lights, colors, strict=True):
+        ways = light[:3] - points * light[3]
+        lengths = np.linalg.norm(ways, axis=1)
+        ways /= np.maximum(lengths, 1e-9)[:, None]
+        cosines = np.einsum("nc,nc->n", normals, ways)
+        lit = np.flatnonzero(cosines > 0.0)
+        nearest = _nearest(geometry, points[lit] + away * normals[lit], ways[lit], 0)[:, 0]
+        reach = np.where(light[3] > 0.0, lengths[lit], np.inf)
+        lit = lit[nearest >= reach]
+        fall = np.where(light[3] > 0.0, 1.0 / np.maximum(lengths[lit] ** 2, 1e-4), 1.0)
+        result[lit] += (cosines[lit] * fall)[:, None] * color
     return result
 
 

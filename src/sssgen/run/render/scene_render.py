@@ -16,21 +16,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.ir.frame_passes import BACK_FACES
 from sssgen.ir.spans import Span
 from sssgen.material.material_loading import load_material
 from sssgen.material.shell_stages import with_shell
 from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.run.backend_registry import check_draws
 from sssgen.run.backends import Array, Backend
-from sssgen.run.evaluate.evaluation import half
 from sssgen.run.render import pixel_mesh
+from sssgen.run.render.eye_pictures import with_eye_pictures
 from sssgen.run.render.missing_textures import MissingTextures, missing_textures
 from sssgen.run.render.scene_values import shell_of
 from sssgen.run.render.shade import shade
 from sssgen.run.render.shell_values import Shell
-from sssgen.scene.drawn_views import back_faces
-from sssgen.scene.geometry import Geometry, Hits, Mesh
+from sssgen.scene.geometry import Mesh
 from sssgen.scene.geometry_mesh import is_closed
 from sssgen.scene.pictures.images import decode_srgb, encode_srgb
 from sssgen.scene.scene import Scene
@@ -39,7 +37,6 @@ from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.support.progress import Progress, silent
 from sssgen.targets.descriptor import Target
 from sssgen.targets.reflection_record import EntryRecord, Reflection
-from sssgen.targets.runtime.numpy_textures import Texture
 
 LARGEST = 8192
 """The largest number of samples along a side: the largest picture that every driver supports."""
@@ -170,25 +167,14 @@ def place_mesh(scene: Scene, compiled: Compiled, shell: Shell, target: Target, s
     wider = dataclasses.replace(scene.camera, field_of_view=2.0 * math.degrees(math.atan(half_angle)))
     origin, directions = wider.rays(*padded)
     hits = scene.geometry.hits(origin, directions)
-    screens = {
-        texture["source_name"]: _back_face_map(scene.geometry, hits, origin, directions, padded)
-        for texture in compiled.reflection["textures"]
-        if texture["drawn"] == BACK_FACES and texture["source_name"] not in shell.textures
-    }
     points = pixel_mesh.vertices(hits, origin, directions, shell.model, padded)
     far = float(np.linalg.norm(points[:, :3] @ shell.model[:3, :3].T + shell.model[:3, 3] - origin, axis=1).max())
     deep = dataclasses.replace(scene, camera=dataclasses.replace(wider, near=1e-3 * far, far=2.0 * far))
     matrix = _matrix(deep, target, padded[0] / padded[1])
-    shell = dataclasses.replace(shell, view_projection=matrix, screens=screens)
+    shell = dataclasses.replace(shell, view_projection=matrix)
+    shell = with_eye_pictures(shell, scene.geometry, compiled.reflection, wider, hits, padded)
     shape = padded[1], padded[0]
     return PlacedMesh(shell, padded, points, hits.hit.reshape(shape), (hits.front | ~hits.hit).reshape(shape))
-
-
-def _back_face_map(geometry: Geometry, hits: Hits, origin: Array, directions: Array, size: tuple[int, int]) -> Texture:
-    """The distance from the eye to the nearest back face in each pixel, row 0 at the bottom."""
-    distance = np.zeros(len(directions))
-    distance[hits.hit] = back_faces(geometry, origin, directions[hits.hit])
-    return half(Texture(distance.reshape(size[1], size[0], 1), wrap="clamp"))
 
 
 def _matrix(scene: Scene, target: Target, aspect: float) -> Array:

@@ -5,7 +5,8 @@
  * @typedef {object} Pass
  * @property {string} name
  * @property {string} seenFrom `eye`, `light`, `distant light` or `each light`
- * @property {string[]} layers for each channel `entry N` or `exit N`: the N-th front or back face
+ * @property {string[]} layers for each channel `entry N` or `exit N`: the N-th front or back face, or `light`: what a white
+ *   matt surface there reflects
  * @property {'0' | 'far'} empty what a texel without a surface has
  * @property {string} texture the property of the picture
  * @property {string[]} views the properties of the matrices from world space to the picture, one for each light
@@ -33,6 +34,9 @@ void main() {
 
 /** What a texel without a surface has. */
 export const emptyOf = ({ empty }) => (empty === 'far' ? FAR : 0);
+
+/** Whether a pass shows the light on the body, and not only distances. */
+export const showsLight = ({ layers }) => layers.includes('light');
 
 /** The tiles along a side of a picture. */
 export const columnsOf = ({ views }) => (views.length > 1 ? 2 : 1);

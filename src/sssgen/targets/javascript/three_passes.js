@@ -3,7 +3,7 @@
 
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
-import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
 
 /** The layer of three that only a pass draws. */
 const ALONE = 31;
@@ -80,8 +80,24 @@ function packingMaterial(nodes) {
   return { uniforms, material: Object.assign(new THREE.NodeMaterial(), { ...settings, vertexNode, fragmentNode }) };
 }
 
-function pictureOf(width, height, type) {
-  const settings = { type, format: THREE.RGBAFormat, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter };
+/** A white matt material, whose alpha is the distance from a plane at the distance `plane` from the eye's. */
+function mattMaterial(nodes) {
+  const settings = { roughness: 1, specularIntensity: 0, blending: THREE.NoBlending, fog: false };
+  if (nodes) {
+    const plane = TSL.uniform(0), distance = TSL.positionView.z.negate().sub(plane);
+    return { plane, material: new THREE.MeshPhysicalNodeMaterial({ ...settings, outputNode: TSL.vec4(TSL.output.rgb, distance) }) };
+  }
+  const plane = { value: 0 }, material = new THREE.MeshPhysicalMaterial(settings);
+  material.onBeforeCompile = (shader) => {
+    shader.uniforms.sss_plane = plane;
+    shader.fragmentShader = `uniform float sss_plane;\n${shader.fragmentShader}`
+      .replace('#include <opaque_fragment>', 'gl_FragColor = vec4(outgoingLight, vViewPosition.z - sss_plane);');
+  };
+  return { plane, material };
+}
+
+function pictureOf(width, height, type, filter) {
+  const settings = { type, format: THREE.RGBAFormat, minFilter: filter, magFilter: filter };
   return new THREE.WebGLRenderTarget(width, height, settings); // WebGPURenderer takes it, too
 }
 
@@ -147,10 +163,16 @@ class Drawing {
     this.nodes = renderer.isWebGPURenderer === true;
     this.gpu = this.nodes && renderer.backend.isWebGPUBackend === true;
     // half floats where a device does not filter others: three declares no sampler for a texture that it cannot filter
-    this.type = this.gpu && !renderer.hasFeature('float32-filterable') ? THREE.HalfFloatType : THREE.FloatType;
+    const filters = this.gpu ? renderer.hasFeature('float32-filterable') : renderer.extensions?.has('OES_texture_float_linear') ?? true;
+    this.type = filters ? THREE.FloatType : THREE.HalfFloatType;
     this.fronts = distanceMaterial(this.nodes, THREE.FrontSide);
     this.backs = distanceMaterial(this.nodes, THREE.BackSide);
     this.packing = packingMaterial(this.nodes);
+    this.matt = mattMaterial(this.nodes);
+    /** That of the page, without what it sees. @type {any} */
+    this.eye = new THREE.PerspectiveCamera();
+    this.eye.layers.set(ALONE);
+    this.eye.matrixWorldAutoUpdate = false;
     this.blank = emptyPicture();
     this.scene = Object.assign(new THREE.Scene(), { matrixWorldAutoUpdate: false });
     this.quad = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), this.packing.material);
@@ -217,6 +239,36 @@ class Drawing {
     renderer.render(this.scene, this.camera);
   }
 
+  /** Draws what a white matt object reflects in the light and the shadows of its scene. */
+  drawLight(renderer, pass, picture, object, scene, camera, plane) {
+    this.matt.plane.value = plane;
+    for (const name of ['matrixWorld', 'matrixWorldInverse', 'projectionMatrix', 'projectionMatrixInverse']) this.eye[name].copy(camera[name]);
+    this.eye.coordinateSystem = camera.coordinateSystem;
+    const seen = [object];
+    scene.traverseVisible((light) => {
+      if (light.isLight && light.layers.test(camera.layers)) seen.push(light);
+    });
+    const masks = seen.map(({ layers }) => layers.mask), { material } = object;
+    const { background, backgroundNode = null, fog, overrideMaterial } = scene;
+    const { envMap, envMapIntensity, envMapRotation } = material;
+    Object.assign(this.matt.material, { envMap, envMapIntensity, envMapRotation, side: material.side, flatShading: material.flatShading });
+    seen.forEach(({ layers }) => layers.enable(ALONE));
+    object.material = this.matt.material;
+    Object.assign(scene, { background: null, backgroundNode: null, fog: null, overrideMaterial: null });
+    try {
+      renderer.setClearColor(new THREE.Color(0, 0, 0), emptyOf(pass));
+      picture.viewport.set(0, 0, picture.width, picture.height);
+      picture.scissor.copy(picture.viewport);
+      renderer.setRenderTarget(picture);
+      renderer.clear();
+      renderer.render(scene, this.eye);
+    } finally {
+      Object.assign(scene, { background, backgroundNode, fog, overrideMaterial });
+      object.material = material;
+      seen.forEach(({ layers }, index) => (layers.mask = masks[index]));
+    }
+  }
+
   /** Draws an object with another material, without its children. */
   alone(renderer, object, material, camera) {
     const masks = [object.layers.mask, camera.layers.mask];
@@ -233,8 +285,10 @@ class Drawing {
   picturesOf(object, pass, size, columns) {
     if (!this.#pictures.has(object)) this.#pictures.set(object, {});
     const own = /** @type {Record<string, Pictures>} */ (this.#pictures.get(object));
-    const layers = own[pass.name]?.layers ?? pass.layers.map(() => pictureOf(size.x, size.y, this.type));
-    const packed = own[pass.name]?.packed ?? (layers.length > 1 ? pictureOf(size.x, size.y, this.type) : layers[0]);
+    const kinds = showsLight(pass) ? [pass.name] : pass.layers;
+    const make = () => pictureOf(size.x, size.y, this.type, showsLight(pass) ? THREE.LinearFilter : THREE.NearestFilter);
+    const layers = own[pass.name]?.layers ?? kinds.map(make);
+    const packed = own[pass.name]?.packed ?? (layers.length > 1 ? make() : layers[0]);
     for (const picture of [...layers, packed]) {
       if (picture.width !== size.x || picture.height !== size.y) picture.setSize(size.x, size.y);
       picture.scissorTest = picture !== packed || layers.length === 1;
@@ -249,7 +303,7 @@ class Drawing {
   }
 
   dispose() {
-    for (const { material } of [this.fronts, this.backs, this.packing]) material.dispose();
+    for (const material of [this.fronts.material, this.backs.material, this.packing.material, this.matt.material]) material.dispose();
     this.quad.geometry.dispose();
   }
 }
@@ -296,7 +350,15 @@ export class Passes {
     const tile = size.clone().divideScalar(columns);
     const pictures = drawing.picturesOf(object, pass, size, columns);
     let cameras = [camera];
-    if (!eye) {
+    // distances on both sides of the body's middle are small enough for half floats
+    const plane = -ballOf(object).center.applyMatrix4(camera.matrixWorldInverse).z;
+    if (eye) {
+      for (const view of pass.views) {
+        const matrix = viewOf(camera, { x: 0, y: 0 }, 1, drawing.gpu ? -1 : 1);
+        matrix.elements[14] -= plane;
+        set(view, matrix);
+      }
+    } else {
       const ball = ballOf(object);
       const system = drawing.gpu ? THREE.WebGPUCoordinateSystem : THREE.WebGLCoordinateSystem;
       const distant = pass.seenFrom === 'distant light';
@@ -309,7 +371,8 @@ export class Passes {
         set(view, cameras[index] ? viewOf(cameras[index], corner, columns, drawing.gpu ? -1 : 1) : new THREE.Matrix4().multiplyScalar(0));
       });
     }
-    drawing.draw(renderer, pass, pictures, object, cameras, tile);
+    if (showsLight(pass)) drawing.drawLight(renderer, pass, pictures.packed, object, scene, camera, plane);
+    else drawing.draw(renderer, pass, pictures, object, cameras, tile);
     set(pass.texture, pictures.packed.texture);
   }
 

@@ -1,0 +1,62 @@
+"""The pictures that a program draws of the body as the eye sees it (ir/frame_passes.py), cast on the CPU."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from sssgen.ir.frame_passes import BACK_FACES, IRRADIANCE, MATT
+from sssgen.run.evaluate.evaluation import half
+from sssgen.run.render.shell_values import Shell
+from sssgen.scene.arrays import Array
+from sssgen.scene.bounds import world_corners
+from sssgen.scene.camera import Camera
+from sssgen.scene.drawn_views import back_faces, matt_light
+from sssgen.scene.geometry import Geometry, Hits
+from sssgen.targets.reflection_record import Reflection
+from sssgen.targets.runtime.numpy_textures import Texture
+
+FAR = 6.0e4
+"""The distance where there is no surface: it fits into half a float."""
+
+
+def with_eye_pictures(
+    shell: Shell, geometry: Geometry, reflection: Reflection, camera: Camera, hits: Hits, size: tuple[int, int]
+) -> Shell:
+    """The shell with the pictures that its material reads; `hits` are those of the camera's rays, row 0 at the bottom.
+
+    A picture that the shell has already is not drawn.
+    """
+    width, height = size
+    origin, directions = camera.rays(width, height)
+    shown = np.flatnonzero(hits.hit)
+    parameters, textures, screens = dict(shell.parameters), dict(shell.textures), dict(shell.screens)
+    names = {texture["drawn"]: texture["source_name"] for texture in reflection["textures"]}
+    for drawn in reflection["passes"]:
+        picture = names.get(name := drawn["name"], "")
+        if picture in textures:
+            continue
+        if name == BACK_FACES:
+            distance = np.zeros((len(directions), 1))
+            distance[shown, 0] = back_faces(geometry, origin, directions[shown])
+            screens[picture] = half(Texture(distance.reshape(height, width, 1), wrap="clamp"))
+        if name == MATT:
+            texels = np.tile([0.0, 0.0, 0.0, FAR], (len(directions), 1))
+            points, normals = hits.position[shown], hits.normal[shown]
+            texels[shown, :3] = matt_light(geometry, points, normals, shell.light_positions, shell.light_colors)
+            texels[shown, :3] += shell.ambient
+            if (surroundings := textures.get(names.get(IRRADIANCE, ""))) is not None:
+                texels[shown, :3] += surroundings.sample(normals.T)[:3].T
+            matrix = _to_picture(camera, width / height, world_corners(geometry).mean(axis=0))
+            texels[shown, 3] = points @ matrix[2, :3] + matrix[2, 3]
+            textures[picture] = half(Texture(texels.reshape(height, width, 4), wrap="clamp"))
+            parameters |= dict.fromkeys(drawn["views"], (*matrix.T.ravel(),))
+    return dataclasses.replace(shell, parameters=parameters, textures=textures, screens=screens)
+
+
+def _to_picture(camera: Camera, aspect: float, middle: Array) -> Array:
+    """World space to (u w, v w, distance from the plane across the view through `middle` (3,), w)."""
+    x, y, _, w = camera.view_projection(aspect)
+    depth = w - [0.0, 0.0, 0.0, w[:3] @ middle + w[3]]
+    return np.stack([0.5 * (x + w), 0.5 * (y + w), depth, w])
