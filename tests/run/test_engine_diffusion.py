@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import mesh_of, through
+from engine_cases import BLACK, mesh_of, through
 from skips import or_skip
 from sssgen.run.backends import Array
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
-from sssgen.run.backends.web_engines import THREE
+from sssgen.run.backends.web_engines import BABYLON, THREE
 from sssgen.run.render import page_values
 from sssgen.scene import scene_loading
 from sssgen.scene.solids import Torus
@@ -50,13 +50,14 @@ position = [0.2, 0.5, 4.0]
 direction = [0.0, 0.42261826, 0.90630779]
 color = [0.9, 0.8, 0.7]
 """
-BLACK = {"color": 0.0, "specularIntensity": 0.0}
-"""Without the engine's own reflection."""
+ENGINES = {"threejs": THREE, "babylonjs": BABYLON}
+RENDERERS = [(target, name) for target, engine in ENGINES.items() for name in engine.renderers]
 
 
-@pytest.fixture(scope="module", params=THREE.renderers)
+@pytest.fixture(scope="module", params=RENDERERS, ids="-".join)
 def page(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
-    renderer: EnginePage = or_skip(partial(EnginePage, THREE), request.param)
+    target, name = request.param
+    renderer: EnginePage = or_skip(partial(EnginePage, ENGINES[target]), name)
     yield renderer
     renderer.page.close()
 
@@ -79,7 +80,7 @@ def drawn(page: EnginePage, path: str, **properties: Any) -> tuple[Array, Array,
     shell = mesh.shell
     drawing = EngineDrawing(
         page_values.modules_of(compiled), mesh.size, vertices, triangles, shell.view_projection, shell.camera_position,
-        shell.model, shell.light_positions, shell.light_colors, properties=BLACK | properties,
+        shell.model, shell.light_positions, shell.light_colors, properties=BLACK[page.engine.target] | properties,
     )  # fmt: skip
     expected = through(str(Path(path).with_name("skin.toml")), mesh)
     return page.draw(drawing)[..., :3], expected[..., :3], inner_pixels(mesh.hit)
@@ -88,6 +89,8 @@ def drawn(page: EnginePage, path: str, **properties: Any) -> tuple[Array, Array,
 def test_the_engine_draws_the_light_that_spreads(page: EnginePage, scene: str) -> None:
     picture, expected, inner = drawn(page, scene)
     assert expected[inner].mean() > 0.05
+    for _ in range(3):  # the edges of bodies have other texels on each side
+        inner = inner_pixels(inner)
     difference = np.abs(picture - expected)[inner].max(axis=-1)
     print(np.quantile(difference, [0.5, 0.9, 0.98, 1.0]) * 255)
     assert np.quantile(difference, 0.98) < 1.0 / 255.0

@@ -56,6 +56,12 @@ MATERIALS = {
 }
 MESHES = ("ice", "ice_inlay", "jade_ring", "marble_idol", "paper_lantern", "resin_inlay", "wax_mouse")
 SIZE = (96, 72)
+BLACK: dict[str, dict[str, Any]] = {
+    "threejs": {"color": 0.0, "specularIntensity": 0.0},
+    "babylonjs": {"albedoColor": 0.0, "metallicF0Factor": 0.0},
+    "playcanvas": {"diffuse": 0.0, "useMetalness": False, "specular": 0.0, "enableGGXSpecular": False},
+}
+"""Without the engine's own reflection."""
 _NO_LIGHTING = "def evaluate_lighting(*_):\n    return np.zeros((3, 1))\n"
 
 

@@ -14,6 +14,7 @@ export * from '@babylonjs/core/Lights/Shadows/cascadedShadowGenerator.js';
 export * from '@babylonjs/core/Lights/Shadows/shadowGenerator.js';
 export * from '@babylonjs/core/Lights/Shadows/shadowGeneratorSceneComponent.js';
 export * from '@babylonjs/core/Materials/effectRenderer.js';
+export * from '@babylonjs/core/Materials/imageProcessingConfiguration.js';
 export * from '@babylonjs/core/Materials/materialPluginBase.js';
 export * from '@babylonjs/core/Materials/PBR/pbrMaterial.js';
 export * from '@babylonjs/core/Materials/shaderMaterial.js';

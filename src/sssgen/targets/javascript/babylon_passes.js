@@ -2,6 +2,9 @@
 // sets itself is not drawn.
 
 import { EffectRenderer, EffectWrapper } from '@babylonjs/core/Materials/effectRenderer.js';
+import { ImageProcessingConfiguration } from '@babylonjs/core/Materials/imageProcessingConfiguration.js';
+import { PBRMaterial } from '@babylonjs/core/Materials/PBR/pbrMaterial.js';
+import { MaterialPluginBase } from '@babylonjs/core/Materials/materialPluginBase.js';
 import { ShaderMaterial } from '@babylonjs/core/Materials/shaderMaterial.js';
 import { RenderTargetTexture } from '@babylonjs/core/Materials/Textures/renderTargetTexture.js';
 import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
@@ -10,7 +13,7 @@ import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Viewport } from '@babylonjs/core/Maths/math.viewport.js';
 import '@babylonjs/core/Shaders/depth.vertex.js';
 import '@babylonjs/core/ShadersWGSL/depth.vertex.js';
-import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, LIGHT_PACKING, PACKING, SIDE, columnsOf, emptyOf, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
 
 // The shaders, in GLSL and in WGSL. The vertices are those of Babylon's own depth maps: with bones, morph targets and instances.
 
@@ -50,10 +53,10 @@ fn main(input: FragmentInputs) -> FragmentOutputs {
   fragmentOutputs.color = vec4f(way, 0.0, 0.0, 1.0);
 }`];
 
-/** Four layers in one picture: vertex shader and fragment shader. */
-const PACKINGS = [[/* glsl */ `
+/** Layers in one picture: vertex shader and fragment shader. */
+const packingShaders = (packing) => [[/* glsl */ `
 attribute vec2 position;
-void main(void) { gl_Position = vec4(position, 0.0, 1.0); }`, PACKING.glsl], [/* wgsl */ `
+void main(void) { gl_Position = vec4(position, 0.0, 1.0); }`, packing.glsl], [/* wgsl */ `
 attribute position: vec2f;
 @vertex
 fn main(input: VertexInputs) -> FragmentInputs { vertexOutputs.position = vec4f(vertexInputs.position, 0.0, 1.0); }`, /* wgsl */ `
@@ -61,7 +64,7 @@ ${LAYERS.map((name) => `var ${name}: texture_2d<f32>;`).join('\n')}
 @fragment
 fn main(input: FragmentInputs) -> FragmentOutputs {
   let at = vec2i(fragmentInputs.position.xy);
-  fragmentOutputs.color = ${PACKING.wgsl};
+  fragmentOutputs.color = ${packing.wgsl};
 }`]];
 
 const languageOf = (engine) => Number(engine.isWebGPU);
@@ -141,10 +144,12 @@ function viewOf(light, { corners, edges, reach, center, radius }, distant, scene
 
 // The pictures of a body.
 
-/** A picture of floats, without filters. */
+/** A picture of floats, without filters, or `smooth`. */
 class Picture extends RenderTargetTexture {
-  constructor(name, size, scene, settings) {
-    const type = scene.getEngine().getCaps().textureFloatRender ? 1 : 2; // else half floats
+  constructor(name, size, scene, { smooth = false, ...settings }) {
+    const { textureFloatRender, textureFloatLinearFiltering } = scene.getEngine().getCaps();
+    const type = textureFloatRender && (!smooth || textureFloatLinearFiltering) ? 1 : 2; // else half floats
+    if (smooth) settings.samplingMode = Texture.BILINEAR_SAMPLINGMODE;
     super(name, size, scene, { type, generateMipMaps: false, samplingMode: Texture.NEAREST_SAMPLINGMODE, ...settings });
     this.doNotSerialize = true;
   }
@@ -212,12 +217,84 @@ class Layer extends Picture {
   }
 }
 
+/** Makes a material white, without vertex colours, and its alpha the distance from the camera's plane. */
+class White extends MaterialPluginBase {
+  constructor(material) {
+    super(material, 'SssgenWhite', 200);
+    this.doNotSerialize = true;
+    this._enable(true);
+  }
+
+  getClassName() {
+    return 'SssgenWhite';
+  }
+
+  isCompatible() {
+    return true;
+  }
+
+  getCustomCode(stage, language) {
+    if (stage === 'vertex') return null;
+    return language
+      ? { CUSTOM_FRAGMENT_UPDATE_ALBEDO: 'surfaceAlbedo = vec3f(1.0);', CUSTOM_FRAGMENT_BEFORE_FRAGCOLOR: 'finalColor.a = abs((scene.view * vec4f(fragmentInputs.vPositionW, 1.0)).z);' }
+      : { CUSTOM_FRAGMENT_UPDATE_ALBEDO: 'surfaceAlbedo = vec3(1.0);', CUSTOM_FRAGMENT_BEFORE_FRAGCOLOR: 'finalColor.a = abs((view * vec4(vPositionW, 1.0)).z);' };
+  }
+}
+
+/** What a white matt body reflects in the light and the shadows of its scene. */
+class LightLayer extends Picture {
+  #material;
+
+  constructor(pass, size, scene) {
+    super(`sssgen ${pass.name}`, size, scene, {});
+    this.#material = new PBRMaterial(this.name, scene);
+    const imageProcessingConfiguration = new ImageProcessingConfiguration();
+    imageProcessingConfiguration.applyByPostProcess = true; // linear light
+    Object.assign(this.#material, { metallic: 0, roughness: 1, metallicF0Factor: 0, fogEnabled: false, imageProcessingConfiguration, doNotSerialize: true });
+    new White(this.#material); // the material keeps it
+    this.clearColor = new Color4(0, 0, 0, emptyOf(pass));
+  }
+
+  take(mesh) {
+    this.setMaterialForRendering(mesh, this.#material);
+  }
+
+  leave(mesh) {
+    this.setMaterialForRendering(mesh, undefined);
+  }
+
+  isReadyFor(mesh) {
+    this.#follow(mesh);
+    this.renderList = [mesh];
+    return this.isReadyForRendering();
+  }
+
+  /** Draws meshes as the camera sees them. */
+  draw(meshes) {
+    this.#follow(meshes[0]);
+    this.renderList = meshes;
+    this.render();
+  }
+
+  /** Takes what the body's own material has of the light. */
+  #follow({ material }) {
+    for (const name of ['sideOrientation', 'maxSimultaneousLights', 'environmentIntensity', 'directIntensity', 'ambientColor']) {
+      this.#material[name] = material[name];
+    }
+  }
+
+  dispose() {
+    this.#material.dispose();
+    super.dispose();
+  }
+}
+
 /** What writes the layers of a pass into one picture. */
 class Packing {
   #layers = [];
 
-  constructor(engine) {
-    const shaderLanguage = languageOf(engine), [vertexShader, fragmentShader] = PACKINGS[shaderLanguage];
+  constructor(engine, packing) {
+    const shaderLanguage = languageOf(engine), [vertexShader, fragmentShader] = packingShaders(packing)[shaderLanguage];
     this.renderer = new EffectRenderer(engine);
     this.shader = new EffectWrapper({ engine, name: 'sssgen layers', vertexShader, fragmentShader, samplerNames: LAYERS, shaderLanguage });
     this.shader.onApplyObservable.add(() => {
@@ -246,8 +323,9 @@ export class Passes extends RenderTargetTexture {
   #material;
   #passes;
   #isGiven;
-  #packing;
-  /** The layers of a pass, by its name: all bodies share them. @type {Record<string, Layer[]>} */
+  /** For each pass, by its name. @type {Record<string, Packing>} */
+  #packings = {};
+  /** The layers of a pass, by its name: all bodies share them. @type {Record<string, (Layer | LightLayer)[]>} */
   #layers = {};
   /** For each mesh: its pictures by the names of passes, and the values of properties. */
   #bodies = new Map();
@@ -264,7 +342,7 @@ export class Passes extends RenderTargetTexture {
     this.#material = material;
     this.#passes = passes;
     this.#isGiven = isGiven;
-    this.#packing = new Packing(this.#scene.getEngine());
+    for (const pass of passes) this.#packings[pass.name] = new Packing(this.#scene.getEngine(), showsLight(pass) ? LIGHT_PACKING : PACKING);
   }
 
   /** The passes that it draws. */
@@ -289,7 +367,7 @@ export class Passes extends RenderTargetTexture {
   isReadyForRendering() {
     const meshes = this.#scene.meshes.filter((mesh) => this.#has(mesh));
     const ready = meshes.flatMap((mesh) => this.#drawn.flatMap((pass) => this.#partsOf(mesh, pass).layers.map((layer) => layer.isReadyFor(mesh))));
-    return ready.every(Boolean) && this.#packing.shader.isReady();
+    return [...ready, ...Object.values(this.#packings).map(({ shader }) => shader.isReady())].every(Boolean);
   }
 
   render() {
@@ -310,7 +388,7 @@ export class Passes extends RenderTargetTexture {
       : lightsAt(mesh, box, pass).map((light) => viewOf(light, box, pass.seenFrom === 'distant light', scene));
     const { layers, picture, values } = this.#partsOf(mesh, pass);
     for (const layer of layers) layer.draw(meshes, views, LAYER_GAP * box.radius);
-    this.#packing.draw(layers, picture);
+    this.#packings[pass.name].draw(layers, picture);
     values[pass.texture] = picture;
     pass.views.forEach((property, index) => {
       const { clip, view } = views[index] ?? { clip: Matrix.Zero(), view: Matrix.Zero() }; // it shows nothing
@@ -328,7 +406,7 @@ export class Passes extends RenderTargetTexture {
     const layers = (this.#layers[pass.name] ??= this.#newLayers(pass, size));
     const { values, pictures } = this.#bodies.get(mesh);
     if (!pictures[pass.name]) {
-      pictures[pass.name] = new Picture(`sssgen ${pass.name}`, size, this.#scene, { generateDepthBuffer: false });
+      pictures[pass.name] = new Picture(`sssgen ${pass.name}`, size, this.#scene, { generateDepthBuffer: false, smooth: showsLight(pass) });
       layers.forEach((layer) => layer.take(mesh));
     }
     const picture = pictures[pass.name];
@@ -337,6 +415,7 @@ export class Passes extends RenderTargetTexture {
   }
 
   #newLayers(pass, size) {
+    if (showsLight(pass)) return [new LightLayer(pass, size, this.#scene)];
     const layers = [];
     for (const { back, before } of layersOf(pass)) layers.push(new Layer(pass, back, layers[before], size, this.#scene));
     return layers;
@@ -353,7 +432,7 @@ export class Passes extends RenderTargetTexture {
   dispose() {
     for (const mesh of [...this.#bodies.keys()]) this.#forget(mesh);
     Object.values(this.#layers).flat().forEach((layer) => layer.dispose());
-    this.#packing.dispose();
+    Object.values(this.#packings).forEach((packing) => packing.dispose());
     super.dispose();
   }
 }

@@ -19,18 +19,21 @@ export const SIDE = 1024;
 /** The least distance between two layers, in radii of the body. */
 export const LAYER_GAP = 1e-3;
 
-/** The names of layers in the shader that writes four into one picture. */
+/** The names of layers in the shader that writes them into one picture. */
 export const LAYERS = ['sss_layer0', 'sss_layer1', 'sss_layer2', 'sss_layer3'];
-/** That shader: in GLSL the whole, in WGSL what it writes. */
-export const PACKING = {
-  glsl: /* glsl */ `
-${LAYERS.map((name) => `uniform highp sampler2D ${name};`).join('\n')}
-void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
-  gl_FragColor = vec4(${LAYERS.map((name) => `texelFetch(${name}, at, 0).r`).join(', ')});
-}`,
-  wgsl: `vec4f(${LAYERS.map((name) => `textureLoad(${name}, at, 0).r`).join(', ')})`,
-};
+
+/** That shader: in GLSL the whole, in WGSL what it writes. `parts`: what it takes of each layer. */
+function packing(parts) {
+  const declared = LAYERS.map((name) => `uniform highp sampler2D ${name};`).join('\n');
+  const glsl = parts.map((part, index) => `texelFetch(${LAYERS[index]}, ivec2(gl_FragCoord.xy), 0).${part}`).join(', ');
+  const wgsl = parts.map((part, index) => `textureLoad(${LAYERS[index]}, at, 0).${part}`).join(', ');
+  return { glsl: `\n${declared}\nvoid main() {\n  gl_FragColor = vec4(${glsl});\n}`, wgsl: `vec4f(${wgsl})` };
+}
+
+/** Of four distances. */
+export const PACKING = packing(['r', 'r', 'r', 'r']);
+/** Of one picture with light and a distance. */
+export const LIGHT_PACKING = packing(['rgba']);
 
 /** What a texel without a surface has. */
 export const emptyOf = ({ empty }) => (empty === 'far' ? FAR : 0);
