@@ -15,7 +15,7 @@ from engine_cases import BLACK, mesh_of, through
 from skips import or_skip
 from sssgen.run.backends import Array
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
-from sssgen.run.backends.web_engines import BABYLON, THREE
+from sssgen.run.backends.web_engines import BABYLON, PLAYCANVAS, THREE
 from sssgen.run.render import page_values
 from sssgen.scene import scene_loading
 from sssgen.scene.solids import Torus
@@ -50,7 +50,7 @@ position = [0.2, 0.5, 4.0]
 direction = [0.0, 0.42261826, 0.90630779]
 color = [0.9, 0.8, 0.7]
 """
-ENGINES = {"threejs": THREE, "babylonjs": BABYLON}
+ENGINES = {engine.target: engine for engine in (THREE, BABYLON, PLAYCANVAS)}
 RENDERERS = [(target, name) for target, engine in ENGINES.items() for name in engine.renderers]
 
 

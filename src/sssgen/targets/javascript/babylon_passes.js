@@ -13,7 +13,7 @@ import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Viewport } from '@babylonjs/core/Maths/math.viewport.js';
 import '@babylonjs/core/Shaders/depth.vertex.js';
 import '@babylonjs/core/ShadersWGSL/depth.vertex.js';
-import { LAYERS, LAYER_GAP, LIGHT_PACKING, PACKING, SIDE, columnsOf, emptyOf, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, layersOf, lightsOf, packing, showsLight, tileOf, viewNumbers } from './frame_passes.js';
 
 // The shaders, in GLSL and in WGSL. The vertices are those of Babylon's own depth maps: with bones, morph targets and instances.
 
@@ -54,9 +54,9 @@ fn main(input: FragmentInputs) -> FragmentOutputs {
 }`];
 
 /** Layers in one picture: vertex shader and fragment shader. */
-const packingShaders = (packing) => [[/* glsl */ `
+const packingShaders = (written) => [[/* glsl */ `
 attribute vec2 position;
-void main(void) { gl_Position = vec4(position, 0.0, 1.0); }`, packing.glsl], [/* wgsl */ `
+void main(void) { gl_Position = vec4(position, 0.0, 1.0); }`, written.glsl], [/* wgsl */ `
 attribute position: vec2f;
 @vertex
 fn main(input: VertexInputs) -> FragmentInputs { vertexOutputs.position = vec4f(vertexInputs.position, 0.0, 1.0); }`, /* wgsl */ `
@@ -64,7 +64,7 @@ ${LAYERS.map((name) => `var ${name}: texture_2d<f32>;`).join('\n')}
 @fragment
 fn main(input: FragmentInputs) -> FragmentOutputs {
   let at = vec2i(fragmentInputs.position.xy);
-  fragmentOutputs.color = ${packing.wgsl};
+  fragmentOutputs.color = ${written.wgsl};
 }`]];
 
 const languageOf = (engine) => Number(engine.isWebGPU);
@@ -293,8 +293,8 @@ class LightLayer extends Picture {
 class Packing {
   #layers = [];
 
-  constructor(engine, packing) {
-    const shaderLanguage = languageOf(engine), [vertexShader, fragmentShader] = packingShaders(packing)[shaderLanguage];
+  constructor(engine, written) {
+    const shaderLanguage = languageOf(engine), [vertexShader, fragmentShader] = packingShaders(written)[shaderLanguage];
     this.renderer = new EffectRenderer(engine);
     this.shader = new EffectWrapper({ engine, name: 'sssgen layers', vertexShader, fragmentShader, samplerNames: LAYERS, shaderLanguage });
     this.shader.onApplyObservable.add(() => {
@@ -342,7 +342,7 @@ export class Passes extends RenderTargetTexture {
     this.#material = material;
     this.#passes = passes;
     this.#isGiven = isGiven;
-    for (const pass of passes) this.#packings[pass.name] = new Packing(this.#scene.getEngine(), showsLight(pass) ? LIGHT_PACKING : PACKING);
+    for (const pass of passes) this.#packings[pass.name] = new Packing(this.#scene.getEngine(), showsLight(pass) ? packing(['rgba']) : PACKING);
   }
 
   /** The passes that it draws. */
@@ -432,7 +432,7 @@ export class Passes extends RenderTargetTexture {
   dispose() {
     for (const mesh of [...this.#bodies.keys()]) this.#forget(mesh);
     Object.values(this.#layers).flat().forEach((layer) => layer.dispose());
-    Object.values(this.#packings).forEach((packing) => packing.dispose());
+    Object.values(this.#packings).forEach((each) => each.dispose());
     super.dispose();
   }
 }

@@ -23,7 +23,7 @@ export const LAYER_GAP = 1e-3;
 export const LAYERS = ['sss_layer0', 'sss_layer1', 'sss_layer2', 'sss_layer3'];
 
 /** That shader: in GLSL the whole, in WGSL what it writes. `parts`: what it takes of each layer. */
-function packing(parts) {
+export function packing(parts) {
   const declared = LAYERS.map((name) => `uniform highp sampler2D ${name};`).join('\n');
   const glsl = parts.map((part, index) => `texelFetch(${LAYERS[index]}, ivec2(gl_FragCoord.xy), 0).${part}`).join(', ');
   const wgsl = parts.map((part, index) => `textureLoad(${LAYERS[index]}, at, 0).${part}`).join(', ');
@@ -32,9 +32,6 @@ function packing(parts) {
 
 /** Of four distances. */
 export const PACKING = packing(['r', 'r', 'r', 'r']);
-/** Of one picture with light and a distance. */
-export const LIGHT_PACKING = packing(['rgba']);
-
 /** What a texel without a surface has. */
 export const emptyOf = ({ empty }) => (empty === 'far' ? FAR : 0);
 

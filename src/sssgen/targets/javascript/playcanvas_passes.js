@@ -2,7 +2,8 @@
 // sets itself is not drawn.
 
 import * as pc from 'playcanvas';
-import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, layersOf, lightsOf, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, SIDE, columnsOf, emptyOf, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
+import { distanceMaterial, mattMaterial, packingPass } from './playcanvas_pass_shaders.js';
 
 /**
  * An object with what PlayCanvas's types keep to the engine.
@@ -10,107 +11,6 @@ import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, layersOf, lightsO
  * @returns {any}
  */
 const internalsOf = (object) => object;
-
-// The shaders of a pass: they write the distance from the eye or from the light's plane.
-
-const ATTRIBUTES = {
-  vertex_position: pc.SEMANTIC_POSITION, instance_line1: pc.SEMANTIC_ATTR11, instance_line2: pc.SEMANTIC_ATTR12,
-  instance_line3: pc.SEMANTIC_ATTR14, instance_line4: pc.SEMANTIC_ATTR15,
-};
-
-/** A material's vertex shader has no text for instances: here is PlayCanvas's own. */
-const matricesOf = (device, language) => `
-#include "transformCoreVS"
-#ifdef INSTANCING
-${pc.ShaderChunks.get(device, language).get('transformInstancingVS')}
-#endif`;
-
-const vertexGlsl = (matrices) => `${matrices}
-uniform mat4 matrix_view;
-varying vec3 sss_place;
-void main() {
-  vec4 place = getModelMatrix() * vec4(getLocalPosition(vertex_position.xyz), 1.0);
-  sss_place = (matrix_view * place).xyz;
-  gl_Position = matrix_viewProjection * place;
-}`;
-
-const vertexWgsl = (matrices) => `${matrices}
-uniform matrix_view: mat4x4f;
-varying sss_place: vec3f;
-@vertex
-fn vertexMain(input: VertexInput) -> VertexOutput {
-  var output: VertexOutput;
-  let place = getModelMatrix() * vec4f(getLocalPosition(vertex_position.xyz), 1.0);
-  output.sss_place = (uniform.matrix_view * place).xyz;
-  output.position = uniform.matrix_viewProjection * place;
-  return output;
-}`;
-
-// A layer that peels has the surfaces behind those of the layer before.
-const FRAGMENT_GLSL = `
-varying vec3 sss_place;
-uniform float sss_from_plane;
-#ifdef SSS_PEELS
-uniform float sss_margin;
-uniform highp sampler2D sss_front;
-#endif
-void main() {
-  float distance = sss_from_plane > 0.0 ? -sss_place.z : length(sss_place);
-#ifdef SSS_PEELS
-  if (distance < texelFetch(sss_front, ivec2(gl_FragCoord.xy), 0).r + sss_margin) discard;
-#endif
-  gl_FragColor = vec4(distance, 0.0, 0.0, 1.0);
-}`;
-
-const FRAGMENT_WGSL = `
-varying sss_place: vec3f;
-uniform sss_from_plane: f32;
-#ifdef SSS_PEELS
-uniform sss_margin: f32;
-var sss_front: texture_2d<uff>;
-#endif
-@fragment
-fn fragmentMain(input: FragmentInput) -> FragmentOutput {
-  var output: FragmentOutput;
-  let distance = select(length(input.sss_place), -input.sss_place.z, uniform.sss_from_plane > 0.0);
-#ifdef SSS_PEELS
-  if (distance < textureLoad(sss_front, vec2i(pcPosition.xy), 0).r + uniform.sss_margin) { discard; }
-#endif
-  output.color = vec4f(distance, 0.0, 0.0, 1.0);
-  return output;
-}`;
-
-/** A material that writes the distances of front or back faces; `peels`: of those behind the layer before. */
-function distanceMaterial(device, back, peels) {
-  const material = new pc.ShaderMaterial({
-    uniqueName: 'sss_distance', attributes: ATTRIBUTES,
-    vertexGLSL: vertexGlsl(matricesOf(device, pc.SHADERLANGUAGE_GLSL)), fragmentGLSL: FRAGMENT_GLSL,
-    vertexWGSL: vertexWgsl(matricesOf(device, pc.SHADERLANGUAGE_WGSL)), fragmentWGSL: FRAGMENT_WGSL,
-  });
-  material.cull = back ? pc.CULLFACE_FRONT : pc.CULLFACE_BACK;
-  if (peels) material.setDefine('SSS_PEELS', '');
-  material.update();
-  return material;
-}
-
-/** Writes four layers into one picture. */
-function packingPass(device) {
-  const pass = new pc.RenderPassShaderQuad(device);
-  pass.shader = pc.ShaderUtils.createShader(device, {
-    uniqueName: 'sss_packing', attributes: { vertex_position: pc.SEMANTIC_POSITION }, vertexChunk: 'fullscreenQuadVS',
-    fragmentGLSL: PACKING.glsl,
-    fragmentWGSL: `
-${LAYERS.map((name) => `var ${name}: texture_2d<uff>;`).join('\n')}
-@fragment
-fn fragmentMain(input: FragmentInput) -> FragmentOutput {
-  var output: FragmentOutput;
-  let at = vec2i(pcPosition.xy);
-  output.color = ${PACKING.wgsl};
-  return output;
-}`,
-  });
-  return pass;
-}
 
 // The lights of a body.
 
@@ -188,10 +88,13 @@ function aim(camera, light, { center, radius: tight }, distant) {
   return camera;
 }
 
-/** World space to (u w, v w, distance from the light's plane, w), in a tile of the picture; `down`: its rows count downwards. */
+/** World space to (u w, v w, distance from the camera's plane, w), in a tile of the picture; `down`: its rows count downwards. */
 function viewOf(camera, tile, columns, down) {
-  const view = camera.node.getWorldTransform().clone().invert();
-  const clip = new pc.Mat4().mul2(camera.projectionMatrix, view);
+  const view = camera.node.getWorldTransform().clone(), projection = camera.projectionMatrix.clone();
+  camera.calculateTransform?.(view, pc.VIEW_CENTER);
+  camera.calculateProjection?.(projection, pc.VIEW_CENTER);
+  view.invert();
+  const clip = new pc.Mat4().mul2(projection, view);
   const { x, y } = tileOf(tile, columns);
   return viewNumbers(clip.data, view.data, -1, down ? -1 : 1, { x, y: down ? columns - 1 - y : y }, columns);
 }
@@ -203,6 +106,8 @@ class TilePass extends pc.RenderPass {
   /** @type {pc.MeshInstance[]} */
   meshInstances = [];
   columns = 1;
+  /** What lights them. @type {{ lightList?: any, lightClusters?: any }} */
+  light = {};
 
   constructor(device, renderer) {
     super(device);
@@ -210,28 +115,29 @@ class TilePass extends pc.RenderPass {
   }
 
   execute() {
-    const { renderer, renderTarget, meshInstances, columns } = this;
+    const { renderer, renderTarget, meshInstances, columns, light } = this;
     this.cameras.forEach((camera, tile) => {
       const { x, y } = tileOf(tile, columns);
       const rect = new pc.Vec4(x, y, 1, 1).mulScalar(1 / columns);
       const kept = { rect: camera.rect.clone(), scissorRect: camera.scissorRect.clone(), cullFaces: camera.cullFaces };
       Object.assign(camera, { rect, scissorRect: rect, cullFaces: true });
-      renderer.renderForwardLayer(camera, renderTarget, null, undefined, pc.SHADER_FORWARD, { meshInstances });
+      renderer.renderForwardLayer(camera, renderTarget, null, undefined, pc.SHADER_FORWARD, { meshInstances, ...light });
       Object.assign(camera, kept);
     });
   }
 }
 
-/** A render target for distances. */
-function pictureOf(device, name, channels, { width, height, origin }) {
+/** A render target: of distances with one channel or four, `depth`: that something is drawn into; `smooth`: with light, filtered. */
+function pictureOf(device, name, { channels = 1, depth = false, smooth = false }, { width, height, origin }) {
   // half floats where WebGPU does not filter others: PlayCanvas declares a sampler for each texture of a material
-  const full = device.textureFloatRenderable && (!device.isWebGPU || device.textureFloatFilterable);
+  const full = device.textureFloatRenderable && (!(device.isWebGPU || smooth) || device.textureFloatFilterable);
   const format = channels === 1 ? (full ? pc.PIXELFORMAT_R32F : pc.PIXELFORMAT_R16F) : full ? pc.PIXELFORMAT_RGBA32F : pc.PIXELFORMAT_RGBA16F;
+  const filter = smooth ? pc.FILTER_LINEAR : pc.FILTER_NEAREST;
   const colorBuffer = new pc.Texture(device, {
-    name, width, height, format, mipmaps: false, minFilter: pc.FILTER_NEAREST, magFilter: pc.FILTER_NEAREST,
+    name, width, height, format, mipmaps: false, minFilter: filter, magFilter: filter,
     addressU: pc.ADDRESS_CLAMP_TO_EDGE, addressV: pc.ADDRESS_CLAMP_TO_EDGE,
   });
-  return new pc.RenderTarget({ name, colorBuffer, depth: channels === 1, samples: 1, origin });
+  return new pc.RenderTarget({ name, colorBuffer, depth, samples: 1, origin });
 }
 
 /** A mesh instance that has the material: its copies with the materials of passes, and its pictures. */
@@ -248,10 +154,10 @@ class Body {
 
   /** The mesh instance with another material: with its bones, morph targets and instances. */
   copy(material) {
-    const { node, mesh, flipFacesFactor, _skinInstance, _morphInstance, instancingData, drawCommands, _shaderDefs } = internalsOf(this.instance);
+    const { node, mesh, mask, flipFacesFactor, _skinInstance, _morphInstance, instancingData, drawCommands, _shaderDefs } = internalsOf(this.instance);
     if (!this.#copies.has(material)) this.#copies.set(material, new pc.MeshInstance(mesh, material, node));
     const copy = this.#copies.get(material);
-    Object.assign(copy, { node, mesh, flipFacesFactor, _skinInstance, _morphInstance, instancingData, drawCommands });
+    Object.assign(copy, { node, mesh, mask, flipFacesFactor, _skinInstance, _morphInstance, instancingData, drawCommands });
     copy._updateShaderDefs(_shaderDefs);
     return copy;
   }
@@ -260,8 +166,10 @@ class Body {
   picturesOf(pass, camera, device, size) {
     let pictures = this.#pictures.find((one) => one.pass === pass && one.camera === camera && one.origin === size.origin);
     if (!pictures) {
-      const layers = pass.layers.map((layer) => pictureOf(device, `${pass.name} ${layer}`, 1, size));
-      const packed = layers.length > 1 ? pictureOf(device, pass.name, 4, size) : layers[0];
+      const layers = showsLight(pass)
+        ? [pictureOf(device, pass.name, { channels: 4, depth: true, smooth: true }, size)]
+        : pass.layers.map((layer) => pictureOf(device, `${pass.name} ${layer}`, { depth: true }, size));
+      const packed = layers.length > 1 ? pictureOf(device, pass.name, { channels: 4 }, size) : layers[0];
       this.#pictures.push((pictures = { pass, camera, origin: size.origin, layers, packed, version: -1 }));
     }
     for (const target of [...pictures.layers, pictures.packed]) {
@@ -309,6 +217,8 @@ export class Passes {
   #lamps;
   #tiles;
   #packing;
+  /** @type {pc.StandardMaterial | undefined} */
+  #matt;
 
   /**
    * @param {any} device
@@ -372,18 +282,18 @@ export class Passes {
 
   /** Draws the passes for a camera. */
   #draw(camera) {
-    for (const [instance, lights] of this.#seenBy(camera)) {
+    for (const [instance, { lights, layer }] of this.#seenBy(camera)) {
       const body = this.#bodies.get(instance) ?? new Body(instance);
       this.#bodies.set(instance, body);
       for (const pass of this.passes) {
         const manyEyes = pass.seenFrom === 'eye' && camera.camera.xrActive;
         if (manyEyes || this.given(pass.texture)) this.#clear(body, pass);
-        else this.#drawPass(pass, body, camera, lights);
+        else this.#drawPass(pass, body, camera, lights, layer);
       }
     }
   }
 
-  /** The mesh instances that a camera sees, and their lights. */
+  /** The mesh instances that a camera sees, their lights, and a layer that they are in. */
   #seenBy(camera) {
     const seen = new Map();
     for (const id of camera.layers) {
@@ -392,13 +302,13 @@ export class Passes {
       for (const instance of [...opaque, ...transparent]) {
         if (!this.instances.has(instance)) continue;
         const lights = layer._lights.filter(({ mask }) => mask & instance.mask);
-        seen.set(instance, new Set([...(seen.get(instance) ?? []), ...lights]));
+        seen.set(instance, { layer, lights: new Set([...(seen.get(instance)?.lights ?? []), ...lights]) });
       }
     }
     return seen;
   }
 
-  #drawPass(pass, body, camera, lights) {
+  #drawPass(pass, body, camera, lights, layer) {
     const { device } = this;
     const eye = pass.seenFrom === 'eye';
     const columns = columnsOf(pass);
@@ -417,7 +327,24 @@ export class Passes {
       const matrix = cameras[index] ? viewOf(cameras[index], index, columns, device.isWebGPU) : Array(16).fill(0);
       body.instance.setParameter(this.nameOf(view), matrix);
     });
-    this.#drawLayers(pass, body, pictures, cameras, columns, LAYER_GAP * ball.radius);
+    if (showsLight(pass)) this.#drawLight(pass, body, pictures.packed, cameras, layer);
+    else this.#drawLayers(pass, body, pictures, cameras, columns, LAYER_GAP * ball.radius);
+  }
+
+  /** Draws what the body reflects as white and matt, in the light of a layer. */
+  #drawLight(pass, body, picture, cameras, layer) {
+    const tiles = (this.#tiles ??= new TilePass(this.device, this.#app.renderer));
+    const matt = (this.#matt ??= mattMaterial());
+    const { scene, renderer } = this.#app;
+    const light = {
+      lightList: layer.getLightList(scene.clusteredLightingEnabled),
+      lightClusters: renderer.worldClustersAllocator._clusters.get(layer.getLightIdHash())?.lightClusters,
+    };
+    tiles.init(picture);
+    tiles.setClearColor(new pc.Color(0, 0, 0, emptyOf(pass)));
+    tiles.setClearDepth(1);
+    Object.assign(tiles, { cameras, columns: 1, meshInstances: [body.copy(matt)], light });
+    tiles.render();
   }
 
   #drawLayers(pass, body, { layers, packed }, cameras, columns, margin) {
@@ -431,7 +358,7 @@ export class Passes {
       tiles.init(layers[index]);
       tiles.setClearColor(new pc.Color(empty, empty, empty, 1));
       tiles.setClearDepth(1);
-      Object.assign(tiles, { cameras, columns, meshInstances: [body.copy(material)] });
+      Object.assign(tiles, { cameras, columns, meshInstances: [body.copy(material)], light: {} });
       tiles.render();
     });
     if (layers.length === 1) return;
@@ -452,6 +379,7 @@ export class Passes {
     for (const camera of [...this.#before.keys()]) this.#leave(camera);
     for (const body of [...this.#bodies.values()]) this.#forget(body);
     for (const material of this.#materials.values()) material.destroy();
+    this.#matt?.destroy();
     this.#packing?.quadRender?.destroy();
   }
 }
