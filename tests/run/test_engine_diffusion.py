@@ -12,6 +12,7 @@ import pytest
 
 import sssgen
 from engine_cases import BLACK, mesh_of, through
+from shadow_cases import EYE, LEVEL, SIZE, ball, view_projection
 from skips import or_skip
 from sssgen.run.backends import Array
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
@@ -51,6 +52,7 @@ direction = [0.0, 0.42261826, 0.90630779]
 color = [0.9, 0.8, 0.7]
 """
 ENGINES = {engine.target: engine for engine in (THREE, BABYLON, PLAYCANVAS)}
+COLORS = ("color", "albedoColor", "diffuse")
 RENDERERS = [(target, name) for target, engine in ENGINES.items() for name in engine.renderers]
 
 
@@ -93,4 +95,49 @@ def test_the_engine_draws_the_light_that_spreads(page: EnginePage, scene: str) -
         inner = inner_pixels(inner)
     difference = np.abs(picture - expected)[inner].max(axis=-1)
     print(np.quantile(difference, [0.5, 0.9, 0.98, 1.0]) * 255)
-    assert np.quantile(difference, 0.98) < 1.0 / 255.0
+    assert np.quantile(difference, 0.98) < LEVEL
+
+
+WAY = np.array([0.8, 0.3, 0.52]) / np.linalg.norm([0.8, 0.3, 0.52])
+"""Towards a lamp beside the camera."""
+
+
+def ball_picture(page: EnginePage, text: str, folder: Path, **stage: Any) -> Array:
+    """A ball of a material's text under a lamp, without highlights, in a stage: (height, width, 3)."""
+    path = folder / "skin.toml"
+    path.write_text(text, encoding="utf-8")
+    compiled = sssgen.compile(str(path), page.engine.target)
+    body = ball()
+    matt = {name: value for name, value in BLACK[page.engine.target].items() if name not in COLORS}
+    drawing = EngineDrawing(
+        page_values.modules_of(compiled), SIZE, body.vertices.astype(np.float32), body.triangles, view_projection(), EYE,
+        body.model, np.array([[*WAY, 0.0]]), np.ones((1, 3)), properties={**matt, "stage": stage},
+    )  # fmt: skip
+    return page.draw(drawing)[..., :3]
+
+
+def wall() -> list[float]:
+    """The matrix of a wall between the lamp and half of the ball, by columns."""
+    across = np.cross([0.0, 1.0, 0.0], WAY) / np.hypot(WAY[0], WAY[2])
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.stack([across, np.cross(WAY, across), 0.05 * WAY], axis=1)
+    matrix[:3, 3] = 2.0 * WAY + [0.0, 0.7, 0.0]
+    return [float(number) for number in matrix.T.ravel()]
+
+
+@pytest.mark.parametrize("stage", [{"around": "environment"}, {"shadows": True}, {"shadows": True, "walls": [wall()]}],
+                         ids=["environment", "own shadow", "wall"])  # fmt: skip
+def test_light_that_does_not_spread_is_the_engines_own(
+    page: EnginePage, stage: dict[str, Any], tmp_path: Path
+) -> None:
+    """A spread of 0 leaves the diffuse reflection of the engine, with its shadows and surroundings."""
+    plain = MATERIAL[: MATERIAL.rindex("[[surface]]")]
+    own = ball_picture(page, plain, tmp_path, **stage)
+    spread = ball_picture(page, MATERIAL.replace("[0.06, 0.03, 0.02]", "[0.0, 0.0, 0.0]"), tmp_path, **stage)
+    unlit = ball_picture(page, plain, tmp_path)
+    inner = inner_pixels(unlit.max(axis=-1) > 0.02)
+    assert own[inner].mean() > 0.05
+    if "walls" in stage:
+        assert own[inner].mean() < 0.9 * unlit[inner].mean()
+    # the picture is filtered: at the edge of a shadow a pixel has a little of its neighbours
+    assert np.quantile(np.abs(spread - own)[inner].max(axis=-1), 0.96) < 2.0 * LEVEL

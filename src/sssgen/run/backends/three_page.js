@@ -58,9 +58,10 @@ async function draw(plan, piece) {
   };
 
   const scene = new THREE.Scene();
-  const lights = plan.lights.map(lightOf);
+  const lights = plan.lights.map((light) => lightOf(light, stage));
+  renderer.shadowMap.enabled = Boolean(stage.shadows);
   const meshes = [placed(plan.model), ...(stage.copies ?? []).map(({ model, size }) => placed(model, size))];
-  scene.add(...meshes, ...lights);
+  scene.add(...meshes, ...(stage.walls ?? []).map(wallOf), ...lights);
   if (material.light === null) material.light = lights[0] ?? null;
   if (stage.around === 'environment') scene.environment = sky();
   else if (stage.around) scene.add(SURROUNDINGS[stage.around]());
@@ -112,12 +113,26 @@ function render(renderer, scene, camera, width, height) {
   return target;
 }
 
-/** @param {import('./engine_page.js').Light} light */
-function lightOf({ position, color }) {
+/** A wall that casts a shadow. @param {number[]} model */
+function wallOf(model) {
+  const mesh = new THREE.Mesh(new THREE.BoxGeometry(), new THREE.MeshBasicMaterial({ color: 0x000000 }));
+  mesh.matrixAutoUpdate = false;
+  mesh.matrix.fromArray(model);
+  mesh.castShadow = true;
+  return mesh;
+}
+
+/** @param {import('./engine_page.js').Light} light @param {import('./engine_page.js').Stage} stage */
+function lightOf({ position, color }, { shadows = false }) {
   const [x, y, z, w] = position;
   // three's lights are irradiance, those of the other shells radiance: their ratio is pi
   const light = new (w ? THREE.PointLight : THREE.DirectionalLight)(new THREE.Color().fromArray(color), Math.PI);
   light.position.set(x, y, z);
+  light.castShadow = shadows;
+  if (light instanceof THREE.DirectionalLight && shadows) {
+    light.position.multiplyScalar(5); // before what it lights
+    Object.assign(light.shadow.camera, { left: -2, right: 2, bottom: -2, top: 2 });
+  }
   return light;
 }
 

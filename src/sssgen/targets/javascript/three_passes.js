@@ -171,7 +171,6 @@ class Drawing {
     this.matt = mattMaterial(this.nodes);
     /** That of the page, without what it sees. @type {any} */
     this.eye = new THREE.PerspectiveCamera();
-    this.eye.layers.set(ALONE);
     this.eye.matrixWorldAutoUpdate = false;
     this.blank = emptyPicture();
     this.scene = Object.assign(new THREE.Scene(), { matrixWorldAutoUpdate: false });
@@ -252,7 +251,16 @@ class Drawing {
     const { background, backgroundNode = null, fog, overrideMaterial } = scene;
     const { envMap, envMapIntensity, envMapRotation } = material;
     Object.assign(this.matt.material, { envMap, envMapIntensity, envMapRotation, side: material.side, flatShading: material.flatShading });
-    seen.forEach(({ layers }) => layers.enable(ALONE));
+    if (this.nodes) {
+      // WebGPURenderer draws the shadows of what this camera sees: it sees all, and draws the object
+      this.eye.layers.mask = camera.layers.mask;
+      renderer.setRenderObjectFunction((each, ...others) => {
+        if (each === object) renderer.renderObject(each, ...others);
+      });
+    } else {
+      this.eye.layers.set(ALONE);
+      seen.forEach(({ layers }) => layers.enable(ALONE));
+    }
     object.material = this.matt.material;
     Object.assign(scene, { background: null, backgroundNode: null, fog: null, overrideMaterial: null });
     try {
@@ -265,6 +273,7 @@ class Drawing {
     } finally {
       Object.assign(scene, { background, backgroundNode, fog, overrideMaterial });
       object.material = material;
+      renderer.setRenderObjectFunction?.(null);
       seen.forEach(({ layers }, index) => (layers.mask = masks[index]));
     }
   }
