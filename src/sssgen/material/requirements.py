@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from sssgen.ir.baked_textures import is_baked, is_volume
-from sssgen.ir.frame_passes import FRAME_PASSES, LIGHT_VIEWS, pass_name
+from sssgen.ir.frame_passes import BACK_FACES, FRAME_PASSES, LIGHT_VIEWS, MATT, pass_name
 from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import attributes
@@ -25,6 +25,7 @@ DESCRIPTIONS = {
     "depth-map": "the light's depth map",
     "depth-layers": "a depth map with further layers",
     "back-faces": "a picture of the body's back faces",
+    "matt-light": "a picture of what the body would reflect if it were white",
     "rigid": "a rigid mesh",
     "fixed-light": "a light that does not move relative to the body",
 }
@@ -53,7 +54,7 @@ def needed_for(name: str) -> tuple[str, ...]:
     """The requirements of a pass; '' has none."""
     if name in LIGHT_VIEWS:
         return ("depth-map", "depth-layers") if len(FRAME_PASSES[name].layers) > 1 else ("depth-map",)
-    return ("back-faces",) if name and FRAME_PASSES[name].seen_from == "eye" else ()
+    return {BACK_FACES: ("back-faces",), MATT: ("matt-light",)}.get(name, ())
 
 
 def describe(uses: Sequence[TechniqueUse]) -> list[str]:

@@ -92,7 +92,10 @@ func _enter_tree() -> void:
 		return
 	_casters = Casters.new()
 	for data in passes():
-		_pictures.append(Picture.new(self, data, _casters))
+		if "light" in data["layers"]:
+			push_warning("%s: Godot draws no %s; the diffuse reflection of the body stays Godot's" % [name, data["texture"]])
+		else:
+			_pictures.append(Picture.new(self, data, _casters))
 	_lights.assign(get_tree().root.find_children("*", "Light3D", true, false))
 	get_tree().node_added.connect(_note_light)
 	for caster in get_tree().root.find_children("*", "GeometryInstance3D", true, false):
