@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import sssgen
+from area_light_cases import check_area_light
 from engine_cases import (
     HEAD,
     MESHES,
@@ -286,3 +287,8 @@ def test_parameters_are_properties() -> None:
 
 def test_light_of_the_surroundings_comes_through(babylon: EnginePage, tmp_path: Path) -> None:
     check_surroundings(babylon, "babylonjs", BLACK, {"hemisphere": 1.0 / 255.0, "environment": 0.03}, tmp_path)
+
+
+@pytest.mark.parametrize("left_handed", [False, True], ids=["right-handed", "left-handed"])
+def test_light_of_a_rectangle_comes_through(babylon: EnginePage, left_handed: bool, tmp_path: Path) -> None:
+    check_area_light(babylon, "babylonjs", BLACK, {"metallicF0Factor": 0.0}, tmp_path, leftHanded=left_handed)

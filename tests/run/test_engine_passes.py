@@ -14,12 +14,14 @@ import pytest
 import sssgen
 from engine_cases import BLACK, HEAD, mesh_of, through
 from skips import or_skip
+from sssgen.material.material_loading import load_material
 from sssgen.run.backends import Array
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
 from sssgen.run.backends.web_engines import BABYLON, PLAYCANVAS, THREE
 from sssgen.run.render import page_values
 from sssgen.run.render.scene_render import PlacedMesh
+from sssgen.run.render.scene_values import shell_of
 from sssgen.scene import scene_loading
 from sssgen.scene.solids import Torus
 from sssgen.support.diagnostics import SssgenError
@@ -84,6 +86,37 @@ def test_the_engine_draws_the_passes(page: EnginePage, several: bool, case_of: C
     """Without textures from the page, the light that comes through is that of the oracle."""
     # the oracle's depths are half floats, so that every back end has the same
     assert np.quantile(differences(page, case_of(several)), 0.98) < 1.0 / 255.0
+
+
+@pytest.mark.parametrize("several", [False, True], ids=["depth map", "layers of each light"])
+@pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
+def test_a_rectangle_of_light_is_as_a_point(page: EnginePage, several: bool, tmp_path: Path) -> None:
+    """A pass shows the body from the rectangle's centre: what comes through is that of a point light there.
+
+    The rectangle is small, but where a chain finds the view of a light by the way to it.
+    """
+    scene = scene_loading.load(torus_scene(tmp_path, SEVERAL if several else ""))
+    assert isinstance(scene.geometry, Torus)
+    vertices, triangles = torus_mesh(scene.geometry)
+    shell = shell_of(scene, load_material(scene.material), sssgen.compile(scene.material, "numpy").reflection)
+    place = np.array([2.0, 3.0, -4.0])
+    z = place / np.linalg.norm(place)
+    x = np.cross([0.0, 1.0, 0.0], z) / np.hypot(z[0], z[2])
+    model = np.eye(4)
+    model[:3] = np.stack([x, np.cross(z, x), z, place], axis=-1)
+    size = np.array([0.3, 0.2]) * (10.0 if several else 1.0)
+    radiance = np.pi * place @ place / size.prod()
+    area = {"model": model.T.ravel().tolist(), "size": size.tolist(), "radiance": radiance}
+    drawing = EngineDrawing(
+        page_values.modules_of(sssgen.compile(scene.material, page.engine.target)), (96, 72), vertices, triangles,
+        shell.view_projection, shell.camera_position, shell.model, properties=BLACK[page.engine.target],
+    )  # fmt: skip
+    point = page.draw(
+        drawing._replace(light_positions=np.array([[*place, 1.0]]), light_colors=np.full((1, 3), place @ place))
+    )
+    rectangle = page.draw(drawing._replace(properties={**drawing.properties, "stage": {"area": area}}))
+    assert point[..., :3].max() > 0.05
+    assert np.abs(rectangle - point)[..., :3].max() < 0.05 * point[..., :3].max()
 
 
 ELSEWHERE = {"size": 2.0, "model": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 9, 3, -5, 1]}

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import sssgen
+from area_light_cases import check_area_light, check_shadow_of_area_light
 from engine_cases import (
     HEAD,
     MATERIALS,
@@ -378,3 +379,17 @@ def test_parameters_are_properties() -> None:
 
 def test_light_of_the_surroundings_comes_through(playcanvas: EnginePage, tmp_path: Path) -> None:
     check_surroundings(playcanvas, "playcanvas", BLACK, {"environment": 0.03}, tmp_path)
+
+
+@CLUSTERED
+@pytest.mark.parametrize("shape", ["rectangle", pytest.param("disk", marks=SLOW), pytest.param("sphere", marks=SLOW)])
+def test_light_of_an_area_comes_through(playcanvas: EnginePage, shape: str, clustered: bool, tmp_path: Path) -> None:
+    """PlayCanvas's areas shine to both sides."""
+    black = {**BLACK, "clustered": clustered}
+    white = {name: value for name, value in black.items() if name != "diffuse"}
+    check_area_light(playcanvas, "playcanvas", black, white, tmp_path, two_sided=True, shape=shape)
+
+
+@CLUSTERED
+def test_other_bodies_shadow_the_light_of_an_area(playcanvas: EnginePage, clustered: bool, tmp_path: Path) -> None:
+    check_shadow_of_area_light(playcanvas, "playcanvas", {**BLACK, "clustered": clustered}, tmp_path)

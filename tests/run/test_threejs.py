@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import sssgen
+from area_light_cases import check_area_light
 from engine_cases import (
     HEAD,
     MESHES,
@@ -171,3 +172,7 @@ def test_light_of_the_surroundings_comes_through(three: EnginePage, tmp_path: Pa
     check_surroundings(
         three, "threejs", BLACK, {"hemisphere": 1.0 / 255.0, "probe": 1.0 / 255.0, "environment": 0.03}, tmp_path
     )
+
+
+def test_light_of_a_rectangle_comes_through(three: EnginePage, tmp_path: Path) -> None:
+    check_area_light(three, "threejs", BLACK, {"specularIntensity": 0.0}, tmp_path)

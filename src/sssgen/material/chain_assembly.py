@@ -95,6 +95,7 @@ _APART = ("lighting", "shadow", "environment", IRRADIANCE, *_LAST)
 TAKEN = frozenset(
     {"Surface", "surface", "light", "shade_fragment", "MAX_LIGHTS", "safe_normalize", "tangent_frame", *INPUTS}
     | {"facet_light", "reflected_light", "coated_light", "towards_light", "way_out_of_box", "light_entry"}
+    | {"towards_area", "area_light"}
     | {f"evaluate_{kind}" for kind in ("surface", "translucency", "color", *_APART)}
     | {"entering_light", "fall_of_light", "share_that_passes", "is_free", "sky_light", "sky_light_matrix"}
     | {"occluder_map", "occluded_lights"}

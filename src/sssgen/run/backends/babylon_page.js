@@ -9,6 +9,7 @@ import { PointLight } from '@babylonjs/core/Lights/pointLight.js';
 import { CascadedShadowGenerator } from '@babylonjs/core/Lights/Shadows/cascadedShadowGenerator.js';
 import { ShadowGenerator } from '@babylonjs/core/Lights/Shadows/shadowGenerator.js';
 import '@babylonjs/core/Lights/Shadows/shadowGeneratorSceneComponent.js';
+import { RectAreaLight } from '@babylonjs/core/Lights/rectAreaLight.js';
 import { SpotLight } from '@babylonjs/core/Lights/spotLight.js';
 import { RawCubeTexture } from '@babylonjs/core/Materials/Textures/rawCubeTexture.js';
 import { RawTexture } from '@babylonjs/core/Materials/Textures/rawTexture.js';
@@ -20,6 +21,7 @@ import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { CubeMapToSphericalPolynomialTools } from '@babylonjs/core/Misc/HighDynamicRange/cubemapToSphericalPolynomial.js';
 import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
 import { CreateBoxVertexData } from '@babylonjs/core/Meshes/Builders/boxBuilder.js';
+import { TransformNode } from '@babylonjs/core/Meshes/transformNode.js';
 import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
 import '@babylonjs/core/Meshes/thinInstanceMesh.js';
 import { Scene } from '@babylonjs/core/scene.js';
@@ -76,6 +78,7 @@ async function draw(plan, piece) {
   scene.imageProcessingConfiguration.applyByPostProcess = true; // linear light
   const camera = new GivenCamera(plan, scene);
   const lights = plan.lights.map((light) => lightOf(light, stage, scene));
+  if (stage.area) areaLightOf(stage.area, scene);
   if (stage.around === 'hemisphere') new HemisphericLight('above', new Vector3(0, 1, 0), scene);
   if (stage.around === 'environment') scene.environmentTexture = skyOf(scene);
   const { createMaterial } = await imported(plan.modules);
@@ -169,6 +172,21 @@ function lightOf({ position, color }, { spot }, scene) {
   light.diffuse = light.specular = Color3.FromArray(color);
   light.intensity = Math.PI; // Babylon's lights are irradiance, those of the other shells radiance
   return light;
+}
+
+/** Its tables, which Babylon would load from the network, are of what a surface with highlights reflects: no plan with such a
+ * light draws one.
+ * @param {import('./engine_page.js').Area} area @param {Scene} scene */
+function areaLightOf({ model, size, radiance }, scene) {
+  const texel = () => RawTexture.CreateRGBATexture(new Uint16Array(4), 1, 1, scene, false, false, 2, HALF_FLOAT);
+  scene._ltcTextures = { LTC1: texel(), LTC2: texel() };
+  const light = new RectAreaLight('area', Vector3.Zero(), size[0], size[1], scene);
+  light.intensity = radiance;
+  const placed = new TransformNode('placed', scene);
+  // it shines along its -z in mirrored worlds, too
+  const sides = Matrix.Scaling(scene.useRightHandedSystem ? 1 : -1, 1, 1);
+  placed.freezeWorldMatrix(sides.multiply(Matrix.FromArray(model)).multiply(handOf(scene)));
+  light.parent = placed;
 }
 
 /** @param {DirectionalLight | PointLight | SpotLight} light @param {Stage} stage @param {Mesh[]} casters @param {Camera} camera */

@@ -39,6 +39,10 @@ async function appFor(renderer, clustered) {
   app.init(options);
   app.scene.clusteredLightingEnabled = clustered;
   invertedSquares(device);
+  // Tables for area lights: no plan with one has highlights; a disk has the cosine of its direction, as where all of it is
+  // above the horizon.
+  const cosines = Array.from({ length: 64 * 64 * 4 }, (_, at) => (at % 4 === 3 ? Math.max((2 * (Math.floor(at / 4) % 64)) / 63 - 1, 0) : 0));
+  app.setAreaLightLuts(cosines.map(() => 0), cosines);
   apps.set(kind, app);
   return app;
 }
@@ -87,6 +91,8 @@ async function draw(plan, piece) {
   for (const { size, model } of stage.copies ?? []) bodies.push(placed(meshOf(device, plan, piece, size), model));
   for (const model of stage.walls ?? []) bodies.push(placed(pc.Mesh.fromGeometry(device, new pc.BoxGeometry()), model));
   const lights = plan.lights.map((light) => lightOf(app, light, stage));
+  scene.lighting.areaLightsEnabled = Boolean(stage.area);
+  if (stage.area) lights.push(areaLightOf(app, stage.area));
   if (material.light === null && lights.length) material.light = lights[0].light;
   material.update();
 
@@ -161,6 +167,21 @@ function lightOf(app, { position, color }, { shadows, cascades, spot }) {
   if (w) entity.setPosition(x, y, z);
   // a light shines down its own y
   if (!w || spot) entity.setRotation(new pc.Quat().setFromDirections(pc.Vec3.UP, new pc.Vec3(x, y, z).normalize()));
+  return entity;
+}
+
+/** @type {Record<string, number>} */
+const SHAPES = { rectangle: pc.LIGHTSHAPE_RECT, disk: pc.LIGHTSHAPE_DISK, sphere: pc.LIGHTSHAPE_SPHERE };
+
+/** PlayCanvas's light of 16 is the radiance 1. @param {pc.AppBase} app @param {import('./engine_page.js').Area} area */
+function areaLightOf(app, { model, size, radiance, shape = 'rectangle', shadows = false }) {
+  const entity = new pc.Entity('', app), matrix = new pc.Mat4().set(model);
+  const color = colorOf(Array(3).fill(radiance / 16));
+  entity.addComponent('light', { type: 'omni', shape: SHAPES[shape], color, range: 50, castShadows: shadows, shadowResolution: 1024 });
+  entity.setPosition(matrix.getTranslation());
+  // it shines down its own y, and its sides are along x and z
+  entity.setRotation(new pc.Quat().setFromMat4(matrix).mul(new pc.Quat().setFromEulerAngles(90, 0, 0)));
+  entity.setLocalScale(size[0], 1, size[1]);
   return entity;
 }
 

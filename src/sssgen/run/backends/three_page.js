@@ -1,7 +1,7 @@
 // three.js in a page: draws meshes with emitted modules, as plans say (engine_page.js).
 
 import * as THREE from 'three';
-import { WebGPURenderer, REVISION } from 'three/webgpu';
+import { WebGPURenderer, REVISION, RectAreaLightNode } from 'three/webgpu';
 import { floats, halves, imported, indices, serve } from './engine_page.js';
 
 /** @typedef {import('./engine_page.js').Plan} Plan */
@@ -65,6 +65,7 @@ async function draw(plan, piece) {
   if (material.light === null) material.light = lights[0] ?? null;
   if (stage.around === 'environment') scene.environment = sky();
   else if (stage.around) scene.add(SURROUNDINGS[stage.around]());
+  if (stage.area) scene.add(areaLightOf(stage.area));
   if (plan.ambient.length) scene.add(new THREE.AmbientLight(new THREE.Color().fromArray(plan.ambient), Math.PI));
   const pictures = () => Object.keys(declared).map((name) => material[name]).filter((texture) => texture.isRenderTargetTexture);
   if (stage.first) render(await rendererFor(stage.first), scene, cameraOf(plan, stage.first === 'webgpu'), 5, 4).dispose();
@@ -133,6 +134,19 @@ function lightOf({ position, color }, { shadows = false }) {
     light.position.multiplyScalar(5); // before what it lights
     Object.assign(light.shadow.camera, { left: -2, right: 2, bottom: -2, top: 2 });
   }
+  return light;
+}
+
+/** Its tables are of what a surface with highlights reflects, which no plan with such a light draws.
+ * @param {import('./engine_page.js').Area} area */
+function areaLightOf({ model, size, radiance }) {
+  const texel = new THREE.DataTexture(new Uint16Array(4), 1, 1, THREE.RGBAFormat, THREE.HalfFloatType);
+  texel.needsUpdate = true;
+  const tables = { LTC_HALF_1: texel, LTC_HALF_2: texel, LTC_FLOAT_1: texel, LTC_FLOAT_2: texel };
+  Object.assign(THREE.UniformsLib, tables);
+  RectAreaLightNode.setLTC(tables);
+  const light = new THREE.RectAreaLight(0xffffff, radiance, ...size);
+  light.applyMatrix4(new THREE.Matrix4().fromArray(model));
   return light;
 }
 

@@ -16,6 +16,7 @@ import { Vector2, Vector4 } from '@babylonjs/core/Maths/math.vector.js';
 import { SerializationHelper } from '@babylonjs/core/Misc/decorators.serialization.js';
 import { Passes, lightOf } from './babylon_passes.js';
 import { SKY, SURROUNDINGS, skyOf } from './babylon_surroundings.js';
+import { spreadOf } from './frame_passes.js';
 import { Properties, TEXELS } from './values.js';
 
 /**
@@ -33,6 +34,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {import('./frame_passes.js').Pass[]} [passes] what is drawn before it, in order
  * @property {Record<string, string>} varyings name → type
  * @property {Record<string, string>} variables of the fragment shader: the same
+ * @property {import('./frame_passes.js').Area} [area] where light comes through
  * @property {Shell[]} shells in GLSL and in WGSL
  */
 
@@ -115,12 +117,27 @@ const TO_LIGHT = 'vPositionFromLight\\{X\\}[^;]*=[^;]*worldPos';
 const wayToLight = (vertexText) => vertexText
   .replace(/[\w.]*vPositionFromCamera\{X\}\s*=[^;]*;/g, '').replaceAll('vertexOutputs.', 'fragmentInputs.').replaceAll('{X}', '$2');
 
+/** A rectangle of light is four lights: the values of Babylon's variables for each. In GLSL and in WGSL. */
+const AREA_WORDS = [
+  { area: 'mat3 area', way: 'vec4 way', index: 'int index', mat3: 'mat3', place: 'vPositionW' },
+  { area: 'var area', way: 'var way', index: 'var index', mat3: 'mat3x3f', place: 'fragmentInputs.vPositionW' },
+];
+const areaLights = ({ area, passes }, translucency, words) => `{
+${words.area} = ${words.mat3}(light$2.vLightData.xyz - ${words.place}, light$2.vLightWidth.xyz, light$2.vLightHeight.xyz);
+for (${words.index} = 0; index < 4; index++) {
+${words.way} = ${area.towards}(index, ${spreadOf(passes)}, area);
+preInfo.L = way.xyz;
+preInfo.lightDistance = 1.0 / way.w;
+preInfo.attenuation = max(${area.light}(area, way), 0.0);
+sss_lights += sss_light_color * preInfo.attenuation * ${translucency};
+}
+}`;
+
 /** The places of the light that comes through. */
-const lightPlaces = ({ translucency, entry }, language) => ({
+const lightPlaces = (description, { translucency, entry }, language) => ({
   [BEHIND_SHADOW]: `$1
-#if defined(DIRLIGHT$2) || defined(POINTLIGHT$2) || defined(SPOTLIGHT$2)
 #if defined(LIGHTMAP) && defined(LIGHTMAPEXCLUDED$2) && defined(LIGHTMAPNOSPECULAR$2)
-#else
+#elif defined(DIRLIGHT$2) || defined(POINTLIGHT$2) || defined(SPOTLIGHT$2)
 sss_light_color = diffuse$2.rgb;
 #ifdef DIRLIGHT$2
 sss_light_nearness = 0.0;
@@ -133,7 +150,10 @@ ${entry}
 ${SHADOWS[language]}
 #endif
 sss_lights += sss_light_color * preInfo.attenuation * sss_shadow * ${translucency};
-#endif
+#elif defined(AREALIGHT$2) && defined(AREALIGHTUSED) && defined(AREALIGHTSUPPORTED)
+sss_light_color = diffuse$2.rgb;
+sss_light_nearness = 1.0;
+${areaLights(description, translucency, AREA_WORDS[language])}
 #endif
 aggShadow+=shadow;
 `,
@@ -147,13 +167,14 @@ finalDiffuse += sss_lights * ${['', 'uniforms.'][language]}vLightingIntensity.x 
 const readsSurroundings = ({ begin }) => begin.includes('sss_surroundings(');
 
 /** What goes into Babylon's shaders in one language: place → text. */
-function placesOf({ textures, varyings, variables, shells }, language) {
+function placesOf(description, language) {
+  const { textures, varyings, variables, shells } = description;
   const { functions, vertex, begin, places } = shells[language];
   const { texture, varying, variable } = DECLARATIONS[language];
   const samplers = Object.fromEntries(Object.values(textures).map(({ name, type }) => [name, type]));
   const passed = declared(varying, varyings);
   const around = readsSurroundings(shells[language]) ? SURROUNDINGS[language] : '';
-  const lights = shells[language].translucency ? lightPlaces(shells[language], language) : {};
+  const lights = shells[language].translucency ? lightPlaces(description, shells[language], language) : {};
   const fragment = {
     CUSTOM_FRAGMENT_DEFINITIONS: declared(texture, samplers) + passed + around + functions + declared(variable, variables),
     CUSTOM_FRAGMENT_MAIN_BEGIN: begin,

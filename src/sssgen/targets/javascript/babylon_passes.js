@@ -71,13 +71,19 @@ const languageOf = (engine) => Number(engine.isWebGPU);
 
 // The lights of a body.
 
-/** The position of a light, or the direction towards it, as a homogeneous vector; and its radiance. */
+const POINT = 0, DIRECTIONAL = 1, SPOT = 2, RECTANGLE = 4;
+
+/** The position of a light, or the direction towards it, as a vector of Babylon. */
+function placeOf(light) {
+  if (light.getTypeID() === DIRECTIONAL) return (light.computeTransformedInformation() ? light.transformedDirection : light.direction).scale(-1);
+  if (light.getTypeID() !== RECTANGLE) return light.getAbsolutePosition();
+  return light.parent ? Vector3.TransformCoordinates(light.position, light.parent.getWorldMatrix()) : light.position;
+}
+
+/** The same as a homogeneous vector; and the light's radiance. */
 export function lightOf(light) {
   if (!light) return [[0, 1, 0, 0], [0, 0, 0]];
-  const directional = light.getTypeID() === 1;
-  const place = directional
-    ? (light.computeTransformedInformation() ? light.transformedDirection : light.direction).scale(-1)
-    : light.getAbsolutePosition();
+  const directional = light.getTypeID() === DIRECTIONAL, place = placeOf(light);
   return [[...place.asArray(), directional ? 0 : 1], light.diffuse.scale(light.getScaledIntensity() / Math.PI).asArray()];
 }
 
@@ -106,15 +112,14 @@ function boxOf(meshes) {
   return { corners, edges, reach: reachOf(meshes), center: Vector3.Center(least, most), radius: Vector3.Distance(least, most) / 2 };
 }
 
-const POINT = 0, DIRECTIONAL = 1, SPOT = 2;
-
 /** The lights of a scene that a pass shows, as homogeneous vectors. */
 function lightsAt(mesh, { center }, pass) {
-  const shining = mesh.getScene().lights.filter((light) => [POINT, DIRECTIONAL, SPOT].includes(light.getTypeID()) && light.isEnabled() && light.canAffectMesh(mesh));
+  const shining = mesh.getScene().lights.filter((light) => [POINT, DIRECTIONAL, SPOT, RECTANGLE].includes(light.getTypeID()) && light.isEnabled() && light.canAffectMesh(mesh));
   const lights = shining.map((light) => {
     const [place, radiance] = lightOf(light);
     const fall = place[3] ? Math.max(Vector3.DistanceSquared(Vector3.FromArray(place), center), 1e-6) : 1;
-    return { light: place, directional: !place[3], strength: Math.max(...radiance) / fall };
+    const area = light.getTypeID() === RECTANGLE ? light.width * light.height : 1;
+    return { light: place, directional: !place[3], strength: area * Math.max(...radiance) / fall };
   });
   return lightsOf(lights, pass);
 }

@@ -38,6 +38,20 @@ export const emptyOf = ({ empty }) => (empty === 'far' ? FAR : 0);
 /** Whether a pass shows the light on the body, and not only distances. */
 export const showsLight = ({ layers }) => layers.includes('light');
 
+/**
+ * An area of light, where runtimes know its sides: the names of two functions of the texts.
+ * @typedef {object} Area
+ * @property {string} towards the way to one of four points of it
+ * @property {string} light what comes from there
+ */
+
+/**
+ * How far the points are from the centre, in halves of the sides: so that the sum over a rectangle is exact for cubic
+ * functions. Where a chain finds the view of a light by the way to it, they are all at the centre.
+ * @param {Pass[] | undefined} passes
+ */
+export const spreadOf = (passes, spread = '0.57735027') => (passes?.some(({ seenFrom }) => seenFrom === 'each light') ? '0.0' : spread);
+
 /** The tiles along a side of a picture. */
 export const columnsOf = ({ views }) => (views.length > 1 ? 2 : 1);
 

@@ -43,6 +43,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {Record<string, import('./values.js').TextureParameter>} textures
  * @property {Record<string, Varying>} varyings
  * @property {Record<string, string>} variables of the fragment shader: name → type
+ * @property {import('./frame_passes.js').Area} [area] where light comes through
  * @property {Shell[]} shells in GLSL and in WGSL
  * @property {import('./frame_passes.js').Pass[]} [passes] what is drawn before it
  */

@@ -1,6 +1,7 @@
 // The way of a material's text into PlayCanvas's chunks: PlayCanvas's own text stays, and the material's is added.
 
 import * as pc from 'playcanvas';
+import { spreadOf } from './frame_passes.js';
 
 const SCALARS = { float: 'f32', int: 'i32', uint: 'u32', bool: 'u32' };
 const TEXTURE_TYPES = { sampler2D: '2d', sampler3D: '3d', samplerCube: 'cube', sampler2DArray: '2d_array' };
@@ -86,7 +87,8 @@ ${out}${name} = ${type}(${other}.0);
  * Changes of PlayCanvas's chunks: a chunk, what is sought in it, what it becomes, and what follows the chunk.
  * @returns {[string, RegExp, string | ((chunk: string) => string), string][]}
  */
-function changes({ lit, shells }, gpu) {
+function changes(description, gpu) {
+  const { lit, shells, area } = description;
   const own = shells[Number(gpu)];
   const { front = '', opacity = '', ambient = '' } = own.places;
   const { head } = LANGUAGES[Number(gpu)];
@@ -102,7 +104,7 @@ ${own.begin}
 ${front}
 #endif
 }
-${lit ? lightFunctions(own, head) : ''}`],
+${lit ? lightFunctions(own, area, gpu, head) : ''}`],
     ['opacityPS', /getOpacity/, 'sss_engine_opacity', `
 ${head('void getOpacity()')} {
   sss_engine_opacity();
@@ -115,7 +117,7 @@ ${head('vec3 combineColor(vec3 albedo, vec3 sheenSpecularity, float clearcoatSpe
 ${lit ? lightSum(ambient) : 'return vec3(0.0);'}
 }
 `],
-    ...(lit ? lightChanges(own, gpu, head) : []),
+    ...(lit ? lightChanges(description, gpu, head) : []),
   ];
 }
 
@@ -152,8 +154,11 @@ return sss_light_sum;
 return sss_engine_combine(albedo, sheenSpecularity, clearcoatSpecularity) + sss_light_sum;
 #endif`;
 
-/** One of PlayCanvas's lights: what comes through, of which `sss_shadow` is left, and what the material reflects itself. */
-const lightFunctions = ({ translucency, entry, lighting }, head) => `
+/**
+ * One of PlayCanvas's lights: what comes through, of which `sss_shadow` is left, and what the material reflects itself. An
+ * area of light, given by three corners, is four lights; it shines to both sides.
+ */
+const lightFunctions = ({ translucency, entry, lighting }, area, gpu, head) => `
 ${head('void sss_set_light(vec3 L, vec3 color, float nearness)')} {
   sss_L = L;
   sss_light_color = color;
@@ -164,6 +169,17 @@ ${entry ?? ''}
 ${head('void sss_light_through()')} {
 ${translucency ? `sss_light_sum += sss_light_color * sss_shadow * ${translucency};` : ''}
 }
+${area ? `${head('void sss_area_through(vec3 corner, vec3 next, vec3 last, float spread, float strength)')} {
+  ${gpu ? 'let area = mat3x3f' : 'mat3 area = mat3'}(0.5 * (next + last) - vPositionW, 0.5 * (corner - next), 0.5 * (last - corner));
+  ${gpu ? 'let' : 'vec3'} color = sss_light_color * strength;
+  for (${gpu ? 'var' : 'int'} index = 0; index < 4; index++) {
+    ${gpu ? 'let' : 'vec4'} way = ${area.towards}(index, spread, area);
+    sss_L = way.xyz;
+    sss_light_color = color * abs(${area.light}(area, way));
+    sss_light_nearness = way.w;
+    sss_light_through();
+  }
+}` : ''}
 #ifdef SSS_OWN_LIGHT
 ${head('void sss_light_reflected(vec3 color)')} {
   sss_light_color = color;
@@ -200,10 +216,27 @@ sss_shadow_place = vPositionW;
 sss_shadow = ${attenuation};`;
 
 /**
+ * What comes through of a light with an area, by its shape: PlayCanvas's light of 1 is the radiance 16, and that of a
+ * sphere falls in a way of its own.
+ */
+const areaShapes = ({ area, passes }) => {
+  const corners = [0, 1, 3].map((corner) => `dLTCCoords.coord${corner}`);
+  const through = (strength, spread) => (area ? `sss_area_through(${corners.join(', ')}, ${spreadOf(passes, spread)}, ${strength});` : '');
+  return {
+    rectangle: through('5.09295818'), // 16 / pi
+    disk: through('4.0', '0.5'), // its share of a rectangle is pi / 4
+    sphere: `
+sss_light_color *= 16.0 * dSphereRadius / (dot(lightDirW, lightDirW) + dSphereRadius);
+sss_light_through();`,
+  };
+};
+
+/**
  * Those of a lit material.
  * @returns {[string, RegExp, string | ((chunk: string) => string), string][]}
  */
-const lightChanges = ({ entry }, gpu, head) => {
+const lightChanges = (description, gpu, head) => {
+  const { entry } = description.shells[Number(gpu)], areas = areaShapes(description);
   const local = (type, name, value) => `${gpu ? 'var' : type} ${name} = ${value};`;
   const listed = (chunk) => !entry ? '' : `
 #ifdef LIGHT{i}CASTSHADOW
@@ -239,21 +272,29 @@ ${head('float getLightDiffuse(vec3 worldNormal, vec3 viewDir, vec3 lightDirNorm)
 }
 `],
     ...(entry ? SHADOW_PLACES : []),
-    ['lightFunctionLightPS', /(?=dAtten\b[^;\n]*getLightDiffuse)/, (chunk) => `
+    ['lightFunctionLightPS', /(?=#if LIGHT\{i\}SHAPE != PUNCTUAL\s+#if LIGHT\{i\}TYPE == DIRECTIONAL)/, (chunk) => `
 #if LIGHT{i}TYPE == DIRECTIONAL
 sss_set_light(-dLightDirNormW, lightColor * dAtten, 0.0);
 #else
 sss_set_light(-dLightDirNormW, lightColor * dAtten, 1.0 / max(length(lightDirW), 0.01));
 #endif
 ${listed(chunk)}
+#if LIGHT{i}TYPE == DIRECTIONAL || LIGHT{i}SHAPE == PUNCTUAL
 sss_light_through();
+#elif LIGHT{i}SHAPE == RECT
+${areas.rectangle}
+#elif LIGHT{i}SHAPE == DISK
+${areas.disk}
+#else
+${areas.sphere}
+#endif
 `, ''],
     ['lightFunctionLightPS', /(?=#ifdef LIGHT\{i\}AFFECT_SPECULARITY)/, `
 #if defined(SSS_OWN_LIGHT) && LIGHT{i}SHAPE == PUNCTUAL
 sss_light_reflected(lightColor * dAtten);
 #endif
 `, ''],
-    ['clusteredLightPS', /(?=falloffAttenuation\b[^;\n]*getLightDiffuse)/, (chunk) => `
+    ['clusteredLightPS', /(?<=if \(falloffAttenuation > 0\.00001\) \{)/, (chunk) => `
 ${local('float', 'sss_arriving', 'falloffAttenuation')}
 if (light.isSpot) {
   ${gpu ? 'let' : 'ClusterLightSpotData'} spot = decodeClusterLightSpot();
@@ -261,7 +302,18 @@ if (light.isSpot) {
 }
 sss_set_light(-lightDirNormW, light.color * sss_arriving, 1.0 / max(length(lightDirW), 0.01));
 ${clustered(chunk)}
+#ifdef CLUSTER_AREALIGHTS
+if (light.shape == {LIGHTSHAPE_RECT}) {
+${areas.rectangle}
+} else if (light.shape == {LIGHTSHAPE_DISK}) {
+${areas.disk}
+} else if (light.shape == {LIGHTSHAPE_SPHERE}) {
+${areas.sphere}
+} else
+#endif
+{
 sss_light_through();
+}
 `, ''],
     ['clusteredLightPS', /(?=dAtten = falloffAttenuation;)/, `
 #ifdef SSS_OWN_LIGHT

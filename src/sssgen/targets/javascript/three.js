@@ -3,6 +3,7 @@
 
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
+import { spreadOf } from './frame_passes.js';
 import { nodesOf } from './three_nodes.js';
 import { ObjectUniforms, placedValue } from './three_object.js';
 import { Passes } from './three_passes.js';
@@ -23,6 +24,7 @@ import { Properties, TEXELS } from './values.js';
  * @property {Record<string, import('./values.js').Parameter>} parameters
  * @property {Record<string, import('./values.js').TextureParameter>} textures
  * @property {import('./frame_passes.js').Pass[]} [passes] what is drawn before it, in order
+ * @property {import('./frame_passes.js').Area} [area] where light comes through
  * @property {string} glsl functions
  * @property {string} wgsl the same
  * @property {Record<string, import('./three_nodes.js').Call>} calls `color` of an unlit material; `surface` and `translucency` of a lit one
@@ -53,11 +55,18 @@ const OWN_UNIFORMS = {
   bodyMax: { type: 'vec3', name: 'sss_body_max' },
 };
 
+/** What three gives its functions for a light beside the light. */
+const POINT = {
+  parameters: 'const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight',
+  names: 'geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight',
+};
+
 /**
  * What three calls for each light: its own reflection, then the light that comes through. The macros remember the light's
- * colour before its shadow: light that comes through has that of the point where it entered.
+ * colour before its shadow: light that comes through has that of the point where it entered. A rectangle of light is
+ * four lights.
  */
-const lightFunction = ({ light, entry }) => /* glsl */ `
+const lightFunction = ({ area, passes, webgl: { light, entry } }) => /* glsl */ `
 vec3 sss_light_color;
 float sss_light_nearness;
 #define SSS_LIGHT(direct, nearness) sss_light_color = direct.color; sss_light_nearness = nearness
@@ -66,16 +75,35 @@ float sss_light_nearness;
 #define getDirectionalLightInfo(light, direct) getDirectionalLightInfo(light, direct); SSS_LIGHT(direct, 0.0)
 #define getSunLightInfo(light, direct) getSunLightInfo(light, direct); SSS_LIGHT(direct, 0.0)
 
-void sss_direct(const in IncidentLight directLight, const in vec3 geometryPosition, const in vec3 geometryNormal, const in vec3 geometryViewDir, const in vec3 geometryClearcoatNormal, const in PhysicalMaterial material, inout ReflectedLight reflectedLight) {
-  RE_Direct_Physical(directLight, geometryPosition, geometryNormal, geometryViewDir, geometryClearcoatNormal, material, reflectedLight);
+void sss_through(const in IncidentLight directLight, const in vec3 geometryNormal, inout ReflectedLight reflectedLight) {
 ${light}}
-${entryFunction(entry)}${SURROUNDINGS}
+
+void sss_direct(const in IncidentLight directLight, ${POINT.parameters}) {
+  RE_Direct_Physical(directLight, ${POINT.names});
+  sss_through(directLight, geometryNormal, reflectedLight);
+}
 #undef RE_Direct
 #define RE_Direct sss_direct
-`;
+
+#if NUM_RECT_AREA_LIGHTS > 0
+void sss_direct_area(const in RectAreaLight rectAreaLight, ${POINT.parameters}) {
+  RE_Direct_RectArea_Physical(rectAreaLight, ${POINT.names});
+  mat3 area = mat3(rectAreaLight.position - geometryPosition, rectAreaLight.halfWidth, rectAreaLight.halfHeight);
+  for (int index = 0; index < 4; index ++) {
+    vec4 way = ${area.towards}(index, ${spreadOf(passes)}, area);
+    sss_light_color = rectAreaLight.color * max(${area.light}(area, way), 0.0);
+    sss_light_nearness = way.w;
+    sss_through(IncidentLight(sss_light_color, way.xyz, true), geometryNormal, reflectedLight);
+  }
+}
+#undef RE_Direct_RectArea
+#define RE_Direct_RectArea sss_direct_area
+#endif
+${entryFunction(entry)}${SURROUNDINGS}`;
 
 /** Adds a material's text to a shader of three: behind its includes, and in place of two of them. */
-function patch(shader, { name, parameters, textures, webgl, glsl }, uniforms) {
+function patch(shader, description, uniforms) {
+  const { name, parameters, textures, webgl, glsl } = description;
   const declarations = [];
   for (const [property, declared] of Object.entries({ ...parameters, ...textures, ...OWN_UNIFORMS })) {
     if (!uniforms[property]) continue;
@@ -93,7 +121,7 @@ function patch(shader, { name, parameters, textures, webgl, glsl }, uniforms) {
       common: declarations.join('\n') + webgl.varyings + glsl + webgl.variables, map_fragment: webgl.fragment, ...webgl.includes,
     },
   };
-  if (webgl.light) texts.fragmentShader.lights_physical_pars_fragment = lightFunction(webgl);
+  if (webgl.light) texts.fragmentShader.lights_physical_pars_fragment = lightFunction(description);
   for (const [stage, behind] of Object.entries(texts)) {
     for (const [file, text] of Object.entries(behind)) replace(stage, file, (include) => `${include}\n${text}`);
   }
@@ -171,7 +199,7 @@ export function materialClass(description) {
   const isDrawn = (property) => passes.some((pass) => pass.texture === property);
   const texts = { glsl: TSL.glsl(description.glsl), wgsl: TSL.wgsl(description.wgsl) };
   // three keeps one program per key
-  const key = `sssgen ${name} ${Properties.hashOf(JSON.stringify([description.glsl, description.webgl]))}`;
+  const key = `sssgen ${name} ${Properties.hashOf(JSON.stringify([description.glsl, description.webgl, description.area, passes]))}`;
 
   return class extends THREE[base] {
     #ofObject = new ObjectUniforms();

@@ -2,6 +2,7 @@
 
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
+import { spreadOf } from './frame_passes.js';
 import { entryShadow, hasEntryShadow } from './three_shadows.js';
 import { surroundings } from './three_surroundings.js';
 
@@ -123,7 +124,24 @@ function engineLight({ lightDirection, lightNode, lightColor }, builder, box) {
   const L = turned(TSL.cameraWorldMatrix, lightDirection);
   let color = unshadowed(lightNode, builder) ?? lightColor;
   if (hasEntryShadow(lightNode)) color = color.mul(entryShadow(lightNode, { L, nearness, worldToBody, box }));
-  return { ...lightInputs(L, color, nearness), N: [TSL.normalWorld, 'vec3'] };
+  return lightInputs(L, color, nearness);
+}
+
+/**
+ * The four lights that stand for a rectangle of light.
+ * @param {any} data three's
+ * @param {import('./three.js').Description} description
+ */
+function areaLights({ lightPosition, halfWidth, halfHeight, lightColor }, { area, passes }, texts) {
+  /** @returns {any} */
+  const call = (type, part, ...args) => new CallNode(type, area?.[part], texts, args);
+  const sides = [TSL.mat3(lightPosition.sub(TSL.positionView), halfWidth, halfHeight), 'mat3'];
+  const spread = [TSL.float(Number(spreadOf(passes))), 'float'];
+  return [0, 1, 2, 3].map((index) => {
+    const way = call('vec4', 'towards', [TSL.int(index), 'int'], spread, sides).toVar();
+    const light = call('float', 'light', sides, [way, 'vec4']).max(0);
+    return lightInputs(turned(TSL.cameraWorldMatrix, way.xyz), lightColor.mul(light), way.w);
+  });
 }
 
 /** The light's colour where it arrives, without shadow. */
@@ -212,7 +230,8 @@ const FIELDS = {
  * @param {{ glsl: THREE.Node, wgsl: THREE.Node }} texts nodes of the functions
  * @param {Record<string, any>} uniforms nodes by their properties
  */
-export function nodesOf({ calls, parameters, textures, fields = [], screen }, texts, uniforms) {
+export function nodesOf(description, texts, uniforms) {
+  const { calls, parameters, textures, fields = [], screen } = description;
   const argumentsOf = ({ inputs, values }, given) => [
     ...inputs.map((name) => given[name]), ...values.map((name) => [uniforms[name], (parameters[name] ?? textures[name]).type]),
   ];
@@ -233,13 +252,20 @@ export function nodesOf({ calls, parameters, textures, fields = [], screen }, te
       /** @type {any} three's types have no parameter */
       const { setupLightingModel } = THREE.MeshPhysicalNodeMaterial.prototype;
       const model = setupLightingModel.call(this, builder);
-      const { direct } = model;
-      model.direct = function (data, builder) {
-        direct.call(this, data, builder);
-        const given = { ...point, ...engineLight(data, builder, uniforms) };
+      const { direct, directRectArea } = model;
+      const comeThrough = (light, { reflectedLight }) => {
+        const given = { ...point, ...light, N: [TSL.normalWorld, 'vec3'] };
         /** @type {any} */
         const through = new CallNode('vec3', calls.translucency.name, texts, argumentsOf(calls.translucency, given), surface);
-        data.reflectedLight.directDiffuse.addAssign(through.mul(given.light_color[0]).mul(1 / Math.PI));
+        reflectedLight.directDiffuse.addAssign(through.mul(light.light_color[0]).mul(1 / Math.PI));
+      };
+      model.direct = function (data, builder) {
+        direct.call(this, data, builder);
+        comeThrough(engineLight(data, builder, uniforms), data);
+      };
+      model.directRectArea = function (data, builder) {
+        directRectArea.call(this, data, builder);
+        for (const light of areaLights(data, description, texts)) comeThrough(light, data);
       };
       return model;
     };

@@ -116,10 +116,11 @@ function ballOf(object) {
 function lightsAt(ball, scene, camera, pass) {
   const lights = [];
   scene.traverseVisible((light) => {
-    const near = light.isPointLight || light.isSpotLight, directional = light.isDirectionalLight;
+    const near = light.isPointLight || light.isSpotLight || light.isRectAreaLight, directional = light.isDirectionalLight;
     if (!(directional || near) || !light.layers.test(camera.layers)) return;
     const fall = near ? Math.max(placeOf(light).distanceToSquared(ball.center), 1e-6) : 1;
-    lights.push({ light, directional, strength: (light.intensity * Math.max(light.color.r, light.color.g, light.color.b)) / fall });
+    const area = light.isRectAreaLight ? light.width * light.height : 1;
+    lights.push({ light, directional, strength: (area * light.intensity * Math.max(light.color.r, light.color.g, light.color.b)) / fall });
   });
   return lightsOf(lights, pass);
 }

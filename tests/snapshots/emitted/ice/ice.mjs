@@ -100,6 +100,28 @@ const float sss_OPAQUE_DISTANCE = 1.0e-6;
 const float sss_ENDLESS = 10000.0;
 const float sss_OPAQUE_DEPTH = 80.0;
 
+// The unit direction from P towards a light, and as w 1 / the distance, 0 for a light from afar. \`place\` is
+// where the light is, with w = 1, or the direction towards it, with w = 0.
+vec4 sss_towards_light(vec4 place, vec3 P) {
+    vec3 way = place.xyz - P * place.w;
+    return vec4(way, place.w) * inversesqrt(max(dot(way, way), 0.0001));
+}
+
+// The unit direction to one of four points that stand for an area of light, and as w 1 / the distance. The
+// columns of \`area\` are the way to its centre, and halves of its sides.
+vec4 sss_towards_area(int index, float spread, mat3 area) {
+    float across = index - index / 2 * 2 == 0 ? -spread : spread;
+    float up = index < 2 ? -spread : spread;
+    return sss_towards_light(vec4(area * vec3(1.0, across, up), 1.0), vec3(0.0));
+}
+
+// The irradiance of a surface that faces a quarter of a rectangle of light with the radiance 1; negative
+// behind the light.
+float sss_area_light(mat3 area, vec4 way) {
+    vec3 quarter = cross(area[1], area[2]);
+    return dot(quarter, way.xyz) * min(way.w * way.w, 6.2831855 / max(length(quarter), 1.0e-6));
+}
+
 // The direction of \`x\`; of a zero vector, 0.
 vec3 sss_safe_normalize(vec3 x) {
     return x * (dot(x, x) > 1.0e-30 ? inversesqrt(dot(x, x)) : 0.0);
@@ -422,6 +444,28 @@ const sss_JITTER: f32 = 0.6;
 const sss_OPAQUE_DISTANCE: f32 = 1.0e-6;
 const sss_ENDLESS: f32 = 10000.0;
 const sss_OPAQUE_DEPTH: f32 = 80.0;
+
+// The unit direction from P towards a light, and as w 1 / the distance, 0 for a light from afar. \`place\` is
+// where the light is, with w = 1, or the direction towards it, with w = 0.
+fn sss_towards_light(place: vec4f, P: vec3f) -> vec4f {
+    let way = place.xyz - P * place.w;
+    return vec4f(way, place.w) * inverseSqrt(max(dot(way, way), 0.0001));
+}
+
+// The unit direction to one of four points that stand for an area of light, and as w 1 / the distance. The
+// columns of \`area\` are the way to its centre, and halves of its sides.
+fn sss_towards_area(index: i32, spread: f32, area: mat3x3f) -> vec4f {
+    let across = select(spread, -spread, index % 2 == 0);
+    let up = select(spread, -spread, index < 2);
+    return sss_towards_light(vec4f(area * vec3f(1.0, across, up), 1.0), vec3f(0.0));
+}
+
+// The irradiance of a surface that faces a quarter of a rectangle of light with the radiance 1; negative
+// behind the light.
+fn sss_area_light(area: mat3x3f, way: vec4f) -> f32 {
+    let quarter = cross(area[1], area[2]);
+    return dot(quarter, way.xyz) * min(way.w * way.w, 6.2831855 / max(length(quarter), 1.0e-6));
+}
 
 // The direction of \`x\`; of a zero vector, 0.
 fn sss_safe_normalize_vec3(x: vec3f) -> vec3f {
@@ -871,6 +915,7 @@ dDiffuseLight *= sss_surface.albedo;
 export class IceMaterial extends materialClass({
   name: 'ice', version: 1, lit: true, alphaMode: 'mask',
   fields: ['albedo', 'alpha', 'normal', 'metallic', 'roughness', 'emission', 'transmittance'],
+  area: { towards: 'sss_towards_area', light: 'sss_area_light' },
   inputs: ['irradiance_behind', 'L', 'light_color', 'N', 'time', 'uv', 'V'],
   varyings: {
     sss_uv: { type: 'vec2', attribute: 'vertex_texCoord0', semantic: 'TEXCOORD0', define: 'UV0', default: 0 },
