@@ -104,6 +104,7 @@ bench: setup
 
 bench-gpu: setup
 	$(BIN)/python benchmarks/gpu.py
+	$(BIN)/python benchmarks/gpu_passes.py
 
 gallery: setup
 	$(BIN)/python docs/gallery.py

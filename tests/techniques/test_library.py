@@ -86,7 +86,7 @@ WRONG_ATTRIBUTES = {
     "requires: depth-mop": ("unknown requirement 'depth-mop'", "did you mean 'depth-map'?"),
     "requires: sunshine": (
         "unknown requirement 'sunshine'",
-        "requirements: bake, depth-map, depth-layers, back-faces, rigid, fixed-light",
+        "requirements: bake, depth-map, depth-layers, back-faces, matt-light, rigid, fixed-light",
     ),
     "sets: tint": ("'tint' is not a setting", "write, for example, `sets: albedo by tint`"),
     "sets: albedo by tint": ("'f' does not write 'albedo'", ""),

@@ -32,6 +32,7 @@ export function packing(parts) {
 
 /** Of four distances. */
 export const PACKING = packing(['r', 'r', 'r', 'r']);
+
 /** What a texel without a surface has. */
 export const emptyOf = ({ empty }) => (empty === 'far' ? FAR : 0);
 
