@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import HEAD, mesh_of, through
+from engine_cases import BLACK, ENGINES, HEAD, RENDERERS, mesh_of, through
 from skips import or_skip
 from sssgen.run.backends import Array
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
-from sssgen.run.backends.web_engines import BABYLON, PLAYCANVAS, THREE
+from sssgen.run.backends.web_engines import BABYLON
 from sssgen.run.render import page_values
 from sssgen.run.render.scene_render import PlacedMesh
 from sssgen.scene import scene_loading
@@ -25,17 +25,6 @@ from sssgen.scene.solids import Torus
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.runtime.numpy_textures import Texture
 from torus_cases import SEVERAL, inner_pixels, torus_mesh, torus_scene
-
-BLACK: dict[str, dict[str, Any]] = {
-    "threejs": {"color": 0.0, "specularIntensity": 0.0},
-    "babylonjs": {"albedoColor": 0.0, "metallicF0Factor": 0.0},
-    "playcanvas": {"diffuse": 0.0, "useMetalness": False, "specular": 0.0, "enableGGXSpecular": False},
-}
-"""Without the engine's own reflection."""
-
-
-ENGINES = {engine.target: engine for engine in (THREE, BABYLON, PLAYCANVAS)}
-RENDERERS = [(target, name) for target, engine in ENGINES.items() for name in engine.renderers]
 
 
 @pytest.fixture(scope="module")

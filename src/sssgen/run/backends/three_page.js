@@ -58,12 +58,13 @@ async function draw(plan, piece) {
   };
 
   const scene = new THREE.Scene();
-  const lights = plan.lights.map(lightOf);
+  const lights = plan.lights.map((light) => lightOf(light, stage));
+  renderer.shadowMap.enabled = Boolean(stage.shadows);
   const meshes = [placed(plan.model), ...(stage.copies ?? []).map(({ model, size }) => placed(model, size))];
   scene.add(...meshes, ...lights);
   if (material.light === null) material.light = lights[0] ?? null;
   if (stage.around === 'environment') scene.environment = sky();
-  else if (stage.around) scene.add(SURROUNDINGS[stage.around]());
+  else if (stage.around) scene.add(SURROUNDINGS[stage.around](stage));
   if (plan.ambient.length) scene.add(new THREE.AmbientLight(new THREE.Color().fromArray(plan.ambient), Math.PI));
   const pictures = () => Object.keys(declared).map((name) => material[name]).filter((texture) => texture.isRenderTargetTexture);
   if (stage.first) render(await rendererFor(stage.first), scene, cameraOf(plan, stage.first === 'webgpu'), 5, 4).dispose();
@@ -82,9 +83,9 @@ async function draw(plan, piece) {
   return pixels;
 }
 
-/** @type {Record<string, () => THREE.Light>} (1 + y) / 2 on a white matte surface. */
+/** @type {Record<string, (stage: import('./engine_page.js').Stage) => THREE.Light>} (1 + y) / 2 on a white matte surface, or the colours of the stage. */
 const SURROUNDINGS = {
-  hemisphere: () => new THREE.HemisphereLight(0xffffff, 0x000000, Math.PI),
+  hemisphere: ({ above = [1, 1, 1], below = [0, 0, 0] }) => new THREE.HemisphereLight(new THREE.Color(...above), new THREE.Color(...below), Math.PI),
   probe() {
     const light = new THREE.LightProbe(undefined, 0.5 * Math.PI);
     light.sh.coefficients[0].setScalar(1 / 0.886227);
@@ -112,12 +113,17 @@ function render(renderer, scene, camera, width, height) {
   return target;
 }
 
-/** @param {import('./engine_page.js').Light} light */
-function lightOf({ position, color }) {
+/** @param {import('./engine_page.js').Light} light @param {import('./engine_page.js').Stage} stage */
+function lightOf({ position, color }, { shadows = false }) {
   const [x, y, z, w] = position;
   // three's lights are irradiance, those of the other shells radiance: their ratio is pi
   const light = new (w ? THREE.PointLight : THREE.DirectionalLight)(new THREE.Color().fromArray(color), Math.PI);
   light.position.set(x, y, z);
+  light.castShadow = shadows;
+  if (light instanceof THREE.DirectionalLight && shadows) {
+    light.position.multiplyScalar(5); // before what it lights
+    Object.assign(light.shadow.camera, { left: -2, right: 2, bottom: -2, top: 2 });
+  }
   return light;
 }
 

@@ -46,16 +46,17 @@ fn vertexMain(input: VertexInput) -> VertexOutput {
   return output;
 }`;
 
-// A layer that peels has the surfaces behind those of the layer before.
+// A layer that peels has the surfaces behind those of the layer before. camera_params.z is where a camera's view begins.
 const FRAGMENT_GLSL = `
 varying vec3 sss_place;
 uniform float sss_from_plane;
+uniform vec4 camera_params;
 #ifdef SSS_PEELS
 uniform float sss_margin;
 uniform highp sampler2D sss_front;
 #endif
 void main() {
-  float distance = sss_from_plane > 0.0 ? -sss_place.z : length(sss_place);
+  float distance = sss_from_plane > 0.0 ? -sss_place.z - camera_params.z : length(sss_place);
 #ifdef SSS_PEELS
   if (distance < texelFetch(sss_front, ivec2(gl_FragCoord.xy), 0).r + sss_margin) discard;
 #endif
@@ -65,6 +66,7 @@ void main() {
 const FRAGMENT_WGSL = `
 varying sss_place: vec3f;
 uniform sss_from_plane: f32;
+uniform camera_params: vec4f;
 #ifdef SSS_PEELS
 uniform sss_margin: f32;
 var sss_front: texture_2d<uff>;
@@ -72,7 +74,7 @@ var sss_front: texture_2d<uff>;
 @fragment
 fn fragmentMain(input: FragmentInput) -> FragmentOutput {
   var output: FragmentOutput;
-  let distance = select(length(input.sss_place), -input.sss_place.z, uniform.sss_from_plane > 0.0);
+  let distance = select(length(input.sss_place), -input.sss_place.z - uniform.camera_params.z, uniform.sss_from_plane > 0.0);
 #ifdef SSS_PEELS
   if (distance < textureLoad(sss_front, vec2i(pcPosition.xy), 0).r + uniform.sss_margin) { discard; }
 #endif
@@ -193,7 +195,7 @@ function viewOf(camera, tile, columns, down) {
   const view = camera.node.getWorldTransform().clone().invert();
   const clip = new pc.Mat4().mul2(camera.projectionMatrix, view);
   const { x, y } = tileOf(tile, columns);
-  return viewNumbers(clip.data, view.data, -1, down ? -1 : 1, { x, y: down ? columns - 1 - y : y }, columns);
+  return viewNumbers(clip.data, view.data, -1, camera.nearClip, down ? -1 : 1, { x, y: down ? columns - 1 - y : y }, columns);
 }
 
 /** Draws mesh instances into tiles of a picture, each tile as a camera sees them. */
@@ -222,16 +224,18 @@ class TilePass extends pc.RenderPass {
   }
 }
 
-/** A render target for distances. */
-function pictureOf(device, name, channels, { width, height, origin }) {
+/** A render target for distances. Filters blend what lights see. */
+function pictureOf(device, pass, channels, { width, height, origin }) {
   // half floats where WebGPU does not filter others: PlayCanvas declares a sampler for each texture of a material
   const full = device.textureFloatRenderable && (!device.isWebGPU || device.textureFloatFilterable);
+  const blends = pass.seenFrom !== 'eye' && (!full || device.textureFloatFilterable);
+  const filter = blends ? pc.FILTER_LINEAR : pc.FILTER_NEAREST;
   const format = channels === 1 ? (full ? pc.PIXELFORMAT_R32F : pc.PIXELFORMAT_R16F) : full ? pc.PIXELFORMAT_RGBA32F : pc.PIXELFORMAT_RGBA16F;
   const colorBuffer = new pc.Texture(device, {
-    name, width, height, format, mipmaps: false, minFilter: pc.FILTER_NEAREST, magFilter: pc.FILTER_NEAREST,
+    name: pass.name, width, height, format, mipmaps: false, minFilter: filter, magFilter: filter,
     addressU: pc.ADDRESS_CLAMP_TO_EDGE, addressV: pc.ADDRESS_CLAMP_TO_EDGE,
   });
-  return new pc.RenderTarget({ name, colorBuffer, depth: channels === 1, samples: 1, origin });
+  return new pc.RenderTarget({ name: pass.name, colorBuffer, depth: channels === 1, samples: 1, origin });
 }
 
 /** A mesh instance that has the material: its copies with the materials of passes, and its pictures. */
@@ -260,8 +264,8 @@ class Body {
   picturesOf(pass, camera, device, size) {
     let pictures = this.#pictures.find((one) => one.pass === pass && one.camera === camera && one.origin === size.origin);
     if (!pictures) {
-      const layers = pass.layers.map((layer) => pictureOf(device, `${pass.name} ${layer}`, 1, size));
-      const packed = layers.length > 1 ? pictureOf(device, pass.name, 4, size) : layers[0];
+      const layers = pass.layers.map(() => pictureOf(device, pass, 1, size));
+      const packed = layers.length > 1 ? pictureOf(device, pass, 4, size) : layers[0];
       this.#pictures.push((pictures = { pass, camera, origin: size.origin, layers, packed, version: -1 }));
     }
     for (const target of [...pictures.layers, pictures.packed]) {
@@ -422,7 +426,7 @@ export class Passes {
 
   #drawLayers(pass, body, { layers, packed }, cameras, columns, margin) {
     const tiles = (this.#tiles ??= new TilePass(this.device, this.#app.renderer));
-    const empty = emptyOf(pass);
+    const empty = emptyOf(pass, Math.max(...cameras.map(({ nearClip, farClip }) => farClip - nearClip), 1));
     layersOf(pass).forEach(({ back, before }, index) => {
       const material = this.#materialOf(back, before >= 0);
       material.setParameter('sss_from_plane', Number(pass.seenFrom !== 'eye'));
