@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -11,12 +11,11 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import BLACK, mesh_of, through
+from engine_cases import BLACK, ENGINES, RENDERERS, mesh_of, through
 from shadow_cases import EYE, LEVEL, SIZE, ball, view_projection
 from skips import or_skip
 from sssgen.run.backends import Array
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
-from sssgen.run.backends.web_engines import BABYLON, PLAYCANVAS, THREE
 from sssgen.run.render import page_values
 from sssgen.scene import scene_loading
 from sssgen.scene.solids import Torus
@@ -51,9 +50,7 @@ position = [0.2, 0.5, 4.0]
 direction = [0.0, 0.42261826, 0.90630779]
 color = [0.9, 0.8, 0.7]
 """
-ENGINES = {engine.target: engine for engine in (THREE, BABYLON, PLAYCANVAS)}
 COLORS = ("color", "albedoColor", "diffuse")
-RENDERERS = [(target, name) for target, engine in ENGINES.items() for name in engine.renderers]
 
 
 @pytest.fixture(scope="module", params=RENDERERS, ids="-".join)
@@ -110,8 +107,8 @@ def ball_picture(page: EnginePage, text: str, folder: Path, **stage: Any) -> Arr
     body = ball()
     matt = {name: value for name, value in BLACK[page.engine.target].items() if name not in COLORS}
     drawing = EngineDrawing(
-        page_values.modules_of(compiled), SIZE, body.vertices.astype(np.float32), body.triangles, view_projection(), EYE,
-        body.model, np.array([[*WAY, 0.0]]), np.ones((1, 3)), properties={**matt, "stage": stage},
+        page_values.modules_of(compiled), SIZE, body.vertices.astype(np.float32), body.triangles, view_projection(),
+        EYE, body.model, np.array([[*WAY, 0.0]]), np.ones((1, 3)), properties={**matt, "stage": stage},
     )  # fmt: skip
     return page.draw(drawing)[..., :3]
 
@@ -127,9 +124,7 @@ def wall() -> list[float]:
 
 @pytest.mark.parametrize("stage", [{"around": "environment"}, {"shadows": True}, {"shadows": True, "walls": [wall()]}],
                          ids=["environment", "own shadow", "wall"])  # fmt: skip
-def test_light_that_does_not_spread_is_the_engines_own(
-    page: EnginePage, stage: dict[str, Any], tmp_path: Path
-) -> None:
+def test_light_that_does_not_spread_is_the_engines_own(page: EnginePage, stage: dict[str, Any], tmp_path: Path) -> None:
     """A spread of 0 leaves the diffuse reflection of the engine, with its shadows and surroundings."""
     plain = MATERIAL[: MATERIAL.rindex("[[surface]]")]
     own = ball_picture(page, plain, tmp_path, **stage)

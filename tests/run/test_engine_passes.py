@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import BLACK, HEAD, mesh_of, through
+from engine_cases import BLACK, ENGINES, HEAD, RENDERERS, mesh_of, through
 from skips import or_skip
 from sssgen.material.material_loading import load_material
 from sssgen.run.backends import Array
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
-from sssgen.run.backends.web_engines import BABYLON, PLAYCANVAS, THREE
+from sssgen.run.backends.web_engines import BABYLON
 from sssgen.run.render import page_values
 from sssgen.run.render.scene_render import PlacedMesh
 from sssgen.run.render.scene_values import shell_of
@@ -27,9 +27,6 @@ from sssgen.scene.solids import Torus
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.runtime.numpy_textures import Texture
 from torus_cases import SEVERAL, inner_pixels, torus_mesh, torus_scene
-
-ENGINES = {engine.target: engine for engine in (THREE, BABYLON, PLAYCANVAS)}
-RENDERERS = [(target, name) for target, engine in ENGINES.items() for name in engine.renderers]
 
 
 @pytest.fixture(scope="module")

@@ -19,6 +19,7 @@ from sssgen.pipeline.compiler import Compiled
 from sssgen.run.backends import Array
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
+from sssgen.run.backends.web_engines import BABYLON, PLAYCANVAS, THREE
 from sssgen.run.check.compiler_inputs import sources
 from sssgen.run.compilers import Compiler, errors
 from sssgen.run.render import page_values, shade_numpy
@@ -55,6 +56,8 @@ MATERIALS = {
     "rays": 'shading = "unlit"\n[lighting]\ntechnique = "./rays.sss"\n',
 }
 MESHES = ("ice", "ice_inlay", "jade_ring", "marble_idol", "paper_lantern", "resin_inlay", "wax_mouse")
+ENGINES = {engine.target: engine for engine in (THREE, BABYLON, PLAYCANVAS)}
+RENDERERS = [(target, name) for target, engine in ENGINES.items() for name in engine.renderers]
 SIZE = (96, 72)
 BLACK: dict[str, dict[str, Any]] = {
     "threejs": {"color": 0.0, "specularIntensity": 0.0},
@@ -78,7 +81,7 @@ def mesh_of(name: str) -> PlacedMesh:
 def through(name: str, mesh: PlacedMesh) -> Array:
     """Emission and the light that comes through, in NumPy's float64."""
     dark = dataclasses.replace(mesh.shell, ambient=(0.0, 0.0, 0.0))
-    return shade_numpy.shade(_without_reflection(name), dark, mesh.size, mesh.points, "float64")
+    return shade_numpy.shade(without_reflection(sssgen.compile(name, "numpy")), dark, mesh.size, mesh.points, "float64")
 
 
 def half_as_large(name: str) -> tuple[PlacedMesh, PlacedMesh]:
@@ -97,9 +100,8 @@ def half_as_large(name: str) -> tuple[PlacedMesh, PlacedMesh]:
     return mesh._replace(shell=own), mesh._replace(shell=shell)
 
 
-def _without_reflection(material: str) -> Compiled:
-    """The material in NumPy, without reflected light."""
-    compiled = sssgen.compile(material, "numpy")
+def without_reflection(compiled: Compiled) -> Compiled:
+    """A material in NumPy, without reflected light."""
     file = next(file for file in compiled.files if file.endswith(".py"))
     return compiled._replace(files={**compiled.files, file: f"{compiled.files[file]}\n{_NO_LIGHTING}"})
 
@@ -134,7 +136,7 @@ def chain_case(name: str, front: bool, light: str, folder: Path) -> ChainCase:
         mesh.shell, model=turned, parameters={}, textures={}, ambient=(0.0, 0.0, 0.0), time=0.75, front=front,
         light_positions=np.array([position]), light_colors=np.array([[0.5, 0.7, 0.9]]),
     )  # fmt: skip
-    program = _without_reflection(str(path))
+    program = without_reflection(sssgen.compile(str(path), "numpy"))
     expected = shade_numpy.shade(program, shell, mesh.size, None if name == "rays" else points, "float64")
     if name == "rays":  # of the mesh's points here, of the screen there
         world = points[:, :3] @ turned[:3, :3].T + turned[:3, 3] - shell.camera_position

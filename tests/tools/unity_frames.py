@@ -30,8 +30,13 @@ STAND_INS = ROOT / "tests/run/unity_csharp"
 VERSIONS = {
     "URP 12": (),
     "URP 14": ("UNITY_2022_2_OR_NEWER",),
-    "URP 17": ("UNITY_2022_2_OR_NEWER", "UNITY_6000_0_OR_NEWER"),
-    "URP 17, Compatibility Mode": ("UNITY_2022_2_OR_NEWER", "UNITY_6000_0_OR_NEWER", "URP_COMPATIBILITY_MODE"),
+    "URP 17": ("UNITY_2022_2_OR_NEWER", "UNITY_2023_2_OR_NEWER", "UNITY_6000_0_OR_NEWER"),
+    "URP 17, Compatibility Mode": (
+        "UNITY_2022_2_OR_NEWER",
+        "UNITY_2023_2_OR_NEWER",
+        "UNITY_6000_0_OR_NEWER",
+        "URP_COMPATIBILITY_MODE",
+    ),
 }
 """The symbols that Unity defines, by version."""
 MIRROR = np.diag([1.0, 1.0, -1.0, 1.0])
@@ -171,7 +176,7 @@ class Replay(UnityProgram):
 
     def _make(self, numbers: Sequence[str]) -> None:
         number, width, height, kind, filtering, wrapping = numbers
-        assert (filtering, wrapping) == ("Point", "Clamp")
+        assert filtering in ("Point", "Bilinear") and wrapping == "Clamp"
         if number not in self.pictures:
             size = int(width), int(height)
             with self.context:

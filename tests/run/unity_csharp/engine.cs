@@ -2,8 +2,26 @@
 using System;
 using System.Collections.Generic;
 using System.Linq;
+using UnityEngine.Experimental.Rendering;
+
+namespace UnityEngine.Experimental.Rendering {
+    public enum GraphicsFormat { R32_SFloat = 49, R32G32B32A32_SFloat = 52 }
+#if UNITY_2023_2_OR_NEWER
+    public enum GraphicsFormatUsage { Linear = 2 }
+#else
+    public enum FormatUsage { Linear = 1 }
+#endif
+}
 
 namespace UnityEngine {
+    public static class SystemInfo {
+#if UNITY_2023_2_OR_NEWER
+        public static bool IsFormatSupported(GraphicsFormat format, GraphicsFormatUsage usage) => true;
+#else
+        public static bool IsFormatSupported(GraphicsFormat format, FormatUsage usage) => true;
+#endif
+    }
+
     public sealed class TooltipAttribute : Attribute { public TooltipAttribute(string text) { } }
     public sealed class SerializeField : Attribute { }
     public sealed class RangeAttribute : Attribute { public RangeAttribute(float low, float high) { } }
@@ -156,7 +174,7 @@ namespace UnityEngine {
     public static class Time { public static float realtimeSinceStartup; }
 
     public class Texture : Object { public int width, height; public FilterMode filterMode; public TextureWrapMode wrapMode; }
-    public enum FilterMode { Point }
+    public enum FilterMode { Point, Bilinear }
     public enum TextureWrapMode { Repeat, Clamp }
     public enum RenderTextureFormat { ARGBFloat = 11, RFloat = 14 }
     public enum RenderTextureReadWrite { Linear = 1 }
@@ -165,6 +183,7 @@ namespace UnityEngine {
         public static readonly HashSet<RenderTexture> Lent = new HashSet<RenderTexture>();
         public readonly int Number;
         public RenderTextureFormat format;
+        public GraphicsFormat graphicsFormat => format == RenderTextureFormat.RFloat ? GraphicsFormat.R32_SFloat : GraphicsFormat.R32G32B32A32_SFloat;
         private static int count;
         public RenderTexture(int width, int height, int depth) { this.width = width; this.height = height; Number = count++; }
         public static RenderTexture GetTemporary(int width, int height, int depth, RenderTextureFormat format, RenderTextureReadWrite space) {

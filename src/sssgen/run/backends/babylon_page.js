@@ -79,7 +79,10 @@ async function draw(plan, piece) {
   const camera = new GivenCamera(plan, scene);
   const lights = plan.lights.map((light) => lightOf(light, stage, scene));
   if (stage.area) areaLightOf(stage.area, scene);
-  if (stage.around === 'hemisphere') new HemisphericLight('above', new Vector3(0, 1, 0), scene);
+  if (stage.around === 'hemisphere') {
+    const { above = [1, 1, 1], below = [0, 0, 0] } = stage;
+    Object.assign(new HemisphericLight('above', new Vector3(0, 1, 0), scene), { diffuse: Color3.FromArray(above), groundColor: Color3.FromArray(below) });
+  }
   if (stage.around === 'environment') scene.environmentTexture = skyOf(scene);
   const { createMaterial } = await imported(plan.modules);
   const textures = Object.fromEntries(Object.entries(plan.textures).map(([name, one]) => [name, textureOf(one, piece, scene)]));

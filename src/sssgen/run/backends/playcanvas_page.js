@@ -75,7 +75,7 @@ async function draw(plan, piece) {
   }
   scene.ambientLight = colorOf(plan.ambient.length ? plan.ambient : [0, 0, 0]);
 
-  const sky = stage.around === 'environment' ? skyOf(device) : null;
+  const sky = stage.around ? skyOf(device, stage) : null;
   scene.envAtlas = sky;
 
   const placed = (/** @type {pc.Mesh} */ mesh, /** @type {number[]} */ model) => {
@@ -115,15 +115,27 @@ async function draw(plan, piece) {
   return pixels;
 }
 
-/** The light of a cube whose upper half is white. @param {pc.GraphicsDevice} device */
-function skyOf(device) {
-  const size = 32, white = 0x3c00; // 1 as a half float
-  /** @returns {any} the types have no halves */
-  const full = () => new Uint16Array(size * size * 4).fill(white);
-  const half = () => full().fill(0, size * size * 2); // its first row is up
+/** The light of a cube whose upper half is white, or whose light is linear in the height, so that a white matte surface has the
+ * colours of the stage.
+ * @param {pc.GraphicsDevice} device @param {Stage} stage */
+function skyOf(device, { around, above = [1, 1, 1], below = [0, 0, 0] }) {
+  const size = 32;
+  /** @param {number} y */
+  const seen = (y) => above.map((up, i) => {
+    const middle = (up + below[i]) / 2;
+    return around === 'hemisphere' ? middle + 1.5 * (up - middle) * y : y > 0 ? up : below[i];
+  });
+  const face = (/** @type {(s: number, t: number) => number} */ heightOf) => {
+    const texels = Array.from({ length: size * size }, (_, i) => {
+      const s = (2 * (i % size) + 1) / size - 1, t = 1 - (2 * Math.floor(i / size) + 1) / size; // its first row is up
+      return [...seen(heightOf(s, t) / Math.hypot(1, s, t)), 1].map(pc.FloatPacking.float2Half);
+    });
+    return /** @type {any} the types have no halves */ (new Uint16Array(texels.flat()));
+  };
+  const side = () => face((s, t) => t);
   const cube = new pc.Texture(device, {
     cubemap: true, width: size, height: size, format: pc.PIXELFORMAT_RGBA16F, mipmaps: false,
-    levels: [[half(), half(), full(), full().fill(0), half(), half()]],
+    levels: [[side(), side(), face(() => 1), face(() => -1), side(), side()]],
   });
   const lit = pc.EnvLighting.generateLightingSource(cube, { size });
   const atlas = pc.EnvLighting.generateAtlas(lit);

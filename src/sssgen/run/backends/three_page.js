@@ -64,7 +64,7 @@ async function draw(plan, piece) {
   scene.add(...meshes, ...(stage.walls ?? []).map(wallOf), ...lights);
   if (material.light === null) material.light = lights[0] ?? null;
   if (stage.around === 'environment') scene.environment = sky();
-  else if (stage.around) scene.add(SURROUNDINGS[stage.around]());
+  else if (stage.around) scene.add(SURROUNDINGS[stage.around](stage));
   if (stage.area) scene.add(areaLightOf(stage.area));
   if (plan.ambient.length) scene.add(new THREE.AmbientLight(new THREE.Color().fromArray(plan.ambient), Math.PI));
   const pictures = () => Object.keys(declared).map((name) => material[name]).filter((texture) => texture.isRenderTargetTexture);
@@ -84,9 +84,9 @@ async function draw(plan, piece) {
   return pixels;
 }
 
-/** @type {Record<string, () => THREE.Light>} (1 + y) / 2 on a white matte surface. */
+/** @type {Record<string, (stage: import('./engine_page.js').Stage) => THREE.Light>} (1 + y) / 2 on a white matte surface, or the colours of the stage. */
 const SURROUNDINGS = {
-  hemisphere: () => new THREE.HemisphereLight(0xffffff, 0x000000, Math.PI),
+  hemisphere: ({ above = [1, 1, 1], below = [0, 0, 0] }) => new THREE.HemisphereLight(new THREE.Color(...above), new THREE.Color(...below), Math.PI),
   probe() {
     const light = new THREE.LightProbe(undefined, 0.5 * Math.PI);
     light.sh.coefficients[0].setScalar(1 / 0.886227);

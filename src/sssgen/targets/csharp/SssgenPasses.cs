@@ -4,6 +4,7 @@
 // The same for all materials: a project has this file once. Made by sssgen.
 using System.Collections.Generic;
 using UnityEngine;
+using UnityEngine.Experimental.Rendering;
 using UnityEngine.Rendering;
 using UnityEngine.Rendering.Universal;
 #if UNITY_6000_0_OR_NEWER
@@ -91,8 +92,8 @@ namespace Sssgen {
         public readonly int Texture;
         /// <summary>The properties of the matrices from world space to the picture, one for each light.</summary>
         public readonly int[] Views;
-        /// <summary>What a texel without a surface has: `far` fits into half a float.</summary>
-        public readonly float Empty;
+        /// <summary>Whether a texel without a surface has the end of the view; else 0.</summary>
+        public readonly bool EmptyIsFar;
         /// <summary>The numbers of the passes that draw the layers.</summary>
         public readonly List<int> Layers = new List<int>();
 
@@ -102,7 +103,7 @@ namespace Sssgen {
             Texture = Shader.PropertyToID(Tag(shader, pass, "SssgenTexture"));
             string views = Tag(shader, pass, "SssgenViews");
             Views = views == "" ? new int[0] : System.Array.ConvertAll(views.Split(' '), Shader.PropertyToID);
-            Empty = Tag(shader, pass, "SssgenEmpty") == "far" ? 60000 : 0;
+            EmptyIsFar = Tag(shader, pass, "SssgenEmpty") == "far";
         }
 
         public int Columns => Views.Length > 1 ? 2 : 1;
@@ -255,6 +256,8 @@ namespace Sssgen {
         public Vector3 Eye;
         /// <summary>Its product with a place is the distance from the plane in front of a light.</summary>
         public Vector4 Plane;
+        /// <summary>The largest distance from this plane. A larger one would spread where a filter blends texels.</summary>
+        public float End;
 
         public static View OfEye(Matrix4x4 camera, Matrix4x4 projection, Vector3 eye) {
             return new View { Camera = camera, Projection = projection, Eye = eye };
@@ -275,7 +278,8 @@ namespace Sssgen {
             float deep = Extent(box, ahead);
             Vector3 place = box.center - ahead * (deep + 0.1f * wide);
             float half = 0.5f * wide;
-            return new View(place, right, up, ahead, Matrix4x4.Ortho(-half, half, -half, half, 0, 2 * deep + 0.2f * wide));
+            float end = 2 * deep + 0.2f * wide;
+            return new View(place, right, up, ahead, Matrix4x4.Ortho(-half, half, -half, half, 0, end), end);
         }
 
         private static View FromPoint(Vector3 place, Vector3 way, Bounds box) {
@@ -295,10 +299,11 @@ namespace Sssgen {
             }
             near = Mathf.Max(0.99f * near, 0.01f * distance);
             float half = Margin * slope * near;
-            return new View(place, right, up, ahead, Matrix4x4.Frustum(-half, half, -half, half, near, 1.01f * far));
+            float end = 1.01f * far;
+            return new View(place, right, up, ahead, Matrix4x4.Frustum(-half, half, -half, half, near, end), end);
         }
 
-        private View(Vector3 place, Vector3 right, Vector3 up, Vector3 ahead, Matrix4x4 projection) {
+        private View(Vector3 place, Vector3 right, Vector3 up, Vector3 ahead, Matrix4x4 projection, float end) {
             Camera = Matrix4x4.identity;
             Camera.SetRow(0, Row(right, place));
             Camera.SetRow(1, Row(up, place));
@@ -306,6 +311,7 @@ namespace Sssgen {
             Projection = projection;
             Eye = place;
             Plane = Row(ahead, place);
+            End = end;
         }
 
         /// <summary>World space to (u w, v w, distance from the plane, w) in a tile of the picture.</summary>
@@ -350,6 +356,11 @@ namespace Sssgen {
 
     /// <summary>Draws the pictures of a camera. They are kept until the next camera is drawn.</summary>
     public sealed class PictureDrawing : ScriptableRenderPass {
+#if UNITY_2023_2_OR_NEWER
+        private const GraphicsFormatUsage Filtered = GraphicsFormatUsage.Linear;
+#else
+        private const FormatUsage Filtered = FormatUsage.Linear;
+#endif
         private static readonly int Clip = Shader.PropertyToID("_SssgenClip");
         private static readonly int Eye = Shader.PropertyToID("_SssgenEye");
         private static readonly int Plane = Shader.PropertyToID("_SssgenPlane");
@@ -369,6 +380,9 @@ namespace Sssgen {
             }
             bool several = body.Picture.Layers.Count > 1;
             RenderTexture texture = Texture(size, several ? RenderTextureFormat.ARGBFloat : RenderTextureFormat.RFloat, 32);
+            if (!together && SystemInfo.IsFormatSupported(texture.graphicsFormat, Filtered)) {
+                texture.filterMode = FilterMode.Bilinear;
+            }
             if (together) {
                 shared[body.Picture.Name] = pictures.Count;
             }
@@ -396,7 +410,11 @@ namespace Sssgen {
             foreach (var drawn in pictures) {
                 RenderTexture texture = drawn.texture;
                 ShaderPicture picture = drawn.bodies[0].Picture;
-                var empty = new Color(picture.Empty, picture.Empty, picture.Empty, picture.Empty);
+                float end = 0;
+                if (picture.EmptyIsFar) {
+                    drawn.bodies[0].Views.ForEach(view => end = Mathf.Max(end, view.End));
+                }
+                var empty = new Color(end, end, end, end);
                 if (picture.Layers.Count > 2 && (before == null || before.width != texture.width)) {
                     before = Texture(new Vector2Int(texture.width, texture.height), texture.format, 0);
                 }

@@ -58,10 +58,10 @@ class SkyLight:
 		var result := Projection(Vector4.ZERO, Vector4.ZERO, Vector4.ZERO, Vector4.ZERO)
 		var whole := 0.0
 		for y in SIZE.y if picture != null and not picture.is_empty() else 0:
-			var polar := PI * (y + 0.5) / SIZE.y
+			var polar := PI * y / SIZE.y  # of the texel's first corner, as Godot draws them
 			for x in SIZE.x:
-				var around := TAU * (x + 0.5) / SIZE.x
-				var way := Vector3(sin(around) * sin(polar), -cos(polar), cos(around) * sin(polar))
+				var around := TAU * x / SIZE.x
+				var way := Vector3(sin(around) * sin(polar), cos(polar), cos(around) * sin(polar))
 				var color := picture.get_pixel(x, y)
 				var light := Vector4(color.r, color.g, color.b, 0.0) * sin(polar)
 				whole += sin(polar)

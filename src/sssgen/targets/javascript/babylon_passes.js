@@ -13,20 +13,23 @@ import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Viewport } from '@babylonjs/core/Maths/math.viewport.js';
 import '@babylonjs/core/Shaders/depth.vertex.js';
 import '@babylonjs/core/ShadersWGSL/depth.vertex.js';
-import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, layersOf, lightsOf, packing, showsLight, tileOf, viewNumbers } from './frame_passes.js';
+import { FAR, LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, isFiltered, layersOf, lightsOf, packing, showsLight, tileOf, viewNumbers } from './frame_passes.js';
 
 // The shaders, in GLSL and in WGSL. The vertices are those of Babylon's own depth maps: with bones, morph targets and instances.
 
 /** The distance from the eye or from the light's plane, of surfaces behind those of the layer `front`. */
 const DISTANCE = [/* glsl */ `
 varying vec4 vViewPos;
+#ifdef FROM_PLANE
+uniform float start;
+#endif
 #ifdef PEELS
 uniform float margin;
 uniform highp sampler2D front;
 #endif
 void main(void) {
 #ifdef FROM_PLANE
-  float way = abs(vViewPos.z);
+  float way = abs(vViewPos.z) - start;
 #else
   float way = length(vViewPos.xyz);
 #endif
@@ -36,6 +39,9 @@ void main(void) {
   gl_FragColor = vec4(way, 0.0, 0.0, 1.0);
 }`, /* wgsl */ `
 varying vViewPos: vec4f;
+#ifdef FROM_PLANE
+uniform start: f32;
+#endif
 #ifdef PEELS
 uniform margin: f32;
 var front: texture_2d<f32>;
@@ -43,7 +49,7 @@ var front: texture_2d<f32>;
 @fragment
 fn main(input: FragmentInputs) -> FragmentOutputs {
 #ifdef FROM_PLANE
-  let way = abs(fragmentInputs.vViewPos.z);
+  let way = abs(fragmentInputs.vViewPos.z) - uniforms.start;
 #else
   let way = length(fragmentInputs.vViewPos.xyz);
 #endif
@@ -144,18 +150,19 @@ function viewOf(light, { corners, edges, reach, center, radius }, distant, scene
   const projection = afar
     ? Matrix[`OrthoOffCenter${hand}`](-width, width, -height, height, near, far, engine.isNDCHalfZRange)
     : Matrix[`PerspectiveFov${hand}`](2 * Math.atan(height), width / height, near, far, engine.isNDCHalfZRange, 0, engine.useReverseDepthBuffer);
-  return { view, clip: view.multiply(projection) };
+  return { view, clip: view.multiply(projection), start: Math.min(...range), end: Math.max(...range) };
 }
 
 // The pictures of a body.
 
-/** A picture of floats, without filters, or `smooth`. */
+/** A picture of floats of a pass. Filters blend what lights see, and light. */
 class Picture extends RenderTargetTexture {
-  constructor(name, size, scene, { smooth = false, ...settings }) {
-    const { textureFloatRender, textureFloatLinearFiltering } = scene.getEngine().getCaps();
-    const type = textureFloatRender && (!smooth || textureFloatLinearFiltering) ? 1 : 2; // else half floats
-    if (smooth) settings.samplingMode = Texture.BILINEAR_SAMPLINGMODE;
-    super(name, size, scene, { type, generateMipMaps: false, samplingMode: Texture.NEAREST_SAMPLINGMODE, ...settings });
+  constructor(pass, size, scene, settings) {
+    const { textureFloatRender, textureFloatLinearFiltering, textureHalfFloatLinearFiltering } = scene.getEngine().getCaps();
+    const full = textureFloatRender && (!isFiltered(pass) || textureFloatLinearFiltering);
+    const blends = isFiltered(pass) && (full || textureHalfFloatLinearFiltering);
+    const samplingMode = blends ? Texture.BILINEAR_SAMPLINGMODE : Texture.NEAREST_SAMPLINGMODE;
+    super(`sssgen ${pass.name}`, size, scene, { type: full ? 1 : 2, generateMipMaps: false, samplingMode, ...settings }); // else half floats
     this.doNotSerialize = true;
   }
 
@@ -171,20 +178,22 @@ const RED = 6;
 class Layer extends Picture {
   #material;
   #tile = 0;
+  #empty = 0;
 
   /** @param {import('./frame_passes.js').Pass} pass @param {boolean} back @param {Layer | undefined} front the layer that its surfaces are behind */
   constructor(pass, back, front, size, scene) {
-    super(`sssgen ${pass.name}`, size, scene, { format: RED });
+    super(pass, size, scene, { format: RED });
+    this.pass = pass;
     const engine = scene.getEngine(), shaderLanguage = languageOf(engine);
     const defines = ['STORE_CAMERASPACE_Z', pass.seenFrom === 'eye' ? '' : 'FROM_PLANE', front ? 'PEELS' : ''].filter((one) => one);
     this.#material = new ShaderMaterial(this.name, scene, { vertex: 'depth', fragmentSource: DISTANCE[shaderLanguage] }, {
-      attributes: ['position'], uniforms: ['world', 'view', 'viewProjection', 'margin'], samplers: ['front'], defines, shaderLanguage, useClipPlane: false,
+      attributes: ['position'], uniforms: ['world', 'view', 'viewProjection', 'start', 'margin'], samplers: ['front'], defines, shaderLanguage, useClipPlane: false,
     });
     if (front) this.#material.setTexture('front', front);
     Object.assign(this.#material, { cullBackFaces: !back, doNotSerialize: true });
-    const empty = emptyOf(pass), columns = columnsOf(pass);
+    const columns = columnsOf(pass);
     this.onClearObservable.add(() => {
-      if (!this.#tile) engine.clear(new Color4(empty, empty, empty, 1), true, true, true);
+      if (!this.#tile) engine.clear(new Color4(this.#empty, this.#empty, this.#empty, 1), true, true, true);
       const { x, y } = tileOf(this.#tile, columns);
       engine.setViewport(new Viewport(x / columns, y / columns, 1 / columns, 1 / columns), this.getRenderWidth(), this.getRenderHeight());
     });
@@ -209,8 +218,9 @@ class Layer extends Picture {
     this.renderList = meshes;
     this.#material.sideOrientation = meshes[0].material.sideOrientation;
     this.#material.setFloat('margin', margin);
-    views.forEach(({ view, clip }, tile) => {
-      this.#material.setMatrix('view', view).setMatrix('viewProjection', clip);
+    this.#empty = emptyOf(this.pass, Math.max(...views.map(({ start, end }) => end - start), 1));
+    views.forEach(({ view, clip, start }, tile) => {
+      this.#material.setMatrix('view', view).setMatrix('viewProjection', clip).setFloat('start', start);
       this.#tile = tile;
       this.render();
     });
@@ -251,13 +261,13 @@ class LightLayer extends Picture {
   #material;
 
   constructor(pass, size, scene) {
-    super(`sssgen ${pass.name}`, size, scene, {});
+    super(pass, size, scene, {});
     this.#material = new PBRMaterial(this.name, scene);
     const imageProcessingConfiguration = new ImageProcessingConfiguration();
     imageProcessingConfiguration.applyByPostProcess = true; // linear light
     Object.assign(this.#material, { metallic: 0, roughness: 1, metallicF0Factor: 0, fogEnabled: false, imageProcessingConfiguration, doNotSerialize: true });
     new White(this.#material); // the material keeps it
-    this.clearColor = new Color4(0, 0, 0, emptyOf(pass));
+    this.clearColor = new Color4(0, 0, 0, emptyOf(pass, FAR));
   }
 
   take(mesh) {
@@ -389,15 +399,15 @@ export class Passes extends RenderTargetTexture {
     const meshes = [mesh, ...mesh.instances].filter((one) => one.isEnabled() && one.isVisible);
     const box = boxOf(meshes);
     const views = pass.seenFrom === 'eye'
-      ? [{ view: scene.getViewMatrix(), clip: scene.getTransformMatrix() }]
+      ? [{ view: scene.getViewMatrix(), clip: scene.getTransformMatrix(), start: 0, end: 1 }]
       : lightsAt(mesh, box, pass).map((light) => viewOf(light, box, pass.seenFrom === 'distant light', scene));
     const { layers, picture, values } = this.#partsOf(mesh, pass);
     for (const layer of layers) layer.draw(meshes, views, LAYER_GAP * box.radius);
     this.#packings[pass.name].draw(layers, picture);
     values[pass.texture] = picture;
     pass.views.forEach((property, index) => {
-      const { clip, view } = views[index] ?? { clip: Matrix.Zero(), view: Matrix.Zero() }; // it shows nothing
-      values[property] = Matrix.FromArray(viewNumbers(clip.m, view.m, scene.useRightHandedSystem ? -1 : 1, 1, tileOf(index, columns), columns));
+      const { clip, view, start } = views[index] ?? { clip: Matrix.Zero(), view: Matrix.Zero(), start: 0 }; // it shows nothing
+      values[property] = Matrix.FromArray(viewNumbers(clip.m, view.m, scene.useRightHandedSystem ? -1 : 1, start, 1, tileOf(index, columns), columns));
     });
   }
 
@@ -411,7 +421,7 @@ export class Passes extends RenderTargetTexture {
     const layers = (this.#layers[pass.name] ??= this.#newLayers(pass, size));
     const { values, pictures } = this.#bodies.get(mesh);
     if (!pictures[pass.name]) {
-      pictures[pass.name] = new Picture(`sssgen ${pass.name}`, size, this.#scene, { generateDepthBuffer: false, smooth: showsLight(pass) });
+      pictures[pass.name] = new Picture(pass, size, this.#scene, { generateDepthBuffer: false });
       layers.forEach((layer) => layer.take(mesh));
     }
     const picture = pictures[pass.name];

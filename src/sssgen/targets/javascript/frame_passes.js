@@ -12,8 +12,8 @@
  * @property {string[]} views the properties of the matrices from world space to the picture, one for each light
  */
 
-/** The distance where there is no surface: it fits into half a float. */
-const FAR = 60000;
+/** The distance beside a body in a picture of light: more than any of a body's. It fits into half a float. */
+export const FAR = 60000;
 /** The width of what one light sees, in texels. */
 export const SIDE = 1024;
 /** The least distance between two layers, in radii of the body. */
@@ -33,11 +33,17 @@ export function packing(parts) {
 /** Of four distances. */
 export const PACKING = packing(['r', 'r', 'r', 'r']);
 
-/** What a texel without a surface has. */
-export const emptyOf = ({ empty }) => (empty === 'far' ? FAR : 0);
+/**
+ * What a texel without a surface has; `end` is the largest distance of all views. A larger one would spread where a filter blends
+ * texels.
+ */
+export const emptyOf = ({ empty }, end) => (empty === 'far' ? end : 0);
 
 /** Whether a pass shows the light on the body, and not only distances. */
 export const showsLight = ({ layers }) => layers.includes('light');
+
+/** Whether filters blend the texels of its picture. */
+export const isFiltered = (pass) => pass.seenFrom !== 'eye' || showsLight(pass);
 
 /**
  * An area of light, where runtimes know its sides: the names of two functions of the texts.
@@ -84,15 +90,16 @@ export function lightsOf(lights, { seenFrom, views }) {
 }
 
 /**
- * World space to (u w, v w, distance from the light's plane, w) in a tile of a picture.
+ * World space to (u w, v w, distance from the plane where a view begins, w) in a tile of a picture.
  * @param {ArrayLike<number>} clip world space to clip space, by columns
  * @param {ArrayLike<number>} view world space to the light's
  * @param {number} forwards the sign of z in front of the light
+ * @param {number} start where it begins, in front of the light: distances in a picture count from there
  * @param {number} up the sign of v upwards in clip space
  */
-export function viewNumbers(clip, view, forwards, up, { x: column, y: row }, columns) {
+export function viewNumbers(clip, view, forwards, start, up, { x: column, y: row }, columns) {
   return [0, 4, 8, 12].flatMap((at) => {
     const [x, y, w] = [clip[at], clip[at + 1], clip[at + 3]];
-    return [((column + 0.5) * w + 0.5 * x) / columns, ((row + 0.5) * w + 0.5 * up * y) / columns, forwards * view[at + 2], w];
+    return [((column + 0.5) * w + 0.5 * x) / columns, ((row + 0.5) * w + 0.5 * up * y) / columns, forwards * view[at + 2] - (at === 12 ? start : 0), w];
   });
 }

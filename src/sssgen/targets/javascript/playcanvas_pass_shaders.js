@@ -37,16 +37,17 @@ fn vertexMain(input: VertexInput) -> VertexOutput {
   return output;
 }`;
 
-// A layer that peels has the surfaces behind those of the layer before.
+// A layer that peels has the surfaces behind those of the layer before. camera_params.z is where a camera's view begins.
 const FRAGMENT_GLSL = `
 varying vec3 sss_place;
 uniform float sss_from_plane;
+uniform vec4 camera_params;
 #ifdef SSS_PEELS
 uniform float sss_margin;
 uniform highp sampler2D sss_front;
 #endif
 void main() {
-  float distance = sss_from_plane > 0.0 ? -sss_place.z : length(sss_place);
+  float distance = sss_from_plane > 0.0 ? -sss_place.z - camera_params.z : length(sss_place);
 #ifdef SSS_PEELS
   if (distance < texelFetch(sss_front, ivec2(gl_FragCoord.xy), 0).r + sss_margin) discard;
 #endif
@@ -56,6 +57,7 @@ void main() {
 const FRAGMENT_WGSL = `
 varying sss_place: vec3f;
 uniform sss_from_plane: f32;
+uniform camera_params: vec4f;
 #ifdef SSS_PEELS
 uniform sss_margin: f32;
 var sss_front: texture_2d<uff>;
@@ -63,7 +65,7 @@ var sss_front: texture_2d<uff>;
 @fragment
 fn fragmentMain(input: FragmentInput) -> FragmentOutput {
   var output: FragmentOutput;
-  let distance = select(length(input.sss_place), -input.sss_place.z, uniform.sss_from_plane > 0.0);
+  let distance = select(length(input.sss_place), -input.sss_place.z - uniform.camera_params.z, uniform.sss_from_plane > 0.0);
 #ifdef SSS_PEELS
   if (distance < textureLoad(sss_front, vec2i(pcPosition.xy), 0).r + uniform.sss_margin) { discard; }
 #endif
@@ -92,10 +94,10 @@ export function mattMaterial() {
   const material = new pc.StandardMaterial();
   material.useFog = false;
   const glsl = material.getShaderChunks(pc.SHADERLANGUAGE_GLSL), wgsl = material.getShaderChunks(pc.SHADERLANGUAGE_WGSL);
-  glsl.set('litUserDeclarationPS', 'uniform mat4 matrix_view;');
-  glsl.set('outputPS', 'gl_FragColor = vec4(dDiffuseLight, -(matrix_view * vec4(vPositionW, 1.0)).z);');
-  wgsl.set('litUserDeclarationPS', 'uniform matrix_view: mat4x4f;');
-  wgsl.set('outputPS', 'output.color = vec4f(vec3f(dDiffuseLight), -(uniform.matrix_view * vec4f(vPositionW, 1.0)).z);');
+  glsl.set('litUserDeclarationPS', 'uniform mat4 matrix_view;\nuniform vec4 camera_params;');
+  glsl.set('outputPS', 'gl_FragColor = vec4(dDiffuseLight, -(matrix_view * vec4(vPositionW, 1.0)).z - camera_params.z);');
+  wgsl.set('litUserDeclarationPS', 'uniform matrix_view: mat4x4f;\nuniform camera_params: vec4f;');
+  wgsl.set('outputPS', 'output.color = vec4f(vec3f(dDiffuseLight), -(uniform.matrix_view * vec4f(vPositionW, 1.0)).z - uniform.camera_params.z);');
   material.update();
   return material;
 }

@@ -2,7 +2,7 @@
 // sets itself is not drawn.
 
 import * as pc from 'playcanvas';
-import { LAYERS, LAYER_GAP, SIDE, columnsOf, emptyOf, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
+import { FAR, LAYERS, LAYER_GAP, SIDE, columnsOf, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
 import { distanceMaterial, mattMaterial, packingPass } from './playcanvas_pass_shaders.js';
 
 /**
@@ -96,7 +96,7 @@ function viewOf(camera, tile, columns, down) {
   view.invert();
   const clip = new pc.Mat4().mul2(projection, view);
   const { x, y } = tileOf(tile, columns);
-  return viewNumbers(clip.data, view.data, -1, down ? -1 : 1, { x, y: down ? columns - 1 - y : y }, columns);
+  return viewNumbers(clip.data, view.data, -1, camera.nearClip, down ? -1 : 1, { x, y: down ? columns - 1 - y : y }, columns);
 }
 
 /** Draws mesh instances into tiles of a picture, each tile as a camera sees them. */
@@ -127,17 +127,18 @@ class TilePass extends pc.RenderPass {
   }
 }
 
-/** A render target: of distances with one channel or four, `depth`: that something is drawn into; `smooth`: with light, filtered. */
-function pictureOf(device, name, { channels = 1, depth = false, smooth = false }, { width, height, origin }) {
+/** A render target; `depth`: that something is drawn into. Filters blend what lights see, and light. */
+function pictureOf(device, pass, { channels = 1, depth = false }, { width, height, origin }) {
   // half floats where WebGPU does not filter others: PlayCanvas declares a sampler for each texture of a material
-  const full = device.textureFloatRenderable && (!(device.isWebGPU || smooth) || device.textureFloatFilterable);
+  const full = device.textureFloatRenderable && (!(device.isWebGPU || showsLight(pass)) || device.textureFloatFilterable);
+  const blends = isFiltered(pass) && (!full || device.textureFloatFilterable);
+  const filter = blends ? pc.FILTER_LINEAR : pc.FILTER_NEAREST;
   const format = channels === 1 ? (full ? pc.PIXELFORMAT_R32F : pc.PIXELFORMAT_R16F) : full ? pc.PIXELFORMAT_RGBA32F : pc.PIXELFORMAT_RGBA16F;
-  const filter = smooth ? pc.FILTER_LINEAR : pc.FILTER_NEAREST;
   const colorBuffer = new pc.Texture(device, {
-    name, width, height, format, mipmaps: false, minFilter: filter, magFilter: filter,
+    name: pass.name, width, height, format, mipmaps: false, minFilter: filter, magFilter: filter,
     addressU: pc.ADDRESS_CLAMP_TO_EDGE, addressV: pc.ADDRESS_CLAMP_TO_EDGE,
   });
-  return new pc.RenderTarget({ name, colorBuffer, depth, samples: 1, origin });
+  return new pc.RenderTarget({ name: pass.name, colorBuffer, depth, samples: 1, origin });
 }
 
 /** A mesh instance that has the material: its copies with the materials of passes, and its pictures. */
@@ -167,9 +168,9 @@ class Body {
     let pictures = this.#pictures.find((one) => one.pass === pass && one.camera === camera && one.origin === size.origin);
     if (!pictures) {
       const layers = showsLight(pass)
-        ? [pictureOf(device, pass.name, { channels: 4, depth: true, smooth: true }, size)]
-        : pass.layers.map((layer) => pictureOf(device, `${pass.name} ${layer}`, { depth: true }, size));
-      const packed = layers.length > 1 ? pictureOf(device, pass.name, { channels: 4 }, size) : layers[0];
+        ? [pictureOf(device, pass, { channels: 4, depth: true }, size)]
+        : pass.layers.map(() => pictureOf(device, pass, { depth: true }, size));
+      const packed = layers.length > 1 ? pictureOf(device, pass, { channels: 4 }, size) : layers[0];
       this.#pictures.push((pictures = { pass, camera, origin: size.origin, layers, packed, version: -1 }));
     }
     for (const target of [...pictures.layers, pictures.packed]) {
@@ -341,7 +342,7 @@ export class Passes {
       lightClusters: renderer.worldClustersAllocator._clusters.get(layer.getLightIdHash())?.lightClusters,
     };
     tiles.init(picture);
-    tiles.setClearColor(new pc.Color(0, 0, 0, emptyOf(pass)));
+    tiles.setClearColor(new pc.Color(0, 0, 0, emptyOf(pass, FAR)));
     tiles.setClearDepth(1);
     Object.assign(tiles, { cameras, columns: 1, meshInstances: [body.copy(matt)], light });
     tiles.render();
@@ -349,7 +350,7 @@ export class Passes {
 
   #drawLayers(pass, body, { layers, packed }, cameras, columns, margin) {
     const tiles = (this.#tiles ??= new TilePass(this.device, this.#app.renderer));
-    const empty = emptyOf(pass);
+    const empty = emptyOf(pass, Math.max(...cameras.map(({ nearClip, farClip }) => farClip - nearClip), 1));
     layersOf(pass).forEach(({ back, before }, index) => {
       const material = this.#materialOf(back, before >= 0);
       material.setParameter('sss_from_plane', Number(pass.seenFrom !== 'eye'));

@@ -231,7 +231,7 @@ export function materialClass(description) {
         this.#uniforms.lightPlace.onRenderUpdate(() => this.#placeLight());
       }
       const nodes = nodesOf(description, texts, this.#uniforms);
-      Object.assign(nodes.colorNode, { updateBeforeType: 'object', updateBefore: (frame) => this.#prepare(frame) }); // in WebGPURenderer
+      Object.assign(nodes.colorNode, { updateBeforeType: 'object', updateBefore: (frame) => frame.material.isShadowPassMaterial || this.#prepare(frame) }); // in WebGPURenderer
       Object.assign(this, nodes);
       this.setValues(values);
     }

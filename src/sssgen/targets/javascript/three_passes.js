@@ -3,7 +3,7 @@
 
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
-import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
+import { FAR, LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
 
 /** The layer of three that only a pass draws. */
 const ALONE = 31;
@@ -30,10 +30,11 @@ void main() {
 const FRAGMENT = /* glsl */ `
 varying vec3 sss_place;
 uniform bool fromPlane;
+uniform float start;
 uniform float margin;
 uniform sampler2D front;
 void main() {
-  float distance = fromPlane ? -sss_place.z : length(sss_place);
+  float distance = fromPlane ? -sss_place.z - start : length(sss_place);
   // the surfaces behind those of the layer before
   if (margin > 0.0 && distance < texelFetch(front, ivec2(gl_FragCoord.xy), 0).r + margin) discard;
   gl_FragColor = vec4(distance, 0.0, 0.0, 1.0);
@@ -49,11 +50,11 @@ const glslUniforms = (values) => Object.fromEntries(Object.entries(values).map((
  */
 function distanceMaterial(nodes, side) {
   if (!nodes) {
-    const uniforms = glslUniforms({ fromPlane: false, margin: 0, front: emptyPicture() });
+    const uniforms = glslUniforms({ fromPlane: false, start: 0, margin: 0, front: emptyPicture() });
     return { uniforms, material: new THREE.ShaderMaterial({ side, uniforms, vertexShader: VERTEX, fragmentShader: FRAGMENT }) };
   }
-  const uniforms = { fromPlane: TSL.uniform(0), margin: TSL.uniform(0), front: TSL.textureLoad(emptyPicture(), TSL.ivec2(TSL.screenCoordinate)) };
-  const distance = TSL.select(uniforms.fromPlane.greaterThan(0), TSL.positionView.z.negate(), TSL.positionView.length());
+  const uniforms = { fromPlane: TSL.uniform(0), start: TSL.uniform(0), margin: TSL.uniform(0), front: TSL.textureLoad(emptyPicture(), TSL.ivec2(TSL.screenCoordinate)) };
+  const distance = TSL.select(uniforms.fromPlane.greaterThan(0), TSL.positionView.z.negate().sub(uniforms.start), TSL.positionView.length());
   const fragmentNode = TSL.Fn(() => {
     TSL.Discard(uniforms.margin.greaterThan(0).and(distance.lessThan(uniforms.front.r.add(uniforms.margin))));
     return TSL.vec4(distance, 0, 0, 1);
@@ -96,8 +97,11 @@ function mattMaterial(nodes) {
   return { plane, material };
 }
 
-function pictureOf(width, height, type, filter) {
-  const settings = { type, format: THREE.RGBAFormat, minFilter: filter, magFilter: filter };
+/** @param {boolean} filtered whether filters may blend the texels @param {boolean} blended whether they do */
+function pictureOf(width, height, type, filtered, blended) {
+  // in WebGPU three declares no sampler for a texture that neither filter blends; shaders name the level, for which the second is used
+  const [minFilter, magFilter] = [filtered, blended].map((linear) => (linear ? THREE.LinearFilter : THREE.NearestFilter));
+  const settings = { type, format: THREE.RGBAFormat, minFilter, magFilter };
   return new THREE.WebGLRenderTarget(width, height, settings); // WebGPURenderer takes it, too
 }
 
@@ -145,9 +149,9 @@ function lampOf(light, ball, distant, coordinateSystem) {
 }
 
 /** World space to a tile of the picture. */
-function viewOf(lamp, tile, columns, up) {
+function viewOf(lamp, tile, columns, up, start = lamp.near) {
   const clip = new THREE.Matrix4().multiplyMatrices(lamp.projectionMatrix, lamp.matrixWorldInverse);
-  return new THREE.Matrix4().fromArray(viewNumbers(clip.elements, lamp.matrixWorldInverse.elements, -1, up, tile, columns));
+  return new THREE.Matrix4().fromArray(viewNumbers(clip.elements, lamp.matrixWorldInverse.elements, -1, start, up, tile, columns));
 }
 
 /**
@@ -164,8 +168,8 @@ class Drawing {
     this.nodes = renderer.isWebGPURenderer === true;
     this.gpu = this.nodes && renderer.backend.isWebGPUBackend === true;
     // half floats where a device does not filter others: three declares no sampler for a texture that it cannot filter
-    const filters = this.gpu ? renderer.hasFeature('float32-filterable') : renderer.extensions?.has('OES_texture_float_linear') ?? true;
-    this.type = filters ? THREE.FloatType : THREE.HalfFloatType;
+    this.filters = this.gpu || Boolean((renderer.extensions ?? renderer.backend.extensions).has('OES_texture_float_linear'));
+    this.type = this.gpu && !renderer.hasFeature('float32-filterable') ? THREE.HalfFloatType : THREE.FloatType;
     this.fronts = distanceMaterial(this.nodes, THREE.FrontSide);
     this.backs = distanceMaterial(this.nodes, THREE.BackSide);
     this.packing = packingMaterial(this.nodes);
@@ -210,12 +214,13 @@ class Drawing {
 
   /** Draws one pass of an object into its pictures. */
   draw(renderer, pass, pictures, object, cameras, tileSize) {
-    const empty = emptyOf(pass);
+    const eye = pass.seenFrom === 'eye';
+    const empty = emptyOf(pass, Math.max(...cameras.map(({ near, far }) => far - near), 1));
     const margin = LAYER_GAP * ballOf(object).radius;
     renderer.setClearColor(new THREE.Color(empty, empty, empty), 1);
     layersOf(pass).forEach(({ back, before }, index) => {
       const { material, uniforms } = back ? this.backs : this.fronts;
-      uniforms.fromPlane.value = this.nodes ? Number(pass.seenFrom !== 'eye') : pass.seenFrom !== 'eye';
+      uniforms.fromPlane.value = this.nodes ? Number(!eye) : !eye;
       uniforms.margin.value = before < 0 ? 0 : margin;
       uniforms.front.value = before < 0 ? this.blank : pictures.layers[before].texture;
       const picture = pictures.layers[index];
@@ -228,6 +233,7 @@ class Drawing {
         picture.viewport.set(tileSize.x * tile.x, tileSize.y * tile.y, tileSize.x, tileSize.y);
         picture.scissor.copy(picture.viewport);
         renderer.setRenderTarget(picture);
+        uniforms.start.value = camera.near;
         this.alone(renderer, object, material, camera);
       });
     });
@@ -265,7 +271,7 @@ class Drawing {
     object.material = this.matt.material;
     Object.assign(scene, { background: null, backgroundNode: null, fog: null, overrideMaterial: null });
     try {
-      renderer.setClearColor(new THREE.Color(0, 0, 0), emptyOf(pass));
+      renderer.setClearColor(new THREE.Color(0, 0, 0), emptyOf(pass, FAR));
       picture.viewport.set(0, 0, picture.width, picture.height);
       picture.scissor.copy(picture.viewport);
       renderer.setRenderTarget(picture);
@@ -296,9 +302,9 @@ class Drawing {
     if (!this.#pictures.has(object)) this.#pictures.set(object, {});
     const own = /** @type {Record<string, Pictures>} */ (this.#pictures.get(object));
     const kinds = showsLight(pass) ? [pass.name] : pass.layers;
-    const make = () => pictureOf(size.x, size.y, this.type, showsLight(pass) ? THREE.LinearFilter : THREE.NearestFilter);
-    const layers = own[pass.name]?.layers ?? kinds.map(make);
-    const packed = own[pass.name]?.packed ?? (layers.length > 1 ? make() : layers[0]);
+    const made = () => pictureOf(size.x, size.y, this.type, this.filters, this.filters && isFiltered(pass));
+    const layers = own[pass.name]?.layers ?? kinds.map(made);
+    const packed = own[pass.name]?.packed ?? (layers.length > 1 ? made() : layers[0]);
     for (const picture of [...layers, packed]) {
       if (picture.width !== size.x || picture.height !== size.y) picture.setSize(size.x, size.y);
       picture.scissorTest = picture !== packed || layers.length === 1;
@@ -363,11 +369,7 @@ export class Passes {
     // distances on both sides of the body's middle are small enough for half floats
     const plane = -ballOf(object).center.applyMatrix4(camera.matrixWorldInverse).z;
     if (eye) {
-      for (const view of pass.views) {
-        const matrix = viewOf(camera, { x: 0, y: 0 }, 1, drawing.gpu ? -1 : 1);
-        matrix.elements[14] -= plane;
-        set(view, matrix);
-      }
+      for (const view of pass.views) set(view, viewOf(camera, { x: 0, y: 0 }, 1, drawing.gpu ? -1 : 1, plane));
     } else {
       const ball = ballOf(object);
       const system = drawing.gpu ? THREE.WebGPUCoordinateSystem : THREE.WebGLCoordinateSystem;
