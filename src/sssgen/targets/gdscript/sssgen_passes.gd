@@ -241,6 +241,8 @@ class View extends FloatView:
 		camera.environment = Environment.new()
 		camera.environment.background_mode = Environment.BG_COLOR
 		camera.environment.background_color = Color(empty, empty, empty)
+		# the Compatibility renderer keeps it for scenes that have no environment
+		camera.environment.ambient_light_source = Environment.AMBIENT_SOURCE_DISABLED
 		camera.physics_interpolation_mode = Node.PHYSICS_INTERPOLATION_MODE_OFF
 		add_child(camera)
 		camera.current = true
