@@ -23,9 +23,8 @@ def test_the_requirements_of_examples(name: str) -> None:
 
 
 def test_what_an_engine_draws_itself() -> None:
-    pictures = "the light's depth map and a picture of the body's back faces"
-    stages = load_material("jade_ring").stages
-    assert describe(stages, ["the material itself"]) == [f"{pictures} (drawn by the material itself)"]
+    pictures = ["the light's depth map", "a picture of the body's back faces (each drawn by the material itself)"]
+    assert describe(load_material("jade_ring").stages, ["the material itself"]) == pictures
     assert describe(load_material("leaves").stages, ["the material itself"]) == ["a rigid mesh"]
 
 

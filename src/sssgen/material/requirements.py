@@ -70,8 +70,8 @@ def describe(uses: Sequence[TechniqueUse], drawers: Sequence[str] = ()) -> list[
     if own := bodies(uses):
         words["rigid"] = f"the body that it is made for ({', '.join(own)}), as on another mesh its light is wrong"
     drawn = [words.pop(name) for name in required if name in _DRAWN] if drawers else []
-    by = f" (drawn {', '.join(f'by {drawer}' for drawer in drawers)})"
-    return [*words.values(), *([" and ".join(drawn) + by] if drawn else [])]
+    by = f" ({'each ' if len(drawn) > 1 else ''}drawn {', '.join(f'by {drawer}' for drawer in drawers)})"
+    return [*words.values(), *drawn[:-1], *(last + by for last in drawn[-1:])]
 
 
 def bodies(uses: Iterable[TechniqueUse]) -> list[str]:
