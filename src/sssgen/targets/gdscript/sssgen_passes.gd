@@ -79,6 +79,11 @@ var _lights: Array[Light3D] = []
 var _materials: Array[ShaderMaterial] = []
 
 
+## Texture without which the picture is wrong → what to do.
+func needed() -> Dictionary:
+	return {}
+
+
 ## The passes of the material, as in its reflection: `name`, `seen_from`, `layers`, `empty`, `texture`, `views`, `lights`.
 func passes() -> Array[Dictionary]:
 	return []
@@ -149,6 +154,10 @@ func _find_materials() -> void:
 		if material == null or material in _materials or not _reads(material.shader):
 			continue
 		_materials.append(material)
+		var missing := needed()
+		for texture: String in missing:
+			if material.get_shader_parameter(texture) == null:
+				push_warning("%s: '%s' is missing: %s" % [body.name, texture, missing[texture]])
 		if material in _owners:
 			push_warning("%s shares its material with another body: make it unique" % body.name)
 			continue
