@@ -61,6 +61,14 @@ def test_the_script_names_all_passes() -> None:
     assert {"jade_ring_passes.gd", "sssgen_passes.gd"} <= listed
 
 
+def test_the_script_has_what_bakes_a_texture() -> None:
+    """The node warns where the material has none."""
+    compiled = sssgen.compile("wax_mouse", "godot")
+    (line,) = (line for line in compiled.files["wax_mouse_passes.gd"].splitlines() if line.startswith("func needed()"))
+    (needed,) = (texture["needed"] for texture in compiled.reflection["textures"] if texture["needed"])
+    assert f'{{"distance_map": {json.dumps(needed)}' in line and "sssgen bake sdf" in needed
+
+
 def test_only_materials_that_light_comes_through_have_a_script() -> None:
     scripts = {
         name: [file for file in sssgen.compile(name, "godot").files if file.endswith(".gd")]

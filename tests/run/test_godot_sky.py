@@ -58,3 +58,10 @@ def test_a_sky_comes_through(stage: Stage, way: tuple[int, int, int]) -> None:
     front, behind = lit[seen][:, :2].T
     assert np.abs(front - (0.5 + 0.5 * facing)).max() < 0.1
     assert np.abs(behind - (0.5 - 0.5 * facing)).max() < 0.1
+
+
+def test_passes_add_no_light_to_a_scene_without_an_environment(stage: Stage) -> None:
+    """The Compatibility renderer would show the ambient light of the camera before, that of a pass."""
+    wall = [9.0, 0.0, 0.0, 0.0, 0.0, 9.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -2.0, 1.0]
+    lamp = {"shadows": True, "properties": {"light_energy": 1e-4}}
+    assert picture(stage, bare=True, walls=[wall], **lamp)[..., :3].max() < 0.01

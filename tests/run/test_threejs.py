@@ -165,7 +165,7 @@ def test_parameters_are_properties() -> None:
 def test_the_head_names_properties() -> None:
     """Those of the module, not the names in the shaders; a material without a number has an example without values."""
     head = sssgen.compile("jade_ring", "threejs").files["jade_ring.js"].split("\nimport ")[0]
-    assert "// lightDepthMap: draw " in head and "sss_light_depth_map" not in head and "createMaterial())" in head
+    assert "// lightDepthMap: drawn " in head and "sss_light_depth_map" not in head and "createMaterial())" in head
 
 
 def test_light_of_the_surroundings_comes_through(three: EnginePage, tmp_path: Path) -> None:

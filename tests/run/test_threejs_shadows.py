@@ -32,6 +32,18 @@ THROUGH = HEAD.format("translucency") + (
     "{ return 0.5 + 0.25 * abs(vec3(L_object)) + 0.25 * abs(vec3(V_object)); }\n"
 )
 
+THROUGH_MATERIAL = '[material]\nname = "made"\n[translucency]\ntechnique = "./through.sss"\n'
+# it reads the pictures of all passes: back faces, and layers of the light
+DRAWN_MATERIAL = """[material]
+name = "drawn"
+[thickness]
+technique = "back_face_thickness"
+[translucency]
+technique = "interior_octaves"
+bind = { light_path = "light_layers_path" }
+extinction = [2.0, 3.0, 4.0]
+"""
+
 
 class Scenes:
     """Pictures of scenes in one renderer, each drawn once."""
@@ -39,9 +51,10 @@ class Scenes:
     def __init__(self, page: EnginePage, folder: Path) -> None:
         self.page = page
         (folder / "through.sss").write_text(THROUGH, encoding="utf-8")
-        material = folder / "made.toml"
-        material.write_text('[material]\nname = "made"\n[translucency]\ntechnique = "./through.sss"\n', "utf-8")
-        self.modules = page_values.modules_of(sssgen.compile(str(material), "threejs"))
+        self.modules = {}
+        for name, text in {"made": THROUGH_MATERIAL, "drawn": DRAWN_MATERIAL}.items():
+            (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+            self.modules[name] = page_values.modules_of(sssgen.compile(str(folder / f"{name}.toml"), "threejs"))
         self.picture = cache(self._picture)
 
     def draw(self, lamps: Any, *walls: Any, bodies: Any = (BALL, SHEET), shadows: bool = True, **others: Any) -> Array:
@@ -52,7 +65,8 @@ class Scenes:
         )
 
     def _picture(self, scene: str) -> Array:
-        plan = {**json.loads(scene), "modules": self.modules, "renderer": self.page.name, "height": SIZE[1]}
+        plan = {"material": "made", **json.loads(scene), "renderer": self.page.name, "height": SIZE[1]}
+        plan["modules"] = self.modules[plan["material"]]
         return self.page.ask(json.dumps(plan), b"", SIZE)[..., :3]
 
 
@@ -84,6 +98,13 @@ def test_bodies_take_nothing_from_themselves(scenes: Scenes, lamp: str) -> None:
     for side in ("FrontSide", "DoubleSide"):
         shadowed, free = (scenes.draw(lamp, shadows=shadows, side=side) for shadows in (True, False))
         assert np.abs(shadowed - free).max() < STEP
+
+
+@pytest.mark.parametrize("lamp", LAMPS)
+def test_shadow_maps_leave_the_pictures_of_passes(scenes: Scenes, lamp: str) -> None:
+    """A shadow map has the colour of the body, but is drawn from the lamp; the second body starts with pictures."""
+    shadowed, free = (scenes.draw(lamp, shadows=shadows, material="drawn") for shadows in (True, False))
+    assert np.abs(shadowed - free).max() < STEP and (free.max(axis=-1) > 0.02).sum() > 150
 
 
 @pytest.mark.parametrize("lamp", LAMPS)

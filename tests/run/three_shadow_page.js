@@ -23,8 +23,8 @@ async function start(kind) {
   renderer.setClearColor(0x000000, 0);
 }
 
-async function materialOf({ modules, side = 'FrontSide', missing }, number = 0) {
-  const key = `${side} ${number} ${missing}`;
+async function materialOf({ material, modules, side = 'FrontSide', missing }, number = 0) {
+  const key = `${material} ${side} ${number} ${missing}`;
   if (!materials.has(key)) {
     const { createMaterial } = await imported(modules);
     materials.set(key, createMaterial({ color: 0, specularIntensity: 0, side: THREE[side] }));

@@ -290,10 +290,13 @@ def test_shells_and_reflection_say_how(target: str, form: str, folder: Path) -> 
     }
     files = [file for file in load_target(target).files[form] if file.sources or file.needs]
     others = {file.name.replace("{material}", "shown") for file in files}  # no shaders
+    drawer = load_target(target).draws_passes.format(material="shown") if form == "shader" else ""
+    how = {"back_face_map": "alone with its front faces culled", "light_depth_map": "alone from the light, which"}
     for name, text in compiled.files.items():
         commented = not name.endswith((".json", ".txt", ".shadersubgraph", ".meta"))
         if commented and name not in others:
             mark = "# " if target == "numpy" else "// "
             comment = " ".join(line.removeprefix(mark) for line in text.splitlines() if line.startswith(mark))
-            assert f"{names['back_face_map']}: draw the translucent body alone with its front faces culled" in comment
-            assert f"{names['light_depth_map']}: draw the translucent body alone from the light, which" in comment
+            for texture, words in how.items():
+                said = f"drawn by {drawer}." if drawer else f"draw the translucent body {words}"
+                assert f"{names[texture]}: {said}" in comment

@@ -34,6 +34,7 @@ class Compiled(NamedTuple):
 
 class Target(NamedTuple):
     title: str
+    draws_passes: str = ""
 
 
 class FakeCompiler(types.ModuleType):

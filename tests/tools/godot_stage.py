@@ -37,6 +37,8 @@ func build():
     body = get_parent()
     if stage.has("sky"):
         shine(get_viewport().get_camera_3d().environment)
+    if stage.has("bare"):
+        get_viewport().get_camera_3d().environment = null
     if stage.has("instances"):
         body.visible = false
         var many = MultiMeshInstance3D.new()

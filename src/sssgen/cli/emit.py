@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 import sys
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from sssgen.cli.options import DEFAULT_TARGET, add_guards, add_output, add_targets, nonempty
@@ -219,9 +220,24 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
     if wrong:
         raise SssgenError(dict.fromkeys([*wrong, *errors]))
     sources = {file: source for file, source in sources.items() if source[0] not in failed}
-    required = {material.name: describe(material.stages) for material in materials if material.name not in failed}
+    required = {
+        material.name: describe(material.stages, _drawers(material.name, names, arguments.form))
+        for material in materials
+        if material.name not in failed
+    }
     texts = {file: files[file] for file in sources}
     return EmittedFiles(texts, sources, list(dict.fromkeys(warnings)), required, list(dict.fromkeys(errors)))
+
+
+def _drawers(material: str, names: Sequence[str], form: str) -> list[str]:
+    """What draws the passes of a material: of each of several targets, with its name."""
+    from sssgen.pipeline.compiler import all_targets
+
+    targets = all_targets()
+    texts = [targets[name].draws_passes.format(material=material) if form == "shader" else "" for name in names]
+    if len(set(texts)) == 1:
+        return texts[:1] if texts[0] else []
+    return [f"{text} in {targets[name].title}" for name, text in zip(names, texts, strict=True) if text]
 
 
 def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:

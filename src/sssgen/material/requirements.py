@@ -30,6 +30,8 @@ DESCRIPTIONS = {
     "fixed-light": "a light that does not move relative to the body",
 }
 """The requirements, for people."""
+_DRAWN = ("depth-map", "depth-layers", "back-faces")
+"""Pictures that are drawn for each frame."""
 TEXEL_BYTES = 4
 """The bytes of a baked texel without the hint `texel_bytes`: four channels of 8 bits."""
 
@@ -57,13 +59,20 @@ def needed_for(name: str) -> tuple[str, ...]:
     return {BACK_FACES: ("back-faces",), MATT: ("matt-light",)}.get(name, ())
 
 
-def describe(uses: Sequence[TechniqueUse]) -> list[str]:
-    """The requirements of a material in words, with the names of the baked textures and of the body."""
-    named = {"bake": [texture.name for texture in baked_textures(uses)], "rigid": bodies(uses)}
-    return [
-        f"{DESCRIPTIONS[name]} ({', '.join(named[name])})" if named.get(name) else DESCRIPTIONS[name]
-        for name in requirements(uses)
-    ]
+def describe(uses: Sequence[TechniqueUse], drawers: Sequence[str] = ()) -> list[str]:
+    """The requirements of a material in words, with the names of the baked textures and of the body.
+
+    `drawers` draw its passes, where the user's program does not.
+    """
+    required = requirements(uses)
+    words = {name: DESCRIPTIONS[name] for name in required}
+    if "bake" in words:
+        words["bake"] += f" ({', '.join(texture.name for texture in baked_textures(uses))})"
+    if own := bodies(uses):
+        words["rigid"] = f"the body that it is made for ({', '.join(own)}), as on another mesh its light is wrong"
+    drawn = [words.pop(name) for name in required if name in _DRAWN] if drawers else []
+    by = f" ({'each ' if len(drawn) > 1 else ''}drawn {', '.join(f'by {drawer}' for drawer in drawers)})"
+    return [*words.values(), *drawn[:-1], *(last + by for last in drawn[-1:])]
 
 
 def bodies(uses: Iterable[TechniqueUse]) -> list[str]:

@@ -335,7 +335,7 @@ def _context(
         "facts": {*program.about.facts, *used.facts},
         "target": target,
         "form": form,
-        "header": _header(target, program),
+        "header": _header(target, program, target.draws_passes if form == "shader" else ""),
         "code": code,
         "uniforms": [
             uniform_variables(printer, uniform, source)
@@ -369,8 +369,8 @@ def _surface_values(target: Target, printer: Printer, fields: Collection[str]) -
     }
 
 
-def _header(target: Target, program: Program) -> list[str]:
-    """The comment at the head of a file: its contents, and where to change them."""
+def _header(target: Target, program: Program, drawer: str) -> list[str]:
+    """The comment at the head of a file: its contents, and where to change them. `drawer` draws its passes, or ''."""
     about = program.about
     description = f"{about.title}: {about.doc}" if about.doc else about.title
     origin = "the material" if program.entries else "the source"
@@ -378,7 +378,8 @@ def _header(target: Target, program: Program) -> list[str]:
     head = ["", *map(comment_text, about.head)] if about.head else []
     sides = ["Two-sided: drawn without culling; back faces have the reversed normal."] if about.two_sided else []
     made_for = f"Made for the body of {' and '.join(about.bodies)}: on another mesh the light inside is wrong."
-    supplied = [_supplied(target, program, uniform) for uniform in program.module.uniforms]
+    drawer = drawer and f"drawn by {with_names(drawer, {'material': about.name})}"
+    supplied = [_supplied(target, program, uniform, drawer) for uniform in program.module.uniforms]
     needed = [*([made_for] if about.bodies and not about.raymarched else []), *supplied]
     lines = [line for text in needed for line in textwrap.wrap(text, 100)]
     return [comment_text(line) for line in (*textwrap.wrap(description, 100), notice, *sides, *lines)] + head
@@ -390,8 +391,8 @@ def needed(program: Program, texture: Uniform) -> str | None:
     return None if pass_name(texture) else program.about.needs.get(program.owners.get(source, ("", source)))
 
 
-def _supplied(target: Target, program: Program, uniform: Uniform) -> str:
-    """How the program supplies a texture that is drawn or baked, or ''."""
+def _supplied(target: Target, program: Program, uniform: Uniform, drawer: str) -> str:
+    """How a texture that is drawn or baked is supplied, or ''."""
     drawn = pass_name(uniform)
     baked = bool(program.entries) and is_baked(uniform)  # a texture of plain GLSL may hold anything
     if not isinstance(uniform.type, Sampler) or not (drawn or baked):
@@ -399,7 +400,7 @@ def _supplied(target: Target, program: Program, uniform: Uniform) -> str:
     name = uniform.name
     if target.properties.style != "plain":  # its user sees the property only
         name = property_name(target, program.source_names.get(name, name))
-    return f"{name}: {FRAME_PASSES[drawn].how}." if drawn else f"{name}: bake it from the body (sssgen bake)."
+    return f"{name}: {drawer or FRAME_PASSES[drawn].how}." if drawn else f"{name}: bake it from the body (sssgen bake)."
 
 
 def _entry(

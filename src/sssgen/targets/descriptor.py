@@ -269,6 +269,8 @@ class Target(NamedTuple):
     its own instead."""
     engine_encodes: bool = False
     """Whether the engine encodes the final colour for a display, so that `output` techniques are left out."""
+    draws_passes: str = ""
+    """What draws the passes of a material in the form `shader`; '' where the user's program does."""
     clustered_lights: bool = False
     """Whether the number of lights differs from pixel to pixel: functions per light then read textures at level 0."""
     uniform_style: str = "plain"

@@ -79,6 +79,11 @@ var _lights: Array[Light3D] = []
 var _materials: Array[ShaderMaterial] = []
 
 
+## Texture without which the picture is wrong → what to do.
+func needed() -> Dictionary:
+	return {}
+
+
 ## The passes of the material, as in its reflection: `name`, `seen_from`, `layers`, `empty`, `texture`, `views`, `lights`.
 func passes() -> Array[Dictionary]:
 	return []
@@ -152,6 +157,10 @@ func _find_materials() -> void:
 		if material == null or material in _materials or not _reads(material.shader):
 			continue
 		_materials.append(material)
+		var missing := needed()
+		for texture: String in missing:
+			if material.get_shader_parameter(texture) == null:
+				push_warning("%s: '%s' is missing: %s" % [body.name, texture, missing[texture]])
 		if material in _owners:
 			push_warning("%s shares its material with another body: make it unique" % body.name)
 			continue
@@ -244,6 +253,8 @@ class View extends FloatView:
 		camera.environment = Environment.new()
 		camera.environment.background_mode = Environment.BG_COLOR
 		camera.environment.background_color = Color(empty, empty, empty)
+		# the Compatibility renderer keeps it for scenes that have no environment
+		camera.environment.ambient_light_source = Environment.AMBIENT_SOURCE_DISABLED
 		camera.physics_interpolation_mode = Node.PHYSICS_INTERPOLATION_MODE_OFF
 		add_child(camera)
 		camera.current = true

@@ -177,7 +177,9 @@ function uniformsOf({ parameters, textures, calls }, moves, takesLight, ofObject
     own[name] = declared.placed ? { value: startOf(declared) } : uniforms[name];
   }
   for (const [name, declared] of Object.entries(textures)) {
-    uniforms[name] = (TEXTURE_NODES[declared.type] ?? TSL.texture)(texel(declared));
+    const node = (TEXTURE_NODES[declared.type] ?? TSL.texture)(texel(declared));
+    // of a picture with nearest filters, WebGPU has a sampler only where it is gathered
+    uniforms[name] = Object.assign(node, { gatherNode: TSL.int(0) });
   }
   if (moves) uniforms.time = TSL.uniform(0);
   if (takesLight) uniforms.lightPlace = TSL.uniform(new THREE.Vector4(0, 1, 0, 0));
@@ -231,7 +233,9 @@ export function materialClass(description) {
         this.#uniforms.lightPlace.onRenderUpdate(() => this.#placeLight());
       }
       const nodes = nodesOf(description, texts, this.#uniforms);
-      Object.assign(nodes.colorNode, { updateBeforeType: 'object', updateBefore: (frame) => frame.material.isShadowPassMaterial || this.#prepare(frame) }); // in WebGPURenderer
+      // in WebGPURenderer, whose shadow maps have the colour in a material of their own
+      const updateBefore = (frame) => { if (frame.material === this) this.#prepare(frame); };
+      Object.assign(nodes.colorNode, { updateBeforeType: 'object', updateBefore });
       Object.assign(this, nodes);
       this.setValues(values);
     }
