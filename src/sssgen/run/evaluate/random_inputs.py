@@ -28,6 +28,8 @@ ALIGNED = 0.2
 """The share of directions that lie nearly along one line."""
 AIMED = 0.9
 """The share of rays that go towards the middle of the scene."""
+MISSING = 0.2
+"""The share of lanes without a view, where a view may be missing."""
 TEXELS = 16
 """Texels along each side of a texture."""
 
@@ -114,6 +116,10 @@ def _uniform(subject: Subject, uniform: Uniform, count: int, seed: int) -> Array
         return rng.integers(int(low) if ends else 0, int(most) + 1, size)
     if ends or "source_color" in hints:
         return _within(rng, size, low, high)
+    if isinstance(uniform.type, Matrix) and not default.any():  # a view that there may not be: in some lanes there is none
+        views = rng.uniform(-0.5, 0.5, size)
+        views[..., -1] = np.eye(size[-1])[-1]
+        return np.where(rng.random(count)[:, None, None] < MISSING, 0.0, views)
     if isinstance(uniform.type, Matrix):
         moved = default + rng.uniform(-0.1, 0.1, size)
         moved[..., -1] = default[..., -1]  # the last row stays, so that no point lies at infinity
