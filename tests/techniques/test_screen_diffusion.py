@@ -11,6 +11,7 @@ import pytest
 from scipy import ndimage
 from scipy.optimize import nnls
 
+from folders import DOCS
 from oracle import Array, close, technique
 from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.transport import Light, radiance_along
@@ -94,7 +95,7 @@ def test_surfaces_apart_give_each_other_nothing() -> None:
     assert emission.max() < 0.02
 
 
-HEAD = Path(__file__).with_name("head.sss").as_posix()
+HEAD = (DOCS / "screen_diffusion" / "head.sss").as_posix()
 SCENE = f"""
 material = "skin.toml"
 size = [300, 400]
