@@ -4,7 +4,8 @@
     python examples/opengl_program/program.py out/paper_lantern               # a window; needs glfw too
     python examples/opengl_program/program.py out/paper_lantern picture.ppm
 
-It needs moderngl and NumPy. What the material has, it reads from the reflection beside the shader.
+It needs moderngl and NumPy, and sssgen for a material that reads pictures of the body, such as jade_ring. What the
+material has, it reads from the reflection beside the shader.
 """
 
 from __future__ import annotations
@@ -30,9 +31,8 @@ class Shader:
         self.program = context.program(vertex_shader=vertex, fragment_shader=fragment)
         self.textures: dict[str, Any] = {}
         self.encoded = reflection["color"] == "encoded"
-        # what the program draws for each frame: from the eye, or in the view of a light that a matrix describes
-        self.drawn = {entry["drawn"]: entry["name"] for entry in reflection["textures"]}
-        self.drawn_matrices = {entry["drawn"]: entry["name"] for entry in reflection["uniforms"]}
+        self.reflection = reflection
+        self.passes: Any = None
         for uniform in reflection["uniforms"]:
             self.put(uniform["name"], uniform["default"])
         for texture in reflection["textures"]:
@@ -85,7 +85,7 @@ def sphere(rows: int = 64, columns: int = 128) -> tuple[Any, Any]:
 
 
 def camera(eye: Any, target: Any, aspect: float, degrees: float = 40.0) -> Any:
-    """The matrix from world space to clip space."""
+    """The matrices from world space to the camera's, and from there to clip space."""
     back = np.subtract(eye, target) / np.linalg.norm(np.subtract(eye, target))
     right = np.cross([0.0, 1.0, 0.0], back)
     right /= np.linalg.norm(right)
@@ -95,7 +95,7 @@ def camera(eye: Any, target: Any, aspect: float, degrees: float = 40.0) -> Any:
     flatten[1, 1] = 1 / np.tan(np.radians(degrees) / 2)
     flatten[0, 0] = flatten[1, 1] / aspect
     flatten[2, 2:], flatten[3, 2] = (-1.002, -0.2002), -1.0  # from 0.1 to 100
-    return flatten @ view
+    return view, flatten
 
 
 def view(shader: Shader, eye: Any, target: Any, aspect: float, lights: Any, ambient: Any) -> None:
@@ -103,7 +103,8 @@ def view(shader: Shader, eye: Any, target: Any, aspect: float, lights: Any, ambi
     positions, colors = np.zeros((4, 4)), np.zeros((4, 3))
     for number, (position, color) in enumerate(lights):
         positions[number], colors[number] = position, color
-    matrix = camera(eye, target, aspect)
+    to_camera, projection = camera(eye, target, aspect)
+    matrix = projection @ to_camera
     values = {"view_projection": matrix.T, "inverse_view_projection": np.linalg.inv(matrix).T}
     values |= {"model": np.identity(4), "inverse_model": np.identity(4), "camera_position": eye}
     values |= {"light_count": len(lights), "light_positions": positions, "light_colors": colors}
@@ -111,63 +112,21 @@ def view(shader: Shader, eye: Any, target: Any, aspect: float, lights: Any, ambi
         shader.put(name, value)
 
 
-DISTANCE_VERTEX = """#version 330 core
-layout(location = 0) in vec3 position;
-uniform mat4 to_clip;
-out vec3 v_position;
-void main() {
-    v_position = position;
-    gl_Position = to_clip * vec4(position, 1.0);
-}
-"""
-DISTANCE_FRAGMENT = """#version 330 core
-uniform vec4 origin;  // w = 1: where the eye is; w = 0: the direction towards the light, whose plane is at REACH
-in vec3 v_position;
-out float result;
-void main() {
-    result = origin.w == 1.0 ? distance(origin.xyz, v_position) : REACH - dot(origin.xyz, v_position);
-}
-""".replace("REACH", "2.0")
+def draw_passes(shader: Shader, eye: Any, target: Any, size: tuple[int, int], lights: Any, ambient: Any) -> None:
+    """Draws the pictures of the sphere that the material reads: in each frame, as the eye and the lights see it."""
+    if not shader.reflection["passes"]:
+        return
+    from sssgen.run.moderngl_passes import Body, Passes
 
-
-def distances(
-    context: moderngl.Context, size: tuple[int, int], to_clip: Any, origin: Any, culled: str, empty: float
-) -> moderngl.Texture:
-    """A texture of the sphere's distances: the nearest of the faces that are not culled, elsewhere `empty`."""
-    texture, screen = context.texture(size, 1, dtype="f4"), context.fbo
-    texture.repeat_x = texture.repeat_y = False
-    target = context.framebuffer(texture, context.depth_renderbuffer(size))
-    program = context.program(vertex_shader=DISTANCE_VERTEX, fragment_shader=DISTANCE_FRAGMENT)
-    program["to_clip"].write(np.ascontiguousarray(to_clip.T, "f4").tobytes())
-    program["origin"].value = tuple(origin)
-    vertices, triangles = sphere()
-    buffers = [context.buffer(np.asarray(data, kind).tobytes()) for data, kind in ((vertices, "f4"), (triangles, "i4"))]
-    target.use()
-    target.clear(red=empty)
-    context.enable(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-    context.cull_face = culled
-    context.vertex_array(program, [(buffers[0], "3f 36x", "position")], buffers[1]).render()
-    context.disable(moderngl.CULL_FACE)
-    screen.use()
-    return texture
-
-
-def draw_inputs(shader: Shader, eye: Any, to_clip: Any, towards: Any, size: tuple[int, int]) -> None:
-    """Draws the textures that the material needs from this eye, and from a light from afar."""
-    if "back_faces" in shader.drawn:
-        texture = distances(shader.context, size, to_clip, (*eye, 1.0), "front", 0.0)
-        shader.textures[shader.drawn["back_faces"]] = texture
-    for kind in ("light_depth", "distant_light_depth"):
-        if kind in shader.drawn:
-            towards = np.asarray(towards) / np.linalg.norm(towards)
-            side = np.cross([0.0, 1.0, 0.0], towards) / np.linalg.norm(np.cross([0.0, 1.0, 0.0], towards))
-            seen, to_light = np.identity(4), np.identity(4)
-            seen[:3, :3] = np.array([side, np.cross(towards, side), -towards]) / [[1.1], [1.1], [2.0]]  # to clip space
-            to_light[:2, :3], to_light[:2, 3] = 0.5 * seen[:2, :3], 0.5
-            to_light[2, :3], to_light[2, 3] = -towards, 2.0
-            texture = distances(shader.context, (512, 512), seen, (*towards, 0.0), "back", 4.0)
-            shader.textures[shader.drawn[kind]] = texture
-            shader.put(shader.drawn_matrices[kind], to_light.T)
+    if shader.passes is None:
+        vertices, triangles = sphere()
+        body = Body(shader.context, vertices[:, :3], vertices[:, 3:6], triangles, np.identity(4))
+        shader.passes = Passes(shader.context, shader.reflection), body
+    passes, body = shader.passes
+    drawn = passes.draw(body, *camera(eye, target, size[0] / size[1]), lights, ambient, size)
+    shader.textures |= drawn.textures
+    for name, matrix in drawn.values.items():
+        shader.put(name, matrix.T)
 
 
 def load(context: moderngl.Context, stem: str) -> Shader:
@@ -189,11 +148,12 @@ def frame(shader: Shader, turn: float, size: tuple[int, int]) -> None:
     """One picture: the sphere, a lamp behind it that goes around with `turn`, and the sky above the eye."""
     lamp = (1.6 * np.sin(turn), 0.6, -1.6 * np.cos(turn), 1.0)
     lights = [(lamp, (2.4, 2.2, 1.9)), ((1.0, 2.0, 2.0, 0.0), (0.15, 0.15, 0.2))]
-    if "distant_light_depth" in shader.drawn:  # a light from afar, the one whose depth map is drawn
+    if any(drawn["seen_from"] == "distant light" for drawn in shader.reflection["passes"]):  # a light from afar alone
         lights = [((*(np.array(lamp[:3]) / np.linalg.norm(lamp[:3])), 0.0), (2.4, 2.2, 1.9))]
     eye, target = (0.0, 0.6, 3.4), (0.0, 0.0, 0.0)
-    view(shader, eye, target, size[0] / size[1], lights, (0.05, 0.05, 0.06))
-    draw_inputs(shader, eye, camera(eye, target, size[0] / size[1]), lights[0][0][:3], size)
+    ambient = (0.05, 0.05, 0.06)
+    view(shader, eye, target, size[0] / size[1], lights, ambient)
+    draw_passes(shader, eye, target, size, lights, ambient)
     shader.context.enable(moderngl.DEPTH_TEST)
     if not shader.encoded:  # the shader's colours are linear
         shader.context.enable_direct(FRAMEBUFFER_SRGB)
