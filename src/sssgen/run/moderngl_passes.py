@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -133,7 +134,7 @@ class View(NamedTuple):
 
 
 class Passes:
-    """The passes of a material."""
+    """The passes of a material on one body: bodies that are shaded one after the other may share it."""
 
     def __init__(self, context: Any, reflection: Reflection) -> None:
         """Raises ValueError for a pass that shows other bodies or the surroundings: the program draws these."""
@@ -151,7 +152,7 @@ class Passes:
         packing["layers"].value = (0, 1, 2, 3)
         self._packing = context.vertex_array(packing, [])
         self._targets: dict[tuple[Any, ...], Any] = {}
-        self._arrays: dict[tuple[str, int], Any] = {}
+        self._arrays: WeakKeyDictionary[Body, dict[str, Any]] = WeakKeyDictionary()
 
     def draw(
         self,
@@ -266,14 +267,14 @@ class Passes:
             if key in program:
                 kind = "i4" if key == "front" else "f4"
                 program[key].write(np.ascontiguousarray(value, kind).tobytes())
-        if (name, id(body)) not in self._arrays:
+        arrays = self._arrays.setdefault(body, {})
+        if name not in arrays:
             names = [attribute for attribute in ("position", "normal") if attribute in program]
             layout = " ".join("3f" if attribute in names else "12x" for attribute in ("position", "normal"))
-            array = context.vertex_array(program, [(body.vertices, layout, *names)], body.triangles)
-            self._arrays[name, id(body)] = array
+            arrays[name] = context.vertex_array(program, [(body.vertices, layout, *names)], body.triangles)
         context.cull_face = culled
         with context.scope(framebuffer=context.fbo, enable_only=context.DEPTH_TEST | context.CULL_FACE):
-            self._arrays[name, id(body)].render()
+            arrays[name].render()
 
     def _target(self, key: tuple[Any, ...], size: tuple[int, int], channels: int, smooth: bool) -> Any:
         """A framebuffer with a picture, kept until its size changes."""
