@@ -46,6 +46,16 @@ def test_the_trace_of_emit_shows_each_pass_that_changed_the_module(tmp_path: Pat
     assert fold.partition("\n\n")[2] == print_module(read_module(fold), spans=False)
 
 
+def test_the_trace_lists_what_is_drawn_before(tmp_path: Path) -> None:
+    assert main(["emit", "jade_ring", "--target", "wgsl", "-o", str(tmp_path), "--trace"]) == 0
+    for path in (tmp_path / "jade_ring.wgsl.trace").iterdir():
+        lines = [line for line in path.read_text("utf-8").splitlines() if line.startswith("// drawn before: ")]
+        assert lines == [
+            "// drawn before: back_faces, the body from eye, to back_face_map",
+            "// drawn before: distant_light_depth, the body from distant light, to light_depth_map",
+        ]
+
+
 def test_the_trace_of_a_failure_ends_before_the_pass_that_failed(tmp_path: Path) -> None:
     source = tmp_path / "f.glsl"
     source.write_text("float k = 1.0 / 0.0;\nfloat f(float x) { return x / 0.0 + 0.0 / 0.0; }\n", "utf-8")
