@@ -11,6 +11,7 @@ import pytest
 import sssgen
 from sssgen.run.backends import Array, Backend
 from sssgen.run.backends.unity_backend import UnityHLSL
+from sssgen.scene.bounds import world_corners
 from sssgen.scene.camera import Camera
 from sssgen.scene.drawn_views import TEXELS, TILES, back_faces, brightest, light_depth, light_layers
 from sssgen.scene.geometry import Torus
@@ -78,7 +79,7 @@ def light_of(lamp: Lamp) -> Array:
 
 def four_brightest(lamps: tuple[Lamp, ...]) -> Array:
     lights = np.array([light_of(lamp) for lamp in lamps])
-    return lights[brightest(TORUS, lights, np.array([lamp.color for lamp in lamps]))]
+    return lights[brightest(world_corners(TORUS).mean(axis=0), lights, np.array([lamp.color for lamp in lamps]))]
 
 
 @pytest.mark.parametrize("version", VERSIONS)

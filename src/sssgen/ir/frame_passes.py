@@ -18,6 +18,9 @@ LIGHT_LAYERS = "light_layers"
 SHADOW, OCCLUDERS = "shadow_depth", "occluders"
 IRRADIANCE, REFLECTIONS = "irradiance", "reflections"
 
+FAR = 6.0e4
+"""The distance beside the body in a picture of light: more than any of a body's, and it fits into half a float."""
+
 
 class FramePass(NamedTuple):
     """A pass: what it draws, from where, and what a texel has."""

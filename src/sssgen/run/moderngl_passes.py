@@ -17,19 +17,16 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from sssgen.ir.frame_passes import DISTANT_VIEWS, LIGHT_LAYERS, MATT
+from sssgen.ir.frame_passes import DISTANT_VIEWS, FAR, LIGHT_LAYERS, MATT
 from sssgen.scene.arrays import Array
+from sssgen.scene.drawn_views import TILES, brightest
 from sssgen.scene.light_view import directional_view, point_view
 from sssgen.targets.reflection_record import PassRecord, Reflection
 
 SIDE = 1024
 """The width of what one light sees, in texels."""
-TILES = 2
-"""The tiles along a side of a picture of several lights."""
 LAYER_GAP = 1e-3
 """The least distance between two layers, in diagonals of the body."""
-FAR = 6.0e4
-"""The distance beside the body in a picture of light: it fits into half a float."""
 
 VERTEX = """#version 330 core
 uniform mat4 to_clip;
@@ -293,15 +290,8 @@ def _lights(body: Body, drawn: PassRecord, lights: Sequence[Any]) -> list[Sequen
     shown = [light for light in lights if not (light[0][3] and drawn["name"] in DISTANT_VIEWS)]
     if drawn["name"] != LIGHT_LAYERS:
         return [position for position, _ in shown[:1]]
-    middle = body.corners.mean(axis=0)
-
-    def strength(light: Any) -> float:
-        position, color = np.asarray(light[0], float), light[1]
-        square = float(np.sum((position[:3] - middle) ** 2)) if position[3] else 1.0
-        return float(max(color)) / max(square, 1e-6)
-
-    brightest = sorted(shown, key=strength, reverse=True)[: len(drawn["views"])]
-    return [light[0] for light in brightest if strength(light) > 0.0]
+    places, colors = (np.array([light[part] for light in shown], float).reshape(len(shown), -1) for part in (0, 1))
+    return [shown[index][0] for index in brightest(body.corners.mean(axis=0), places, colors)] if shown else []
 
 
 def _light(corners: Array, light: Array) -> View:

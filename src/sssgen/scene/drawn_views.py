@@ -88,9 +88,10 @@ def light_layers(geometry: Geometry, lights: Array, layers: Sequence[str]) -> tu
     return matrices, picture
 
 
-def brightest(geometry: Geometry, lights: Array, colors: Array) -> list[int]:
-    """The indices of the lights (n, 4) that are brightest at a body, at most `TILES` squared, the brightest first."""
-    center = world_corners(geometry).mean(axis=0)
+def brightest(center: Array, lights: Array, colors: Array) -> list[int]:
+    """The indices of the lights (n, 4) that are brightest at a body's center (3,), at most `TILES` squared, the
+    brightest first.
+    """
     near = lights[:, 3] > 0.0
     fall = np.where(near, np.maximum(np.sum((lights[:, :3] - center) ** 2, axis=1), 1e-6), 1.0)
     strength = colors.max(axis=1) / fall

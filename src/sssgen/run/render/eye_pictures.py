@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 
-from sssgen.ir.frame_passes import BACK_FACES, IRRADIANCE, MATT
+from sssgen.ir.frame_passes import BACK_FACES, FAR, IRRADIANCE, MATT
 from sssgen.run.evaluate.evaluation import half
 from sssgen.run.render.shell_values import Shell
 from sssgen.scene.arrays import Array
@@ -16,9 +16,6 @@ from sssgen.scene.drawn_views import back_faces, matt_light
 from sssgen.scene.geometry import Geometry, Hits
 from sssgen.targets.reflection_record import Reflection
 from sssgen.targets.runtime.numpy_textures import Texture
-
-FAR = 6.0e4
-"""The distance where there is no surface: it fits into half a float."""
 
 
 def with_eye_pictures(

@@ -30,6 +30,7 @@ from sssgen.run.render import baked_body
 from sssgen.run.render.environment_maps import irradiance_map, reflection_map
 from sssgen.run.render.shell_values import Shell
 from sssgen.scene.arrays import Array
+from sssgen.scene.bounds import world_corners
 from sssgen.scene.drawn_views import brightest, light_depth, light_layers
 from sssgen.scene.environment import read_environment
 from sssgen.scene.geometry import Distance, Geometry
@@ -100,7 +101,8 @@ def _light_views(
             raise failure(f"'{texture['source_name']}' is drawn from a light, and the scene has none", hint, file)
         if drawn == LIGHT_LAYERS:
             colors = np.array([light.color for light in scene.lights], float)
-            seen = [lights[index] for index in brightest(scene.geometry, np.array(lights, float), colors)]
+            center = world_corners(scene.geometry).mean(axis=0)
+            seen = [lights[index] for index in brightest(center, np.array(lights, float), colors)]
         else:
             seen = seen[:1]
         views[drawn] = _drawn_lights(scene.geometry, seen, FRAME_PASSES[drawn].layers, drawn == LIGHT_LAYERS)
