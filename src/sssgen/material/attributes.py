@@ -38,8 +38,8 @@ REQUIREMENTS = ("bake", "depth-map", "depth-layers", "back-faces", "matt-light",
 picture of the body's back faces from the eye; a rigid mesh; a light that does not move relative to the
 body."""
 
-OMISSIONS = REQUIREMENTS[:5]
-"""Those that an engine may not provide; the others are facts of the body and the light."""
+OMISSIONS = REQUIREMENTS[:4]
+"""Those that `chart` and `pick` can leave out: of what they measure, engines may not provide these."""
 
 BOUNDS = ("largest", "share", "bound_share")
 """What `deviation_bounds` can bound."""
