@@ -92,7 +92,8 @@ def test_the_engine_draws_the_light_that_spreads(page: EnginePage, scene: str) -
         inner = inner_pixels(inner)
     difference = np.abs(picture - expected)[inner].max(axis=-1)
     print(np.quantile(difference, [0.5, 0.9, 0.98, 1.0]) * 255)
-    assert np.quantile(difference, 0.98) < LEVEL
+    # filters on the CPU place texels by fractions of 1 / 256
+    assert np.quantile(difference, 0.98) < 2.0 * LEVEL
 
 
 WAY = np.array([0.8, 0.3, 0.52]) / np.linalg.norm([0.8, 0.3, 0.52])
@@ -122,6 +123,7 @@ def wall() -> list[float]:
     return [float(number) for number in matrix.T.ravel()]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stage", [{"around": "environment"}, {"shadows": True}, {"shadows": True, "walls": [wall()]}],
                          ids=["environment", "own shadow", "wall"])  # fmt: skip
 def test_light_that_does_not_spread_is_the_engines_own(page: EnginePage, stage: dict[str, Any], tmp_path: Path) -> None:

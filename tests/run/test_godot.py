@@ -82,7 +82,7 @@ def test_colors_are_converted_where_they_are_read() -> None:
 def test_textures_of_the_program_are_explained_at_the_head() -> None:
     text = shader("jade_ring")
     assert "// back_face_map: drawn by the node of jade_ring_passes.gd" in text.partition("shader_type")[0]
-    assert "taken for one from afar" in text.partition("void light()")[2]
+    assert "float light_nearness = entering.y;" in text.partition("void light()")[2]
 
 
 def test_light_gets_what_it_reads() -> None:
