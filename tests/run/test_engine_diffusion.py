@@ -91,7 +91,6 @@ def test_the_engine_draws_the_light_that_spreads(page: EnginePage, scene: str) -
     for _ in range(3):  # the edges of bodies have other texels on each side
         inner = inner_pixels(inner)
     difference = np.abs(picture - expected)[inner].max(axis=-1)
-    print(np.quantile(difference, [0.5, 0.9, 0.98, 1.0]) * 255)
     # filters on the CPU place texels by fractions of 1 / 256
     assert np.quantile(difference, 0.98) < 2.0 * LEVEL
 
