@@ -165,7 +165,9 @@ class Passes:
         `view` and `projection` are (4, 4), for column vectors, as in OpenGL. A light is (x, y, z, w), w = 1 at a place,
         w = 0 the direction towards it, and a colour. A light that a picture needs and that is missing leaves zeros.
         """
-        screen = self.context.fbo  # None before a program has used one
+        screen = self.context.fbo
+        if not hasattr(getattr(screen, "mglo", None), "viewport"):  # none is in use, or it has been released
+            screen = None
         viewport = screen.viewport if screen is not None else None
         textures: dict[str, Any] = {}
         values: dict[str, Array] = {}
