@@ -15,7 +15,7 @@ import argparse
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +24,7 @@ import gpu
 from sssgen.lab.gpu import gpu_timing
 from sssgen.pipeline.compiler import transpile
 from sssgen.run import backends
+from sssgen.run.backends.opengl import OpenGL
 from sssgen.run.evaluate import probes
 from sssgen.scene.camera import Camera
 
@@ -255,7 +256,7 @@ def main() -> None:
     without = scene._replace(name="without", fragment=scene.fragment.replace("= thinness(p, n)", "= 0.0"))
     published = gpu_timing.measure([scene, without], size, arguments.rounds)
     thinness = published.raw(scene.name).median - published.raw("without").median
-    context: Any = backends.require("gl").context  # type: ignore[attr-defined]
+    context: Any = cast(OpenGL, backends.require("gl")).context
     with context:
         drawn, covered = passes(context, size)
         times = {}

@@ -69,7 +69,7 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> str:
     return str(folder / "scene.toml")
 
 
-def drawn(page: EnginePage, path: str, **properties: Any) -> tuple[Array, Array, Array]:
+def compared_pictures(page: EnginePage, path: str, **properties: Any) -> tuple[Array, Array, Array]:
     """What the engine draws, what NumPy does, and the body's pixels but those at its edge."""
     scene = scene_loading.load(path)
     assert isinstance(scene.geometry, Torus)
@@ -86,7 +86,7 @@ def drawn(page: EnginePage, path: str, **properties: Any) -> tuple[Array, Array,
 
 
 def test_the_engine_draws_the_light_that_spreads(page: EnginePage, scene: str) -> None:
-    picture, expected, inner = drawn(page, scene)
+    picture, expected, inner = compared_pictures(page, scene)
     assert expected[inner].mean() > 0.05
     for _ in range(3):  # the edges of bodies have other texels on each side
         inner = inner_pixels(inner)

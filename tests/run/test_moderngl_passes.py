@@ -72,26 +72,26 @@ class Pictures:
 
 
 @pytest.fixture(scope="module")
-def drawn(context: Any, tmp_path_factory: pytest.TempPathFactory) -> Pictures:
+def pictures(context: Any, tmp_path_factory: pytest.TempPathFactory) -> Pictures:
     return Pictures(context, tmp_path_factory.mktemp("passes"))
 
 
-def test_back_faces(drawn: Pictures) -> None:
+def test_back_faces(pictures: Pictures) -> None:
     origin, directions = CAMERA.rays(*SIZE)
-    expected = back_faces(drawn.torus, origin, directions).reshape(SIZE[1], SIZE[0])
-    picture = drawn.pictures["back_face_map"][..., 0]
+    expected = back_faces(pictures.torus, origin, directions).reshape(SIZE[1], SIZE[0])
+    picture = pictures.pictures["back_face_map"][..., 0]
     assert (expected > 0.0).sum() > 2000
     assert np.quantile(np.abs(picture - expected), 0.98) < 2e-3
     assert ((picture > 0.0) == (expected > 0.0)).mean() > 0.98
 
 
-def test_layers_of_two_lights(drawn: Pictures) -> None:
+def test_layers_of_two_lights(pictures: Pictures) -> None:
     layers = ("entry 1", "exit 1", "entry 2", "exit 2")
-    matrices, expected = light_layers(drawn.torus, np.array([light for light, _ in LIGHTS]), layers)
-    picture = drawn.pictures["light_layer_map"]
+    matrices, expected = light_layers(pictures.torus, np.array([light for light, _ in LIGHTS]), layers)
+    picture = pictures.pictures["light_layer_map"]
     for name, matrix in zip(("light_matrix", "light_matrix_2"), matrices, strict=True):
-        np.testing.assert_allclose(drawn.values[name], matrix, atol=1e-6)
-    assert not drawn.values["light_matrix_3"].any()
+        np.testing.assert_allclose(pictures.values[name], matrix, atol=1e-6)
+    assert not pictures.values["light_matrix_3"].any()
     step, seconds = picture.shape[0] // expected.shape[0], 0
     for column in range(2):
         own = picture[:SIDE, column * SIDE : (column + 1) * SIDE][step // 2 :: step, step // 2 :: step]
@@ -107,17 +107,17 @@ def test_layers_of_two_lights(drawn: Pictures) -> None:
     assert seconds > 1000
 
 
-def test_light_on_a_white_body(drawn: Pictures) -> None:
+def test_light_on_a_white_body(pictures: Pictures) -> None:
     origin, directions = CAMERA.rays(*SIZE)
-    hits = drawn.torus.hits(origin, directions)
+    hits = pictures.torus.hits(origin, directions)
     positions, colors = (np.array(part) for part in zip(*LIGHTS, strict=True))
-    expected = matt_light(drawn.torus, hits.position[hits.hit], hits.normal[hits.hit], positions, colors)
+    expected = matt_light(pictures.torus, hits.position[hits.hit], hits.normal[hits.hit], positions, colors)
     expected += (0.05, 0.1, 0.2)
-    picture = drawn.pictures["matt_light_map"].reshape(-1, 4)[hits.hit]
+    picture = pictures.pictures["matt_light_map"].reshape(-1, 4)[hits.hit]
     # the body does not shadow itself here: it does in few places of the ring
     assert np.quantile(np.abs(picture[:, :3] - expected).max(axis=1), 0.6) < 0.01
     assert (picture[:, :3] > expected - 0.02).mean() > 0.97
-    matrix = drawn.values["eye_matrix"]
+    matrix = pictures.values["eye_matrix"]
     depth = hits.position[hits.hit] @ matrix[2, :3] + matrix[2, 3]
     assert np.quantile(np.abs(picture[:, 3] - depth), 0.98) < 5e-3
-    assert (drawn.pictures["matt_light_map"].reshape(-1, 4)[~hits.hit, 3] > 100.0).mean() > 0.98
+    assert (pictures.pictures["matt_light_map"].reshape(-1, 4)[~hits.hit, 3] > 100.0).mean() > 0.98

@@ -158,7 +158,7 @@ def test_a_head_of_skin_near_the_edges_of_shadows(tmp_path: Path) -> None:
     extinction, albedo = np.array(medium.extinction), np.array(medium.albedo)
     mean_free_path = 1.0 / np.sqrt(3.0 * extinction**2 * (1.0 - albedo))  # of the diffused light
 
-    def drawn(text: str) -> Array:
+    def picture_of(text: str) -> Array:
         (tmp_path / "skin.toml").write_text(text, encoding="utf-8")
         (tmp_path / "scene.toml").write_text(SCENE, encoding="utf-8")
         picture = render(scene_loading.load(str(tmp_path / "scene.toml")), backends.require("gl"))
@@ -169,12 +169,12 @@ def test_a_head_of_skin_near_the_edges_of_shadows(tmp_path: Path) -> None:
         values = {"extinction": extinction.tolist(), "albedo": albedo.tolist(), "path": 1.0 / extinction[1]}
         octaves = [float(number == other) for other in range(4)]
         black = SURFACE.format(tint=0.0, spread=[0.0] * 3)
-        return drawn(black + OCTAVE.format(head=HEAD, octaves=octaves, **values)) - highlights
+        return picture_of(black + OCTAVE.format(head=HEAD, octaves=octaves, **values)) - highlights
 
     covered: list[Array] = []
-    highlights = drawn(SURFACE.format(tint=0.0, spread=[0.0] * 3))
-    sharp = drawn(SURFACE.format(tint=1.0, spread=[0.0] * 3)) - highlights
-    soft = drawn(SURFACE.format(tint=1.0, spread=(0.65 * mean_free_path).tolist())) - highlights
+    highlights = picture_of(SURFACE.format(tint=0.0, spread=[0.0] * 3))
+    sharp = picture_of(SURFACE.format(tint=1.0, spread=[0.0] * 3)) - highlights
+    soft = picture_of(SURFACE.format(tint=1.0, spread=(0.65 * mean_free_path).tolist())) - highlights
     octaves = [octave(number) for number in range(4)]
 
     scene = scene_loading.load(str(tmp_path / "scene.toml"))

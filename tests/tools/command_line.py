@@ -35,6 +35,7 @@ class Compiled(NamedTuple):
 class Target(NamedTuple):
     title: str
     draws_passes: str = ""
+    draws_light: bool = False
 
 
 class FakeCompiler(types.ModuleType):

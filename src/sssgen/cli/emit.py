@@ -221,7 +221,9 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
         raise SssgenError(dict.fromkeys([*wrong, *errors]))
     sources = {file: source for file, source in sources.items() if source[0] not in failed}
     required = {
-        material.name: describe(material.stages, _drawers(material.name, names, arguments.form))
+        material.name: describe(
+            material.stages, *(_drawers(material.name, names, arguments.form, light) for light in (False, True))
+        )
         for material in materials
         if material.name not in failed
     }
@@ -229,15 +231,18 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
     return EmittedFiles(texts, sources, list(dict.fromkeys(warnings)), required, list(dict.fromkeys(errors)))
 
 
-def _drawers(material: str, names: Sequence[str], form: str) -> list[str]:
-    """What draws the passes of a material: of each of several targets, with its name."""
+def _drawers(material: str, names: Sequence[str], form: str, light: bool) -> list[str]:
+    """What draws the passes of a material, or those that show `light`: of each of several targets, with its name."""
     from sssgen.pipeline.compiler import all_targets
 
-    targets = all_targets()
-    texts = [targets[name].draws_passes.format(material=material) if form == "shader" else "" for name in names]
+    targets = [all_targets()[name] for name in names]
+    draws = [form == "shader" and (target.draws_light or not light) for target in targets]
+    texts = [
+        target.draws_passes.format(material=material) if own else "" for target, own in zip(targets, draws, strict=True)
+    ]
     if len(set(texts)) == 1:
         return texts[:1] if texts[0] else []
-    return [f"{text} in {targets[name].title}" for name, text in zip(names, texts, strict=True) if text]
+    return [f"{text} in {target.title}" for target, text in zip(targets, texts, strict=True) if text]
 
 
 def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:

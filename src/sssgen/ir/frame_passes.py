@@ -58,7 +58,7 @@ FRAME_PASSES = {
         "body", "eye", ("light", "light", "light", "entry 1"), "far",
         "draw the translucent body alone from the eye with a white matt material, in all its lights and shadows, into "
         "a float texture that covers the screen; each texel is the light that this reflects, and in alpha the "
-        "distance from a plane across the view in the middle of the body in world units (not the value of the depth "
+        "distance from a plane across the view in world units (not the value of the depth "
         "buffer), and more than any of the body's where there is none",
     ),
     LIGHT: FramePass(
@@ -116,6 +116,11 @@ LIGHT_VIEWS = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.seen_f
 """What is drawn in the view of a light."""
 
 
+def shows_light(name: str) -> bool:
+    """Whether a pass shows the light on the body, and not distances alone."""
+    return "light" in FRAME_PASSES[name].layers
+
+
 class PassUse(NamedTuple):
     """A pass of a material, with the uniforms that a host sets."""
 
@@ -124,7 +129,7 @@ class PassUse(NamedTuple):
     """The picture"""
     views: tuple[Uniform, ...]
     """For each light, or for the eye, the matrix from world space to the picture: (u w, v w, distance from the light's
-    plane, or from one in the middle of the body, w)"""
+    plane, or from one across the eye's view, w)"""
     lights: Uniform | None
     """What these lights are, where the pass says it: an array"""
     size: Uniform | None

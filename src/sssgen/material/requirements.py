@@ -30,7 +30,7 @@ DESCRIPTIONS = {
     "fixed-light": "a light that does not move relative to the body",
 }
 """The requirements, for people."""
-_DRAWN = ("depth-map", "depth-layers", "back-faces")
+_DISTANCES, _LIGHT = ("depth-map", "depth-layers", "back-faces"), ("matt-light",)
 """Pictures that are drawn for each frame."""
 TEXEL_BYTES = 4
 """The bytes of a baked texel without the hint `texel_bytes`: four channels of 8 bits."""
@@ -59,10 +59,12 @@ def needed_for(name: str) -> tuple[str, ...]:
     return {BACK_FACES: ("back-faces",), MATT: ("matt-light",)}.get(name, ())
 
 
-def describe(uses: Sequence[TechniqueUse], drawers: Sequence[str] = ()) -> list[str]:
+def describe(
+    uses: Sequence[TechniqueUse], drawers: Sequence[str] = (), drawers_of_light: Sequence[str] = ()
+) -> list[str]:
     """The requirements of a material in words, with the names of the baked textures and of the body.
 
-    `drawers` draw its passes, where the user's program does not.
+    `drawers` draw its passes, where the user's program does not, and `drawers_of_light` those that show light.
     """
     required = requirements(uses)
     words = {name: DESCRIPTIONS[name] for name in required}
@@ -70,9 +72,12 @@ def describe(uses: Sequence[TechniqueUse], drawers: Sequence[str] = ()) -> list[
         words["bake"] += f" ({', '.join(texture.name for texture in baked_textures(uses))})"
     if own := bodies(uses):
         words["rigid"] = f"the body that it is made for ({', '.join(own)}), as on another mesh its light is wrong"
-    drawn = [words.pop(name) for name in required if name in _DRAWN] if drawers else []
-    by = f" ({'each ' if len(drawn) > 1 else ''}drawn {', '.join(f'by {drawer}' for drawer in drawers)})"
-    return [*words.values(), *drawn[:-1], *(last + by for last in drawn[-1:])]
+    drawn: list[str] = []
+    for kinds, drawing in ((_LIGHT, drawers_of_light), (_DISTANCES, drawers)):
+        pictures = [words.pop(name) for name in required if name in kinds] if drawing else []
+        by = f" ({'each ' if len(pictures) > 1 else ''}drawn {', '.join(f'by {drawer}' for drawer in drawing)})"
+        drawn += [*pictures[:-1], *(last + by for last in pictures[-1:])]
+    return [*words.values(), *drawn]
 
 
 def bodies(uses: Iterable[TechniqueUse]) -> list[str]:

@@ -175,7 +175,9 @@ class Passes:
             tiles = TILES if len(drawn["views"]) > 1 else 1
             seen = [self._eye(body, view, projection)]
             if drawn["seen_from"] != "eye":
-                seen = [_light(body.corners, np.asarray(light, float)) for light in _lights(body, drawn, lights)]
+                seen = [
+                    _light_view(body.corners, np.asarray(light, float)) for light in _shown_lights(body, drawn, lights)
+                ]
             whole = size if drawn["seen_from"] == "eye" else (tiles * SIDE, tiles * SIDE)
             if drawn["name"] == MATT:
                 target = self._light_on_body(body, drawn, seen[0], view, lights, ambient, whole)
@@ -287,7 +289,7 @@ class Passes:
         return target
 
 
-def _lights(body: Body, drawn: PassRecord, lights: Sequence[Any]) -> list[Sequence[float]]:
+def _shown_lights(body: Body, drawn: PassRecord, lights: Sequence[Any]) -> list[Sequence[float]]:
     """The lights that a pass shows: the first that it is for, or the brightest at the body."""
     shown = [light for light in lights if not (light[0][3] and drawn["name"] in DISTANT_VIEWS)]
     if drawn["name"] != LIGHT_LAYERS:
@@ -296,7 +298,7 @@ def _lights(body: Body, drawn: PassRecord, lights: Sequence[Any]) -> list[Sequen
     return [shown[index][0] for index in brightest(body.corners.mean(axis=0), places, colors)] if shown else []
 
 
-def _light(corners: Array, light: Array) -> View:
+def _light_view(corners: Array, light: Array) -> View:
     """A light's view of a body within corners (8, 3). Raises SssgenError for a light at the body."""
     if light[3]:
         matrix = point_view(corners, light[:3], (1, 1)).matrix

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sssgen.ir.baked_textures import is_baked
 from sssgen.ir.constant_expressions import literal
-from sssgen.ir.frame_passes import FRAME_PASSES, pass_name
+from sssgen.ir.frame_passes import FRAME_PASSES, pass_name, shows_light
 from sssgen.ir.nodes import NOWHERE, Function, Local, Module, Param, Span, Uniform
 from sssgen.ir.surface_fields import FIELDS
 from sssgen.ir.types import Sampler, Struct, spell
@@ -400,7 +400,10 @@ def _supplied(target: Target, program: Program, uniform: Uniform, drawer: str) -
     name = uniform.name
     if target.properties.style != "plain":  # its user sees the property only
         name = property_name(target, program.source_names.get(name, name))
-    return f"{name}: {drawer or FRAME_PASSES[drawn].how}." if drawn else f"{name}: bake it from the body (sssgen bake)."
+    if not drawn:
+        return f"{name}: bake it from the body (sssgen bake)."
+    by = drawer if target.draws_light or not shows_light(drawn) else ""
+    return f"{name}: {by or FRAME_PASSES[drawn].how}."
 
 
 def _entry(

@@ -271,6 +271,8 @@ class Target(NamedTuple):
     """Whether the engine encodes the final colour for a display, so that `output` techniques are left out."""
     draws_passes: str = ""
     """What draws the passes of a material in the form `shader`; '' where the user's program does."""
+    draws_light: bool = False
+    """Whether it draws the light on the body, too."""
     clustered_lights: bool = False
     """Whether the number of lights differs from pixel to pixel: functions per light then read textures at level 0."""
     uniform_style: str = "plain"

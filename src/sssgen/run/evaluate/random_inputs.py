@@ -116,9 +116,8 @@ def _uniform(subject: Subject, uniform: Uniform, count: int, seed: int) -> Array
         return rng.integers(int(low) if ends else 0, int(most) + 1, size)
     if ends or "source_color" in hints:
         return _within(rng, size, low, high)
-    if (
-        isinstance(uniform.type, Matrix) and not default.any()
-    ):  # a view that there may not be: in some lanes there is none
+    if isinstance(uniform.type, Matrix) and not default.any():
+        # a view that may be missing: in some lanes it is
         views = rng.uniform(-0.5, 0.5, size)
         views[..., -1] = np.eye(size[-1])[-1]
         return np.where(rng.random(count)[:, None, None] < MISSING, 0.0, views)

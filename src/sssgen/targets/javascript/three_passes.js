@@ -302,9 +302,9 @@ class Drawing {
     if (!this.#pictures.has(object)) this.#pictures.set(object, {});
     const own = /** @type {Record<string, Pictures>} */ (this.#pictures.get(object));
     const kinds = showsLight(pass) ? [pass.name] : pass.layers;
-    const made = () => pictureOf(size.x, size.y, this.type, this.filters, this.filters && isFiltered(pass));
-    const layers = own[pass.name]?.layers ?? kinds.map(made);
-    const packed = own[pass.name]?.packed ?? (layers.length > 1 ? made() : layers[0]);
+    const newPicture = () => pictureOf(size.x, size.y, this.type, this.filters, this.filters && isFiltered(pass));
+    const layers = own[pass.name]?.layers ?? kinds.map(newPicture);
+    const packed = own[pass.name]?.packed ?? (layers.length > 1 ? newPicture() : layers[0]);
     for (const picture of [...layers, packed]) {
       if (picture.width !== size.x || picture.height !== size.y) picture.setSize(size.x, size.y);
       picture.scissorTest = picture !== packed || layers.length === 1;
