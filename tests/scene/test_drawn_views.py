@@ -277,6 +277,25 @@ def test_a_texture_of_the_scene_is_not_drawn(folder: Path) -> None:
     assert result.linear[SIZE[1] // 2, SIZE[0] // 2, 0] > 10.0
 
 
+@pytest.mark.parametrize(
+    ("target", "said"),
+    [
+        ("threejs", "drawn by the material itself"),
+        ("babylonjs", "drawn by the material itself"),
+        ("playcanvas", "drawn by the material itself"),
+        ("godot", "draw the translucent body alone from the eye with a white matt material"),
+        ("unity-urp", "draw the translucent body alone from the eye with a white matt material"),
+    ],
+)
+def test_the_head_says_who_draws_light_on_the_body(target: str, said: str, tmp_path: Path) -> None:
+    """Not what draws distances, where that does not draw light."""
+    path = tmp_path / "skin.toml"
+    path.write_text('[material]\nname = "skin"\n[[surface]]\ntechnique = "screen_diffusion"\n', encoding="utf-8")
+    texts = compile(load_material(str(path)), target).files.values()
+    heads = [re.sub(r"\n// ", " ", text) for text in texts]
+    assert any(re.search(rf"(?i)matt_?light_?map: {said}", head) for head in heads)
+
+
 @pytest.mark.parametrize("target", [target for target in all_targets() if not load_target(target).channels])
 @pytest.mark.parametrize("form", ["shader", "functions"])
 def test_shells_and_reflection_say_how(target: str, form: str, folder: Path) -> None:
