@@ -11,8 +11,9 @@ import numpy.typing as npt
 import pytest
 
 from folders import MESHES
+from sssgen.ir.frame_passes import BACK_FACES
 from sssgen.lab.reference.inside_lengths import first_exit, thickness
-from sssgen.scene.drawn_views import back_faces
+from sssgen.scene.drawn_views import eye_layers
 from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
 from sssgen.scene.inside_intervals import intervals, merge
 
@@ -177,7 +178,7 @@ def test_a_ray_leaves_a_union_where_no_part_continues() -> None:
     # the overlap from 0.2 to 0.5 has no exit, the gap before the ball has one, and the second ray does not enter
     assert first_exit(Union(parts), origin, way) == pytest.approx([1.7, 0.0])
     assert first_exit(Union(parts, scale=2.0), 2.0 * origin, way) == pytest.approx([3.4, 0.0])
-    assert back_faces(Union(parts), np.array([-2.0, 0.1, 0.0]), way[:1]) == pytest.approx([3.2])
+    assert eye_layers(Union(parts), np.array([-2.0, 0.1, 0.0]), way[:1], BACK_FACES)[0] == pytest.approx([3.2])
 
 
 def test_merged_intervals_are_disjoint_sorted_and_cover_the_same() -> None:

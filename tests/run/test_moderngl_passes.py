@@ -11,12 +11,13 @@ import pytest
 
 import sssgen
 from skips import or_skip
+from sssgen.ir.frame_passes import BACK_FACES, EYE_LAYERS, FAR
 from sssgen.run import backends
 from sssgen.run.backends import Array
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
 from sssgen.run.moderngl_passes import SIDE, Body, Passes
 from sssgen.scene.camera import Camera
-from sssgen.scene.drawn_views import back_faces, light_layers, matt_light
+from sssgen.scene.drawn_views import eye_layers, light_layers, matt_light
 from sssgen.scene.solids import Torus
 from torus_cases import torus_mesh
 
@@ -37,6 +38,14 @@ bind = { light_path = "light_layers_path" }
 [[surface]]
 technique = "screen_diffusion"
 """
+TORUS = Torus(0.78, 0.3, rotation=(116.0, 0.0, 12.0), scale=1.2, position=(0.1, 0.0, -0.1))
+LAYERED = """
+[material]
+name = "made"
+
+[translucency]
+technique = "fluence_fixed_layers"
+"""
 
 
 @pytest.fixture(scope="module")
@@ -49,10 +58,10 @@ def context() -> Iterator[Any]:
 class Pictures:
     """What the passes draw of a torus."""
 
-    def __init__(self, context: Any, folder: Path) -> None:
-        (folder / "made.toml").write_text(MATERIAL, encoding="utf-8")
+    def __init__(self, context: Any, folder: Path, material: str, torus: Torus = TORUS) -> None:
+        (folder / "made.toml").write_text(material, encoding="utf-8")
         reflection = sssgen.compile(str(folder / "made.toml"), "glsl-330").reflection
-        self.torus = Torus(0.78, 0.3, rotation=(116.0, 0.0, 12.0), scale=1.2, position=(0.1, 0.0, -0.1))
+        self.torus = torus
         vertices, triangles = torus_mesh(self.torus)
         vertices = vertices.reshape(-1, VERTEX_SIZE)
         body = Body(context, vertices[:, :3], vertices[:, 3:6], triangles, self.torus.to_world())
@@ -73,16 +82,28 @@ class Pictures:
 
 @pytest.fixture(scope="module")
 def pictures(context: Any, tmp_path_factory: pytest.TempPathFactory) -> Pictures:
-    return Pictures(context, tmp_path_factory.mktemp("passes"))
+    return Pictures(context, tmp_path_factory.mktemp("passes"), MATERIAL)
 
 
 def test_back_faces(pictures: Pictures) -> None:
     origin, directions = CAMERA.rays(*SIZE)
-    expected = back_faces(pictures.torus, origin, directions).reshape(SIZE[1], SIZE[0])
+    expected = eye_layers(pictures.torus, origin, directions, BACK_FACES).reshape(SIZE[1], SIZE[0])
     picture = pictures.pictures["back_face_map"][..., 0]
     assert (expected > 0.0).sum() > 2000
     assert np.quantile(np.abs(picture - expected), 0.98) < 2e-3
     assert ((picture > 0.0) == (expected > 0.0)).mean() > 0.98
+
+
+def test_eye_layers(context: Any, tmp_path: Path) -> None:
+    pictures = Pictures(context, tmp_path, LAYERED, Torus(0.78, 0.3, rotation=(-8.0, 0.0, 12.0), scale=1.2))
+    origin, directions = CAMERA.rays(*SIZE)
+    expected = eye_layers(pictures.torus, origin, directions, EYE_LAYERS).reshape(SIZE[1], SIZE[0], 3)
+    picture = pictures.pictures["eye_layer_map"][..., :3]
+    for layer in range(3):
+        there = expected[..., layer] < FAR
+        assert there.sum() > 500
+        assert ((picture[..., layer] < FAR) == there).mean() > 0.98
+        assert np.quantile(np.abs(picture - expected)[..., layer][there], 0.97) < 4e-3
 
 
 def test_layers_of_two_lights(pictures: Pictures) -> None:

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 import sssgen
+from sssgen.ir.frame_passes import BACK_FACES
 from sssgen.run.backends import Array, Backend
 from sssgen.run.backends.unity_backend import UnityHLSL
 from sssgen.scene.bounds import world_corners
 from sssgen.scene.camera import Camera
-from sssgen.scene.drawn_views import TEXELS, TILES, back_faces, brightest, light_depth, light_layers
+from sssgen.scene.drawn_views import TEXELS, TILES, brightest, eye_layers, light_depth, light_layers
 from sssgen.scene.geometry import Torus
 from torus_cases import torus_mesh
 from unity_frames import (
@@ -174,7 +175,7 @@ def test_the_pictures_are_those_of_the_oracle(
     mesh = mirrored(torus_mesh(TORUS, 384, 192))
     pictures = Replay(machine, shaders[case]).pictures_of(frame, mesh)
     drawn = {name: pictures[number] for name, number in texture_numbers(frame.values[0]).items()}
-    seen = back_faces(TORUS, *CAMERA.rays(*SIZE)).reshape(SIZE[1], SIZE[0])
+    seen = eye_layers(TORUS, *CAMERA.rays(*SIZE), BACK_FACES).reshape(SIZE[1], SIZE[0])
     assert_same(drawn["_BackFaceMap"][..., 0], seen, "the eye")
     if case == "several lights":
         _, expected = light_layers(TORUS, four_brightest(LAMPS), LAYERS)

@@ -13,7 +13,7 @@ import pytest
 
 from folders import EXAMPLES
 from lamp_scene import largest_difference
-from sssgen.ir.frame_passes import FRAME_PASSES, LAYERS
+from sssgen.ir.frame_passes import BACK_FACES, EYE_LAYERS, FAR, FRAME_PASSES, LAYERS
 from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import all_targets, compile
 from sssgen.run import backends
@@ -23,7 +23,7 @@ from sssgen.run.render import pixel_mesh, unity_values
 from sssgen.run.render.scene_render import RenderedPicture, render
 from sssgen.run.render.shell_values import Shell
 from sssgen.scene.camera import Camera
-from sssgen.scene.drawn_views import TEXELS, back_faces, light_depth
+from sssgen.scene.drawn_views import TEXELS, eye_layers, light_depth
 from sssgen.scene.geometry import Ball, Box, Geometry, Mesh, Torus, Union
 from sssgen.scene.scene_loading import parse_scene
 from sssgen.support.diagnostics import SssgenError
@@ -171,7 +171,7 @@ def test_a_gap_is_not_matter(name: str, backend: Callable[[str], Backend], folde
     origin, rays = scene.camera.rays(*SIZE)
     assert scene.geometry is not None
     hits = scene.geometry.hits(origin, rays)
-    middle = 0.5 * (hits.position + origin + back_faces(scene.geometry, origin, rays)[:, None] * rays)
+    middle = 0.5 * (hits.position + origin + eye_layers(scene.geometry, origin, rays, BACK_FACES) * rays)
     behind = hits.hit & (middle[:, 0] > 0.36) & (np.abs(middle[:, 1:]).max(axis=1) < 0.48)  # the filter blurs edges
     length = (0.5 + middle[:, 0] - 0.35).reshape(SIZE[1], SIZE[0])[::-1]
     inner = behind.reshape(SIZE[1], SIZE[0])[::-1]
@@ -183,8 +183,19 @@ def test_the_nearest_back_face() -> None:
     """The first exit and not the last; 0 for a ray that misses, or that leaves the body behind the eye."""
     shape = SHAPES["two boxes"]
     rays = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-    np.testing.assert_allclose(back_faces(shape, np.array([-3.0, 0.1, 0.1]), rays), [2.55, 0.0], atol=1e-12)
-    np.testing.assert_allclose(back_faces(shape, np.array([3.0, 0.1, 0.1]), rays), [0.0, 0.0])
+    before, behind = np.array([-3.0, 0.1, 0.1]), np.array([3.0, 0.1, 0.1])
+    np.testing.assert_allclose(eye_layers(shape, before, rays, BACK_FACES), [[2.55], [0.0]], atol=1e-12)
+    np.testing.assert_allclose(eye_layers(shape, behind, rays, BACK_FACES), [[0.0], [0.0]])
+
+
+def test_the_layers_that_the_eye_sees() -> None:
+    """First exit, second entrance, second exit of two boxes; far beside them and where there is no second box."""
+    shape = SHAPES["two boxes"]
+    rays = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    before, between = np.array([-3.0, 0.1, 0.1]), np.array([0.0, 0.1, 0.1])
+    seen = [[2.55, 3.4, 4.0], [FAR] * 3]
+    np.testing.assert_allclose(eye_layers(shape, before, rays, EYE_LAYERS), seen, atol=1e-12)
+    np.testing.assert_allclose(eye_layers(shape, between, rays[:1], EYE_LAYERS), [[1.0, FAR, FAR]], atol=1e-12)
 
 
 def test_the_first_exit_of_a_ring() -> None:
@@ -194,7 +205,7 @@ def test_the_first_exit_of_a_ring() -> None:
     rays = (target - eye) / np.linalg.norm(target - eye, axis=1, keepdims=True)
     hits = shape.hits(eye, rays)
     rays, entry = rays[hits.hit], np.linalg.norm(hits.position[hits.hit] - eye, axis=1)
-    leaves = back_faces(shape, eye, rays)
+    leaves = eye_layers(shape, eye, rays, BACK_FACES)[:, 0]
     assert len(rays) > 200 and (leaves > entry).all()
     assert np.abs(shape.distance(eye + leaves[:, None] * rays)).max() < 1e-9
     for part in np.linspace(0.02, 0.98, 25):
@@ -207,8 +218,8 @@ def test_an_open_mesh_has_no_back_face(tmp_path: Path) -> None:
     text = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3\nf 1 3 4\n"
     (tmp_path / "sheet.obj").write_text(text, encoding="utf-8")
     ray = np.array([[0.1, 0.2, -3.0]]) / np.linalg.norm([0.1, 0.2, -3.0])
-    distance = back_faces(Mesh(path=str(tmp_path / "sheet.obj")), np.array([0.0, 0.0, 3.0]), ray)
-    np.testing.assert_array_equal(distance, [0.0])
+    distance = eye_layers(Mesh(path=str(tmp_path / "sheet.obj")), np.array([0.0, 0.0, 3.0]), ray, BACK_FACES)
+    np.testing.assert_array_equal(distance, [[0.0]])
 
 
 def test_the_pass_of_the_builtin_pipeline_writes_the_distance(backend: Callable[[str], Backend], folder: Path) -> None:

@@ -118,7 +118,7 @@ def test_the_techniques_of_a_fixed_light_along_a_slope(name: str) -> None:
 
 
 def test_light_behind_a_gap() -> None:
-    """Two plates with a gap: the marched part is what the second plate scatters, seen through the first."""
+    """Two plates with a gap: the second one scatters light that is seen through the first. A march is near it."""
     count, walls = 64, (0.2, 0.5, 0.75)
     z = (np.arange(count) + 0.5) / count
     distance = np.max([np.minimum(z - walls[0], walls[1] - z), z - walls[2]], axis=0)
@@ -135,6 +135,10 @@ def test_light_behind_a_gap() -> None:
     close(technique("fluence_fixed")(**values)[0], level * (1.0 - first), rtol=1e-6)
     behind = technique("fluence_fixed_gaps")(**values, fluence_reach=0.25)[0] - level * (1.0 - first)
     close(behind, level * first * (1.0 - second), rtol=0.02)
+    ends = Texture(1.0 + np.array(walls)[None, None] / 0.8)  # the eye is at the distance 1 from the first plate
+    seen = {"screen_uv": np.array([[0.5, 0.5]]), "eye_distance": np.array([1.0]), "eye_layer_map": ends}
+    behind = technique("fluence_fixed_layers")(**values, **seen)[0] - level * (1.0 - first)
+    close(behind, level * first * (1.0 - second), rtol=1e-6)
     # a ray along the plates meets no other one
     along = values | {"V": np.array([[-1.0, 0.0, 0.0]]), "P": np.array([[0.0, 0.5, 0.35]]), "d": np.array([0.0])}
     close(technique("fluence_fixed_gaps")(**along, fluence_reach=0.25), 0.0, atol=1e-6)

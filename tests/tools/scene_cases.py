@@ -15,6 +15,7 @@ import trimesh
 import sssgen
 from engine_cases import HEAD, without_reflection
 from folders import ROOT
+from sssgen.ir.frame_passes import BACK_FACES
 from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import Compiled
 from sssgen.run.backends import Array
@@ -25,7 +26,7 @@ from sssgen.run.render.scene_render import PlacedMesh, place_mesh
 from sssgen.run.render.scene_values import shell_of
 from sssgen.run.render.shell_values import Shell
 from sssgen.scene import scene_loading
-from sssgen.scene.drawn_views import back_faces, light_depth
+from sssgen.scene.drawn_views import eye_layers, light_depth
 from sssgen.scene.geometry import Mesh
 from sssgen.scene.geometry_base import unit
 from sssgen.scene.geometry_mesh import mesh_of
@@ -132,7 +133,7 @@ def _with_passes(placed: PlacedMesh, body: Mesh, stored: Callable[[Texture], Tex
     shell, (width, height) = placed.shell, placed.size
     view, depth = light_depth(body, shell.light_positions[0])
     places = placed.points[:, :3] @ shell.model[:3, :3].T + shell.model[:3, 3]
-    backs = back_faces(body, np.array(shell.camera_position), unit(places - shell.camera_position))
+    backs = eye_layers(body, np.array(shell.camera_position), unit(places - shell.camera_position), BACK_FACES)[:, 0]
     return dataclasses.replace(
         shell,
         parameters={**shell.parameters, "light_matrix": view.matrix.T.ravel()},

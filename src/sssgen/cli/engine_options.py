@@ -26,8 +26,8 @@ def add_condition_options(parser: ArgumentParser) -> None:
         help="a rigid mesh (default), or one that deforms, for which nothing baked is right",
     )  # fmt: skip
     add(
-        "--without", choices=OMISSIONS, action="append", default=[],
-        help="what the engine does not provide; may be repeated",
+        "--without", choices=OMISSIONS, action="append", default=[], metavar="DATA",
+        help=f"what the engine does not provide: {', '.join(OMISSIONS)}; may be repeated",
     )  # fmt: skip
     add("--device", metavar="NAME", help="costs are nanoseconds predicted for this device, or for its .toml file")
 

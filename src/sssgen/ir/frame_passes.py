@@ -13,7 +13,7 @@ from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import FLOAT, Array, Matrix, Sampler
 
 BACK_FACES, LIGHT, DISTANT, LAYERS = "back_faces", "light_depth", "distant_light_depth", "distant_light_layers"
-MATT = "matt_light"
+EYE_LAYERS, MATT = "eye_layers", "matt_light"
 LIGHT_LAYERS = "light_layers"
 SHADOW, OCCLUDERS = "shadow_depth", "occluders"
 IRRADIANCE, REFLECTIONS = "irradiance", "reflections"
@@ -53,6 +53,13 @@ FRAME_PASSES = {
         "draw the translucent body alone with its front faces culled and a depth test that keeps the nearest, "
         "into a float texture that covers the screen; each texel is the distance from the eye (not the depth), and 0 "
         "where there is no back face",
+    ),
+    EYE_LAYERS: FramePass(
+        "body", "eye", ("exit 1", "entry 2", "exit 2"), "far",
+        "draw the translucent body alone from the eye, three times into a float texture that covers the screen: red "
+        "has the nearest back face, green the nearest front face behind that back face, blue the nearest back face "
+        "behind that (discard the fragments in front of it); each is the distance from the eye (not the depth), and "
+        "more than any of the body's where there is none",
     ),
     MATT: FramePass(
         "body", "eye", ("light", "light", "light", "entry 1"), "far",
@@ -108,6 +115,8 @@ FRAME_PASSES = {
 }  # fmt: skip
 """The passes by the word of the hint `drawn`."""
 
+EYE_PICTURES = (BACK_FACES, EYE_LAYERS)
+"""Pictures of distances from the eye, in the places of the screen's pixels."""
 CUBES = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.seen_from == "everywhere")
 """What is drawn into a cube map."""
 DISTANT_VIEWS = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.seen_from == "distant light")

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from sssgen.ir.baked_textures import is_baked, is_volume
-from sssgen.ir.frame_passes import BACK_FACES, FRAME_PASSES, LIGHT_VIEWS, MATT, pass_name
+from sssgen.ir.frame_passes import BACK_FACES, EYE_LAYERS, FRAME_PASSES, LIGHT_VIEWS, MATT, pass_name
 from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import attributes
@@ -25,12 +25,13 @@ DESCRIPTIONS = {
     "depth-map": "the light's depth map",
     "depth-layers": "a depth map with further layers",
     "back-faces": "a picture of the body's back faces",
+    "eye-layers": "a picture of what lies behind them",
     "matt-light": "a picture of what the body would reflect if it were white",
     "rigid": "a rigid mesh",
     "fixed-light": "a light that does not move relative to the body",
 }
 """The requirements, for people."""
-_DISTANCES, _LIGHT = ("depth-map", "depth-layers", "back-faces"), ("matt-light",)
+_DISTANCES, _LIGHT = ("depth-map", "depth-layers", "back-faces", "eye-layers"), ("matt-light",)
 """Pictures that are drawn for each frame."""
 TEXEL_BYTES = 4
 """The bytes of a baked texel without the hint `texel_bytes`: four channels of 8 bits."""
@@ -56,7 +57,8 @@ def needed_for(name: str) -> tuple[str, ...]:
     """The requirements of a pass; '' has none."""
     if name in LIGHT_VIEWS:
         return ("depth-map", "depth-layers") if len(FRAME_PASSES[name].layers) > 1 else ("depth-map",)
-    return {BACK_FACES: ("back-faces",), MATT: ("matt-light",)}.get(name, ())
+    eye = ("back-faces",)
+    return {BACK_FACES: eye, EYE_LAYERS: (*eye, "eye-layers"), MATT: ("matt-light",)}.get(name, ())
 
 
 def describe(

@@ -208,7 +208,9 @@ class Passes:
     ) -> Any:
         margin = LAYER_GAP * float(np.linalg.norm(np.ptp(body.corners, axis=0)))
         by_eye = drawn["seen_from"] == "eye"
-        empty = max((each.far for each in seen), default=1.0) if drawn["empty"] == "far" else 0.0
+        # filters blend the texels of what lights see: a distance that is little more than the body's spreads least
+        far = FAR if by_eye else max((each.far for each in seen), default=1.0)
+        empty = far if drawn["empty"] == "far" else 0.0
         layers: list[Any] = []
         for number, layer in enumerate(drawn["layers"]):
             target = self._target((drawn["name"], number), size, 1, False)

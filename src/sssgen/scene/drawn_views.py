@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from sssgen.ir.frame_passes import FAR, FRAME_PASSES
 from sssgen.scene.arrays import Array
 from sssgen.scene.bounds import world_corners
 from sssgen.scene.geometry import Geometry
@@ -24,10 +25,11 @@ TILES = 2
 """The number of tiles along a side of a map for several lights."""
 
 
-def back_faces(geometry: Geometry, origin: Array, directions: Array) -> Array:
-    """The distance from the eye at `origin` (3,) to the nearest back face along each ray, (n,); 0 without one."""
-    nearest = _nearest(geometry, np.broadcast_to(origin, directions.shape), directions, 1)[:, 0]
-    result: Array = np.where(np.isfinite(nearest), nearest, 0.0)
+def eye_layers(geometry: Geometry, origin: Array, directions: Array, name: str) -> Array:
+    """The distances from the eye at `origin` (3,) along each ray that the pass `name` draws, (n, layers)."""
+    drawn = FRAME_PASSES[name]
+    distances = _distances(geometry, np.broadcast_to(origin, directions.shape), directions, drawn.layers)
+    result: Array = np.where(np.isfinite(distances), distances, FAR if drawn.empty == "far" else 0.0)
     return result
 
 

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.ir.frame_passes import BACK_FACES
+from sssgen.ir.frame_passes import EYE_PICTURES
 from sssgen.ir.types import Sampler
 from sssgen.lab.gpu.gpu_timing import ROUNDS, SIZE, Program, ProgramTimes, measure
 from sssgen.material.material_loading import load_material
@@ -33,7 +33,7 @@ from sssgen.run.evaluate.evaluation import half
 from sssgen.run.render.scene_values import shell_of
 from sssgen.run.render.shell_values import drawing
 from sssgen.scene.camera import Camera
-from sssgen.scene.drawn_views import back_faces
+from sssgen.scene.drawn_views import eye_layers
 from sssgen.scene.geometry import Ball, Geometry
 from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import did_you_mean, failure
@@ -201,23 +201,26 @@ def _usual_textures(declared: Sequence[Mapping[str, Any]]) -> dict[str, Texture]
     return {
         entry["source_name"]: half(Texture(random.random((*sides[entry["type"]], 4)), wrap="clamp"))
         for entry in declared
-        if entry["type"] in sides and entry["drawn"] != BACK_FACES
+        if entry["type"] in sides and entry["drawn"] not in EYE_PICTURES
     }
 
 
 def _screens(scene: Scene, reflection: Mapping[str, Any], points: Points) -> dict[str, Texture]:
     """The textures that the program draws over the screen, for the points in it: as large as a real one."""
-    names = [texture["source_name"] for texture in reflection["textures"] if texture["drawn"] == BACK_FACES]
-    if not names or scene.geometry is None:
+    drawn = {entry["source_name"]: entry["drawn"] for entry in reflection["textures"] if entry["drawn"] in EYE_PICTURES}
+    if not drawn or scene.geometry is None:
         return {}
     height, width = points.position.shape[:2]
     tiles = _tiles((width, height))
     tile = points.position[: math.ceil(height / tiles), : math.ceil(width / tiles), :3].astype(np.float64)
     eye = np.array(scene.camera.position)
     rays = tile.reshape(-1, 3) - eye
-    distance = back_faces(scene.geometry, eye, rays / np.linalg.norm(rays, axis=1, keepdims=True))
-    picture = np.tile(distance.reshape(tile.shape[:2]), (tiles, tiles))[:height, :width, None]
-    return dict.fromkeys(names, half(Texture(picture, wrap="clamp")))
+    rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+    screens = {}
+    for name, kind in drawn.items():
+        layers = eye_layers(scene.geometry, eye, rays, kind).reshape(*tile.shape[:2], -1)
+        screens[name] = half(Texture(np.tile(layers, (tiles, tiles, 1))[:height, :width], wrap="clamp"))
+    return screens
 
 
 def of_technique(

@@ -12,10 +12,11 @@ from typing import Any
 
 import numpy as np
 
+from sssgen.ir.frame_passes import FAR
 from sssgen.lab.measure import fluence_inputs
 from sssgen.lab.reference import view_harmonics
 from sssgen.lab.reference.curvature import normal_curvature
-from sssgen.lab.reference.inside_lengths import first_exit, thickness
+from sssgen.lab.reference.inside_lengths import first_exit, second_interval, thickness
 from sssgen.lab.reference.view_harmonics import LARGEST
 from sssgen.run.backends import Array
 from sssgen.run.evaluate.evaluation import half
@@ -91,7 +92,8 @@ def of_scene(scene: MeasuredScene) -> SceneInputs:
             f"harmonics_span_{number}": np.full((3, 1), 2.0 * LARGEST),
         }
     textures = {
-        "back_face_map": Texture(back_faces(scene, exact_view)[..., None], "nearest", "clamp"),
+        "back_face_map": _picture(scene, exact_view[:, None]),
+        "eye_layer_map": _picture(scene, np.concatenate([exact_view[:, None], behind_gap(scene)], axis=1)),
         "distance_map": half(Texture(distances.values(geometry), wrap="clamp")),
         "thickness_texture": _ideal((chord / longest)[..., None]),
         "thinness_texture": _ideal((1.0 - chord / longest)[..., None]),
@@ -198,12 +200,19 @@ def view_fit(scene: MeasuredScene) -> Array:
     return view_harmonics.of_points(scene.geometry, places, normals, fade_length(scene)).coefficients
 
 
-def back_faces(scene: MeasuredScene, lengths: Array) -> Array:
-    """The distance from the eye to the nearest back face, for each pixel of a measured point; otherwise 0."""
+def behind_gap(scene: MeasuredScene) -> Array:
+    """The lengths along the eye's ray from its surface point to the second entrance and exit, (n, 2); FAR for none."""
     visible = points(scene)
-    picture = np.zeros(visible.valid.shape)
-    picture[visible.valid] = np.linalg.norm(visible.inputs["P"].T - visible.origin, axis=1) + lengths
-    return picture
+    origins, rays = (np.ascontiguousarray(part.T) for part in (visible.inputs["P"], -visible.inputs["V"]))
+    return np.minimum(second_interval(scene.geometry, origins, rays), FAR)
+
+
+def _picture(scene: MeasuredScene, lengths: Array) -> Texture:
+    """What the eye sees at the pixels of the measured points: its distance to them, and `lengths` (n, channels)."""
+    visible = points(scene)
+    picture = np.zeros((*visible.valid.shape, lengths.shape[1]))
+    picture[visible.valid] = np.linalg.norm(visible.inputs["P"].T - visible.origin, axis=1)[:, None] + lengths
+    return Texture(picture, "nearest", "clamp")
 
 
 def _depth_map(scene: MeasuredScene, light: Light) -> tuple[dict[str, Any], dict[str, Texture]]:

@@ -6,13 +6,13 @@ import dataclasses
 
 import numpy as np
 
-from sssgen.ir.frame_passes import BACK_FACES, FAR, IRRADIANCE, MATT
+from sssgen.ir.frame_passes import EYE_PICTURES, FAR, FRAME_PASSES, IRRADIANCE, MATT
 from sssgen.run.evaluate.evaluation import half
 from sssgen.run.render.shell_values import Shell
 from sssgen.scene.arrays import Array
 from sssgen.scene.bounds import world_corners
 from sssgen.scene.camera import Camera
-from sssgen.scene.drawn_views import back_faces, matt_light
+from sssgen.scene.drawn_views import eye_layers, matt_light
 from sssgen.scene.geometry import Geometry, Hits
 from sssgen.targets.reflection_record import Reflection
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -34,10 +34,10 @@ def with_eye_pictures(
         picture = names.get(name := drawn["name"], "")
         if picture in textures:
             continue
-        if name == BACK_FACES:
-            distance = np.zeros((len(directions), 1))
-            distance[shown, 0] = back_faces(geometry, origin, directions[shown])
-            screens[picture] = half(Texture(distance.reshape(height, width, 1), wrap="clamp"))
+        if name in EYE_PICTURES:
+            distances = np.zeros((len(directions), len(FRAME_PASSES[name].layers)))
+            distances[shown] = eye_layers(geometry, origin, directions[shown], name)
+            screens[picture] = half(Texture(distances.reshape(height, width, -1), wrap="clamp"))
         if name == MATT:
             texels = np.tile([0.0, 0.0, 0.0, FAR], (len(directions), 1))
             points, normals = hits.position[shown], hits.normal[shown]
