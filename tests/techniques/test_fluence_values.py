@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -136,8 +138,9 @@ def test_light_behind_a_gap() -> None:
     behind = technique("fluence_fixed_gaps")(**values, fluence_reach=0.25)[0] - level * (1.0 - first)
     close(behind, level * first * (1.0 - second), rtol=0.02)
     ends = Texture(1.0 + np.array(walls)[None, None] / 0.8)  # the eye is at the distance 1 from the first plate
-    seen = {"screen_uv": np.array([[0.5, 0.5]]), "eye_distance": np.array([1.0]), "eye_layer_map": ends}
-    behind = technique("fluence_fixed_layers")(**values, **seen)[0] - level * (1.0 - first)
+    seen: dict[str, Any] = {"screen_uv": np.array([[0.5, 0.5]]), "eye_distance": np.array([1.0]), "eye_layer_map": ends}
+    seen |= {name: value for name, value in values.items() if name != "d"}
+    behind = technique("fluence_fixed_layers")(**seen)[0] - level * (1.0 - first)
     close(behind, level * first * (1.0 - second), rtol=1e-6)
     # a ray along the plates meets no other one
     along = values | {"V": np.array([[-1.0, 0.0, 0.0]]), "P": np.array([[0.0, 0.5, 0.35]]), "d": np.array([0.0])}
