@@ -85,6 +85,28 @@ def test_the_engine_draws_the_passes(page: EnginePage, several: bool, case_of: C
     assert np.quantile(differences(page, case_of(several)), 0.98) < 1.0 / 255.0
 
 
+LENGTHS = f"""#include "common/eye_layers.sss"
+{HEAD.format("surface")}void shown(vec2 screen_uv, float eye_distance, out vec3 emission)
+{{ emission = min(0.4 * eye_lengths(screen_uv, eye_distance), 1.0); }}
+"""
+
+
+@pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
+def test_the_eyes_layers(page: EnginePage, tmp_path: Path) -> None:
+    """The length inside the ring's near side, the gap behind it, and the length inside its far side."""
+    path = torus_scene(tmp_path, "")
+    scene = Path(path).read_text(encoding="utf-8").replace("rotation = [116.0,", "rotation = [0.0,")
+    Path(path).write_text(scene, encoding="utf-8")
+    (tmp_path / "shown.sss").write_text(LENGTHS, encoding="utf-8")
+    material = '[material]\nname = "jade"\n[[surface]]\ntechnique = "./shown.sss"\n'
+    (tmp_path / "jade.toml").write_text(material, encoding="utf-8")
+    mesh = mesh_of(path)
+    expected = through(str(tmp_path / "jade.toml"), mesh)
+    inside = expected[..., :3][mesh.hit]
+    assert (inside[:, 2] > 0.05).sum() > 200, "the far side is behind the near one"
+    assert np.quantile(differences(page, Case(path, mesh, expected)), 0.95) < 1.0 / 255.0
+
+
 @pytest.mark.parametrize("several", [False, True], ids=["depth map", "layers of each light"])
 @pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
 def test_a_rectangle_of_light_is_as_a_point(page: EnginePage, several: bool, tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Viewport } from '@babylonjs/core/Maths/math.viewport.js';
 import '@babylonjs/core/Shaders/depth.vertex.js';
 import '@babylonjs/core/ShadersWGSL/depth.vertex.js';
-import { FAR, LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, isFiltered, layersOf, lightsOf, packing, showsLight, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, isFiltered, layersOf, lightsOf, packing, showsLight, tileOf, viewNumbers } from './frame_passes.js';
 
 // The shaders, in GLSL and in WGSL. The vertices are those of Babylon's own depth maps: with bones, morph targets and instances.
 
@@ -267,7 +267,7 @@ class LightLayer extends Picture {
     imageProcessingConfiguration.applyByPostProcess = true; // linear light
     Object.assign(this.#material, { metallic: 0, roughness: 1, metallicF0Factor: 0, fogEnabled: false, imageProcessingConfiguration, doNotSerialize: true });
     new White(this.#material); // the material keeps it
-    this.clearColor = new Color4(0, 0, 0, emptyOf(pass, FAR));
+    this.clearColor = new Color4(0, 0, 0, emptyOf(pass));
   }
 
   take(mesh) {

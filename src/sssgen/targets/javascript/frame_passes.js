@@ -34,10 +34,10 @@ export function packing(parts) {
 export const PACKING = packing(['r', 'r', 'r', 'r']);
 
 /**
- * What a texel without a surface has; `end` is the largest distance of all views. A larger one would spread where a filter blends
- * texels.
+ * What a texel without a surface has. `end` is the largest distance in what lights see: a larger one would spread where a filter
+ * blends texels.
  */
-export const emptyOf = ({ empty }, end) => (empty === 'far' ? end : 0);
+export const emptyOf = ({ empty, seenFrom }, end = FAR) => (empty !== 'far' ? 0 : seenFrom === 'eye' ? FAR : end);
 
 /** Whether a pass shows the light on the body, and not only distances. */
 export const showsLight = ({ layers }) => layers.includes('light');

@@ -2,7 +2,7 @@
 // sets itself is not drawn.
 
 import * as pc from 'playcanvas';
-import { FAR, LAYERS, LAYER_GAP, SIDE, columnsOf, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, SIDE, columnsOf, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
 import { distanceMaterial, mattMaterial, packingPass } from './playcanvas_pass_shaders.js';
 
 /**
@@ -342,7 +342,7 @@ export class Passes {
       lightClusters: renderer.worldClustersAllocator._clusters.get(layer.getLightIdHash())?.lightClusters,
     };
     tiles.init(picture);
-    tiles.setClearColor(new pc.Color(0, 0, 0, emptyOf(pass, FAR)));
+    tiles.setClearColor(new pc.Color(0, 0, 0, emptyOf(pass)));
     tiles.setClearDepth(1);
     Object.assign(tiles, { cameras, columns: 1, meshInstances: [body.copy(matt)], light });
     tiles.render();

@@ -3,7 +3,7 @@
 
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
-import { FAR, LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
 
 /** The layer of three that only a pass draws. */
 const ALONE = 31;
@@ -271,7 +271,7 @@ class Drawing {
     object.material = this.matt.material;
     Object.assign(scene, { background: null, backgroundNode: null, fog: null, overrideMaterial: null });
     try {
-      renderer.setClearColor(new THREE.Color(0, 0, 0), emptyOf(pass, FAR));
+      renderer.setClearColor(new THREE.Color(0, 0, 0), emptyOf(pass));
       picture.viewport.set(0, 0, picture.width, picture.height);
       picture.scissor.copy(picture.viewport);
       renderer.setRenderTarget(picture);
