@@ -13,7 +13,7 @@ import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Viewport } from '@babylonjs/core/Maths/math.viewport.js';
 import '@babylonjs/core/Shaders/depth.vertex.js';
 import '@babylonjs/core/ShadersWGSL/depth.vertex.js';
-import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, isFiltered, layersOf, lightsOf, packing, showsLight, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, PACKING, SIDE, emptyOf, isFiltered, layersOf, lightsOf, packing, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
 
 // The shaders, in GLSL and in WGSL. The vertices are those of Babylon's own depth maps: with bones, morph targets and instances.
 
@@ -178,6 +178,7 @@ const RED = 6;
 class Layer extends Picture {
   #material;
   #tile = 0;
+  #tiles = tilesOf(1);
   #empty = 0;
 
   /** @param {import('./frame_passes.js').Pass} pass @param {boolean} back @param {Layer | undefined} front the layer that its surfaces are behind */
@@ -191,11 +192,10 @@ class Layer extends Picture {
     });
     if (front) this.#material.setTexture('front', front);
     Object.assign(this.#material, { cullBackFaces: !back, doNotSerialize: true });
-    const columns = columnsOf(pass);
     this.onClearObservable.add(() => {
       if (!this.#tile) engine.clear(new Color4(this.#empty, this.#empty, this.#empty, 1), true, true, true);
-      const { x, y } = tileOf(this.#tile, columns);
-      engine.setViewport(new Viewport(x / columns, y / columns, 1 / columns, 1 / columns), this.getRenderWidth(), this.getRenderHeight());
+      const { x, y } = tileOf(this.#tile), { across, up } = this.#tiles;
+      engine.setViewport(new Viewport(x / across, y / up, 1 / across, 1 / up), this.getRenderWidth(), this.getRenderHeight());
     });
   }
 
@@ -218,6 +218,7 @@ class Layer extends Picture {
     this.renderList = meshes;
     this.#material.sideOrientation = meshes[0].material.sideOrientation;
     this.#material.setFloat('margin', margin);
+    this.#tiles = tilesOf(views.length);
     this.#empty = emptyOf(this.pass, Math.max(...views.map(({ start, end }) => end - start), 1));
     views.forEach(({ view, clip, start }, tile) => {
       this.#material.setMatrix('view', view).setMatrix('viewProjection', clip).setFloat('start', start);
@@ -395,25 +396,27 @@ export class Passes extends RenderTargetTexture {
   }
 
   #drawPass(pass, mesh) {
-    const scene = this.#scene, columns = columnsOf(pass);
+    const scene = this.#scene;
     const meshes = [mesh, ...mesh.instances].filter((one) => one.isEnabled() && one.isVisible);
     const box = boxOf(meshes);
     const views = pass.seenFrom === 'eye'
       ? [{ view: scene.getViewMatrix(), clip: scene.getTransformMatrix(), start: 0, end: 1 }]
       : lightsAt(mesh, box, pass).map((light) => viewOf(light, box, pass.seenFrom === 'distant light', scene));
+    const tiles = tilesOf(views.length), tile = pass.seenFrom === 'eye' ? sizeOf(scene) : { width: SIDE, height: SIDE };
     const { layers, picture, values } = this.#partsOf(mesh, pass);
+    for (const one of [...layers, picture]) one.fit({ width: tile.width * tiles.across, height: tile.height * tiles.up });
     for (const layer of layers) layer.draw(meshes, views, LAYER_GAP * box.radius);
     this.#packings[pass.name].draw(layers, picture);
     values[pass.texture] = picture;
     pass.views.forEach((property, index) => {
       const { clip, view, start } = views[index] ?? { clip: Matrix.Zero(), view: Matrix.Zero(), start: 0 }; // it shows nothing
-      values[property] = Matrix.FromArray(viewNumbers(clip.m, view.m, scene.useRightHandedSystem ? -1 : 1, start, 1, tileOf(index, columns), columns));
+      values[property] = Matrix.FromArray(viewNumbers(clip.m, view.m, scene.useRightHandedSystem ? -1 : 1, start, 1, tileOf(index), tiles));
     });
   }
 
   /** The layers of a pass; the picture of a mesh, and the values of its properties. */
   #partsOf(mesh, pass) {
-    const side = SIDE * columnsOf(pass), size = pass.seenFrom === 'eye' ? sizeOf(this.#scene) : { width: side, height: side };
+    const size = { width: SIDE, height: SIDE };
     if (!this.#bodies.has(mesh)) {
       this.#bodies.set(mesh, { values: {}, pictures: {} });
       for (const end of [mesh.onDisposeObservable, mesh.onMaterialChangedObservable]) end.addOnce(() => this.#forget(mesh));
@@ -424,9 +427,7 @@ export class Passes extends RenderTargetTexture {
       pictures[pass.name] = new Picture(pass, size, this.#scene, { generateDepthBuffer: false });
       layers.forEach((layer) => layer.take(mesh));
     }
-    const picture = pictures[pass.name];
-    for (const one of [...layers, picture]) one.fit(size);
-    return { layers, picture, values };
+    return { layers, picture: pictures[pass.name], values };
   }
 
   #newLayers(pass, size) {

@@ -59,11 +59,11 @@ export const isFiltered = (pass) => pass.seenFrom !== 'eye' || showsLight(pass);
  */
 export const spreadOf = (passes, spread = '0.57735027') => (passes?.some(({ seenFrom }) => seenFrom === 'each light') ? '0.0' : spread);
 
-/** The tiles along a side of a picture. */
-export const columnsOf = ({ views }) => (views.length > 1 ? 2 : 1);
+/** How many tiles a picture has, across and up: no more than its lights need. */
+export const tilesOf = (lights) => ({ across: lights > 1 ? 2 : 1, up: lights > 2 ? 2 : 1 });
 
-/** The tile of a light in a picture with so many columns. */
-export const tileOf = (light, columns) => ({ x: light % columns, y: Math.floor(light / columns) });
+/** The tile of a light. */
+export const tileOf = (light) => ({ x: light % 2, y: Math.floor(light / 2) });
 
 /**
  * The layers of a pass: whether one has back faces, and the number of the layer that its surfaces are behind; -1 for none.
@@ -97,9 +97,9 @@ export function lightsOf(lights, { seenFrom, views }) {
  * @param {number} start where it begins, in front of the light: distances in a picture count from there
  * @param {number} up the sign of v upwards in clip space
  */
-export function viewNumbers(clip, view, forwards, start, up, { x: column, y: row }, columns) {
+export function viewNumbers(clip, view, forwards, start, up, { x: column, y: row }, { across, up: rows }) {
   return [0, 4, 8, 12].flatMap((at) => {
     const [x, y, w] = [clip[at], clip[at + 1], clip[at + 3]];
-    return [((column + 0.5) * w + 0.5 * x) / columns, ((row + 0.5) * w + 0.5 * up * y) / columns, forwards * view[at + 2] - (at === 12 ? start : 0), w];
+    return [((column + 0.5) * w + 0.5 * x) / across, ((row + 0.5) * w + 0.5 * up * y) / rows, forwards * view[at + 2] - (at === 12 ? start : 0), w];
   });
 }

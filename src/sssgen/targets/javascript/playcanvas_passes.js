@@ -2,7 +2,7 @@
 // sets itself is not drawn.
 
 import * as pc from 'playcanvas';
-import { LAYERS, LAYER_GAP, SIDE, columnsOf, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, SIDE, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
 import { distanceMaterial, mattMaterial, packingPass } from './playcanvas_pass_shaders.js';
 
 /**
@@ -89,14 +89,14 @@ function aim(camera, light, { center, radius: tight }, distant) {
 }
 
 /** World space to (u w, v w, distance from the camera's plane, w), in a tile of the picture; `down`: its rows count downwards. */
-function viewOf(camera, tile, columns, down) {
+function viewOf(camera, tile, tiles, down) {
   const view = camera.node.getWorldTransform().clone(), projection = camera.projectionMatrix.clone();
   camera.calculateTransform?.(view, pc.VIEW_CENTER);
   camera.calculateProjection?.(projection, pc.VIEW_CENTER);
   view.invert();
   const clip = new pc.Mat4().mul2(projection, view);
-  const { x, y } = tileOf(tile, columns);
-  return viewNumbers(clip.data, view.data, -1, camera.nearClip, down ? -1 : 1, { x, y: down ? columns - 1 - y : y }, columns);
+  const { x, y } = tileOf(tile);
+  return viewNumbers(clip.data, view.data, -1, camera.nearClip, down ? -1 : 1, { x, y: down ? tiles.up - 1 - y : y }, tiles);
 }
 
 /** Draws mesh instances into tiles of a picture, each tile as a camera sees them. */
@@ -105,7 +105,6 @@ class TilePass extends pc.RenderPass {
   cameras = [];
   /** @type {pc.MeshInstance[]} */
   meshInstances = [];
-  columns = 1;
   /** What lights them. @type {{ lightList?: any, lightClusters?: any }} */
   light = {};
 
@@ -115,10 +114,11 @@ class TilePass extends pc.RenderPass {
   }
 
   execute() {
-    const { renderer, renderTarget, meshInstances, columns, light } = this;
+    const { renderer, renderTarget, meshInstances, light } = this;
+    const { across, up } = tilesOf(this.cameras.length);
     this.cameras.forEach((camera, tile) => {
-      const { x, y } = tileOf(tile, columns);
-      const rect = new pc.Vec4(x, y, 1, 1).mulScalar(1 / columns);
+      const { x, y } = tileOf(tile);
+      const rect = new pc.Vec4(x / across, y / up, 1 / across, 1 / up);
       const kept = { rect: camera.rect.clone(), scissorRect: camera.scissorRect.clone(), cullFaces: camera.cullFaces };
       Object.assign(camera, { rect, scissorRect: rect, cullFaces: true });
       renderer.renderForwardLayer(camera, renderTarget, null, undefined, pc.SHADER_FORWARD, { meshInstances, ...light });
@@ -312,24 +312,21 @@ export class Passes {
   #drawPass(pass, body, camera, lights, layer) {
     const { device } = this;
     const eye = pass.seenFrom === 'eye';
-    const columns = columnsOf(pass);
-    const pictures = body.picturesOf(pass, eye ? camera : null, device, eye ? sizeOf(camera, device) : { width: SIDE * columns, height: SIDE * columns });
+    const ball = ballOf(body.instance);
+    const shown = eye ? [] : lightsAt(ball, lights, pass), tiles = tilesOf(shown.length);
+    const pictures = body.picturesOf(pass, eye ? camera : null, device, eye ? sizeOf(camera, device) : { width: SIDE * tiles.across, height: SIDE * tiles.up });
     body.instance.setParameter(this.nameOf(pass.texture), pictures.packed.colorBuffer);
     if (!eye && pictures.version === device.renderVersion) return; // they are the same for all cameras of a frame
     pictures.version = device.renderVersion;
-    const ball = ballOf(body.instance);
-    let cameras = [camera.camera];
-    if (!eye) {
-      const distant = pass.seenFrom === 'distant light';
-      cameras = lightsAt(ball, lights, pass).map((light, index) => aim(this.#lamps[index], light, ball, distant));
-    }
+    const distant = pass.seenFrom === 'distant light';
+    const cameras = eye ? [camera.camera] : shown.map((light, index) => aim(this.#lamps[index], light, ball, distant));
     pass.views.forEach((view, index) => {
       // a view of zeros shows nothing
-      const matrix = cameras[index] ? viewOf(cameras[index], index, columns, device.isWebGPU) : Array(16).fill(0);
+      const matrix = cameras[index] ? viewOf(cameras[index], index, tiles, device.isWebGPU) : Array(16).fill(0);
       body.instance.setParameter(this.nameOf(view), matrix);
     });
     if (showsLight(pass)) this.#drawLight(pass, body, pictures.packed, cameras, layer);
-    else this.#drawLayers(pass, body, pictures, cameras, columns, LAYER_GAP * ball.radius);
+    else this.#drawLayers(pass, body, pictures, cameras, LAYER_GAP * ball.radius);
   }
 
   /** Draws what the body reflects as white and matt, in the light of a layer. */
@@ -344,11 +341,11 @@ export class Passes {
     tiles.init(picture);
     tiles.setClearColor(new pc.Color(0, 0, 0, emptyOf(pass)));
     tiles.setClearDepth(1);
-    Object.assign(tiles, { cameras, columns: 1, meshInstances: [body.copy(matt)], light });
+    Object.assign(tiles, { cameras, meshInstances: [body.copy(matt)], light });
     tiles.render();
   }
 
-  #drawLayers(pass, body, { layers, packed }, cameras, columns, margin) {
+  #drawLayers(pass, body, { layers, packed }, cameras, margin) {
     const tiles = (this.#tiles ??= new TilePass(this.device, this.#app.renderer));
     const empty = emptyOf(pass, Math.max(...cameras.map(({ nearClip, farClip }) => farClip - nearClip), 1));
     layersOf(pass).forEach(({ back, before }, index) => {
@@ -359,7 +356,7 @@ export class Passes {
       tiles.init(layers[index]);
       tiles.setClearColor(new pc.Color(empty, empty, empty, 1));
       tiles.setClearDepth(1);
-      Object.assign(tiles, { cameras, columns, meshInstances: [body.copy(material)], light: {} });
+      Object.assign(tiles, { cameras, meshInstances: [body.copy(material)], light: {} });
       tiles.render();
     });
     if (layers.length === 1) return;

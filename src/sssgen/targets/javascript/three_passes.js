@@ -3,7 +3,7 @@
 
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
-import { LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, PACKING, SIDE, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
 
 /** The layer of three that only a pass draws. */
 const ALONE = 31;
@@ -149,14 +149,14 @@ function lampOf(light, ball, distant, coordinateSystem) {
 }
 
 /** World space to a tile of the picture. */
-function viewOf(lamp, tile, columns, up, start = lamp.near) {
+function viewOf(lamp, tile, tiles, up, start = lamp.near) {
   const clip = new THREE.Matrix4().multiplyMatrices(lamp.projectionMatrix, lamp.matrixWorldInverse);
-  return new THREE.Matrix4().fromArray(viewNumbers(clip.elements, lamp.matrixWorldInverse.elements, -1, start, up, tile, columns));
+  return new THREE.Matrix4().fromArray(viewNumbers(clip.elements, lamp.matrixWorldInverse.elements, -1, start, up, tile, tiles));
 }
 
 /**
  * The pictures of a pass of an object: each layer, and all in one.
- * @typedef {{ layers: THREE.RenderTarget[], packed: THREE.RenderTarget, columns: number }} Pictures
+ * @typedef {{ layers: THREE.RenderTarget[], packed: THREE.RenderTarget }} Pictures
  */
 
 /** The passes of a material, in one renderer. */
@@ -229,7 +229,7 @@ class Drawing {
       renderer.setRenderTarget(picture);
       renderer.clear();
       cameras.forEach((camera, index) => {
-        const tile = tileOf(index, pictures.columns);
+        const tile = tileOf(index);
         picture.viewport.set(tileSize.x * tile.x, tileSize.y * tile.y, tileSize.x, tileSize.y);
         picture.scissor.copy(picture.viewport);
         renderer.setRenderTarget(picture);
@@ -298,7 +298,7 @@ class Drawing {
   }
 
   /** The pictures of a pass of an object, in a size. */
-  picturesOf(object, pass, size, columns) {
+  picturesOf(object, pass, size) {
     if (!this.#pictures.has(object)) this.#pictures.set(object, {});
     const own = /** @type {Record<string, Pictures>} */ (this.#pictures.get(object));
     const kinds = showsLight(pass) ? [pass.name] : pass.layers;
@@ -309,7 +309,7 @@ class Drawing {
       if (picture.width !== size.x || picture.height !== size.y) picture.setSize(size.x, size.y);
       picture.scissorTest = picture !== packed || layers.length === 1;
     }
-    return (own[pass.name] = { layers, packed, columns });
+    return (own[pass.name] = { layers, packed });
   }
 
   /** Frees the pictures of an object. */
@@ -360,29 +360,25 @@ export class Passes {
   }
 
   #drawPass(drawing, pass, { renderer, scene, camera, object }, set) {
-    const columns = columnsOf(pass);
-    const eye = pass.seenFrom === 'eye';
-    const size = eye ? sizeOf(renderer) : new THREE.Vector2(SIDE, SIDE).multiplyScalar(columns);
-    const tile = size.clone().divideScalar(columns);
-    const pictures = drawing.picturesOf(object, pass, size, columns);
+    const eye = pass.seenFrom === 'eye', ball = ballOf(object);
     let cameras = [camera];
     // distances on both sides of the body's middle are small enough for half floats
-    const plane = -ballOf(object).center.applyMatrix4(camera.matrixWorldInverse).z;
-    if (eye) {
-      for (const view of pass.views) set(view, viewOf(camera, { x: 0, y: 0 }, 1, drawing.gpu ? -1 : 1, plane));
-    } else {
-      const ball = ballOf(object);
+    const plane = -ball.center.clone().applyMatrix4(camera.matrixWorldInverse).z;
+    if (!eye) {
       const system = drawing.gpu ? THREE.WebGPUCoordinateSystem : THREE.WebGLCoordinateSystem;
       const distant = pass.seenFrom === 'distant light';
       cameras = lightsAt(ball, scene, camera, pass).map((light) => lampOf(light, ball, distant, system));
-      pass.views.forEach((view, index) => {
-        const { x, y } = tileOf(index, columns);
-        // the rows of WebGPURenderer's fallback count upwards, its viewports downwards
-        const corner = { x, y: drawing.nodes && !drawing.gpu ? columns - 1 - y : y };
-        // a view of zeros shows nothing
-        set(view, cameras[index] ? viewOf(cameras[index], corner, columns, drawing.gpu ? -1 : 1) : new THREE.Matrix4().multiplyScalar(0));
-      });
     }
+    const tiles = tilesOf(cameras.length), tile = eye ? sizeOf(renderer) : new THREE.Vector2(SIDE, SIDE);
+    const pictures = drawing.picturesOf(object, pass, new THREE.Vector2(tile.x * tiles.across, tile.y * tiles.up));
+    pass.views.forEach((view, index) => {
+      const { x, y } = tileOf(index);
+      // the rows of WebGPURenderer's fallback count upwards, its viewports downwards
+      const corner = { x, y: drawing.nodes && !drawing.gpu ? tiles.up - 1 - y : y };
+      // a view of zeros shows nothing
+      const matrix = cameras[index] ? viewOf(cameras[index], corner, tiles, drawing.gpu ? -1 : 1, eye ? plane : undefined) : new THREE.Matrix4().multiplyScalar(0);
+      set(view, matrix);
+    });
     if (showsLight(pass)) drawing.drawLight(renderer, pass, pictures.packed, object, scene, camera, plane);
     else drawing.draw(renderer, pass, pictures, object, cameras, tile);
     set(pass.texture, pictures.packed.texture);
