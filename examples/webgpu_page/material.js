@@ -2,17 +2,25 @@
 // The shell's own blocks are the same for all (docs/templates.md): camera and lights in group 0, the object in group 2.
 
 const TEXELS = { white: [255, 255, 255, 255], black: [0, 0, 0, 255], gray: [128, 128, 128, 255], bump: [128, 128, 255, 255] };
+const dimensionOf = (type) => type.slice('sampler'.length).toLowerCase();
 const BYTES = { camera: 144, lights: 144, object: 128 };
-export const VERTEX_FLOATS = 12; // position 3, normal 3, tangent 3 and its handedness, uv 2
+/** Of a mesh: position 3, normal 3, tangent 3 and its handedness, uv 2. */
+export const LAYOUT = [{
+  arrayStride: 48,
+  attributes: [['float32x3', 0], ['float32x3', 12], ['float32x4', 24], ['float32x2', 40]].map(([format, offset], shaderLocation) => ({ format, offset, shaderLocation })),
+}];
 
-/** The WGSL text and the reflection that `sssgen emit NAME --target wgsl -o FOLDER` wrote. */
+/** What `sssgen emit NAME --target wgsl -o FOLDER` wrote: the text, the reflection, and what draws the passes of a material that has some. */
 export async function load(folder, name) {
   const get = async (file) => {
     const answer = await fetch(`${folder}/${file}`);
     if (!answer.ok) throw new Error(`${file}: ${answer.status}. Run: sssgen emit ${name} --target wgsl -o out`);
     return answer.text();
   };
-  return { wgsl: await get(`${name}.wgsl`), reflection: JSON.parse(await get(`${name}.wgsl.reflection.json`)) };
+  const wgsl = await get(`${name}.wgsl`), reflection = JSON.parse(await get(`${name}.wgsl.reflection.json`));
+  const drawn = reflection.passes.some(({ of }) => of !== 'surroundings');
+  const runtime = drawn ? await import(new URL(`${folder}/sssgen-webgpu.js`, location.href).href) : undefined;
+  return { wgsl, reflection, createPasses: runtime?.createPasses };
 }
 
 export class Material {
@@ -30,18 +38,16 @@ export class Material {
     const { VERTEX, FRAGMENT } = GPUShaderStage;
     const block = (binding) => ({ binding, visibility: VERTEX | FRAGMENT, buffer: {} });
     const pairs = reflection.textures.flatMap(({ type, binding }) => [
-      { binding: binding.texture, visibility: FRAGMENT, texture: { viewDimension: type.slice('sampler'.length).toLowerCase() } },
+      { binding: binding.texture, visibility: FRAGMENT, texture: { viewDimension: dimensionOf(type) } },
       { binding: binding.sampler, visibility: FRAGMENT, sampler: {} },
     ]);
     this.layouts = [[block(0), block(1)], [...(reflection.uniforms.length ? [block(0)] : []), ...pairs], [block(0)]]
       .map((entries) => device.createBindGroupLayout({ entries }));
     const module = device.createShaderModule({ code: wgsl });
-    const attributes = [['float32x3', 0], ['float32x3', 12], ['float32x4', 24], ['float32x2', 40]]
-      .map(([kind, offset], shaderLocation) => ({ format: kind, offset, shaderLocation }));
     const { vertex, fragment } = reflection.files[0].stages;
     this.pipeline = device.createRenderPipeline({
       layout: device.createPipelineLayout({ bindGroupLayouts: this.layouts }),
-      vertex: { module, entryPoint: vertex, buffers: this.screen ? [] : [{ arrayStride: 4 * VERTEX_FLOATS, attributes }] },
+      vertex: { module, entryPoint: vertex, buffers: this.screen ? [] : LAYOUT },
       fragment: { module, entryPoint: fragment, targets: [{ format }] },
       primitive: { topology: 'triangle-list', cullMode: 'none' },
       depthStencil: { format: 'depth24plus', depthWriteEnabled: true, depthCompare: this.screen ? 'always' : 'less' },
@@ -59,7 +65,7 @@ export class Material {
     const texture = this.device.createTexture({ size, dimension, format: 'rgba8unorm', usage });
     const data = new Uint8Array(Array(size[2]).fill(TEXELS[texel]).flat());
     this.device.queue.writeTexture({ texture }, data, { bytesPerRow: 4, rowsPerImage: 1 }, size);
-    this.textures[name] = texture.createView({ dimension: type.slice('sampler'.length).toLowerCase() });
+    this.texture(name, texture);
   }
 
   /** Sets a parameter: a list of its components. A matrix is given by its columns. */
@@ -78,14 +84,31 @@ export class Material {
     const usage = GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST | GPUTextureUsage.RENDER_ATTACHMENT;
     const texture = this.device.createTexture({ size: [source.width, source.height], format, usage });
     this.device.queue.copyExternalImageToTexture({ source, flipY: true }, { texture }, [source.width, source.height]);
-    this.textures[name] = texture.createView();
-    this.groups = undefined;
+    this.texture(name, texture);
+  }
+
+  /** Sets a texture; without a sampler, it is read as its technique declares. */
+  texture(name, texture, sampler = this.#sampler(name)) {
+    if (this.textures[name]?.texture !== texture) this.groups = undefined;
+    this.textures[name] = { texture, sampler };
+  }
+
+  #sampler(name) {
+    const { wrap } = this.reflection.textures.find((one) => one.name === name).import;
+    const mode = wrap === 'clamp' ? 'clamp-to-edge' : 'repeat';
+    return this.device.createSampler({ addressModeU: mode, addressModeV: mode, addressModeW: mode, minFilter: 'linear', magFilter: 'linear' });
+  }
+
+  /** Sets what the passes have drawn. */
+  show({ textures, samplers, values }) {
+    for (const name in textures) this.texture(name, textures[name], samplers[name]);
+    for (const name in values) this.set(name, values[name]);
   }
 
   /** Writes the shell's blocks. Matrices are 16 numbers, column by column; a light is { position: [x, y, z, w], color }. */
-  view({ viewProjection, inverseViewProjection, eye, time, ambient, lights, model, inverseModel }) {
+  view({ viewProjection, inverseViewProjection, position, time, ambient, lights, model, inverseModel }) {
     const write = (name, numbers) => this.device.queue.writeBuffer(this.buffers[name], 0, new Float32Array(numbers));
-    write('camera', [...viewProjection, ...inverseViewProjection, ...eye, time]);
+    write('camera', [...viewProjection, ...inverseViewProjection, ...position, time]);
     const four = (list) => [...list.flat(), ...Array(16).fill(0)].slice(0, 16);
     write('lights', [...ambient, 0, ...four(lights.map((light) => light.position)), ...four(lights.map((light) => [...light.color, 0]))]);
     this.device.queue.writeBuffer(this.buffers.lights, 12, new Int32Array([lights.length]));
@@ -97,17 +120,19 @@ export class Material {
     pass.setPipeline(this.pipeline);
     this.groups.forEach((group, index) => pass.setBindGroup(index, group));
     if (this.screen) return pass.draw(3);
-    pass.setVertexBuffer(0, mesh.vertices);
+    pass.setVertexBuffer(0, mesh.buffers[0]);
     pass.setIndexBuffer(mesh.triangles, 'uint32');
     pass.drawIndexed(mesh.count);
   }
 
   #groups() {
-    const sampler = this.device.createSampler({ addressModeU: 'repeat', addressModeV: 'repeat', minFilter: 'linear', magFilter: 'linear' });
     const block = (binding, name) => ({ binding, resource: { buffer: this.buffers[name] } });
     const material = this.reflection.uniforms.length ? [block(0, 'material')] : [];
-    for (const { name, binding } of this.reflection.textures)
-      material.push({ binding: binding.texture, resource: this.textures[name] }, { binding: binding.sampler, resource: sampler });
+    for (const { name, type, binding } of this.reflection.textures) {
+      const { texture, sampler } = this.textures[name];
+      const view = texture.createView({ dimension: dimensionOf(type) });
+      material.push({ binding: binding.texture, resource: view }, { binding: binding.sampler, resource: sampler });
+    }
     return [[block(0, 'camera'), block(1, 'lights')], material, [block(0, 'object')]]
       .map((entries, index) => this.device.createBindGroup({ layout: this.layouts[index], entries }));
   }

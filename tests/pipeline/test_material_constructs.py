@@ -29,8 +29,8 @@ def emitted(source: str, folder: Path, target: str, form: str) -> tuple[list[str
         files = sssgen.compile(str(path), target, form).files
     except UnsupportedError as error:
         return [entry.message for entry in error.diagnostics], False
-    # a sub-graph for Unity is JSON, in which every line differs: it has tests of its own; sssgen_passes.gd is a source
-    left_out = (".json", ".shadersubgraph", "sssgen_passes.gd")
+    # a sub-graph for Unity is JSON, in which every line differs: it has tests of its own; the last two are sources
+    left_out = (".json", ".shadersubgraph", "sssgen_passes.gd", "sssgen-webgpu.js")
     shown = [text for file, text in files.items() if not file.endswith(left_out)]
     return [line for text in shown for line in text.splitlines()], True
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,10 @@ import pytest
 
 from folders import ROOT
 from preview_page import NEEDS, Shown, browser
+from sssgen.run import backends
+from sssgen.run.render.scene_render import render
+from sssgen.scene.scene_loading import load
+from torus_cases import SEVERAL, torus_scene
 
 pytest.importorskip("aiohttp")
 pytest.importorskip("watchfiles")
@@ -199,3 +204,29 @@ def test_every_example_is_as_in_the_gallery(browser: Any, name: str, renderer: s
         assert np.abs(cut[0] - cut[1]).mean() < 24.0
     finally:
         shown.close()
+
+
+@pytest.mark.parametrize("renderer", ["webgl", "webgl2"])
+def test_light_of_several_lamps_comes_through_as_in_a_render(browser: Any, renderer: str, tmp_path: Path) -> None:
+    """The page runs the passes of the list that `sssgen render` runs; the surface reflects nothing."""
+    path = Path(torus_scene(tmp_path, SEVERAL))
+    material = path.with_name("jade.toml")
+    dark = material.read_text("utf-8").replace("tint = [0.035, 0.06, 0.045, 1.0]", "tint = [0.0, 0.0, 0.0, 1.0]")
+    dark = dark.replace("surface_roughness = 0.12", "surface_roughness = 1.0")
+    level = '\n[[surface]]\ntechnique = "specular_level"\ndielectric_specular = 0.0\n\n[translucency]'
+    material.write_text(dark.replace("\n[translucency]", level), "utf-8")
+    shown = Shown(browser, str(path), renderer=renderer)
+    try:
+        picture = shown.picture()
+        assert not shown.error() and not shown.faults
+    finally:
+        shown.close()
+    height, width = picture.shape[:2]
+    scene = dataclasses.replace(load(str(path)), samples=1, size=(width, height))
+    rendered = render(scene, backends.require("numpy"))
+    inner = rendered.covered > 0.0
+    for axis, step in ((0, -2), (0, 2), (1, -2), (1, 2)):
+        inner &= np.roll(inner, step, axis)
+    apart = np.abs(picture[..., :3] - 255.0 * rendered.encoded)[inner].max(axis=-1)
+    assert inner.sum() > 5000 and rendered.encoded[inner].mean() > 0.2
+    assert np.quantile(apart, 0.9) < 4.0

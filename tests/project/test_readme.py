@@ -159,12 +159,17 @@ for (const stem of stems) {
   const ambient = [0, 0, 0];
   material.view({ ...camera(3, 1), time: 1, ambient, lights, model: identity, inverseModel: identity });
   const encoder = device.createCommandEncoder();
+  const body = sphere(device, 4, 8);
+  if (reflection.passes.length) {
+    const { createPasses } = await import(pathToFileURL(page + '/../sssgen-webgpu.js'));
+    material.show(createPasses(device, reflection).draw(encoder, body, { ...camera(3, 1), size: [8, 8] }, lights));
+  }
   const depth = { depthClearValue: 1, depthLoadOp: 'clear', depthStoreOp: 'discard' };
   const pass = encoder.beginRenderPass({
     colorAttachments: [{ view: made('rgba8unorm-srgb'), loadOp: 'clear', storeOp: 'store' }],
     depthStencilAttachment: { view: made('depth24plus'), ...depth },
   });
-  material.draw(pass, sphere(device, 4, 8));
+  material.draw(pass, body);
   pass.end();
   device.queue.submit([encoder.finish()]);
   const error = await device.popErrorScope();
@@ -191,7 +196,7 @@ def test_the_webgpu_page_draws_every_example(tmp_path: Path, compiler: Callable[
         for file, text in compile(name, "wgsl").files.items():
             (tmp_path / file).write_text(text, encoding="utf-8")
     shutil.copytree(ROOT / "examples" / "webgpu_page", tmp_path / "page")
-    (tmp_path / "page" / "package.json").write_text('{ "type": "module" }', encoding="utf-8")
+    (tmp_path / "package.json").write_text('{ "type": "module" }', encoding="utf-8")
     stems = [(tmp_path / name).as_posix() for name in examples()]
     command = [*tint._command[:2], "-e", PAGE, str(tint._modules.parent), (tmp_path / "page").as_posix(), *stems]
     done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False)

@@ -201,8 +201,8 @@ def test_a_texture_that_is_missing_is_named_once(page: EnginePage) -> None:
     """The console has the command that bakes it; what is optional may be missing. A second body says nothing more."""
     drawing = bare(page.engine.target, "wax_mouse")
     copies = {"stage": {"copies": [ELSEWHERE]}}
-    command = r"`sssgen bake sdf MESH -o wax_mouse_sdf\.npy`"
-    missing = rf"error: \w+: wax_mouse: 'distanceMap' is missing: load wax_mouse_sdf\.npy, which {command} makes$"
+    command = r"`sssgen bake sdf MESH -o wax_mouse_sdf\.raw --format raw\+json --encode r16f`"
+    missing = rf"error: \w+: wax_mouse: 'distanceMap' is missing: load wax_mouse_sdf\.raw, which {command} makes$"
     with pytest.raises(SssgenError, match=missing):
         page.draw(drawing._replace(properties=copies))
     volume = Texture(np.ones((2, 2, 2, 4), np.float32))

@@ -17,7 +17,7 @@ import pytest
 
 import sssgen
 from engine_cases import BLACK, ENGINES, RENDERERS
-from scene_cases import ABOVE, BELOW, EXAMPLES, MIDDLE, SceneCase, scene_case
+from scene_cases import ABOVE, BELOW, EXAMPLES, MIDDLE, SceneCase, check_light, scene_case
 from skips import or_skip
 from sssgen.run.backends import Array, Backend
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
@@ -71,7 +71,7 @@ def test_a_scene_in_a_page(page: EnginePage, name: str, case_of: Callable[..., S
         shell.camera_position, shell.model, shell.light_positions, shell.light_colors, textures=textures,
         properties=BLACK[target] | {"stage": stage},
     )  # fmt: skip
-    check(page.draw(drawing), case, f"{name}, {target}, {page.name}")
+    check_light(page.draw(drawing), case, f"{name}, {target}, {page.name}")
 
 
 @pytest.mark.parametrize("name", ["skin_ear", *(SLOW(name) for name in EXAMPLES if name != "skin_ear")])
@@ -102,7 +102,7 @@ def test_a_scene_in_urp(
         unity_values.shade(sssgen.compile(material, "unity-urp"), shell, machine, case.mesh.size, case.mesh.points)
         for material in (case.material, case.opaque)
     )
-    check(whole - reflected + case.emission, case, f"{name}, unity-urp")
+    check_light(whole - reflected + case.emission, case, f"{name}, unity-urp")
 
 
 def _full_floats(program: UnityProgram, texture: Texture) -> Any:
@@ -196,20 +196,9 @@ def test_a_scene_in_godot(
     if godot.encodes:  # it adds the light of each lamp with a shadow in encoded colours (docs/engines/godot.md)
         sky, *lamps = case.lights
         expected = decoded(encoded(case.emission + sky) + sum(map(encoded, lamps)))
-    check(picture, case, f"{name}, godot, {renderer}", expected, *BOUNDS[renderer])
+    check_light(picture, case, f"{name}, godot, {renderer}", expected, *BOUNDS[renderer])
 
 
 def encoded(light: Array) -> Array:
     """As the Compatibility renderer stores it: sRGB without its linear part."""
     return np.maximum(1.055 * np.maximum(light, 0.0) ** (1.0 / 2.4) - 0.055, 0.0)
-
-
-def check(
-    picture: Array, case: SceneCase, title: str, expected: Array | None = None, share: float = 0.99, bound: float = 1.0
-) -> None:
-    """The picture is that of the oracle on a share of the pixels of the body; `bound` is in 255ths."""
-    expected = case.expected if expected is None else expected
-    differences = np.abs(np.clip(picture, 0.0, 1.0) - np.clip(expected, 0.0, 1.0))[..., :3].max(axis=-1)
-    reached = 255.0 * float(np.quantile(differences[case.mesh.hit], share))
-    print(f"{title}: {reached:.2f}/255 on {100.0 * share:.0f} % of the pixels")
-    assert reached <= bound

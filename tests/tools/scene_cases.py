@@ -152,3 +152,14 @@ def _as_mesh(geometry: Any) -> Mesh:
     place = {name: getattr(geometry, name) for name in ("position", "rotation", "scale")}
     plain = dataclasses.replace(geometry, position=(0.0,) * 3, rotation=(0.0,) * 3, scale=1.0)
     return Mesh(path="body.ply", data=trimesh.Trimesh(*mesh_of(plain), process=False).export(file_type="ply"), **place)
+
+
+def check_light(
+    picture: Array, case: SceneCase, title: str, expected: Array | None = None, share: float = 0.99, bound: float = 1.0
+) -> None:
+    """The picture is that of the oracle on a share of the pixels of the body; `bound` is in 255ths."""
+    expected = case.expected if expected is None else expected
+    differences = np.abs(np.clip(picture, 0.0, 1.0) - np.clip(expected, 0.0, 1.0))[..., :3].max(axis=-1)
+    reached = 255.0 * float(np.quantile(differences[case.mesh.hit], share))
+    print(f"{title}: {reached:.2f}/255 on {100.0 * share:.0f} % of the pixels")
+    assert reached <= bound

@@ -13,6 +13,8 @@ from sssgen.support.paths import shell_word
 
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 _NAME = "{name}"
+_NUMPY, _RAW, _ENCODED = ".npy", ".raw", " --format raw+json --encode r16f"
+"""The endings of volumes for sssgen and for engines and pages, which read no NumPy arrays."""
 
 
 class BakeCommand(NamedTuple):
@@ -65,6 +67,9 @@ def needs(material: Material) -> dict[tuple[str, str], str]:
         given = {name: stage.textures[name] for name in names if name in stage.textures}
         command = function and bake_command(function, material.name, given, parameter_words(material))
         files = {**(command.files if command else {}), **given}
+        if command and command.text.endswith(_NUMPY):
+            files = {name: file.removesuffix(_NUMPY) + _RAW for name, file in files.items()}
+            command = command._replace(text=command.text.removesuffix(_NUMPY) + _RAW + _ENCODED)
         origin = f"`{command.text}` makes" if command else "the material names"
         for name in names:
             how = f"load {files[name]}, which {origin}" if name in files else "paint it"

@@ -136,9 +136,8 @@ def _camera(scene: Scene, shape: str) -> dict[str, Any]:
 
 
 def _without_views(reflection: Reflection) -> Reflection:
-    """The reflection without the textures that the page draws, so that nothing else draws them."""
-    textures = [texture for texture in reflection["textures"] if texture["drawn"] not in DRAWN_BY_PAGE]
-    return {**reflection, "textures": textures}
+    """The reflection without the passes that the page runs, so that nothing else runs them."""
+    return {**reflection, "passes": [drawn for drawn in reflection["passes"] if drawn["name"] not in DRAWN_BY_PAGE]}
 
 
 def _with_texels(row: Slot, shell: Shell, choices: Choices, pieces: Pieces) -> Slot:

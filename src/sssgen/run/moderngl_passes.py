@@ -17,9 +17,9 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from sssgen.ir.frame_passes import DISTANT_VIEWS, FAR, LIGHT_LAYERS, MATT
+from sssgen.ir.frame_passes import FAR, MATT
 from sssgen.scene.arrays import Array
-from sssgen.scene.drawn_views import TILES, brightest
+from sssgen.scene.drawn_views import TILES, shown_lights
 from sssgen.scene.light_view import directional_view, point_view
 from sssgen.targets.reflection_record import PassRecord, Reflection
 
@@ -169,15 +169,16 @@ class Passes:
         if not hasattr(getattr(screen, "mglo", None), "viewport"):  # none is in use, or it has been released
             screen = None
         viewport = screen.viewport if screen is not None else None
+        positions = np.array([position for position, _ in lights], float).reshape(-1, 4)
+        colors = np.array([color for _, color in lights], float).reshape(-1, 3)
         textures: dict[str, Any] = {}
         values: dict[str, Array] = {}
         for drawn in self.passes:
             tiles = TILES if len(drawn["views"]) > 1 else 1
             seen = [self._eye(body, view, projection)]
             if drawn["seen_from"] != "eye":
-                seen = [
-                    _light_view(body.corners, np.asarray(light, float)) for light in _shown_lights(body, drawn, lights)
-                ]
+                shown = shown_lights(drawn["name"], body.corners.mean(axis=0), positions, colors)
+                seen = [_light_view(body.corners, positions[index]) for index in shown]
             whole = size if drawn["seen_from"] == "eye" else (tiles * SIDE, tiles * SIDE)
             if drawn["name"] == MATT:
                 target = self._light_on_body(body, drawn, seen[0], view, lights, ambient, whole)
@@ -289,15 +290,6 @@ class Passes:
             texture.filter = (kind, kind)
             target = self._targets[key] = self.context.framebuffer([texture], self.context.depth_renderbuffer(size))
         return target
-
-
-def _shown_lights(body: Body, drawn: PassRecord, lights: Sequence[Any]) -> list[Sequence[float]]:
-    """The lights that a pass shows: the first that it is for, or the brightest at the body."""
-    shown = [light for light in lights if not (light[0][3] and drawn["name"] in DISTANT_VIEWS)]
-    if drawn["name"] != LIGHT_LAYERS:
-        return [position for position, _ in shown[:1]]
-    places, colors = (np.array([light[part] for light in shown], float).reshape(len(shown), -1) for part in (0, 1))
-    return [shown[index][0] for index in brightest(body.corners.mean(axis=0), places, colors)] if shown else []
 
 
 def _light_view(corners: Array, light: Array) -> View:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sssgen.ir.frame_passes import FAR, FRAME_PASSES
+from sssgen.ir.frame_passes import DISTANT_VIEWS, FAR, FRAME_PASSES
 from sssgen.scene.arrays import Array
 from sssgen.scene.bounds import world_corners
 from sssgen.scene.geometry import Geometry
@@ -88,6 +88,15 @@ def light_layers(geometry: Geometry, lights: Array, layers: Sequence[str]) -> tu
         matrices.append(matrix)
         picture[row * TEXELS : (row + 1) * TEXELS, column * TEXELS : (column + 1) * TEXELS] = depth
     return matrices, picture
+
+
+def shown_lights(name: str, center: Array, lights: Array, colors: Array) -> list[int]:
+    """The indices of the lights (n, 4) that a pass shows: the brightest at the body's center (3,), or the first that
+    it is for.
+    """
+    if FRAME_PASSES[name].seen_from == "each light":
+        return brightest(center, lights, colors)
+    return [index for index, light in enumerate(lights) if not (light[3] and name in DISTANT_VIEWS)][:1]
 
 
 def brightest(center: Array, lights: Array, colors: Array) -> list[int]:

@@ -210,7 +210,7 @@ def emit(
         if output.needs and not context[output.needs]:
             continue
         if output.sources:
-            if not (standalone and is_module(output.sources)):
+            if not (standalone and _is_inlined(output, outputs)):
                 files[name] = runtime_text(output.sources, target.folder)
             continue
         own = context
@@ -241,9 +241,16 @@ def _runtime(target: Target, outputs: Sequence[OutputFile], standalone: bool) ->
     """The file that a module imports, and its text where the module contains it; empty where there is none."""
     for output in outputs:
         if output.sources:
-            inlined = standalone and is_module(output.sources)
+            inlined = standalone and _is_inlined(output, outputs)
             return {"file": output.name, "text": inlined_text(output.sources, target.folder) if inlined else ""}
     return {}
+
+
+def _is_inlined(runtime: OutputFile, outputs: Sequence[OutputFile]) -> bool:
+    """Whether a runtime can be inside of another file: both are modules of JavaScript."""
+    return is_module(runtime.sources) and any(
+        output.template and output.name.endswith((".js", ".mjs")) for output in outputs
+    )
 
 
 def _calls(context: Mapping[str, Any]) -> dict[str, list[Argument]]:

@@ -57,7 +57,7 @@ def texture_variables(printer: Printer, uniform: Uniform, type_: Sampler, source
 
 
 def pass_variables(target: Target, uniforms: Iterable[Uniform], sources: Mapping[str, str]) -> list[dict[str, Any]]:
-    """The passes that draw the body, with the engine's properties and the names in its text.
+    """The passes that draw bodies, with the engine's properties and the names in its text.
 
     `sources` are the techniques' own names.
     """
@@ -74,7 +74,7 @@ def pass_variables(target: Target, uniforms: Iterable[Uniform], sources: Mapping
         }
         for use in passes_of(uniforms)
         for drawn in [FRAME_PASSES[use.name]]
-        if drawn.of in ("body", "both")
+        if drawn.of != "surroundings"
     ]  # fmt: skip
 
 

@@ -29,9 +29,9 @@ def with_eye_pictures(
     origin, directions = camera.rays(width, height)
     shown = np.flatnonzero(hits.hit)
     parameters, textures, screens = dict(shell.parameters), dict(shell.textures), dict(shell.screens)
-    names = {texture["drawn"]: texture["source_name"] for texture in reflection["textures"]}
+    names = {drawn["name"]: drawn["texture"] for drawn in reflection["passes"]}
     for drawn in reflection["passes"]:
-        picture = names.get(name := drawn["name"], "")
+        name, picture = drawn["name"], drawn["texture"]
         if picture in textures:
             continue
         if name in EYE_PICTURES:

@@ -9,15 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.ir.frame_passes import (
-    CUBES,
-    DISTANT_VIEWS,
-    FRAME_PASSES,
-    IRRADIANCE,
-    LIGHT_LAYERS,
-    LIGHT_VIEWS,
-    REFLECTIONS,
-)
+from sssgen.ir.frame_passes import CUBES, DISTANT_VIEWS, IRRADIANCE, LIGHT_VIEWS, REFLECTIONS
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import with_article
 from sssgen.material import baked
@@ -31,14 +23,14 @@ from sssgen.run.render.environment_maps import irradiance_map, reflection_map
 from sssgen.run.render.shell_values import Shell
 from sssgen.scene.arrays import Array
 from sssgen.scene.bounds import world_corners
-from sssgen.scene.drawn_views import brightest, light_depth, light_layers
+from sssgen.scene.drawn_views import light_depth, light_layers, shown_lights
 from sssgen.scene.environment import read_environment
 from sssgen.scene.geometry import Distance, Geometry
 from sssgen.scene.scene import DistanceTexture, Picture, Scene
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.file_memo import CachedResult, note, remember
 from sssgen.support.paths import posix
-from sssgen.targets.reflection_record import DeclarationRecord, Reflection, TextureRecord, UniformRecord
+from sssgen.targets.reflection_record import DeclarationRecord, PassRecord, Reflection, TextureRecord, UniformRecord
 from sssgen.targets.runtime.numpy_textures import Texture
 
 MOST_TEXTURES = 16
@@ -90,26 +82,28 @@ def _light_views(
     A texture of the scene or of the material is not drawn. Raises SssgenError without such a light.
     """
     views: dict[str, DrawnLights] = {}
-    for texture in reflection["textures"]:
-        drawn = texture["drawn"]
-        if drawn not in LIGHT_VIEWS or drawn in views or scene.geometry is None or _file(scene, material, texture):
+    for drawn in _passes(scene, material, reflection):
+        name = drawn["name"]
+        if name not in LIGHT_VIEWS or scene.geometry is None:
             continue
-        seen = [light for light in lights if not (light[3] and drawn in DISTANT_VIEWS)]
-        if not seen:
-            hint = "add [[light]] with a direction" if drawn in DISTANT_VIEWS else "add [[light]]"
+        if not any(not (light[3] and name in DISTANT_VIEWS) for light in lights):
+            hint = "add [[light]] with a direction" if name in DISTANT_VIEWS else "add [[light]]"
             file = scene.document.reporter.file
-            raise failure(f"'{texture['source_name']}' is drawn from a light, and the scene has none", hint, file)
-        if drawn == LIGHT_LAYERS:
-            colors = np.array([light.color for light in scene.lights], float)
-            center = world_corners(scene.geometry).mean(axis=0)
-            seen = [lights[index] for index in brightest(center, np.array(lights, float), colors)]
-        else:
-            seen = seen[:1]
-        views[drawn] = _drawn_lights(scene.geometry, seen, FRAME_PASSES[drawn].layers, drawn == LIGHT_LAYERS)
+            raise failure(f"'{drawn['texture']}' is drawn from a light, and the scene has none", hint, file)
+        colors = np.array([light.color for light in scene.lights], float)
+        center = world_corners(scene.geometry).mean(axis=0)
+        seen = [lights[index] for index in shown_lights(name, center, np.array(lights, float), colors)]
+        views[name] = _drawn_lights(scene.geometry, seen, drawn["layers"], len(drawn["views"]) > 1)
     return views
 
 
-def _drawn_lights(geometry: Geometry, lights: list[list[float]], layers: tuple[str, ...], tiled: bool) -> DrawnLights:
+def _passes(scene: Scene, material: Material, reflection: Reflection) -> list[PassRecord]:
+    """The passes whose pictures neither the scene nor the material has as a file."""
+    textures = {texture["source_name"]: texture for texture in reflection["textures"]}
+    return [drawn for drawn in reflection["passes"] if not _file(scene, material, textures[drawn["texture"]])]
+
+
+def _drawn_lights(geometry: Geometry, lights: list[list[float]], layers: list[str], tiled: bool) -> DrawnLights:
     """Lights' views of a body; those of slow bodies, distance functions, are kept until a file of theirs changes."""
 
     def make() -> DrawnLights:
@@ -132,7 +126,7 @@ def _surroundings(scene: Scene, material: Material, reflection: Reflection) -> d
     if "environment" not in scene.measured:
         return {}
     makers = {IRRADIANCE: irradiance_map, REFLECTIONS: reflection_map}
-    asked = {texture["drawn"] for texture in reflection["textures"] if not _file(scene, material, texture)}
+    asked = {drawn["name"] for drawn in _passes(scene, material, reflection)}
     needed = [(name, maker) for name, maker in makers.items() if name in asked]
     environment = read_environment(scene) if needed else None
     scene.document.reporter.check()
