@@ -6,7 +6,7 @@
 // It executes the list of the reflection for a frame, before the render pass that draws the material. Where the device has
 // the feature float32-filterable, the pictures have 32-bit floats, else 16-bit ones.
 
-import { FAR, LAYERS, LAYER_GAP, PACKING, SIDE, columnsOf, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, PACKING, SIDE, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
 
 /**
  * A mesh, with the position at location 0 and the normal at location 1, as the material's shader has them.
@@ -221,10 +221,10 @@ class Passes {
     if (!this.#pictures.has(body)) this.#pictures.set(body, new Map());
     const own = /** @type {Map<string, GPUTexture>} */ (this.#pictures.get(body));
     for (const pass of this.passes) {
-      const bodies = pass.of === 'body' ? [body] : casters, columns = columnsOf(pass), isEye = pass.seenFrom === 'eye';
+      const bodies = pass.of === 'body' ? [body] : casters, isEye = pass.seenFrom === 'eye';
       const boxes = bodies.map(boxOf), box = { corners: boxes.flatMap(({ corners }) => corners), middle: boxes[0].middle };
       const views = isEye ? [eyeView(eye, box)] : this.#shown(pass, lights, box).map((light) => lightView(light, pass.seenFrom === 'distant light', box));
-      const size = isEye ? eye.size : [columns * SIDE, columns * SIDE];
+      const tiles = tilesOf(views.length), size = isEye ? eye.size : [tiles.across * SIDE, tiles.up * SIDE];
       const picture = this.#texture(own, pass.name, this.format, size);
       this.#draw(frame, pass, bodies, views, eye, box, picture);
       const { textures, samplers, values } = drawn, name = this.names[pass.texture];
@@ -232,7 +232,7 @@ class Passes {
       samplers[name] = this.samplers[Number(isFiltered(pass))];
       pass.views.forEach((name, index) => {
         const view = views[index];
-        values[this.names[name]] = view ? viewNumbers(view.clip, view.plane.flatMap((one) => [0, 0, one, 0]), 1, 0, -1, tileOf(index, columns), columns) : Array(16).fill(0);
+        values[this.names[name]] = view ? viewNumbers(view.clip, view.plane.flatMap((one) => [0, 0, one, 0]), 1, 0, -1, tileOf(index), tiles) : Array(16).fill(0);
       });
       if (pass.size) values[this.names[pass.size]] = [size[0]];
     }
@@ -261,9 +261,9 @@ class Passes {
 
   /** Draws one pass into its picture. */
   #draw(frame, pass, bodies, views, eye, { corners }, picture) {
-    const { width, height } = picture, columns = columnsOf(pass), lit = showsLight(pass);
+    const { width, height } = picture, tiles = tilesOf(views.length), lit = showsLight(pass);
     const layers = lit ? [{ back: false, before: -1 }] : layersOf(pass), isPacked = layers.length > 1;
-    const end = emptyOf(pass, lit ? FAR : Math.max(1e-3, ...views.map((view) => view.end)));
+    const end = emptyOf(pass, Math.max(1e-3, ...views.map((view) => view.end)));
     const clearValue = lit ? [0, 0, 0, end] : [end, end, end, end];
     const gap = LAYER_GAP * 0.5 * Math.hypot(...minus(corners[7], corners[0]));
     /** @type {GPUTexture[]} */
@@ -280,7 +280,7 @@ class Passes {
         { binding: 0, resource: { buffer: frame.buffer, size: 4 * FLOATS } }, { binding: 1, resource: front.createView() },
       ] });
       views.forEach((view, index) => {
-        const { x, y } = tileOf(index, columns), [w, h] = [width / columns, height / columns];
+        const { x, y } = tileOf(index), [w, h] = [width / tiles.across, height / tiles.up];
         const shown = lit || pass.seenFrom !== 'eye' ? view : { ...view, plane: [0, 0, 0, 0] };
         into.setViewport(x * w, y * h, w, h, 0, 1);
         for (const body of bodies) {
