@@ -15,6 +15,7 @@ import sssgen
 from engine_cases import mesh_of, through
 from sssgen.run.backends import Array, Backend
 from sssgen.run.backends.unity_backend import UnityHLSL
+from sssgen.run.compilers.compiler_interface import Compiler, Source
 from sssgen.run.render import unity_values
 from sssgen.run.render.scene_render import PlacedMesh
 from sssgen.run.render.shell_values import Shell
@@ -30,6 +31,7 @@ from unity_frames import (
     compile_feature,
     full_floats,
     mirrored,
+    passes_of,
     run_feature,
     texture_numbers,
 )
@@ -215,3 +217,19 @@ def test_every_version_draws_the_picture_with_its_lights(version: str, stage: St
     assert frame.values[0] == frame.values[1] and frame.lent == 0
     x, y, _, w = shell.view_projection
     np.testing.assert_allclose(frame.matrix("_EyeMatrix"), [0.5 * (x + w), 0.5 * (y + w), w, w], atol=2e-5)
+
+
+@pytest.mark.parametrize(
+    "line", ['shading = "unlit"', "two_sided = true", 'alpha_mode = "mask"', 'alpha_mode = "blend"']
+)
+def test_every_kind_of_material_has_the_pass(
+    line: str, compiler: Callable[[str], Compiler], assert_compiles: Callable[[Source], None], tmp_path: Path
+) -> None:
+    compiler("unity")
+    lighting = '[lighting]\ntechnique = "standard"\n' if "unlit" in line else ""
+    (tmp_path / "skin.toml").write_text(
+        f'[material]\nname = "skin"\n{line}\n{SPREAD.format("0.1, 0.1, 0.1")}{lighting}', encoding="utf-8"
+    )
+    shader = sssgen.compile(str(tmp_path / "skin.toml"), "unity-urp").files["skin.unity-urp.shader"]
+    assert sum(tags["LightMode"] == "SssgenLight" for _, tags in passes_of(shader)) == 1
+    assert_compiles(Source(shader, "unity-urp", name="skin.shader"))

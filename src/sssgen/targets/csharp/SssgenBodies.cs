@@ -111,14 +111,16 @@ namespace Sssgen {
 
         /// <summary>Warns of the textures that its materials lack, of each material once.</summary>
         public void WarnOfMissing(HashSet<Material> warned) {
-            renderer.GetPropertyBlock(values);
             foreach (var need in needs) {
                 Material material = need.material;
+                if (need.own.Textures.Count == 0 || warned.Contains(material)) {
+                    continue;
+                }
+                renderer.GetPropertyBlock(values);
                 var missing = need.own.Textures.FindAll(texture => IsMissing(material, texture.property));
-                if (missing.Count > 0 && warned.Add(material)) {
-                    foreach (var texture in missing) {
-                        Debug.LogWarning($"{material.name}: {texture.property} is missing: {texture.how}", material);
-                    }
+                foreach (var texture in missing) {
+                    warned.Add(material);
+                    Debug.LogWarning($"{material.name}: {texture.property} is missing: {texture.how}", material);
                 }
             }
         }
