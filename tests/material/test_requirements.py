@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from sssgen.material.material_loading import load_material
@@ -23,9 +25,25 @@ def test_the_requirements_of_examples(name: str) -> None:
 
 
 def test_what_an_engine_draws_itself() -> None:
-    pictures = ["the light's depth map", "a picture of the body's back faces (each drawn by the material itself)"]
+    own = "(drawn by the material itself)"
+    pictures = [f"the light's depth map {own}", f"a picture of the body's back faces {own}"]
     assert describe(load_material("jade_ring").stages, ["the material itself"]) == pictures
     assert describe(load_material("leaves").stages, ["the material itself"]) == ["a rigid mesh"]
+
+
+def test_each_picture_says_by_whom_it_is_drawn(tmp_path: Path) -> None:
+    """What draws distances may not draw light."""
+    text = '[material]\nname = "skin"\n[[surface]]\ntechnique = "screen_diffusion"\n'
+    text += '[[thickness]]\ntechnique = "depth_map_thickness"\n[[thickness]]\ntechnique = "beer_lambert"\n'
+    text += '[translucency]\ntechnique = "wrap_lighting"\n'
+    (tmp_path / "skin.toml").write_text(text, encoding="utf-8")
+    stages = load_material(str(tmp_path / "skin.toml")).stages
+    distances, light = "the light's depth map", "a picture of what the body would reflect if it were white"
+    assert describe(stages) == [distances, light]
+    assert describe(stages, ["a node"]) == [f"{distances} (drawn by a node)", light]
+    several = ["a node in A", "a feature in B"]
+    by = "(drawn by a node in A, by a feature in B)"
+    assert describe(stages, several, several[1:]) == [f"{distances} {by}", f"{light} (drawn by a feature in B)"]
 
 
 def head(name: str, file: str = "{}.js", target: str = "threejs", form: str = "shader") -> str:

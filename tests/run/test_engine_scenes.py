@@ -25,12 +25,11 @@ from sssgen.run.backends.godot_drawing import RENDERERS as GODOTS
 from sssgen.run.backends.godot_drawing import Godot
 from sssgen.run.backends.godot_drawing import _decode as decoded
 from sssgen.run.backends.unity_backend import UnityHLSL
-from sssgen.run.backends.unity_program import UnityProgram
 from sssgen.run.compilers import Compiler
 from sssgen.run.render import godot_values, page_values, unity_values
 from sssgen.run.render.shell_values import Shell, bound_texture
 from sssgen.targets.runtime.numpy_textures import Texture
-from unity_frames import Lamp, Replay, compile_feature, mirrored, run_feature, texture_numbers
+from unity_frames import Lamp, Replay, compile_feature, full_floats, mirrored, run_feature, texture_numbers
 
 SLOW = partial(pytest.param, marks=pytest.mark.slow)
 QUICK = {
@@ -97,18 +96,12 @@ def test_a_scene_in_urp(
     engine = unity_values._engine
     monkeypatch.setattr(unity_values, "_engine", lambda *of: engine(*of) | {key: np.array(own[key]) for key in own})
     monkeypatch.setattr(machine.unity, "unity_version", 60000100)
-    monkeypatch.setattr(machine.whole, "texels", partial(_full_floats, machine.whole))
+    monkeypatch.setattr(machine.whole, "texels", partial(full_floats, machine.whole))
     whole, reflected = (
         unity_values.shade(sssgen.compile(material, "unity-urp"), shell, machine, case.mesh.size, case.mesh.points)
         for material in (case.material, case.opaque)
     )
     check_light(whole - reflected + case.emission, case, f"{name}, unity-urp")
-
-
-def _full_floats(program: UnityProgram, texture: Texture) -> Any:
-    """A texture as the feature makes it; this back end rounds others to halves."""
-    create = {"2D": program.context.texture, "3D": program.context.texture3d}[texture.dim]
-    return create(texture.size(), 4, np.ascontiguousarray(texture.levels[0], np.float32).tobytes(), dtype="f4")
 
 
 def _passes_of_urp(case: SceneCase, machine: UnityHLSL, folder: Path) -> Shell:

@@ -18,12 +18,12 @@ from sssgen.scene.drawn_views import TEXELS, TILES, brightest, eye_layers, light
 from sssgen.scene.geometry import Torus
 from torus_cases import torus_mesh
 from unity_frames import (
-    FEATURE,
     VERSIONS,
     Frame,
     Lamp,
     Replay,
     compile_feature,
+    feature_text,
     mirrored,
     passes_of,
     run_feature,
@@ -92,7 +92,7 @@ def test_the_feature_is_written_for_materials_with_passes_alone() -> None:
     compiled = sssgen.compile("jade_ring", "unity-urp")
     listed = [file["name"] for file in compiled.reflection["files"]]
     assert listed == ["jade_ring.unity-urp.shader", "SssgenPasses.cs"]
-    assert compiled.files["SssgenPasses.cs"] == FEATURE.read_text(encoding="utf-8")
+    assert compiled.files["SssgenPasses.cs"] == feature_text()
     assert "SssgenPasses.cs" not in sssgen.compile("ice", "unity-urp").files
 
 
@@ -198,3 +198,36 @@ def assert_same(drawn: Array, expected: Array, name: str) -> None:
     share = float((difference > 2e-3).mean())
     print(f"{name}: {100 * share:.2f} % of the texels differ")
     assert share < 0.005
+
+
+BAKED = """
+[material]
+name = "ear"
+[[surface]]
+technique = "base_color"
+[[thickness]]
+technique = "view_thickness_map"
+[translucency]
+technique = "interior_octaves"
+bind = { light_path = "depth_map_path" }
+"""
+
+
+def test_a_texture_that_is_missing_is_a_warning(program: Path, tmp_path: Path) -> None:
+    """Once for each material, with the command that bakes it; not where the material has the texture."""
+    (tmp_path / "ear.toml").write_text(BAKED, encoding="utf-8")
+    compiled = sssgen.compile(str(tmp_path / "ear.toml"), "unity-urp")
+    needed = {t["name"]: t["needed"] for t in compiled.reflection["textures"] if t["needed"]}
+    assert len(needed) == 3 and all("sssgen bake" in text for text in needed.values())
+    shader = compiled.files["ear.unity-urp.shader"]
+    frame = frame_of(program, shader, bodies=2)
+    own = [f"{name} is missing: {text}" for name, text in needed.items()]
+    assert [warning.partition(": ")[2] for warning in frame.warnings] == own * 2
+    assert len({warning.partition(": ")[0] for warning in frame.warnings}) == 2
+    given = frame_of(program, shader, given=next(iter(needed)))
+    assert [warning.partition(": ")[2] for warning in given.warnings] == own[1:]
+
+
+def test_a_shader_without_baked_textures_warns_of_nothing(program: Path, shaders: dict[str, str]) -> None:
+    assert "SssgenNeeds" not in shaders["one light"]
+    assert not frame_of(program, shaders["one light"]).warnings

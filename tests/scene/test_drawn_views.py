@@ -295,7 +295,8 @@ def test_a_texture_of_the_scene_is_not_drawn(folder: Path) -> None:
         ("babylonjs", "drawn by the material itself"),
         ("playcanvas", "drawn by the material itself"),
         ("godot", "draw the translucent body alone from the eye with a white matt material"),
-        ("unity-urp", "draw the translucent body alone from the eye with a white matt material"),
+        ("unity-urp", "drawn by the renderer feature of SssgenPasses.cs"),
+        ("unity-builtin", "draw the translucent body alone from the eye with a white matt material"),
     ],
 )
 def test_the_head_says_who_draws_light_on_the_body(target: str, said: str, tmp_path: Path) -> None:

@@ -10,8 +10,9 @@ import os
 import re
 import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,9 +24,10 @@ from sssgen.run.backends.unity_backend import UnityHLSL
 from sssgen.run.backends.unity_program import UnityProgram
 from sssgen.run.render import unity_values
 from sssgen.run.render.shell_values import Shell
+from sssgen.targets import registry
+from sssgen.targets.javascript_runtime import runtime_text
 from sssgen.targets.runtime.numpy_textures import Texture
 
-FEATURE = ROOT / "src/sssgen/targets/csharp/SssgenPasses.cs"
 STAND_INS = ROOT / "tests/run/unity_csharp"
 VERSIONS = {
     "URP 12": (),
@@ -61,6 +63,7 @@ class Frame(NamedTuple):
     commands: list[list[str]]
     values: list[dict[str, str]]
     """For each body property → its value as text."""
+    warnings: list[str]
     lent: int
     """The temporary textures that are not given back at the end."""
 
@@ -79,11 +82,20 @@ def mono() -> tuple[str, str]:
     return programs[0], programs[1]
 
 
+def feature_text() -> str:
+    """The renderer feature as `emit` writes it."""
+    target = registry.load("unity-urp")
+    (file,) = (file for file in target.files["shader"] if file.sources)
+    return runtime_text(file.sources, target.folder)
+
+
 def compile_feature(version: str, folder: Path) -> Path:
     """The program that runs the feature on the stand-ins, as a version of Unity compiles it; a warning is an error."""
     program = folder / "frame.exe"
     symbols = [f"-define:{symbol}" for symbol in VERSIONS[version]]
-    sources = map(str, [*sorted(STAND_INS.glob("*.cs")), FEATURE])
+    feature = folder / "SssgenPasses.cs"
+    feature.write_text(feature_text(), encoding="utf-8")
+    sources = map(str, [*sorted(STAND_INS.glob("*.cs")), feature])
     call = [mono()[0], "-langversion:latest", "-warnaserror", *symbols, f"-out:{program}", *sources]
     done = subprocess.run(call, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -104,13 +116,16 @@ def run_feature(
     `given` is a texture that the materials have already.
     """
     rows: list[list[Any]] = [["pass", *sum(tags.items(), ())] for _, tags in passes_of(shader)]
+    rows += [["tag", *tag] for tag in _TAG.findall(shader.partition("SubShader")[2].partition("Pass {")[0])]
     for lamp in lamps:
         ahead = lamp.towards if lamp.kind == "Spot" else np.negative(lamp.towards)
         place, ahead = _mirrored(lamp.place), _mirrored(ahead / np.linalg.norm(ahead))
         rows.append(["light", lamp.kind, *place, *ahead, *lamp.color, lamp.spot_angle, lamp.reach])
     rows += [["body", given, *_mirrored((low + high) / 2), *(high - low)] for low, high in boxes]
     place, matrix = eye
-    rows.append(["camera", "", *size, *_mirrored(place), *MIRROR.ravel(), *np.asarray(matrix).ravel()])
+    view = _view(place, matrix)
+    projection = matrix @ np.linalg.inv(view)
+    rows.append(["camera", "", *size, *_mirrored(place), *(view @ MIRROR).ravel(), *projection.ravel()])
     text = "\n".join("\t".join(map(str, row)) for row in rows) + "\n"
     done = subprocess.run(
         [mono()[1], str(program)], input=text, capture_output=True, text=True, check=False, timeout=60
@@ -121,7 +136,19 @@ def run_feature(
     for _, body, name, value in (row for row in written if row[0] == "value"):
         values[int(body)][name] = value
     (lent,) = (int(row[1]) for row in written if row[0] == "lent")
-    return Frame([row for row in written if row[0] not in ("value", "lent")], values, lent)
+    warnings = [row[1] for row in written if row[0] == "warning"]
+    return Frame([row for row in written if row[0] not in ("value", "warning", "lent")], values, warnings, lent)
+
+
+def _view(place: Array, matrix: Array) -> Array:
+    """World to view space of an eye whose `matrix` goes to clip space; how it is turned about its axis is free."""
+    ahead = matrix[3, :3]
+    right = np.cross(ahead, np.roll(ahead, 1))
+    right /= np.linalg.norm(right)
+    view = np.eye(4)
+    view[:3, :3] = right, np.cross(right, ahead), -ahead
+    view[:3, 3] = -view[:3, :3] @ place
+    return view
 
 
 def _mirrored(place: Sequence[float] | Array) -> Array:
@@ -136,25 +163,38 @@ class Replay(UnityProgram):
         head, _, rest = shader.partition("        Pass {\n")
         tail = rest[rest.rindex("    }\n    FallBack") :]
         self.passes: list[tuple[str, Stage, Stage] | None] = []
+        self.modes: list[str] = []
         for text, tags in passes_of(shader):
             alone = Text(f"{head}        Pass {{\n{text}        }}\n{tail}")
-            if tags["LightMode"] != "SssgenLayer":
+            self.modes.append(tags["LightMode"])
+            if not tags["LightMode"].startswith("Sssgen"):
                 self.passes.append(None)
                 continue
-            self.passes.append((text, machine.forward(alone, "vertex", ()), machine.forward(alone, "fragment", ())))
+            stages = (machine.forward(alone, stage, ("_ADDITIONAL_LIGHTS=1",)) for stage in ("vertex", "fragment"))
+            self.passes.append((text, *stages))
         self.pictures: dict[str, tuple[Any, Any]] = {}
         self.state: dict[str, Any] = {}
 
-    def pictures_of(self, frame: Frame, mesh: tuple[Array, Array]) -> dict[str, Array]:
-        """Number of a texture → (rows, columns, 4), row 0 at v = 0."""
+    def pictures_of(
+        self, frame: Frame, mesh: tuple[Array, Array], lights: Mapping[str, Array] = MappingProxyType({})
+    ) -> dict[str, Array]:
+        """Number of a texture → (rows, columns, 4), row 0 at v = 0. `lights` are what URP says of them."""
         vertices, triangles = mesh
-        values = unity_values._engine(Shell(np.eye(4), np.zeros(3)), (1, 1))
+        values = unity_values._engine(Shell(np.eye(4), np.zeros(3)), (1, 1)) | dict(lights)
         bound: dict[str, Bound] = {}
+
+        def draw(number: int) -> None:
+            drawn = self.passes[number]
+            assert drawn is not None
+            self.state["pass"], vertex, fragment = drawn
+            self.draw(Drawing((1, 1), fragment, vertex, True, bound, {}, values, vertices, triangles))
+
         for word, *rest in frame.commands:
             numbers = " ".join(rest).split()
             if word in ("target", "copy"):
                 self._make(numbers[:6])
                 self.state["frame"] = self.pictures[numbers[0]][0]
+                self.state["viewport"] = (0, 0, *map(int, numbers[1:3]))
             if word == "copy":
                 self._make(numbers[6:])
                 with self.context:
@@ -168,10 +208,9 @@ class Replay(UnityProgram):
             elif word == "texture":
                 bound[numbers[0]] = Bound(Texture(self._read(numbers[1])), Place(0, 0))
             elif word == "draw" and numbers[1] == "1":  # the stand-in's first material is none
-                drawn = self.passes[int(numbers[2])]
-                assert drawn is not None
-                self.state["pass"], vertex, fragment = drawn
-                self.draw(Drawing((1, 1), fragment, vertex, True, bound, {}, values, vertices, triangles))
+                draw(int(numbers[2]))
+            elif word == "bodies":
+                draw(self.modes.index(numbers[0]))
         return {number: self._read(number) for number in self.pictures}
 
     def _make(self, numbers: Sequence[str]) -> None:
@@ -215,19 +254,28 @@ class Replay(UnityProgram):
         self.bind_uniforms(program, drawing.textures, drawing.values, keep)
         self.bind_blocks(program, drawing.blocks, keep)
         array = keep(self.vertex_array(program, drawing, keep))
-        channel = re.search(r"ColorMask (\w)", self.state["pass"])
-        side = re.search(r"Cull (\w+)", self.state["pass"])
-        assert channel and side
-        frame.color_mask = tuple(name == channel[1] for name in "RGBA")
+        channels, side = (
+            match[1] if (match := re.search(rf"{word} (\w+)", self.state["pass"])) else usual
+            for word, usual in (("ColorMask", "RGBA"), ("Cull", "Back"))
+        )
+        frame.color_mask = tuple(name in channels for name in "RGBA")
         frame.use()
         context.viewport = self.state["viewport"]
         context.enable_only(context.DEPTH_TEST | context.CULL_FACE)
-        context.front_face, context.cull_face, context.depth_func = "cw", side[1].lower(), "<="
+        context.front_face, context.cull_face, context.depth_func = "cw", side.lower(), "<="
         array.render(context.TRIANGLES)
         context.front_face, context.cull_face = "ccw", "back"
         for resource in kept:
             resource.release()
         return np.zeros(0)
+
+
+def full_floats(program: UnityProgram, texture: Texture) -> Any:
+    """A texture as the feature makes it; this back end rounds others to halves."""
+    if texture.dim == "Cube":  # of Unity's own headers
+        return type(program).texels(program, texture)
+    create = {"2D": program.context.texture, "3D": program.context.texture3d}[texture.dim]
+    return create(texture.size(), 4, np.ascontiguousarray(texture.levels[0], np.float32).tobytes(), dtype="f4")
 
 
 def _as_columns(numbers: Array) -> Array:

@@ -74,12 +74,10 @@ def describe(
         words["bake"] += f" ({', '.join(texture.name for texture in baked_textures(uses))})"
     if own := bodies(uses):
         words["rigid"] = f"the body that it is made for ({', '.join(own)}), as on another mesh its light is wrong"
-    drawn: list[str] = []
     for kinds, drawing in ((_LIGHT, drawers_of_light), (_DISTANCES, drawers)):
-        pictures = [words.pop(name) for name in required if name in kinds] if drawing else []
-        by = f" ({'each ' if len(pictures) > 1 else ''}drawn {', '.join(f'by {drawer}' for drawer in drawing)})"
-        drawn += [*pictures[:-1], *(last + by for last in pictures[-1:])]
-    return [*words.values(), *drawn]
+        by = f" (drawn {', '.join(f'by {drawer}' for drawer in drawing)})" if drawing else ""
+        words.update({name: words[name] + by for name in required if name in kinds})
+    return [*words.values()]
 
 
 def bodies(uses: Iterable[TechniqueUse]) -> list[str]:

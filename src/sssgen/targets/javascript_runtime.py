@@ -1,7 +1,7 @@
 """The runtime of an engine: what its materials share, as one file beside them, the same for every material.
 
 For the web its sources are plain ES modules in `javascript/`, which import each other and are joined into one text. For
-Godot it is one script in `gdscript/`, for Unity one in `csharp/`.
+Godot they are scripts in `gdscript/`, for Unity in `csharp/`, where each namespace has its own `using`.
 """
 
 from __future__ import annotations

@@ -68,6 +68,7 @@ namespace UnityEngine {
         public Vector4(float x, float y, float z, float w) { this.x = x; this.y = y; this.z = z; this.w = w; }
         public static implicit operator Vector4(Vector3 v) => new Vector4(v.x, v.y, v.z, 0);
         public static Vector4 operator +(Vector4 a, Vector4 b) => new Vector4(a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w);
+        public static Vector4 operator -(Vector4 a) => -1 * a;
         public static Vector4 operator *(float b, Vector4 a) => new Vector4(a.x * b, a.y * b, a.z * b, a.w * b);
         public static Vector4 operator /(Vector4 a, float b) => 1 / b * a;
     }
@@ -130,8 +131,14 @@ namespace UnityEngine {
 
     public struct Plane { }
 
+    public static class Debug {
+        public static readonly List<string> Warnings = new List<string>();
+        public static void LogWarning(object message, Object context) => Warnings.Add(message.ToString());
+    }
+
     public class Object {
         public static readonly List<Object> Scene = new List<Object>();
+        public string name = "";
 #if UNITY_2022_2_OR_NEWER
         public static T[] FindObjectsByType<T>(FindObjectsSortMode order) where T : Object => Scene.OfType<T>().ToArray();
 #else
@@ -198,6 +205,7 @@ namespace UnityEngine {
 
     public sealed class Shader : Object {
         private static readonly List<string> Names = new List<string>();
+        public Dictionary<string, string> Tags = new Dictionary<string, string>();
         /// <summary>For each pass its tags.</summary>
         public List<Dictionary<string, string>> Passes = new List<Dictionary<string, string>>();
         public int passCount => Passes.Count;
@@ -213,9 +221,12 @@ namespace UnityEngine {
         public Shader shader;
         public readonly Dictionary<int, Texture> Textures = new Dictionary<int, Texture>();
         public Texture GetTexture(int name) => Textures.TryGetValue(name, out Texture texture) ? texture : null;
+        public string GetTag(string tag, bool searchFallbacks, string defaultValue) =>
+            shader.Tags.TryGetValue(tag, out string value) ? value : defaultValue;
     }
     public sealed class MaterialPropertyBlock {
         public readonly Dictionary<int, object> Values = new Dictionary<int, object>();
+        public Texture GetTexture(int name) => Values.TryGetValue(name, out object texture) ? (Texture)texture : null;
         public void SetMatrix(int name, Matrix4x4 value) => Values[name] = value;
         public void SetTexture(int name, Texture value) => Values[name] = value;
     }

@@ -21,9 +21,9 @@ public static class Frame {
         var feature = new Sssgen.SssgenPasses();
         feature.Create();
         for (int frame = 0; frame < 2; frame++) { // the second one gives back what the first one lent
-            List<CommandBuffer> done = Draw(feature);
+            IEnumerable<object[]> commands = Draw(feature).ToList();
             if (frame == 1) {
-                foreach (object[] command in done.SelectMany(buffer => buffer.Rows)) {
+                foreach (object[] command in commands) {
                     Write(command);
                 }
                 foreach (Renderer renderer in UnityEngine.Object.Scene.OfType<Renderer>()) {
@@ -33,29 +33,35 @@ public static class Frame {
                 }
             }
         }
+        foreach (string warning in Debug.Warnings) {
+            Write("warning", warning);
+        }
         feature.Dispose();
         Write("lent", RenderTexture.Lent.Count);
     }
 
-    private static List<CommandBuffer> Draw(ScriptableRendererFeature feature) {
+    private static IEnumerable<object[]> Draw(ScriptableRendererFeature feature) {
         var renderer = new ScriptableRenderer();
         var data = new RenderingData();
         feature.OnCameraPreCull(renderer, new CameraData { camera = camera, cameraTargetDescriptor = size });
         feature.AddRenderPasses(renderer, ref data);
-        Time.realtimeSinceStartup += 0.02f;
-        if (renderer.Passes.Count == 0) return new List<CommandBuffer>();
-        ScriptableRenderPass pass = renderer.Passes.Single();
+        Time.realtimeSinceStartup += 1; // so that the feature searches for bodies again
+        return renderer.Passes.OrderBy(pass => pass.renderPassEvent).SelectMany(pass => Draw(pass, data));
+    }
+
+    private static IEnumerable<object[]> Draw(ScriptableRenderPass pass, RenderingData data) {
+        yield return new object[] { "pass", pass.renderPassEvent };
 #if UNITY_6000_0_OR_NEWER && !URP_COMPATIBILITY_MODE
         var graph = new UnityEngine.Rendering.RenderGraphModule.RenderGraph();
         pass.RecordRenderGraph(graph, new ContextContainer());
-        return graph.Done;
+        foreach (object[] row in graph.Done.Rows) yield return row;
 #else
 #pragma warning disable 612 // obsolete in Unity 6
         var context = new ScriptableRenderContext();
         pass.OnCameraSetup(new CommandBuffer(), ref data);
         if (pass.Target == null) throw new InvalidOperationException("URP would bind the camera's target");
         pass.Execute(context, ref data);
-        return context.Done;
+        foreach (object[] row in context.Done.Rows) yield return row;
 #endif
     }
 
@@ -64,6 +70,9 @@ public static class Frame {
         switch (row[0]) {
             case "pass":
                 shader.Passes.Add(Enumerable.Range(0, row.Length / 2).ToDictionary(i => row[2 * i + 1], i => row[2 * i + 2]));
+                break;
+            case "tag":
+                shader.Tags[row[1]] = row[2];
                 break;
             case "light":
                 var light = new Light {
@@ -75,7 +84,7 @@ public static class Frame {
                 UnityEngine.Object.Scene.Add(light);
                 break;
             case "body":
-                var material = new Material { shader = shader };
+                var material = new Material { shader = shader, name = "material " + UnityEngine.Object.Scene.Count };
                 if (row[1] != "") material.Textures[Shader.PropertyToID(row[1])] = new RenderTexture(1, 1, 0);
                 UnityEngine.Object.Scene.Add(new Renderer {
                     bounds = new Bounds(Vector(numbers, 0), Vector(numbers, 3)), Materials = new[] { null, material },

@@ -26,13 +26,44 @@ namespace UnityEngine.Rendering {
         public void SetGlobalMatrix(int name, Matrix4x4 value) => Add("set", name, value);
         public void SetGlobalTexture(int name, RenderTargetIdentifier value) => Add("texture", name, value.Texture);
         public void DrawRenderer(Renderer renderer, Material material, int part, int pass) => Add("draw", renderer, part, pass);
+#if UNITY_6000_0_OR_NEWER
+        public void DrawRendererList(RendererList list) => list.Of.DrawInto(this);
+#endif
+        public void Clear() => Rows.Clear();
         private void Add(params object[] row) => Rows.Add(row);
     }
 
     public sealed class ScriptableRenderContext {
-        public readonly List<CommandBuffer> Done = new List<CommandBuffer>();
-        public void ExecuteCommandBuffer(CommandBuffer commands) => Done.Add(commands);
+        public readonly CommandBuffer Done = new CommandBuffer();
+        public void ExecuteCommandBuffer(CommandBuffer commands) => Done.Rows.AddRange(commands.Rows);
+#if UNITY_6000_0_OR_NEWER
+        public RendererList CreateRendererList(ref RendererListParams list) => new RendererList { Of = list };
+#else
+        public void DrawRenderers(CullingResults seen, ref DrawingSettings settings, ref FilteringSettings filter) =>
+            new RendererListParams(seen, settings, filter).DrawInto(Done);
+#endif
     }
+
+    // What the camera sees, drawn as URP does: each body with its own lights, with the pass of a LightMode.
+    public enum SortingCriteria { CommonOpaque = 59 }
+    public struct RenderQueueRange { public static RenderQueueRange all => new RenderQueueRange(); }
+    public struct CullingResults { }
+    public struct DrawingSettings { public ShaderTagId Pass; }
+    public struct FilteringSettings {
+        public bool All;
+        public FilteringSettings(RenderQueueRange? range = null) { All = range != null; }
+    }
+    public struct RendererListParams {
+        private DrawingSettings settings;
+        public RendererListParams(CullingResults seen, DrawingSettings settings, FilteringSettings filter) {
+            if (!filter.All) throw new InvalidOperationException("no bodies");
+            this.settings = settings;
+        }
+        internal void DrawInto(CommandBuffer commands) => commands.Rows.Add(new object[] { "bodies", settings.Pass.name });
+    }
+#if UNITY_6000_0_OR_NEWER
+    public struct RendererList { public RendererListParams Of; }
+#endif
 
     public static class CommandBufferPool {
         public static CommandBuffer Get(string name) => new CommandBuffer();
@@ -50,7 +81,7 @@ namespace UnityEngine.Rendering {
         public static RTHandle Alloc(RenderTexture texture) => new RTHandle { rt = texture };
     }
 #if UNITY_6000_0_OR_NEWER
-    public sealed class ContextContainer { }
+    public sealed class ContextContainer { public T Get<T>() where T : new() => new T(); }
     public sealed class UnsafeCommandBuffer { public readonly CommandBuffer Own = new CommandBuffer(); }
     public static class CommandBufferHelpers {
         public static CommandBuffer GetNativeCommandBuffer(UnsafeCommandBuffer commands) => commands.Own;
@@ -61,14 +92,21 @@ namespace UnityEngine.Rendering {
 #if UNITY_6000_0_OR_NEWER
 namespace UnityEngine.Rendering.RenderGraphModule {
     public delegate void BaseRenderFunc<Data, Context>(Data data, Context context) where Data : class, new();
+    public struct RendererListHandle {
+        public RendererListParams Of;
+        public static implicit operator RendererList(RendererListHandle list) => new RendererList { Of = list.Of };
+    }
     public sealed class UnsafeGraphContext { public UnsafeCommandBuffer cmd = new UnsafeCommandBuffer(); }
     public interface IUnsafeRenderGraphBuilder : IDisposable {
         void AllowPassCulling(bool value);
         void AllowGlobalStateModification(bool value);
+        void UseAllGlobalTextures(bool value);
+        void UseRendererList(in RendererListHandle list);
         void SetRenderFunc<Data>(BaseRenderFunc<Data, UnsafeGraphContext> function) where Data : class, new();
     }
     public sealed class RenderGraph {
-        public readonly List<CommandBuffer> Done = new List<CommandBuffer>();
+        public readonly CommandBuffer Done = new CommandBuffer();
+        public RendererListHandle CreateRendererList(in RendererListParams list) => new RendererListHandle { Of = list };
         public IUnsafeRenderGraphBuilder AddUnsafePass<Data>(string name, out Data data) where Data : class, new() {
             data = new Data();
             return new Builder { Graph = this, Data = data };
@@ -76,17 +114,21 @@ namespace UnityEngine.Rendering.RenderGraphModule {
         private sealed class Builder : IUnsafeRenderGraphBuilder {
             public RenderGraph Graph;
             public object Data;
-            private bool culled = true, changes;
+            private bool culled = true, changes, reads, draws;
             private Action<UnsafeGraphContext> run;
             public void AllowPassCulling(bool value) => culled = value;
             public void AllowGlobalStateModification(bool value) => changes = value;
+            public void UseAllGlobalTextures(bool value) => reads = value;
+            public void UseRendererList(in RendererListHandle list) => draws = true;
             public void SetRenderFunc<T>(BaseRenderFunc<T, UnsafeGraphContext> function) where T : class, new() =>
                 run = context => function((T)Data, context);
             public void Dispose() {
                 if (culled || !changes) return; // a pass without outputs
                 var context = new UnsafeGraphContext();
                 run(context);
-                Graph.Done.Add(context.cmd.Own);
+                bool lit = context.cmd.Own.Rows.Exists(row => (string)row[0] == "bodies");
+                if (lit && !(draws && reads)) throw new InvalidOperationException("the graph does not know what the pass reads");
+                Graph.Done.Rows.AddRange(context.cmd.Own.Rows);
             }
         }
     }
@@ -94,14 +136,24 @@ namespace UnityEngine.Rendering.RenderGraphModule {
 #endif
 
 namespace UnityEngine.Rendering.Universal {
-    public enum RenderPassEvent { BeforeRendering = 0 }
+    public enum RenderPassEvent { BeforeRendering = 0, BeforeRenderingOpaques = 250 }
     public struct CameraData {
         public Camera camera;
         public RenderTextureDescriptor cameraTargetDescriptor;
         public Matrix4x4 GetViewMatrix(int view = 0) => camera.worldToCameraMatrix;
         public Matrix4x4 GetProjectionMatrix(int view = 0) => camera.projectionMatrix;
     }
-    public struct RenderingData { }
+    public struct RenderingData { public CullingResults cullResults; }
+#if UNITY_6000_0_OR_NEWER
+    public sealed class UniversalRenderingData { public CullingResults cullResults; }
+    public sealed class UniversalCameraData { }
+    public sealed class UniversalLightData { }
+    public static class RenderingUtils {
+        public static DrawingSettings CreateDrawingSettings(
+            ShaderTagId pass, UniversalRenderingData data, UniversalCameraData camera, UniversalLightData lights, SortingCriteria order) =>
+            new DrawingSettings { Pass = pass };
+    }
+#endif
     public abstract class ScriptableRenderPass {
         public RenderPassEvent renderPassEvent { get; set; }
 #if UNITY_6000_0_OR_NEWER
@@ -109,6 +161,8 @@ namespace UnityEngine.Rendering.Universal {
 #endif
 #if !UNITY_6000_0_OR_NEWER || URP_COMPATIBILITY_MODE
         public RenderTexture Target;
+        public DrawingSettings CreateDrawingSettings(ShaderTagId pass, ref RenderingData data, SortingCriteria order) =>
+            new DrawingSettings { Pass = pass };
 #if UNITY_2022_2_OR_NEWER
         public void ConfigureTarget(RTHandle target) => Target = target.rt;
 #else

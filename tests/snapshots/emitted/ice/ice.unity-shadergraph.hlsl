@@ -355,7 +355,7 @@ void Ice_float(
     float3 light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
     float3 L = light.direction;
     Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color,
-            attenuation, scale, ambient, power) * light_color;
+                attenuation, scale, ambient, power) * light_color;
 #if defined(_ADDITIONAL_LIGHTS)
 #if USE_CLUSTER_LIGHT_LOOP || USE_FORWARD_PLUS || USE_CLUSTERED_LIGHTING
     // The loop below has the lights near this part of the screen; directional ones come first in the array.
@@ -369,7 +369,7 @@ void Ice_float(
         light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
         L = light.direction;
         Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color,
-            attenuation, scale, ambient, power) * light_color;
+                    attenuation, scale, ambient, power) * light_color;
     }
 #endif
     uint light_count = GetAdditionalLightsCount();
@@ -378,7 +378,7 @@ void Ice_float(
         light_color = light.color * (light.distanceAttenuation * in_layers(light.layerMask));
         L = light.direction;
         Emission += ice_evaluate_translucency(surface, V, N, L, distortion, subsurface_color,
-            attenuation, scale, ambient, power) * light_color;
+                    attenuation, scale, ambient, power) * light_color;
     LIGHT_LOOP_END
 #endif
 #endif

@@ -11,6 +11,7 @@ float4x4 unity_MatrixVP;
 float3 _WorldSpaceCameraPos;
 float4 _ProjectionParams;
 float4 _ScreenParams;
+float4 _ScaledScreenParams;
 float4 _Time;
 
 #define UNITY_MATRIX_M unity_ObjectToWorld

@@ -126,6 +126,20 @@ half3 SampleProbeVolumePixel(half3 vertexValue, float3 absolutePositionWS, float
 }
 #endif
 
+struct AmbientOcclusionFactor
+{
+    half indirectAmbientOcclusion;
+    half directAmbientOcclusion;
+};
+
+// Nothing is occluded.
+AmbientOcclusionFactor GetScreenSpaceAmbientOcclusion(float2 normalizedScreenSpaceUV)
+{
+    AmbientOcclusionFactor factor;
+    factor.indirectAmbientOcclusion = factor.directAmbientOcclusion = 1.0;
+    return factor;
+}
+
 struct BRDFData
 {
     half3 diffuse;
@@ -144,6 +158,11 @@ void InitializeBRDFData(
     outBRDFData.specular = lerp((half3)0.04, albedo, metallic);
 #endif
     outBRDFData.roughness = (1.0 - smoothness) * (1.0 - smoothness);
+}
+
+half3 LightingLambert(half3 lightColor, half3 lightDir, half3 normal)
+{
+    return lightColor * saturate(dot(normal, lightDir));
 }
 
 half3 standin_received(Light light, InputData inputData, SurfaceData surfaceData)
