@@ -15,7 +15,7 @@ import sssgen
 from engine_cases import BLACK, ENGINES, HEAD, RENDERERS, mesh_of, through
 from skips import or_skip
 from sssgen.material.material_loading import load_material
-from sssgen.run.backends import Array
+from sssgen.run.backends import Array, engine_page
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
 from sssgen.run.backends.web_engines import BABYLON
@@ -208,6 +208,16 @@ def test_a_texture_that_is_missing_is_named_once(page: EnginePage) -> None:
     volume = Texture(np.ones((2, 2, 2, 4), np.float32))
     assert np.isfinite(page.draw(drawing._replace(textures={"distanceMap": volume}))).all()
     assert np.isfinite(page.draw(bare(page.engine.target, "jade_ring"))).all(), "it draws its texture itself"
+
+
+@pytest.mark.parametrize("page", [("threejs", "webgpu"), ("threejs", "webgl2")], ids="-".join, indirect=True)
+def test_a_mesh_without_texture_coordinates_is_one_warning(page: EnginePage, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Though three builds a shader for its shadow, too."""
+    uvs = {name: place for name, place in engine_page.ATTRIBUTES.items() if not name.startswith("uv")}
+    monkeypatch.setattr(engine_page, "ATTRIBUTES", uvs)
+    said = r"error: threejs: Mesh: the geometry has no attribute 'uv', which the material reads: it is 0$"
+    with pytest.raises(SssgenError, match=said):
+        page.draw(bare("threejs", "skin_ear")._replace(properties={"stage": {"shadows": True}}))
 
 
 TRANSFORMS = {"threejs": "coverTexture.rotation", "babylonjs": "coverTexture.uScale"}

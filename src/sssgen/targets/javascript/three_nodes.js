@@ -63,6 +63,19 @@ const textureScreenUV = TSL.Fn((_, builder) => {
   return builder.renderer.backend.isWebGPUBackend ? screen : TSL.vec2(screen.x, screen.y.oneMinus());
 });
 
+/** The meshes with a warning. @type {WeakSet<THREE.BufferGeometry>} */
+const bare = new WeakSet();
+
+/** Texture coordinates, 0 where a mesh has none: that is a warning once for each mesh, not for each shader that three builds of it. */
+const coordinates = (channel) => TSL.Fn((_, builder) => {
+  const name = channel ? `uv${channel}` : 'uv', { geometry, object } = builder;
+  if (geometry.hasAttribute(name)) return TSL.uv(channel);
+  if (!bare.has(geometry)) console.warn(`${object.name || object.type}: the geometry has no attribute '${name}', which the material reads: it is 0`);
+  bare.add(geometry);
+  return TSL.vec2(0);
+}, 'vec2')();
+const uv = coordinates(0);
+
 /** The tangent or the bitangent: that of the geometry, else from the derivatives of uv. */
 const tangentFrame = (bitangent) => TSL.Fn((_, builder) => {
   const N = geometryNormal;
@@ -72,7 +85,7 @@ const tangentFrame = (bitangent) => TSL.Fn((_, builder) => {
     return bitangent ? N.mul(side).cross(T).mul(handedness) : T;
   }
   const across = TSL.positionWorld.dFdx(), up = TSL.positionWorld.dFdy();
-  const a = TSL.uv().dFdx(), b = TSL.uv().dFdy();
+  const a = uv.dFdx(), b = uv.dFdy();
   const first = up.cross(N), second = N.cross(across);
   const T = first.mul(a.x).add(second.mul(b.x)), B = first.mul(a.y).add(second.mul(b.y));
   const longest = T.dot(T).max(B.dot(B)).max(1e-30).inverseSqrt();
@@ -82,8 +95,8 @@ const tangent = tangentFrame(false), bitangent = tangentFrame(true);
 
 /** The values at a point of the surface, with their types. */
 const INPUTS = {
-  uv: [TSL.uv(), 'vec2'],
-  uv2: [TSL.uv(1), 'vec2'],
+  uv: [uv, 'vec2'],
+  uv2: [coordinates(1), 'vec2'],
   vertex_color: [TSL.vertexColor(), 'vec4'],
   P: [TSL.positionWorld, 'vec3'],
   N: [geometryNormal, 'vec3'],
