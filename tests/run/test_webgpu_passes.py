@@ -359,7 +359,8 @@ def test_the_page_draws_a_material_with_passes(host: Host, browser: Any) -> None
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.add_init_script(STAND_IN + TWO_FRAMES)
     page.goto(host.page.url.replace("empty.html", "page/?material=jade_ring&folder=../out"))
-    page.wait_for_function("() => globalThis.shown", timeout=60_000)
+    # not by frames, of which there are two
+    page.wait_for_function("() => globalThis.shown", timeout=60_000, polling=100)
     picture = np.array(page.evaluate(READ)).reshape(640, 640, 4)
     assert page.inner_text("#message") == ""
     assert [text for text in complaints if "favicon" not in text and "404" not in text] == []
