@@ -137,9 +137,9 @@ def _passes_of_urp(case: SceneCase, machine: UnityHLSL, folder: Path) -> Shell:
     )
 
 
-BOUNDS = {"gl_compatibility": (0.99, 2.0), "mobile": (0.99, 1.0), "forward_plus": (0.98, 1.0)}
-"""Of Godot's renderers: a share of the pixels, and their bound in 255ths. Compatibility adds the light of lamps with a
-shadow in encoded colours, where dark light has large steps; Forward+ draws silhouettes otherwise than Mobile."""
+BOUNDS = {"gl_compatibility": 2.0, "mobile": 1.0, "forward_plus": 1.0}
+"""Of Godot's renderers, in 255ths. Compatibility adds the light of lamps with a shadow in encoded colours, where dark
+light has large steps."""
 _GODOT = """extends "NAME_passes.gd"
 func _process(_delta):
     var view := body.get_viewport()
@@ -178,7 +178,8 @@ def test_a_scene_in_godot(
     compiler("godot")
     godot = Godot(renderer)
     sky = (MIDDLE, MIDDLE) if godot.encodes else (ABOVE, BELOW)  # Compatibility has a sky in a few bits
-    case = case_of(name, sky=sky, halves=True)
+    # Forward+ filters each picture once more: with other sizes Mesa's software driver mixes neighbours into a texel
+    case = case_of(name, sky=sky, halves=True, powers=renderer == "forward_plus")
     compiled, shell = sssgen.compile(case.material, "godot"), case.mesh.shell
     view = godot_values.view_of(shell, case.mesh.size, case.vertices, case.triangles)
     drawn = {texture["source_name"] for texture in compiled.reflection["textures"] if texture["drawn"]}
@@ -196,7 +197,7 @@ def test_a_scene_in_godot(
     if godot.encodes:  # it adds the light of each lamp with a shadow in encoded colours (docs/engines/godot.md)
         sky, *lamps = case.lights
         expected = decoded(encoded(case.emission + sky) + sum(map(encoded, lamps)))
-    check(picture, case, f"{name}, godot, {renderer}", expected, *BOUNDS[renderer])
+    check(picture, case, f"{name}, godot, {renderer}", expected, BOUNDS[renderer])
 
 
 def encoded(light: Array) -> Array:
@@ -204,12 +205,10 @@ def encoded(light: Array) -> Array:
     return np.maximum(1.055 * np.maximum(light, 0.0) ** (1.0 / 2.4) - 0.055, 0.0)
 
 
-def check(
-    picture: Array, case: SceneCase, title: str, expected: Array | None = None, share: float = 0.99, bound: float = 1.0
-) -> None:
-    """The picture is that of the oracle on a share of the pixels of the body; `bound` is in 255ths."""
+def check(picture: Array, case: SceneCase, title: str, expected: Array | None = None, bound: float = 1.0) -> None:
+    """The picture is that of the oracle on 99 % of the pixels of the body; `bound` is in 255ths."""
     expected = case.expected if expected is None else expected
     differences = np.abs(np.clip(picture, 0.0, 1.0) - np.clip(expected, 0.0, 1.0))[..., :3].max(axis=-1)
-    reached = 255.0 * float(np.quantile(differences[case.mesh.hit], share))
-    print(f"{title}: {reached:.2f}/255 on {100.0 * share:.0f} % of the pixels")
+    reached = 255.0 * float(np.quantile(differences[case.mesh.hit], 0.99))
+    print(f"{title}: {reached:.2f}/255 on 99 % of the pixels")
     assert reached <= bound

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import re
 import shutil
 from collections.abc import Callable
@@ -84,8 +85,12 @@ class SceneCase(NamedTuple):
         return total
 
 
-def scene_case(name: str, folder: Path, sky: Sky = (ABOVE, BELOW), halves: bool = False) -> SceneCase:
-    """One of EXAMPLES; `folder` gets its files. `halves`: passes have 16-bit floats, as Godot's have."""
+def scene_case(
+    name: str, folder: Path, sky: Sky = (ABOVE, BELOW), halves: bool = False, powers: bool = False
+) -> SceneCase:
+    """One of EXAMPLES; `folder` gets its files. `halves`: passes have 16-bit floats, as Godot's have.
+    `powers`: the sides of the picture are powers of two.
+    """
     example = Path(shutil.copytree(ROOT / "examples" / name, folder / name))
     text, count = re.subn(
         r"tint = \[.*\]", "tint = [0.0, 0.0, 0.0, 1.0]", (example / f"{name}.toml").read_text("utf-8")
@@ -96,7 +101,8 @@ def scene_case(name: str, folder: Path, sky: Sky = (ABOVE, BELOW), halves: bool 
     (example / "opaque.toml").write_text(black[: black.index("[translucency]")], "utf-8")
     (example / "sky.sss").write_text(_SKY.format(*sky), "utf-8")
     (example / "under_sky.toml").write_text(f'{black}\n[environment]\ntechnique = "sky.sss"\n', "utf-8")
-    size, *lamps = _SCENES[name]
+    (width, height), *lamps = _SCENES[name]
+    size = (2 ** round(math.log2(width)), 2 ** round(math.log2(height))) if powers else (width, height)
     scene = scene_loading.load(str(example / "scene.toml"))
     scene = dataclasses.replace(
         scene, material=str(example / "under_sky.toml"), lights=_lights(*lamps), size=size, samples=1,
