@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import sssgen
+from diffusion_cases import MATERIAL, SCENE, WAY, wall
 from engine_cases import BLACK, ENGINES, RENDERERS, mesh_of, through
 from shadow_cases import EYE, LEVEL, SIZE, ball, view_projection
 from skips import or_skip
@@ -21,35 +22,6 @@ from sssgen.scene import scene_loading
 from sssgen.scene.solids import Torus
 from torus_cases import inner_pixels, torus_mesh
 
-MATERIAL = """
-[material]
-name = "skin"
-
-[[surface]]
-technique = "base_color"
-tint = [0.8, 0.6, 0.5, 1.0]
-
-[[surface]]
-technique = "screen_diffusion"
-spread_length = [0.06, 0.03, 0.02]
-"""
-SCENE = """
-material = "skin.toml"
-
-[geometry]
-kind = "torus"
-major = 0.8
-minor = 0.35
-rotation = [65, 0, 0]
-
-[camera]
-position = [0.2, 0.5, 4.0]
-
-# along the axis of the ring: the part that faces the light has no shadow
-[[light]]
-direction = [0.0, 0.42261826, 0.90630779]
-color = [0.9, 0.8, 0.7]
-"""
 COLORS = ("color", "albedoColor", "diffuse")
 
 
@@ -95,10 +67,6 @@ def test_the_engine_draws_the_light_that_spreads(page: EnginePage, scene: str) -
     assert np.quantile(difference, 0.98) < 2.0 * LEVEL
 
 
-WAY = np.array([0.8, 0.3, 0.52]) / np.linalg.norm([0.8, 0.3, 0.52])
-"""Towards a lamp beside the camera."""
-
-
 def ball_picture(page: EnginePage, text: str, folder: Path, **stage: Any) -> Array:
     """A ball of a material's text under a lamp, without highlights, in a stage: (height, width, 3)."""
     path = folder / "skin.toml"
@@ -111,15 +79,6 @@ def ball_picture(page: EnginePage, text: str, folder: Path, **stage: Any) -> Arr
         EYE, body.model, np.array([[*WAY, 0.0]]), np.ones((1, 3)), properties={**matt, "stage": stage},
     )  # fmt: skip
     return page.draw(drawing)[..., :3]
-
-
-def wall() -> list[float]:
-    """The matrix of a wall between the lamp and half of the ball, by columns."""
-    across = np.cross([0.0, 1.0, 0.0], WAY) / np.hypot(WAY[0], WAY[2])
-    matrix = np.eye(4)
-    matrix[:3, :3] = np.stack([across, np.cross(WAY, across), 0.05 * WAY], axis=1)
-    matrix[:3, 3] = 2.0 * WAY + [0.0, 0.7, 0.0]
-    return [float(number) for number in matrix.T.ravel()]
 
 
 @pytest.mark.slow

@@ -130,9 +130,9 @@ def _passes_of_urp(case: SceneCase, machine: UnityHLSL, folder: Path) -> Shell:
     )
 
 
-BOUNDS = {"gl_compatibility": (0.99, 2.0), "mobile": (0.99, 1.0), "forward_plus": (0.98, 1.0)}
-"""Of Godot's renderers: a share of the pixels, and their bound in 255ths. Compatibility adds the light of lamps with a
-shadow in encoded colours, where dark light has large steps; Forward+ draws silhouettes otherwise than Mobile."""
+BOUNDS = {"gl_compatibility": 2.0, "mobile": 1.0, "forward_plus": 1.0}
+"""Of Godot's renderers, in 255ths. Compatibility adds the light of lamps with a shadow in encoded colours, where dark
+light has large steps."""
 _GODOT = """extends "NAME_passes.gd"
 func _process(_delta):
     var view := body.get_viewport()
@@ -171,7 +171,8 @@ def test_a_scene_in_godot(
     compiler("godot")
     godot = Godot(renderer)
     sky = (MIDDLE, MIDDLE) if godot.encodes else (ABOVE, BELOW)  # Compatibility has a sky in a few bits
-    case = case_of(name, sky=sky, halves=True)
+    # Forward+ filters each picture once more: with other sizes Mesa's software driver mixes neighbours into a texel
+    case = case_of(name, sky=sky, halves=True, powers=renderer == "forward_plus")
     compiled, shell = sssgen.compile(case.material, "godot"), case.mesh.shell
     view = godot_values.view_of(shell, case.mesh.size, case.vertices, case.triangles)
     drawn = {texture["source_name"] for texture in compiled.reflection["textures"] if texture["drawn"]}
@@ -189,7 +190,7 @@ def test_a_scene_in_godot(
     if godot.encodes:  # it adds the light of each lamp with a shadow in encoded colours (docs/engines/godot.md)
         sky, *lamps = case.lights
         expected = decoded(encoded(case.emission + sky) + sum(map(encoded, lamps)))
-    check_light(picture, case, f"{name}, godot, {renderer}", expected, *BOUNDS[renderer])
+    check_light(picture, case, f"{name}, godot, {renderer}", expected, BOUNDS[renderer])
 
 
 def encoded(light: Array) -> Array:

@@ -110,30 +110,6 @@ def test_the_script_draws_the_passes(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("renderer", RENDERERS)
-def test_light_that_nothing_draws_stays_the_engines(
-    renderer: str, tmp_path: Path, compiler: Callable[[str], Compiler]
-) -> None:
-    """The node draws no light on a white body: the diffuse reflection is as without `screen_diffusion`."""
-    compiler("godot")
-    path = torus_scene(tmp_path, "")
-    mesh, scene = mesh_of(path), scene_loading.load(path)
-    assert isinstance(scene.geometry, Torus)
-    view = godot_values.view_of(mesh.shell, mesh.size, *torus_mesh(scene.geometry))
-    pictures = []
-    for stage in ("", '[[surface]]\ntechnique = "screen_diffusion"\n'):
-        head = '[material]\nname = "skin"\n[[surface]]\ntechnique = "base_color"\ntint = [0.8, 0.6, 0.5, 1.0]\n'
-        (tmp_path / "skin.toml").write_text(head + stage, encoding="utf-8")
-        compiled = sssgen.compile(str(tmp_path / "skin.toml"), "godot")
-        scripts = {name: text for name, text in compiled.files.items() if name.endswith(".gd")}
-        assert bool(scripts) == bool(stage)
-        values = godot_values.values_of(compiled.reflection, dataclasses.replace(mesh.shell, parameters={}))
-        pictures.append(Godot(renderer).draw(compiled.files["skin.gdshader"], view, values, {}, scripts)[::-1])
-    plain, spread = (picture[..., :3][inner_pixels(mesh.hit)] for picture in pictures)
-    assert plain.max() > 0.1 and np.abs(plain - spread).max() < 1.0 / 255.0
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("renderer", RENDERERS)
 def test_values_of_the_body_come_from_its_matrix(renderer: str, compiler: Callable[[str], Compiler]) -> None:
     """wax_mouse half as large and in another place: no parameter of the material differs."""
     compiler("godot")

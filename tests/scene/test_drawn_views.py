@@ -294,7 +294,7 @@ def test_a_texture_of_the_scene_is_not_drawn(folder: Path) -> None:
         ("threejs", "drawn by the material itself"),
         ("babylonjs", "drawn by the material itself"),
         ("playcanvas", "drawn by the material itself"),
-        ("godot", "draw the translucent body alone from the eye with a white matt material"),
+        ("godot", "drawn by the node of skin_passes.gd below the body"),
         ("unity-urp", "drawn by the renderer feature of SssgenPasses.cs"),
         ("unity-builtin", "draw the translucent body alone from the eye with a white matt material"),
     ],

@@ -14,6 +14,7 @@ import numpy as np
 import sssgen
 from godot_scenes import THROUGH, text_of
 from shadow_cases import HALF
+from sssgen.pipeline.compiler import Compiled
 from sssgen.run.backends import Array
 from sssgen.run.backends.engine_page import EngineDrawing
 from sssgen.run.backends.godot_drawing import SECONDS, Godot, View, files_of
@@ -153,8 +154,7 @@ class Stage:
         (folder / "made.sss").write_text(technique, "utf-8")
         (folder / "m.toml").write_text(_MATERIAL + surface, "utf-8")
         compiled = sssgen.compile(str(folder / "m.toml"), "godot")
-        self.shader = text_of(compiled, THROUGH)
-        self.scripts = {name: text for name, text in compiled.files.items() if name.endswith(".gd")}
+        self.show(compiled, text_of(compiled, THROUGH))
         self.godot = Godot(renderer)
         self.open = contextlib.ExitStack()
         self.process: subprocess.Popen[bytes] | None = None
@@ -167,8 +167,13 @@ class Stage:
     def __exit__(self, *_: object) -> None:
         self.open.close()
 
+    def show(self, compiled: Compiled, shader: str) -> None:
+        """Draws a shader of a material named m from now on, with its node."""
+        self.shader = shader
+        self.scripts = {name: text for name, text in compiled.files.items() if name.endswith(".gd")}
+
     def draw(self, drawing: EngineDrawing) -> Array:
-        """The light that comes through, (height, width, 4)."""
+        """What this shader shows, (height, width, 4); at first the light that comes through."""
         camera = np.eye(4)
         camera[:3, 3] = drawing.eye
         field_of_view = 2.0 * math.degrees(math.atan(1.0 / drawing.view_projection[1, 1]))

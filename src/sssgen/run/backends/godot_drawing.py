@@ -231,7 +231,7 @@ func light(entry):
 
 func draw():
     await write_picture()
-    quit()
+    OS.kill(OS.get_process_id()) # quit() may wait for ever while shaders are compiled
 
 func write_picture():
     var plan = JSON.parse_string(FileAccess.get_file_as_string("res://plan.json"))

@@ -94,11 +94,11 @@ class Casters:
 	func _take_materials(caster: GeometryInstance3D, copy: Copy) -> void:
 		var found := Copy.materials_of(caster)
 		var both_sides := caster.cast_shadow == GeometryInstance3D.SHADOW_CASTING_SETTING_DOUBLE_SIDED
-		both_sides = both_sides or not found.all(func(material): return _culls_back(material))
-		var casts := found.is_empty() or not found.all(func(material): return _is_transparent(material))
+		both_sides = both_sides or not found.all(culls_back)
+		var casts := found.is_empty() or not found.all(_is_transparent)
 		copy.material_override = materials[both_sides] if casts else null
 
-	static func _culls_back(material: Material) -> bool:
+	static func culls_back(material: Material) -> bool:
 		if material is ShaderMaterial:
 			return material.shader == null or not material.shader.code.contains("cull_")
 		return not material is BaseMaterial3D or material.cull_mode == BaseMaterial3D.CULL_BACK

@@ -15,11 +15,15 @@ class SkyLight:
 	var _facts := []
 	var _left := 0
 
-	func follow(eye: Camera3D) -> void:
+	## What a camera shows, or null.
+	static func environment_of(eye: Camera3D) -> Environment:
+		if eye.environment != null:
+			return eye.environment
 		var world := eye.get_world_3d()
-		_environment = eye.environment
-		if _environment == null:
-			_environment = world.environment if world.environment != null else world.fallback_environment
+		return world.environment if world.environment != null else world.fallback_environment
+
+	func follow(eye: Camera3D) -> void:
+		_environment = environment_of(eye)
 		var facts := [_environment]
 		if _environment != null:  # it does not tell of its changes
 			facts.append_array(PROPERTIES.map(func(property): return _environment.get(property)))
