@@ -26,7 +26,7 @@ from sssgen.scene import scene_loading
 from sssgen.scene.solids import Torus
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.runtime.numpy_textures import Texture
-from torus_cases import SEVERAL, inner_pixels, torus_mesh, torus_scene
+from torus_cases import SEVERAL, inner_pixels, lengths_scene, torus_mesh, torus_scene
 
 
 @pytest.fixture(scope="module")
@@ -85,21 +85,10 @@ def test_the_engine_draws_the_passes(page: EnginePage, several: bool, case_of: C
     assert np.quantile(differences(page, case_of(several)), 0.98) < 1.0 / 255.0
 
 
-LENGTHS = f"""#include "common/eye_layers.sss"
-{HEAD.format("surface")}void shown(vec2 screen_uv, float eye_distance, out vec3 emission)
-{{ emission = min(0.4 * eye_lengths(screen_uv, eye_distance), 1.0); }}
-"""
-
-
 @pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
 def test_the_eyes_layers(page: EnginePage, tmp_path: Path) -> None:
     """The length inside the ring's near side, the gap behind it, and the length inside its far side."""
-    path = torus_scene(tmp_path, "")
-    scene = Path(path).read_text(encoding="utf-8").replace("rotation = [116.0,", "rotation = [0.0,")
-    Path(path).write_text(scene, encoding="utf-8")
-    (tmp_path / "shown.sss").write_text(LENGTHS, encoding="utf-8")
-    material = '[material]\nname = "jade"\n[[surface]]\ntechnique = "./shown.sss"\n'
-    (tmp_path / "jade.toml").write_text(material, encoding="utf-8")
+    path = lengths_scene(tmp_path)
     mesh = mesh_of(path)
     expected = through(str(tmp_path / "jade.toml"), mesh)
     inside = expected[..., :3][mesh.hit]

@@ -18,7 +18,7 @@ from sssgen.run.compilers import Compiler
 from sssgen.run.render import godot_values
 from sssgen.scene import scene_loading
 from sssgen.scene.solids import Torus
-from torus_cases import inner_pixels, torus_mesh, torus_scene
+from torus_cases import inner_pixels, lengths_scene, torus_mesh, torus_scene
 
 LIGHTS = """
 [[light]]
@@ -106,6 +106,27 @@ def test_the_script_draws_the_passes(
     difference = np.abs(drawn - expected)[..., :3][inner_pixels(mesh.hit)].max(axis=-1)
     print(f"{case}, {renderer}: {255 * np.quantile(difference, 0.98):.2f}")
     assert np.quantile(difference, 0.98) < 1.0 / 255.0 and expected.mean() > 0.01
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("renderer", RENDERERS)
+def test_the_eyes_layers(renderer: str, tmp_path: Path, compiler: Callable[[str], Compiler]) -> None:
+    """The length inside the ring's near side, the gap behind it, and the length inside its far side."""
+    compiler("godot")
+    path = lengths_scene(tmp_path)
+    mesh, scene = mesh_of(path), scene_loading.load(path)
+    assert isinstance(scene.geometry, Torus)
+    compiled = sssgen.compile(scene.material, "godot")
+    dark = dataclasses.replace(mesh.shell, parameters={}, light_colors=np.zeros((1, 3)), ambient=(0.0, 0.0, 0.0))
+    view = godot_values.view_of(dark, mesh.size, *torus_mesh(scene.geometry))
+    scripts = {name: text for name, text in compiled.files.items() if name.endswith(".gd")}
+    values = godot_values.values_of(compiled.reflection, dark)
+    drawn = Godot(renderer).draw(compiled.files["jade.gdshader"], view, values, {}, scripts)[::-1]
+    expected = through(scene.material, mesh)
+    difference = np.abs(drawn - expected)[..., :3][inner_pixels(mesh.hit)].max(axis=-1)
+    print(f"{renderer}: {255 * np.quantile(difference, 0.95):.2f}")
+    assert (expected[..., 2][mesh.hit] > 0.05).sum() > 200, "the far side is behind the near one"
+    assert np.quantile(difference, 0.95) < 1.0 / 255.0
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import sssgen
-from sssgen.ir.frame_passes import BACK_FACES
+from sssgen.ir.frame_passes import BACK_FACES, EYE_LAYERS, FAR
 from sssgen.run.backends import Array, Backend
 from sssgen.run.backends.unity_backend import UnityHLSL
 from sssgen.scene.bounds import world_corners
@@ -33,6 +33,8 @@ from unity_frames import (
 TORUS = Torus(major=0.78, minor=0.3)
 BOX = (np.array([-1.08, -0.3, -1.08]), np.array([1.08, 0.3, 1.08]))
 CAMERA = Camera(position=(0.3, 1.9, 3.4))
+LOW = Camera(position=(0.3, 0.4, 3.9))
+"""Its rays meet the near and the far side of the ring."""
 SIZE = (96, 72)
 LAYERS = ("entry 1", "exit 1", "entry 2", "exit 2")
 SUN = Lamp("Directional", towards=(-0.7, 0.1, -0.7))
@@ -66,8 +68,15 @@ def shaders(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     return texts
 
 
-def frame_of(program: Path, shader: str, lamps: tuple[Lamp, ...] = LAMPS, given: str = "", bodies: int = 1) -> Frame:
-    eye = np.array(CAMERA.position), CAMERA.view_projection(SIZE[0] / SIZE[1])
+def frame_of(
+    program: Path,
+    shader: str,
+    lamps: tuple[Lamp, ...] = LAMPS,
+    given: str = "",
+    bodies: int = 1,
+    camera: Camera = CAMERA,
+) -> Frame:
+    eye = np.array(camera.position), camera.view_projection(SIZE[0] / SIZE[1])
     return run_feature(program, shader, [BOX] * bodies, lamps, eye, SIZE, given)
 
 
@@ -189,6 +198,24 @@ def test_the_pictures_are_those_of_the_oracle(
         depth = light_depth(TORUS, light_of(SUN))[1][..., 0]
         every_second = drawn["_LightDepthMap"][..., 0].reshape(TEXELS, TILES, TEXELS, TILES).mean(axis=(1, 3))
         assert_same(every_second, depth, "distant light")
+
+
+def test_what_lies_behind_the_first_exit(program: Path, tmp_path: Path, backend: Callable[[str], Backend]) -> None:
+    """First exit, second entrance and second exit as the eye sees them. Two bodies do not share this picture."""
+    machine = backend("unity-urp")
+    assert isinstance(machine, UnityHLSL)
+    material = '[material]\nname = "wax"\n[translucency]\ntechnique = "fluence_fixed_layers"\n'
+    (tmp_path / "wax.toml").write_text(material, encoding="utf-8")
+    files = sssgen.compile(str(tmp_path / "wax.toml"), "unity-urp").files
+    (shader,) = (text for name, text in files.items() if name.endswith(".shader"))
+    frame = frame_of(program, shader, (), bodies=2, camera=LOW)
+    first, second = (texture_numbers(values)["_EyeLayerMap"] for values in frame.values)
+    assert first != second
+    picture = Replay(machine, shader).pictures_of(frame, mirrored(torus_mesh(TORUS, 384, 192)))[first]
+    expected = eye_layers(TORUS, *LOW.rays(*SIZE), EYE_LAYERS).reshape(SIZE[1], SIZE[0], 3)
+    assert (expected[..., 2] < FAR).sum() > 200
+    for channel in range(3):
+        assert_same(picture[..., channel], expected[..., channel], f"layer {channel}")
 
 
 def assert_same(drawn: Array, expected: Array, name: str) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from engine_cases import HEAD
 from folders import ROOT
 from sssgen.run.backends import Array
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
@@ -47,6 +48,23 @@ def torus_scene(folder: Path, lights: str) -> str:
     (folder / "jade.toml").write_text(material, encoding="utf-8")
     (folder / "scene.toml").write_text(scene[: scene.index("[shell]")] + scene[scene.index("[geometry]") :])
     return str(folder / "scene.toml")
+
+
+LENGTHS = f"""#include "common/eye_layers.sss"
+{HEAD.format("surface")}void shown(vec2 screen_uv, float eye_distance, out vec3 emission)
+{{ emission = min(0.4 * eye_lengths(screen_uv, eye_distance), 1.0); }}
+"""
+
+
+def lengths_scene(folder: Path) -> str:
+    """The ring seen from the side. It shows the lengths inside its near side, in the gap and inside its far side."""
+    path = Path(torus_scene(folder, ""))
+    scene = path.read_text(encoding="utf-8").replace("rotation = [116.0,", "rotation = [0.0,")
+    path.write_text(scene, encoding="utf-8")
+    (folder / "shown.sss").write_text(LENGTHS, encoding="utf-8")
+    material = '[material]\nname = "jade"\n[[surface]]\ntechnique = "./shown.sss"\n'
+    (folder / "jade.toml").write_text(material, encoding="utf-8")
+    return str(path)
 
 
 def inner_pixels(hit: Array) -> Array:

@@ -19,6 +19,8 @@ namespace Sssgen {
         public readonly bool ShowsLight;
         /// <summary>The numbers of the passes: of distances one for each layer.</summary>
         public readonly List<int> Layers = new List<int>();
+        /// <summary>For each layer whether its surfaces are behind those of the layer before.</summary>
+        public readonly List<bool> Behind = new List<bool>();
 
         private ShaderPicture(string name, Shader shader, int pass) {
             Name = name;
@@ -47,6 +49,7 @@ namespace Sssgen {
                     found.Add(picture);
                 }
                 picture.Layers.Add(pass);
+                picture.Behind.Add(Tag(shader, pass, "SssgenBehind") != "");
             }
             return found;
         }

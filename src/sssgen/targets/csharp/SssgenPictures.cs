@@ -15,15 +15,15 @@ namespace Sssgen {
 
         public override RenderTexture Add(Shown body, Vector2Int size) {
             // the eye sees all bodies in one picture: where bodies are beside each other, the nearest back face is that of
-            // the visible one
-            bool together = body.Picture.ByEye;
+            // the visible one, but what is behind it may be another body's
+            bool together = body.Picture.ByEye && body.Picture.Layers.Count == 1;
             if (together && shared.TryGetValue(body.Picture.Name, out int place)) {
                 pictures[place].bodies.Add(body);
                 return pictures[place].texture;
             }
             bool several = body.Picture.Layers.Count > 1;
             RenderTextureFormat format = several ? RenderTextureFormat.ARGBFloat : RenderTextureFormat.RFloat;
-            RenderTexture texture = Texture(size, format, 32, !together);
+            RenderTexture texture = Texture(size, format, 32, !body.Picture.ByEye);
             if (together) {
                 shared[body.Picture.Name] = pictures.Count;
             }
@@ -47,11 +47,11 @@ namespace Sssgen {
                     drawn.bodies[0].Views.ForEach(view => end = Mathf.Max(end, view.End));
                 }
                 var empty = new Color(end, end, end, end);
-                if (picture.Layers.Count > 2 && (before == null || before.width != texture.width)) {
+                if (picture.Behind.Contains(true) && (before == null || before.width != texture.width)) {
                     before = Texture(new Vector2Int(texture.width, texture.height), texture.format, 0, false);
                 }
                 for (int layer = 0; layer < picture.Layers.Count; layer++) {
-                    if (layer > 1) { // the first of either side has none before it
+                    if (picture.Behind[layer]) {
                         commands.CopyTexture(texture, before);
                         commands.SetGlobalTexture(Before, before);
                     }
