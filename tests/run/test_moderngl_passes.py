@@ -19,25 +19,11 @@ from sssgen.run.moderngl_passes import SIDE, Body, Passes
 from sssgen.scene.camera import Camera
 from sssgen.scene.drawn_views import eye_layers, light_layers, matt_light
 from sssgen.scene.solids import Torus
-from torus_cases import torus_mesh
+from torus_cases import PICTURES, torus_mesh
 
 SIZE = (160, 120)
 CAMERA = Camera((0.2, 0.5, 4.0), (0.0, 0.0, 0.0), 34.0)
 LIGHTS = [((1.6, -0.4, -1.4, 1.0), (4.0, 2.0, 1.0)), ((0.96, 0.0, 0.28, 0.0), (0.2, 0.3, 0.6))]
-MATERIAL = """
-[material]
-name = "made"
-
-[[thickness]]
-technique = "back_face_thickness"
-
-[translucency]
-technique = "interior_octaves"
-bind = { light_path = "light_layers_path" }
-
-[[surface]]
-technique = "screen_diffusion"
-"""
 TORUS = Torus(0.78, 0.3, rotation=(116.0, 0.0, 12.0), scale=1.2, position=(0.1, 0.0, -0.1))
 LAYERED = """
 [material]
@@ -82,7 +68,7 @@ class Pictures:
 
 @pytest.fixture(scope="module")
 def pictures(context: Any, tmp_path_factory: pytest.TempPathFactory) -> Pictures:
-    return Pictures(context, tmp_path_factory.mktemp("passes"), MATERIAL)
+    return Pictures(context, tmp_path_factory.mktemp("passes"), PICTURES)
 
 
 def test_back_faces(pictures: Pictures) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import sssgen
+from diffusion_cases import SCENE
 from engine_cases import mesh_of, through
 from sssgen.run.backends import Array, Backend
 from sssgen.run.backends.unity_backend import UnityHLSL
@@ -55,23 +56,8 @@ SPREAD = """
 technique = "screen_diffusion"
 spread_length = [{}]
 """
-SCENE = """
-material = "skin.toml"
-
-[geometry]
-kind = "torus"
-major = 0.8
-minor = 0.35
-rotation = [65, 0, 0]
-
-[camera]
-position = [0.2, 0.5, 4.0]
-
-# both along the axis of the ring: the part that faces them has no shadow
-[[light]]
-direction = [0.0, 0.42261826, 0.90630779]
-color = [0.9, 0.8, 0.7]
-
+SECOND = """
+# along the axis of the ring, as the first one
 [[light]]
 position = [0.0, 2.5357096, 5.4378584]
 color = [4.0, 6.0, 8.0]
@@ -112,7 +98,7 @@ class Stage:
 
     def __init__(self, machine: UnityHLSL, feature: Path, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.machine, self.feature, self.folder = machine, feature, folder
-        (folder / "scene.toml").write_text(SCENE, encoding="utf-8")
+        (folder / "scene.toml").write_text(SCENE + SECOND, encoding="utf-8")
         self.write(PLAIN)
         self.scene = scene_loading.load(str(folder / "scene.toml"))
         self.own: dict[str, Array] = {}

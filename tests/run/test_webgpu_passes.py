@@ -28,7 +28,7 @@ from sssgen.scene.solids import Torus
 from sssgen.targets import registry
 from sssgen.targets.reflection_record import Reflection
 from static_host import serving
-from torus_cases import SEVERAL, inner_pixels, torus_mesh, torus_scene
+from torus_cases import PICTURES, SEVERAL, inner_pixels, torus_mesh, torus_scene
 from webgpu_browser import READ, STAND_IN, browser
 
 __all__ = ["browser"]
@@ -100,20 +100,6 @@ DRAW = """async ({ name, camera, body, lights, ambient, size, halves, copies, pa
     device.destroy();
     return { errors, picture, textures, values: drawn.values };
 }"""
-MADE = """
-[material]
-name = "made"
-
-[[thickness]]
-technique = "back_face_thickness"
-
-[translucency]
-technique = "interior_octaves"
-bind = { light_path = "light_layers_path" }
-
-[[surface]]
-technique = "screen_diffusion"
-"""
 SHADOWED = """
 [material]
 name = "made"
@@ -297,7 +283,7 @@ def test_a_scene(host: Host, tmp_path: Path, name: str) -> None:
 
 def test_pictures(host: Host, tmp_path: Path) -> None:
     """Each picture is that of the pipeline; row 0 of those in the page is at the top."""
-    case = torus_case(tmp_path, SEVERAL, MADE)
+    case = torus_case(tmp_path, SEVERAL, PICTURES)
     drawn, shell, hit = host.draw(case), case.mesh.shell, case.mesh.hit
     backs, expected = drawn.textures["back_face_map"][::-1, :, 0], shell.screens["back_face_map"].levels[0][..., 0]
     assert np.quantile(np.abs(backs - expected)[hit], 0.98) < 4e-3  # the pipeline's has 16-bit floats

@@ -50,6 +50,21 @@ def torus_scene(folder: Path, lights: str) -> str:
     return str(folder / "scene.toml")
 
 
+PICTURES = """
+[material]
+name = "made"
+
+[[thickness]]
+technique = "back_face_thickness"
+
+[translucency]
+technique = "interior_octaves"
+bind = { light_path = "light_layers_path" }
+
+[[surface]]
+technique = "screen_diffusion"
+"""
+"""A material with a pass of the eye, one of the lights and one that shows light."""
 LENGTHS = f"""#include "common/eye_layers.sss"
 {HEAD.format("surface")}void shown(vec2 screen_uv, float eye_distance, out vec3 emission)
 {{ emission = min(0.4 * eye_lengths(screen_uv, eye_distance), 1.0); }}
