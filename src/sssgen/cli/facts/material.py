@@ -112,7 +112,7 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     needed = [f"{name} ({DESCRIPTIONS[name]})" for name in facts["requires"]]
     text += ["", *wrap(f"requires: {', '.join(needed) or 'nothing besides its parameters'}", width, "", "  ")]
     if facts["passes"]:
-        text += ["", "passes, which the program runs before it draws the material:"]
+        text += ["", "passes, which the engine's runtime or the program runs before it draws the material:"]
         for row in map(_pass, facts["passes"]):
             text += wrap(row, width, "  ", "      ")
     if facts["cost"]:

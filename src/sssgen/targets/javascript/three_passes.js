@@ -207,8 +207,8 @@ class Drawing {
       if (renderer.xr) renderer.xr.enabled = state.presents;
       renderer.setRenderObjectFunction?.(state.objectFunction);
       renderer.setMRT?.(state.mrt);
-      renderer.setClearColor(state.color, state.alpha);
       renderer.setRenderTarget(...state.target);
+      renderer.setClearColor(state.color, state.alpha);
     }
   }
 
@@ -217,7 +217,6 @@ class Drawing {
     const eye = pass.seenFrom === 'eye';
     const empty = emptyOf(pass, Math.max(...cameras.map(({ near, far }) => far - near), 1));
     const margin = LAYER_GAP * ballOf(object).radius;
-    renderer.setClearColor(new THREE.Color(empty, empty, empty), 1);
     layersOf(pass).forEach(({ back, before }, index) => {
       const { material, uniforms } = back ? this.backs : this.fronts;
       uniforms.fromPlane.value = this.nodes ? Number(!eye) : !eye;
@@ -227,6 +226,7 @@ class Drawing {
       picture.viewport.set(0, 0, picture.width, picture.height);
       picture.scissor.set(0, 0, picture.width, picture.height);
       renderer.setRenderTarget(picture);
+      renderer.setClearColor(new THREE.Color(empty, empty, empty), 1); // three encodes it for the target of this time
       renderer.clear();
       cameras.forEach((camera, index) => {
         const tile = tileOf(index);
@@ -271,10 +271,10 @@ class Drawing {
     object.material = this.matt.material;
     Object.assign(scene, { background: null, backgroundNode: null, fog: null, overrideMaterial: null });
     try {
-      renderer.setClearColor(new THREE.Color(0, 0, 0), emptyOf(pass));
       picture.viewport.set(0, 0, picture.width, picture.height);
       picture.scissor.copy(picture.viewport);
       renderer.setRenderTarget(picture);
+      renderer.setClearColor(new THREE.Color(0, 0, 0), emptyOf(pass));
       renderer.clear();
       renderer.render(scene, this.eye);
     } finally {
