@@ -36,6 +36,7 @@ AROUND, ACROSS = 256, 128
 SPREAD = (0.03, 0.015, 0.01)
 LAMPS = [(0.69, 0.69, 0.23), (-0.44, 0.22, 0.87)]
 DRAWS = 8
+EYE = (0.0, 0.0, 3.6)
 WITHOUT = "the same without its call"
 
 VERTEX = """#version 330 core
@@ -104,7 +105,7 @@ void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     vec4 P = texelFetch(place, at, 0);
     vec3 albedo = vec3(0.8, 0.6, 0.5), emission = vec3(0.0);
-    vec3 N = texelFetch(normal, at, 0).xyz;
+    vec3 N = texelFetch(normal, at, 0).xyz, V = normalize(vec3(EYE) - P.xyz);
     if (dot(N, N) > 0.5) { CALL }
     color = vec4(albedo + emission + 1e-6 * N, 1.0);
 }
@@ -181,9 +182,11 @@ class Gather:
         compiled = transpile(subject.module, "glsl-330", "timed", "auto", subject.called, chained=subject.chained)
         text = next(iter(compiled.files.values()))
         call = (
-            "screen_diffusion(P.xyz, N, albedo, emission, eye_matrix, spread_length, matt_light_map);" if calls else ""
+            "screen_diffusion(P.xyz, N, V, albedo, emission, eye_matrix, spread_length, matt_light_map);"
+            if calls
+            else ""
         )
-        fragment = f"#version 330 core\n{text}\n{GATHER.replace('CALL', call)}"
+        fragment = f"#version 330 core\n{text}\n{GATHER.replace('CALL', call).replace('EYE', ', '.join(map(str, EYE)))}"
         program = context.program(vertex_shader=SCREEN, fragment_shader=fragment)
         for unit, name in enumerate(("matt_light_map", "place", "normal")):
             if name in program:
@@ -208,7 +211,7 @@ def passes(context: Any, size: tuple[int, int]) -> tuple[dict[str, list[Any]], f
         return context.framebuffer(textures, context.depth_renderbuffer(side))
 
     body, square = Body(context), (SIDE, SIDE)
-    camera = Camera((0.0, 0.0, 3.6), (0.0, 0.0, 0.0), 40.0)
+    camera = Camera(EYE, (0.0, 0.0, 0.0), 40.0)
     eye = camera.view(), camera.view_projection(size[0] / size[1])
     lamps = [Camera(place, (0.0, 0.0, 0.0), 32.0) for place in ((3.0, 3.0, 1.0), (-2.0, 1.0, 4.0))]
     layers = [target("1f4") for _ in range(3)]

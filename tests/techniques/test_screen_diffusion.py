@@ -38,7 +38,12 @@ def spread(texels: Array, points: Array, d: Any, **values: Any) -> tuple[Array, 
     """Albedo and emission at points of the plane."""
     inputs = {"albedo": np.ones(3), "emission": np.zeros(3), "eye_matrix": VIEW, **values}
     albedo, emission = technique("screen_diffusion")(
-        P=points, N=NORMAL, matt_light_map=texels, spread_length=np.broadcast_to(np.asarray(d, float), 3), **inputs
+        P=points,
+        N=NORMAL,
+        V=NORMAL,
+        matt_light_map=texels,
+        spread_length=np.broadcast_to(np.asarray(d, float), 3),
+        **inputs,
     )
     return albedo, emission
 
