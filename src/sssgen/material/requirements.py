@@ -77,7 +77,7 @@ def describe(
     for kinds, drawing in ((_LIGHT, drawers_of_light), (_DISTANCES, drawers)):
         by = f" (drawn {', '.join(f'by {drawer}' for drawer in drawing)})" if drawing else ""
         words.update({name: words[name] + by for name in required if name in kinds})
-    return [*words.values()]
+    return list(words.values())
 
 
 def bodies(uses: Iterable[TechniqueUse]) -> list[str]:

@@ -209,7 +209,7 @@ class Passes:
     ) -> Any:
         margin = LAYER_GAP * float(np.linalg.norm(np.ptp(body.corners, axis=0)))
         by_eye = drawn["seen_from"] == "eye"
-        # filters blend the texels of what lights see: a distance that is little more than the body's spreads least
+        # filters blend the texels of what lights see, so that a large number would spread into the body's edge
         far = FAR if by_eye else max((each.far for each in seen), default=1.0)
         empty = far if drawn["empty"] == "far" else 0.0
         layers: list[Any] = []

@@ -12,15 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.ir.frame_passes import FAR
+from sssgen.ir.frame_passes import BACK_FACES, EYE_LAYERS
 from sssgen.lab.measure import fluence_inputs
 from sssgen.lab.reference import view_harmonics
 from sssgen.lab.reference.curvature import normal_curvature
-from sssgen.lab.reference.inside_lengths import first_exit, second_interval, thickness
+from sssgen.lab.reference.inside_lengths import first_exit, thickness
 from sssgen.lab.reference.view_harmonics import LARGEST
 from sssgen.run.backends import Array
 from sssgen.run.evaluate.evaluation import half
 from sssgen.scene.bounds import world_corners
+from sssgen.scene.drawn_views import eye_layers
 from sssgen.scene.inside_intervals import intervals
 from sssgen.scene.light_view import directional_view, point_view
 from sssgen.scene.measured import scene_body as body
@@ -92,8 +93,8 @@ def of_scene(scene: MeasuredScene) -> SceneInputs:
             f"harmonics_span_{number}": np.full((3, 1), 2.0 * LARGEST),
         }
     textures = {
-        "back_face_map": _picture(scene, exact_view[:, None]),
-        "eye_layer_map": _picture(scene, np.concatenate([exact_view[:, None], behind_gap(scene)], axis=1)),
+        "back_face_map": eye_picture(scene, BACK_FACES),
+        "eye_layer_map": eye_picture(scene, EYE_LAYERS),
         "distance_map": half(Texture(distances.values(geometry), wrap="clamp")),
         "thickness_texture": _ideal((chord / longest)[..., None]),
         "thinness_texture": _ideal((1.0 - chord / longest)[..., None]),
@@ -200,18 +201,13 @@ def view_fit(scene: MeasuredScene) -> Array:
     return view_harmonics.of_points(scene.geometry, places, normals, fade_length(scene)).coefficients
 
 
-def behind_gap(scene: MeasuredScene) -> Array:
-    """The lengths along the eye's ray from its surface point to the second entrance and exit, (n, 2); FAR for none."""
+def eye_picture(scene: MeasuredScene, name: str) -> Texture:
+    """What the pass `name` draws at the pixels of the measured points."""
     visible = points(scene)
-    origins, rays = (np.ascontiguousarray(part.T) for part in (visible.inputs["P"], -visible.inputs["V"]))
-    return np.minimum(second_interval(scene.geometry, origins, rays), FAR)
-
-
-def _picture(scene: MeasuredScene, lengths: Array) -> Texture:
-    """What the eye sees at the pixels of the measured points: its distance to them, and `lengths` (n, channels)."""
-    visible = points(scene)
-    picture = np.zeros((*visible.valid.shape, lengths.shape[1]))
-    picture[visible.valid] = np.linalg.norm(visible.inputs["P"].T - visible.origin, axis=1)[:, None] + lengths
+    rays = np.ascontiguousarray(-visible.inputs["V"].T)
+    layers = eye_layers(scene.geometry, visible.origin, rays, name)
+    picture = np.zeros((*visible.valid.shape, layers.shape[1]))
+    picture[visible.valid] = layers
     return Texture(picture, "nearest", "clamp")
 
 

@@ -35,15 +35,3 @@ def first_exit(geometry: Geometry, origins: Array, directions: Array) -> Array:
     entered = (parts[..., 0] < least) & (parts[..., 1] > least)
     length: Array = geometry.scale * np.where(entered, parts[..., 1], 0.0).max(axis=1)
     return length
-
-
-def second_interval(geometry: Geometry, origins: Array, directions: Array) -> Array:
-    """The lengths from surface points to the second entrance and the second exit, (n, 2); inf without a second one."""
-    starts, rays = in_object_space(geometry, origins, directions)
-    parts = np.maximum(intervals(geometry, starts, rays), 0.0)
-    behind = parts[..., 0] > first_exit(geometry, origins, directions)[:, None] / geometry.scale
-    entrances = np.where(behind & (parts[..., 1] > parts[..., 0]), parts[..., 0], np.inf)
-    nearest = entrances.argmin(axis=1)[:, None, None]
-    interval = np.take_along_axis(parts, np.broadcast_to(nearest, (len(parts), 1, 2)), axis=1)[:, 0]
-    lengths: Array = np.where(np.isfinite(entrances.min(axis=1))[:, None], geometry.scale * interval, np.inf)
-    return lengths
