@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import sssgen
-from diffusion_cases import SCENE, WAY, wall
+from diffusion_cases import PLAIN, SCENE, SPREAD, WAY, wall
 from engine_cases import mesh_of, through
 from godot_stage import Stage
 from shadow_cases import EYE, LEVEL, SIZE, ball, scaled, view_projection
@@ -28,21 +28,7 @@ from sssgen.scene.solids import Torus
 from torus_cases import inner_pixels, torus_mesh
 
 pytestmark = pytest.mark.slow
-PLAIN = """
-[material]
-name = "m"
-
-[[surface]]
-technique = "base_color"
-tint = [0.8, 0.6, 0.5, 1.0]
-
-# no highlights
-[[surface]]
-technique = "specular_level"
-dielectric_specular = 0.0
-"""
-DIFFUSION = '\n[[surface]]\ntechnique = "screen_diffusion"\nspread_length = {}\n'
-STILL, SPREAD = (PLAIN + DIFFUSION.format(lengths) for lengths in ([0.0, 0.0, 0.0], [0.06, 0.03, 0.02]))
+STILL, SPREADING = (PLAIN + SPREAD.format(lengths) for lengths in ("0.0, 0.0, 0.0", "0.06, 0.03, 0.02"))
 OFF = {"cast_shadow": 0}
 """A wall without a shadow."""
 
@@ -58,8 +44,9 @@ def stage(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
 def picture(stage: Stage, tmp_path: Path) -> Callable[..., Array]:
     """A ball of a material's text under a lamp in a stage: (height, width, 3)."""
 
-    def drawn(text: str, lamp: str = "direction", energy: float = 1.0, **others: Any) -> Array:
-        (tmp_path / "m.toml").write_text(text, encoding="utf-8")
+    def draw(text: str, lamp: str = "direction", energy: float = 1.0, **others: Any) -> Array:
+        # the stage takes the script of a material m
+        (tmp_path / "m.toml").write_text(text.replace('"skin"', '"m"'), encoding="utf-8")
         compiled = sssgen.compile(str(tmp_path / "m.toml"), "godot")
         stage.show(compiled, compiled.files["m.gdshader"])
         place = [*WAY, 0.0] if lamp == "direction" else [*(5.0 * WAY), 1.0]
@@ -71,7 +58,7 @@ def picture(stage: Stage, tmp_path: Path) -> Callable[..., Array]:
         )  # fmt: skip
         return stage.draw(drawing)[..., :3]
 
-    return drawn
+    return draw
 
 
 @pytest.mark.parametrize(
@@ -111,18 +98,18 @@ def test_a_lamp_with_a_shadow_and_a_sky(picture: Callable[..., Array], stage: St
 
 
 def test_without_the_node_the_reflection_is_godots(picture: Callable[..., Array]) -> None:
-    assert np.abs(picture(SPREAD, passes=False) - picture(PLAIN)).max() < LEVEL
+    assert np.abs(picture(SPREADING, passes=False) - picture(PLAIN)).max() < LEVEL
 
 
 def test_other_bodies_are_not_in_the_picture(picture: Callable[..., Array]) -> None:
     """A body before the eye hides a part, and leaves the light on the rest; so does one with a node of its own."""
-    alone = picture(SPREAD, passes=True)
+    alone = picture(SPREADING, passes=True)
     seen = inner_pixels(alone.max(axis=-1) > 0.02)
     before = np.diag([0.3, 3.0, 0.1, 1.0])
     before[:3, 3] = [-0.35, 0.0, 2.0]
-    hidden = picture(SPREAD, walls=[[*map(float, before.T.ravel())]], wall=OFF)
+    hidden = picture(SPREADING, walls=[[*map(float, before.T.ravel())]], wall=OFF)
     beside = scaled(1.0, np.array([-0.89, 0.0, 0.9]))
-    pair = picture(SPREAD, copies=[{"size": 1.0, "model": [*map(float, beside.T.ravel())]}])
+    pair = picture(SPREADING, copies=[{"size": 1.0, "model": [*map(float, beside.T.ravel())]}])
     for shown in (hidden, pair):
         changed = np.abs(shown - alone).max(axis=-1)
         free = seen & (np.arange(SIZE[0]) > 0.5 * SIZE[0] - 3)
@@ -137,7 +124,7 @@ def test_godot_draws_the_light_that_spreads(
 ) -> None:
     """NumPy's light has the falloff of Godot's white body."""
     compiler("godot")
-    (tmp_path / "skin.toml").write_text(SPREAD, encoding="utf-8")
+    (tmp_path / "skin.toml").write_text(SPREADING, encoding="utf-8")
     (tmp_path / "scene.toml").write_text(SCENE, encoding="utf-8")
     monkeypatch.setattr(eye_pictures, "matt_light", _burley)
     scene, mesh = scene_loading.load(str(tmp_path / "scene.toml")), mesh_of(str(tmp_path / "scene.toml"))
@@ -146,7 +133,7 @@ def test_godot_draws_the_light_that_spreads(
     view = godot_values.view_of(mesh.shell, mesh.size, *torus_mesh(scene.geometry))
     scripts = {name: text for name, text in compiled.files.items() if name.endswith(".gd")}
     values = godot_values.values_of(compiled.reflection, dataclasses.replace(mesh.shell, parameters={}))
-    drawn = Godot(renderer).draw(compiled.files["m.gdshader"], view, values, {}, scripts)[::-1]
+    drawn = Godot(renderer).draw(compiled.files["skin.gdshader"], view, values, {}, scripts)[::-1]
     expected = through(str(tmp_path / "skin.toml"), mesh)
     inner = mesh.hit
     for _ in range(4):  # the edges of bodies have other texels on each side

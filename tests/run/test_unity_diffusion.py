@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import sssgen
-from diffusion_cases import SCENE
+from diffusion_cases import PLAIN, SCENE, SPREAD
 from engine_cases import mesh_of, through
 from sssgen.run.backends import Array, Backend
 from sssgen.run.backends.unity_backend import UnityHLSL
@@ -38,24 +38,6 @@ from unity_frames import (
 )
 
 LEVEL = 1.0 / 255.0
-PLAIN = """
-[material]
-name = "skin"
-
-[[surface]]
-technique = "base_color"
-tint = [0.8, 0.6, 0.5, 1.0]
-
-# no highlight
-[[surface]]
-technique = "specular_level"
-dielectric_specular = 0.0
-"""
-SPREAD = """
-[[surface]]
-technique = "screen_diffusion"
-spread_length = [{}]
-"""
 SECOND = """
 # along the axis of the ring, as the first one
 [[light]]
@@ -114,7 +96,7 @@ class Stage:
         mesh_of.cache_clear()  # the material in the file is another one each time
         return mesh_of(str(self.folder / "scene.toml"))
 
-    def shown(self, text: str, own: dict[str, Any]) -> Array:
+    def draw(self, text: str, own: dict[str, Any]) -> Array:
         """The picture of a material, with the picture that the feature draws for it."""
         compiled = sssgen.compile(self.write(text), "unity-urp")
         mesh = self.mesh()
@@ -160,7 +142,7 @@ def stage(machine: UnityHLSL, feature: Path, tmp_path: Path, monkeypatch: pytest
 
 def test_the_light_spreads_as_in_numpy(stage: Stage) -> None:
     text = PLAIN + SPREAD.format("0.06, 0.03, 0.02")
-    picture = stage.shown(text, {})
+    picture = stage.draw(text, {})
     mesh = stage.mesh()
     expected = through(str(stage.folder / "skin.toml"), mesh)[..., :3]
     inner = inner_pixels(mesh.hit)
@@ -168,7 +150,7 @@ def test_the_light_spreads_as_in_numpy(stage: Stage) -> None:
     difference = np.abs(picture - expected)[inner].max(axis=-1)
     print(f"98 % of the pixels differ by at most {np.quantile(difference, 0.98) / LEVEL:.2f} / 255")
     assert np.quantile(difference, 0.98) < 2.0 * LEVEL
-    still = stage.shown(PLAIN + SPREAD.format("0.0, 0.0, 0.0"), {})
+    still = stage.draw(PLAIN + SPREAD.format("0.0, 0.0, 0.0"), {})
     assert np.quantile(np.abs(still - expected)[inner].max(axis=-1), 0.5) > 2.0 * LEVEL
 
 
@@ -177,8 +159,8 @@ def test_light_that_does_not_spread_is_urps_own(stage: Stage, own: dict[str, Any
     """A spread of 0 leaves the diffuse reflection of the shader, with its shadows and surroundings."""
     if stage.machine.unity.real and "standin_box_min" in own:
         pytest.skip("only the stand-in headers have shadow maps without texels")
-    reflected, unshadowed = stage.shown(PLAIN, own), stage.shown(PLAIN, {})
-    picture = stage.shown(PLAIN + SPREAD.format("0.0, 0.0, 0.0"), own)
+    reflected, unshadowed = stage.draw(PLAIN, own), stage.draw(PLAIN, {})
+    picture = stage.draw(PLAIN + SPREAD.format("0.0, 0.0, 0.0"), own)
     inner = inner_pixels(stage.mesh().hit)
     assert reflected[inner].mean() > 0.05
     assert np.abs(reflected - unshadowed)[inner].mean() > 0.02

@@ -4,6 +4,26 @@ from __future__ import annotations
 
 import numpy as np
 
+PLAIN = """
+[material]
+name = "skin"
+
+[[surface]]
+technique = "base_color"
+tint = [0.8, 0.6, 0.5, 1.0]
+
+# no highlight
+[[surface]]
+technique = "specular_level"
+dielectric_specular = 0.0
+"""
+"""A body without light that spreads."""
+SPREAD = """
+[[surface]]
+technique = "screen_diffusion"
+spread_length = [{}]
+"""
+"""The stage that spreads it; to fill in: three lengths."""
 MATERIAL = """
 [material]
 name = "skin"
