@@ -56,7 +56,7 @@ namespace Sssgen {
             return texture;
         }
 
-        /// <summary>What is drawn next is seen so.</summary>
+        /// <summary>Sets the view of what is drawn next.</summary>
         protected static void See(CommandBuffer commands, View view) {
             commands.SetGlobalMatrix(Clip, GL.GetGPUProjectionMatrix(view.Projection, true) * view.Camera);
             commands.SetGlobalVector(Eye, view.Eye);

@@ -24,12 +24,12 @@ const NEARER := "PROJECTION_MATRIX * MODELVIEW_MATRIX * vec4(VERTEX, 1.0);
 ## camera sees what the eye does, as bodies that a camera does not see cast no shadow for it. Black is in front of them, so
 ## that they are not shaded.
 class LightLayer extends View:
-	## What is not of the body's reflection, or is done once more in the picture of the eye.
+	## Effects to switch off: they are no reflection of the body, or the eye's own picture gets them later.
 	const PLAIN := {
 		"glow_enabled": false, "adjustment_enabled": false, "volumetric_fog_enabled": false, "ssao_enabled": false,
 		"ssil_enabled": false, "ssr_enabled": false, "tonemap_mode": Environment.TONE_MAPPER_LINEAR, "tonemap_exposure": 1.0,
 	}
-	## Of the eye's viewport: shadows of lamps, and details of meshes.
+	## Settings to copy from the eye's viewport: shadows of lamps, and details of meshes.
 	const SHARED: Array[String] = [
 		"positional_shadow_atlas_size", "positional_shadow_atlas_16_bits", "positional_shadow_atlas_quad_0",
 		"positional_shadow_atlas_quad_1", "positional_shadow_atlas_quad_2", "positional_shadow_atlas_quad_3", "mesh_lod_threshold",

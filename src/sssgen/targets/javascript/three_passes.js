@@ -226,7 +226,7 @@ class Drawing {
       picture.viewport.set(0, 0, picture.width, picture.height);
       picture.scissor.set(0, 0, picture.width, picture.height);
       renderer.setRenderTarget(picture);
-      renderer.setClearColor(new THREE.Color(empty, empty, empty), 1); // three encodes it for the target of this time
+      renderer.setClearColor(new THREE.Color(empty, empty, empty), 1); // three encodes it for the target that is set
       renderer.clear();
       cameras.forEach((camera, index) => {
         const tile = tileOf(index);

@@ -299,7 +299,7 @@ class Passes {
 
   /** Writes layers into one picture. */
   #pack(encoder, layers, picture) {
-    const pipeline = this.#made('packed', () => {
+    const pipeline = this.#reuse('packed', () => {
       const module = this.device.createShaderModule({ code: packedText() });
       return { layout: 'auto', vertex: { module }, fragment: { module, targets: [{ format: this.format }] } };
     });
@@ -315,7 +315,7 @@ class Passes {
   #pipeline(entryPoint, { layout, model }, format, back) {
     const [x, y, z] = [0, 4, 8].map((at) => model.slice(at, at + 3));
     const frontFace = dot(x, cross(y, z)) < 0 ? 'cw' : 'ccw';
-    return this.#made(JSON.stringify([entryPoint, layout, format, back, frontFace]), () => {
+    return this.#reuse(JSON.stringify([entryPoint, layout, format, back, frontFace]), () => {
       const module = this.device.createShaderModule({ code: BODY });
       return {
         layout: this.device.createPipelineLayout({ bindGroupLayouts: [this.group] }),
@@ -327,8 +327,8 @@ class Passes {
     });
   }
 
-  /** A pipeline, made once. @param {string} key @param {() => GPURenderPipelineDescriptor} describe */
-  #made(key, describe) {
+  /** A pipeline that is created once for each key. @param {string} key @param {() => GPURenderPipelineDescriptor} describe */
+  #reuse(key, describe) {
     const pipeline = this.#pipelines.get(key) ?? this.device.createRenderPipeline(describe());
     this.#pipelines.set(key, pipeline);
     return pipeline;
