@@ -10,13 +10,14 @@ import pytest
 from oracle import Array, close, rng, technique, unit, units
 from sssgen.lab.fluence import fluence_field as field
 from sssgen.lab.fluence import fluence_volumes as volumes
-from sssgen.lab.fluence import octahedron
+from sssgen.lab.fluence import traced_body
 from sssgen.lab.fluence.factors import factors
 from sssgen.lab.fluence.fluence_field import Settings
 from sssgen.lab.fluence.photons import scatter
 from sssgen.lab.fluence.projection import Projection, hats_at, inside_shares
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.lab.reference.inside_lengths import thickness
+from sssgen.scene import octahedron
 from sssgen.scene.camera import Camera
 from sssgen.scene.geometry import Ball, Box, Torus
 from sssgen.scene.measured.measured_scene import MeasuredScene
@@ -70,8 +71,8 @@ def test_the_collisions_of_a_thin_body_are_those_of_single_scattering() -> None:
     scattered = extinction * np.exp(-extinction * (way + apart)) / (4.0 * np.pi * apart**2)
     expected = volume * scattered.mean() / 4.0
     grid = traced.grid
-    size = float(((grid.high - grid.low) / np.array(grid.shape)).mean()) / field.PARTS
-    projection = Projection(grid, inside_shares(np.linalg.norm(grid.centres(field.PARTS), axis=2) - radius, size))
+    size = float(((grid.high - grid.low) / np.array(grid.shape)).mean()) / traced_body.PARTS
+    projection = Projection(grid, inside_shares(np.linalg.norm(grid.centres(traced_body.PARTS), axis=2) - radius, size))
     hats = projection.integrals(np.ones((1, len(projection.points(grid)))))[0, projection.counting]
     close(hats.sum() * grid.volume, volume, rtol=0.01)
     # bodies this thin scatter a third time, too: a tenth of the second
@@ -135,7 +136,7 @@ def test_walks_for_all_directions_estimate_what_photons_of_each_do(albedo: float
     walks = np.stack(
         [field.trace_walks(scene, part, tuple(map(tuple, towards)), 10, 20_000, 3)[0] for part in range(4)]
     )
-    tracer, medium = field.tracer(scene, 10), field.medium_of(scene, 0)
+    tracer, medium = traced_body.tracer(scene, 10), traced_body.medium_of(scene, 0)
     photons = np.stack([tracer.trace(medium, towards, 40_000, np.random.default_rng(part)) for part in range(4)])
     difference = walks.mean(axis=0) - photons.mean(axis=0)
     error = np.sqrt((walks.var(axis=0, ddof=1) + photons.var(axis=0, ddof=1)) / 4)

@@ -5,7 +5,7 @@ Lengths are in units of the mesh, and places in its object space, unless a docst
 
 from __future__ import annotations
 
-from typing import NotRequired, TypedDict
+from typing import Any, NotRequired, TypedDict
 
 from sssgen.material.baked import ParameterValue
 from sssgen.scene.body_identity import BodyIdentity
@@ -194,6 +194,16 @@ class FluenceFacts(BakeFacts):
     """See `BakeLight.facts`; of light from one direction"""
     technique: NotRequired[str]
     """The technique that reads it"""
+
+
+class RelitFacts(FluenceFacts):
+    """The response of a body to light from anywhere: see `sssgen.scene.light_response`."""
+
+    arrays: dict[str, Any]
+    """Name → type, shape, and the first byte in the file"""
+    highest: float
+    powers: list[float]
+    largest: list[list[float]]
 
 
 class CellFacts(BakeFacts):

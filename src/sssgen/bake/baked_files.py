@@ -43,6 +43,19 @@ def volume_format(path: str, format: str | None) -> str:
     return format
 
 
+def check_response_path(path: str) -> None:
+    """Raises SssgenError for a path that no response of a body can have. Commands call it before the work."""
+    _check_place(path)
+    suffix = os.path.splitext(path)[1]
+    if suffix.lower() != ".bin":
+        raise failure(f"'{suffix}' is not the suffix of a response's file", "end it in .bin", posix(path))
+
+
+def write_response(path: str, data: bytes, facts: BakeFacts) -> list[str]:
+    """Writes the response of a body to light, and its JSON; returns the paths."""
+    return _write(path, data, {**facts, "file": {"name": os.path.basename(path), "bytes": len(data)}})
+
+
 def write_volume(path: str, texels: npt.NDArray[Any], format: str, facts: BakeFacts) -> list[str]:
     """Writes a volume and its JSON; returns the paths."""
     return _write(

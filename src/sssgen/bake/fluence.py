@@ -19,6 +19,7 @@ from sssgen.jobs.executor import Progress
 from sssgen.lab.fluence import fluence_field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence.fluence_field import Field, Settings
+from sssgen.lab.fluence.traced_body import grid_in_box
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.scene import body_identity, geometry_mesh
 from sssgen.scene.camera import Camera
@@ -81,19 +82,40 @@ def bake(
     processes: int | None = None, progress: Progress = lambda *_: None,
 ) -> FluenceBake:  # fmt: skip
     """The fluence as `rank` numbers a voxel for lights from afar, or for one `light`. Raises SssgenError."""
-    if scene.medium is None:
-        raise failure(f"'{scene.name}' has no medium", "add [medium] to the scene")
     if rank not in RANKS:
         raise failure(f"there is no technique of rank {rank}", f"ranks: {', '.join(map(str, RANKS))}")
     if light is not None and not light.afar:
         raise failure("the light has a position", 'a fluence volume is baked for a light from afar: {"direction": …}')
+    check(scene, settings)
+    assert scene.medium is not None
+    refracted = "_refracted" if scene.medium.ior != 1.0 else ""
+    if light is None:
+        traced = fluence_field.field(scene, settings, scheduler, processes, progress)
+        return FluenceBake(
+            _factor(traced, rank),
+            {**facts_of(scene, settings, traced), "rank": rank, "technique": f"fluence_factored_{rank}{refracted}"},
+        )
+    traced = fluence_field.of_light(scene, light.place, settings, scheduler, processes, progress)
+    stored = volumes.light_volume(traced)
+    facts: FluenceFacts = {
+        **facts_of(scene, settings, traced), "light": light.facts(), "technique": f"fluence_fixed{refracted}"
+    }  # fmt: skip
+    facts["parameters"]["fluence_scale"] = [float(value) for value in stored.scale]
+    facts["parameters"]["fluence_reach"] = stored.reach * scene.geometry.scale
+    return FluenceBake([Part("", stored.texels, "fluence_volume")], facts)
+
+
+def check(scene: MeasuredScene, settings: Settings) -> None:
+    """Raises SssgenError for a scene without a medium, settings out of range, or a body that they do not resolve."""
+    if scene.medium is None:
+        raise failure(f"'{scene.name}' has no medium", "add [medium] to the scene")
     if not 4 <= settings.voxels <= 128:
         raise failure(f"{settings.voxels} voxels are not between 4 and 128", "24 to 32 are enough")
     if not 2 <= settings.photons <= 10**7:
         raise failure(f"{settings.photons} photons are not between 2 and 10,000,000", "some thousands are enough")
     if settings.seed < 0:
         raise failure(f"{settings.seed} is not a seed", "0 or a larger integer")
-    grid = fluence_field.grid_in_box(scene, settings.voxels)
+    grid = grid_in_box(scene, settings.voxels)
     if isinstance(scene.geometry, Mesh):
         geometry_mesh.mesh_of(scene.geometry)  # refuses an open mesh before the work
     depth = max(scene.medium.extinction) * _voxel(scene, grid)
@@ -103,21 +125,6 @@ def bake(
             "use more voxels, or a smaller unit: --unit-mm, unit_mm of [medium]",
         )
     memory.check(grid.voxels * settings.side**2 * BYTES, "use fewer voxels")
-    refracted = "_refracted" if scene.medium.ior != 1.0 else ""
-    if light is None:
-        traced = fluence_field.field(scene, settings, scheduler, processes, progress)
-        return FluenceBake(
-            _factor(traced, rank),
-            {**_facts(scene, settings, traced), "rank": rank, "technique": f"fluence_factored_{rank}{refracted}"},
-        )
-    traced = fluence_field.of_light(scene, light.place, settings, scheduler, processes, progress)
-    stored = volumes.light_volume(traced)
-    facts: FluenceFacts = {
-        **_facts(scene, settings, traced), "light": light.facts(), "technique": f"fluence_fixed{refracted}"
-    }  # fmt: skip
-    facts["parameters"]["fluence_scale"] = [float(value) for value in stored.scale]
-    facts["parameters"]["fluence_reach"] = stored.reach * scene.geometry.scale
-    return FluenceBake([Part("", stored.texels, "fluence_volume")], facts)
 
 
 def _factor(traced: Field, rank: int) -> list[Part]:
@@ -132,7 +139,8 @@ def _factor(traced: Field, rank: int) -> list[Part]:
     return [*latents, Part("_table", stored.table, f"fluence_table_{rank}")]
 
 
-def _facts(scene: MeasuredScene, settings: Settings, traced: Field) -> FluenceFacts:
+def facts_of(scene: MeasuredScene, settings: Settings, traced: Field) -> FluenceFacts:
+    """What the JSON of every fluence bake has."""
     medium = scene.medium
     assert medium is not None
     voxel = _voxel(scene, traced.grid)

@@ -14,6 +14,7 @@ from sssgen.ir.types import FLOAT, Array, Matrix, Sampler
 
 BACK_FACES, LIGHT, DISTANT, LAYERS = "back_faces", "light_depth", "distant_light_depth", "distant_light_layers"
 EYE_LAYERS, MATT = "eye_layers", "matt_light"
+INNER_LIGHT = "inner_light"
 LIGHT_LAYERS = "light_layers"
 SHADOW, OCCLUDERS = "shadow_depth", "occluders"
 IRRADIANCE, REFLECTIONS = "irradiance", "reflections"
@@ -30,7 +31,7 @@ class FramePass(NamedTuple):
     light around the scene)"""
     seen_from: str
     """eye, light, distant light, first light, each light (the four brightest, in tiles of 2 × 2), each shadow (the
-    same, of the lights that cast one), or everywhere (a cube map)"""
+    same, of the lights that cast one), everywhere (a cube map), or inside (a volume that fills the body's box)"""
     layers: tuple[str, ...]
     """For each channel the surface whose distance it has: `entry 1` is the nearest front face, `exit 1` the nearest
     back face, `entry 2` the nearest front face behind `exit 1`, `other 1` the nearest face of a caster that is not the
@@ -67,6 +68,12 @@ FRAME_PASSES = {
         "a float texture that covers the screen; each texel is the light that this reflects, and in alpha the "
         "distance from a plane across the view in world units (not the value of the depth "
         "buffer), and more than any of the body's where there is none",
+    ),
+    INNER_LIGHT: FramePass(
+        "body", "inside", ("light",), "0",
+        "compute the light inside the body from its bake, whenever a light, the surroundings or the body has moved, "
+        "into a float volume that fills the bake's box: for each voxel the sum over the lights of the irradiance there "
+        "times what the bake has for the light's direction, and the surroundings as spherical harmonics",
     ),
     LIGHT: FramePass(
         "body", "light", ("entry 1",), "far", _OF_LIGHT.format("the translucent body alone", "light", "the body's")
@@ -119,6 +126,8 @@ EYE_PICTURES = (BACK_FACES, EYE_LAYERS)
 """Pictures of distances from the eye, in the places of the screen's pixels."""
 CUBES = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.seen_from == "everywhere")
 """What is drawn into a cube map."""
+VOLUMES = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.seen_from == "inside")
+"""What is computed into a volume, from a bake."""
 DISTANT_VIEWS = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.seen_from == "distant light")
 """What is drawn in the view of a light from afar."""
 LIGHT_VIEWS = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.seen_from.endswith("light"))

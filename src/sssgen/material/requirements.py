@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from sssgen.ir.baked_textures import is_baked, is_volume
-from sssgen.ir.frame_passes import BACK_FACES, EYE_LAYERS, FRAME_PASSES, LIGHT_VIEWS, MATT, pass_name
+from sssgen.ir.frame_passes import BACK_FACES, EYE_LAYERS, FRAME_PASSES, INNER_LIGHT, LIGHT_VIEWS, MATT, pass_name
 from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import attributes
@@ -27,11 +27,12 @@ DESCRIPTIONS = {
     "back-faces": "a picture of the body's back faces",
     "eye-layers": "a picture of what lies behind them",
     "matt-light": "a picture of what the body would reflect if it were white",
+    "inner-light": "a volume of the light inside the body",
     "rigid": "a rigid mesh",
     "fixed-light": "a light that does not move relative to the body",
 }
 """The requirements, for people."""
-_DISTANCES, _LIGHT = ("depth-map", "depth-layers", "back-faces", "eye-layers"), ("matt-light",)
+_DISTANCES, _LIGHT = ("depth-map", "depth-layers", "back-faces", "eye-layers"), ("matt-light", "inner-light")
 """Pictures that are drawn for each frame."""
 TEXEL_BYTES = 4
 """The bytes of a baked texel without the hint `texel_bytes`: four channels of 8 bits."""
@@ -58,7 +59,8 @@ def needed_for(name: str) -> tuple[str, ...]:
     if name in LIGHT_VIEWS:
         return ("depth-map", "depth-layers") if len(FRAME_PASSES[name].layers) > 1 else ("depth-map",)
     eye = ("back-faces",)
-    return {BACK_FACES: eye, EYE_LAYERS: (*eye, "eye-layers"), MATT: ("matt-light",)}.get(name, ())
+    own = {BACK_FACES: eye, EYE_LAYERS: (*eye, "eye-layers"), MATT: ("matt-light",), INNER_LIGHT: ("inner-light",)}
+    return own.get(name, ())
 
 
 def describe(

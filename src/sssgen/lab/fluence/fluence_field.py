@@ -3,20 +3,17 @@ store of results, so that an interrupted bake continues."""
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from sssgen.jobs.executor import Failure, Item, Progress, run
-from sssgen.lab.fluence import octahedron
-from sssgen.lab.fluence.photons import Body, Medium, Tracer
-from sssgen.lab.fluence.projection import Projection, inside_shares
+from sssgen.lab.fluence.traced_body import grid_in_box, medium_of, projection_of, tracer, walks_of
+from sssgen.lab.fluence.unscattered import shares
 from sssgen.lab.fluence.voxels import Grid
-from sssgen.lab.fluence.walks import Walks
-from sssgen.scene.geometry_mesh import mesh_of
-from sssgen.scene.measured import scene_body
+from sssgen.scene import octahedron
+from sssgen.scene.light_response import UNSCATTERED
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.support.diagnostics import failure
 from sssgen.support.extras import need
@@ -25,8 +22,6 @@ Array = npt.NDArray[np.float64]
 
 GROUP = 32
 """The directions of one work item."""
-PARTS = 4
-"""The points along each axis of a voxel at which the body's distance is evaluated."""
 SHARED = 128
 """The walks in a channel, relative to the photons for each direction, where walks serve all directions."""
 STARTS = 1 << 20
@@ -58,8 +53,10 @@ class Field(NamedTuple):
     grid: Grid
     """In the body's object space"""
     values: Array
-    """(3, directions, voxels), of voxels that count (see `nearest`): texels for trilinear interpolation, which noise
+    """(3, directions, voxels), of voxels that count (see `cells`): texels for trilinear interpolation, which noise
     may make negative"""
+    cells: npt.NDArray[np.int64]
+    """(voxels,): the numbers of the voxels that count in the grid"""
     nearest: npt.NDArray[np.int64]
     """(voxels of the grid,): the counting voxel whose value each voxel has"""
     directions: Array
@@ -70,29 +67,6 @@ class Field(NamedTuple):
     """`values` averaged over neighbouring voxels"""
     distance: Array
     """(voxels of the grid,), from the surface to the voxels' centres, negative inside, in object space"""
-
-
-def grid_in_box(scene: MeasuredScene, voxels: int) -> Grid:
-    """The grid that fills the box of the body's distance texture."""
-    texture = scene_body.distance_texture(scene.geometry)
-    low, high = np.array(texture.box_min), np.array(texture.box_max)
-    x, y, z = np.maximum(np.rint(voxels * (high - low) / (high - low).max()).astype(int), 1)
-    return Grid(low, high, (int(x), int(y), int(z)))
-
-
-@lru_cache(4)
-def tracer(scene: MeasuredScene, voxels: int) -> Tracer:
-    """The tracer of a scene's body, in object space."""
-    vertices, faces = mesh_of(scene.geometry)
-    to_object = scene.geometry.to_object()
-    body = Body(vertices @ to_object[:3, :3].T + to_object[:3, 3], faces)
-    return Tracer(body, grid_in_box(scene, voxels))
-
-
-@lru_cache(4)
-def walks_of(scene: MeasuredScene, voxels: int) -> Walks:
-    """The walks through a scene's body, in object space."""
-    return Walks(tracer(scene, voxels), scene.geometry)
 
 
 Directions = tuple[tuple[float, float, float], ...]
@@ -118,14 +92,6 @@ def trace_walks(scene: MeasuredScene, part: int, towards: Directions, voxels: in
     walker, rng = walks_of(scene, voxels), np.random.default_rng([seed, part])
     starts = walker.starts(max(min(walks, STARTS // len(towards)), 1), np.array(towards), rng)
     return np.stack([walker.trace(medium_of(scene, channel), starts, walks, rng) for channel in range(3)])
-
-
-def medium_of(scene: MeasuredScene, channel: int) -> Medium:
-    """The scene's medium in one channel, in object space."""
-    assert scene.medium is not None
-    # a unit of object space is `scale` units of the world, in which the medium is given
-    extinction = scene.medium.extinction[channel] * scene.geometry.scale
-    return Medium(extinction, scene.medium.albedo[channel], scene.medium.anisotropy, scene.medium.ior)
 
 
 def field(
@@ -172,6 +138,11 @@ def items(scene: MeasuredScene, directions: Array, settings: Settings) -> list[I
     ]
 
 
+def has_all_light(scene: MeasuredScene, settings: Settings) -> bool:
+    """Whether the field has light that is not scattered, too."""
+    return settings.fixed or (scene.medium is not None and scene.medium.ior != 1.0)
+
+
 def _by_walks(scene: MeasuredScene) -> bool:
     """Whether walks serve all directions."""
     return scene.medium is not None and scene.medium.ior == 1.0 and scene.medium.anisotropy == 0.0
@@ -186,13 +157,8 @@ def of_directions(
     progress: Progress,
 ) -> Field:  # fmt: skip
     """The fluence for lights in some directions. Raises SssgenError for a body without an inside, or a failed part."""
-    grid = grid_in_box(scene, settings.voxels)
-    cell = float(((grid.high - grid.low) / np.array(grid.shape)).mean()) / PARTS
-    distances = scene.geometry.distance(grid.centres(PARTS).reshape(-1, 3))
-    projection = Projection(grid, inside_shares(distances, cell).reshape(grid.voxels, -1))
+    grid, projection = grid_in_box(scene, settings.voxels), projection_of(scene, settings.voxels)
     counting = projection.counting
-    if not counting.any() or not (distances < 0.0).any():
-        raise failure("no voxel is inside the body", "use more voxels, or close the mesh")
     results = run(items(scene, directions, settings), scheduler, processes, progress=progress)
     for result in results:
         if isinstance(result, Failure):
@@ -201,10 +167,11 @@ def of_directions(
     noise = error / max(float(estimates.mean()), 1e-30)
     values = projection.texels(estimates.reshape(-1, grid.voxels)).reshape(3, len(directions), -1)
     if settings.fixed and _by_walks(scene):
-        values += _direct_light(scene, tracer(scene, settings.voxels), projection.points(grid), directions, projection)
+        extinctions = [medium_of(scene, channel).extinction for channel in range(3)]
+        values += UNSCATTERED * shares(scene, directions, extinctions, settings.voxels)
     distance = scene.geometry.distance(grid.centres()[:, 0])
     nearest, smooth = _nearest(counting, grid), _smooth(values, counting, grid)
-    return Field(grid, values, nearest, directions, noise, smooth, distance)
+    return Field(grid, values, np.flatnonzero(counting), nearest, directions, noise, smooth, distance)
 
 
 def _join(results: list[tuple[np.ndarray, float]], directions: int) -> tuple[Array, float]:
@@ -218,15 +185,6 @@ def _mean(results: list[np.ndarray], directions: int) -> tuple[Array, float]:
     mean: Array = np.stack(results).mean(axis=0, dtype=np.float64)
     squares = [float(((result - mean) ** 2).mean()) for result in results]
     return mean, float(np.sqrt(np.mean(squares) / max(len(results) - 1, 1)))
-
-
-def _direct_light(
-    scene: MeasuredScene, rays: Tracer, points: Array, directions: Array, projection: Projection
-) -> Array:
-    """The texels of light that has not been scattered, (3, 1, counting), from `points`, those of the projection."""
-    lengths = rays.lengths(points, directions)[:, 0]
-    light = [0.25 * np.exp(-medium_of(scene, channel).extinction * lengths) for channel in range(3)]
-    return projection.texels(projection.integrals(np.stack(light)))[:, None]
 
 
 def _nearest(counting: npt.NDArray[np.bool_], grid: Grid) -> npt.NDArray[np.int64]:

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from sssgen.ir.frame_passes import DISTANT_VIEWS, pass_name
 from sssgen.ir.nodes import Function, Uniform
 from sssgen.ir.types import Sampler, kind_of
-from sssgen.lab.measure.fluence_inputs import PREFIX
+from sssgen.lab.measure.fluence_inputs import INNER, PREFIX
 from sssgen.lang.check.quantities import SCALARS
 from sssgen.material import library, slots
 from sssgen.material.library import Technique
@@ -343,7 +343,7 @@ def quantity_read(technique: Technique) -> str:
 def reads_fluence(candidate: Candidate) -> bool:
     """Whether a chain reads textures of the light inside the body."""
     uniforms = [uniform for name in candidate.techniques for uniform in load(name).uniforms]
-    return any(isinstance(uniform.type, Sampler) and uniform.name.startswith(PREFIX) for uniform in uniforms)
+    return any(isinstance(uniform.type, Sampler) and uniform.name.startswith((PREFIX, INNER)) for uniform in uniforms)
 
 
 def refracts(candidate: Candidate) -> bool:

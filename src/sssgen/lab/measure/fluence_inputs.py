@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from functools import lru_cache, partial
 from itertools import chain
@@ -11,9 +12,12 @@ import numpy as np
 from sssgen.jobs.executor import Item
 from sssgen.lab.fluence import fluence_field as field
 from sssgen.lab.fluence import fluence_volumes as volumes
-from sssgen.lab.fluence import octahedron
+from sssgen.lab.fluence import response
+from sssgen.lab.fluence.traced_body import grid_in_box
 from sssgen.run.backends import Array
+from sssgen.run.evaluate.evaluation import half
 from sssgen.scene.bounds import world_corners
+from sssgen.scene.light_response import LightResponse, from_light, lit
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.scene import Light
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -25,13 +29,17 @@ RANKS = (4, 8)
 """The ranks of the techniques fluence_factored_N."""
 LATENTS = 4
 """The numbers in a texel of a volume."""
+INNER, RANK = "inner_light", 16
+"""The volume of the technique fluence_relit, and the numbers in a voxel of its bake."""
 
 
 def of_light(scene: MeasuredScene, light: Light) -> dict[str, Callable[[], Texture]]:
     """The textures of `sssgen bake fluence` by their names in techniques."""
     if scene.medium is None:
         return {}
-    computed: dict[str, Callable[[], Texture]] = {"fluence_volume": partial(_light_volume, scene, light)}
+    computed: dict[str, Callable[[], Texture]] = {
+        "fluence_volume": partial(_light_volume, scene, light), INNER: partial(_inner_light, scene, light),
+    }  # fmt: skip
     for rank in RANKS:
         computed[f"fluence_table_{rank}"] = partial(_table, scene, rank)
         for number in range(rank // LATENTS):
@@ -44,12 +52,12 @@ def texels(name: str, scene: MeasuredScene) -> int:
     if name.startswith("fluence_table_"):
         side = SETTINGS.side + 2
         return side * side * volumes.tiles_of(int(name.rpartition("_")[2]))
-    return field.grid_in_box(scene, SETTINGS.voxels).voxels if name.startswith(PREFIX) else 0
+    return grid_in_box(scene, SETTINGS.voxels).voxels if name.startswith((PREFIX, INNER)) else 0
 
 
 def reach(scene: MeasuredScene) -> float:
     """The largest distance in the volume of a fixed light, in world units."""
-    return volumes.reach_of(field.grid_in_box(scene, SETTINGS.voxels)) * scene.geometry.scale
+    return volumes.reach_of(grid_in_box(scene, SETTINGS.voxels)) * scene.geometry.scale
 
 
 def items(scene: MeasuredScene) -> list[Item]:
@@ -59,7 +67,7 @@ def items(scene: MeasuredScene) -> list[Item]:
     if scene.medium is None:
         return []
     alone = _without_view(scene)
-    of_all = field.items(alone, octahedron.directions(SETTINGS.side), SETTINGS)
+    of_all = response.items(alone, SETTINGS)
     fixed = [field.items(alone, _towards(scene, light)[None], field.for_light(SETTINGS)) for light in scene.lights]
     return [*of_all, *chain.from_iterable(fixed)]
 
@@ -96,6 +104,19 @@ def _towards(scene: MeasuredScene, light: Light) -> Array:
     turned = scene.geometry.to_object()[:3, :3] @ towards
     unit: Array = turned / np.linalg.norm(turned)
     return unit
+
+
+@lru_cache(4)
+def _response(scene: MeasuredScene) -> LightResponse:
+    return response.response(scene, RANK, SETTINGS, processes=0)[0]
+
+
+@lru_cache(8)
+def _inner_light(scene: MeasuredScene, light: Light) -> Texture:
+    """The light at each voxel, of a white light."""
+    to_object, body = scene.geometry.to_object(), _response(_without_view(scene))
+    incoming = from_light(body, dataclasses.replace(light, color=(1.0, 1.0, 1.0)), to_object)
+    return half(Texture(lit(body, [incoming]), wrap="clamp"))
 
 
 @lru_cache(8)

@@ -24,7 +24,7 @@ UV_RANGE = 32.0
 """The probe shown_uv divides texture coordinates by this. Here they are lengths in depths of the inlay."""
 LENGTHS = ("thickness", "view_thickness")
 """The roles whose value is a length."""
-LIGHT_MAPS = ("light_depth_map", "light_layer_map", "fluence_volume")
+LIGHT_MAPS = ("light_depth_map", "light_layer_map", "fluence_volume", fluence_inputs.INNER)
 """The textures that differ between lights."""
 WHITE = 0.8
 """The value to which exposure scales a reference's brightest parts."""
@@ -43,6 +43,8 @@ class Part(NamedTuple):
     textures: dict[str, Texture]
     color: Array
     """(3, 1) or (3, n): the factor of the light's contribution"""
+    plain_color: Array
+    """The same without the fall-off of a point light, which volumes of all light have for themselves"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +75,8 @@ class Problem:
             if self.role == "coordinates":
                 outputs.append(UV_RANGE * (chain.surface(part.inputs, "albedo")[:2] - 0.5) - part.inputs["uv"])
             else:
-                outputs.append(chain.run(part.inputs, [part.light])[0] * part.color)
+                color = part.plain_color if chain.reads(fluence_inputs.INNER) else part.color
+                outputs.append(chain.run(part.inputs, [part.light])[0] * color)
         values = np.concatenate(outputs, axis=1)
         if self.summed:
             values = values.reshape(len(values), len(self.parts), -1).sum(axis=1)
@@ -113,9 +116,8 @@ class Problem:
             merge([part.light for part in self.parts], first.light.keys()),
             {**{name: first.values[name] for name in shared}, **values},
             first.textures,
-            np.concatenate(
-                [np.broadcast_to(part.color, (3, n)) for part, n in zip(self.parts, counts, strict=True)], 1
-            ),
+            _concatenate([part.color for part in self.parts], counts),
+            _concatenate([part.plain_color for part in self.parts], counts),
         )
 
     def thin_out(self, count: int) -> Problem:
@@ -160,7 +162,7 @@ def _lanes_of(part: Part, lanes: Array, count: int) -> Part:
 
     color = part.color[:, lanes] if part.color.shape[1] == count else part.color
     inputs, light, values = select(part.inputs), select(part.light), select(part.values)
-    return part._replace(inputs=inputs, light=light, values=values, color=color)
+    return part._replace(inputs=inputs, light=light, values=values, color=color, plain_color=part.plain_color)
 
 
 def thickness_problem(scene: MeasuredScene) -> Problem:
@@ -266,8 +268,9 @@ def coordinates_problem(scene: MeasuredScene) -> Problem:
         "depth 1": 1.0, "eta": scene.inlay.outside_ior / scene.inlay.ior,
     }  # fmt: skip
     curvature = scene_inputs.curvature_of(scene)
+    white = np.ones((3, 1))
     part = Part(
-        {**visible.inputs, **curvature.inputs}, {}, values | curvature.values, curvature.textures, np.ones((3, 1))
+        {**visible.inputs, **curvature.inputs}, {}, values | curvature.values, curvature.textures, white, white
     )
     target = inlay.offset[:, keep] / inlay.depth
     zeros = np.zeros_like(target)
@@ -282,7 +285,7 @@ def _part(scene: MeasuredScene, visible: Points, light: Light, color: Array) -> 
     return Part(
         {**visible.inputs, **of_body.inputs}, visible.light(light), {**of_body.values, **of_light.values},
         scene_inputs.SceneTextures({**of_body.textures, **of_light.textures}, computed),
-        color if light.position is None else color / distance**2,
+        color if light.position is None else color / distance**2, color,
     )  # fmt: skip
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sssgen.ir.frame_passes import CUBES, FRAME_PASSES
+from sssgen.ir.frame_passes import CUBES, FRAME_PASSES, VOLUMES
 from sssgen.ir.nodes import Span
 from sssgen.ir.rules import FLOAT_MAX
 from sssgen.ir.types import FLOAT, VEC3, VEC4, Array, Matrix, Sampler, Type, kind_of
@@ -82,7 +82,7 @@ def _check_drawn(context: CheckContext, span: Span, view: str, type_: Type) -> N
             f"a program cannot draw '{view}'",
             did_you_mean(view, FRAME_PASSES) or f"one of: {', '.join(FRAME_PASSES)}",
         )
-    dim = "Cube" if view in CUBES else "2D"
+    dim = "Cube" if view in CUBES else "3D" if view in VOLUMES else "2D"
     values = type_ in (Matrix(4, 4), FLOAT) or (isinstance(type_, Array) and type_.element == VEC4)
     if not values and not (isinstance(type_, Sampler) and type_.dim == dim):
         what = f"a sampler{dim}, the mat4 of the view in which it is drawn, its size, and an array of vec4 for lights"

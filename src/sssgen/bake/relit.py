@@ -1,0 +1,32 @@
+"""The file of the technique fluence_relit: how a body responds to light from anywhere."""
+
+from __future__ import annotations
+
+from sssgen.bake.bake_facts import RelitFacts
+from sssgen.bake.fluence import check, facts_of
+from sssgen.jobs.executor import Progress
+from sssgen.lab.fluence import response
+from sssgen.lab.fluence.fluence_field import Settings
+from sssgen.scene.light_response import to_bytes
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.support.diagnostics import failure
+
+RANKS = (4, 32)
+"""The least and the largest count of numbers in a voxel."""
+
+
+def bake(
+    scene: MeasuredScene, rank: int, settings: Settings, scheduler: str = "", processes: int | None = None,
+    progress: Progress = lambda *_: None,
+) -> tuple[bytes, RelitFacts]:  # fmt: skip
+    """The file with `rank` numbers in a voxel, and the facts for its JSON. Raises SssgenError."""
+    if not RANKS[0] <= rank <= RANKS[1]:
+        raise failure(f"{rank} numbers in a voxel are not between {RANKS[0]} and {RANKS[1]}", "8 or 16 are enough")
+    check(scene, settings)
+    made, traced = response.response(scene, rank, settings, scheduler, processes, progress)
+    data, arrays = to_bytes(made)
+    refracted = "_refracted" if scene.medium is not None and scene.medium.ior != 1.0 else ""
+    return data, {
+        **facts_of(scene, settings, traced), "rank": rank, "technique": f"fluence_relit{refracted}",
+        "arrays": arrays, "highest": made.highest, "powers": made.powers.tolist(), "largest": made.largest.tolist(),
+    }  # fmt: skip
