@@ -39,11 +39,11 @@ class LightResponse(NamedTuple):
     table: npt.NDArray[np.float16]
     """(side², 1 + rank, 3): for each direction of an octahedral map the constant and what the numbers weight"""
     passing: npt.NDArray[np.uint8]
-    """(side², voxels): the root of the share that is not scattered for the mean of the channels, times 255 / `highest`;
-    (0, voxels) where the table has all light"""
+    """(side², voxels): the root of the share that is not scattered in one channel, times 255 / `highest`; (0, voxels)
+    where the table has all light"""
     highest: float
     powers: Array
-    """(3,): the powers of the mean's share that are those of the channels"""
+    """(3,): the powers of this share that are those of the channels"""
     surroundings: npt.NDArray[np.int8]
     """(9, 3, voxels): the weights of spherical harmonics, times 127 / `largest`"""
     largest: Array

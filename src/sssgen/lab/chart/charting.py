@@ -232,7 +232,9 @@ def _points(
     ]
     fitted: list[FitResult] = results_of(fits, settings)
     bodies = {scene.key: scene for scene, candidate in jobs if candidates.reads_fluence(candidate)}
-    results_of([item for scene in bodies.values() for item in fluence_inputs.items(scene)], settings)
+    for scene in bodies.values():
+        with settings.progress_bar() as progress:
+            fluence_inputs.prepare(scene, settings.scheduler, settings.processes, progress)
     measures = [
         Item(
             "sssgen.lab.measure.measurement:measure_candidate",

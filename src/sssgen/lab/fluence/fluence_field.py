@@ -1,16 +1,16 @@
-"""The multiply scattered fluence of a measured scene's body, for many light directions: traced in parts, kept in the
-store of results, so that an interrupted bake continues."""
+"""The fluence inside a measured scene's body, for many light directions: computed in parts, kept in the store of
+results, so that an interrupted bake continues."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from sssgen.jobs.executor import Failure, Item, Progress, run
-from sssgen.lab.fluence.traced_body import grid_in_box, medium_of, projection_of, tracer, walks_of
-from sssgen.lab.fluence.unscattered import shares
+from sssgen.lab.fluence.exchange import scattered
+from sssgen.lab.fluence.traced_body import grid_in_box, medium_of, projection_of, tracer
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.scene import octahedron
 from sssgen.scene.light_response import UNSCATTERED
@@ -22,12 +22,8 @@ Array = npt.NDArray[np.float64]
 
 GROUP = 32
 """The directions of one work item."""
-SHARED = 128
-"""The walks in a channel, relative to the photons for each direction, where walks serve all directions."""
-STARTS = 1 << 20
-"""The points from which the walks of one work item start, times the directions: a length is computed for each."""
-WALK_ITEMS = 4
-"""The work items of the walks: their differences give the standard error."""
+PHOTONS_OF_FLIGHT = 500
+"""Where flights serve all directions, one from each point for so many photons: about the same noise."""
 
 
 class Settings(NamedTuple):
@@ -41,20 +37,19 @@ class Settings(NamedTuple):
     """For each direction and channel"""
     seed: int = 0
     fixed: bool = False
-    """For one light: the field includes unscattered light, and the light has `side` times as many photons"""
+    """For one light: the field includes light that is not scattered, and the light has `side` times as many photons"""
 
 
 class Field(NamedTuple):
-    """π times the mean radiance inside, for an irradiance of 1 on a plane facing the light.
-
-    Of light that is scattered at least once; of all light behind a refracting surface, or for a fixed light.
-    """
+    """π times the mean radiance inside, for an irradiance of 1 on a plane facing the light."""
 
     grid: Grid
     """In the body's object space"""
     values: Array
     """(3, directions, voxels), of voxels that count (see `cells`): texels for trilinear interpolation, which noise
-    may make negative"""
+    may make negative. Of light that is scattered at least once; of all light where `unscattered` is empty"""
+    unscattered: Array
+    """(3, directions, voxels): of light that has not been scattered; (3, 0, voxels) where `values` has it"""
     cells: npt.NDArray[np.int64]
     """(voxels,): the numbers of the voxels that count in the grid"""
     nearest: npt.NDArray[np.int64]
@@ -76,7 +71,7 @@ def trace_photons(
     scene: MeasuredScene, channel: int, towards: Directions, voxels: int, photons: int, seed: int, unscattered: bool
 ) -> tuple[np.ndarray, float]:
     """The estimates (directions, voxels) of `Tracer.trace` for lights in the directions `towards` (object space), and
-    their mean squared error."""
+    their standard error, root mean square."""
     medium = medium_of(scene, channel)
     first, second = (
         tracer(scene, voxels).trace(
@@ -84,14 +79,31 @@ def trace_photons(
         )
         for half in range(2)
     )
-    return (0.5 * (first + second)).astype(np.float32), float(np.mean((0.5 * (first - second)) ** 2))
+    return (0.5 * (first + second)).astype(np.float32), float(np.sqrt(np.mean((0.5 * (first - second)) ** 2)))
 
 
-def trace_walks(scene: MeasuredScene, part: int, towards: Directions, voxels: int, walks: int, seed: int) -> np.ndarray:
-    """The estimates of `Walks.trace` in all channels, (3, directions, voxels) in float32."""
-    walker, rng = walks_of(scene, voxels), np.random.default_rng([seed, part])
-    starts = walker.starts(max(min(walks, STARTS // len(towards)), 1), np.array(towards), rng)
-    return np.stack([walker.trace(medium_of(scene, channel), starts, walks, rng) for channel in range(3)])
+def trace_shares(scene: MeasuredScene, towards: Directions, voxels: int) -> np.ndarray:
+    """The texels of the share of light from some directions that is not scattered on its way, in all channels:
+    (3, directions, counting voxels) in float32."""
+    projection, rays = projection_of(scene, voxels), tracer(scene, voxels)
+    extinctions = [medium_of(scene, channel).extinction for channel in range(3)]
+    texels = []
+    for direction in np.array(towards):
+        lengths = rays.lengths(projection.points, direction[None])[:, 0].astype(np.float64)
+        texels.append(projection.texels(projection.integrals(np.exp(-np.outer(extinctions, lengths)))))
+    return np.stack(texels, axis=1).astype(np.float32)
+
+
+def trace_flights(
+    scene: MeasuredScene, channel: int, shares: np.ndarray, voxels: int, flights: int, seed: int
+) -> tuple[np.ndarray, float]:
+    """The scattered light for the `shares` of a channel, (directions, counting voxels), and its standard error."""
+    medium = medium_of(scene, channel)
+    result = scattered(
+        tracer(scene, voxels), projection_of(scene, voxels), medium.extinction, medium.albedo,
+        UNSCATTERED * shares.astype(np.float64), flights, seed,
+    )  # fmt: skip
+    return result.texels.astype(np.float32), result.noise
 
 
 def field(
@@ -115,41 +127,9 @@ def for_light(settings: Settings) -> Settings:
     return settings._replace(fixed=True)
 
 
-def items(scene: MeasuredScene, directions: Array, settings: Settings) -> list[Item]:
-    """The work items of `of_directions`."""
-    label = f"fluence of {scene.name}"
-    if _by_walks(scene):
-        walks = max(settings.photons * SHARED // WALK_ITEMS, 1)
-        arguments = (_tuples(directions), settings.voxels, walks, settings.seed)
-        return [
-            Item("sssgen.lab.fluence.fluence_field:trace_walks", (scene, part, *arguments), label)
-            for part in range(WALK_ITEMS)
-        ]
-    photons = settings.photons * settings.side if settings.fixed else settings.photons
-    groups = [_tuples(directions[first : first + GROUP]) for first in range(0, len(directions), GROUP)]
-    return [
-        Item(
-            "sssgen.lab.fluence.fluence_field:trace_photons",
-            (scene, channel, group, settings.voxels, photons, settings.seed, settings.fixed),
-            label,
-        )
-        for channel in range(3)
-        for group in groups
-    ]
-
-
-def has_all_light(scene: MeasuredScene, settings: Settings) -> bool:
-    """Whether the field has light that is not scattered, too."""
-    return settings.fixed or (scene.medium is not None and scene.medium.ior != 1.0)
-
-
-def _by_walks(scene: MeasuredScene) -> bool:
-    """Whether walks serve all directions."""
+def by_flights(scene: MeasuredScene) -> bool:
+    """Whether flights serve all directions: in an isotropic medium without refraction."""
     return scene.medium is not None and scene.medium.ior == 1.0 and scene.medium.anisotropy == 0.0
-
-
-def _tuples(directions: Array) -> Directions:
-    return tuple((float(x), float(y), float(z)) for x, y, z in directions)
 
 
 def of_directions(
@@ -157,43 +137,46 @@ def of_directions(
     progress: Progress,
 ) -> Field:  # fmt: skip
     """The fluence for lights in some directions. Raises SssgenError for a body without an inside, or a failed part."""
+
+    def results_of(items: list[Item]) -> list[Any]:
+        results = run(items, scheduler, processes, progress=progress)
+        for result in results:
+            if isinstance(result, Failure):
+                raise failure(f"{result.name}: {result.message}", result.hint)
+        return results
+
     grid, projection = grid_in_box(scene, settings.voxels), projection_of(scene, settings.voxels)
-    counting = projection.counting
-    results = run(items(scene, directions, settings), scheduler, processes, progress=progress)
-    for result in results:
-        if isinstance(result, Failure):
-            raise failure(f"{result.name}: {result.message}", result.hint)
-    estimates, error = (_mean if _by_walks(scene) else _join)(results, len(directions))
-    noise = error / max(float(estimates.mean()), 1e-30)
-    values = projection.texels(estimates.reshape(-1, grid.voxels)).reshape(3, len(directions), -1)
-    if settings.fixed and _by_walks(scene):
-        extinctions = [medium_of(scene, channel).extinction for channel in range(3)]
-        values += UNSCATTERED * shares(scene, directions, extinctions, settings.voxels)
+    module, label = "sssgen.lab.fluence.fluence_field", f"fluence of {scene.name}"
+    groups = [
+        tuple((float(x), float(y), float(z)) for x, y, z in directions[first : first + GROUP])
+        for first in range(0, len(directions), GROUP)
+    ]
+    channels = range(3)
+    unscattered = np.zeros((3, 0, int(projection.counting.sum())))
+    if by_flights(scene):
+        each = [Item(f"{module}:trace_shares", (scene, group, settings.voxels), label) for group in groups]
+        shares = np.concatenate(results_of(each), axis=1)
+        flights = max(settings.photons // PHOTONS_OF_FLIGHT, 2)
+        arguments = [(scene, channel, shares[channel], settings.voxels, flights, settings.seed) for channel in channels]
+        results = results_of([Item(f"{module}:trace_flights", each, label) for each in arguments])
+        values = np.stack([texels for texels, _ in results]).astype(np.float64)
+        unscattered = UNSCATTERED * shares.astype(np.float64)
+    else:
+        photons = settings.photons * settings.side if settings.fixed else settings.photons
+        rest = (settings.voxels, photons, settings.seed, settings.fixed)
+        function = f"{module}:trace_photons"
+        results = results_of(
+            [Item(function, (scene, channel, group, *rest), label) for channel in channels for group in groups]
+        )
+        estimates = np.concatenate([part for part, _ in results]).astype(np.float64)
+        values = projection.texels(projection.folded(estimates)).reshape(3, len(directions), -1)
+    noise = float(np.sqrt(np.mean([error**2 for _, error in results]))) / max(float(values.mean()), 1e-30)
+    if settings.fixed and unscattered.size:
+        values, unscattered = values + unscattered, unscattered[:, :0]
     distance = scene.geometry.distance(grid.centres()[:, 0])
-    nearest, smooth = _nearest(counting, grid), _smooth(values, counting, grid)
-    return Field(grid, values, np.flatnonzero(counting), nearest, directions, noise, smooth, distance)
-
-
-def _join(results: list[tuple[np.ndarray, float]], directions: int) -> tuple[Array, float]:
-    """The estimates (3, directions, voxels) of photons and their standard error."""
-    values = np.concatenate([part for part, _ in results]).astype(np.float64).reshape(3, directions, -1)
-    return values, float(np.sqrt(np.mean([square for _, square in results])))
-
-
-def _mean(results: list[np.ndarray], directions: int) -> tuple[Array, float]:
-    """The same of walks."""
-    mean: Array = np.stack(results).mean(axis=0, dtype=np.float64)
-    squares = [float(((result - mean) ** 2).mean()) for result in results]
-    return mean, float(np.sqrt(np.mean(squares) / max(len(results) - 1, 1)))
-
-
-def _nearest(counting: npt.NDArray[np.bool_], grid: Grid) -> npt.NDArray[np.int64]:
-    """For each voxel of the grid the number of the nearest counting one."""
-    ndimage, shape = need("scipy.ndimage", "scipy", "chart"), grid.shape[::-1]
-    where = ndimage.distance_transform_edt(~counting.reshape(shape), return_distances=False, return_indices=True)
-    number: npt.NDArray[np.int64] = np.cumsum(counting) - 1
-    nearest: npt.NDArray[np.int64] = number[np.ravel_multi_index(where.reshape(3, -1), shape)]
-    return nearest
+    smooth = _smooth(values, projection.counting, grid)
+    cells = np.flatnonzero(projection.counting)
+    return Field(grid, values, unscattered, cells, projection.nearest, directions, noise, smooth, distance)
 
 
 def _smooth(values: Array, counting: npt.NDArray[np.bool_], grid: Grid) -> Array:

@@ -9,7 +9,6 @@ import numpy as np
 from sssgen.lab.fluence.photons import Body, Medium, Tracer
 from sssgen.lab.fluence.projection import Projection, inside_shares
 from sssgen.lab.fluence.voxels import Grid
-from sssgen.lab.fluence.walks import Walks
 from sssgen.scene.geometry_mesh import mesh_of
 from sssgen.scene.measured import scene_body
 from sssgen.scene.measured.measured_scene import MeasuredScene
@@ -46,12 +45,6 @@ def tracer(scene: MeasuredScene, voxels: int) -> Tracer:
     to_object = scene.geometry.to_object()
     body = Body(vertices @ to_object[:3, :3].T + to_object[:3, 3], faces)
     return Tracer(body, grid_in_box(scene, voxels))
-
-
-@lru_cache(4)
-def walks_of(scene: MeasuredScene, voxels: int) -> Walks:
-    """The walks through a scene's body."""
-    return Walks(tracer(scene, voxels), scene.geometry)
 
 
 def medium_of(scene: MeasuredScene, channel: int) -> Medium:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from functools import lru_cache, partial
-from itertools import chain
 
 import numpy as np
 
-from sssgen.jobs.executor import Item
+from sssgen.jobs.executor import Progress
 from sssgen.lab.fluence import fluence_field as field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence import response
@@ -60,16 +59,16 @@ def reach(scene: MeasuredScene) -> float:
     return volumes.reach_of(grid_in_box(scene, SETTINGS.voxels)) * scene.geometry.scale
 
 
-def items(scene: MeasuredScene) -> list[Item]:
-    """The work items of the fluence of a scene's body. Chains of several processes find their results in the store;
-    otherwise each process would compute them.
+def prepare(scene: MeasuredScene, scheduler: str, processes: int | None, progress: Progress) -> None:
+    """Computes the fluence of a scene's body. Chains of several processes find it in the store; otherwise each process
+    would compute it. Raises SssgenError.
     """
     if scene.medium is None:
-        return []
+        return
     alone = _without_view(scene)
-    of_all = response.items(alone, SETTINGS)
-    fixed = [field.items(alone, _towards(scene, light)[None], field.for_light(SETTINGS)) for light in scene.lights]
-    return [*of_all, *chain.from_iterable(fixed)]
+    field.field(alone, SETTINGS, scheduler, processes, progress)
+    for light in scene.lights:
+        field.of_light(alone, _towards(scene, light), SETTINGS, scheduler, processes, progress)
 
 
 @lru_cache(4)

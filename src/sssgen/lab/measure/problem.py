@@ -269,9 +269,7 @@ def coordinates_problem(scene: MeasuredScene) -> Problem:
     }  # fmt: skip
     curvature = scene_inputs.curvature_of(scene)
     white = np.ones((3, 1))
-    part = Part(
-        {**visible.inputs, **curvature.inputs}, {}, values | curvature.values, curvature.textures, white, white
-    )
+    part = Part({**visible.inputs, **curvature.inputs}, {}, values | curvature.values, curvature.textures, white, white)
     target = inlay.offset[:, keep] / inlay.depth
     zeros = np.zeros_like(target)
     return Problem("coordinates", (part,), False, target, zeros, zeros, keep)

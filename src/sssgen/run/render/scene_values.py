@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sssgen.ir.frame_passes import CUBES, DISTANT_VIEWS, IRRADIANCE, LIGHT_VIEWS, REFLECTIONS
+from sssgen.ir.frame_passes import CUBES, DISTANT_VIEWS, IRRADIANCE, LIGHT_VIEWS, REFLECTIONS, VOLUMES
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import with_article
 from sssgen.material import baked
@@ -20,11 +20,12 @@ from sssgen.run.evaluate import input_files as inputs
 from sssgen.run.evaluate.evaluation import half
 from sssgen.run.render import baked_body
 from sssgen.run.render.environment_maps import irradiance_map, reflection_map
+from sssgen.run.render.inner_light import inner_light, is_response
 from sssgen.run.render.shell_values import Shell
 from sssgen.scene.arrays import Array
 from sssgen.scene.bounds import world_corners
 from sssgen.scene.drawn_views import light_depth, light_layers, shown_lights
-from sssgen.scene.environment import read_environment
+from sssgen.scene.environment import Environment, read_environment
 from sssgen.scene.geometry import Distance, Geometry
 from sssgen.scene.scene import DistanceTexture, Picture, Scene
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
@@ -123,14 +124,18 @@ def _drawn_lights(geometry: Geometry, lights: list[list[float]], layers: list[st
 
 def _surroundings(scene: Scene, material: Material, reflection: Reflection) -> dict[str, Texture]:
     """The cube maps of the scene's [environment], by the hint `drawn`."""
-    if "environment" not in scene.measured:
-        return {}
     makers = {IRRADIANCE: irradiance_map, REFLECTIONS: reflection_map}
     asked = {drawn["name"] for drawn in _passes(scene, material, reflection)}
     needed = [(name, maker) for name, maker in makers.items() if name in asked]
-    environment = read_environment(scene) if needed else None
-    scene.document.reporter.check()
+    environment = _environment(scene) if needed else None
     return {name: half(maker(environment)) for name, maker in needed} if environment is not None else {}
+
+
+def _environment(scene: Scene) -> Environment | None:
+    """The scene's surroundings, if it has some. Raises SssgenError for faults in their table."""
+    environment = read_environment(scene) if "environment" in scene.measured else None
+    scene.document.reporter.check()
+    return environment
 
 
 def _parameters(
@@ -298,6 +303,8 @@ def _textures(
                 textures[name] = maps[drawn]
         elif not os.path.isfile(file):
             note(file)
+        elif texture["drawn"] in VOLUMES and is_response(file):
+            textures[name] = inner_light(file, scene, _environment(scene))
         else:
             wrap = getattr(chosen, "wrap", "") or texture["import"]["wrap"]
             textures[name] = _picture(file, wrap, texture)

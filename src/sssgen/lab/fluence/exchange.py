@@ -1,0 +1,106 @@
+"""Light that is scattered inside a body, for lights from many directions at once: finite elements with random flights.
+
+In an isotropic medium, light scattered at x has last been at y with the density of a flight from x to y, whichever way
+it flew: S(x) = a E[(D + S)(y)], with y the end of a random flight from x, a the albedo, S and D the light at a point
+that has and has not been scattered (0 where the flight leaves the body). With the texels' hats h this is a linear
+system (Galerkin; Cohen and Wallace, Radiosity and Realistic Image Synthesis, 1993, chapter 3): (M - a A) S = a A D,
+M_ij the integral of h_i h_j, and A_ij that of h_i(x) E[h_j(y)], which single flights estimate for all directions of
+light. No path is followed: the system has their sum.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from sssgen.lab.fluence.photons import MOST_WALLS, STEP, Tracer
+from sssgen.lab.fluence.projection import Projection
+from sssgen.support.extras import need
+
+Array = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+
+class Scattered(NamedTuple):
+    """Scattered light as texels."""
+
+    texels: Array
+    """(directions, counting voxels)"""
+    noise: float
+    """The standard error of a texel, root mean square"""
+
+
+def scattered(
+    rays: Tracer, projection: Projection, extinction: float, albedo: float, unscattered: Array, flights: int, seed: int
+) -> Scattered:
+    """The scattered light of the `unscattered` (directions, counting voxels), for `flights` from each point."""
+    linear = need("scipy.linalg", "scipy", "chart")
+    halves = [
+        _exchange(rays, projection, extinction, max(flights // 2, 1), np.random.default_rng([seed, half]))
+        for half in range(2)
+    ]
+    difference = 0.5 * (halves[0] - halves[1])
+    exchange = halves[0] + halves[1]
+    del halves
+    exchange *= 0.5
+    system = projection.mass.toarray() - albedo * exchange
+    factor = linear.cho_factor(system, lower=True, overwrite_a=True, check_finite=False)
+    texels: Array = linear.cho_solve(factor, albedo * (exchange @ unscattered.T), check_finite=False)
+    # to first order: how the mean would change if its matrix changed by half of the difference of the two
+    change = linear.cho_solve(factor, albedo * (difference @ (texels + unscattered.T)), check_finite=False)
+    return Scattered(texels.T, float(np.sqrt(np.mean(change**2))))
+
+
+def _exchange(
+    rays: Tracer, projection: Projection, extinction: float, flights: int, rng: np.random.Generator
+) -> npt.NDArray[np.float64]:
+    """The matrix A, (counting, counting); it is symmetric, as a flight and its reverse are equally probable."""
+    points = projection.points
+    count = projection.hats.shape[1]
+    result = np.zeros((count, count))
+    shift = rng.random(3)
+    for number in range(flights):
+        # a lattice in three dimensions, which is more even than random numbers: Kronecker's
+        at = np.arange(len(points)) + number * len(points)
+        u, v, w = (at[:, None] * (0.8191725133961645, 0.6710436067037893, 0.5497004779019703) + shift).T % 1.0
+        z, angle = 1.0 - 2.0 * u, 2.0 * np.pi * v
+        across = np.sqrt(np.maximum(1.0 - z * z, 0.0))
+        ways = np.stack([across * np.cos(angle), across * np.sin(angle), z], axis=1)
+        starts, ends = flights_ends(rays, points, ways, -np.log1p(-w) / extinction)
+        result += (projection.weighted[:, starts] @ projection.hats_at(ends)).toarray()
+    result *= 0.5 / flights
+    result += result.T.copy()
+    return result
+
+
+def flights_ends(rays: Tracer, points: Array, ways: Array, lengths: Array) -> tuple[Indices, Array]:
+    """The numbers of the points whose flights over `lengths` inside the body end in it, and where they end."""
+    active = np.arange(len(points))
+    at, entered, left = np.zeros(len(points)), np.zeros(len(points)), lengths.copy()
+    numbers: list[Indices] = []
+    ends: list[Array] = []
+    for _ in range(MOST_WALLS):
+        face, ahead = rays.rays.nearest(points[active] + at[active, None] * ways[active], ways[active])
+        hit = face >= 0
+        active, face = active[hit], face[hit]
+        if not len(active):
+            break
+        wall = at[active] + np.maximum(ahead[hit], 0.0)
+        leaves = np.einsum("nc,nc->n", ways[active], rays.normals[face]) > 0.0
+        inside = np.where(leaves, wall - entered[active], 0.0)
+        stops = leaves & (left[active] < inside)
+        some = active[stops]
+        numbers.append(some)
+        ends.append(points[some] + (entered[some] + left[some])[:, None] * ways[some])
+        left[active] -= inside
+        entered[active] = wall
+        at[active] = wall + STEP * rays.body.size
+        active = active[~stops]
+    return np.concatenate(numbers), np.concatenate(ends)
+
+
+def solver_bytes(voxels: int) -> int:
+    """The bytes that `scattered` needs for a number of counting voxels."""
+    return 5 * 8 * voxels * voxels
