@@ -393,9 +393,13 @@ def _header(target: Target, program: Program, drawer: str) -> list[str]:
 
 
 def needed(program: Program, texture: Uniform) -> str | None:
-    """What to do for a texture that a picture needs; None where it is optional, or drawn for each frame."""
+    """What to do for a texture that a picture needs; None where it is optional, or drawn for each frame.
+
+    A volume of light is computed from a file, which is needed.
+    """
     source = program.source_names.get(texture.name, texture.name)
-    return None if pass_name(texture) else program.about.needs.get(program.owners.get(source, ("", source)))
+    drawn = pass_name(texture) and not is_volume(texture)
+    return None if drawn else program.about.needs.get(program.owners.get(source, ("", source)))
 
 
 def _supplied(target: Target, program: Program, uniform: Uniform, drawer: str) -> str:

@@ -4,7 +4,7 @@
  * A pass, as a material's module lists it.
  * @typedef {object} Pass
  * @property {string} name
- * @property {string} seenFrom `eye`, `light`, `distant light` or `each light`
+ * @property {string} seenFrom `eye`, `light`, `distant light`, `each light`, or `inside` for a volume of the light in the body
  * @property {string[]} layers for each channel `entry N` or `exit N`: the N-th front or back face, or `light`: what a white
  *   matt surface there reflects
  * @property {'0' | 'far'} empty what a texel without a surface has

@@ -4,12 +4,15 @@
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
 import { spreadOf } from './frame_passes.js';
+import { LightResponse, loadResponse } from './inner_light.js';
 import { nodesOf } from './three_nodes.js';
 import { ObjectUniforms, placedValue } from './three_object.js';
 import { Passes } from './three_passes.js';
 import { entryChunks, entryFunction } from './three_shadows.js';
 import { SURROUNDINGS } from './three_surroundings.js';
 import { Properties, TEXELS } from './values.js';
+
+export { loadResponse };
 
 /**
  * A material, as its module describes it.
@@ -249,7 +252,7 @@ export function materialClass(description) {
       }
       for (const property of Object.keys(textures)) {
         properties.define(this.prototype, property, {
-          get() { return this.#uniforms[property].value; },
+          get() { return this.#passes.responses.get(property) ?? this.#uniforms[property].value; },
           set(value) { this.#setTexture(property, value); },
         });
       }
@@ -266,7 +269,15 @@ export function materialClass(description) {
     }
 
     #setTexture(property, value) {
-      const declared = textures[property];
+      const declared = textures[property], { responses } = this.#passes;
+      responses.delete(property);
+      if (value instanceof LightResponse) {
+        if (!isDrawn(property)) properties.refuse(property, 'a THREE.Texture, or null', value);
+        responses.set(property, value);
+        this.#given.delete(property);
+        for (const [name, numbers] of value.ownParameters()) if (name in parameters) this.#setParameter(name, numbers);
+        return;
+      }
       if (!(value?.isTexture ?? value == null)) properties.refuse(property, 'a THREE.Texture, or null', value);
       if (value) {
         const volume = value.isData3DTexture || value.is3DTexture, layers = value.isDataArrayTexture || value.isArrayTexture;
@@ -312,7 +323,7 @@ export function materialClass(description) {
 
     /** Before an object is drawn: draws its passes. @param {{ renderer: any, scene: THREE.Scene, camera: THREE.Camera, object: THREE.Mesh }} frame */
     #prepare(frame) {
-      properties.checkTextures((property) => this.#given.has(property) && this[property], isTransformed);
+      properties.checkTextures((property) => this.#given.has(property) && this.#uniforms[property].value, isTransformed, this.#passes.responses);
       this.#passes.draw(frame, (property) => this.#given.has(property), (property, value) => {
         const node = this.#uniforms[property];
         if (value.isMatrix4) node.value.copy(value);
@@ -344,7 +355,8 @@ export function materialClass(description) {
     copy(source) {
       super.copy(source);
       for (const property of properties.names) {
-        if (!isDrawn(property) || source.#given.has(property)) this[property] = source[property];
+        const given = source.#given.has(property) || source.#passes.responses.has(property);
+        if (!isDrawn(property) || given) this[property] = source[property];
       }
       if (moves) this.time = source.time;
       if (takesLight) this.light = source.light;

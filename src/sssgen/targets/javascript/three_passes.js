@@ -4,6 +4,7 @@
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
 import { LAYERS, LAYER_GAP, PACKING, SIDE, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
+import { InnerLight } from './three_inner_light.js';
 
 /** The layer of three that only a pass draws. */
 const ALONE = 31;
@@ -178,6 +179,7 @@ class Drawing {
     this.eye = new THREE.PerspectiveCamera();
     this.eye.matrixWorldAutoUpdate = false;
     this.blank = emptyPicture();
+    this.innerLight = new InnerLight();
     this.scene = Object.assign(new THREE.Scene(), { matrixWorldAutoUpdate: false });
     this.quad = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), this.packing.material);
     this.quad.frustumCulled = false;
@@ -316,11 +318,13 @@ class Drawing {
   forget(object) {
     for (const { layers, packed } of Object.values(this.#pictures.get(object) ?? {})) [...layers, packed].forEach((picture) => picture.dispose());
     this.#pictures.delete(object);
+    this.innerLight.forget(object);
   }
 
   dispose() {
     for (const material of [this.fronts.material, this.backs.material, this.packing.material, this.matt.material]) material.dispose();
     this.quad.geometry.dispose();
+    this.innerLight.dispose();
   }
 }
 
@@ -328,6 +332,8 @@ class Drawing {
 export class Passes {
   /** @type {Map<any, Drawing>} */
   #drawings = new Map();
+  /** Of the passes that compute a volume, the responses by the property of their texture. @type {Map<string, any>} */
+  responses = new Map();
   /** Those that have pictures. @type {Set<THREE.Object3D>} */
   #objects = new Set();
 
@@ -360,6 +366,11 @@ export class Passes {
   }
 
   #drawPass(drawing, pass, { renderer, scene, camera, object }, set) {
+    if (pass.seenFrom === 'inside') {
+      const response = this.responses.get(pass.texture);
+      if (response) set(pass.texture, drawing.innerLight.draw({ renderer, scene, camera, object }, response));
+      return;
+    }
     const eye = pass.seenFrom === 'eye', ball = ballOf(object);
     let cameras = [camera];
     // distances on both sides of the body's middle are small enough for half floats

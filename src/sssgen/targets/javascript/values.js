@@ -102,11 +102,12 @@ export class Properties {
    * Warns when a body is drawn, once for each texture: of one that is missing, and of a transform that has no effect.
    * @param {(name: string) => any} given the texture that the page has set
    * @param {(texture: any) => boolean} isTransformed whether the engine would transform coordinates for it
+   * @param {{ has: (name: string) => boolean }} sources those that a pass computes from what the page has set
    */
-  checkTextures(given, isTransformed = () => false) {
+  checkTextures(given, isTransformed = () => false, sources = new Set()) {
     for (const [name, { needed }] of Object.entries(this.textures)) {
       const texture = given(name);
-      if (needed && !texture) this.#warn(name, `is missing: ${needed}`);
+      if (needed && !texture && !sources.has(name)) this.#warn(name, `is missing: ${needed}`);
       if (texture && isTransformed(texture)) this.#warn(name, 'has a transform, which has no effect: the technique uv_transform moves texture coordinates');
     }
   }

@@ -1,0 +1,232 @@
+// The light inside a body from the file of `sssgen bake fluence --relit`: the sum for some lights and surroundings.
+
+const TYPES = { uint8: Uint8Array, int8: Int8Array, uint16: Uint16Array, uint32: Uint32Array, float16: Uint16Array };
+/** The root of light that has not been scattered, relative to its irradiance. */
+const UNSCATTERED = 0.25;
+
+/** A number in half a float. */
+function fromHalf(bits) {
+  const exponent = (bits >> 10) & 31, fraction = bits & 1023, sign = bits & 32768 ? -1 : 1;
+  if (exponent === 0) return sign * fraction * 2 ** -24;
+  return sign * (1 + fraction / 1024) * 2 ** (exponent - 15);
+}
+
+const whole = new Float32Array(1), bitsOf = new Uint32Array(whole.buffer);
+
+/** A number that is not negative as half a float, rounded; larger ones are the largest. */
+export function toHalf(value) {
+  whole[0] = Math.min(value, 65504);
+  const bits = bitsOf[0];
+  if (bits < 0x38800000) return Math.round(whole[0] * 2 ** 24); // subnormal
+  return (bits - 0x38000000 + 0x1000) >>> 13;
+}
+
+/** The real spherical harmonics up to order 2 in a unit direction. */
+export const harmonics = ([x, y, z]) => [
+  0.28209479, 0.48860251 * y, 0.48860251 * z, 0.48860251 * x, 1.09254843 * x * y, 1.09254843 * y * z,
+  0.31539157 * (3 * z * z - 1), 1.09254843 * x * z, 0.54627422 * (x * x - y * y),
+];
+
+/**
+ * How a body responds to light, as a `.bin` and the JSON beside it have it: its numbers are explained where they are made, in
+ * sssgen's light_response.py.
+ */
+export class LightResponse {
+  /** @param {ArrayBuffer} data the file @param {any} facts the content of its JSON */
+  constructor(data, facts) {
+    if (!facts?.arrays || !facts.object_to_volume) throw new TypeError('this JSON is not one of sssgen bake fluence --relit');
+    const read = (name) => {
+      const { type, shape, start } = facts.arrays[name];
+      return new TYPES[type](data, start, shape.reduce((product, count) => product * count, 1));
+    };
+    /** The corners of the box, in object space. */
+    this.low = facts.box_min;
+    this.high = facts.box_max;
+    this.size = facts.box_max.map((value, axis) => value - this.low[axis]);
+    const [depth, height, width] = facts.arrays.nearest.shape;
+    /** The texels of the volume. */
+    Object.assign(this, { width, height, depth });
+    this.cells = read('cells');
+    this.nearest = read('nearest');
+    this.latents = read('latents');
+    this.table = Float32Array.from(read('table'), fromHalf);
+    this.passing = read('passing');
+    this.around = read('surroundings');
+    this.largest = facts.largest;
+    this.count = this.cells.length;
+    this.rank = this.latents.length / this.count;
+    this.side = Math.round(Math.sqrt(this.table.length / (3 * (1 + this.rank))));
+    /** For each stored root the light of each channel that has not been scattered. */
+    this.shares = facts.powers.map((power) => (
+      Float32Array.from({ length: 256 }, (_, root) => UNSCATTERED * (Math.max((root * facts.highest) / 255, 3e-5) ** (2 * power)))
+    ));
+    /** The parameters of the technique, by their names there. */
+    this.parameters = facts.parameters;
+    /** The light of each channel in the voxels that count. */
+    this.sum = [0, 1, 2].map(() => new Float32Array(this.count));
+    this.halves = new Uint16Array(this.count);
+    this.row = new Float32Array(3 * (1 + this.rank));
+    this.mix = { way: new Float64Array(3), texels: new Int32Array(4), weights: new Float64Array(4) };
+  }
+
+  /** The parameters of the technique, by the properties of materials. */
+  ownParameters() {
+    return Object.entries(this.parameters).map(([name, value]) => [name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase()), value]);
+  }
+
+  /** The centre of a voxel that counts, in object space, into `result`. */
+  place(voxel, result) {
+    const cell = this.cells[voxel], { width, height, depth, low, size } = this, rest = Math.floor(cell / width);
+    result[0] = low[0] + (((cell % width) + 0.5) / width) * size[0];
+    result[1] = low[1] + (((rest % height) + 0.5) / height) * size[1];
+    result[2] = low[2] + ((Math.floor(rest / height) + 0.5) / depth) * size[2];
+  }
+
+  /**
+   * Computes the light in all texels.
+   * @param {{ directional: boolean, place: number[], colorAt: (place: number[]) => number[] }[]} lights in object space: the
+   *   direction towards a directional light, or the place of another; the irradiance on a plane that faces it, where 1 makes
+   *   a white matt surface white
+   * @param {number[][] | null} surroundings for each harmonic the integrals of the light of three channels
+   * @param {Uint16Array} texels gets four half floats a texel
+   */
+  light(lights, surroundings, texels) {
+    for (const channel of this.sum) channel.fill(0);
+    for (const light of lights) (light.directional ? this.#addDistant(light) : this.#addNear(light));
+    if (surroundings) this.#addSurroundings(surroundings);
+    const { nearest, halves } = this;
+    this.sum.forEach((values, channel) => {
+      for (let voxel = 0; voxel < values.length; voxel++) halves[voxel] = toHalf(Math.max(values[voxel], 0));
+      for (let texel = 0; texel < nearest.length; texel++) texels[4 * texel + channel] = halves[nearest[texel]];
+    });
+  }
+
+  /** The row of the table for the direction of `mix` into `row`. */
+  #look() {
+    const { side, table, row, mix } = this, length = row.length;
+    mixOf(mix, side);
+    const [a, b, c, d] = mix.weights, [first, second, third, fourth] = mix.texels.map((texel) => texel * length);
+    for (let index = 0; index < length; index++) {
+      row[index] = a * table[first + index] + b * table[second + index] + c * table[third + index] + d * table[fourth + index];
+    }
+  }
+
+  /** Adds a distant light: row by row of the stored numbers, as they lie in memory. */
+  #addDistant({ place, colorAt }) {
+    const { mix, row, latents, count, rank, passing, shares, sum } = this, color = colorAt(this.low);
+    mix.way.set(place);
+    this.#look();
+    const [first, second, third, fourth] = mix.texels.map((texel) => texel * count), [a, b, c, d] = mix.weights;
+    for (let channel = 0; channel < 3; channel++) {
+      const ofChannel = sum[channel], strength = color[channel], start = strength * row[channel];
+      if (passing.length) {
+        const share = shares[channel];
+        for (let voxel = 0; voxel < count; voxel++) {
+          const root = a * passing[first + voxel] + b * passing[second + voxel] + c * passing[third + voxel] + d * passing[fourth + voxel];
+          ofChannel[voxel] += start + strength * share[(root + 0.5) | 0];
+        }
+      } else for (let voxel = 0; voxel < count; voxel++) ofChannel[voxel] += start;
+      for (let number = 0; number < rank; number++) {
+        const weight = (strength * row[3 * (number + 1) + channel]) / 255, at = number * count;
+        for (let voxel = 0; voxel < count; voxel++) ofChannel[voxel] += weight * latents[at + voxel];
+      }
+    }
+  }
+
+  /** Adds a light whose direction and strength differ between voxels. */
+  #addNear({ place, colorAt }) {
+    const { mix, row, latents, count, rank, passing, shares, sum } = this, own = [0, 0, 0];
+    for (let voxel = 0; voxel < count; voxel++) {
+      this.place(voxel, own);
+      for (let axis = 0; axis < 3; axis++) mix.way[axis] = place[axis] - own[axis];
+      this.#look();
+      const color = colorAt(own), { texels, weights } = mix;
+      let root = 0.5;
+      if (passing.length) for (let corner = 0; corner < 4; corner++) root += weights[corner] * passing[texels[corner] * count + voxel];
+      for (let channel = 0; channel < 3; channel++) {
+        let light = passing.length ? shares[channel][root | 0] : 0;
+        for (let number = 0; number < rank; number++) light += row[3 * (number + 1) + channel] * (latents[number * count + voxel] / 255);
+        sum[channel][voxel] += color[channel] * (row[channel] + light);
+      }
+    }
+  }
+
+  #addSurroundings(light) {
+    const { around, count, largest, sum } = this;
+    for (let harmonic = 0; harmonic < 9; harmonic++) {
+      for (let channel = 0; channel < 3; channel++) {
+        const weight = (light[harmonic][channel] * largest[harmonic][channel]) / 127;
+        const first = (3 * harmonic + channel) * count;
+        const ofChannel = sum[channel];
+        for (let voxel = 0; voxel < count; voxel++) ofChannel[voxel] += weight * around[first + voxel];
+      }
+    }
+  }
+}
+
+/**
+ * The four texels of an octahedral map that are nearest to a direction `way` of any length, and their weights. Beyond an edge
+ * lies the same edge, reversed.
+ * @param {{ way: Float64Array, texels: Int32Array, weights: Float64Array }} mix
+ */
+export function mixOf({ way, texels, weights }, side) {
+  const x = way[0], y = way[1], whole = Math.max(Math.abs(x) + Math.abs(y) + Math.abs(way[2]), 1e-20);
+  let across = x / whole, up = y / whole;
+  if (way[2] < 0) {
+    const flat = across;
+    across = (1 - Math.abs(up)) * (x < 0 ? -1 : 1);
+    up = (1 - Math.abs(flat)) * (y < 0 ? -1 : 1);
+  }
+  const column = (0.5 * across + 0.5) * side - 0.5, row = (0.5 * up + 0.5) * side - 0.5;
+  const left = Math.floor(column), low = Math.floor(row), right = column - left, high = row - low;
+  for (let corner = 0; corner < 4; corner++) {
+    const i = corner & 1, j = corner >> 1;
+    texels[corner] = texelOf(left + i, low + j, side);
+    weights[corner] = (i ? right : 1 - right) * (j ? high : 1 - high);
+  }
+}
+
+function texelOf(column, row, side) {
+  const beside = column < 0 || column >= side, above = row < 0 || row >= side;
+  const x = above && !beside ? side - 1 - column : column, y = beside && !above ? side - 1 - row : row;
+  return Math.min(Math.max(y, 0), side - 1) * side + Math.min(Math.max(x, 0), side - 1);
+}
+
+/** Directions that are spread evenly over the sphere (Fibonacci), with their harmonics. */
+const AROUND = Array.from({ length: 128 }, (_, index) => {
+  const y = 1 - (2 * index + 1) / 128, angle = index * Math.PI * (3 - Math.sqrt(5)), across = Math.sqrt(1 - y * y);
+  const way = [across * Math.cos(angle), y, across * Math.sin(angle)];
+  return { way, values: harmonics(way) };
+});
+/** What a cosine leaves of the harmonics of each order: Ramamoorthi and Hanrahan 2001. */
+const COSINE = [Math.PI, (2 * Math.PI) / 3, Math.PI / 4];
+const ORDER = [0, 1, 1, 1, 2, 2, 2, 2, 2];
+
+/**
+ * The integrals of surroundings times the harmonics, from what a white matt surface shows that faces each direction.
+ * @param {(way: number[]) => number[]} shown the colour for a direction in object space
+ */
+export function surroundingsOf(shown) {
+  const sums = ORDER.map(() => [0, 0, 0]);
+  for (const { way, values } of AROUND) {
+    const color = shown(way);
+    values.forEach((value, harmonic) => {
+      for (let channel = 0; channel < 3; channel++) sums[harmonic][channel] += value * color[channel];
+    });
+  }
+  const solidAngle = (4 * Math.PI) / AROUND.length;
+  return sums.map((sum, harmonic) => sum.map((value) => (value * solidAngle) / COSINE[ORDER[harmonic]]));
+}
+
+/**
+ * Reads the response of a body: a `.bin` of `sssgen bake fluence --relit`, and the JSON beside it.
+ * @param {string} url
+ */
+export async function loadResponse(url) {
+  const [data, facts] = await Promise.all([url, `${url}.json`].map(async (one) => {
+    const answer = await fetch(one);
+    if (!answer.ok) throw new Error(`cannot load ${one}: ${answer.status}`);
+    return one === url ? answer.arrayBuffer() : answer.json();
+  }));
+  return new LightResponse(data, facts);
+}
