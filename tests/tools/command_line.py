@@ -37,6 +37,9 @@ class Target(NamedTuple):
     draws_passes: str = ""
     draws_light: bool = False
 
+    def draws(self, name: str) -> bool:
+        return self.draws_light
+
 
 class FakeCompiler(types.ModuleType):
     """A compiler that records its arguments, so that the tests cover only the command line."""

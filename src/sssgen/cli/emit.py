@@ -171,6 +171,7 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
 
     A material with an error has no files in the result. Raises SssgenError for faulty options, with all errors.
     """
+    from sssgen.ir.frame_passes import BACK_FACES, INNER_LIGHT, MATT
     from sssgen.material.requirements import describe
     from sssgen.pipeline.compiler import compile
     from sssgen.pipeline.trace import Trace
@@ -222,7 +223,8 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
     sources = {file: source for file, source in sources.items() if source[0] not in failed}
     required = {
         material.name: describe(
-            material.stages, *(_drawers(material.name, names, arguments.form, light) for light in (False, True))
+            material.stages,
+            *(_drawers(material.name, names, arguments.form, one) for one in (BACK_FACES, MATT, INNER_LIGHT)),
         )
         for material in materials
         if material.name not in failed
@@ -231,12 +233,12 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
     return EmittedFiles(texts, sources, list(dict.fromkeys(warnings)), required, list(dict.fromkeys(errors)))
 
 
-def _drawers(material: str, names: Sequence[str], form: str, light: bool) -> list[str]:
-    """What draws the passes of a material, or those that show `light`: of each of several targets, with its name."""
+def _drawers(material: str, names: Sequence[str], form: str, drawn: str) -> list[str]:
+    """What draws a pass of a material: of each of several targets, with its name."""
     from sssgen.pipeline.compiler import all_targets
 
     targets = [all_targets()[name] for name in names]
-    draws = [form == "shader" and (target.draws_light or not light) for target in targets]
+    draws = [form == "shader" and target.draws(drawn) for target in targets]
     texts = [
         target.draws_passes.format(material=material) if own else "" for target, own in zip(targets, draws, strict=True)
     ]

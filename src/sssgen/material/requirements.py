@@ -32,7 +32,8 @@ DESCRIPTIONS = {
     "fixed-light": "a light that does not move relative to the body",
 }
 """The requirements, for people."""
-_DISTANCES, _LIGHT = ("depth-map", "depth-layers", "back-faces", "eye-layers"), ("matt-light", "inner-light")
+_DISTANCES, _LIGHT = ("depth-map", "depth-layers", "back-faces", "eye-layers"), ("matt-light",)
+_INSIDE = ("inner-light",)
 """Pictures that are drawn for each frame."""
 TEXEL_BYTES = 4
 """The bytes of a baked texel without the hint `texel_bytes`: four channels of 8 bits."""
@@ -64,11 +65,13 @@ def needed_for(name: str) -> tuple[str, ...]:
 
 
 def describe(
-    uses: Sequence[TechniqueUse], drawers: Sequence[str] = (), drawers_of_light: Sequence[str] = ()
-) -> list[str]:
+    uses: Sequence[TechniqueUse], drawers: Sequence[str] = (), drawers_of_light: Sequence[str] = (),
+    drawers_inside: Sequence[str] = (),
+) -> list[str]:  # fmt: skip
     """The requirements of a material in words, with the names of the baked textures and of the body.
 
-    `drawers` draw its passes, where the user's program does not, and `drawers_of_light` those that show light.
+    `drawers` draw its passes, where the user's program does not, `drawers_of_light` those that show light, and
+    `drawers_inside` those that compute a volume.
     """
     required = requirements(uses)
     words = {name: DESCRIPTIONS[name] for name in required}
@@ -76,7 +79,7 @@ def describe(
         words["bake"] += f" ({', '.join(texture.name for texture in baked_textures(uses))})"
     if own := bodies(uses):
         words["rigid"] = f"the body that it is made for ({', '.join(own)}), as on another mesh its light is wrong"
-    for kinds, drawing in ((_LIGHT, drawers_of_light), (_DISTANCES, drawers)):
+    for kinds, drawing in ((_LIGHT, drawers_of_light), (_INSIDE, drawers_inside), (_DISTANCES, drawers)):
         by = f" (drawn {', '.join(f'by {drawer}' for drawer in drawing)})" if drawing else ""
         words.update({name: words[name] + by for name in required if name in kinds})
     return list(words.values())

@@ -136,7 +136,9 @@ class Passes:
     def __init__(self, context: Any, reflection: Reflection) -> None:
         """Raises ValueError for a pass that shows other bodies or the surroundings: the program draws these."""
         self.context = context
-        self.passes = [drawn for drawn in reflection["passes"] if drawn["of"] != "surroundings"]
+        self.passes = [
+            drawn for drawn in reflection["passes"] if drawn["of"] != "surroundings" and drawn["seen_from"] != "inside"
+        ]
         if others := [drawn["name"] for drawn in self.passes if drawn["of"] != "body"]:
             raise ValueError(f"{', '.join(others)}: only pictures of the body are drawn here")
         entries = (*reflection["textures"], *reflection["uniforms"])

@@ -3,6 +3,7 @@ Independent Unit Vectors, JCGT 2014."""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -36,7 +37,7 @@ def solid_angles(side: int) -> Array:
 
 def side_of(maps: npt.NDArray[Any]) -> int:
     """The side of octahedral maps whose texels are the first axis of an array."""
-    return round(len(maps) ** 0.5)
+    return math.isqrt(len(maps))
 
 
 def mix(vectors: Array, side: int) -> tuple[npt.NDArray[np.int64], Array]:

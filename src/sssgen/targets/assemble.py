@@ -11,9 +11,9 @@ import textwrap
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from sssgen.ir.baked_textures import is_baked
+from sssgen.ir.baked_textures import is_baked, is_volume
 from sssgen.ir.constant_expressions import literal
-from sssgen.ir.frame_passes import FRAME_PASSES, pass_name, shows_light
+from sssgen.ir.frame_passes import FRAME_PASSES, pass_name
 from sssgen.ir.nodes import NOWHERE, Function, Local, Module, Param, Span, Uniform
 from sssgen.ir.surface_fields import FIELDS
 from sssgen.ir.types import Sampler, Struct, spell
@@ -413,7 +413,7 @@ def _supplied(target: Target, program: Program, uniform: Uniform, drawer: str) -
         name = property_name(target, program.source_names.get(name, name))
     if not drawn:
         return f"{name}: bake it from the body (sssgen bake)."
-    by = drawer if target.draws_light or not shows_light(drawn) else ""
+    by = drawer if target.draws(drawn) else ""
     return f"{name}: {by or FRAME_PASSES[drawn].how}."
 
 

@@ -9,6 +9,7 @@ import os
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple, TypeVar
 
+from sssgen.ir.frame_passes import VOLUMES, shows_light
 from sssgen.ir.surface_fields import NAMES, OPTIONAL
 from sssgen.ir.types import BY_NAME
 from sssgen.lang.check.quantities import SCALARS
@@ -273,6 +274,8 @@ class Target(NamedTuple):
     """What draws the passes of a material in the form `shader`; '' where the user's program does."""
     draws_light: bool = False
     """Whether it draws the light on the body, too."""
+    draws_inside: bool = False
+    """Whether it computes the light inside the body, too."""
     clustered_lights: bool = False
     """Whether the number of lights differs from pixel to pixel: functions per light then read textures at level 0."""
     uniform_style: str = "plain"
@@ -311,6 +314,12 @@ class Target(NamedTuple):
     def given_inputs(self) -> tuple[str, ...]:
         """The values with an expression of the target's own: a shell does not compute them."""
         return tuple([name for name, text in self.inputs.items() if text != name])
+
+    def draws(self, name: str) -> bool:
+        """Whether what draws its passes draws the one with this name."""
+        if name in VOLUMES:
+            return self.draws_inside
+        return self.draws_light or not shows_light(name)
 
     @property
     def has_surroundings(self) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from sssgen.ir.frame_passes import FRAME_PASSES, passes_of
+from sssgen.ir.frame_passes import FRAME_PASSES, VOLUMES, passes_of
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, spell
 from sssgen.support.diagnostics import failure
@@ -74,7 +74,7 @@ def pass_variables(target: Target, uniforms: Iterable[Uniform], sources: Mapping
         }
         for use in passes_of(uniforms)
         for drawn in [FRAME_PASSES[use.name]]
-        if drawn.of != "surroundings"
+        if drawn.of != "surroundings" and (use.name not in VOLUMES or target.draws(use.name))
     ]  # fmt: skip
 
 

@@ -37,6 +37,7 @@ async function draw(plan, piece) {
     const names = path.split('.'), last = names[names.length - 1];
     const one = names.slice(0, -1).reduce((object, name) => object[name], material);
     if (one[last]?.isColor) one[last].setScalar(value);
+    else if (value?.response) one[last] = { data: Uint8Array.from(atob(value.response), (letter) => letter.charCodeAt(0)).buffer, facts: value.facts };
     else one[last] = value;
   }
 

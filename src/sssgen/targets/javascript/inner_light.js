@@ -21,8 +21,8 @@ export function toHalf(value) {
   return (bits - 0x38000000 + 0x1000) >>> 13;
 }
 
-/** The real spherical harmonics up to order 2 in a unit direction. */
-export const harmonics = ([x, y, z]) => [
+/** The real spherical harmonics up to order 2 in a unit direction. @param {number[]} way */
+export const harmonics = ([x = 0, y = 0, z = 0]) => [
   0.28209479, 0.48860251 * y, 0.48860251 * z, 0.48860251 * x, 1.09254843 * x * y, 1.09254843 * y * z,
   0.31539157 * (3 * z * z - 1), 1.09254843 * x * z, 0.54627422 * (x * x - y * y),
 ];
@@ -34,7 +34,7 @@ export const harmonics = ([x, y, z]) => [
 export class LightResponse {
   /** @param {ArrayBuffer} data the file @param {any} facts the content of its JSON */
   constructor(data, facts) {
-    if (!facts?.arrays || !facts.object_to_volume) throw new TypeError('this JSON is not one of sssgen bake fluence --relit');
+    if (!facts?.arrays || !facts.object_to_volume) throw new TypeError('this is no response of a body: sssgen bake fluence --relit makes one');
     const read = (name) => {
       const { type, shape, start } = facts.arrays[name];
       return new TYPES[type](data, start, shape.reduce((product, count) => product * count, 1));
@@ -45,7 +45,9 @@ export class LightResponse {
     this.size = facts.box_max.map((value, axis) => value - this.low[axis]);
     const [depth, height, width] = facts.arrays.nearest.shape;
     /** The texels of the volume. */
-    Object.assign(this, { width, height, depth });
+    this.width = width;
+    this.height = height;
+    this.depth = depth;
     this.cells = read('cells');
     this.nearest = read('nearest');
     this.latents = read('latents');
@@ -219,14 +221,18 @@ export function surroundingsOf(shown) {
 }
 
 /**
- * Reads the response of a body: a `.bin` of `sssgen bake fluence --relit`, and the JSON beside it.
- * @param {string} url
+ * The response of a body: from the URL of a `.bin` of `sssgen bake fluence --relit`, beside which its JSON lies (a promise), or
+ * from the content of both.
+ * @param {string | { data: ArrayBuffer, facts: any }} source
  */
-export async function loadResponse(url) {
-  const [data, facts] = await Promise.all([url, `${url}.json`].map(async (one) => {
-    const answer = await fetch(one);
-    if (!answer.ok) throw new Error(`cannot load ${one}: ${answer.status}`);
-    return one === url ? answer.arrayBuffer() : answer.json();
-  }));
-  return new LightResponse(data, facts);
+export function responseOf(source) {
+  if (typeof source !== 'string') return new LightResponse(source.data, source.facts);
+  const load = async (url) => {
+    const answer = await fetch(url);
+    if (!answer.ok) throw new Error(`cannot load ${url}: ${answer.status}`);
+    return answer;
+  };
+  return Promise.all([load(source), load(`${source}.json`)]).then(async ([data, facts]) => (
+    new LightResponse(await data.arrayBuffer(), await facts.json())
+  ));
 }

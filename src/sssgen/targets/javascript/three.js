@@ -4,15 +4,13 @@
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
 import { spreadOf } from './frame_passes.js';
-import { LightResponse, loadResponse } from './inner_light.js';
+import { responseOf } from './inner_light.js';
 import { nodesOf } from './three_nodes.js';
 import { ObjectUniforms, placedValue } from './three_object.js';
 import { Passes } from './three_passes.js';
 import { entryChunks, entryFunction } from './three_shadows.js';
 import { SURROUNDINGS } from './three_surroundings.js';
 import { Properties, TEXELS } from './values.js';
-
-export { loadResponse };
 
 /**
  * A material, as its module describes it.
@@ -201,6 +199,7 @@ export function materialClass(description) {
   const inputs = Object.values(calls).flatMap((call) => call.inputs);
   const properties = new Properties({ ...description, inputs }, base);
   const { moves, takesLight } = properties;
+  const isInside = (property) => passes.some((pass) => pass.texture === property && pass.seenFrom === 'inside');
   const isDrawn = (property) => passes.some((pass) => pass.texture === property);
   const texts = { glsl: TSL.glsl(description.glsl), wgsl: TSL.wgsl(description.wgsl) };
   // three keeps one program per key
@@ -271,11 +270,8 @@ export function materialClass(description) {
     #setTexture(property, value) {
       const declared = textures[property], { responses } = this.#passes;
       responses.delete(property);
-      if (value instanceof LightResponse) {
-        if (!isDrawn(property)) properties.refuse(property, 'a THREE.Texture, or null', value);
-        responses.set(property, value);
-        this.#given.delete(property);
-        for (const [name, numbers] of value.ownParameters()) if (name in parameters) this.#setParameter(name, numbers);
+      if (value && isInside(property) && !value.isTexture) {
+        this.#takeResponse(property, value);
         return;
       }
       if (!(value?.isTexture ?? value == null)) properties.refuse(property, 'a THREE.Texture, or null', value);
@@ -289,6 +285,21 @@ export function materialClass(description) {
       else this.#given.delete(property);
       this.#uniforms[property].value = value ?? texel(declared);
       this.needsUpdate = true;
+    }
+
+    /** Takes a file of sssgen bake fluence --relit, from which a pass computes the texture. */
+    #takeResponse(property, value) {
+      const { responses } = this.#passes;
+      const take = (response) => {
+        if (responses.get(property) !== value && responses.has(property)) return; // another was set meanwhile
+        responses.set(property, response);
+        for (const [name, numbers] of response.ownParameters()) if (name in parameters) this.#setParameter(name, numbers);
+      };
+      this.#given.delete(property);
+      const response = responseOf(value);
+      responses.set(property, response instanceof Promise ? value : response);
+      if (response instanceof Promise) response.then(take, (error) => console.error(`${name}: '${property}': ${error.message}`));
+      else take(response);
     }
 
     setValues(values) {

@@ -78,8 +78,9 @@ class Ball {
     this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 4);
     const settings = { type: THREE.FloatType, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter };
     this.targets = [1, -1].map(() => new THREE.WebGLRenderTarget(BALL, BALL, settings));
-    /** What was drawn last, and the pixels of both sides. */
+    /** What was drawn last. */
     this.drawn = '';
+    /** The pixels of both sides. */
     this.pixels = null;
   }
 
@@ -97,8 +98,8 @@ class Ball {
     }
     Object.assign(this.scene, { environment, environmentIntensity: intensity });
     this.scene.environmentRotation.copy(rotation);
-    const sides = this.targets.map((target, index) => {
-      this.camera.position.set(0, 0, index ? -2 : 2);
+    const sides = this.targets.map((target, behind) => {
+      this.camera.position.set(0, 0, behind ? -2 : 2);
       this.camera.lookAt(0, 0, 0);
       renderer.setRenderTarget(target);
       renderer.setClearColor(new THREE.Color(0, 0, 0), 0);
@@ -119,7 +120,7 @@ class Ball {
     if (!this.pixels) return;
     const behind = way.z < 0, x = behind ? -way.x : way.x, scale = 0.97; // not at the edge of the ball, where pixels show two
     const texel = (value) => Math.min(Math.floor((0.5 + 0.5 * scale * value) * BALL), BALL - 1);
-    const at = 4 * (texel(this.up * way.y) * BALL + texel(x)), pixels = this.pixels[Number(behind)];
+    const at = 4 * (texel(this.up * way.y) * BALL + texel(x)), pixels = /** @type {any} */ (this.pixels)[Number(behind)];
     sum.r += pixels[at];
     sum.g += pixels[at + 1];
     sum.b += pixels[at + 2];
@@ -140,14 +141,7 @@ export class InnerLight {
 
   /** The volume of an object with a `response`, for the light of now. */
   draw({ renderer, scene, camera, object }, response) {
-    let volume = this.#volumes.get(object);
-    if (volume?.response !== response) {
-      volume?.texture.dispose();
-      const { width, height, depth } = response;
-      const texture = new THREE.Data3DTexture(new Uint16Array(4 * width * height * depth), width, height, depth);
-      const settings = { format: THREE.RGBAFormat, type: THREE.HalfFloatType, minFilter: THREE.LinearFilter, magFilter: THREE.LinearFilter };
-      this.#volumes.set(object, (volume = { texture: Object.assign(texture, settings), response, key: '' }));
-    }
+    const volume = this.#volumeOf(object, response);
     this.#ball.draw(renderer, scene, object.material);
     const lamps = lampsOf(object, scene, camera), parts = ambientOf(scene, camera);
     const turn = new THREE.Matrix3().setFromMatrix4(object.matrixWorld), way = new THREE.Vector3(), sum = new THREE.Color();
@@ -158,13 +152,26 @@ export class InnerLight {
       this.#ball.add(way, sum);
       return [sum.r, sum.g, sum.b];
     });
-    const key = JSON.stringify([lamps.map((lamp) => [lamp.place, lamp.colorAt(response.low), lamp.colorAt(response.high)]), around]);
+    const key = JSON.stringify([lamps.map(({ place, colorAt }) => [place, ...colorAt(response.low), ...colorAt(response.high)]), around]);
     if (key !== volume.key) {
       volume.key = key;
       response.light(lamps, around, /** @type {any} */ (volume.texture.image.data));
       volume.texture.needsUpdate = true;
     }
     return volume.texture;
+  }
+
+  /** @returns {{ texture: THREE.Data3DTexture, response: any, key: string }} */
+  #volumeOf(object, response) {
+    const before = this.#volumes.get(object);
+    if (before && before.response === response) return before;
+    before?.texture.dispose();
+    const { width, height, depth } = response;
+    const texture = new THREE.Data3DTexture(new Uint16Array(4 * width * height * depth), width, height, depth);
+    Object.assign(texture, { format: THREE.RGBAFormat, type: THREE.HalfFloatType, minFilter: THREE.LinearFilter, magFilter: THREE.LinearFilter });
+    const volume = { texture, response, key: '' };
+    this.#volumes.set(object, volume);
+    return volume;
   }
 
   /** Frees the volume of an object. */

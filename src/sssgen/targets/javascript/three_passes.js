@@ -332,7 +332,7 @@ class Drawing {
 export class Passes {
   /** @type {Map<any, Drawing>} */
   #drawings = new Map();
-  /** Of the passes that compute a volume, the responses by the property of their texture. @type {Map<string, any>} */
+  /** Of the passes that compute a volume, the responses by the property of their texture; what loads one meanwhile. @type {Map<string, any>} */
   responses = new Map();
   /** Those that have pictures. @type {Set<THREE.Object3D>} */
   #objects = new Set();
@@ -368,7 +368,7 @@ export class Passes {
   #drawPass(drawing, pass, { renderer, scene, camera, object }, set) {
     if (pass.seenFrom === 'inside') {
       const response = this.responses.get(pass.texture);
-      if (response) set(pass.texture, drawing.innerLight.draw({ renderer, scene, camera, object }, response));
+      if (response?.latents) set(pass.texture, drawing.innerLight.draw({ renderer, scene, camera, object }, response));
       return;
     }
     const eye = pass.seenFrom === 'eye', ball = ballOf(object);

@@ -190,7 +190,7 @@ class Passes {
   constructor(device, { passes, uniforms, textures }) {
     this.device = device;
     this.names = Object.fromEntries([...uniforms, ...textures].map(({ name, source_name }) => [source_name, name]));
-    this.passes = passes.filter(({ of }) => of === 'body' || of === 'casters').map((pass) => ({ ...pass, seenFrom: pass.seen_from }));
+    this.passes = passes.filter(({ of, seen_from: from }) => (of === 'body' || of === 'casters') && from !== 'inside').map((pass) => ({ ...pass, seenFrom: pass.seen_from }));
     this.format = /** @type {GPUTextureFormat} */ (device.features.has('float32-filterable') ? 'rgba32float' : 'rgba16float');
     this.group = device.createBindGroupLayout({ entries: [
       { binding: 0, visibility: GPUShaderStage.VERTEX | GPUShaderStage.FRAGMENT, buffer: { hasDynamicOffset: true, minBindingSize: 4 * FLOATS } },
