@@ -80,6 +80,8 @@ class Ball {
     this.targets = [1, -1].map(() => new THREE.WebGLRenderTarget(BALL, BALL, settings));
     /** What was drawn last. */
     this.drawn = '';
+    /** The direction of rows upwards in them. */
+    this.up = 1;
     /** The pixels of both sides. */
     this.pixels = null;
   }
