@@ -142,6 +142,11 @@ def test_light_behind_a_gap() -> None:
     seen |= {name: value for name, value in values.items() if name != "d"}
     behind = technique("fluence_fixed_layers")(**seen)[0] - level * (1.0 - first)
     close(behind, level * first * (1.0 - second), rtol=1e-6)
+    # the volume of all lights has no scale: its texels are the light itself
+    summed = Texture(np.array([0.5, 0.5, 1.0]) * np.ones((count, 1, 1, 3)), wrap="clamp")
+    relit = {name: value for name, value in seen.items() if name not in ("fluence_volume", "fluence_scale")}
+    behind = technique("fluence_relit")(**relit, inner_light=summed)[0] - level * (1.0 - first)
+    close(behind, level * first * (1.0 - second), rtol=1e-6)
     # a ray along the plates meets no other one
     along = values | {"V": np.array([[-1.0, 0.0, 0.0]]), "P": np.array([[0.0, 0.5, 0.35]]), "d": np.array([0.0])}
     close(technique("fluence_fixed_gaps")(**along, fluence_reach=0.25), 0.0, atol=1e-6)
