@@ -107,6 +107,17 @@ def test_wrong_options_are_errors(options: list[str], said: str, capsys: pytest.
     assert not Path("ball.bin").exists()
 
 
+def test_media_that_it_cannot_bake_or_trace_otherwise(capsys: pytest.CaptureFixture[str]) -> None:
+    """A refracting surface is an error; an anisotropic medium has light that is not scattered, too."""
+    write("ior = 1.4\n" + FIRST)
+    assert bake() == 2
+    assert "no refracting surface" in capsys.readouterr().err
+    write("anisotropy = 0.5\n" + FIRST)
+    assert bake("--photons", "50") == 0
+    stored = from_bytes(Path("ball.bin").read_bytes(), facts("ball.bin"))
+    assert stored.passing.shape == (256, len(stored.cells)) and stored.passing.max() > 200
+
+
 def test_a_render_sums_the_lights() -> None:
     write(FIRST)
     assert bake() == 0

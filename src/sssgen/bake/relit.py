@@ -23,10 +23,13 @@ def bake(
     if not RANKS[0] <= rank <= RANKS[1]:
         raise failure(f"{rank} numbers in a voxel are not between {RANKS[0]} and {RANKS[1]}", "8 or 16 are enough")
     check(scene, settings)
+    if scene.medium is not None and scene.medium.ior != 1.0:
+        raise failure(
+            "the technique fluence_relit has no refracting surface", "set ior = 1.0 in [medium], or use --rank 8"
+        )
     made, traced = response.response(scene, rank, settings, scheduler, processes, progress)
     data, arrays = to_bytes(made)
-    refracted = "_refracted" if scene.medium is not None and scene.medium.ior != 1.0 else ""
     return data, {
-        **facts_of(scene, settings, traced), "rank": rank, "technique": f"fluence_relit{refracted}",
+        **facts_of(scene, settings, traced), "rank": rank, "technique": "fluence_relit",
         "arrays": arrays, "highest": made.highest, "powers": made.powers.tolist(), "largest": made.largest.tolist(),
     }  # fmt: skip

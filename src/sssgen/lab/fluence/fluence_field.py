@@ -153,14 +153,16 @@ def of_directions(
     ]
     channels = range(3)
     unscattered = np.zeros((3, 0, int(projection.counting.sum())))
-    if by_flights(scene):
+    # behind a refracting surface, and for a fixed light of photons, the photons have all light
+    if by_flights(scene) or (scene.medium is not None and scene.medium.ior == 1.0 and not settings.fixed):
         each = [Item(f"{module}:trace_shares", (scene, group, settings.voxels), label) for group in groups]
         shares = np.concatenate(results_of(each), axis=1)
+        unscattered = UNSCATTERED * shares.astype(np.float64)
+    if by_flights(scene):
         flights = max(settings.photons // PHOTONS_OF_FLIGHT, 2)
         arguments = [(scene, channel, shares[channel], settings.voxels, flights, settings.seed) for channel in channels]
         results = results_of([Item(f"{module}:trace_flights", each, label) for each in arguments])
         values = np.stack([texels for texels, _ in results]).astype(np.float64)
-        unscattered = UNSCATTERED * shares.astype(np.float64)
     else:
         photons = settings.photons * settings.side if settings.fixed else settings.photons
         rest = (settings.voxels, photons, settings.seed, settings.fixed)
