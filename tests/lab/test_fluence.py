@@ -19,7 +19,7 @@ from sssgen.lab.fluence.voxels import Grid
 from sssgen.lab.reference.inside_lengths import thickness
 from sssgen.scene import octahedron
 from sssgen.scene.camera import Camera
-from sssgen.scene.geometry import Ball, Box
+from sssgen.scene.geometry import Ball, Box, Torus
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.measured.media import Medium
 from sssgen.support.diagnostics import SssgenError
@@ -98,6 +98,36 @@ def test_no_light_is_lost_where_nothing_is_absorbed() -> None:
     close((scattered[1.0][traced.nearest[inner]] + direct).mean(), np.pi, rtol=0.03)
     # behind a refracting surface the unscattered light counts, too
     close(scattered[1.4][traced.nearest[inner]].mean(), 1.4**2 * np.pi, rtol=0.03)
+
+
+def test_light_from_everywhere_is_the_same_inside_where_nothing_is_absorbed() -> None:
+    """The linear system of flights: its mean has no bias, also where it is nearly singular."""
+    traced = field.field(body(Box((0.8, 0.8, 0.8)), 3.0), FEW._replace(voxels=8, photons=8000), processes=0)
+    angles = octahedron.solid_angles(FEW.side)
+    light = np.einsum("dv,d->v", (traced.values + traced.unscattered)[0], angles) / np.pi
+    inner = np.abs(traced.grid.centres()[:, 0]).max(axis=1) < 0.3
+    assert inner.sum() > 100
+    close(light[traced.nearest[inner]].mean(), 1.0, rtol=0.01)
+    assert light[traced.nearest[inner]].std() < 0.08
+
+
+@pytest.mark.parametrize("albedo", [0.9, 0.4])
+def test_flights_for_all_directions_give_what_photons_of_each_do(albedo: float) -> None:
+    """Two ways, in a body with a hole: the same total, and the same light in each third of the body."""
+    scene = body(Torus(0.4, 0.15), 6.0, albedo)
+    towards = unit(np.array([[1.0, 0.2, 0.1], [0.1, -0.3, 1.0]]))
+    settings = FEW._replace(photons=8000)
+    traced = scattered_only(scene, towards, settings)
+    projection = traced_body.projection_of(scene, settings.voxels)
+    tracer, medium = traced_body.tracer(scene, settings.voxels), traced_body.medium_of(scene, 0)
+    photons = projection.folded(tracer.trace(medium, towards, 40_000, np.random.default_rng(1)))
+    flights = traced.values[0] @ projection.mass.toarray()
+    along = tracer.grid.centres()[traced.cells, 0] @ towards.T
+    for number in range(len(towards)):
+        for part in np.array_split(np.argsort(along[:, number]), 3):
+            # the texels are coarse for light that fades over less than two of them
+            close(flights[number, part].sum(), photons[number, part].sum(), rtol=0.06)
+        close(flights[number].sum(), photons[number].sum(), rtol=0.02)
 
 
 def test_unscattered_light_behind_a_refracting_surface() -> None:

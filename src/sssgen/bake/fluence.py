@@ -18,8 +18,9 @@ from sssgen.bake.bake_light import BakeLight
 from sssgen.jobs.executor import Progress
 from sssgen.lab.fluence import fluence_field
 from sssgen.lab.fluence import fluence_volumes as volumes
+from sssgen.lab.fluence.exchange import solver_bytes
 from sssgen.lab.fluence.fluence_field import Field, Settings
-from sssgen.lab.fluence.traced_body import grid_in_box
+from sssgen.lab.fluence.traced_body import grid_in_box, projection_of
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.scene import body_identity, geometry_mesh
 from sssgen.scene.camera import Camera
@@ -125,6 +126,9 @@ def check(scene: MeasuredScene, settings: Settings) -> None:
             "use more voxels, or a smaller unit: --unit-mm, unit_mm of [medium]",
         )
     memory.check(grid.voxels * settings.side**2 * BYTES, "use fewer voxels")
+    if fluence_field.by_flights(scene):
+        inside = int(projection_of(scene, settings.voxels).counting.sum())
+        memory.check(solver_bytes(inside), "use fewer voxels")
 
 
 def _factor(traced: Field, rank: int) -> list[Part]:
