@@ -66,7 +66,7 @@ scattering = [3.0, 4.0, 5.0]
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A bent body with its material, its bake and a scene with two lamps and ambient light."""
-    trimesh = pytest.importorskip("trimesh")
+    trimesh = pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[bake]'")
     folder = tmp_path_factory.mktemp("relit")
     (folder / "relit.toml").write_text(MATERIAL, "utf-8")
     (folder / "scene.toml").write_text(SCENE, "utf-8")

@@ -16,7 +16,7 @@ SIDE, RANK, SHAPE = 8, 3, (3, 4, 5)
 IDENTITY = np.eye(4)
 
 
-def made(seed: int = 1) -> LightResponse:
+def example_response(seed: int = 1) -> LightResponse:
     """A response with random numbers, whose light varies smoothly with the direction."""
     random = rng(seed)
     cells = np.sort(random.choice(np.prod(SHAPE), 40, replace=False))
@@ -31,13 +31,15 @@ def made(seed: int = 1) -> LightResponse:
         np.zeros((9, 3, len(cells)), np.int8), np.ones((9, 3)),
     )  # fmt: skip
     angles = octahedron.solid_angles(SIDE)[:, None] * harmonics(octahedron.directions(SIDE))
-    around = np.einsum("dk,dcv->kcv", angles, np.stack([one_of(response, way) for way in octahedron.directions(SIDE)]))
+    around = np.einsum(
+        "dk,dcv->kcv", angles, np.stack([white_light(response, way) for way in octahedron.directions(SIDE)])
+    )
     largest = np.abs(around).max(axis=2)
     stored = np.rint(127.0 * around / largest[..., None]).astype(np.int8)
     return response._replace(surroundings=stored, largest=largest)
 
 
-def one_of(response: LightResponse, way: Array) -> Array:
+def white_light(response: LightResponse, way: Array) -> Array:
     """The light of the voxels that count for a white distant light, (3, voxels)."""
     volume = lit(response, [from_light(response, distant(way), IDENTITY)])
     result: Array = volume.reshape(-1, 3)[response.cells].T
@@ -50,7 +52,7 @@ def distant(way: Array, color: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> 
 
 
 def test_lights_add_and_have_colours() -> None:
-    response = made()
+    response = example_response()
     first, second = unit(rng(3).normal(size=(2, 3)))
     volumes = [lit(response, [from_light(response, distant(way), IDENTITY)]) for way in (first, second)]
     colored = [distant(first, (1.0, 2.0, 0.5)), distant(second, (0.0, 0.3, 1.0))]
@@ -59,7 +61,7 @@ def test_lights_add_and_have_colours() -> None:
 
 
 def test_a_far_lamp_is_a_distant_light_and_a_near_one_has_its_own_ways() -> None:
-    response = made()
+    response = example_response()
     way = np.array([0.36, 0.48, 0.8])
     far = Light(tuple(1e4 * way), None, (1e8,) * 3)
     expected = lit(response, [from_light(response, distant(way), IDENTITY)])
@@ -72,7 +74,7 @@ def test_a_far_lamp_is_a_distant_light_and_a_near_one_has_its_own_ways() -> None
 
 def test_a_body_that_is_moved_has_the_light_in_its_own_space() -> None:
     """A turn and a scale of the body with its lamp change the fall-off alone, by the square of the scale."""
-    response, scale = made(), 2.0
+    response, scale = example_response(), 2.0
     turn = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     to_world = np.eye(4)
     to_world[:3, :3], to_world[:3, 3] = scale * turn, (3.0, -1.0, 2.0)
@@ -93,10 +95,10 @@ def test_harmonics_are_orthonormal() -> None:
 
 def test_surroundings_are_many_lights() -> None:
     """Of light that has the harmonics up to order 2 alone, the sum over lights from everywhere."""
-    response = made()
+    response = example_response()
     ways, angles = octahedron.directions(SIDE), octahedron.solid_angles(SIDE)
     radiance = np.maximum(harmonics(ways) @ rng(5).uniform(-0.1, 0.1, (9, 3)) + 0.8, 0.0)
-    expected = np.einsum("d,dc,dcv->cv", angles, radiance, np.stack([one_of(response, way) for way in ways]))
+    expected = np.einsum("d,dc,dcv->cv", angles, radiance, np.stack([white_light(response, way) for way in ways]))
     # the response itself has higher harmonics: those of its random shares do not count
     coefficients = harmonics(ways).T @ (radiance * angles[:, None])
     found = lit(response, [], coefficients).reshape(-1, 3)[response.cells].T
@@ -104,7 +106,7 @@ def test_surroundings_are_many_lights() -> None:
 
 
 def test_the_bytes_of_a_file() -> None:
-    response = made()
+    response = example_response()
     data, arrays = to_bytes(response)
     facts: dict[str, Any] = {
         "arrays": arrays, "box_min": response.low.tolist(), "box_max": response.high.tolist(),

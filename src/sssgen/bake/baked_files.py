@@ -14,6 +14,7 @@ import numpy.typing as npt
 from sssgen.bake.bake_facts import BakeFacts
 from sssgen.bake.volume_files import FORMATS, encode_volume, layout
 from sssgen.material import baked
+from sssgen.scene.light_response import SUFFIX
 from sssgen.scene.pictures import images
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.file_writer import check_names, write_files
@@ -47,8 +48,8 @@ def check_response_path(path: str) -> None:
     """Raises SssgenError for a path that no response of a body can have. Commands call it before the work."""
     _check_place(path)
     suffix = os.path.splitext(path)[1]
-    if suffix.lower() != ".bin":
-        raise failure(f"'{suffix}' is not the suffix of a response's file", "end it in .bin", posix(path))
+    if suffix.lower() != SUFFIX:
+        raise failure(f"'{suffix}' is not the suffix of a response's file", f"end it in {SUFFIX}", posix(path))
 
 
 def write_response(path: str, data: bytes, facts: BakeFacts) -> list[str]:

@@ -27,9 +27,10 @@ def bake(
         raise failure(
             "the technique fluence_relit has no refracting surface", "set ior = 1.0 in [medium], or use --rank 8"
         )
-    made, traced = response.response(scene, rank, settings, scheduler, processes, progress)
-    data, arrays = to_bytes(made)
+    stored, traced = response.response(scene, rank, settings, scheduler, processes, progress)
+    data, arrays = to_bytes(stored)
     return data, {
         **facts_of(scene, settings, traced), "rank": rank, "technique": "fluence_relit",
-        "arrays": arrays, "highest": made.highest, "powers": made.powers.tolist(), "largest": made.largest.tolist(),
+        "arrays": arrays, "highest": stored.highest, "powers": stored.powers.tolist(),
+        "largest": stored.largest.tolist(),
     }  # fmt: skip

@@ -7,6 +7,7 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
+from sssgen.cli import bake_fluence
 from sssgen.cli.options import add_json, add_output, add_seed, add_workers
 from sssgen.cli.output import OK, print_result
 from sssgen.cli.sizes import pair, picture_size, whole_numbers
@@ -16,9 +17,7 @@ from sssgen.support.progress import ProgressBar
 from sssgen.targets.texture_import import import_settings
 
 if TYPE_CHECKING:
-    from sssgen.bake.bake_facts import BakeFacts, CellFacts, FluenceFacts, NormalFacts, PackedFacts, ViewThicknessFacts
-    from sssgen.lab.fluence.fluence_field import Settings
-    from sssgen.scene.measured.measured_scene import MeasuredScene
+    from sssgen.bake.bake_facts import BakeFacts, CellFacts, NormalFacts, PackedFacts, ViewThicknessFacts
 
 CHANNELS = ("red", "green", "blue", "alpha")
 GREEN = {"opengl": "OpenGL (up)", "directx": "DirectX (down)"}
@@ -191,79 +190,6 @@ def _depth(arguments: Namespace) -> Result:
     low, high = facts["range"]
     lines = [f"depths from {low:.4g} to {high:.4g}; the mesh is in {facts['covered']:.0%} of the texels"]
     return paths, facts, lines if facts["covered"] else ["warning: no ray of the light hits the mesh"]
-
-
-def _fluence_options(parser: ArgumentParser) -> None:
-    add = parser.add_argument
-    add("BODY", metavar="SCENE|MESH", help="a scene with [medium], or a mesh, for which --medium names the medium")
-    add_output(parser, "FILE", "a .npy, .dds or .ktx2; the names of several files are made of it", required=True)
-    add("--medium", default="", metavar="NAME", help="the medium of a mesh: a name of `sssgen list media`")
-    add("--unit-mm", type=float, default=10.0, metavar="U", help="millimetres in a unit of the mesh (default: 10)")
-    add("--rank", type=int, default=8, metavar="K", help="numbers in a voxel, for any distant light: 4 or 8 (default)")
-    add("--relit", type=int, metavar="K", help="K numbers in a voxel, for all lights and surroundings: a .bin; 8 or 16")
-    add("--light", metavar="LIGHT", help="one light that is fixed to the body: a .json with direction, or X,Y,Z")
-    add("--voxels", type=int, default=24, metavar="N", help="voxels along the longest side (default: 24)")
-    add("--photons", type=int, default=24000, metavar="N", help="for each direction and channel (default: 24000)")
-    add("--format", metavar="F", help="npy, dds, ktx2 or raw+json (default: from FILE's suffix)")
-    add_seed(parser, "the seed of the photons")
-    add_workers(parser)
-
-
-def _fluence(arguments: Namespace) -> Result:
-    from sssgen.bake import bake_light, fluence
-    from sssgen.bake import baked_files as output
-    from sssgen.lab.fluence.fluence_field import Settings
-
-    relit = arguments.relit is not None
-    if relit:
-        output.check_response_path(arguments.output)
-    format = "" if relit else output.volume_format(arguments.output, arguments.format)
-    output.check_apart(arguments.output, [arguments.BODY, arguments.light or ""])
-    scene = fluence.body(arguments.BODY, arguments.medium, arguments.unit_mm)
-    settings = Settings(arguments.voxels, photons=arguments.photons, seed=arguments.seed)
-    if relit:
-        if arguments.light or arguments.format:
-            option = "--light" if arguments.light else "--format"
-            raise failure(f"--relit and {option} exclude each other", f"leave {option} out: a .bin serves all lights")
-        return _relit(arguments, scene, settings)
-    light = bake_light.read_light(arguments.light) if arguments.light else None
-    with ProgressBar() as bar:
-        baked = fluence.bake(scene, arguments.rank, light, settings, arguments.scheduler, arguments.processes, bar)
-    paths = []
-    for part in baked.parts:
-        facts: FluenceFacts = {**baked.facts, "texture": part.texture}
-        if part.texels.ndim == 4:
-            path = fluence.part_path(arguments.output, part.suffix)
-            paths += output.write_volume(path, part.texels, format, facts)
-        else:
-            path = fluence.part_path(arguments.output, part.suffix, ".exr")
-            facts["import"] = import_settings(wrap="clamp")
-            paths += output.write_picture(path, part.texels[::-1], facts)
-    return paths, baked.facts, _fluence_lines(scene, baked.facts)
-
-
-def _relit(arguments: Namespace, scene: MeasuredScene, settings: Settings) -> Result:
-    from sssgen.bake import baked_files, relit
-
-    with ProgressBar() as bar:
-        data, facts = relit.bake(scene, arguments.relit, settings, arguments.scheduler, arguments.processes, bar)
-    paths = baked_files.write_response(arguments.output, data, facts)
-    return paths, facts, [*_fluence_lines(scene, facts), f"{len(data) / 1024:.0f} KiB"]
-
-
-def _fluence_lines(scene: MeasuredScene, facts: FluenceFacts) -> list[str]:
-    x, y, z = facts["texels"]
-    lines = [
-        f"{x} × {y} × {z} voxels; {facts['photons']} photons for each of {facts['directions']} "
-        f"direction{'s' if facts['directions'] > 1 else ''}",
-        f"for the technique {facts['technique']}",
-        f"standard error of a voxel {facts['error']['standard_error']:.2g} of the mean, before it is averaged",
-    ]
-    if getattr(scene.geometry, "inside_out", False):
-        lines.append("the mesh is inside out: it was reversed")
-    if facts["opaque_voxels"]:
-        lines.append("warning: a voxel is opaque in one channel: use more voxels, or a smaller --unit-mm")
-    return lines
 
 
 def _view_thickness_options(parser: ArgumentParser) -> None:
@@ -479,8 +405,8 @@ KINDS = {
         "bunny.glb --medium marble --unit-mm 4 -o bunny.dds",
         "Bind the files to the textures of the technique that their JSON names: fluence_factored_8,\n"
         "fluence_factored_4 or fluence_fixed, each with the ending _refracted for a medium with an index.",
-        _fluence_options,
-        _fluence,
+        bake_fluence.add_options,
+        bake_fluence.bake,
     ),
     "view_thickness": Kind(
         "the length inside a body along any view ray, below each texel of its texture coordinates",

@@ -224,7 +224,7 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
     required = {
         material.name: describe(
             material.stages,
-            *(_drawers(material.name, names, arguments.form, one) for one in (BACK_FACES, MATT, INNER_LIGHT)),
+            *(_drawers(material.name, names, arguments.form, drawn) for drawn in (BACK_FACES, MATT, INNER_LIGHT)),
         )
         for material in materials
         if material.name not in failed

@@ -20,6 +20,8 @@ from sssgen.scene.scene import Light
 
 HARMONICS = 9
 """Spherical harmonics up to order 2."""
+SUFFIX = ".bin"
+"""Of the name of a response's file"""
 UNSCATTERED = 0.25
 """π times the mean radiance of light that has not been scattered, relative to its irradiance."""
 

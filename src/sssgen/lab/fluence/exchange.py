@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.lab.fluence.photons import MOST_WALLS, STEP, Tracer
+from sssgen.lab.fluence.photons import MOST_WALLS, Tracer
 from sssgen.lab.fluence.projection import Projection
 from sssgen.support.extras import need
 
@@ -68,27 +68,23 @@ def _exchange(
         z, angle = 1.0 - 2.0 * u, 2.0 * np.pi * v
         across = np.sqrt(np.maximum(1.0 - z * z, 0.0))
         ways = np.stack([across * np.cos(angle), across * np.sin(angle), z], axis=1)
-        starts, ends = flights_ends(rays, points, ways, -np.log1p(-w) / extinction)
+        starts, ends = _ends(rays, points, ways, -np.log1p(-w) / extinction)
         result += (projection.weighted[:, starts] @ projection.hats_at(ends)).toarray()
     result *= 0.5 / flights
     result += result.T.copy()
     return result
 
 
-def flights_ends(rays: Tracer, points: Array, ways: Array, lengths: Array) -> tuple[Indices, Array]:
+def _ends(rays: Tracer, points: Array, ways: Array, lengths: Array) -> tuple[Indices, Array]:
     """The numbers of the points whose flights over `lengths` inside the body end in it, and where they end."""
     active = np.arange(len(points))
     at, entered, left = np.zeros(len(points)), np.zeros(len(points)), lengths.copy()
     numbers: list[Indices] = []
     ends: list[Array] = []
     for _ in range(MOST_WALLS):
-        face, ahead = rays.rays.nearest(points[active] + at[active, None] * ways[active], ways[active])
-        hit = face >= 0
-        active, face = active[hit], face[hit]
+        active, wall, leaves = rays.next_walls(points, ways, at, active)
         if not len(active):
             break
-        wall = at[active] + np.maximum(ahead[hit], 0.0)
-        leaves = np.einsum("nc,nc->n", ways[active], rays.normals[face]) > 0.0
         inside = np.where(leaves, wall - entered[active], 0.0)
         stops = leaves & (left[active] < inside)
         some = active[stops]
@@ -96,7 +92,6 @@ def flights_ends(rays: Tracer, points: Array, ways: Array, lengths: Array) -> tu
         ends.append(points[some] + (entered[some] + left[some])[:, None] * ways[some])
         left[active] -= inside
         entered[active] = wall
-        at[active] = wall + STEP * rays.body.size
         active = active[~stops]
     return np.concatenate(numbers), np.concatenate(ends)
 

@@ -20,6 +20,7 @@ from sssgen.scene.mesh_rays import MeshRays
 Array = npt.NDArray[np.float64]
 Singles = npt.NDArray[np.float32]
 Indices = npt.NDArray[np.int64]
+Bools = npt.NDArray[np.bool_]
 
 FAINT = 1e-3
 """The weight below which Russian roulette ends most photons."""
@@ -63,6 +64,16 @@ class Tracer:
         normal = np.cross(second - first, third - first)
         self.normals: Array = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
 
+    def next_walls(self, origins: Array, ways: Array, at: Array, active: Indices) -> tuple[Indices, Array, Bools]:
+        """The `active` ones of some rays that meet a wall behind their distances `at`, the distances of these walls,
+        and whether the ray leaves the body there; `at` is moved behind them."""
+        face, ahead = self.rays.nearest(origins[active] + at[active, None] * ways[active], ways[active])
+        hit = face >= 0
+        active, face = active[hit], face[hit]
+        wall: Array = at[active] + np.maximum(ahead[hit], 0.0)
+        at[active] = wall + STEP * self.body.size
+        return active, wall, np.einsum("nc,nc->n", ways[active], self.normals[face]) > 0.0
+
     def lengths(self, points: Array, towards: Array) -> Singles:
         """The lengths inside the body from points (n, 3) towards directions (d, 3), (n, d)."""
         result = np.zeros((len(points), len(towards)), np.float32)
@@ -72,15 +83,10 @@ class Tracer:
             origins, ways = np.repeat(some, len(towards), axis=0), np.tile(towards, (len(some), 1))
             at, total, active = np.zeros(len(origins)), np.zeros(len(origins)), np.arange(len(origins))
             for _ in range(MOST_WALLS):
-                face, ahead = self.rays.nearest(origins[active] + at[active, None] * ways[active], ways[active])
-                hit = face >= 0
-                active, face = active[hit], face[hit]
+                active, wall, leaves = self.next_walls(origins, ways, at, active)
                 if not len(active):
                     break
-                at[active] += np.maximum(ahead[hit], 0.0)
-                leaves = np.einsum("nc,nc->n", ways[active], self.normals[face]) > 0.0
-                total[active] += np.where(leaves, at[active], -at[active])
-                at[active] += STEP * self.body.size
+                total[active] += np.where(leaves, wall, -wall)
             result[first : first + group] = np.maximum(total, 0.0).reshape(len(some), -1)
         return result
 

@@ -10,14 +10,13 @@ from sssgen.material import baked
 from sssgen.run.evaluate.evaluation import half
 from sssgen.scene.arrays import Array
 from sssgen.scene.environment import Environment
-from sssgen.scene.light_response import from_bytes, from_light, harmonics, lit
+from sssgen.scene.light_response import SUFFIX, from_bytes, from_light, harmonics, lit
 from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import note
 from sssgen.support.paths import posix
 from sssgen.targets.runtime.numpy_textures import Texture
 
-SUFFIX = ".bin"
 ROWS = 32
 """The rows of directions at which surroundings are evaluated."""
 

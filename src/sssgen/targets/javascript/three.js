@@ -291,13 +291,13 @@ export function materialClass(description) {
     #takeResponse(property, value) {
       const { responses } = this.#passes;
       const take = (response) => {
-        if (responses.get(property) !== value && responses.has(property)) return; // another was set meanwhile
+        if (responses.get(property) !== value) return; // another was set, or none, while this one was loading
         responses.set(property, response);
         for (const [name, numbers] of response.ownParameters()) if (name in parameters) this.#setParameter(name, numbers);
       };
       this.#given.delete(property);
       const response = responseOf(value);
-      responses.set(property, response instanceof Promise ? value : response);
+      responses.set(property, value);
       if (response instanceof Promise) response.then(take, (error) => console.error(`${name}: '${property}': ${error.message}`));
       else take(response);
     }
