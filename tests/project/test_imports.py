@@ -13,6 +13,7 @@ HELP = "the module is imported for its options, too: `--help` works without opti
 
 LAZY_IMPORTS = {
     "sssgen.cli.bake": HELP,
+    "sssgen.cli.bake_fluence": HELP,
     "sssgen.cli.chart": HELP,
     "sssgen.cli.ci": EXTRA,
     "sssgen.cli.completion": HELP,
