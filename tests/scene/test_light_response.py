@@ -29,6 +29,7 @@ def example_response(seed: int = 1) -> LightResponse:
         random.integers(0, 256, (RANK, len(cells))).astype(np.uint8), table,
         random.integers(0, 256, (SIDE * SIDE, len(cells))).astype(np.uint8), 1.1, np.array([0.8, 1.0, 1.3]),
         np.zeros((9, 3, len(cells)), np.int8), np.ones((9, 3)),
+            random.integers(0, 256, nearest.shape).astype(np.uint8),
     )  # fmt: skip
     angles = octahedron.solid_angles(SIDE)[:, None] * harmonics(octahedron.directions(SIDE))
     around = np.einsum(

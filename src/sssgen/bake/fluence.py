@@ -27,6 +27,7 @@ from sssgen.scene.camera import Camera
 from sssgen.scene.geometry import Mesh
 from sssgen.scene.measured import measured_scene, media
 from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.measured.media import Medium
 from sssgen.scene.mesh_files import SUFFIXES
 from sssgen.support.diagnostics import failure
 from sssgen.support.paths import posix, stem
@@ -89,21 +90,30 @@ def bake(
         raise failure("the light has a position", 'a fluence volume is baked for a light from afar: {"direction": …}')
     check(scene, settings)
     assert scene.medium is not None
-    refracted = "_refracted" if scene.medium.ior != 1.0 else ""
     if light is None:
         traced = fluence_field.field(scene, settings, scheduler, processes, progress)
         return FluenceBake(
             _factor(traced, rank),
-            {**facts_of(scene, settings, traced), "rank": rank, "technique": f"fluence_factored_{rank}{refracted}"},
+            {
+                **facts_of(scene, settings, traced),
+                "rank": rank,
+                "technique": technique_for(f"fluence_factored_{rank}", scene.medium),
+            },
         )
     traced = fluence_field.of_light(scene, light.place, settings, scheduler, processes, progress)
     stored = volumes.light_volume(traced)
     facts: FluenceFacts = {
-        **facts_of(scene, settings, traced), "light": light.facts(), "technique": f"fluence_fixed{refracted}"
+        **facts_of(scene, settings, traced), "light": light.facts(),
+        "technique": technique_for("fluence_fixed", scene.medium),
     }  # fmt: skip
     facts["parameters"]["fluence_scale"] = [float(value) for value in stored.scale]
     facts["parameters"]["fluence_reach"] = stored.reach * scene.geometry.scale
     return FluenceBake([Part("", stored.texels, "fluence_volume")], facts)
+
+
+def technique_for(name: str, medium: Medium) -> str:
+    """The technique that reads a bake: behind a refracting surface one of its own."""
+    return f"{name}_refracted" if medium.ior != 1.0 else name
 
 
 def check(scene: MeasuredScene, settings: Settings) -> None:

@@ -1,12 +1,13 @@
-"""The file of the technique fluence_relit: how a body responds to light from anywhere."""
+"""The file of the techniques fluence_relit and fluence_relit_refracted: how a body responds to light from anywhere."""
 
 from __future__ import annotations
 
 from sssgen.bake.bake_facts import RelitFacts
-from sssgen.bake.fluence import check, facts_of
+from sssgen.bake.fluence import check, facts_of, technique_for
 from sssgen.jobs.executor import Progress
 from sssgen.lab.fluence import response
 from sssgen.lab.fluence.fluence_field import Settings
+from sssgen.lab.fluence.fluence_volumes import reach_of
 from sssgen.scene.light_response import to_bytes
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.support.diagnostics import failure
@@ -23,14 +24,13 @@ def bake(
     if not RANKS[0] <= rank <= RANKS[1]:
         raise failure(f"{rank} numbers in a voxel are not between {RANKS[0]} and {RANKS[1]}", "8 or 16 are enough")
     check(scene, settings)
-    if scene.medium is not None and scene.medium.ior != 1.0:
-        raise failure(
-            "the technique fluence_relit has no refracting surface", "set ior = 1.0 in [medium], or use --rank 8"
-        )
     stored, traced = response.response(scene, rank, settings, scheduler, processes, progress)
     data, arrays = to_bytes(stored)
+    assert scene.medium is not None
+    facts = facts_of(scene, settings, traced)
+    facts["parameters"]["fluence_reach"] = reach_of(traced.grid) * scene.geometry.scale
     return data, {
-        **facts_of(scene, settings, traced), "rank": rank, "technique": "fluence_relit",
+        **facts, "rank": rank, "technique": technique_for("fluence_relit", scene.medium),
         "arrays": arrays, "highest": stored.highest, "powers": stored.powers.tolist(),
         "largest": stored.largest.tolist(),
     }  # fmt: skip

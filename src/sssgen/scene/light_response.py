@@ -50,6 +50,8 @@ class LightResponse(NamedTuple):
     """(9, 3, voxels): the weights of spherical harmonics, times 127 / `largest`"""
     largest: Array
     """(9, 3)"""
+    distance: npt.NDArray[np.uint8]
+    """(z, y, x): the distance from the surface, 0 the reach inside, 255 the reach outside"""
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -106,6 +108,12 @@ def lit(response: LightResponse, lights: list[Incoming], surroundings: Array | N
     return np.moveaxis(texels, 0, -1)
 
 
+def volume(response: LightResponse, lights: list[Incoming], surroundings: Array | None = None) -> Array:
+    """The texels of the volume, (z, y, x, 4): the light as `lit` has it, and the stored distance, 0 to 1."""
+    distance = response.distance[..., None] / 255.0
+    return np.concatenate([lit(response, lights, surroundings), distance], axis=-1)
+
+
 def _scattered(response: LightResponse, numbers: Array, towards: Array) -> Array:
     """(3, voxels), for an irradiance of 1."""
     texels, weights = octahedron.mix(towards, octahedron.side_of(response.table))
@@ -143,7 +151,7 @@ def harmonics(directions: Array) -> Array:
 
 # Files: arrays one behind the other, which the JSON beside them describes.
 
-_ARRAYS = ("cells", "nearest", "latents", "table", "passing", "surroundings")
+_ARRAYS = ("cells", "nearest", "latents", "table", "passing", "surroundings", "distance")
 
 
 def to_bytes(response: LightResponse) -> tuple[bytes, dict[str, Any]]:

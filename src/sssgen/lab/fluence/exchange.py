@@ -5,7 +5,7 @@ it flew: S(x) = a E[(D + S)(y)], with y the end of a random flight from x, a the
 that has and has not been scattered (0 where the flight leaves the body). With the texels' hats h this is a linear
 system (Galerkin; Cohen and Wallace, Radiosity and Realistic Image Synthesis, 1993, chapter 3): (M - a A) S = a A D,
 M_ij the integral of h_i h_j, and A_ij that of h_i(x) E[h_j(y)], which single flights estimate for all directions of
-light. No path is followed: the system has their sum.
+light. No path is followed: the system has their sum. At a refracting surface flights are reflected or refracted.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.lab.fluence.photons import MOST_WALLS, Tracer
+from sssgen.lab.fluence.photons import MOST_WALLS, Medium, Tracer
 from sssgen.lab.fluence.projection import Projection
+from sssgen.lab.reference.dielectric import Dielectric
 from sssgen.support.extras import need
 
 Array = npt.NDArray[np.float64]
@@ -33,28 +34,28 @@ class Scattered(NamedTuple):
 
 
 def scattered(
-    rays: Tracer, projection: Projection, extinction: float, albedo: float, unscattered: Array, flights: int, seed: int
+    rays: Tracer, projection: Projection, medium: Medium, unscattered: Array, flights: int, seed: int
 ) -> Scattered:
     """The scattered light of the `unscattered` (directions, counting voxels), for `flights` from each point."""
     linear = need("scipy.linalg", "scipy", "chart")
     halves = [
-        _exchange(rays, projection, extinction, max(flights // 2, 1), np.random.default_rng([seed, half]))
+        _exchange(rays, projection, medium, max(flights // 2, 1), np.random.default_rng([seed, half]))
         for half in range(2)
     ]
     difference = 0.5 * (halves[0] - halves[1])
     exchange = halves[0] + halves[1]
     del halves
     exchange *= 0.5
-    system = projection.mass.toarray() - albedo * exchange
+    system = projection.mass.toarray() - medium.albedo * exchange
     factor = linear.cho_factor(system, lower=True, overwrite_a=True, check_finite=False)
-    texels: Array = linear.cho_solve(factor, albedo * (exchange @ unscattered.T), check_finite=False)
+    texels: Array = linear.cho_solve(factor, medium.albedo * (exchange @ unscattered.T), check_finite=False)
     # to first order: how the mean would change if its matrix changed by half of the difference of the two
-    change = linear.cho_solve(factor, albedo * (difference @ (texels + unscattered.T)), check_finite=False)
+    change = linear.cho_solve(factor, medium.albedo * (difference @ (texels + unscattered.T)), check_finite=False)
     return Scattered(texels.T, float(np.sqrt(np.mean(change**2))))
 
 
 def _exchange(
-    rays: Tracer, projection: Projection, extinction: float, flights: int, rng: np.random.Generator
+    rays: Tracer, projection: Projection, medium: Medium, flights: int, rng: np.random.Generator
 ) -> npt.NDArray[np.float64]:
     """The matrix A, (counting, counting); it is symmetric, as a flight and its reverse are equally probable."""
     points = projection.points
@@ -68,31 +69,33 @@ def _exchange(
         z, angle = 1.0 - 2.0 * u, 2.0 * np.pi * v
         across = np.sqrt(np.maximum(1.0 - z * z, 0.0))
         ways = np.stack([across * np.cos(angle), across * np.sin(angle), z], axis=1)
-        starts, ends = _ends(rays, points, ways, -np.log1p(-w) / extinction)
+        starts, ends = _ends(rays, points, ways, -np.log1p(-w) / medium.extinction, medium.boundary, rng)
         result += (projection.weighted[:, starts] @ projection.hats_at(ends)).toarray()
     result *= 0.5 / flights
     result += result.T.copy()
     return result
 
 
-def _ends(rays: Tracer, points: Array, ways: Array, lengths: Array) -> tuple[Indices, Array]:
+def _ends(
+    rays: Tracer, points: Array, ways: Array, lengths: Array, boundary: Dielectric, rng: np.random.Generator
+) -> tuple[Indices, Array]:
     """The numbers of the points whose flights over `lengths` inside the body end in it, and where they end."""
-    active = np.arange(len(points))
-    at, entered, left = np.zeros(len(points)), np.zeros(len(points)), lengths.copy()
+    number, position, direction, left = np.arange(len(points)), points, ways, lengths
     numbers: list[Indices] = []
     ends: list[Array] = []
     for _ in range(MOST_WALLS):
-        active, wall, leaves = rays.next_walls(points, ways, at, active)
-        if not len(active):
+        keep, ahead, normal = rays.walls(position, direction)
+        number, position, direction, left = number[keep], position[keep], direction[keep], left[keep]
+        if not len(number):
             break
-        inside = np.where(leaves, wall - entered[active], 0.0)
-        stops = leaves & (left[active] < inside)
-        some = active[stops]
-        numbers.append(some)
-        ends.append(points[some] + (entered[some] + left[some])[:, None] * ways[some])
-        left[active] -= inside
-        entered[active] = wall
-        active = active[~stops]
+        inside = np.einsum("nc,nc->n", direction, normal) > 0.0
+        stops = inside & (left < ahead)
+        numbers.append(number[stops])
+        ends.append(position[stops] + left[stops, None] * direction[stops])
+        left = left - np.where(inside, ahead, 0.0)
+        position = position + ahead[:, None] * direction
+        keep = (rays.cross(position, direction, normal, boundary, rng) > 0.0) & ~stops
+        number, position, direction, left = number[keep], position[keep], direction[keep], left[keep]
     return np.concatenate(numbers), np.concatenate(ends)
 
 

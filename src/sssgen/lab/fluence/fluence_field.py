@@ -24,6 +24,8 @@ GROUP = 32
 """The directions of one work item."""
 PHOTONS_OF_FLIGHT = 500
 """Where flights serve all directions, one from each point for so many photons: about the same noise."""
+PHOTONS_OF_RAY = 2
+"""Behind a refracting surface, one ray of light that has not been scattered for so many photons."""
 
 
 class Settings(NamedTuple):
@@ -94,15 +96,25 @@ def trace_shares(scene: MeasuredScene, towards: Directions, voxels: int) -> np.n
     return np.stack(texels, axis=1).astype(np.float32)
 
 
+def trace_arriving(scene: MeasuredScene, towards: Directions, voxels: int, rays: int, seed: int) -> np.ndarray:
+    """As `trace_shares`, behind a refracting surface: by `rays` rays for each direction."""
+    projection, media = projection_of(scene, voxels), [medium_of(scene, channel) for channel in range(3)]
+    extinctions = np.array([medium.extinction for medium in media])
+    rng = np.random.default_rng([seed, *np.rint(np.abs(towards[0]) * np.array(1e6)).astype(int)])
+    texels = []
+    for direction in np.array(towards):
+        light = tracer(scene, voxels).arriving(extinctions, media[0].boundary, direction[None], rays, rng)
+        texels.append(projection.texels(projection.folded(light[:, 0])) / UNSCATTERED)
+    return np.stack(texels, axis=1).astype(np.float32)
+
+
 def trace_flights(
     scene: MeasuredScene, channel: int, shares: np.ndarray, voxels: int, flights: int, seed: int
 ) -> tuple[np.ndarray, float]:
     """The scattered light for the `shares` of a channel, (directions, counting voxels), and its standard error."""
-    medium = medium_of(scene, channel)
-    result = scattered(
-        tracer(scene, voxels), projection_of(scene, voxels), medium.extinction, medium.albedo,
-        UNSCATTERED * shares.astype(np.float64), flights, seed,
-    )  # fmt: skip
+    light = UNSCATTERED * shares.astype(np.float64)
+    rays, projection = tracer(scene, voxels), projection_of(scene, voxels)
+    result = scattered(rays, projection, medium_of(scene, channel), light, flights, seed)
     return result.texels.astype(np.float32), result.noise
 
 
@@ -128,8 +140,8 @@ def for_light(settings: Settings) -> Settings:
 
 
 def by_flights(scene: MeasuredScene) -> bool:
-    """Whether flights serve all directions: in an isotropic medium without refraction."""
-    return scene.medium is not None and scene.medium.ior == 1.0 and scene.medium.anisotropy == 0.0
+    """Whether flights serve all directions: in an isotropic medium."""
+    return scene.medium is not None and scene.medium.anisotropy == 0.0
 
 
 def of_directions(
@@ -153,9 +165,15 @@ def of_directions(
     ]
     channels = range(3)
     unscattered = np.zeros((3, 0, int(projection.counting.sum())))
-    # behind a refracting surface, and for a fixed light of photons, the photons have all light
-    if by_flights(scene) or (scene.medium is not None and scene.medium.ior == 1.0 and not settings.fixed):
-        each = [Item(f"{module}:trace_shares", (scene, group, settings.voxels), label) for group in groups]
+    refracts = scene.medium is not None and scene.medium.ior != 1.0
+    # of photons behind a refracting surface, and for a fixed light, the result is all light
+    if by_flights(scene) or not (refracts or settings.fixed):
+        function = "trace_shares"
+        traced: tuple[int, ...] = ()
+        if refracts:
+            rays = settings.photons * (settings.side if settings.fixed else 1) // PHOTONS_OF_RAY
+            function, traced = "trace_arriving", (rays, settings.seed)
+        each = [Item(f"{module}:{function}", (scene, group, settings.voxels, *traced), label) for group in groups]
         shares = np.concatenate(results_of(each), axis=1)
         unscattered = UNSCATTERED * shares.astype(np.float64)
     if by_flights(scene):

@@ -86,11 +86,17 @@ def light_volume(field: Field) -> LightVolume:
     """The volume of a field of one light."""
     values = np.maximum(field.values[:, 0].T, 0.0)
     scale = np.maximum(values.max(axis=0), 1e-12)
-    light = np.sqrt(values / scale)[field.nearest]
-    reach = reach_of(field.grid)
-    distance = np.clip(0.5 + 0.5 * field.distance / reach, 0.0, 1.0)
-    texels = np.rint(255.0 * np.concatenate([light, distance[:, None]], axis=1)).astype(np.uint8)
-    return LightVolume(texels.reshape(*field.grid.shape[::-1], 4), scale, reach)
+    light = np.rint(255.0 * np.sqrt(values / scale)[field.nearest]).astype(np.uint8)
+    texels = np.concatenate([light, stored_distance(field)[:, None]], axis=1)
+    return LightVolume(texels.reshape(*field.grid.shape[::-1], 4), scale, reach_of(field.grid))
+
+
+def stored_distance(field: Field) -> Bytes:
+    """The distance of each voxel of the grid from the surface, for a texel's alpha."""
+    stored: Bytes = np.rint(255.0 * np.clip(0.5 + 0.5 * field.distance / reach_of(field.grid), 0.0, 1.0)).astype(
+        np.uint8
+    )
+    return stored
 
 
 def reach_of(grid: Grid) -> float:

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.lab.fluence.voxels import Grid
+from sssgen.lab.reference.dielectric import Dielectric
 from sssgen.scene.mesh_rays import MeshRays
 
 Array = npt.NDArray[np.float64]
@@ -30,6 +31,8 @@ STEP = 1e-5
 
 RAYS = 1 << 18
 """The rays that are cast together."""
+PLACES = 4
+"""The places of each segment of a ray at which its light counts."""
 MOST_WALLS = 64
 """Walls behind these along a ray do not count."""
 
@@ -40,7 +43,7 @@ class Medium(NamedTuple):
     extinction: float
     albedo: float
     anisotropy: float = 0.0
-    ior: float = 1.0
+    boundary: Dielectric = Dielectric(1.0)
 
 
 class Body(NamedTuple):
@@ -74,6 +77,22 @@ class Tracer:
         at[active] = wall + STEP * self.body.size
         return active, wall, np.einsum("nc,nc->n", ways[active], self.normals[face]) > 0.0
 
+    def walls(self, position: Array, direction: Array) -> tuple[Bools, Array, Array]:
+        """Which rays meet a wall; of these the distances, and the walls' outward normals."""
+        face, ahead = self.rays.nearest(position, direction)
+        hit = face >= 0
+        # rounding may put a surface behind a ray that has just crossed it: without this it would stay there
+        return hit, np.maximum(ahead[hit], 0.0), self.normals[face[hit]]
+
+    def cross(
+        self, position: Array, direction: Array, normal: Array, boundary: Dielectric, rng: np.random.Generator
+    ) -> Array:
+        """Reflects or refracts rays at walls, and moves them off: the share of each that is left, 1 or 0."""
+        turn = boundary.reflect_or_refract(direction, normal, rng)
+        direction[:] = turn.direction
+        position += STEP * self.body.size * turn.direction
+        return turn.weight
+
     def lengths(self, points: Array, towards: Array) -> Singles:
         """The lengths inside the body from points (n, 3) towards directions (d, 3), (n, d)."""
         result = np.zeros((len(points), len(towards)), np.float32)
@@ -104,16 +123,12 @@ class Tracer:
         direction = np.repeat(-towards, photons, axis=0)
         start_weight = areas / photons
         weight = start_weight[number]
-        scattered = np.full(len(weight), unscattered or medium.ior != 1.0)
+        scattered = np.full(len(weight), unscattered or medium.boundary.ior != 1.0)
         sums = np.zeros(len(towards) * grid.voxels)
         while len(weight):
-            face, ahead = self.rays.nearest(position, direction)
-            keep = face >= 0  # the others have left the body
-            number, weight, scattered, face = number[keep], weight[keep], scattered[keep], face[keep]
+            keep, ahead, normal = self.walls(position, direction)
+            number, weight, scattered = number[keep], weight[keep], scattered[keep]
             position, direction = position[keep], direction[keep]
-            # rounding may put a surface behind the photon that has just crossed it: without this it would stay there
-            ahead = np.maximum(ahead[keep], 0.0)
-            normal = self.normals[face]
             slope = np.einsum("nc,nc->n", direction, normal)
             free = -np.log1p(-rng.random(len(weight))) / medium.extinction
             collides = (slope > 0.0) & (free < ahead)
@@ -122,9 +137,9 @@ class Tracer:
             cell = number[counted] * grid.voxels + grid.texel_of(position[counted], rng)
             sums += np.bincount(cell, weight[counted], len(sums))
             crosses = ~collides
-            turned = self._refract_or_reflect(direction[crosses], normal[crosses], slope[crosses], medium.ior, rng)
-            direction[crosses] = turned
-            position[crosses] += STEP * self.body.size * turned
+            crossed, turned = position[crosses], direction[crosses]
+            weight[crosses] *= self.cross(crossed, turned, normal[crosses], medium.boundary, rng)
+            position[crosses], direction[crosses] = crossed, turned
             direction[collides] = scatter(direction[collides], medium.anisotropy, rng)
             weight = np.where(collides, weight * medium.albedo, weight)
             scattered = scattered | collides
@@ -134,6 +149,38 @@ class Tracer:
             number, weight, scattered = number[keep], weight[keep], scattered[keep]
             position, direction = position[keep], direction[keep]
         return sums.reshape(len(towards), grid.voxels) / (4.0 * medium.extinction * grid.volume)
+
+    def arriving(
+        self, extinctions: Array, boundary: Dielectric, towards: Array, rays: int, rng: np.random.Generator
+    ) -> Array:
+        """The light that has not been scattered, in all channels: (3, directions, voxels), by `rays` rays for each
+        direction. They are reflected and refracted; the estimates are integrals as those of `trace`."""
+        grid, middle = self.grid, float(np.median(extinctions))
+        number = np.repeat(np.arange(len(towards)), rays)
+        position, areas = self._start(towards, rays, rng)
+        direction = np.repeat(-towards, rays, axis=0)
+        weight = (areas / rays)[number] * np.ones((3, 1))
+        sums = np.zeros((3, len(towards) * grid.voxels))
+        while len(number):
+            keep, ahead, normal = self.walls(position, direction)
+            number, weight = number[keep], weight[:, keep]
+            position, direction = position[keep], direction[keep]
+            inside = np.flatnonzero(np.einsum("nc,nc->n", direction, normal) > 0.0)
+            share = -np.expm1(-middle * ahead[inside])
+            for place in range(PLACES):
+                at = -np.log1p(-share * (place + rng.random(len(inside))) / PLACES) / middle
+                # the density of the places is middle exp(-middle at) / share
+                length = share / (PLACES * middle) * np.exp(np.subtract.outer(middle, extinctions) * at[:, None]).T
+                texel = grid.texel_of(position[inside] + at[:, None] * direction[inside], rng)
+                cell = number[inside] * grid.voxels + texel
+                for channel in range(3):
+                    sums[channel] += np.bincount(cell, weight[channel, inside] * length[channel], sums.shape[1])
+            weight[:, inside] *= np.exp(-np.outer(extinctions, ahead[inside]))
+            position += ahead[:, None] * direction
+            weight *= self.cross(position, direction, normal, boundary, rng)
+            keep = weight.max(axis=0) > FAINT * (areas / rays)[number]
+            number, weight, position, direction = number[keep], weight[:, keep], position[keep], direction[keep]
+        return sums.reshape(3, len(towards), grid.voxels) / (4.0 * grid.volume)
 
     def _start(self, towards: Array, photons: int, rng: np.random.Generator) -> tuple[Array, Array]:
         """Points on a rectangle across the body for each direction, and the areas of the rectangles."""
@@ -151,28 +198,6 @@ class Tracer:
             positions.append((u + du * at[:, :1]) * across + (v + dv * at[:, 1:]) * along + start * direction)
             areas.append(du * dv)
         return np.concatenate(positions), np.array(areas)
-
-    @staticmethod
-    def _refract_or_reflect(
-        direction: Array, normal: Array, slope: Array, ior: float, rng: np.random.Generator
-    ) -> Array:
-        """The directions after the surface: refracted, or reflected with Fresnel's probability."""
-        if ior == 1.0:
-            return direction
-        ratio = np.where(slope > 0.0, ior, 1.0 / ior)
-        cosine = np.abs(slope)
-        square = 1.0 - ratio**2 * (1.0 - cosine**2)
-        beyond = np.sqrt(np.maximum(square, 0.0))
-        parallel = (cosine - ratio * beyond) / (cosine + ratio * beyond)
-        vertical = (ratio * cosine - beyond) / (ratio * cosine + beyond)
-        reflectance = np.where(square > 0.0, 0.5 * (parallel**2 + vertical**2), 1.0)
-        reflects = rng.random(len(slope)) < reflectance
-        facing = np.sign(slope)[:, None] * normal
-        refracted = ratio[:, None] * (direction - cosine[:, None] * facing) + beyond[:, None] * facing
-        reflected = direction - 2.0 * slope[:, None] * normal
-        turned = np.where(reflects[:, None], reflected, refracted)
-        result: Array = turned / np.linalg.norm(turned, axis=1, keepdims=True)
-        return result
 
 
 def scatter(direction: Array, anisotropy: float, rng: np.random.Generator) -> Array:

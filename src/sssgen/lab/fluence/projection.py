@@ -31,14 +31,15 @@ SPREAD = 4
 class Projection:
     """The texels of one grid and body."""
 
-    def __init__(self, grid: Grid, covered: Array) -> None:
-        """`covered` (voxels, n) is the part inside of each of the cells about the points of `grid.centres`."""
+    def __init__(self, grid: Grid, covered: Array, points: Array | None = None) -> None:
+        """`covered` (voxels, n) is the part inside of each of the cells about the points of `grid.centres`; fields are
+        evaluated at `points` (voxels, n, 3), if they are given, in place of these."""
         sparse = need("scipy.sparse", "scipy", "chart")
         self.grid = grid
         parts = round(covered.shape[1] ** (1.0 / 3.0))
         weights = _thinned(covered, parts) / covered.shape[1]
         chosen = weights > 0.0
-        self.points: Array = grid.centres(parts)[chosen]
+        self.points: Array = (grid.centres(parts) if points is None else points)[chosen]
         """(points, 3): the points at which fields are evaluated"""
         self.weights: Array = weights[chosen]
         """(points,): the part of a voxel that each stands for"""

@@ -10,6 +10,7 @@ from sssgen.jobs.executor import Progress
 from sssgen.lab.fluence import fluence_field
 from sssgen.lab.fluence.factors import factors
 from sssgen.lab.fluence.fluence_field import Field, Settings
+from sssgen.lab.fluence.fluence_volumes import stored_distance
 from sssgen.lab.fluence.traced_body import medium_of
 from sssgen.scene import octahedron
 from sssgen.scene.light_response import UNSCATTERED, LightResponse, harmonics
@@ -57,6 +58,7 @@ def pack(scene: MeasuredScene, traced: Field, rank: int) -> LightResponse:
         np.rint(255.0 * (latents - low) / size).astype(np.uint8).T, np.moveaxis(table, 2, 0).astype(np.float16),
         np.rint(root * (255.0 / highest)).astype(np.uint8), highest, extinctions / extinctions[base],
         np.rint(127.0 * around / largest[..., None]).astype(np.int8), largest,
+        stored_distance(traced).reshape(traced.grid.shape[::-1]),
     )  # fmt: skip
 
 

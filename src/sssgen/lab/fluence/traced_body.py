@@ -6,9 +6,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from sssgen.lab.fluence.photons import Body, Medium, Tracer
+from sssgen.lab.fluence.photons import STEP, Body, Medium, Tracer
 from sssgen.lab.fluence.projection import Projection, inside_shares
 from sssgen.lab.fluence.voxels import Grid
+from sssgen.lab.reference.dielectric import Dielectric
+from sssgen.scene.arrays import Array
+from sssgen.scene.geometry_base import unit
 from sssgen.scene.geometry_mesh import mesh_of
 from sssgen.scene.measured import scene_body
 from sssgen.scene.measured.measured_scene import MeasuredScene
@@ -27,18 +30,6 @@ def grid_in_box(scene: MeasuredScene, voxels: int) -> Grid:
 
 
 @lru_cache(4)
-def projection_of(scene: MeasuredScene, voxels: int) -> Projection:
-    """How values inside a scene's body become texels. Raises SssgenError for a body without an inside."""
-    grid = grid_in_box(scene, voxels)
-    cell = float(((grid.high - grid.low) / np.array(grid.shape)).mean()) / PARTS
-    distances = scene.geometry.distance(grid.centres(PARTS).reshape(-1, 3))
-    projection = Projection(grid, inside_shares(distances, cell).reshape(grid.voxels, -1))
-    if not projection.counting.any() or not (distances < 0.0).any():
-        raise failure("no voxel is inside the body", "use more voxels, or close the mesh")
-    return projection
-
-
-@lru_cache(4)
 def tracer(scene: MeasuredScene, voxels: int) -> Tracer:
     """The tracer of a scene's body."""
     vertices, faces = mesh_of(scene.geometry)
@@ -47,9 +38,39 @@ def tracer(scene: MeasuredScene, voxels: int) -> Tracer:
     return Tracer(body, grid_in_box(scene, voxels))
 
 
+@lru_cache(4)
+def projection_of(scene: MeasuredScene, voxels: int) -> Projection:
+    """How values inside a scene's body become texels. Raises SssgenError for a body without an inside."""
+    grid = grid_in_box(scene, voxels)
+    cell = float(((grid.high - grid.low) / np.array(grid.shape)).mean()) / PARTS
+    points = grid.centres(PARTS).reshape(-1, 3)
+    distances = scene.geometry.distance(points)
+    _move_inside(scene, tracer(scene, voxels), points, distances, cell)
+    shape = grid.voxels, PARTS**3
+    projection = Projection(grid, inside_shares(distances, cell).reshape(shape), points.reshape(*shape, 3))
+    if not projection.counting.any() or not (distances < 0.0).any():
+        raise failure("no voxel is inside the body", "use more voxels, or close the mesh")
+    return projection
+
+
+def _move_inside(scene: MeasuredScene, rays: Tracer, points: Array, distances: Array, cell: float) -> None:
+    """Moves points outside whose cell is partly inside onto the surface: nothing is reflected back to those outside."""
+    near = np.flatnonzero(np.abs(distances) < cell)
+    steps = 0.25 * cell * np.eye(3)
+    slopes = [
+        scene.geometry.distance(points[near] + step) - scene.geometry.distance(points[near] - step) for step in steps
+    ]
+    inward = -unit(np.stack(slopes, axis=1))
+    hit, ahead, normal = rays.walls(points[near], inward)
+    entering = np.einsum("nc,nc->n", inward[hit], normal) < 0.0
+    moved = np.flatnonzero(hit)[entering]
+    points[near[moved]] += (ahead[entering] + STEP * rays.body.size)[:, None] * inward[moved]
+
+
 def medium_of(scene: MeasuredScene, channel: int) -> Medium:
     """The scene's medium in one channel."""
     assert scene.medium is not None
     # a unit of object space is `scale` units of the world, in which the medium is given
     extinction = scene.medium.extinction[channel] * scene.geometry.scale
-    return Medium(extinction, scene.medium.albedo[channel], scene.medium.anisotropy, scene.medium.ior)
+    boundary = Dielectric(scene.medium.ior, scene.medium.roughness)
+    return Medium(extinction, scene.medium.albedo[channel], scene.medium.anisotropy, boundary)

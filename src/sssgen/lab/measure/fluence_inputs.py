@@ -16,7 +16,7 @@ from sssgen.lab.fluence.traced_body import grid_in_box
 from sssgen.run.backends import Array
 from sssgen.run.evaluate.evaluation import half
 from sssgen.scene.bounds import world_corners
-from sssgen.scene.light_response import LightResponse, from_light, lit
+from sssgen.scene.light_response import LightResponse, from_light, volume
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.scene import Light
 from sssgen.targets.runtime.numpy_textures import Texture
@@ -115,7 +115,7 @@ def _inner_light(scene: MeasuredScene, light: Light) -> Texture:
     """The light at each voxel, of a white light."""
     to_object, body = scene.geometry.to_object(), _response(_without_view(scene))
     incoming = from_light(body, dataclasses.replace(light, color=(1.0, 1.0, 1.0)), to_object)
-    return half(Texture(lit(body, [incoming]), wrap="clamp"))
+    return half(Texture(volume(body, [incoming]), wrap="clamp"))
 
 
 @lru_cache(8)

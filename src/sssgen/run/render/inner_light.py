@@ -10,7 +10,7 @@ from sssgen.material import baked
 from sssgen.run.evaluate.evaluation import half
 from sssgen.scene.arrays import Array
 from sssgen.scene.environment import Environment
-from sssgen.scene.light_response import SUFFIX, from_bytes, from_light, harmonics, lit
+from sssgen.scene.light_response import SUFFIX, from_bytes, from_light, harmonics, volume
 from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import note
@@ -40,7 +40,7 @@ def inner_light(file: str, scene: Scene, environment: Environment | None) -> Tex
     to_object = scene.geometry.to_object()
     lights = [from_light(response, light, to_object) for light in scene.lights]
     around = surroundings(environment, to_object) + np.outer(_SAME_FROM_EVERYWHERE, scene.ambient)
-    return half(Texture(lit(response, lights, around), wrap="clamp"))
+    return half(Texture(volume(response, lights, around), wrap="clamp"))
 
 
 _SAME_FROM_EVERYWHERE = np.eye(9)[0] / (np.pi * harmonics(np.array([[0.0, 0.0, 1.0]]))[0, 0])

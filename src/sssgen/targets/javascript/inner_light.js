@@ -54,6 +54,8 @@ export class LightResponse {
     this.table = Float32Array.from(read('table'), fromHalf);
     this.passing = read('passing');
     this.around = read('surroundings');
+    /** The distance of each texel from the surface, in half floats: 0 to 1. */
+    this.distance = Uint16Array.from(read('distance'), (stored) => toHalf(stored / 255));
     this.largest = facts.largest;
     this.count = this.cells.length;
     this.rank = this.latents.length / this.count;
@@ -96,11 +98,12 @@ export class LightResponse {
     for (const channel of this.sum) channel.fill(0);
     for (const light of lights) (light.directional ? this.#addDistant(light) : this.#addNear(light));
     if (surroundings) this.#addSurroundings(surroundings);
-    const { nearest, halves } = this;
+    const { nearest, halves, distance } = this;
     this.sum.forEach((values, channel) => {
       for (let voxel = 0; voxel < values.length; voxel++) halves[voxel] = toHalf(Math.max(values[voxel], 0));
       for (let texel = 0; texel < nearest.length; texel++) texels[4 * texel + channel] = halves[nearest[texel]];
     });
+    for (let texel = 0; texel < distance.length; texel++) texels[4 * texel + 3] = distance[texel];
   }
 
   /** The row of the table for the direction of `mix` into `row`. */

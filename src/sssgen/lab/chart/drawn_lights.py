@@ -1,0 +1,84 @@
+"""The errors of chains under lights that no fit used: directions drawn at random, the same for all bodies."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from sssgen.jobs.executor import Item
+from sssgen.lab.chart.charting import Settings, candidate_of, fit_of, results_of, two_views, with_references
+from sssgen.lab.measure import candidates, fluence_inputs
+from sssgen.lab.measure.measured_point import FittedChain, MeasuredPoint
+from sssgen.lab.measure.measurement import View
+from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.scene import Light
+
+SHARE = 4
+"""A reference of a drawn light has the samples of a chart divided by this: there are many, and noise is subtracted."""
+SEED = 34
+"""The seed of the directions."""
+
+
+class DrawnErrors(NamedTuple):
+    """The errors of a chain on a body, for each light."""
+
+    values: tuple[float, ...]
+
+    @property
+    def median(self) -> float:
+        return float(np.median(self.values))
+
+    @property
+    def worst(self) -> float:
+        return float(np.max(self.values))
+
+
+def directions(count: int) -> list[tuple[float, float, float]]:
+    """Unit directions that are uniform on the sphere; the first ones do not depend on how many follow."""
+    rng = np.random.default_rng(SEED)
+    drawn = rng.normal(size=(count, 3))
+    return [(float(x), float(y), float(z)) for x, y, z in drawn / np.linalg.norm(drawn, axis=1, keepdims=True)]
+
+
+def errors(
+    scenes: Sequence[MeasuredScene], chains: Mapping[str, Sequence[FittedChain]], count: int, settings: Settings
+) -> dict[str, list[DrawnErrors]]:
+    """The errors of each scene's `chains` (by its key; whole materials) over both views, for `count` lights.
+
+    Raises SssgenError for scenes that cannot be measured, and for missing packages.
+    """
+    lights = tuple(Light(None, direction, (1.0, 1.0, 1.0)) for direction in directions(count))
+    # the references of some scenes are traced for all lights at once
+    named = {scene.key: two_views(dataclasses.replace(scene, lights=lights, environment=None)) for scene in scenes}
+    views = with_references(named, settings._replace(samples=max(settings.samples // SHARE, 2)))
+    items = []
+    for scene in scenes:
+        fitted = [(candidate_of(chain), fit_of(chain)) for chain in chains[scene.key]]
+        if any(candidates.reads_fluence(candidate) for candidate, _ in fitted):
+            with settings.progress_bar() as progress:
+                unlit = dataclasses.replace(scene, lights=())
+                fluence_inputs.prepare(unlit, settings.scheduler, settings.processes, progress)
+        items += [
+            Item(
+                "sssgen.lab.measure.measurement:measure_candidate",
+                (candidate, fit, [_of_light(view, number) for view in views[scene.key]]),
+                f"{candidate.label} on {scene.name}, light {number}",
+            )
+            for candidate, fit in fitted
+            for number in range(count)
+        ]
+    points: list[MeasuredPoint] = results_of(items, settings)
+    values = iter(float(point["error"]["value"] or np.nan) for point in points)
+    return {
+        scene.key: [DrawnErrors(tuple(next(values) for _ in range(count))) for _ in chains[scene.key]]
+        for scene in scenes
+    }
+
+
+def _of_light(view: View, number: int) -> View:
+    """A view with one of its lights."""
+    scene = dataclasses.replace(view.scene, lights=view.scene.lights[number : number + 1])
+    return view._replace(scene=scene, references=view.references[number : number + 1])
