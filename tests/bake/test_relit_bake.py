@@ -107,11 +107,12 @@ def test_wrong_options_are_errors(options: list[str], said: str, capsys: pytest.
     assert not Path("ball.bin").exists()
 
 
-def test_media_that_it_cannot_bake_or_trace_otherwise(capsys: pytest.CaptureFixture[str]) -> None:
-    """A refracting surface is an error; an anisotropic medium has light that is not scattered, too."""
+def test_media_that_it_traces_otherwise() -> None:
+    """A refracting surface has a technique of its own; an anisotropic medium has light that is not scattered, too."""
     write("ior = 1.4\n" + FIRST)
-    assert bake() == 2
-    assert "no refracting surface" in capsys.readouterr().err
+    assert bake() == 0
+    assert facts("ball.bin")["technique"] == "fluence_relit_refracted"
+    assert facts("ball.bin")["parameters"]["ior"] == 1.4
     write("anisotropy = 0.5\n" + FIRST)
     assert bake("--photons", "50") == 0
     stored = from_bytes(Path("ball.bin").read_bytes(), facts("ball.bin"))

@@ -205,6 +205,46 @@ def test_the_technique_of_a_fixed_light_behind_a_refracting_surface(ior: float) 
     close(even, expected, rtol=1e-9)
 
 
+def inner_reflectance(cosine: Array, ior: float) -> Array:
+    """Fresnel's reflectance inside, unpolarised."""
+    beyond = np.sqrt(np.maximum(1.0 - ior**2 * (1.0 - cosine**2), 0.0))
+    across = (ior * cosine - beyond) / (ior * cosine + beyond)
+    along = (cosine - ior * beyond) / (cosine + ior * beyond)
+    result: Array = 0.5 * (across**2 + along**2)
+    return result
+
+
+@pytest.mark.parametrize("ior", [1.0, 1.4])
+def test_light_that_is_reflected_back_where_the_ray_leaves(ior: float) -> None:
+    """In even light in a ball, whose distance a volume has: the exit and the angle there follow from it."""
+    normal, view, _, chord, share = refracted_in_ball(ior, 200)
+    count, reach, sigma = 96, 0.125, np.array([1.0, 2.0, 4.0])
+    axis = (np.arange(count) + 0.5) / count * 2.0 - 1.0
+    z, y, x = np.meshgrid(axis, axis, axis, indexing="ij")
+    texels = np.full((count,) * 3 + (4,), 0.5)
+    texels[..., 3] = np.clip(0.5 + 0.5 * (np.sqrt(x * x + y * y + z * z) - RADIUS) / reach, 0.0, 1.0)
+    matrix = np.diag([0.5, 0.5, 0.5, 1.0])
+    matrix[:3, 3] = 0.5
+    straight = 2.0 * RADIUS * np.einsum("nc,nc->n", normal, view)
+    none = np.full(len(view), 6.0e4)
+    ends = Texture(np.stack([1.0 + straight, none, none], axis=1)[None], "nearest", "clamp")
+    places = np.stack([(np.arange(len(view)) + 0.5) / len(view), np.full(len(view), 0.5)], axis=1)
+    result = technique("fluence_relit_refracted")(
+        P=RADIUS * normal, V=view, N=normal, ior=ior, scattering_albedo=(0.9, 0.5, 0.1), extinction=sigma,
+        mean_free_path=0.4, world_to_volume=matrix, inner_light=Texture(texels, wrap="clamp"), fluence_reach=reach,
+        eye_layer_map=ends, screen_uv=places, eye_distance=np.ones(len(view)),
+    )  # fmt: skip
+    cosine = 0.5 * chord / RADIUS
+    soft = (np.minimum(cosine + 0.18, 1.0), np.maximum(cosine - 0.18, 0.001))
+    back = 0.5 * sum(inner_reflectance(each, ior) for each in soft)[:, None]
+    passes = np.exp(-sigma * chord[:, None])
+    seen = 1.0 - passes + back * passes * (1.0 - passes) / (1.0 - back * passes)
+    error = np.abs(result / (share[:, None] * np.array([0.9, 0.5, 0.1]) * 0.5 * seen) - 1.0)
+    # a small error of the angle counts where total reflection begins
+    assert np.quantile(error, 0.95) < 0.01 and error.max() < 0.1
+    assert ior == 1.0 or (back * passes).max() > 0.05
+
+
 @pytest.mark.parametrize("name", ["fluence_factored_4_refracted", "fluence_factored_8_refracted"])
 def test_the_factored_techniques_behind_a_refracting_surface(name: str) -> None:
     rank, ior, mean_free_path = int(name.split("_")[2]), 1.4, 0.2
