@@ -23,7 +23,6 @@ PERMITTED = {
     ),
     "run/evaluate/evaluation.py": (EXAMPLE, {"lobe_gdc2011"}),
     "analyse/lint/lint_findings.py": (EXAMPLE, {"lobe_gdc2011"}),
-    "bake/relit.py": ("the technique that reads the file, for its JSON", {"fluence_relit"}),
     "scene/distance_field.py": ("the default of a scene's distance function", {"sphere"}),
     "scene/scene_keys.py": ("kinds of geometry", {"box", "capsule", "torus"}),
     "scene/scene_reader.py": (

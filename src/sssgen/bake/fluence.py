@@ -97,23 +97,23 @@ def bake(
             {
                 **facts_of(scene, settings, traced),
                 "rank": rank,
-                "technique": technique_for(f"fluence_factored_{rank}", scene.medium),
+                "technique": f"fluence_factored_{rank}{variant(scene.medium)}",
             },
         )
     traced = fluence_field.of_light(scene, light.place, settings, scheduler, processes, progress)
     stored = volumes.light_volume(traced)
     facts: FluenceFacts = {
         **facts_of(scene, settings, traced), "light": light.facts(),
-        "technique": technique_for("fluence_fixed", scene.medium),
+        "technique": f"fluence_fixed{variant(scene.medium)}",
     }  # fmt: skip
     facts["parameters"]["fluence_scale"] = [float(value) for value in stored.scale]
     facts["parameters"]["fluence_reach"] = stored.reach * scene.geometry.scale
     return FluenceBake([Part("", stored.texels, "fluence_volume")], facts)
 
 
-def technique_for(name: str, medium: Medium) -> str:
-    """The technique that reads a bake: behind a refracting surface one of its own."""
-    return f"{name}_refracted" if medium.ior != 1.0 else name
+def variant(medium: Medium) -> str:
+    """The end of the name of the technique that reads a bake: behind a refracting surface it is another one."""
+    return "_refracted" if medium.ior != 1.0 else ""
 
 
 def check(scene: MeasuredScene, settings: Settings) -> None:

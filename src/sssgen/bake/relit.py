@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sssgen.bake.bake_facts import RelitFacts
-from sssgen.bake.fluence import check, facts_of, technique_for
+from sssgen.bake.fluence import check, facts_of, variant
 from sssgen.jobs.executor import Progress
 from sssgen.lab.fluence import response
 from sssgen.lab.fluence.fluence_field import Settings
@@ -30,7 +30,7 @@ def bake(
     facts = facts_of(scene, settings, traced)
     facts["parameters"]["fluence_reach"] = reach_of(traced.grid) * scene.geometry.scale
     return data, {
-        **facts, "rank": rank, "technique": technique_for("fluence_relit", scene.medium),
+        **facts, "rank": rank, "technique": f"fluence_relit{variant(scene.medium)}",
         "arrays": arrays, "highest": stored.highest, "powers": stored.powers.tolist(),
         "largest": stored.largest.tolist(),
     }  # fmt: skip
