@@ -23,9 +23,14 @@ SEED = 34
 
 
 class DrawnErrors(NamedTuple):
-    """The errors of a chain on a body, for each light."""
+    """A chain on a body, under each light."""
 
     values: tuple[float, ...]
+    """The errors over both views"""
+    cost: float
+    """Weighted operations"""
+    bytes: int
+    """Of its baked textures"""
 
     @property
     def median(self) -> float:
@@ -43,6 +48,14 @@ def directions(count: int) -> list[tuple[float, float, float]]:
     return [(float(x), float(y), float(z)) for x, y, z in drawn / np.linalg.norm(drawn, axis=1, keepdims=True)]
 
 
+def drawn_views(scenes: Sequence[MeasuredScene], count: int, settings: Settings) -> dict[str, tuple[View, ...]]:
+    """Both views of each scene (by its key) under `count` lights, with their references."""
+    lights = tuple(Light(None, direction, (1.0, 1.0, 1.0)) for direction in directions(count))
+    # the references of some scenes are traced for all lights at once
+    named = {scene.key: two_views(dataclasses.replace(scene, lights=lights, environment=None)) for scene in scenes}
+    return with_references(named, settings._replace(samples=max(settings.samples // SHARE, 2)))
+
+
 def errors(
     scenes: Sequence[MeasuredScene], chains: Mapping[str, Sequence[FittedChain]], count: int, settings: Settings
 ) -> dict[str, list[DrawnErrors]]:
@@ -50,10 +63,7 @@ def errors(
 
     Raises SssgenError for scenes that cannot be measured, and for missing packages.
     """
-    lights = tuple(Light(None, direction, (1.0, 1.0, 1.0)) for direction in directions(count))
-    # the references of some scenes are traced for all lights at once
-    named = {scene.key: two_views(dataclasses.replace(scene, lights=lights, environment=None)) for scene in scenes}
-    views = with_references(named, settings._replace(samples=max(settings.samples // SHARE, 2)))
+    views = drawn_views(scenes, count, settings)
     items = []
     for scene in scenes:
         fitted = [(candidate_of(chain), fit_of(chain)) for chain in chains[scene.key]]
@@ -64,21 +74,28 @@ def errors(
         items += [
             Item(
                 "sssgen.lab.measure.measurement:measure_candidate",
-                (candidate, fit, [_of_light(view, number) for view in views[scene.key]]),
+                (candidate, fit, views_of_light(views[scene.key], number)),
                 f"{candidate.label} on {scene.name}, light {number}",
             )
             for candidate, fit in fitted
             for number in range(count)
         ]
     points: list[MeasuredPoint] = results_of(items, settings)
-    values = iter(float(point["error"]["value"] or np.nan) for point in points)
-    return {
-        scene.key: [DrawnErrors(tuple(next(values) for _ in range(count))) for _ in chains[scene.key]]
-        for scene in scenes
-    }
+    measured = iter([points[first : first + count] for first in range(0, len(points), count)])
+    return {scene.key: [_errors(next(measured)) for _ in chains[scene.key]] for scene in scenes}
 
 
-def _of_light(view: View, number: int) -> View:
-    """A view with one of its lights."""
-    scene = dataclasses.replace(view.scene, lights=view.scene.lights[number : number + 1])
-    return view._replace(scene=scene, references=view.references[number : number + 1])
+def views_of_light(views: Sequence[View], number: int) -> list[View]:
+    """Views under one of their lights."""
+    return [
+        view._replace(
+            scene=dataclasses.replace(view.scene, lights=view.scene.lights[number : number + 1]),
+            references=view.references[number : number + 1],
+        )
+        for view in views
+    ]
+
+
+def _errors(points: Sequence[MeasuredPoint]) -> DrawnErrors:
+    values = tuple(float(point["error"]["value"] or np.nan) for point in points)
+    return DrawnErrors(values, float(points[0]["cost"]["value"]), points[0]["bytes"])
