@@ -13,14 +13,13 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import BLACK, ENGINES, without_reflection
+from engine_cases import BLACK, ENGINES, RENDERERS, without_reflection
 from skips import or_skip
 from sssgen.bake import baked_files, relit
 from sssgen.lab.fluence.fluence_field import Settings
 from sssgen.material.material_loading import load_material
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
-from sssgen.run.backends.web_engines import THREE
 from sssgen.run.render import page_values, shade_numpy
 from sssgen.run.render.scene_render import place_mesh
 from sssgen.run.render.scene_values import shell_of
@@ -30,6 +29,8 @@ from sssgen.scene.measured import measured_scene
 from sssgen.targets import registry
 
 SIZE = (96, 72)
+HOSTS = [(target, name) for target, name in RENDERERS if target != "playcanvas"]
+QUICK = (("threejs", "webgl"), ("babylonjs", "webgl"))
 MATERIAL = """[material]
 name = "relit"
 [translucency]
@@ -77,9 +78,13 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture(scope="module", params=list(THREE.renderers))
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(one, marks=[] if one in QUICK else [pytest.mark.slow], id="-".join(one)) for one in HOSTS],
+)
 def page(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
-    renderer: EnginePage = or_skip(partial(EnginePage, ENGINES["threejs"], seconds=400.0), request.param)
+    target, name = request.param
+    renderer: EnginePage = or_skip(partial(EnginePage, ENGINES[target], seconds=400.0), name)
     yield renderer
     renderer.page.close()
 
@@ -94,7 +99,7 @@ def test_two_lamps_and_ambient_light(page: EnginePage, folder: Path) -> None:
     placed = place_mesh(scene, oracle, shell, registry.load("numpy"), SIZE)
     expected = shade_numpy.shade(without_reflection(oracle), placed.shell, placed.size, placed.points, "float64")
 
-    compiled = sssgen.compile(scene.material, "threejs")
+    compiled = sssgen.compile(scene.material, page.engine.target)
     vertices = np.zeros((len(body.triangles.places), VERTEX_SIZE), np.float32)
     vertices[:, :3], vertices[:, 3:6] = body.triangles.places, body.triangles.normals
     response = {
@@ -104,7 +109,7 @@ def test_two_lamps_and_ambient_light(page: EnginePage, folder: Path) -> None:
     drawing = EngineDrawing(
         page_values.modules_of(compiled), placed.size, vertices, body.triangles.corners, placed.shell.view_projection,
         shell.camera_position, shell.model, shell.light_positions, shell.light_colors, ambient=shell.ambient,
-        properties=BLACK["threejs"] | {"innerLight": response},
+        properties=BLACK[page.engine.target] | {"innerLight": response},
     )  # fmt: skip
     picture = page.draw(drawing)
     differences = np.abs(picture - expected)[..., :3].max(axis=-1)[placed.hit]

@@ -89,6 +89,10 @@ const floats = (/** @type {Uint8Array} */ bytes) => new Float32Array(bytes.slice
 const indices = (/** @type {Uint8Array} */ bytes) => new Uint32Array(bytes.slice().buffer);
 const halves = (/** @type {Uint8Array} */ bytes) => new Uint16Array(bytes.slice().buffer);
 
+/** A property's value: bytes that came as text as the file that a user would load.
+ * @param {any} value */
+const fileOf = (value) => (value?.response ? { data: Uint8Array.from(atob(value.response), (letter) => letter.charCodeAt(0)).buffer, facts: value.facts } : value);
+
 /** Answers the plans that come, with `draw` of the engine in that version.
  * @param {string} version @param {Draw} draw */
 function serve(version, draw) {
@@ -116,4 +120,4 @@ function serve(version, draw) {
   socket.onopen = () => say({ version });
 }
 
-export { floats, halves, imported, indices, serve };
+export { fileOf, floats, halves, imported, indices, serve };

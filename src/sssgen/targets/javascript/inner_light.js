@@ -225,10 +225,12 @@ export function surroundingsOf(shown) {
 
 /**
  * The response of a body: from the URL of a `.bin` of `sssgen bake fluence --relit`, beside which its JSON lies (a promise), or
- * from the content of both.
- * @param {string | { data: ArrayBuffer, facts: any }} source
+ * from the content of both. One that has been read is returned.
+ * @param {any} source
+ * @returns {LightResponse | Promise<LightResponse>}
  */
 export function responseOf(source) {
+  if (source instanceof LightResponse) return source;
   if (typeof source !== 'string') return new LightResponse(source.data, source.facts);
   const load = async (url) => {
     const answer = await fetch(url);
