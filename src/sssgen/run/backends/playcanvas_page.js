@@ -105,6 +105,11 @@ async function draw(plan, piece) {
   const all = [...bodies, camera, ...lights];
   all.forEach((one) => app.root.addChild(one));
   app.render();
+  if (stage.later) {
+    await sky?.read(0, 0, 1, 1, { immediate: true });
+    await new Promise((resume) => setTimeout(resume, 100)); // until others see theirs, too
+    app.render();
+  }
   const pixels = /** @type {Float32Array} */ (await colorBuffer.read(0, 0, plan.width, plan.height, { renderTarget, immediate: true }));
   await internalsOf(device).wgpu?.queue.onSubmittedWorkDone();
   all.forEach((one) => one.destroy());

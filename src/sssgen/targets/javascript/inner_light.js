@@ -5,7 +5,7 @@ const TYPES = { uint8: Uint8Array, int8: Int8Array, uint16: Uint16Array, uint32:
 const UNSCATTERED = 0.25;
 
 /** A number in half a float. */
-function fromHalf(bits) {
+export function fromHalf(bits) {
   const exponent = (bits >> 10) & 31, fraction = bits & 1023, sign = bits & 32768 ? -1 : 1;
   if (exponent === 0) return sign * fraction * 2 ** -24;
   return sign * (1 + fraction / 1024) * 2 ** (exponent - 15);
