@@ -14,12 +14,13 @@
  *   withoutTangents: boolean }} Plan  Matrices are by columns; an attribute has its first float in a vertex, and its size. */
 /** @typedef {{ shadows?: boolean, cascades?: boolean, spot?: number, walls?: number[][], copies?: { size: number, model: number[] }[],
  *   instances?: number[][], leftHanded?: boolean, first?: string, around?: string, area?: Area,
- *   above?: number[], below?: number[] }} Stage
+ *   above?: number[], below?: number[], later?: boolean }} Stage
  *   What stands around the mesh, in the property `stage`: whether lights have shadows, of cascades or of one map; the angle of lights
  *   with a position that are spots and shine at the origin; matrices of walls, which are boxes of size 1; copies of the mesh with
  *   the same material, whose vertices have another size; matrices of instances that the mesh is drawn as, in one call; whether z of
  *   the engine's world is mirrored, in Babylon.js; another renderer of three.js that draws the scene first, in another size;
- *   what shines from above, environment, hemisphere or probe; its light on a white matte surface that faces up and down; a light with an area. */
+ *   what shines from above, environment, hemisphere or probe; its light on a white matte surface that faces up and down; a light with an area;
+ *   whether the picture is of a frame after texels of the environment have been read, in PlayCanvas. */
 /** @typedef {{ model: number[], size: number[], radiance: number, shape?: string, shadows?: boolean }} Area  It shines along the -z
  *   of its matrix, with sides along x and y; `shape` is PlayCanvas's. */
 /** @typedef {(place: Piece) => Uint8Array} PieceOf */
@@ -89,6 +90,10 @@ const floats = (/** @type {Uint8Array} */ bytes) => new Float32Array(bytes.slice
 const indices = (/** @type {Uint8Array} */ bytes) => new Uint32Array(bytes.slice().buffer);
 const halves = (/** @type {Uint8Array} */ bytes) => new Uint16Array(bytes.slice().buffer);
 
+/** A property's value: bytes that came as text as the file that a user would load.
+ * @param {any} value */
+const fileOf = (value) => (value?.response ? { data: Uint8Array.from(atob(value.response), (letter) => letter.charCodeAt(0)).buffer, facts: value.facts } : value);
+
 /** Answers the plans that come, with `draw` of the engine in that version.
  * @param {string} version @param {Draw} draw */
 function serve(version, draw) {
@@ -116,4 +121,4 @@ function serve(version, draw) {
   socket.onopen = () => say({ version });
 }
 
-export { floats, halves, imported, indices, serve };
+export { fileOf, floats, halves, imported, indices, serve };

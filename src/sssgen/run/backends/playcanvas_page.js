@@ -1,7 +1,7 @@
 // PlayCanvas in a page: draws meshes with emitted modules, as plans say (engine_page.js).
 
 import * as pc from 'playcanvas';
-import { floats, halves, imported, indices, serve } from './engine_page.js';
+import { fileOf, floats, halves, imported, indices, serve } from './engine_page.js';
 
 /** @typedef {import('./engine_page.js').Plan} Plan */
 /** @typedef {import('./engine_page.js').PieceOf} PieceOf */
@@ -71,7 +71,7 @@ async function draw(plan, piece) {
   const material = createMaterial(device, { ...plan.values, ...textures });
   for (const [name, value] of Object.entries(properties)) {
     if (material[name] instanceof pc.Color) material[name].set(value, value, value);
-    else material[name] = value;
+    else material[name] = fileOf(value);
   }
   scene.ambientLight = colorOf(plan.ambient.length ? plan.ambient : [0, 0, 0]);
 
@@ -105,6 +105,11 @@ async function draw(plan, piece) {
   const all = [...bodies, camera, ...lights];
   all.forEach((one) => app.root.addChild(one));
   app.render();
+  if (stage.later) {
+    await sky?.read(0, 0, 1, 1, { immediate: true });
+    await new Promise((resume) => setTimeout(resume, 100)); // until others see theirs, too
+    app.render();
+  }
   const pixels = /** @type {Float32Array} */ (await colorBuffer.read(0, 0, plan.width, plan.height, { renderTarget, immediate: true }));
   await internalsOf(device).wgpu?.queue.onSubmittedWorkDone();
   all.forEach((one) => one.destroy());

@@ -2,7 +2,7 @@
 
 import * as THREE from 'three';
 import { WebGPURenderer, REVISION, RectAreaLightNode } from 'three/webgpu';
-import { floats, halves, imported, indices, serve } from './engine_page.js';
+import { fileOf, floats, halves, imported, indices, serve } from './engine_page.js';
 
 /** @typedef {import('./engine_page.js').Plan} Plan */
 /** @typedef {import('./engine_page.js').PieceOf} PieceOf */
@@ -37,8 +37,7 @@ async function draw(plan, piece) {
     const names = path.split('.'), last = names[names.length - 1];
     const one = names.slice(0, -1).reduce((object, name) => object[name], material);
     if (one[last]?.isColor) one[last].setScalar(value);
-    else if (value?.response) one[last] = { data: Uint8Array.from(atob(value.response), (letter) => letter.charCodeAt(0)).buffer, facts: value.facts };
-    else one[last] = value;
+    else one[last] = fileOf(value);
   }
 
   const vertices = new THREE.InterleavedBuffer(floats(piece(plan.vertices)), plan.vertexSize);

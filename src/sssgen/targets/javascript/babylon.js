@@ -11,12 +11,15 @@ import { RawTexture2DArray } from '@babylonjs/core/Materials/Textures/rawTexture
 import { RawTexture3D } from '@babylonjs/core/Materials/Textures/rawTexture3D.js';
 import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
 import { Color3 } from '@babylonjs/core/Maths/math.color.js';
-import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
+import { Matrix } from '@babylonjs/core/Maths/math.vector.js';
+import { Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Vector2, Vector4 } from '@babylonjs/core/Maths/math.vector.js';
 import { SerializationHelper } from '@babylonjs/core/Misc/decorators.serialization.js';
-import { Passes, lightOf } from './babylon_passes.js';
+import { lightOf } from './babylon_lights.js';
+import { Passes } from './babylon_passes.js';
 import { SKY, SURROUNDINGS, skyOf } from './babylon_surroundings.js';
 import { spreadOf } from './frame_passes.js';
+import { Responses } from './inner_volume.js';
 import { Properties, TEXELS } from './values.js';
 
 /**
@@ -217,11 +220,12 @@ function pluginClass(description, properties) {
     /** @type {Passes | undefined} */
     #passes;
 
-    /** @param {(property: string) => any} given the texture that the page has set */
-    constructor(material, given) {
+    /** @param {(property: string) => any} given the texture that the page has set @param {Responses} responses */
+    constructor(material, given, responses) {
       super(material, key, 200);
       this.given = given;
-      if (passes) this.#passes = new Passes(material, passes, (property) => Boolean(given(property)));
+      this.responses = responses;
+      if (passes) this.#passes = new Passes(material, passes, (property) => Boolean(given(property)), responses);
       this.doNotSerialize = true;
       this.registerForExtraEvents = true; // calls hardBindForSubMesh and fillRenderTargetTextures
       this._enable(true);
@@ -301,7 +305,7 @@ function pluginClass(description, properties) {
       for (const property of this.#passes?.properties ?? []) this.#write(buffer, property, drawn[property]);
       for (const property of placed) this.#write(buffer, property, placedValue(this._material[property], mesh.getWorldMatrix()));
       if (around) skyOf(mesh).forEach((numbers, channel) => writeNumbers(buffer, SKY[channel], 'vec4', numbers));
-      properties.checkTextures(this.given, (texture) => !texture.getTextureMatrix().isIdentityAs3x2());
+      properties.checkTextures(this.given, (texture) => !texture.getTextureMatrix().isIdentityAs3x2(), this.responses);
       if (!shells[0].entry) return;
       const { minimum, maximum } = mesh.getRawBoundingInfo().boundingBox; // without the places of thin instances
       buffer.updateVector3('sss_body_min', minimum);
@@ -379,6 +383,8 @@ export function materialClass(description) {
     #values = Object.fromEntries(Object.entries(parameters).map(([property, declared]) => [property, startOf(declared)]));
     #given = {};
     #texels = {};
+    /** What the page has set for volumes that are computed. */
+    #responses = new Responses(description.passes ?? []);
 
     constructor(values = {}, scene = EngineStore.LastCreatedScene) {
       if (!scene) throw new TypeError(`${materialName}: there is no scene: create one first, or give it as the second argument`);
@@ -401,7 +407,7 @@ export function materialClass(description) {
       if (moves) this.time = null;
       /** One of Babylon's lights, which lights this unlit material; null: none. */
       if (takesLight) this.light = null;
-      new Plugin(this, (property) => this.#given[property]);
+      new Plugin(this, (property) => this.#given[property], this.#responses);
       properties.checkNames(this, values);
       Object.assign(this, values);
     }
@@ -433,6 +439,7 @@ export function materialClass(description) {
 
     #setTexture(property, value) {
       const { color } = textures[property];
+      if (this.#responses.take(property, value, (name, numbers) => name in parameters && this.#setParameter(name, numbers))) value = null;
       const taken = value == null || typeof value === 'string' || value.getInternalTexture;
       if (!taken) properties.refuse(property, 'a texture, the URL of one, or null', value);
       if (typeof value === 'string') value = new Texture(value, this.getScene(), { useSRGBBuffer: color });
@@ -468,7 +475,7 @@ export function materialClass(description) {
       Object.assign(copy, { id: name, name });
       this.stencil.copyTo(copy.stencil);
       this._clonePlugins(copy, rootUrl);
-      Object.assign(copy, this.#values, this.#given, moves && { time: this.time }, takesLight && { light: this.light });
+      Object.assign(copy, this.#values, this.#given, Object.fromEntries(this.#responses), moves && { time: this.time }, takesLight && { light: this.light });
       return copy;
     }
 

@@ -9,11 +9,14 @@ import { ShaderMaterial } from '@babylonjs/core/Materials/shaderMaterial.js';
 import { RenderTargetTexture } from '@babylonjs/core/Materials/Textures/renderTargetTexture.js';
 import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
 import { Color4 } from '@babylonjs/core/Maths/math.color.js';
-import { Matrix, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
+import { Matrix } from '@babylonjs/core/Maths/math.vector.js';
+import { Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Viewport } from '@babylonjs/core/Maths/math.viewport.js';
 import '@babylonjs/core/Shaders/depth.vertex.js';
 import '@babylonjs/core/ShadersWGSL/depth.vertex.js';
-import { LAYERS, LAYER_GAP, PACKING, SIDE, emptyOf, isFiltered, layersOf, lightsOf, packing, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
+import { InnerVolume } from './babylon_inner_light.js';
+import { DIRECTIONAL, POINT, RECTANGLE, SPOT, lightOf, lightsOn } from './babylon_lights.js';
+import { LAYERS, LAYER_GAP, PACKING, SIDE, emptyOf, isFiltered, isVolume, layersOf, lightsOf, packing, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
 
 // The shaders, in GLSL and in WGSL. The vertices are those of Babylon's own depth maps: with bones, morph targets and instances.
 
@@ -77,22 +80,6 @@ const languageOf = (engine) => Number(engine.isWebGPU);
 
 // The lights of a body.
 
-const POINT = 0, DIRECTIONAL = 1, SPOT = 2, RECTANGLE = 4;
-
-/** The position of a light, or the direction towards it, as a vector of Babylon. */
-function placeOf(light) {
-  if (light.getTypeID() === DIRECTIONAL) return (light.computeTransformedInformation() ? light.transformedDirection : light.direction).scale(-1);
-  if (light.getTypeID() !== RECTANGLE) return light.getAbsolutePosition();
-  return light.parent ? Vector3.TransformCoordinates(light.position, light.parent.getWorldMatrix()) : light.position;
-}
-
-/** The same as a homogeneous vector; and the light's radiance. */
-export function lightOf(light) {
-  if (!light) return [[0, 1, 0, 0], [0, 0, 0]];
-  const directional = light.getTypeID() === DIRECTIONAL, place = placeOf(light);
-  return [[...place.asArray(), directional ? 0 : 1], light.diffuse.scale(light.getScaledIntensity() / Math.PI).asArray()];
-}
-
 /** How far vertices reach from the center of their box, by that box. @type {WeakMap<any, number>} */
 const REACHES = new WeakMap();
 
@@ -120,8 +107,7 @@ function boxOf(meshes) {
 
 /** The lights of a scene that a pass shows, as homogeneous vectors. */
 function lightsAt(mesh, { center }, pass) {
-  const shining = mesh.getScene().lights.filter((light) => [POINT, DIRECTIONAL, SPOT, RECTANGLE].includes(light.getTypeID()) && light.isEnabled() && light.canAffectMesh(mesh));
-  const lights = shining.map((light) => {
+  const lights = lightsOn(mesh, [POINT, DIRECTIONAL, SPOT, RECTANGLE]).map((light) => {
     const [place, radiance] = lightOf(light);
     const fall = place[3] ? Math.max(Vector3.DistanceSquared(Vector3.FromArray(place), center), 1e-6) : 1;
     const area = light.getTypeID() === RECTANGLE ? light.width * light.height : 1;
@@ -339,6 +325,7 @@ export class Passes extends RenderTargetTexture {
   #material;
   #passes;
   #isGiven;
+  #responses;
   /** For each pass, by its name. @type {Record<string, Packing>} */
   #packings = {};
   /** The layers of a pass, by its name: all bodies share them. @type {Record<string, (Layer | LightLayer)[]>} */
@@ -350,15 +337,17 @@ export class Passes extends RenderTargetTexture {
    * @param {import('@babylonjs/core/Materials/material.js').Material} material
    * @param {import('./frame_passes.js').Pass[]} passes
    * @param {(property: string) => boolean} isGiven whether the page has set a picture
+   * @param {import('./inner_volume.js').Responses} responses what it has set for volumes
    */
-  constructor(material, passes, isGiven) {
+  constructor(material, passes, isGiven, responses) {
     super(`${material.name} passes`, 1, material.getScene());
     this.doNotSerialize = true;
     this.#scene = material.getScene();
     this.#material = material;
     this.#passes = passes;
     this.#isGiven = isGiven;
-    for (const pass of passes) this.#packings[pass.name] = new Packing(this.#scene.getEngine(), showsLight(pass) ? packing(['rgba']) : PACKING);
+    this.#responses = responses;
+    for (const pass of passes) if (!isVolume(pass)) this.#packings[pass.name] = new Packing(this.#scene.getEngine(), showsLight(pass) ? packing(['rgba']) : PACKING);
   }
 
   /** The passes that it draws. */
@@ -382,7 +371,8 @@ export class Passes extends RenderTargetTexture {
 
   isReadyForRendering() {
     const meshes = this.#scene.meshes.filter((mesh) => this.#has(mesh));
-    const ready = meshes.flatMap((mesh) => this.#drawn.flatMap((pass) => this.#partsOf(mesh, pass).layers.map((layer) => layer.isReadyFor(mesh))));
+    const drawn = this.#drawn.filter((pass) => !isVolume(pass));
+    const ready = meshes.flatMap((mesh) => drawn.flatMap((pass) => this.#partsOf(mesh, pass).layers.map((layer) => layer.isReadyFor(mesh))));
     return [...ready, ...Object.values(this.#packings).map(({ shader }) => shader.isReady())].every(Boolean);
   }
 
@@ -390,9 +380,24 @@ export class Passes extends RenderTargetTexture {
     const { data, length } = this.#scene.getActiveMeshes();
     const meshes = new Set(data.slice(0, length).map((mesh) => mesh.sourceMesh ?? mesh));
     for (const mesh of meshes) {
-      if (this.#has(mesh)) for (const pass of this.#drawn) this.#drawPass(pass, mesh);
+      if (!this.#has(mesh)) continue;
+      for (const pass of this.#drawn) {
+        if (isVolume(pass)) this.#computePass(pass, mesh);
+        else this.#drawPass(pass, mesh);
+      }
     }
     this.#scene.getEngine().setViewport(this.#scene.activeCamera.viewport);
+  }
+
+  /** Computes the volume of a mesh. */
+  #computePass(pass, mesh) {
+    const response = this.#responses.loaded(pass.texture), { values, pictures } = this.#bodyOf(mesh);
+    if (pictures[pass.name]?.response !== response) {
+      pictures[pass.name]?.dispose();
+      pictures[pass.name] = response && new InnerVolume(response, this.#scene);
+    }
+    pictures[pass.name]?.follow(mesh, this.#material);
+    values[pass.texture] = pictures[pass.name] ?? undefined; // the material's own
   }
 
   #drawPass(pass, mesh) {
@@ -414,15 +419,19 @@ export class Passes extends RenderTargetTexture {
     });
   }
 
-  /** The layers of a pass; the picture of a mesh, and the values of its properties. */
-  #partsOf(mesh, pass) {
-    const size = { width: SIDE, height: SIDE };
+  #bodyOf(mesh) {
     if (!this.#bodies.has(mesh)) {
       this.#bodies.set(mesh, { values: {}, pictures: {} });
       for (const end of [mesh.onDisposeObservable, mesh.onMaterialChangedObservable]) end.addOnce(() => this.#forget(mesh));
     }
+    return this.#bodies.get(mesh);
+  }
+
+  /** The layers of a pass; the picture of a mesh, and the values of its properties. */
+  #partsOf(mesh, pass) {
+    const size = { width: SIDE, height: SIDE };
     const layers = (this.#layers[pass.name] ??= this.#newLayers(pass, size));
-    const { values, pictures } = this.#bodies.get(mesh);
+    const { values, pictures } = this.#bodyOf(mesh);
     if (!pictures[pass.name]) {
       pictures[pass.name] = new Picture(pass, size, this.#scene, { generateDepthBuffer: false });
       layers.forEach((layer) => layer.take(mesh));
@@ -439,8 +448,8 @@ export class Passes extends RenderTargetTexture {
 
   #forget(mesh) {
     for (const [name, picture] of Object.entries(this.#bodies.get(mesh)?.pictures ?? {})) {
-      picture.dispose();
-      this.#layers[name].forEach((layer) => layer.leave(mesh));
+      picture?.dispose();
+      this.#layers[name]?.forEach((layer) => layer.leave(mesh));
     }
     this.#bodies.delete(mesh);
   }

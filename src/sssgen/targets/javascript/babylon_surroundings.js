@@ -1,6 +1,9 @@
 // The light of the surroundings for a body that it comes through: Babylon's hemispheric lights, its ambient colour and its
 // environment, as the light of a white matte surface that faces a direction of the world.
 
+import { Texture } from '@babylonjs/core/Materials/Textures/texture.js';
+import { Vector3 } from '@babylonjs/core/Maths/math.vector.js';
+
 /** For red, green and blue: xyz is what a component of the direction adds, w what all directions have. */
 export const SKY = ['sss_sky_red', 'sss_sky_green', 'sss_sky_blue'];
 
@@ -43,4 +46,35 @@ export function skyOf(mesh) {
     });
   }
   return sky;
+}
+
+/** The terms of Babylon's polynomial of the light from an environment, by their names there. @param {Vector3} way */
+const termsOf = ({ x, y, z }) => Object.entries({ x, y, z, xx: x * x, yy: y * y, zz: z * z, xy: x * y, yz: y * z, zx: z * x });
+
+/** The environment of a material, as `sss_surroundings` has it: a function from a direction to a colour. */
+function environmentOf(material, scene) {
+  const texture = material.reflectionTexture ?? scene.environmentTexture, around = texture?.sphericalPolynomial;
+  if (!around) return () => Vector3.Zero();
+  const turn = texture.getReflectionTextureMatrix(), sides = Vector3.One();
+  if (texture.isCube && scene.useRightHandedSystem ? !texture.invertZ : texture.invertZ) sides.z = -1;
+  if (texture.coordinatesMode === Texture.INVCUBIC_MODE) sides.y = -1;
+  const strength = texture.level * scene.iblIntensity * material.environmentIntensity * scene.environmentIntensity;
+  const tint = Vector3.FromArray(material.reflectionColor.asArray()).scale(strength);
+  return (way) => {
+    const light = Vector3.Zero();
+    for (const [name, value] of termsOf(Vector3.TransformNormal(way, turn).multiply(sides))) light.addInPlace(around[name].scale(value));
+    return light.multiply(tint);
+  };
+}
+
+/** The same on the CPU for a mesh with a material: a function from a direction of the world to a colour. */
+export function shownAround(mesh, material) {
+  const scene = mesh.getScene(), sky = skyOf(mesh);
+  const environment = environmentOf(material, scene), ambient = scene.ambientColor.multiply(material.ambientColor).asArray();
+  return (way) => {
+    const facing = [...way.asArray(), 1], beyond = environment(way).asArray();
+    return ambient.map((value, channel) => (
+      Math.max(value + beyond[channel] + sky[channel].reduce((sum, part, index) => sum + part * facing[index], 0), 0)
+    ));
+  };
 }

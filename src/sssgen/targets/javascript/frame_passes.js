@@ -42,6 +42,9 @@ export const emptyOf = ({ empty, seenFrom }, end = FAR) => (empty !== 'far' ? 0 
 /** Whether a pass shows the light on the body, and not only distances. */
 export const showsLight = ({ layers }) => layers.includes('light');
 
+/** Whether it is a volume, which is not drawn, but computed. */
+export const isVolume = ({ seenFrom }) => seenFrom === 'inside';
+
 /** Whether filters blend the texels of its picture. */
 export const isFiltered = (pass) => pass.seenFrom !== 'eye' || showsLight(pass);
 

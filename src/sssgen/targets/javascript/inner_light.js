@@ -5,7 +5,7 @@ const TYPES = { uint8: Uint8Array, int8: Int8Array, uint16: Uint16Array, uint32:
 const UNSCATTERED = 0.25;
 
 /** A number in half a float. */
-function fromHalf(bits) {
+export function fromHalf(bits) {
   const exponent = (bits >> 10) & 31, fraction = bits & 1023, sign = bits & 32768 ? -1 : 1;
   if (exponent === 0) return sign * fraction * 2 ** -24;
   return sign * (1 + fraction / 1024) * 2 ** (exponent - 15);
@@ -225,10 +225,12 @@ export function surroundingsOf(shown) {
 
 /**
  * The response of a body: from the URL of a `.bin` of `sssgen bake fluence --relit`, beside which its JSON lies (a promise), or
- * from the content of both.
- * @param {string | { data: ArrayBuffer, facts: any }} source
+ * from the content of both. One that has been read is returned.
+ * @param {any} source
+ * @returns {LightResponse | Promise<LightResponse>}
  */
 export function responseOf(source) {
+  if (source instanceof LightResponse) return source;
   if (typeof source !== 'string') return new LightResponse(source.data, source.facts);
   const load = async (url) => {
     const answer = await fetch(url);

@@ -2,8 +2,10 @@
 // this file beside the materials; it is the same for all of them.
 
 import * as pc from 'playcanvas';
+import { Responses } from './inner_volume.js';
 import { setChunks } from './playcanvas_chunks.js';
 import { Passes } from './playcanvas_passes.js';
+import { withTexels } from './playcanvas_volume.js';
 import { Properties, TEXELS } from './values.js';
 
 /**
@@ -61,23 +63,6 @@ function texel(device, material, { type, default: name }) {
   });
 }
 
-const filled = new WeakSet();
-
-/** PlayCanvas 2.23 leaves the texels of volumes out in WebGPU: here they follow, once. */
-function withTexels(texture) {
-  const { impl, device } = texture;
-  if (!texture.volume || impl.desc?.dimension !== '3d' || filled.has(texture)) return texture;
-  filled.add(texture);
-  const size = { width: texture.width, height: texture.height, depthOrArrayLayers: texture.depth };
-  const data = texture.getSource();
-  Object.assign(impl.desc, { size, mipLevelCount: 1 });
-  impl.gpuTexture = device.wgpu.createTexture(impl.desc);
-  impl.view = impl.gpuTexture.createView({ dimension: '3d' });
-  const layout = { bytesPerRow: data.byteLength / (size.height * size.depthOrArrayLayers), rowsPerImage: size.height };
-  device.wgpu.queue.writeTexture({ texture: impl.gpuTexture }, data, layout, size);
-  return texture;
-}
-
 /** A value as the shader takes it; a pc.Color is converted to linear light. */
 function numbersOf(value, type) {
   if (value instanceof pc.Color) {
@@ -112,6 +97,8 @@ export function materialClass(description) {
     #device;
     /** The textures that the page has set. */
     #given = new Set();
+    /** What it has set for volumes that are computed. */
+    #responses = new Responses(description.passes ?? []);
     #passes;
 
     constructor(device, values = {}) {
@@ -142,7 +129,7 @@ export function materialClass(description) {
       if (takesLight) this.light = null;
       setChunks(this, device, description, properties);
       const { meshInstances } = /** @type {any} */ (this);
-      this.#passes = new Passes(device, description, meshInstances, (property) => this.#given.has(property));
+      this.#passes = new Passes(device, description, meshInstances, (property) => this.#given.has(property), this.#responses);
       for (const [property, declared] of Object.entries(parameters)) this[property] = declared.default;
       for (const property of Object.keys(textures)) this[property] = null;
       this.set(values);
@@ -181,6 +168,7 @@ export function materialClass(description) {
     }
 
     #setTexture(property, value) {
+      if (this.#responses.take(property, value, (name, numbers) => name in parameters && this.#setNumbers(name, numbers))) value = null;
       if (!(value == null || value instanceof pc.Texture)) properties.refuse(property, 'a pc.Texture, or null', value);
       if (value) properties.checkKind(property, { cube: value.cubemap, volume: value.volume, layers: value.array });
       const declared = textures[property];
@@ -214,7 +202,7 @@ export function materialClass(description) {
       if (takesLight) this.#setLight(this.light);
       if (!names) {
         this.#setBodies();
-        properties.checkTextures((property) => this.#given.has(property));
+        properties.checkTextures((property) => this.#given.has(property), undefined, this.#responses);
       }
       this.#passes.follow();
       super.setParameters(device, names);
@@ -248,7 +236,7 @@ export function materialClass(description) {
       const Own = /** @type {any} */ (this.constructor);
       const copy = new Own(this.#device).copy(this);
       for (const property of this.#given) copy[property] = this[property];
-      return Object.assign(copy, moves && { time: this.time }, takesLight && { light: this.light });
+      return Object.assign(copy, Object.fromEntries(this.#responses), moves && { time: this.time }, takesLight && { light: this.light });
     }
   };
 }

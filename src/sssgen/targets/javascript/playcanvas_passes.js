@@ -2,7 +2,8 @@
 // sets itself is not drawn.
 
 import * as pc from 'playcanvas';
-import { LAYERS, LAYER_GAP, SIDE, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, SIDE, emptyOf, isFiltered, isVolume, layersOf, lightsOf, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
+import { InnerVolume, Surroundings } from './playcanvas_inner_light.js';
 import { distanceMaterial, mattMaterial, packingPass } from './playcanvas_pass_shaders.js';
 
 /**
@@ -147,6 +148,8 @@ class Body {
   #copies = new Map();
   /** @type {{ pass: import('./frame_passes.js').Pass, camera: any, origin: any, layers: pc.RenderTarget[], packed: pc.RenderTarget, version: number }[]} */
   #pictures = [];
+  /** The volumes, by the names of passes. @type {Map<string, InnerVolume>} */
+  #volumes = new Map();
 
   /** @param {pc.MeshInstance} instance */
   constructor(instance) {
@@ -179,6 +182,16 @@ class Body {
     return pictures;
   }
 
+  /** The volume of a pass. */
+  volumeOf(pass, response, device) {
+    const before = this.#volumes.get(pass.name);
+    if (before?.texels.response === response) return before;
+    before?.texture.destroy();
+    const volume = new InnerVolume(device, pass.name, response);
+    this.#volumes.set(pass.name, volume);
+    return volume;
+  }
+
   /** Destroys the pictures for cameras that are not among these. */
   keep(cameras) {
     this.#destroy(({ camera }) => camera && !cameras.includes(camera));
@@ -195,6 +208,7 @@ class Body {
 
   dispose() {
     this.#destroy(() => true);
+    for (const { texture } of this.#volumes.values()) texture.destroy();
     for (const copy of this.#copies.values()) {
       // those of the mesh instance stay
       Object.assign(copy, { _skinInstance: null, _morphInstance: null, instancingData: null, drawCommands: null });
@@ -220,15 +234,20 @@ export class Passes {
   #packing;
   /** @type {pc.StandardMaterial | undefined} */
   #matt;
+  /** @type {Surroundings | undefined} */
+  #surroundings;
+  #responses;
 
   /**
    * @param {any} device
    * @param {{ passes?: import('./frame_passes.js').Pass[], textures: Record<string, { name: string }>, parameters: Record<string, { name: string }> }} description
    * @param {Set<pc.MeshInstance>} instances those that have the material
    * @param {(property: string) => boolean} given whether the page has set a texture
+   * @param {import('./inner_volume.js').Responses} responses what it has set for volumes
    */
-  constructor(device, { passes = [], textures, parameters }, instances, given) {
+  constructor(device, { passes = [], textures, parameters }, instances, given, responses) {
     this.device = device;
+    this.#responses = responses;
     this.passes = passes;
     this.instances = instances;
     this.given = given;
@@ -244,10 +263,12 @@ export class Passes {
     const apps = [pc.AppBase.getApplication(this.device.canvas.id), pc.AppBase.getApplication()];
     this.#app = apps.find((app) => app?.graphicsDevice === this.device);
     this.#app?.on('prerender', this.#prepare, this);
+    if (this.#app && this.passes.some(isVolume)) this.#surroundings = new Surroundings(this.#app.scene);
   }
 
   /** Before a frame: adds cameras that are new, and forgets what is gone. */
   #prepare() {
+    this.#surroundings?.follow();
     const { cameras } = this.#app.systems.camera;
     for (const camera of cameras) {
       if (this.#before.has(camera)) continue;
@@ -289,6 +310,7 @@ export class Passes {
       for (const pass of this.passes) {
         const manyEyes = pass.seenFrom === 'eye' && camera.camera.xrActive;
         if (manyEyes || this.given(pass.texture)) this.#clear(body, pass);
+        else if (isVolume(pass)) this.#computePass(pass, body, lights);
         else this.#drawPass(pass, body, camera, lights, layer);
       }
     }
@@ -307,6 +329,18 @@ export class Passes {
       }
     }
     return seen;
+  }
+
+  /** Computes a volume. */
+  #computePass(pass, body, lights) {
+    const response = this.#responses.loaded(pass.texture);
+    if (!response) {
+      this.#clear(body, pass);
+      return;
+    }
+    const volume = body.volumeOf(pass, response, this.device);
+    volume.follow(body.instance, lights, this.#surroundings);
+    body.instance.setParameter(this.nameOf(pass.texture), volume.texture);
   }
 
   #drawPass(pass, body, camera, lights, layer) {

@@ -4,7 +4,6 @@
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
 import { spreadOf } from './frame_passes.js';
-import { responseOf } from './inner_light.js';
 import { nodesOf } from './three_nodes.js';
 import { ObjectUniforms, placedValue } from './three_object.js';
 import { Passes } from './three_passes.js';
@@ -199,7 +198,6 @@ export function materialClass(description) {
   const inputs = Object.values(calls).flatMap((call) => call.inputs);
   const properties = new Properties({ ...description, inputs }, base);
   const { moves, takesLight } = properties;
-  const isInside = (property) => passes.some((pass) => pass.texture === property && pass.seenFrom === 'inside');
   const isDrawn = (property) => passes.some((pass) => pass.texture === property);
   const texts = { glsl: TSL.glsl(description.glsl), wgsl: TSL.wgsl(description.wgsl) };
   // three keeps one program per key
@@ -268,10 +266,9 @@ export function materialClass(description) {
     }
 
     #setTexture(property, value) {
-      const declared = textures[property], { responses } = this.#passes;
-      responses.delete(property);
-      if (value && isInside(property) && !value.isTexture) {
-        this.#takeResponse(property, value);
+      const declared = textures[property];
+      if (this.#passes.responses.take(property, value, (name, numbers) => name in parameters && this.#setParameter(name, numbers))) {
+        this.#given.delete(property);
         return;
       }
       if (!(value?.isTexture ?? value == null)) properties.refuse(property, 'a THREE.Texture, or null', value);
@@ -285,21 +282,6 @@ export function materialClass(description) {
       else this.#given.delete(property);
       this.#uniforms[property].value = value ?? texel(declared);
       this.needsUpdate = true;
-    }
-
-    /** Takes a file of sssgen bake fluence --relit, from which a pass computes the texture. */
-    #takeResponse(property, value) {
-      const { responses } = this.#passes;
-      const take = (response) => {
-        if (responses.get(property) !== value) return; // another was set, or none, while this one was loading
-        responses.set(property, response);
-        for (const [name, numbers] of response.ownParameters()) if (name in parameters) this.#setParameter(name, numbers);
-      };
-      this.#given.delete(property);
-      const response = responseOf(value);
-      responses.set(property, value);
-      if (response instanceof Promise) response.then(take, (error) => console.error(`${name}: '${property}': ${error.message}`));
-      else take(response);
     }
 
     setValues(values) {

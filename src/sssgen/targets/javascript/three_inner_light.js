@@ -2,46 +2,35 @@
 
 import * as THREE from 'three/webgpu';
 import { surroundingsOf } from './inner_light.js';
+import { InnerTexels, distantLamp, nearLamp } from './inner_volume.js';
 
 /** The width of a picture of a ball in the surroundings, in texels. */
 const BALL = 32;
 
-/** The irradiance of a lamp at a place of the world, as three has it, relative to its colour. */
-function fallOf(light, place) {
-  const away = Math.max(light.position.distanceTo(place), 0.01), reach = light.distance;
-  const edge = reach > 0 ? Math.min(Math.max(1 - (away / reach) ** 4, 0), 1) ** 2 : 1;
-  const fall = edge * away ** -light.decay;
-  if (!light.axis) return fall;
-  const cosine = place.clone().sub(light.position).divideScalar(-away).dot(light.axis);
-  return fall * THREE.MathUtils.smoothstep(cosine, light.cone, light.penumbra);
+/** The irradiance of a lamp as three has it, relative to its colour. */
+function fallOf(distance, cosine, [reach, decay, cone, penumbra]) {
+  const edge = reach > 0 ? Math.min(Math.max(1 - (distance / reach) ** 4, 0), 1) ** 2 : 1;
+  const fall = edge * Math.max(distance, 0.01) ** -decay;
+  return cone === undefined ? fall : fall * THREE.MathUtils.smoothstep(cosine, cone, penumbra);
 }
 
 /** The lamps of a scene, in the space of an object. */
 function lampsOf(object, scene, camera) {
-  const toObject = object.matrixWorld.clone().invert(), lamps = [];
-  const place = new THREE.Vector3();
+  const world = object.matrixWorld.elements, toObject = object.matrixWorld.clone().invert().elements, lamps = [];
   scene.traverseVisible((light) => {
     if (!light.layers.test(camera.layers)) return;
     const { isDirectionalLight, isPointLight, isSpotLight } = light;
     if (!(isDirectionalLight || isPointLight || isSpotLight)) return;
     const color = light.color.clone().multiplyScalar(light.intensity / Math.PI).toArray();
     const position = new THREE.Vector3().setFromMatrixPosition(light.matrixWorld);
-    const towards = light.target && position.clone().sub(place.setFromMatrixPosition(light.target.matrixWorld)).normalize();
+    const towards = light.target && position.clone().sub(new THREE.Vector3().setFromMatrixPosition(light.target.matrixWorld)).normalize().toArray();
     if (isDirectionalLight) {
-      lamps.push({ directional: true, place: towards.transformDirection(toObject).toArray(), colorAt: () => color });
+      lamps.push(distantLamp(towards, color, toObject));
       return;
     }
-    const { distance, decay, angle, penumbra } = light, own = [0, 0, 0];
-    const cone = isSpotLight && { axis: towards, cone: Math.cos(angle), penumbra: Math.cos(angle * (1 - penumbra)) };
-    const lamp = { position, distance, decay, ...cone };
-    lamps.push({
-      directional: false, place: position.clone().applyMatrix4(toObject).toArray(),
-      colorAt: (at) => {
-        const fall = fallOf(lamp, place.fromArray(at).applyMatrix4(object.matrixWorld));
-        for (let channel = 0; channel < 3; channel++) own[channel] = fall * color[channel];
-        return own;
-      },
-    });
+    const { distance, decay, angle, penumbra } = light;
+    const settings = [distance, decay, ...(isSpotLight ? [Math.cos(angle), Math.cos(angle * (1 - penumbra))] : [])];
+    lamps.push(nearLamp({ position: position.toArray(), axis: towards, color, settings }, fallOf, world, toObject));
   });
   return lamps;
 }
@@ -138,7 +127,7 @@ class Ball {
 /** The volumes of the light inside of objects, in one renderer. */
 export class InnerLight {
   #ball = new Ball();
-  /** @type {Map<THREE.Object3D, { texture: THREE.Data3DTexture, response: any, key: string }>} */
+  /** @type {Map<THREE.Object3D, { texture: THREE.Data3DTexture, texels: InnerTexels }>} */
   #volumes = new Map();
 
   /** The volume of an object with a `response`, for the light of now. */
@@ -154,24 +143,19 @@ export class InnerLight {
       this.#ball.add(way, sum);
       return [sum.r, sum.g, sum.b];
     });
-    const key = JSON.stringify([lamps.map(({ place, colorAt }) => [place, ...colorAt(response.low), ...colorAt(response.high)]), around]);
-    if (key !== volume.key) {
-      volume.key = key;
-      response.light(lamps, around, /** @type {any} */ (volume.texture.image.data));
-      volume.texture.needsUpdate = true;
-    }
+    if (volume.texels.follow(lamps, around)) volume.texture.needsUpdate = true;
     return volume.texture;
   }
 
-  /** @returns {{ texture: THREE.Data3DTexture, response: any, key: string }} */
+  /** @returns {{ texture: THREE.Data3DTexture, texels: InnerTexels }} */
   #volumeOf(object, response) {
     const before = this.#volumes.get(object);
-    if (before && before.response === response) return before;
+    if (before && before.texels.response === response) return before;
     before?.texture.dispose();
-    const { width, height, depth } = response;
-    const texture = new THREE.Data3DTexture(new Uint16Array(4 * width * height * depth), width, height, depth);
+    const texels = new InnerTexels(response);
+    const texture = new THREE.Data3DTexture(texels.data, response.width, response.height, response.depth);
     Object.assign(texture, { format: THREE.RGBAFormat, type: THREE.HalfFloatType, minFilter: THREE.LinearFilter, magFilter: THREE.LinearFilter });
-    const volume = { texture, response, key: '' };
+    const volume = { texture, texels };
     this.#volumes.set(object, volume);
     return volume;
   }

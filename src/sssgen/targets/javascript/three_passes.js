@@ -3,7 +3,8 @@
 
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
-import { LAYERS, LAYER_GAP, PACKING, SIDE, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, PACKING, SIDE, emptyOf, isFiltered, isVolume, layersOf, lightsOf, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
+import { Responses } from './inner_volume.js';
 import { InnerLight } from './three_inner_light.js';
 
 /** The layer of three that only a pass draws. */
@@ -332,8 +333,6 @@ class Drawing {
 export class Passes {
   /** @type {Map<any, Drawing>} */
   #drawings = new Map();
-  /** Of the passes that compute a volume, the responses by the property of their texture; what loads one meanwhile. @type {Map<string, any>} */
-  responses = new Map();
   /** Those that have pictures. @type {Set<THREE.Object3D>} */
   #objects = new Set();
 
@@ -343,6 +342,7 @@ export class Passes {
   /** @param {import('./frame_passes.js').Pass[]} passes */
   constructor(passes) {
     this.passes = passes;
+    this.responses = new Responses(passes);
   }
 
   /**
@@ -366,9 +366,9 @@ export class Passes {
   }
 
   #drawPass(drawing, pass, { renderer, scene, camera, object }, set) {
-    if (pass.seenFrom === 'inside') {
-      const response = this.responses.get(pass.texture);
-      if (response?.latents) set(pass.texture, drawing.innerLight.draw({ renderer, scene, camera, object }, response));
+    if (isVolume(pass)) {
+      const response = this.responses.loaded(pass.texture);
+      if (response) set(pass.texture, drawing.innerLight.draw({ renderer, scene, camera, object }, response));
       return;
     }
     const eye = pass.seenFrom === 'eye', ball = ballOf(object);
