@@ -68,11 +68,20 @@ scattering = [3.0, 4.0, 5.0]
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return with_bake(tmp_path_factory.mktemp("relit"), MATERIAL, SCENE)
+
+
+@pytest.fixture(scope="module")
+def refracting(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    material = MATERIAL.replace("fluence_relit", "fluence_relit_refracted")
+    return with_bake(tmp_path_factory.mktemp("refracting"), material, SCENE + "ior = 1.4\n")
+
+
+def with_bake(folder: Path, material: str, scene: str) -> Path:
     """A bent body with its material, its bake and a scene with two lamps and ambient light."""
     trimesh = pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[bake]'")
-    folder = tmp_path_factory.mktemp("relit")
-    (folder / "relit.toml").write_text(MATERIAL, "utf-8")
-    (folder / "scene.toml").write_text(SCENE, "utf-8")
+    (folder / "relit.toml").write_text(material, "utf-8")
+    (folder / "scene.toml").write_text(scene, "utf-8")
     trimesh.creation.torus(0.5, 0.22, 32, 16).export(folder / "body.ply")
     body = measured_scene.load(str(folder / "scene.toml")).body_alone()
     data, facts = relit.bake(body, 8, Settings(voxels=12, side=6, photons=2000), processes=0)
@@ -150,6 +159,14 @@ def test_two_lamps_and_ambient_light(page: EnginePage, folder: Path, monkeypatch
     if other_fall:
         monkeypatch.setattr(inner_light, "from_light", like_playcanvas)
     check(page, folder, 3.0 if other_fall else 1.0)
+
+
+def test_a_refracting_surface(page: EnginePage, refracting: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The index and the distance from the surface come from the file."""
+    other_fall = page.engine.target == "playcanvas"
+    if other_fall:
+        monkeypatch.setattr(inner_light, "from_light", like_playcanvas)
+    check(page, refracting, 4.0 if other_fall else 2.0)
 
 
 def test_light_from_above(page: EnginePage, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -73,9 +73,11 @@ export class LightResponse {
     this.mix = { way: new Float64Array(3), texels: new Int32Array(4), weights: new Float64Array(4) };
   }
 
-  /** The parameters of the technique, by the properties of materials. */
+  /** The parameters of the technique, by the properties of materials: where an engine has the name itself, it begins with `sss`. */
   ownParameters() {
-    return Object.entries(this.parameters).map(([name, value]) => [name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase()), value]);
+    return Object.entries(this.parameters).flatMap(([name, value]) => (
+      [name, `sss_${name}`].map((own) => [own.replace(/_(\w)/g, (_, letter) => letter.toUpperCase()), value])
+    ));
   }
 
   /** The centre of a voxel that counts, in object space, into `result`. */
