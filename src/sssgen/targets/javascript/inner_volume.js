@@ -30,7 +30,7 @@ export const distantLamp = (towards, color, toObject) => ({ directional: true, p
  * A lamp with a position, as `LightResponse.light` takes it.
  * @param {{ position: number[], color: number[], axis?: number[], settings: any[] }} lamp in world space; `axis`: against the
  *   direction in which it shines
- * @param {(distance: number, cosine: number, settings: any[]) => number} fall what is left of its colour at a distance, where
+ * @param {(distance: number, cosine: number, settings: any) => number} fall what is left of its colour at a distance, where
  *   the way towards it has a cosine with the axis
  * @param {ArrayLike<number>} world from object to world space
  * @param {ArrayLike<number>} toObject the reverse
