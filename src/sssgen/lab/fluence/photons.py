@@ -67,16 +67,6 @@ class Tracer:
         normal = np.cross(second - first, third - first)
         self.normals: Array = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
 
-    def next_walls(self, origins: Array, ways: Array, at: Array, active: Indices) -> tuple[Indices, Array, Bools]:
-        """The `active` ones of some rays that meet a wall behind their distances `at`, the distances of these walls,
-        and whether the ray leaves the body there; `at` is moved behind them."""
-        face, ahead = self.rays.nearest(origins[active] + at[active, None] * ways[active], ways[active])
-        hit = face >= 0
-        active, face = active[hit], face[hit]
-        wall: Array = at[active] + np.maximum(ahead[hit], 0.0)
-        at[active] = wall + STEP * self.body.size
-        return active, wall, np.einsum("nc,nc->n", ways[active], self.normals[face]) > 0.0
-
     def walls(self, position: Array, direction: Array) -> tuple[Bools, Array, Array]:
         """Which rays meet a wall; of these the distances, and the walls' outward normals."""
         face, ahead = self.rays.nearest(position, direction)
@@ -100,12 +90,14 @@ class Tracer:
         for first in range(0, len(points), group):
             some = points[first : first + group]
             origins, ways = np.repeat(some, len(towards), axis=0), np.tile(towards, (len(some), 1))
-            at, total, active = np.zeros(len(origins)), np.zeros(len(origins)), np.arange(len(origins))
+            total, active = np.zeros(len(origins)), np.arange(len(origins))
             for _ in range(MOST_WALLS):
-                active, wall, leaves = self.next_walls(origins, ways, at, active)
+                hit, ahead, normal = self.walls(origins, ways)
+                active, origins, ways = active[hit], origins[hit], ways[hit]
                 if not len(active):
                     break
-                total[active] += np.where(leaves, wall, -wall)
+                total[active] += np.where(np.einsum("nc,nc->n", ways, normal) > 0.0, ahead, 0.0)
+                origins = origins + (ahead + STEP * self.body.size)[:, None] * ways
             result[first : first + group] = np.maximum(total, 0.0).reshape(len(some), -1)
         return result
 
