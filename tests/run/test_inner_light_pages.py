@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import dataclasses
 import json
 from collections.abc import Iterator
 from functools import partial
@@ -13,67 +12,20 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import BLACK, ENGINES, without_reflection
+from engine_cases import BLACK, ENGINES
+from relit_cases import drawn_by_numpy, write_body
 from skips import or_skip
-from sssgen.bake import baked_files, relit
-from sssgen.lab.fluence.fluence_field import Settings
-from sssgen.material.material_loading import load_material
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
 from sssgen.run.backends.web_engines import THREE
-from sssgen.run.render import page_values, shade_numpy
-from sssgen.run.render.scene_render import place_mesh
-from sssgen.run.render.scene_values import shell_of
-from sssgen.scene import scene_loading
+from sssgen.run.render import page_values
 from sssgen.scene.geometry import Mesh
-from sssgen.scene.measured import measured_scene
-from sssgen.targets import registry
-
-SIZE = (96, 72)
-MATERIAL = """[material]
-name = "relit"
-[translucency]
-technique = "fluence_relit"
-inner_light = "body.bin"
-[[surface]]
-technique = "base_color"
-tint = [0.0, 0.0, 0.0, 1.0]
-[[surface]]
-technique = "specular_level"
-dielectric_specular = 0.0
-"""
-SCENE = """material = "relit.toml"
-size = [96, 72]
-ambient = [0.2, 0.1, 0.3]
-[camera]
-position = [0.4, 0.8, 3.0]
-[geometry]
-kind = "mesh"
-file = "body.ply"
-rotation = [20.0, 50.0, 0.0]
-[[light]]
-direction = [-0.6, 0.3, -0.8]
-color = [2.0, 1.6, 1.2]
-[[light]]
-position = [0.9, -0.2, 0.7]
-color = [0.2, 0.4, 0.8]
-[medium]
-absorption = [0.2, 0.4, 0.8]
-scattering = [3.0, 4.0, 5.0]
-"""
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A bent body with its material, its bake and a scene with two lamps and ambient light."""
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[bake]'")
     folder = tmp_path_factory.mktemp("relit")
-    (folder / "relit.toml").write_text(MATERIAL, "utf-8")
-    (folder / "scene.toml").write_text(SCENE, "utf-8")
-    trimesh.creation.torus(0.5, 0.22, 32, 16).export(folder / "body.ply")
-    body = measured_scene.load(str(folder / "scene.toml")).body_alone()
-    data, facts = relit.bake(body, 8, Settings(voxels=12, side=6, photons=2000), processes=0)
-    baked_files.write_response(str(folder / "body.bin"), data, facts)
+    write_body(folder)
     return folder
 
 
@@ -86,14 +38,9 @@ def page(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
 
 def test_two_lamps_and_ambient_light(page: EnginePage, folder: Path) -> None:
     """Within 1/255 on 95 % of the body's pixels: the picture of the eye's layers is coarse at the silhouette."""
-    scene = dataclasses.replace(scene_loading.load(str(folder / "scene.toml")), samples=1)
-    body = scene.geometry
+    scene, placed, expected = drawn_by_numpy(folder)
+    body, shell = scene.geometry, placed.shell
     assert isinstance(body, Mesh)
-    oracle = sssgen.compile(scene.material, "numpy")
-    shell = shell_of(scene, load_material(scene.material), oracle.reflection)
-    placed = place_mesh(scene, oracle, shell, registry.load("numpy"), SIZE)
-    expected = shade_numpy.shade(without_reflection(oracle), placed.shell, placed.size, placed.points, "float64")
-
     compiled = sssgen.compile(scene.material, "threejs")
     vertices = np.zeros((len(body.triangles.places), VERTEX_SIZE), np.float32)
     vertices[:, :3], vertices[:, 3:6] = body.triangles.places, body.triangles.normals
