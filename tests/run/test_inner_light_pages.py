@@ -3,89 +3,41 @@
 from __future__ import annotations
 
 import base64
-import dataclasses
 import json
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import BLACK, ENGINES, RENDERERS, without_reflection
+from engine_cases import BLACK, ENGINES, RENDERERS
+from relit_cases import drawn_by_numpy, write_body
 from skips import or_skip
-from sssgen.bake import baked_files, relit
-from sssgen.lab.fluence.fluence_field import Settings
-from sssgen.material.material_loading import load_material
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
-from sssgen.run.render import inner_light, page_values, shade_numpy
-from sssgen.run.render.scene_render import place_mesh
-from sssgen.run.render.scene_values import shell_of
-from sssgen.scene import scene_loading
+from sssgen.run.render import inner_light, page_values
 from sssgen.scene.arrays import Array
 from sssgen.scene.geometry import Mesh
 from sssgen.scene.light_response import Incoming, LightResponse, from_light, harmonics
-from sssgen.scene.measured import measured_scene
 from sssgen.scene.scene import Light
-from sssgen.targets import registry
 
-SIZE = (96, 72)
 QUICK = (("threejs", "webgl"), ("babylonjs", "webgl"), ("playcanvas", "webgl2"))
-MATERIAL = """[material]
-name = "relit"
-[translucency]
-technique = "fluence_relit"
-inner_light = "body.bin"
-[[surface]]
-technique = "base_color"
-tint = [0.0, 0.0, 0.0, 1.0]
-[[surface]]
-technique = "specular_level"
-dielectric_specular = 0.0
-"""
-SCENE = """material = "relit.toml"
-size = [96, 72]
-ambient = [0.2, 0.1, 0.3]
-[camera]
-position = [0.4, 0.8, 3.0]
-[geometry]
-kind = "mesh"
-file = "body.ply"
-rotation = [20.0, 50.0, 0.0]
-[[light]]
-direction = [-0.6, 0.3, -0.8]
-color = [2.0, 1.6, 1.2]
-[[light]]
-position = [0.9, -0.2, 0.7]
-color = [0.2, 0.4, 0.8]
-[medium]
-absorption = [0.2, 0.4, 0.8]
-scattering = [3.0, 4.0, 5.0]
-"""
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return with_bake(tmp_path_factory.mktemp("relit"), MATERIAL, SCENE)
+    folder = tmp_path_factory.mktemp("relit")
+    write_body(folder)
+    return folder
 
 
 @pytest.fixture(scope="module")
 def refracting(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    material = MATERIAL.replace("fluence_relit", "fluence_relit_refracted")
-    return with_bake(tmp_path_factory.mktemp("refracting"), material, SCENE + "ior = 1.4\n")
-
-
-def with_bake(folder: Path, material: str, scene: str) -> Path:
-    """A bent body with its material, its bake and a scene with two lamps and ambient light."""
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[bake]'")
-    (folder / "relit.toml").write_text(material, "utf-8")
-    (folder / "scene.toml").write_text(scene, "utf-8")
-    trimesh.creation.torus(0.5, 0.22, 32, 16).export(folder / "body.ply")
-    body = measured_scene.load(str(folder / "scene.toml")).body_alone()
-    data, facts = relit.bake(body, 8, Settings(voxels=12, side=6, photons=2000), processes=0)
-    baked_files.write_response(str(folder / "body.bin"), data, facts)
+    folder = tmp_path_factory.mktemp("refracting")
+    write_body(folder, 1.4)
     return folder
 
 
@@ -122,19 +74,14 @@ def from_above(_: object, to_object: Array) -> Array:
     return result
 
 
-def check(page: EnginePage, folder: Path, within: float, **changes: object) -> None:
+def check(page: EnginePage, folder: Path, within: float, **changes: Any) -> None:
     """The page's picture of the scene is NumPy's, on 95 % of the body's pixels: the picture of the eye's layers is
     coarse at the silhouette. `changes`: of the scene; `stage` is the page's."""
     target = page.engine.target
     stage = {"stage": changes.pop("stage")} if "stage" in changes else {}
-    scene = dataclasses.replace(scene_loading.load(str(folder / "scene.toml")), samples=1, **changes)  # type: ignore[arg-type]
-    body = scene.geometry
+    scene, placed, expected = drawn_by_numpy(folder, **changes)
+    body, shell = scene.geometry, placed.shell
     assert isinstance(body, Mesh)
-    oracle = sssgen.compile(scene.material, "numpy")
-    shell = shell_of(scene, load_material(scene.material), oracle.reflection)
-    placed = place_mesh(scene, oracle, shell, registry.load("numpy"), SIZE)
-    expected = shade_numpy.shade(without_reflection(oracle), placed.shell, placed.size, placed.points, "float64")
-
     vertices = np.zeros((len(body.triangles.places), VERTEX_SIZE), np.float32)
     vertices[:, :3], vertices[:, 3:6] = body.triangles.places, body.triangles.normals
     response = {

@@ -60,9 +60,9 @@ def parameter_words(material: Material, scale: float = 1.0) -> dict[str, str]:
     return words
 
 
-def needs(material: Material) -> dict[tuple[str, str], str]:
-    """What to do for each texture that a picture needs, by its technique and its name there."""
-    result: dict[tuple[str, str], str] = {}
+def needs(material: Material) -> dict[tuple[str, str], tuple[str, str]]:
+    """What to do for each texture that a picture needs, and its file or '', by its technique and its name there."""
+    result: dict[tuple[str, str], tuple[str, str]] = {}
     for stage, names, function in needed_textures(material.stages):
         given = {name: stage.textures[name] for name in names if name in stage.textures}
         command = function and bake_command(function, material.name, given, parameter_words(material))
@@ -73,7 +73,7 @@ def needs(material: Material) -> dict[tuple[str, str], str]:
         origin = f"`{command.text}` makes" if command else "the material names"
         for name in names:
             how = f"load {files[name]}, which {origin}" if name in files else "paint it"
-            result.setdefault((stage.technique.name, name), how)
+            result.setdefault((stage.technique.name, name), (how, files.get(name, "")))
     return result
 
 

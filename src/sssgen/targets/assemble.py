@@ -61,8 +61,8 @@ class About(NamedTuple):
     """The author's comment at the head of the file, such as a licence."""
     bodies: tuple[str, ...] = ()
     """The distance functions of the bodies that the material is made for."""
-    needs: Mapping[tuple[str, str], str] = {}
-    """What to do for each texture that a picture needs, by its technique and its name there."""
+    needs: Mapping[tuple[str, str], tuple[str, str]] = {}
+    """What to do for each texture that a picture needs, and its file or '', by its technique and its name there."""
 
 
 class Program(NamedTuple):
@@ -350,7 +350,7 @@ def _context(
             if not isinstance(uniform.type, Sampler)
         ],
         "textures": [
-            {**texture_variables(printer, *texture, index), "needed": needed(program, texture[0])}
+            {**texture_variables(printer, *texture, index), **_needed_variables(program, texture[0])}
             for index, texture in enumerate(textures)
         ],
         "passes": pass_variables(target, program.module.uniforms, program.source_names),
@@ -397,9 +397,17 @@ def needed(program: Program, texture: Uniform) -> str | None:
 
     A volume of light is computed from a file, which is needed.
     """
+    return _needed_variables(program, texture)["needed"]
+
+
+def _needed_variables(program: Program, texture: Uniform) -> dict[str, str | None]:
+    """What to do for a needed texture, and its file."""
     source = program.source_names.get(texture.name, texture.name)
     drawn = pass_name(texture) and not is_volume(texture)
-    return None if drawn else program.about.needs.get(program.owners.get(source, ("", source)))
+    how, file = (
+        (None, None) if drawn else program.about.needs.get(program.owners.get(source, ("", source)), (None, None))
+    )
+    return {"needed": how, "file": file}
 
 
 def _supplied(target: Target, program: Program, uniform: Uniform, drawer: str) -> str:

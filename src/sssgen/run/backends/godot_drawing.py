@@ -66,14 +66,14 @@ class Godot:
         view: View,
         values: Mapping[str, Any],
         textures: Mapping[str, Array],
-        scripts: Mapping[str, str] | None = None,
+        scripts: Mapping[str, str | bytes] | None = None,
     ) -> Array:
         """The picture, (height, width, 4) float64, row 0 at the top, in linear light; alpha is 0 behind the body.
 
         `values` are parameters as JSON values with their kind, `textures` (height, width, 4) or (depth, height, width,
-        4) of float32, row 0 at v = 0. The first of the `scripts` is that of a node below the body. An empty `shader`
-        means Godot's standard material with `values`. Raises SssgenError where Godot refuses the shader or draws
-        nothing.
+        4) of float32, row 0 at v = 0. The first of the `scripts` is that of a node below the body; files that it reads
+        may follow. An empty `shader` means Godot's standard material with `values`. Raises SssgenError where Godot
+        refuses the shader or draws nothing.
         """
         files = files_of(shader, view, values, textures, scripts or {})
         with self.program.display() as display, self.program.project(files) as project:
@@ -100,7 +100,11 @@ def _decode(stored: Array) -> Array:
 
 
 def files_of(
-    shader: str, view: View, values: Mapping[str, Any], textures: Mapping[str, Array], scripts: Mapping[str, str]
+    shader: str,
+    view: View,
+    values: Mapping[str, Any],
+    textures: Mapping[str, Array],
+    scripts: Mapping[str, str | bytes],
 ) -> dict[str, str | bytes]:
     """The files of a project whose `draw.gd` draws one picture."""
     files: dict[str, str | bytes] = {**scripts, "draw.gd": _SCRIPT, "shader.gdshader": shader}

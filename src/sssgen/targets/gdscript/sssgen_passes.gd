@@ -1,5 +1,6 @@
 # What Godot draws before a material: pictures of the body alone, or of all others that cast a shadow, as the eye or a
-# light sees them, each in a SubViewport with a world of its own. A texture that the scene sets itself is not drawn.
+# light sees them, each in a SubViewport with a world of its own, and the light inside it. A texture that the scene sets itself
+# is not drawn.
 extends Node
 
 ## The distance where there is no surface: it fits into half a float.
@@ -13,18 +14,26 @@ const MARGIN := 2e-3
 @export var body: GeometryInstance3D
 ## The camera whose view the pictures of the eye have; without one it is the current camera of the body's viewport.
 @export var eye: Camera3D
+## The file of `sssgen bake fluence --relit`, beside which its JSON lies; without one it is the file that the material names,
+## beside this script.
+@export_file("*.bin") var inner_light_file := ""
 
 ## Material → the node whose pictures it has.
 static var _owners := {}
 var _casters: Casters
 var _sky := SkyLight.new()
-var _pictures: Array[Picture] = []
+var _pictures: Array[Pass] = []
 var _lights: Array[Light3D] = []
 var _materials: Array[ShaderMaterial] = []
 
 
 ## Texture without which the picture is wrong → what to do.
 func needed() -> Dictionary:
+	return {}
+
+
+## Texture without which the picture is wrong → the file that has it or makes it.
+func files() -> Dictionary:
 	return {}
 
 
@@ -41,7 +50,10 @@ func _enter_tree() -> void:
 		return
 	_casters = Casters.new()
 	for data in passes():
-		_pictures.append(Picture.new(self, data, _casters))
+		if data["seen_from"] == "inside":
+			_pictures.append(InnerLight.new(data, _file_of(data)))
+		else:
+			_pictures.append(Picture.new(self, data, _casters))
 	_lights.assign(get_tree().root.find_children("*", "Light3D", true, false))
 	get_tree().node_added.connect(_note_light)
 	for caster in get_tree().root.find_children("*", "GeometryInstance3D", true, false):
@@ -86,9 +98,20 @@ func _draw() -> void:
 			material.set_shader_parameter("sky_light_matrix", _sky.matrix)
 	for picture in _pictures:
 		if seen:
-			picture.draw(body, camera, _brightest)
+			picture.draw(body, camera, self)
 		else:
 			picture.rest()
+
+
+func _file_of(data: Dictionary) -> String:
+	if inner_light_file != "":
+		return inner_light_file
+	var script: Script = get_script()
+	return script.resource_path.get_base_dir().path_join(files().get(data["texture"], "").get_file())
+
+
+func sky() -> SkyLight:
+	return _sky
 
 
 ## The materials of the body whose textures are drawn.
@@ -98,16 +121,16 @@ func _find_materials() -> void:
 		if material == null or material in _materials or not _reads(material.shader):
 			continue
 		_materials.append(material)
-		var missing := needed()
-		for texture: String in missing:
-			if material.get_shader_parameter(texture) == null:
-				push_warning("%s: '%s' is missing: %s" % [body.name, texture, missing[texture]])
 		if material in _owners:
 			push_warning("%s shares its material with another body: make it unique" % body.name)
 			continue
 		_owners[material] = self
 		for picture in _pictures:
 			picture.take(material)
+		var missing := needed()
+		for texture: String in missing:
+			if material.get_shader_parameter(texture) == null:
+				push_warning("%s: '%s' is missing: %s" % [body.name, texture, missing[texture]])
 
 
 func _reads(shader: Shader) -> bool:
@@ -117,22 +140,27 @@ func _reads(shader: Shader) -> bool:
 	return _pictures.any(func(picture): return picture.data["texture"] in names)
 
 
+## The lights that shine on the body.
+func lights_on_body() -> Array[Light3D]:
+	_lights = _lights.filter(func(light): return is_instance_valid(light))
+	return _lights.filter(func(light: Light3D) -> bool:
+		if not light.is_visible_in_tree() or light.get_world_3d() != body.get_world_3d():
+			return false
+		var shines: bool = not light is DirectionalLight3D or light.sky_mode != DirectionalLight3D.SKY_MODE_SKY_ONLY
+		return shines and light.light_cull_mask & body.layers != 0)
+
+
 ## The lights that are brightest at a ball, at most `count`; `distant`: those from afar, if there are any; `shadowed`:
 ## those that cast a shadow.
-func _brightest(center: Vector3, distant: bool, shadowed: bool, count: int) -> Array[Light3D]:
+func brightest(center: Vector3, distant: bool, shadowed: bool, count: int) -> Array[Light3D]:
 	var found: Array[Light3D] = []
 	var strengths := {}
-	_lights = _lights.filter(func(light): return is_instance_valid(light))
-	for light in _lights:
-		if not light.is_visible_in_tree() or light.get_world_3d() != body.get_world_3d():
-			continue
-		if light.light_negative or not (light.light_cull_mask & body.layers) or (shadowed and not light.shadow_enabled):
+	for light in lights_on_body():
+		if light.light_negative or (shadowed and not light.shadow_enabled):
 			continue
 		var color := light.light_color.srgb_to_linear()
 		var strength := light.light_energy * maxf(color.r, maxf(color.g, color.b))
-		if light is DirectionalLight3D:
-			strength *= float(light.sky_mode != DirectionalLight3D.SKY_MODE_SKY_ONLY)
-		else:
+		if not light is DirectionalLight3D:
 			strength *= _fall(light, center)
 		if strength > 0.0:
 			found.append(light)
@@ -151,12 +179,42 @@ func _fall(light: Light3D, center: Vector3) -> float:
 	return pow(maxf(1.0 - pow(away / reach, 4.0), 0.0), 2.0) * pow(away, -light.get(kind + "_attenuation"))
 
 
-## A pass: the layers that it draws for each light, and the picture that they make. The eye is one light here.
-class Picture:
-	## The textures of all pictures: a copy of a material has those of the other one.
+## A pass, and the materials that have its texture.
+class Pass:
+	## The textures of all passes: a copy of a material has those of the other one.
 	static var drawn := {}
 	var data: Dictionary
 	var users: Array[ShaderMaterial] = []
+
+	## What the pass draws; null where it cannot draw.
+	func texture() -> Texture:
+		return null
+
+	func take(material: ShaderMaterial) -> void:
+		var given: Variant = material.get_shader_parameter(data["texture"])
+		if given == null or given in drawn:
+			material.set_shader_parameter(data["texture"], texture())
+			users.append(material)
+
+	func draw(_body: GeometryInstance3D, _eye: Camera3D, _scene: Node) -> void:
+		pass
+
+	func rest() -> void:
+		pass
+
+	func release() -> void:
+		for material in users:
+			for uniform: Variant in [data["texture"], data["lights"]] + data["views"]:
+				if uniform != null:
+					material.set_shader_parameter(uniform, null)
+
+	func _give(uniform: String, value: Variant) -> void:
+		for material in users:
+			material.set_shader_parameter(uniform, value)
+
+
+## A pass: the layers that it draws for each light, and the picture that they make. The eye is one light here.
+class Picture extends Pass:
 	## For each light its layers by their names.
 	var tiles: Array[Dictionary] = []
 	var columns := 1
@@ -171,7 +229,7 @@ class Picture:
 			tiles.append(_layers(above))
 		if tiles.size() > 1 or tiles[0].size() > 1:
 			packing = Packing.new(above, tiles, data["layers"], columns)
-		drawn[view().get_texture()] = true
+		drawn[texture()] = true
 
 	func _layers(above: Node) -> Dictionary:
 		var layers := {}
@@ -194,18 +252,12 @@ class Picture:
 	func view() -> FloatView:
 		return packing if packing != null else tiles[0].values()[0]
 
-	func take(material: ShaderMaterial) -> void:
-		var given: Variant = material.get_shader_parameter(data["texture"])
-		if given == null or given in drawn:
-			material.set_shader_parameter(data["texture"], view().get_texture())
-			users.append(material)
+	func texture() -> Texture:
+		return view().get_texture()
 
 	func release() -> void:
-		drawn.erase(view().get_texture())
-		for material in users:
-			for uniform: Variant in [data["texture"], data["lights"]] + data["views"]:
-				if uniform != null:
-					material.set_shader_parameter(uniform, null)
+		drawn.erase(texture())
+		super()
 		for one in _views():
 			one.queue_free()
 
@@ -221,7 +273,7 @@ class Picture:
 			views.append(packing)
 		return views
 
-	func draw(body: GeometryInstance3D, eye: Camera3D, brightest: Callable) -> void:
+	func draw(body: GeometryInstance3D, eye: Camera3D, scene: Node) -> void:
 		rest()
 		if users.is_empty():
 			return
@@ -232,7 +284,7 @@ class Picture:
 		var distant: bool = data["seen_from"] == "distant light"
 		var lights: Array[Light3D] = []
 		if not by_eye:
-			lights = brightest.call(ball.center, distant, data["seen_from"] == "each shadow", tiles.size())
+			lights = scene.brightest(ball.center, distant, data["seen_from"] == "each shadow", tiles.size())
 		var size := Vector2i(SIDE, SIDE) / columns
 		if by_eye:
 			size = Vector2i(eye.get_viewport().get_texture().get_size())
@@ -261,7 +313,3 @@ class Picture:
 			_give(data["lights"], facts)
 		if packing != null and (by_eye or not lights.is_empty()):
 			packing.render(columns * size)
-
-	func _give(uniform: String, value: Variant) -> void:
-		for material in users:
-			material.set_shader_parameter(uniform, value)

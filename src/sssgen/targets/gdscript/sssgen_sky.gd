@@ -1,5 +1,6 @@
 ## The light of the surroundings, as a matrix: from a direction, with w = 1, to what a white matte surface shows that faces
-## it. It is linear in the direction, so that it has no more than one bright side for each channel.
+## it. It is linear in the direction, so that it has no more than one bright side for each channel. What is quadratic in the
+## direction is beside it.
 class SkyLight:
 	## Of the picture that is measured.
 	const SIZE := Vector2i(32, 16)
@@ -11,6 +12,8 @@ class SkyLight:
 		"background_mode", "background_color", "background_energy_multiplier", "sky",
 	]
 	var matrix := Projection(Vector4.ZERO, Vector4.ZERO, Vector4.ZERO, Vector4.ZERO)
+	## For each spherical harmonic of order 2 what it adds to this.
+	var bends := PackedVector4Array()
 	var _environment: Environment
 	var _facts := []
 	var _left := 0
@@ -32,7 +35,30 @@ class SkyLight:
 			_left = FRAMES
 		if _left > 0:
 			_left -= 1
+			bends.fill(Vector4.ZERO)
 			matrix = _measured()
+
+	func _init() -> void:
+		bends.resize(5)
+
+	func is_dark() -> bool:
+		return matrix == Projection(Vector4.ZERO, Vector4.ZERO, Vector4.ZERO, Vector4.ZERO)
+
+	## What a white matt surface shows that faces a direction.
+	func light(way: Vector3) -> Vector4:
+		var result := matrix * Vector4(way.x, way.y, way.z, 1.0)
+		var values := harmonics(way)
+		for i in 5:
+			result += values[4 + i] * bends[i]
+		return result
+
+	## The real spherical harmonics up to order 2 in a unit direction.
+	static func harmonics(way: Vector3) -> PackedFloat32Array:
+		return [
+			0.28209479, 0.48860251 * way.y, 0.48860251 * way.z, 0.48860251 * way.x,
+			1.09254843 * way.x * way.y, 1.09254843 * way.y * way.z, 0.31539157 * (3.0 * way.z * way.z - 1.0),
+			1.09254843 * way.x * way.z, 0.54627422 * (way.x * way.x - way.y * way.y),
+		]
 
 	func _measured() -> Projection:
 		var result := Projection(Vector4.ZERO, Vector4.ZERO, Vector4.ZERO, Vector4.ZERO)
@@ -53,6 +79,8 @@ class SkyLight:
 			result = _of_sky()
 		for i in 4:
 			result[i] *= share
+		for i in 5:
+			bends[i] *= share
 		result.w += Vector4(color.r, color.g, color.b, 0.0) * (1.0 - share)
 		return result
 
@@ -72,6 +100,11 @@ class SkyLight:
 				for axis in 3:
 					result[axis] += 3.0 * way[axis] * light
 				result.w += light
+				var values := harmonics(way)
+				for i in 5:
+					bends[i] += 2.0 * TAU * values[4 + i] * light
 		for i in 4:
 			result[i] /= maxf(whole, 1e-6)
+		for i in 5:
+			bends[i] /= maxf(whole, 1e-6)
 		return result

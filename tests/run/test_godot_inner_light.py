@@ -1,0 +1,142 @@
+"""The light inside a body that Godot's node computes from a bake: its picture is that of NumPy. With a Godot: slow."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import sssgen
+from relit_cases import drawn_by_numpy, write_body
+from sssgen.run.backends import Array
+from sssgen.run.backends.backend_interface import VERTEX_SIZE
+from sssgen.run.backends.godot_drawing import RENDERERS, Godot
+from sssgen.run.compilers import Compiler
+from sssgen.run.render import godot_values
+from sssgen.scene.geometry import Mesh
+
+pytestmark = pytest.mark.slow
+SCENE = """extends Node
+
+const CASE := "%s"
+const AWAY := Vector3(0.3, 0.2, -0.4)
+var moved: Array[Node] = []
+var frame := 0
+
+func _ready():
+    var environment = get_viewport().get_camera_3d().environment
+    environment.ambient_light_source = Environment.AMBIENT_SOURCE_COLOR
+    environment.ambient_light_color = Color(0.2, 0.1, 0.3).linear_to_srgb()
+    if CASE == "sky":
+        shine(environment)
+    get_parent().add_child.call_deferred(load("res://relit_passes.gd").new())
+    prepare.call_deferred()
+
+# Godot's panoramas begin at +z, and x runs to the left in them.
+func shine(environment):
+    var pixels := FileAccess.get_file_as_bytes("res://sky.bin")
+    environment.ambient_light_source = Environment.AMBIENT_SOURCE_SKY
+    environment.sky = Sky.new()
+    environment.sky.sky_material = PanoramaSkyMaterial.new()
+    environment.sky.sky_material.panorama = ImageTexture.create_from_image(
+        Image.create_from_data(128, 64, false, Image.FORMAT_RGBF, pixels))
+
+func prepare():
+    for light in get_tree().root.find_children("*", "Light3D", true, false):
+        if CASE == "moved":
+            moved.append(light)
+        elif CASE == "spot" and light is OmniLight3D:
+            light.replace_by(spot_of(light))
+    if CASE == "moved":
+        moved.append(get_parent())
+        move(AWAY, 0.5)
+
+func _process(_delta):
+    frame += 1
+    if frame == 3 and CASE == "moved":
+        move(-AWAY, -0.5)
+
+func move(way, angle):
+    for node in moved:
+        node.rotate_object_local(Vector3.UP, angle)
+        node.position += way
+
+# A cone around the body that has an edge without a slope.
+func spot_of(omni):
+    var spot = SpotLight3D.new()
+    spot.transform = omni.transform.looking_at(get_parent().global_position)
+    spot.spot_range = omni.omni_range
+    spot.spot_attenuation = omni.omni_attenuation
+    spot.spot_angle = 75.0
+    spot.spot_angle_attenuation = 0.005
+    spot.light_color = omni.light_color
+    spot.light_energy = omni.light_energy
+    return spot
+"""
+"""The scene's ambient light or sky, the node of the material, and lamps and a body that reach their places in the last
+frame, or a spot that is as bright in its cone as the scene's lamp."""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("relit")
+    write_body(folder)
+    return folder
+
+
+def draw(renderer: str, case: str, folder: Path, file: str = "scene.toml", sky: bytes = b"") -> tuple[Array, Array]:
+    """The body's pixels in Godot and in NumPy."""
+    scene, placed, expected = drawn_by_numpy(folder, file)
+    body = scene.geometry
+    assert isinstance(body, Mesh)
+    compiled = sssgen.compile(scene.material, "godot")
+    vertices = np.zeros((len(body.triangles.places), VERTEX_SIZE), np.float32)
+    vertices[:, :3], vertices[:, 3:6] = body.triangles.places, body.triangles.normals
+    view = godot_values.view_of(placed.shell, placed.size, vertices, np.asarray(body.triangles.corners))
+    files: dict[str, str | bytes] = {"scene.gd": SCENE % case, "sky.bin": sky}
+    files |= {name: text for name, text in compiled.files.items() if name.endswith(".gd")}
+    files |= {name: (folder / name).read_bytes() for name in ("body.bin", "body.bin.json")}
+    values = godot_values.values_of(compiled.reflection, dataclasses.replace(placed.shell, parameters={}))
+    drawn = Godot(renderer).draw(compiled.files["relit.gdshader"], view, values, {}, files)[::-1]
+    return drawn[placed.hit][:, :3], expected[placed.hit][:, :3]
+
+
+@pytest.mark.parametrize("case", ["still", "moved", "spot"])
+@pytest.mark.parametrize("renderer", RENDERERS)
+def test_two_lamps_and_ambient_light(
+    renderer: str, case: str, folder: Path, compiler: Callable[[str], Compiler]
+) -> None:
+    """Within 1/255 on 95 % of the body's pixels: the picture of the eye's layers is coarse at the silhouette."""
+    compiler("godot")
+    drawn, expected = draw(renderer, case, folder)
+    reached = 255.0 * float(np.quantile(np.abs(drawn - expected).max(axis=-1), 0.95))
+    print(f"{case}, {renderer}: {reached:.2f}/255 on 95 % of the pixels, of light up to {expected.max():.2f}")
+    assert np.median(expected) > 0.1
+    assert reached <= 1.0
+
+
+@pytest.mark.parametrize("renderer", [name for name in RENDERERS if name != "gl_compatibility"])
+def test_a_sky(renderer: str, folder: Path, compiler: Callable[[str], Compiler]) -> None:
+    """Most of it differs in order 2. Godot changes the mean; Compatibility takes the colours for encoded ones."""
+    compiler("godot")
+    rows, columns = np.indices((64, 128)) + 0.5
+
+    def light(around: Array) -> Array:
+        x, y, z = np.sin(around) * np.sin(polar), np.cos(polar), np.cos(around) * np.sin(polar)
+        bright = 0.5 + 0.1 * y + 0.35 * (x * x - z * z)
+        return (bright[..., None] * [1.0, 0.7, 0.4]).astype(np.float32)
+
+    polar = np.pi * rows / 64
+    np.save(folder / "sky.npy", np.flipud(light(0.5 * np.pi - 2.0 * np.pi * (columns / 128 - 0.5))))
+    text = (folder / "scene.toml").read_text("utf-8").replace("ambient = [0.2, 0.1, 0.3]\n", "")
+    (folder / "sky.toml").write_text(f'{text[: text.index("[[light]]")]}[environment]\nfile = "sky.npy"\n'
+                                     + text[text.index("[medium]") :], "utf-8")  # fmt: skip
+    drawn, expected = draw(renderer, "sky", folder, "sky.toml", light(-2.0 * np.pi * columns / 128).tobytes())
+    level = float(np.median(expected[:, 0]) / np.median(drawn[:, 0]))
+    reached = float(np.quantile(np.abs(level * drawn - expected).max(axis=-1), 0.9))
+    print(f"sky, {renderer}: {reached:.4f} of light up to {expected[:, 0].max():.3f}; Godot's mean is 1 / {level:.3f}")
+    assert abs(level - 1.0) < 0.04
+    assert reached < 0.004
