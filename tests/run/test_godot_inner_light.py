@@ -118,6 +118,20 @@ def test_two_lamps_and_ambient_light(
     assert reached <= 1.0
 
 
+@pytest.mark.parametrize("renderer", RENDERERS)
+def test_a_refracting_surface(
+    renderer: str, tmp_path_factory: pytest.TempPathFactory, compiler: Callable[[str], Compiler]
+) -> None:
+    """The index and the distance from the surface come from the file."""
+    compiler("godot")
+    folder = tmp_path_factory.mktemp("refracting")
+    write_body(folder, 1.4)
+    drawn, expected = draw(renderer, "still", folder)
+    reached = 255.0 * float(np.quantile(np.abs(drawn - expected).max(axis=-1), 0.95))
+    print(f"refracting, {renderer}: {reached:.2f}/255 on 95 % of the pixels, of light up to {expected.max():.2f}")
+    assert reached <= 2.0
+
+
 @pytest.mark.parametrize("renderer", [name for name in RENDERERS if name != "gl_compatibility"])
 def test_a_sky(renderer: str, folder: Path, compiler: Callable[[str], Compiler]) -> None:
     """Most of it differs in order 2. Godot changes the mean; Compatibility takes the colours for encoded ones."""

@@ -43,7 +43,9 @@ def refracting(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(
     scope="module",
-    params=[pytest.param(one, marks=[] if one in QUICK else [pytest.mark.slow], id="-".join(one)) for one in RENDERERS],
+    params=[
+        pytest.param(pair, marks=[] if pair in QUICK else [pytest.mark.slow], id="-".join(pair)) for pair in RENDERERS
+    ],
 )
 def page(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
     target, name = request.param

@@ -8,6 +8,9 @@ class InnerLight extends Pass:
 	var _parts := {}
 	## The parts of the volume with their colours.
 	var _shown := []
+	## The sky and the body's turn that `_sky_light` is of.
+	var _sky_facts := []
+	var _sky_light := _dark()
 
 	func _init(of_pass: Dictionary, file: String) -> void:
 		data = of_pass
@@ -75,9 +78,9 @@ class InnerLight extends Pass:
 	func _sum() -> PackedVector4Array:
 		var sum := PackedVector4Array()
 		sum.resize(response.count)
-		for one: Array in _shown:
-			var part: PackedVector4Array = _parts[one[0]]
-			var color: Vector4 = one[1]
+		for source: Array in _shown:
+			var part: PackedVector4Array = _parts[source[0]]
+			var color: Vector4 = source[1]
 			for voxel in response.count:
 				sum[voxel] += color * part[voxel]
 		return sum
@@ -101,9 +104,17 @@ class InnerLight extends Pass:
 		dark.resize(9)
 		return dark
 
+	## The integrals of a sky, which are computed again when it has changed or the body has turned.
+	func _around(sky: SkyLight, turn: Basis) -> PackedVector4Array:
+		var facts := [sky.matrix, sky.bends.duplicate(), turn]
+		if facts != _sky_facts:
+			_sky_facts = facts
+			_sky_light = _integrals(sky, turn)
+		return _sky_light
+
 	## For each harmonic the integral of the light in object space, from what white matt surfaces show: the cosine leaves π,
 	## 2/3 π and π/4 of the orders (Ramamoorthi and Hanrahan 2001).
-	func _around(sky: SkyLight, turn: Basis) -> PackedVector4Array:
+	func _integrals(sky: SkyLight, turn: Basis) -> PackedVector4Array:
 		var sums := _dark()
 		if sky.is_dark():
 			return sums
