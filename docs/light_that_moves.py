@@ -1,7 +1,7 @@
 """Measures chains under lights that no fit used, and writes docs/light_that_moves.md with pictures.
 
-python docs/light_that_moves.py [--lights N] [--samples N] [--processes N]: about half an hour on two cores. An
-interrupted run continues where it stopped.
+python docs/light_that_moves.py [SCENE...] [--lights N] [--samples N] [--processes N]: about half an hour on two cores. An
+interrupted run continues where it stopped. With scenes, it prints the page of these and writes nothing.
 """
 
 from __future__ import annotations
@@ -65,12 +65,13 @@ class Part(NamedTuple):
 
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
+    options.add_argument("scenes", nargs="*", metavar="SCENE")
     options.add_argument("--lights", type=int, default=24)
-    options.add_argument("--samples", type=int, default=512, help="of a chart; a light has a quarter of it")
+    options.add_argument("--samples", type=int, default=512, help="of a chart; a light has a quarter")
     options.add_argument("--processes", type=int)
     arguments = options.parse_args()
     settings = Settings(arguments.samples, processes=arguments.processes, progress_bar=ProgressBar)
-    bodies = [body for body in map(measured_scene.load, scenes()) if body.medium is not None]
+    bodies = [body for body in map(measured_scene.load, arguments.scenes or scenes()) if body.medium is not None]
     parts = []
     for title, group, chains in (
         ("A matched boundary", bodies, MATCHED),
@@ -79,6 +80,9 @@ def main() -> None:
         measured = errors(group, {body.key: chains for body in group}, arguments.lights, settings)
         parts.append(Part(title, group, chains, measured))
     text = page(parts, arguments)
+    if arguments.scenes:
+        print(text)
+        return
     files: dict[str, str | bytes] = {PICTURE: picture(parts, arguments.lights, settings)}
     write_files(str(DOCS / "accuracy"), files)
     write_files(str(DOCS), {"light_that_moves.md": text})
