@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import dataclasses
+import json
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,6 +16,7 @@ import pytest
 import sssgen
 from engine_cases import HEAD
 from folders import ROOT
+from relit_cases import write_body
 from scene_cases import check_light, scene_case
 from sssgen.material.material_loading import load_material
 from sssgen.run.backends import Array
@@ -24,6 +26,7 @@ from sssgen.run.render.scene_values import shell_of
 from sssgen.run.render.shell_values import inverse
 from sssgen.scene import scene_loading
 from sssgen.scene.drawn_views import TEXELS
+from sssgen.scene.geometry import Mesh
 from sssgen.scene.solids import Torus
 from sssgen.targets import registry
 from sssgen.targets.reflection_record import Reflection
@@ -32,7 +35,7 @@ from torus_cases import PICTURES, SEVERAL, inner_pixels, torus_mesh, torus_scene
 from webgpu_browser import READ, STAND_IN, browser
 
 __all__ = ["browser"]
-DRAW = """async ({ name, camera, body, lights, ambient, size, halves, copies, parameters, given, others }) => {
+DRAW = """async ({ name, camera, body, lights, ambient, size, halves, copies, parameters, given, others, inner }) => {
     const { Material, load } = await import('/page/material.js');
     const { mesh } = await import('/page/geometry.js');
     const adapter = await navigator.gpu.requestAdapter();
@@ -48,7 +51,8 @@ DRAW = """async ({ name, camera, body, lights, ambient, size, halves, copies, pa
       device.queue.writeTexture({ texture }, bytes(data), { bytesPerRow: 8 * size[0], rowsPerImage: size[1] }, size);
       material.texture(name, texture);
     }
-    const shown = meshOf(body), passes = made.createPasses(device, made.reflection);
+    const shown = meshOf(body), file = inner && { data: bytes(inner.data), facts: inner.facts };
+    const passes = made.createPasses(device, made.reflection, file ? { inner_light: file } : {});
     const usage = GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_SRC;
     const textureOf = (format) => device.createTexture({ size, format, usage });
     const target = textureOf('rgba32float'), depth = textureOf('depth24plus');
@@ -94,7 +98,7 @@ DRAW = """async ({ name, camera, body, lights, ambient, size, halves, copies, pa
       device.queue.submit([encoder.finish()]);
     }
     const picture = await read(target), textures = {};
-    for (const [name, texture] of Object.entries(drawn.textures))
+    for (const [name, texture] of Object.entries(drawn.textures).filter(([, { dimension }]) => dimension === '2d'))
       textures[name] = await read(texture, texture.width >= 1024 ? 4 : 1);
     passes.destroy();
     device.destroy();
@@ -187,9 +191,15 @@ class Host:
         return compiled.reflection
 
     def draw(
-        self, case: Case, halves: bool = False, copies: tuple[Array, ...] = (), others: tuple[Any, ...] = ()
+        self,
+        case: Case,
+        halves: bool = False,
+        copies: tuple[Array, ...] = (),
+        others: tuple[Any, ...] = (),
+        response: Path | None = None,
     ) -> Drawn:
-        """`copies`: the matrices of other bodies in the same frame; `others`: those that cast shadows."""
+        """`copies`: the matrices of other bodies in the same frame; `others`: those that cast shadows; `response`: the
+        file of the light inside the body."""
         reflection, shell = self.emit(case.material), case.mesh.shell
         matrix = shell.view_projection.copy()
         matrix[2] = 0.5 * (matrix[2] + matrix[3])  # depths from 0 to 1
@@ -201,6 +211,10 @@ class Host:
         given = {
             "name": reflection["material"], "body": body_of(case.vertices, case.triangles, shell.model),
             "size": [*case.mesh.size], "halves": halves, "others": [*others],
+            "inner": response and {
+                "data": base64.b64encode(response.read_bytes()).decode(),
+                "facts": json.loads(Path(f"{response}.json").read_text("utf-8")),
+            },
             "copies": [model.T.ravel().tolist() for model in copies],
             "ambient": [*map(float, shell.ambient)],
             "camera": {
@@ -279,6 +293,23 @@ def test_a_scene(host: Host, tmp_path: Path, name: str) -> None:
         file.write('\n[lighting]\ntechnique = "dark.sss"\n')
     drawn = host.draw(Case(str(material), scene.mesh, scene.vertices, scene.triangles))
     check_light(drawn.picture[::-1], scene, f"{name}, a WebGPU page")
+
+
+@pytest.mark.parametrize("ior", [1.0, pytest.param(1.4, marks=pytest.mark.slow)])
+def test_the_light_inside_a_body(host: Host, tmp_path: Path, ior: float) -> None:
+    """Of two lamps and ambient light; the parameters of the technique come from the file, for the body's place."""
+    write_body(tmp_path, ior)
+    scene = dataclasses.replace(scene_loading.load(str(tmp_path / "scene.toml")), samples=1, size=(160, 120))
+    assert isinstance(scene.geometry, Mesh)
+    compiled = sssgen.compile(scene.material, "numpy")
+    shell = shell_of(scene, load_material(scene.material), compiled.reflection)
+    mesh = place_mesh(scene, compiled, shell, registry.load("numpy"), scene.size)
+    triangles = scene.geometry.triangles
+    vertices = np.zeros((len(triangles.places), 12), np.float32)
+    vertices[:, :3], vertices[:, 3:6] = triangles.places, triangles.normals
+    case = Case(scene.material, mesh, vertices, np.asarray(triangles.corners))
+    assert reached(host.draw(case, response=tmp_path / "body.bin"), case, 0.95) < 2.0
+    assert reached(host.draw(case), case, 0.95) > 20.0  # without the file the body is dark
 
 
 def test_pictures(host: Host, tmp_path: Path) -> None:

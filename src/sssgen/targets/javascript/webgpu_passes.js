@@ -6,7 +6,9 @@
 // It executes the list of the reflection for a frame, before the render pass that draws the material. Where the device has
 // the feature float32-filterable, the pictures have 32-bit floats, else 16-bit ones.
 
-import { LAYERS, LAYER_GAP, PACKING, SIDE, emptyOf, isFiltered, layersOf, lightsOf, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
+import { LAYERS, LAYER_GAP, PACKING, SIDE, emptyOf, isFiltered, isVolume, layersOf, lightsOf, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
+import { Responses } from './inner_volume.js';
+import { InnerTexture } from './webgpu_inner_light.js';
 
 /**
  * A mesh, with the position at location 0 and the normal at location 1, as the material's shader has them.
@@ -185,12 +187,17 @@ class Passes {
   #shared = new Map();
   /** @type {Map<Body, Map<string, GPUTexture>>} */
   #pictures = new Map();
+  /** @type {Map<Body, InnerTexture>} */
+  #volumes = new Map();
 
-  /** @param {GPUDevice} device @param {Reflection} reflection */
-  constructor(device, { passes, uniforms, textures }) {
+  /** @param {GPUDevice} device @param {Reflection} reflection @param {Record<string, any>} responses */
+  constructor(device, { passes, uniforms, textures }, responses) {
     this.device = device;
     this.names = Object.fromEntries([...uniforms, ...textures].map(({ name, source_name }) => [source_name, name]));
-    this.passes = passes.filter(({ of, seen_from: from }) => (of === 'body' || of === 'casters') && from !== 'inside').map((pass) => ({ ...pass, seenFrom: pass.seen_from }));
+    const own = passes.filter(({ of }) => of === 'body' || of === 'casters').map((pass) => ({ ...pass, seenFrom: pass.seen_from }));
+    this.passes = own.filter((pass) => !isVolume(pass));
+    this.responses = new Responses(own);
+    for (const [name, response] of Object.entries(responses)) this.responses.take(name, response, () => {});
     this.format = /** @type {GPUTextureFormat} */ (device.features.has('float32-filterable') ? 'rgba32float' : 'rgba16float');
     this.group = device.createBindGroupLayout({ entries: [
       { binding: 0, visibility: GPUShaderStage.VERTEX | GPUShaderStage.FRAGMENT, buffer: { hasDynamicOffset: true, minBindingSize: 4 * FLOATS } },
@@ -214,6 +221,7 @@ class Passes {
     /** @type {Drawn} */
     const drawn = { textures: {}, samplers: {}, values: {} };
     const casters = [body, ...others];
+    for (const name of this.responses.keys()) this.#drawInside(name, body, lights, ambient, drawn);
     const count = this.passes.reduce((sum, { layers, views }) => sum + layers.length * Math.max(views.length, 1) * casters.length, 0);
     if (!count) return drawn;
     const four = (key) => [0, 1, 2, 3].flatMap((index) => [...(lights[index]?.[key] ?? []), 0, 0, 0, 0].slice(0, 4));
@@ -240,15 +248,29 @@ class Passes {
     return drawn;
   }
 
+  /** Computes the light inside a body. */
+  #drawInside(name, body, lights, ambient, { textures, samplers, values }) {
+    const response = this.responses.loaded(name);
+    if (!response) return;
+    const volume = this.#volumes.get(body) ?? new InnerTexture(this.device, response);
+    this.#volumes.set(body, volume);
+    const parameters = volume.follow(body.model, lights, ambient);
+    textures[this.names[name]] = volume.texture;
+    samplers[this.names[name]] = this.samplers[1];
+    for (const [parameter, numbers] of Object.entries(parameters)) if (this.names[parameter]) values[this.names[parameter]] = numbers;
+  }
+
   /** Frees the pictures of a body. @param {Body} body */
   forget(body) {
+    this.#volumes.get(body)?.texture.destroy();
+    this.#volumes.delete(body);
     for (const picture of this.#pictures.get(body)?.values() ?? []) picture.destroy();
     this.#pictures.delete(body);
   }
 
   /** Frees all. */
   destroy() {
-    for (const body of [...this.#pictures.keys()]) this.forget(body);
+    for (const body of [...this.#pictures.keys(), ...this.#volumes.keys()]) this.forget(body);
     for (const texture of [this.blank, ...this.#shared.values()]) texture.destroy();
     this.#shared.clear();
   }
@@ -353,7 +375,9 @@ class Passes {
  * The passes of a material; bodies may share them.
  * @param {GPUDevice} device
  * @param {Reflection} reflection
+ * @param {Record<string, string | { data: ArrayBuffer, facts: any }>} [responses] for `inner_light` the URL of a `.bin` of
+ *   `sssgen bake fluence --relit`, beside which its JSON lies, or the content of both
  */
-export function createPasses(device, reflection) {
-  return new Passes(device, reflection);
+export function createPasses(device, reflection, responses = {}) {
+  return new Passes(device, reflection, responses);
 }
