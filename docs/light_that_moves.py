@@ -1,6 +1,6 @@
 """Measures chains under lights that no fit used, and writes docs/light_that_moves.md with pictures.
 
-python docs/light_that_moves.py [SCENE...] [--lights N] [--samples N] [--processes N]: about half an hour on two cores. An
+python docs/light_that_moves.py [SCENE...] [--lights N] [--samples N] [--processes N]: half an hour on two cores. An
 interrupted run continues where it stopped. With scenes, it prints the page of these and writes nothing.
 """
 

@@ -32,9 +32,9 @@ func needed() -> Dictionary:
 	return {}
 
 
-## Texture without which the picture is wrong → the file that has it or makes it.
-func files() -> Dictionary:
-	return {}
+## The file of the light inside the body, as the material names it.
+func light_file() -> String:
+	return ""
 
 
 ## The passes of the material, as in its reflection: `name`, `seen_from`, `layers`, `empty`, `texture`, `views`, `lights`.
@@ -51,7 +51,7 @@ func _enter_tree() -> void:
 	_casters = Casters.new()
 	for data in passes():
 		if data["seen_from"] == "inside":
-			_pictures.append(InnerLight.new(data, _file_of(data)))
+			_pictures.append(InnerLight.new(data, _light_file()))
 		else:
 			_pictures.append(Picture.new(self, data, _casters))
 	_lights.assign(get_tree().root.find_children("*", "Light3D", true, false))
@@ -103,11 +103,11 @@ func _draw() -> void:
 			picture.rest()
 
 
-func _file_of(data: Dictionary) -> String:
+func _light_file() -> String:
 	if inner_light_file != "":
 		return inner_light_file
 	var script: Script = get_script()
-	return script.resource_path.get_base_dir().path_join(files().get(data["texture"], "").get_file())
+	return script.resource_path.get_base_dir().path_join(light_file().get_file())
 
 
 func sky() -> SkyLight:
