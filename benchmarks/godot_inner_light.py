@@ -19,11 +19,11 @@ SCRIPT = """extends SceneTree
 
 const Passes := preload("res://sssgen_passes.gd")
 
-func best(what: Callable) -> float:
+func best(work: Callable) -> float:
     var least := INF
     for run in 30:
         var start := Time.get_ticks_usec()
-        what.call()
+        work.call()
         least = minf(least, (Time.get_ticks_usec() - start) / 1000.0)
     return least
 
@@ -55,15 +55,15 @@ func _initialize() -> void:
 
 def main(file: str) -> None:
     """Prints the times for a file."""
-    output = next(file for file in registry.load("godot").files["shader"] if file.sources)
+    output = next(each for each in registry.load("godot").files["shader"] if each.sources)
     files = {
         "bench.gd": SCRIPT, output.name: runtime_text(output.sources, ""),
         "body.bin": Path(file).read_bytes(), "body.bin.json": Path(f"{file}.json").read_text("utf-8"),
     }  # fmt: skip
     godot = find()
     with godot.project(files) as project:
-        said = godot.run(project, "bench.gd", [], 120.0)
-    print("\n".join(line.removeprefix("TIME ") for line in said.splitlines() if line.startswith("TIME")) or said)
+        printed = godot.run(project, "bench.gd", [], 120.0)
+    print("\n".join(line.removeprefix("TIME ") for line in printed.splitlines() if line.startswith("TIME")) or printed)
 
 
 if __name__ == "__main__":

@@ -97,5 +97,6 @@ def views_of_light(views: Sequence[View], number: int) -> list[View]:
 
 
 def _errors(points: Sequence[MeasuredPoint]) -> DrawnErrors:
-    values = tuple(float(point["error"]["value"] or np.nan) for point in points)
+    errors_of_lights = [point["error"]["value"] for point in points]
+    values = tuple(np.nan if error is None else float(error) for error in errors_of_lights)
     return DrawnErrors(values, float(points[0]["cost"]["value"]), points[0]["bytes"])

@@ -100,7 +100,7 @@ def trace_arriving(scene: MeasuredScene, towards: Directions, voxels: int, rays:
     """As `trace_shares`, behind a refracting surface: by `rays` rays for each direction."""
     projection, media = projection_of(scene, voxels), [medium_of(scene, channel) for channel in range(3)]
     extinctions = np.array([medium.extinction for medium in media])
-    rng = np.random.default_rng([seed, *np.rint(np.abs(towards[0]) * np.array(1e6)).astype(int)])
+    rng = np.random.default_rng([seed, *np.rint(1e6 * np.abs(towards[0])).astype(int)])
     texels = []
     for direction in np.array(towards):
         light = tracer(scene, voxels).arriving(extinctions, media[0].boundary, direction[None], rays, rng)

@@ -93,9 +93,8 @@ def light_volume(field: Field) -> LightVolume:
 
 def stored_distance(field: Field) -> Bytes:
     """The distance of each voxel of the grid from the surface, for a texel's alpha."""
-    stored: Bytes = np.rint(255.0 * np.clip(0.5 + 0.5 * field.distance / reach_of(field.grid), 0.0, 1.0)).astype(
-        np.uint8
-    )
+    share = np.clip(0.5 + 0.5 * field.distance / reach_of(field.grid), 0.0, 1.0)
+    stored: Bytes = np.rint(255.0 * share).astype(np.uint8)
     return stored
 
 
