@@ -6,13 +6,12 @@
 
 import { readFileSync } from 'node:fs';
 import { argv } from 'node:process';
-import { LightResponse } from '../src/sssgen/targets/javascript/inner_light.js';
+import { responseOf } from '../src/sssgen/targets/javascript/inner_light.js';
 
 const RUNS = 100;
 
 const [, , file] = argv;
-const bytes = readFileSync(file);
-const response = new LightResponse(new Uint8Array(bytes).buffer, JSON.parse(readFileSync(`${file}.json`, 'utf8')));
+const response = await responseOf({ data: readFileSync(file), facts: JSON.parse(readFileSync(`${file}.json`, 'utf8')) });
 const middle = response.low.map((low, axis) => 0.5 * (low + response.high[axis]));
 const distant = { directional: true, place: [0.48, 0.6, 0.64], colorAt: () => [1, 1, 1] };
 const near = { directional: false, place: middle.map((value) => value + 2), colorAt: (place) => place.map((value) => 1 / (1 + value * value)) };

@@ -13,7 +13,7 @@ from sssgen.lab.fluence import response
 from sssgen.lab.fluence.fluence_field import Settings
 from sssgen.run import backends
 from sssgen.run.render.scene_render import render
-from sssgen.scene.light_response import UNSCATTERED, from_bytes
+from sssgen.scene.light_response import from_bytes
 from sssgen.scene.measured import measured_scene
 from sssgen.scene.scene_loading import load
 from sssgen.support.diagnostics import SssgenError
@@ -72,7 +72,7 @@ def test_one_seed_gives_one_file_and_its_json_explains_it() -> None:
     about = facts("ball.bin")
     assert about["technique"] == "fluence_relit" and about["rank"] == 8 and about["error"]["standard_error"] > 0.0
     stored = from_bytes(first, about)
-    assert stored.latents.shape == (8, len(stored.cells)) and stored.passing.shape == (256, len(stored.cells))
+    assert stored.latents.shape == (8, len(stored.cells)) and stored.passing.shape == (1024, len(stored.cells))
     assert bake() == 0
     assert Path("ball.bin").read_bytes() == first
 
@@ -85,10 +85,14 @@ def test_the_stored_numbers_are_those_of_the_field() -> None:
     for direction in (7, 100, 200):
         rows = packed.table[direction].astype(float)
         scattered = rows[0][:, None] + rows[1:].T @ (packed.latents / 255.0)
-        share = (packed.passing[direction] * packed.highest / 255.0) ** 2
-        light = scattered + UNSCATTERED * share ** packed.powers[:, None]
-        expected = traced.values[:, direction] + traced.unscattered[:, direction]
-        assert np.sqrt(((light - expected) ** 2).mean()) < 0.03 * expected.max()
+        light = traced.values[:, direction] + traced.unscattered[:, direction]
+        assert np.sqrt(((scattered - traced.values[:, direction]) ** 2).mean()) < 0.03 * light.max()
+    root = packed.passing * (packed.highest / 255.0)
+    step = packed.highest / response.LEVELS
+    # of one channel, and by powers of it of the others
+    expected = np.maximum(traced.shares, 0.0) ** (0.5 / packed.powers[:, None, None])
+    assert (np.abs(root - expected) < 0.51 * step).any(axis=0).all()
+    assert (np.abs(root - expected).mean((1, 2)) < 0.5 * step).all()
 
 
 @pytest.mark.parametrize(
@@ -116,7 +120,7 @@ def test_media_that_it_traces_otherwise() -> None:
     write("anisotropy = 0.5\n" + FIRST)
     assert bake("--photons", "50") == 0
     stored = from_bytes(Path("ball.bin").read_bytes(), facts("ball.bin"))
-    assert stored.passing.shape == (256, len(stored.cells)) and stored.passing.max() > 200
+    assert stored.passing.shape == (1024, len(stored.cells)) and stored.passing.max() > 200
 
 
 def test_a_render_sums_the_lights() -> None:

@@ -53,6 +53,7 @@ DRAW = """async ({ name, camera, body, lights, ambient, size, halves, copies, pa
     }
     const shown = meshOf(body), file = inner && { data: bytes(inner.data), facts: inner.facts };
     const passes = made.createPasses(device, made.reflection, file ? { inner_light: file } : {});
+    while (file && !passes.responses.loaded('inner_light')) await new Promise((resume) => setTimeout(resume));
     const usage = GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_SRC;
     const textureOf = (format) => device.createTexture({ size, format, usage });
     const target = textureOf('rgba32float'), depth = textureOf('depth24plus');

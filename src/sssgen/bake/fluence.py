@@ -20,7 +20,7 @@ from sssgen.lab.fluence import fluence_field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence.exchange import solver_bytes
 from sssgen.lab.fluence.fluence_field import Field, Settings
-from sssgen.lab.fluence.traced_body import grid_in_box, projection_of
+from sssgen.lab.fluence.traced_body import fitting_voxels, grid_in_box, projection_of
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.scene import body_identity, geometry_mesh
 from sssgen.scene.camera import Camera
@@ -41,6 +41,8 @@ MOST_OPAQUE = 10.0
 """The optical depth of a voxel above which a bake is refused: all light ends in the first voxel."""
 BYTES = 3 * 4 * 4
 """Bytes of memory for each voxel and direction: three channels, in float64 and float32, and their averages."""
+BYTES_OF_SHARES = 2 * 3 * 4 * fluence_field.FINER**2
+"""The same for the shares of finer directions: twice three channels in float32."""
 
 
 class Part(NamedTuple):
@@ -116,6 +118,13 @@ def variant(medium: Medium) -> str:
     return "_refracted" if medium.ior != 1.0 else ""
 
 
+def voxels_of(scene: MeasuredScene) -> int:
+    """The voxels along the longest side of the body's box, by default. Raises SssgenError for an open mesh."""
+    if isinstance(scene.geometry, Mesh):
+        geometry_mesh.mesh_of(scene.geometry)
+    return fitting_voxels(scene)
+
+
 def check(scene: MeasuredScene, settings: Settings) -> None:
     """Raises SssgenError for a scene without a medium, settings out of range, or a body that they do not resolve."""
     if scene.medium is None:
@@ -136,9 +145,9 @@ def check(scene: MeasuredScene, settings: Settings) -> None:
             "use more voxels, or a smaller unit: --unit-mm, unit_mm of [medium]",
         )
     memory.check(grid.voxels * settings.side**2 * BYTES, "use fewer voxels")
-    if fluence_field.by_flights(scene):
-        inside = int(projection_of(scene, settings.voxels).counting.sum())
-        memory.check(solver_bytes(inside), "use fewer voxels")
+    inside = int(projection_of(scene, settings.voxels).counting.sum())
+    shares = inside * settings.side**2 * BYTES_OF_SHARES
+    memory.check(shares + (solver_bytes(inside) if fluence_field.by_flights(scene) else 0), "use fewer voxels")
 
 
 def _factor(traced: Field, rank: int) -> list[Part]:

@@ -28,7 +28,7 @@ def add_options(parser: ArgumentParser) -> None:
     add("--rank", type=int, default=8, metavar="K", help="numbers in a voxel, for any distant light: 4 or 8 (default)")
     add("--relit", type=int, metavar="K", help="K numbers in a voxel, for all lights and surroundings: a .bin; 8 or 16")
     add("--light", metavar="LIGHT", help="one light that is fixed to the body: a .json with direction, or X,Y,Z")
-    add("--voxels", type=int, default=24, metavar="N", help="voxels along the longest side (default: 24)")
+    add("--voxels", type=int, metavar="N", help="voxels along the longest side (default: about 4096 in the body)")
     add("--photons", type=int, default=24000, metavar="N", help="for each direction and channel (default: 24000)")
     add("--format", metavar="F", help="npy, dds, ktx2 or raw+json (default: from FILE's suffix)")
     add_seed(parser, "the seed of the photons")
@@ -47,7 +47,8 @@ def bake(arguments: Namespace) -> Result:
     format = "" if relit else output.volume_format(arguments.output, arguments.format)
     output.check_apart(arguments.output, [arguments.BODY, arguments.light or ""])
     scene = fluence.body(arguments.BODY, arguments.medium, arguments.unit_mm)
-    settings = Settings(arguments.voxels, photons=arguments.photons, seed=arguments.seed)
+    voxels = fluence.voxels_of(scene) if arguments.voxels is None else arguments.voxels
+    settings = Settings(voxels, photons=arguments.photons, seed=arguments.seed)
     if relit:
         if arguments.light or arguments.format:
             option = "--light" if arguments.light else "--format"

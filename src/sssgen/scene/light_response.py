@@ -8,6 +8,7 @@ Maps, SIGGRAPH 2001), which a voxel weights once for all.
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -41,8 +42,8 @@ class LightResponse(NamedTuple):
     table: npt.NDArray[np.float16]
     """(side², 1 + rank, 3): for each direction of an octahedral map the constant and what the numbers weight"""
     passing: npt.NDArray[np.uint8]
-    """(side², voxels): the root of the share that is not scattered in one channel, times 255 / `highest`; (0, voxels)
-    where the table has all light"""
+    """(side², voxels): the root of the share that is not scattered in one channel, times 255 / `highest`, for a map of
+    directions that is finer than the table's; (0, voxels) where the table has all light"""
     highest: float
     powers: Array
     """(3,): the powers of this share that are those of the channels"""
@@ -149,13 +150,14 @@ def harmonics(directions: Array) -> Array:
     )  # fmt: skip
 
 
-# Files: arrays one behind the other, which the JSON beside them describes.
+# Files: arrays one behind the other, which the JSON beside them describes; all are compressed (zlib, RFC 1950).
 
 _ARRAYS = ("cells", "nearest", "latents", "table", "passing", "surroundings", "distance")
 
 
 def to_bytes(response: LightResponse) -> tuple[bytes, dict[str, Any]]:
-    """The bytes of a file, and the description of its arrays for JSON: name → type, shape, and the first byte."""
+    """The bytes of a file, and the description of its arrays for JSON: name → type, shape, and the first byte of what
+    is decompressed."""
     parts, described, start = [], {}, 0
     for name in _ARRAYS:
         values: npt.NDArray[Any] = np.ascontiguousarray(getattr(response, name))
@@ -163,11 +165,16 @@ def to_bytes(response: LightResponse) -> tuple[bytes, dict[str, Any]]:
         described[name] = {"type": values.dtype.name, "shape": list(values.shape), "start": start}
         parts.append(data + bytes(-len(data) % 4))
         start += len(parts[-1])
-    return b"".join(parts), described
+    return zlib.compress(b"".join(parts), 9), described
 
 
 def from_bytes(data: bytes, facts: Mapping[str, Any]) -> LightResponse:
-    """The response of a file with its JSON. Raises KeyError, TypeError or ValueError for a JSON of another file."""
+    """The response of a file with its JSON. Raises KeyError, TypeError or ValueError for a JSON of another file, and
+    for a file of another kind."""
+    try:
+        data = zlib.decompress(data)
+    except zlib.error as error:
+        raise ValueError(str(error)) from error
     arrays = {}
     for name in _ARRAYS:
         about = facts["arrays"][name]

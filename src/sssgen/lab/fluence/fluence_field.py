@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from sssgen.jobs.executor import Failure, Item, Progress, run
 from sssgen.lab.fluence.exchange import scattered
-from sssgen.lab.fluence.traced_body import grid_in_box, medium_of, projection_of, tracer
+from sssgen.lab.fluence.traced_body import fitting_voxels, grid_in_box, medium_of, projection_of, tracer
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.scene import octahedron
 from sssgen.scene.light_response import UNSCATTERED
@@ -26,6 +26,9 @@ PHOTONS_OF_FLIGHT = 500
 """Where flights serve all directions, one from each point for so many photons: about the same noise."""
 PHOTONS_OF_RAY = 2
 """Behind a refracting surface, one ray of light that has not been scattered for so many photons."""
+FINER = 2
+"""Along each side of the octahedral map, the directions of light that has not been scattered for one of other light:
+the body shades itself with sharp edges."""
 
 
 class Settings(NamedTuple):
@@ -52,6 +55,9 @@ class Field(NamedTuple):
     may make negative. Of light that is scattered at least once; of all light where `unscattered` is empty"""
     unscattered: Array
     """(3, directions, voxels): of light that has not been scattered; (3, 0, voxels) where `values` has it"""
+    shares: npt.NDArray[np.float32]
+    """(3, FINER² directions, voxels): the share of light that has not been scattered, for a finer octahedral map;
+    for directions that are no map, of these; (3, 0, voxels) where `values` has all light"""
     cells: npt.NDArray[np.int64]
     """(voxels,): the numbers of the voxels that count in the grid"""
     nearest: npt.NDArray[np.int64]
@@ -118,20 +124,39 @@ def trace_flights(
     return result.texels.astype(np.float32), result.noise
 
 
+def settings_for(scene: MeasuredScene) -> Settings:
+    """The settings with as many voxels as fit the budget."""
+    return Settings(fitting_voxels(scene))
+
+
 def field(
     scene: MeasuredScene, settings: Settings, scheduler: str = "", processes: int | None = None,
     progress: Progress = lambda *_: None,
 ) -> Field:  # fmt: skip
-    """The fluence of a scene's body for lights from everywhere. Raises SssgenError as `of_directions` does."""
-    return of_directions(scene, octahedron.directions(settings.side), settings, scheduler, processes, progress)
+    """The fluence of a scene's body for lights from everywhere. Raises SssgenError for a body without an inside, or
+    a part of the work that failed."""
+    work = _Work(scene, settings, scheduler, processes, progress)
+    fine = work.shares(octahedron.directions(FINER * settings.side))
+    parts = fine.reshape(3, -1, FINER, settings.side, FINER, fine.shape[2])
+    return work.field(octahedron.directions(settings.side), fine, parts.mean((2, 4)).reshape(3, -1, fine.shape[2]))
 
 
 def of_light(
     scene: MeasuredScene, light: Array, settings: Settings, scheduler: str = "", processes: int | None = None,
     progress: Progress = lambda *_: None,
 ) -> Field:  # fmt: skip
-    """All light inside for one light in the direction `light` (3,), object space."""
+    """All light inside for one light in the direction `light` (3,), object space. Raises SssgenError as `field`."""
     return of_directions(scene, light[None], for_light(settings), scheduler, processes, progress)
+
+
+def of_directions(
+    scene: MeasuredScene, directions: Array, settings: Settings, scheduler: str = "", processes: int | None = None,
+    progress: Progress = lambda *_: None,
+) -> Field:  # fmt: skip
+    """The fluence for lights in some directions (n, 3), object space. Raises SssgenError as `field` does."""
+    work = _Work(scene, settings, scheduler, processes, progress)
+    shares = work.shares(directions)
+    return work.field(directions, shares, shares)
 
 
 def for_light(settings: Settings) -> Settings:
@@ -144,59 +169,78 @@ def by_flights(scene: MeasuredScene) -> bool:
     return scene.medium is not None and scene.medium.anisotropy == 0.0
 
 
-def of_directions(
-    scene: MeasuredScene, directions: Array, settings: Settings, scheduler: str, processes: int | None,
-    progress: Progress,
-) -> Field:  # fmt: skip
-    """The fluence for lights in some directions. Raises SssgenError for a body without an inside, or a failed part."""
+class _Work(NamedTuple):
+    """The parts of a field, as items that the executor runs."""
 
-    def results_of(items: list[Item]) -> list[Any]:
-        results = run(items, scheduler, processes, progress=progress)
+    scene: MeasuredScene
+    settings: Settings
+    scheduler: str
+    processes: int | None
+    progress: Progress
+
+    def shares(self, directions: Array) -> npt.NDArray[np.float32]:
+        """The shares of light that has not been scattered, (3, directions, voxels); (3, 0, voxels) where photons have
+        it: behind a refracting surface and for a fixed light, if the medium is anisotropic."""
+        scene, settings = self.scene, self.settings
+        refracts = scene.medium is not None and scene.medium.ior != 1.0
+        if not by_flights(scene) and (refracts or settings.fixed):
+            return np.zeros((3, 0, int(projection_of(scene, settings.voxels).counting.sum())), np.float32)
+        function = "trace_shares"
+        traced: tuple[int, ...] = ()
+        if refracts:
+            # the directions of the finer map share the rays
+            photons = settings.photons * settings.side if settings.fixed else settings.photons // FINER**2
+            function, traced = "trace_arriving", (max(photons // PHOTONS_OF_RAY, 1), settings.seed)
+        groups = _groups(directions)
+        parts = self._results(function, [(scene, group, settings.voxels, *traced) for group in groups])
+        return np.concatenate(parts, axis=1)
+
+    def field(self, directions: Array, fine: npt.NDArray[np.float32], shares: npt.NDArray[np.float32]) -> Field:
+        """The field with the `shares` for its directions, and the `fine` ones for more of them."""
+        scene, settings = self.scene, self.settings
+        grid, projection = grid_in_box(scene, settings.voxels), projection_of(scene, settings.voxels)
+        channels = range(3)
+        each: list[tuple[Any, ...]]
+        unscattered = UNSCATTERED * shares.astype(np.float64)
+        if by_flights(scene):
+            flights = max(settings.photons // PHOTONS_OF_FLIGHT, 2)
+            each = [(scene, channel, shares[channel], settings.voxels, flights, settings.seed) for channel in channels]
+            results = self._results("trace_flights", each)
+            values = np.stack([texels for texels, _ in results]).astype(np.float64)
+        else:
+            photons = settings.photons * settings.side if settings.fixed else settings.photons
+            rest = (settings.voxels, photons, settings.seed, settings.fixed)
+            groups = _groups(directions)
+            each = [(scene, channel, group, *rest) for channel in channels for group in groups]
+            results = self._results("trace_photons", each)
+            estimates = np.concatenate([part for part, _ in results]).astype(np.float64)
+            values = projection.texels(projection.folded(estimates)).reshape(3, len(directions), -1)
+        noise = float(np.sqrt(np.mean([error**2 for _, error in results]))) / max(float(values.mean()), 1e-30)
+        if settings.fixed and unscattered.size:
+            values, unscattered = values + unscattered, unscattered[:, :0]
+        distance = scene.geometry.distance(grid.centres()[:, 0])
+        smooth = _smooth(values, projection.counting, grid)
+        cells = np.flatnonzero(projection.counting)
+        return Field(
+            grid, values, unscattered, fine, cells, projection.nearest, directions, noise, smooth, distance
+        )  # fmt: skip
+
+    def _results(self, function: str, each: list[tuple[Any, ...]]) -> list[Any]:
+        label = f"fluence of {self.scene.name}"
+        items = [Item(f"sssgen.lab.fluence.fluence_field:{function}", arguments, label) for arguments in each]
+        results = run(items, self.scheduler, self.processes, progress=self.progress)
         for result in results:
             if isinstance(result, Failure):
                 raise failure(f"{result.name}: {result.message}", result.hint)
         return results
 
-    grid, projection = grid_in_box(scene, settings.voxels), projection_of(scene, settings.voxels)
-    module, label = "sssgen.lab.fluence.fluence_field", f"fluence of {scene.name}"
-    groups = [
+
+def _groups(directions: Array) -> list[Directions]:
+    """The directions of each work item."""
+    return [
         tuple((float(x), float(y), float(z)) for x, y, z in directions[first : first + GROUP])
         for first in range(0, len(directions), GROUP)
     ]
-    channels = range(3)
-    unscattered = np.zeros((3, 0, int(projection.counting.sum())))
-    refracts = scene.medium is not None and scene.medium.ior != 1.0
-    # of photons behind a refracting surface, and for a fixed light, the result is all light
-    if by_flights(scene) or not (refracts or settings.fixed):
-        function = "trace_shares"
-        traced: tuple[int, ...] = ()
-        if refracts:
-            rays = settings.photons * (settings.side if settings.fixed else 1) // PHOTONS_OF_RAY
-            function, traced = "trace_arriving", (rays, settings.seed)
-        each = [Item(f"{module}:{function}", (scene, group, settings.voxels, *traced), label) for group in groups]
-        shares = np.concatenate(results_of(each), axis=1)
-        unscattered = UNSCATTERED * shares.astype(np.float64)
-    if by_flights(scene):
-        flights = max(settings.photons // PHOTONS_OF_FLIGHT, 2)
-        arguments = [(scene, channel, shares[channel], settings.voxels, flights, settings.seed) for channel in channels]
-        results = results_of([Item(f"{module}:trace_flights", each, label) for each in arguments])
-        values = np.stack([texels for texels, _ in results]).astype(np.float64)
-    else:
-        photons = settings.photons * settings.side if settings.fixed else settings.photons
-        rest = (settings.voxels, photons, settings.seed, settings.fixed)
-        function = f"{module}:trace_photons"
-        results = results_of(
-            [Item(function, (scene, channel, group, *rest), label) for channel in channels for group in groups]
-        )
-        estimates = np.concatenate([part for part, _ in results]).astype(np.float64)
-        values = projection.texels(projection.folded(estimates)).reshape(3, len(directions), -1)
-    noise = float(np.sqrt(np.mean([error**2 for _, error in results]))) / max(float(values.mean()), 1e-30)
-    if settings.fixed and unscattered.size:
-        values, unscattered = values + unscattered, unscattered[:, :0]
-    distance = scene.geometry.distance(grid.centres()[:, 0])
-    smooth = _smooth(values, projection.counting, grid)
-    cells = np.flatnonzero(projection.counting)
-    return Field(grid, values, unscattered, cells, projection.nearest, directions, noise, smooth, distance)
 
 
 def _smooth(values: Array, counting: npt.NDArray[np.bool_], grid: Grid) -> Array:

@@ -13,13 +13,16 @@ from sssgen.lab.fluence.fluence_field import Field, Settings
 from sssgen.lab.fluence.fluence_volumes import stored_distance
 from sssgen.lab.fluence.traced_body import medium_of
 from sssgen.scene import octahedron
-from sssgen.scene.light_response import UNSCATTERED, LightResponse, harmonics
+from sssgen.scene.light_response import LightResponse, harmonics
 from sssgen.scene.measured.measured_scene import MeasuredScene
 
 Array = npt.NDArray[np.float64]
 
 FLOOR = 0.1
 """The value, relative to the 99th percentile of all light, below which errors of scattered light count as at this."""
+LEVELS = 15
+"""The steps of the root of light that has not been scattered: its volume interpolates them between voxels and
+directions, and 255 have the same error, but are much longer in a file."""
 
 
 def response(
@@ -38,7 +41,6 @@ def pack(scene: MeasuredScene, traced: Field, rank: int) -> LightResponse:
     # the channel whose share of light that is not scattered stands for the others
     base = int(np.argsort(extinctions)[1])
     unscattered = traced.unscattered if traced.unscattered.size else np.zeros((3, 1, 1))
-    passing = np.maximum(traced.unscattered[base] / UNSCATTERED, 0.0)
     columns = traced.values.reshape(channels * count, voxels).T
     # errors count relative to all light
     whole = (traced.smooth + unscattered).reshape(channels * count, voxels).T
@@ -47,16 +49,17 @@ def pack(scene: MeasuredScene, traced: Field, rank: int) -> LightResponse:
     size = np.maximum(high - low, 1e-12)
     # the ranges of the latents belong to the table
     table = np.concatenate([(low @ rows)[None], size[:, None] * rows]).reshape(-1, channels, count)
-    root = np.sqrt(passing)
+    root = np.sqrt(np.maximum(traced.shares[base].astype(np.float64), 0.0))
     highest = max(float(root.max(initial=0.0)), 1e-12)
     around = _around(traced, unscattered)
     largest = np.maximum(np.abs(around).max(axis=2), 1e-12)
     number = np.uint16 if traced.grid.voxels < 1 << 16 else np.uint32
+    levels = np.rint(root * (LEVELS / highest)) * (255 // LEVELS)
     return LightResponse(
         traced.grid.low, traced.grid.high, traced.cells.astype(number),
         traced.nearest.reshape(traced.grid.shape[::-1]).astype(number),
         np.rint(255.0 * (latents - low) / size).astype(np.uint8).T, np.moveaxis(table, 2, 0).astype(np.float16),
-        np.rint(root * (255.0 / highest)).astype(np.uint8), highest, extinctions / extinctions[base],
+        levels.astype(np.uint8), highest, extinctions / extinctions[base],
         np.rint(127.0 * around / largest[..., None]).astype(np.int8), largest,
         stored_distance(traced).reshape(traced.grid.shape[::-1]),
     )  # fmt: skip

@@ -19,6 +19,11 @@ from sssgen.support.diagnostics import failure
 
 PARTS = 4
 """The points along each axis of a voxel at which the body's distance is evaluated."""
+BUDGET = 4096
+"""About so many voxels of a body have their own light, unless a count is given: the file of all lights has less than a
+MiB, and the linear system of scattered light is solved in seconds."""
+FEWEST, MOST = 12, 64
+"""The least and the largest count along the longest side that is chosen."""
 
 
 def grid_in_box(scene: MeasuredScene, voxels: int) -> Grid:
@@ -29,13 +34,33 @@ def grid_in_box(scene: MeasuredScene, voxels: int) -> Grid:
     return Grid(low, high, (int(x), int(y), int(z)))
 
 
+@lru_cache(16)
+def fitting_voxels(scene: MeasuredScene) -> int:
+    """The voxels along the longest side of the box with which the body has about BUDGET voxels."""
+    low, high = grid_in_box(scene, MOST)[:2]
+    body = _body_of(scene)
+    corners = body.vertices[body.faces]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    volume = abs(float(np.einsum("fc,fc->", corners[:, 0], across))) / 6.0
+    area = 0.5 * float(np.linalg.norm(across, axis=1).sum())
+    for count in range(FEWEST, MOST):
+        size = float((high - low).max()) / (count + 1)
+        # a layer of voxels lies on the surface
+        if volume + area * size > BUDGET * size**3:
+            return count
+    return MOST
+
+
 @lru_cache(4)
 def tracer(scene: MeasuredScene, voxels: int) -> Tracer:
     """The tracer of a scene's body."""
+    return Tracer(_body_of(scene), grid_in_box(scene, voxels))
+
+
+def _body_of(scene: MeasuredScene) -> Body:
     vertices, faces = mesh_of(scene.geometry)
     to_object = scene.geometry.to_object()
-    body = Body(vertices @ to_object[:3, :3].T + to_object[:3, 3], faces)
-    return Tracer(body, grid_in_box(scene, voxels))
+    return Body(vertices @ to_object[:3, :3].T + to_object[:3, 3], faces)
 
 
 @lru_cache(4)

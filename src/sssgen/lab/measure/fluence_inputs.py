@@ -12,7 +12,7 @@ from sssgen.jobs.executor import Progress
 from sssgen.lab.fluence import fluence_field as field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence import response
-from sssgen.lab.fluence.traced_body import grid_in_box
+from sssgen.lab.fluence.traced_body import fitting_voxels, grid_in_box
 from sssgen.run.backends import Array
 from sssgen.run.evaluate.evaluation import half
 from sssgen.scene.bounds import world_corners
@@ -21,7 +21,6 @@ from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.scene import Light
 from sssgen.targets.runtime.numpy_textures import Texture
 
-SETTINGS = field.Settings()
 PREFIX = "fluence_"
 """The names of the textures begin with it."""
 RANKS = (4, 8)
@@ -49,14 +48,14 @@ def of_light(scene: MeasuredScene, light: Light) -> dict[str, Callable[[], Textu
 def texels(name: str, scene: MeasuredScene) -> int:
     """The texels of a texture by its name in techniques; 0 for textures of other kinds."""
     if name.startswith("fluence_table_"):
-        side = SETTINGS.side + 2
+        side = field.Settings().side + 2
         return side * side * volumes.tiles_of(int(name.rpartition("_")[2]))
-    return grid_in_box(scene, SETTINGS.voxels).voxels if name.startswith((PREFIX, INNER)) else 0
+    return grid_in_box(scene, fitting_voxels(scene)).voxels if name.startswith((PREFIX, INNER)) else 0
 
 
 def reach(scene: MeasuredScene) -> float:
     """The largest distance in the volume of a fixed light, in world units."""
-    return volumes.reach_of(grid_in_box(scene, SETTINGS.voxels)) * scene.geometry.scale
+    return volumes.reach_of(grid_in_box(scene, fitting_voxels(scene))) * scene.geometry.scale
 
 
 def prepare(scene: MeasuredScene, scheduler: str, processes: int | None, progress: Progress) -> None:
@@ -66,15 +65,16 @@ def prepare(scene: MeasuredScene, scheduler: str, processes: int | None, progres
     if scene.medium is None:
         return
     alone = _without_view(scene)
-    field.field(alone, SETTINGS, scheduler, processes, progress)
+    settings = field.settings_for(alone)
+    field.field(alone, settings, scheduler, processes, progress)
     for light in scene.lights:
-        field.of_light(alone, _towards(scene, light), SETTINGS, scheduler, processes, progress)
+        field.of_light(alone, _towards(scene, light), settings, scheduler, processes, progress)
 
 
 @lru_cache(4)
 def _field(scene: MeasuredScene) -> field.Field:
     # this runs inside a worker already: in the process of the worker
-    return field.field(scene, SETTINGS, processes=0)
+    return field.field(scene, field.settings_for(scene), processes=0)
 
 
 @lru_cache(8)
@@ -107,7 +107,7 @@ def _towards(scene: MeasuredScene, light: Light) -> Array:
 
 @lru_cache(4)
 def _response(scene: MeasuredScene) -> LightResponse:
-    return response.response(scene, RANK, SETTINGS, processes=0)[0]
+    return response.response(scene, RANK, field.settings_for(scene), processes=0)[0]
 
 
 @lru_cache(8)
@@ -121,5 +121,7 @@ def _inner_light(scene: MeasuredScene, light: Light) -> Texture:
 @lru_cache(8)
 def _light_volume(scene: MeasuredScene, light: Light) -> Texture:
     """The light at each voxel; the scale is part of the texels, whose steps are those of the stored volume."""
-    stored = volumes.light_volume(field.of_light(_without_view(scene), _towards(scene, light), SETTINGS, processes=0))
+    alone = _without_view(scene)
+    traced = field.of_light(alone, _towards(scene, light), field.settings_for(alone), processes=0)
+    stored = volumes.light_volume(traced)
     return Texture(stored.texels / 255.0 * np.append(np.sqrt(stored.scale), 1.0), wrap="clamp")

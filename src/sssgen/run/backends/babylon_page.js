@@ -25,7 +25,7 @@ import { TransformNode } from '@babylonjs/core/Meshes/transformNode.js';
 import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
 import '@babylonjs/core/Meshes/thinInstanceMesh.js';
 import { Scene } from '@babylonjs/core/scene.js';
-import { fileOf, floats, halves, imported, indices, serve } from './engine_page.js';
+import { fileOf, filesRead, floats, halves, imported, indices, serve } from './engine_page.js';
 
 /** @typedef {import('./engine_page.js').Plan} Plan */
 /** @typedef {import('./engine_page.js').PieceOf} PieceOf */
@@ -93,6 +93,7 @@ async function draw(plan, piece) {
     const one = names.slice(0, -1).reduce((object, name) => object[name], material);
     one[last] = one[last] instanceof Color3 ? new Color3(value, value, value) : fileOf(value);
   }
+  await filesRead();
   if (material.light === null) material.light = scene.lights[0] ?? null;
 
   const placed = (/** @type {VertexData} */ data, /** @type {number[]} */ model) => {

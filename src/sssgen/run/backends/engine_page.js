@@ -94,6 +94,22 @@ const halves = (/** @type {Uint8Array} */ bytes) => new Uint16Array(bytes.slice(
  * @param {any} value */
 const fileOf = (value) => (value?.response ? { data: Uint8Array.from(atob(value.response), (letter) => letter.charCodeAt(0)).buffer, facts: value.facts } : value);
 
+/** @type {Set<Promise<unknown>>} */
+const reading = new Set();
+const readAll = Response.prototype.arrayBuffer;
+Response.prototype.arrayBuffer = function () {
+  const bytes = readAll.call(this);
+  reading.add(bytes);
+  return bytes;
+};
+
+/** Waits until materials have read the files of their properties. */
+async function filesRead() {
+  await Promise.all(reading);
+  reading.clear();
+  await new Promise((resume) => setTimeout(resume)); // what follows in the same task
+}
+
 /** Answers the plans that come, with `draw` of the engine in that version.
  * @param {string} version @param {Draw} draw */
 function serve(version, draw) {
@@ -121,4 +137,4 @@ function serve(version, draw) {
   socket.onopen = () => say({ version });
 }
 
-export { fileOf, floats, halves, imported, indices, serve };
+export { fileOf, filesRead, floats, halves, imported, indices, serve };

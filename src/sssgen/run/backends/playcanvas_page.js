@@ -1,7 +1,7 @@
 // PlayCanvas in a page: draws meshes with emitted modules, as plans say (engine_page.js).
 
 import * as pc from 'playcanvas';
-import { fileOf, floats, halves, imported, indices, serve } from './engine_page.js';
+import { fileOf, filesRead, floats, halves, imported, indices, serve } from './engine_page.js';
 
 /** @typedef {import('./engine_page.js').Plan} Plan */
 /** @typedef {import('./engine_page.js').PieceOf} PieceOf */
@@ -73,6 +73,7 @@ async function draw(plan, piece) {
     if (material[name] instanceof pc.Color) material[name].set(value, value, value);
     else material[name] = fileOf(value);
   }
+  await filesRead();
   scene.ambientLight = colorOf(plan.ambient.length ? plan.ambient : [0, 0, 0]);
 
   const sky = stage.around ? skyOf(device, stage) : null;

@@ -2,7 +2,7 @@
 
 import * as THREE from 'three';
 import { WebGPURenderer, REVISION, RectAreaLightNode } from 'three/webgpu';
-import { fileOf, floats, halves, imported, indices, serve } from './engine_page.js';
+import { fileOf, filesRead, floats, halves, imported, indices, serve } from './engine_page.js';
 
 /** @typedef {import('./engine_page.js').Plan} Plan */
 /** @typedef {import('./engine_page.js').PieceOf} PieceOf */
@@ -39,6 +39,7 @@ async function draw(plan, piece) {
     if (one[last]?.isColor) one[last].setScalar(value);
     else one[last] = fileOf(value);
   }
+  await filesRead();
 
   const vertices = new THREE.InterleavedBuffer(floats(piece(plan.vertices)), plan.vertexSize);
   const geometry = new THREE.BufferGeometry();

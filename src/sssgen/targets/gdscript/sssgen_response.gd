@@ -15,13 +15,15 @@ class Response:
 	## For each voxel its numbers in groups of four: a matrix weights a group at once.
 	var _numbers := PackedVector4Array()
 	var _groups: int
-	## For each direction of an octahedral map, with a border that repeats its edges: the texel without a border, the
-	## constant, and the matrices of the groups.
+	## For each direction of an octahedral map, with a border that repeats its edges: the constant, and the matrices of the
+	## groups.
 	var _side: int
-	var _texels := PackedInt32Array()
 	var _constants := PackedVector4Array()
 	var _matrices: Array[Projection] = []
-	## For each texel the roots of voxels, and for each root the light that has not been scattered.
+	## Of a finer map: for each direction with a border the texel without it, for each texel the roots of voxels, and for
+	## each root the light that has not been scattered.
+	var _passing_side: int
+	var _texels: PackedInt32Array
 	var _passing: PackedByteArray
 	var _shares := PackedVector4Array()
 	## For each voxel the weights of nine harmonics.
@@ -33,8 +35,11 @@ class Response:
 	## The response of a file, beside which its JSON lies; null where one of them is missing or of another kind.
 	static func load_from(path: String) -> Response:
 		var facts: Variant = JSON.parse_string(FileAccess.get_file_as_string(path + ".json"))
-		var data := FileAccess.get_file_as_bytes(path)
-		return Response.new(data, facts) if facts is Dictionary and facts.has("arrays") and not data.is_empty() else null
+		var file := FileAccess.get_file_as_bytes(path)
+		if file.is_empty() or not (facts is Dictionary and facts.has("arrays")):
+			return null
+		var data := file.decompress_dynamic(-1, FileAccess.COMPRESSION_DEFLATE)
+		return Response.new(data, facts) if not data.is_empty() else null
 
 	func _init(data: PackedByteArray, facts: Dictionary) -> void:
 		parameters = facts["parameters"]
@@ -44,6 +49,8 @@ class Response:
 		_nearest = _whole_numbers(data, about["nearest"])
 		_distance = _bytes(data, about["distance"])
 		_passing = _bytes(data, about["passing"])
+		_passing_side = roundi(sqrt(about["passing"]["shape"][0]))
+		_texels = _with_border(_passing_side)
 		var cells := _whole_numbers(data, about["cells"])
 		count = cells.size()
 		var low := _vector(facts["box_min"])
@@ -74,22 +81,26 @@ class Response:
 	func _read_table(data: PackedByteArray, about: Dictionary) -> void:
 		_side = roundi(sqrt(about["shape"][0]))
 		var rows := int(about["shape"][1])
-		for y in range(-1, _side + 1):
-			for x in range(-1, _side + 1):
-				# beyond an edge lies the same edge, reversed
-				var beside := x < 0 or x >= _side
-				var above := y < 0 or y >= _side
-				var column := clampi(_side - 1 - x if above and not beside else x, 0, _side - 1)
-				var texel := column + _side * clampi(_side - 1 - y if beside and not above else y, 0, _side - 1)
-				_texels.append(texel)
-				var colors := PackedVector4Array()
-				for row in rows:
-					var at := int(about["start"]) + 6 * (texel * rows + row)
-					colors.append(Vector4(data.decode_half(at), data.decode_half(at + 2), data.decode_half(at + 4), 0.0))
-				colors.resize(1 + 4 * _groups)
-				_constants.append(colors[0])
-				for first in range(1, colors.size(), 4):
-					_matrices.append(Projection(colors[first], colors[first + 1], colors[first + 2], colors[first + 3]))
+		for texel in _with_border(_side):
+			var colors := PackedVector4Array()
+			for row in rows:
+				var at := int(about["start"]) + 6 * (texel * rows + row)
+				colors.append(Vector4(data.decode_half(at), data.decode_half(at + 2), data.decode_half(at + 4), 0.0))
+			colors.resize(1 + 4 * _groups)
+			_constants.append(colors[0])
+			for first in range(1, colors.size(), 4):
+				_matrices.append(Projection(colors[first], colors[first + 1], colors[first + 2], colors[first + 3]))
+
+	## The texels of an octahedral map with a border: beyond an edge lies the same edge, reversed.
+	static func _with_border(side: int) -> PackedInt32Array:
+		var texels := PackedInt32Array()
+		for y in range(-1, side + 1):
+			for x in range(-1, side + 1):
+				var beside := x < 0 or x >= side
+				var above := y < 0 or y >= side
+				var column := clampi(side - 1 - x if above and not beside else x, 0, side - 1)
+				texels.append(column + side * clampi(side - 1 - y if beside and not above else y, 0, side - 1))
+		return texels
 
 	func _read_surroundings(stored: PackedByteArray, largest: Array) -> void:
 		_around.resize(9 * count)
@@ -118,8 +129,8 @@ class Response:
 	static func _vector(values: Array) -> Vector3:
 		return Vector3(values[0], values[1], values[2])
 
-	## Finds the texels around a direction of any length.
-	func _find(way: Vector3) -> void:
+	## Finds the texels around a direction of any length, in a map with a border.
+	func _find(way: Vector3, side: int) -> void:
 		var whole := maxf(absf(way.x) + absf(way.y) + absf(way.z), 1e-20)
 		var across := way.x / whole
 		var up := way.y / whole
@@ -127,22 +138,22 @@ class Response:
 			var flat := across
 			across = (1.0 - absf(up)) * (-1.0 if way.x < 0.0 else 1.0)
 			up = (1.0 - absf(flat)) * (-1.0 if way.y < 0.0 else 1.0)
-		var column := (0.5 * across + 0.5) * _side + 0.5
-		var row := (0.5 * up + 0.5) * _side + 0.5
+		var column := (0.5 * across + 0.5) * side + 0.5
+		var row := (0.5 * up + 0.5) * side + 0.5
 		var x := int(column)
 		var y := int(row)
 		column -= x
 		row -= y
-		var first := y * (_side + 2) + x
+		var first := y * (side + 2) + x
 		_corners[0] = first
 		_corners[1] = first + 1
-		_corners[2] = first + _side + 2
-		_corners[3] = first + _side + 3
+		_corners[2] = first + side + 2
+		_corners[3] = first + side + 3
 		_weights = Vector4((1.0 - column) * (1.0 - row), column * (1.0 - row), (1.0 - column) * row, column * row)
 
 	## The light in the voxels from a distant light of the irradiance 1.
 	func from_afar(way: Vector3) -> PackedVector4Array:
-		_find(way)
+		_find(way, _side)
 		var start := Vector4.ZERO
 		var matrices: Array[Projection] = []
 		for group in _groups:
@@ -163,6 +174,7 @@ class Response:
 				light[voxel] += matrix * _numbers[at]
 				at += _groups
 		if not _passing.is_empty():
+			_find(way, _passing_side)
 			var a := _texels[_corners[0]] * count
 			var b := _texels[_corners[1]] * count
 			var c := _texels[_corners[2]] * count
@@ -179,18 +191,20 @@ class Response:
 		for voxel in count:
 			if strengths[voxel] == 0.0:
 				continue
-			_find(place - places[voxel])
+			var way := place - places[voxel]
+			_find(way, _side)
 			var sum := Vector4.ZERO
-			var root := 0.5
 			for corner in 4:
 				var texel := _corners[corner]
 				var of_corner := _constants[texel]
 				for group in _groups:
 					of_corner += _matrices[texel * _groups + group] * _numbers[voxel * _groups + group]
 				sum += _weights[corner] * of_corner
-				if not _passing.is_empty():
-					root += _weights[corner] * _passing[_texels[texel] * count + voxel]
 			if not _passing.is_empty():
+				_find(way, _passing_side)
+				var root := 0.5
+				for corner in 4:
+					root += _weights[corner] * _passing[_texels[_corners[corner]] * count + voxel]
 				sum += _shares[int(root)]
 			light[voxel] = strengths[voxel] * sum
 		return light

@@ -32,7 +32,7 @@ export const harmonics = ([x = 0, y = 0, z = 0]) => [
  * sssgen's light_response.py.
  */
 export class LightResponse {
-  /** @param {ArrayBuffer} data the file @param {any} facts the content of its JSON */
+  /** @param {ArrayBuffer} data the decompressed file @param {any} facts the content of its JSON */
   constructor(data, facts) {
     if (!facts?.arrays || !facts.object_to_volume) throw new TypeError('this is no response of a body: sssgen bake fluence --relit makes one');
     const read = (name) => {
@@ -59,7 +59,9 @@ export class LightResponse {
     this.largest = facts.largest;
     this.count = this.cells.length;
     this.rank = this.latents.length / this.count;
+    /** The directions along the sides of the maps: of the table, and of light that has not been scattered. */
     this.side = Math.round(Math.sqrt(this.table.length / (3 * (1 + this.rank))));
+    this.passingSide = Math.round(Math.sqrt(this.passing.length / this.count));
     /** For each stored root the light of each channel that has not been scattered. */
     this.shares = facts.powers.map((power) => (
       Float32Array.from({ length: 256 }, (_, root) => UNSCATTERED * (Math.max((root * facts.highest) / 255, 3e-5) ** (2 * power)))
@@ -123,6 +125,7 @@ export class LightResponse {
     const { mix, row, latents, count, rank, passing, shares, sum } = this, color = colorAt(this.low);
     mix.way.set(place);
     this.#look();
+    mixOf(mix, this.passingSide);
     const [first, second, third, fourth] = mix.texels.map((texel) => texel * count), [a, b, c, d] = mix.weights;
     for (let channel = 0; channel < 3; channel++) {
       const ofChannel = sum[channel], strength = color[channel], start = strength * row[channel];
@@ -149,6 +152,7 @@ export class LightResponse {
       this.#look();
       const color = colorAt(own), { texels, weights } = mix;
       let root = 0.5;
+      mixOf(mix, this.passingSide);
       if (passing.length) for (let corner = 0; corner < 4; corner++) root += weights[corner] * passing[texels[corner] * count + voxel];
       for (let channel = 0; channel < 3; channel++) {
         let light = passing.length ? shares[channel][root | 0] : 0;
@@ -225,21 +229,23 @@ export function surroundingsOf(shown) {
   return sums.map((sum, harmonic) => sum.map((value) => (value * solidAngle) / COSINE[ORDER[harmonic]]));
 }
 
+/** What was compressed. @param {BufferSource} data */
+function decompressed(data) {
+  return new Response(new Blob([data]).stream().pipeThrough(new DecompressionStream('deflate'))).arrayBuffer();
+}
+
 /**
- * The response of a body: from the URL of a `.bin` of `sssgen bake fluence --relit`, beside which its JSON lies (a promise), or
- * from the content of both. One that has been read is returned.
- * @param {any} source
- * @returns {LightResponse | Promise<LightResponse>}
+ * The response of a body: from the URL of a `.bin` of `sssgen bake fluence --relit`, beside which its JSON lies, or from the
+ * content of both.
+ * @param {string | { data: BufferSource, facts: any }} source
  */
-export function responseOf(source) {
-  if (source instanceof LightResponse) return source;
-  if (typeof source !== 'string') return new LightResponse(source.data, source.facts);
-  const load = async (url) => {
+export async function responseOf(source) {
+  if (typeof source !== 'string') return new LightResponse(await decompressed(source.data), source.facts);
+  const load = async (/** @type {string} */ url) => {
     const answer = await fetch(url);
     if (!answer.ok) throw new Error(`cannot load ${url}: ${answer.status}`);
     return answer;
   };
-  return Promise.all([load(source), load(`${source}.json`)]).then(async ([data, facts]) => (
-    new LightResponse(await data.arrayBuffer(), await facts.json())
-  ));
+  const [data, facts] = await Promise.all([load(source), load(`${source}.json`)]);
+  return new LightResponse(await decompressed(await data.arrayBuffer()), await facts.json());
 }

@@ -93,17 +93,16 @@ export class Responses extends Map {
    */
   take(property, value, setParameter) {
     this.delete(property);
-    const isFile = typeof value === 'string' || value?.facts || value instanceof LightResponse;
+    const isLoaded = value instanceof LightResponse, isFile = typeof value === 'string' || value?.facts || isLoaded;
     if (!isFile || !this.#properties.includes(property)) return false;
-    const response = responseOf(value);
     this.set(property, value);
-    const found = (loaded) => {
+    const use = (/** @type {LightResponse} */ response) => {
       if (this.get(property) !== value) return; // another was set, or none, while this one was loading
-      this.set(property, loaded);
-      for (const [name, numbers] of loaded.ownParameters()) setParameter(name, numbers);
+      this.set(property, response);
+      for (const [name, numbers] of response.ownParameters()) setParameter(name, numbers);
     };
-    if (response instanceof Promise) response.then(found, (error) => console.error(`'${property}': ${error.message}`));
-    else found(response);
+    if (isLoaded) use(value);
+    else responseOf(value).then(use, (error) => console.error(`'${property}': ${error.message}`));
     return true;
   }
 
