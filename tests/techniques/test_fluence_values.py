@@ -206,11 +206,9 @@ def test_the_technique_of_a_fixed_light_behind_a_refracting_surface(ior: float) 
 
 
 def inner_reflectance(cosine: Array, ior: float) -> Array:
-    """Fresnel's reflectance inside, unpolarised."""
-    beyond = np.sqrt(np.maximum(1.0 - ior**2 * (1.0 - cosine**2), 0.0))
-    across = (ior * cosine - beyond) / (ior * cosine + beyond)
-    along = (cosine - ior * beyond) / (cosine + ior * beyond)
-    result: Array = 0.5 * (across**2 + along**2)
+    """A ramp from nearly all light to that at a right angle, about the critical angle."""
+    critical = np.sqrt(max(1.0 - ior**-2, 1e-6))
+    result: Array = np.interp(cosine / critical, [0.75, 1.25], [0.999, ((ior - 1.0) / (ior + 1.0)) ** 2])
     return result
 
 
@@ -235,8 +233,7 @@ def test_light_that_is_reflected_back_where_the_ray_leaves(ior: float) -> None:
         eye_layer_map=ends, screen_uv=places, eye_distance=np.ones(len(view)),
     )  # fmt: skip
     cosine = 0.5 * chord / RADIUS
-    soft = (np.minimum(cosine + 0.18, 1.0), np.maximum(cosine - 0.18, 0.001))
-    back = 0.5 * sum(inner_reflectance(each, ior) for each in soft)[:, None]
+    back = inner_reflectance(cosine, ior)[:, None]
     passes = np.exp(-sigma * chord[:, None])
     seen = 1.0 - passes + back * passes * (1.0 - passes) / (1.0 - back * passes)
     error = np.abs(result / (share[:, None] * np.array([0.9, 0.5, 0.1]) * 0.5 * seen) - 1.0)

@@ -24,7 +24,7 @@ GROUP = 32
 """The directions of one work item."""
 PHOTONS_OF_FLIGHT = 500
 """Where flights serve all directions, one from each point for so many photons: about the same noise."""
-PHOTONS_OF_RAY = 2
+PHOTONS_OF_RAY = 4
 """Behind a refracting surface, one ray of light that has not been scattered for so many photons."""
 FINER = 2
 """Along each side of the octahedral map, the directions of light that has not been scattered for one of other light:
@@ -109,8 +109,8 @@ def trace_arriving(scene: MeasuredScene, towards: Directions, voxels: int, rays:
     rng = np.random.default_rng([seed, *np.rint(1e6 * np.abs(towards[0])).astype(int)])
     texels = []
     for direction in np.array(towards):
-        light = tracer(scene, voxels).arriving(extinctions, media[0].boundary, direction[None], rays, rng)
-        texels.append(projection.texels(projection.folded(light[:, 0])) / UNSCATTERED)
+        light = tracer(scene, voxels).arriving(extinctions, media[0].boundary, direction, rays, rng)
+        texels.append(projection.texels(projection.folded(light)) / UNSCATTERED)
     return np.stack(texels, axis=1).astype(np.float32)
 
 
@@ -188,8 +188,7 @@ class _Work(NamedTuple):
         function = "trace_shares"
         traced: tuple[int, ...] = ()
         if refracts:
-            # the directions of the finer map share the rays
-            photons = settings.photons * settings.side if settings.fixed else settings.photons // FINER**2
+            photons = settings.photons * (settings.side if settings.fixed else 1)
             function, traced = "trace_arriving", (max(photons // PHOTONS_OF_RAY, 1), settings.seed)
         groups = _groups(directions)
         parts = self._results(function, [(scene, group, settings.voxels, *traced) for group in groups])

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from sssgen.lab.fluence.projection import hats
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.lab.reference.dielectric import Dielectric
 from sssgen.scene.mesh_rays import MeshRays
@@ -31,7 +32,7 @@ STEP = 1e-5
 
 RAYS = 1 << 18
 """The rays that are cast together."""
-PLACES = 4
+PLACES = 8
 """The places of each segment of a ray at which its light counts."""
 MOST_WALLS = 64
 """Walls behind these along a ray do not count."""
@@ -145,34 +146,30 @@ class Tracer:
     def arriving(
         self, extinctions: Array, boundary: Dielectric, towards: Array, rays: int, rng: np.random.Generator
     ) -> Array:
-        """The light that has not been scattered, in all channels: (3, directions, voxels), by `rays` rays for each
-        direction. They are reflected and refracted; the estimates are integrals as those of `trace`."""
-        grid, middle = self.grid, float(np.median(extinctions))
-        number = np.repeat(np.arange(len(towards)), rays)
-        position, areas = self._start(towards, rays, rng)
-        direction = np.repeat(-towards, rays, axis=0)
-        weight = (areas / rays)[number] * np.ones((3, 1))
-        sums = np.zeros((3, len(towards) * grid.voxels))
-        while len(number):
+        """The light that has not been scattered, in all channels, by `rays` rays from the direction `towards` (3,). They
+        are reflected and refracted. The estimates are integrals as those of `trace`: (3, voxels)."""
+        middle = float(np.median(extinctions))
+        position, (area,) = self._start(towards[None], rays, rng)
+        direction = np.repeat(-towards[None], rays, axis=0)
+        weight = np.full((3, rays), area / rays)
+        sums = np.zeros((3, self.grid.voxels))
+        while len(position):
             keep, ahead, normal = self.walls(position, direction)
-            number, weight = number[keep], weight[:, keep]
-            position, direction = position[keep], direction[keep]
+            weight, position, direction = weight[:, keep], position[keep], direction[keep]
             inside = np.flatnonzero(np.einsum("nc,nc->n", direction, normal) > 0.0)
             share = -np.expm1(-middle * ahead[inside])
             for place in range(PLACES):
                 at = -np.log1p(-share * (place + rng.random(len(inside))) / PLACES) / middle
                 # the density of the places is middle exp(-middle at) / share
                 length = share / (PLACES * middle) * np.exp(np.subtract.outer(middle, extinctions) * at[:, None]).T
-                texel = grid.texel_of(position[inside] + at[:, None] * direction[inside], rng)
-                cell = number[inside] * grid.voxels + texel
-                for channel in range(3):
-                    sums[channel] += np.bincount(cell, weight[channel, inside] * length[channel], sums.shape[1])
+                weights = hats(self.grid, position[inside] + at[:, None] * direction[inside])
+                sums += (weights.T @ (weight[:, inside] * length).T).T
             weight[:, inside] *= np.exp(-np.outer(extinctions, ahead[inside]))
             position += ahead[:, None] * direction
             weight *= self.cross(position, direction, normal, boundary, rng)
-            keep = weight.max(axis=0) > FAINT * (areas / rays)[number]
-            number, weight, position, direction = number[keep], weight[:, keep], position[keep], direction[keep]
-        return sums.reshape(3, len(towards), grid.voxels) / (4.0 * grid.volume)
+            keep = weight.max(axis=0) > FAINT * area / rays
+            weight, position, direction = weight[:, keep], position[keep], direction[keep]
+        return sums / (4.0 * self.grid.volume)
 
     def _start(self, towards: Array, photons: int, rng: np.random.Generator) -> tuple[Array, Array]:
         """Points on a rectangle across the body for each direction, and the areas of the rectangles."""

@@ -43,8 +43,8 @@ class Projection:
         """(points, 3): the points at which fields are evaluated"""
         self.weights: Array = weights[chosen]
         """(points,): the part of a voxel that each stands for"""
-        hats = _hats(grid, self.points)
-        part = np.asarray(hats.T @ self.weights).ravel()
+        at_points = hats(grid, self.points)
+        part = np.asarray(at_points.T @ self.weights).ravel()
         self.counting: Bools = part > LEAST_PART
         """(voxels,): those with texels of their own"""
         if not self.counting.any():
@@ -53,7 +53,7 @@ class Projection:
         """(voxels,): for each voxel the number of the nearest counting one"""
         entries = (np.ones(grid.voxels), (np.arange(grid.voxels), self.nearest))
         self._folds: Any = sparse.csr_matrix(entries, shape=(grid.voxels, self.counting.sum()))
-        self.hats: Any = (hats @ self._folds).tocsr()
+        self.hats: Any = (at_points @ self._folds).tocsr()
         """(points, counting), sparse"""
         self.weighted: Any = (sparse.diags(self.weights) @ self.hats).T.tocsc()
         """(counting, points), sparse: hats times weights"""
@@ -67,7 +67,7 @@ class Projection:
 
     def hats_at(self, points: Array) -> Any:
         """The values of the texels' hats at points, a sparse matrix (points, counting)."""
-        return _hats(self.grid, points) @ self._folds
+        return hats(self.grid, points) @ self._folds
 
     def integrals(self, values: Array) -> Array:
         """The integrals for values at all `points`, (rows, points): (rows, counting)."""
@@ -110,7 +110,7 @@ def _nearest(counting: Bools, grid: Grid) -> npt.NDArray[np.int64]:
     return nearest
 
 
-def _hats(grid: Grid, points: Array) -> Any:
+def hats(grid: Grid, points: Array) -> Any:
     """The values of all voxels' hats at points, a sparse matrix (points, voxels)."""
     sparse = need("scipy.sparse", "scipy", "chart")
     size = np.array(grid.shape)
