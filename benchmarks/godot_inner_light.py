@@ -46,6 +46,11 @@ func _initialize() -> void:
     print("TIME a light near the body: %.2f ms" % best(func():
         response.from_near(Vector3(2, 2, 2), inner._strengths(facts, Transform3D.IDENTITY))))
     print("TIME surroundings: %.2f ms" % best(func(): response.from_around(around)))
+    var near := func(): return response.from_near(Vector3(2, 2, 2), inner._strengths(facts, Transform3D.IDENTITY))
+    print("TIME two moved lamps, in a thread beside the frames: %.2f ms" % best(func():
+        inner._parts = {}
+        inner._compute({[1]: near, [2]: near}, [[[1], Vector4.ONE], [[2], Vector4.ONE]])))
+    inner._parts = {1: light}
     print("TIME the sum of each light: %.2f ms" % best(func(): inner._sum([[1, Vector4.ONE]])))
     print("TIME the texels: %.2f ms" % best(func(): response.slices(light)))
     OS.kill(OS.get_process_id())
