@@ -2,7 +2,8 @@
 
 python docs/light_loops.py [SCENE...] [--frames N] [--size N] [--samples N] [--voxels N] [--index N] [-o FOLDER]: some
 minutes for each scene; without scenes, those of the charts. In the upper half a lamp goes around the body once, in the
-lower half the surroundings turn. Surfaces reflect nothing. It prints the error of the frames, the median and the worst.
+lower half the surroundings turn. What surfaces reflect is left out. It prints the error of the
+frames without the noise of the reference: the median and the worst.
 """
 
 from __future__ import annotations
@@ -50,17 +51,19 @@ DISTANCE, HEIGHT = 1.7, 0.7
 BACKGROUND = 0.02
 HEAD, SECONDS = 16, 3.0
 TITLES = (("a lamp, ours", "path traced"), ("surroundings, ours", "path traced"))
-MATERIAL = """[material]
+OPAQUE = """[material]
 name = "loop"
-[translucency]
-technique = "{technique}"
-inner_light = "body.bin"
 [[surface]]
 technique = "base_color"
 tint = [0.0, 0.0, 0.0, 1.0]
 [[surface]]
 technique = "specular_level"
 dielectric_specular = 0.0
+"""
+"""A black surface, which mirrors at grazing angles all the same: its picture is subtracted."""
+TRANSLUCENT = """[translucency]
+technique = "{technique}"
+inner_light = "body.bin"
 """
 
 
@@ -85,9 +88,9 @@ def main() -> None:
         with tempfile.TemporaryDirectory() as folder:
             loop = Loop(scene, body, arguments.frames, folder)
             ours = loop.drawn(arguments.voxels)
-            traced = loop.traced(arguments.samples)
-        for title, by_us, reference in zip(("a lamp", "surroundings"), ours, traced, strict=True):
-            errors = [relative(*frame) for frame in zip(by_us, reference, strict=True)]
+            traced, noise = loop.traced(arguments.samples)
+        for title, *frames in zip(("a lamp", "surroundings"), ours, traced, noise, strict=True):
+            errors = [relative(*frame) for frame in zip(*frames, strict=True)]
             print(f"{body.name}, {title}: error {np.median(errors):.3f}, of the worst frame {max(errors):.3f}")
         label = Path(path).parent.name if Path(path).stem.startswith("scene") else body.name
         write_files(str(arguments.output), {f"{label}.webp": animation(ours, traced)})
@@ -125,8 +128,9 @@ class Loop:
         """Ours, for the lamp and for the surroundings."""
         data, facts = relit.bake(self.body.body_alone(), RANK, Settings(voxels=voxels))
         baked_files.write_response(str(Path(self.folder, "body.bin")), data, facts)
-        material = Path(self.folder, "loop.toml")
-        material.write_text(MATERIAL.format(technique=facts["technique"]), "utf-8")
+        material, opaque = Path(self.folder, "loop.toml"), Path(self.folder, "opaque.toml")
+        material.write_text(OPAQUE + TRANSLUCENT.format(technique=facts["technique"]), "utf-8")
+        opaque.write_text(OPAQUE, "utf-8")
         assert self.body.medium is not None
         medium = {**self.scene.measured["medium"], "ior": self.body.medium.ior}
         scene = dataclasses.replace(
@@ -136,31 +140,40 @@ class Loop:
         under_lamps = [dataclasses.replace(scene, lights=(lamp,)) for lamp in self.lamps]
         skies = [{**scene.measured, "environment": {"file": sky.file}} for sky in self.skies]
         under_skies = [dataclasses.replace(scene, measured=measured) for measured in skies]
+        black = [dataclasses.replace(frame, material=str(opaque)) for frame in under_lamps]
         backend = backends.get("gl")
-        return [np.stack([render(frame, backend).linear for frame in frames]) for frames in (under_lamps, under_skies)]
+        lit, around, mirrored = (
+            np.stack([render(frame, backend).linear for frame in frames])
+            for frames in (under_lamps, under_skies, black)
+        )
+        return [lit - mirrored, around]
 
-    def traced(self, samples: int) -> list[Array]:
-        """The reference, likewise: the same paths for all lamps and all surroundings."""
+    def traced(self, samples: int) -> tuple[list[Array], list[Array]]:
+        """The reference, likewise, and its standard error: the same paths for all lamps and all surroundings."""
         visible = points(self.body)
         inputs, medium = visible.inputs, self.body.medium
         assert medium is not None
         eye = Eye(*(np.ascontiguousarray(part.T) for part in (inputs["P"], inputs["N"], -inputs["V"])))
         lamps = [Lamp(None, lamp.position) for lamp in self.lamps]
         skies = [sky.sky() for sky in self.skies]
-        light = readings(self.body.geometry, medium, eye, lamps, skies, Sampling(samples), RAYS).mean
+        light, noise = readings(self.body.geometry, medium, eye, lamps, skies, Sampling(samples), RAYS)
         if medium.ior == 1.0:  # what is seen through the body is no light that the body scatters
             lengths = thickness(self.body.geometry, eye.position, eye.direction)
             passes = np.exp(-np.outer(lengths, medium.extinction))
             light[len(lamps) :] -= [sky(eye.direction) * passes for sky in skies]
         colors = [lamp.color for lamp in self.lamps] + [(1.0, 1.0, 1.0)] * len(skies)
-        pictures = np.stack([visible.picture((part * color).T) for part, color in zip(light, colors, strict=True)])
-        return [pictures[: len(lamps)], pictures[len(lamps) :]]
+        of_all = []
+        for values in (light, noise):
+            pictures = [visible.picture((part * color).T) for part, color in zip(values, colors, strict=True)]
+            of_all.append([np.stack(pictures[: len(lamps)]), np.stack(pictures[len(lamps) :])])
+        return of_all[0], of_all[1]
 
 
-def relative(picture: Array, reference: Array) -> float:
-    """The root mean square of the difference on the body, relative to that of the reference."""
+def relative(picture: Array, reference: Array, noise: Array) -> float:
+    """The root mean square of the difference on the body, relative to the reference, whose noise is left out."""
     body = reference.any(axis=-1)
-    return float(np.sqrt(((picture - reference)[body] ** 2).mean() / (reference[body] ** 2).mean()))
+    square = ((picture - reference)[body] ** 2).mean() - (noise[body] ** 2).mean()
+    return float(np.sqrt(max(square, 0.0) / (reference[body] ** 2).mean()))
 
 
 def animation(ours: Sequence[Array], traced: Sequence[Array]) -> bytes:
