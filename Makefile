@@ -31,7 +31,8 @@ BUILT_PACKAGES := compushady==0.17.5
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 MATERIALS := $(foreach folder,$(wildcard examples/*),$(wildcard $(folder)/$(notdir $(folder)).toml)) \
-	$(addprefix examples/bake/,wax_distance.toml wax_map.toml wax_depth.toml ice_baked.toml)
+	$(addprefix examples/bake/,wax_distance.toml wax_map.toml wax_depth.toml ice_baked.toml) \
+	examples/marble_idol/marble_idol_relit.toml examples/skin_ear/skin_ear_relit.toml
 
 export PYTHONUTF8 := 1
 # Without stored bytecode, each of the hundreds of processes that the tests start would compile all of sssgen.

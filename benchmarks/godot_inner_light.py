@@ -41,13 +41,17 @@ func _initialize() -> void:
     var light := response.from_around(around)
     var inner := Passes.InnerLight.new({}, "res://body.bin")
     inner._parts = {1: light}
-    inner._shown = [[1, Vector4.ONE]]
     var facts: PackedVector4Array = [Vector4(2, 2, 2, 1), Vector4(0, 0, 0, -1), Vector4(0.01, 2, 100, 1)]
     print("TIME a distant light: %.2f ms" % best(func(): response.from_afar(Vector3(0.48, 0.6, 0.64))))
     print("TIME a light near the body: %.2f ms" % best(func():
         response.from_near(Vector3(2, 2, 2), inner._strengths(facts, Transform3D.IDENTITY))))
     print("TIME surroundings: %.2f ms" % best(func(): response.from_around(around)))
-    print("TIME the sum of each light: %.2f ms" % best(func(): inner._sum()))
+    var near := func(): return response.from_near(Vector3(2, 2, 2), inner._strengths(facts, Transform3D.IDENTITY))
+    print("TIME two moved lamps, in a thread beside the frames: %.2f ms" % best(func():
+        inner._parts = {}
+        inner._compute({[1]: near, [2]: near}, [[[1], Vector4.ONE], [[2], Vector4.ONE]])))
+    inner._parts = {1: light}
+    print("TIME the sum of each light: %.2f ms" % best(func(): inner._sum([[1, Vector4.ONE]])))
     print("TIME the texels: %.2f ms" % best(func(): response.slices(light)))
     OS.kill(OS.get_process_id())
 """

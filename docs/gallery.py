@@ -41,7 +41,8 @@ CAPTIONS = {
     "marched through its distance function, so that the flame may move and the candle may burn down. The flame itself "
     "is a surface technique beside the material.",
     "skin_ear": "An ear with the low sun behind it. The medium is near that of measured skin: red light goes farther "
-    "than green and blue. Nothing is baked, and nothing is drawn before the picture.",
+    "than green and blue. Nothing is baked, and nothing is drawn before the picture. `scene_relit.toml` in the same "
+    "folder has the cast of an ear, with a baked response to light, under lamps that may move.",
     "leaves": "Sheets that are lit from both sides. The thickness technique of this example counts a leaf's veins and "
     "all leaves between it and the sun, so that leaves show the shadows of others.",
     "jelly": "The length towards the light in place of the depth of the nearest face, which makes "
@@ -69,7 +70,8 @@ CAPTIONS = {
     "diffuse reflection is small, because the scattered light contains the light that enters in front.",
     "marble_idol": "Baked light inside a body, on marble. `sssgen bake fluence` has traced light through the bust, for "
     "lights from everywhere: the sun may move. Two volumes of 8 bits and a table hold it, 90 kB together. What is "
-    "scattered once is computed exactly, with the same two drawn textures as in `jade_ring`.",
+    "scattered once is computed exactly, with the same two drawn textures as in `jade_ring`. `scene_relit.toml` in the "
+    "same folder has the bust under several lamps that may move, near ones, too.",
     "jelly_cubes": "42yeah's raymarched scene as it was published, drawn by the shader alone: it marches rays through "
     "distance functions. Where a cube is thin, at its edges and corners, the light of the evening sky passes through. "
     "The X on the faces is the published technique's: see `jelly` above.",

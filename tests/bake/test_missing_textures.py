@@ -22,6 +22,7 @@ from sssgen.preview.page_messages import PageMessages
 from sssgen.preview.pane import Pane
 from sssgen.scene.pictures import images
 from sssgen.support.diagnostics import SssgenError
+from sssgen.support.paths import folder
 from sssgen.testing.project_run import Run, cases
 
 for package in ("trimesh", "igl", "embreex", "xatlas", "scipy", "psutil"):
@@ -220,3 +221,22 @@ def test_all_baked_textures_have_a_command_but_these() -> None:
 def test_a_faulty_attribute_is_an_error() -> None:
     with pytest.raises(SssgenError, match="are not the arguments of sssgen bake"):
         read_attributes(sections("A map.\nbake: thickness box.obj"), "")
+
+
+def test_the_advice_for_an_installed_example_works(
+    in_folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing is written beside the example, and the bake says so before its work: a copy has the file."""
+    installed = folder("examples") / "marble_idol" / "scene_relit.toml"
+    assert main(["bake", "fluence", str(installed), "--relit", "16", "-o", str(installed.with_name("idol.bin"))]) == 2
+    refused = capsys.readouterr()
+    assert "which does not write here" in refused.err and "of 8" not in refused.err
+    assert main(["render", str(installed), "-o", "idol.png"]) == 1
+    advised = capsys.readouterr().err
+    copied, baked = re.findall(r"`sssgen ([^`]+)`", advised)
+    assert copied in refused.err and main(shlex.split(copied)) == 0
+    monkeypatch.chdir("marble_idol")
+    assert main([*shlex.split(baked), "--voxels", "12", "--photons", "500", "--processes", "1"]) == 0
+    assert (
+        main(["render", "scene_relit.toml", "--size", "24x18", "--samples", "1", "-b", "numpy", "-o", "idol.png"]) == 0
+    )

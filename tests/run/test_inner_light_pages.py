@@ -14,16 +14,20 @@ import pytest
 
 import sssgen
 from engine_cases import BLACK, ENGINES, RENDERERS
-from relit_cases import drawn_by_numpy, write_body
+from relit_cases import EXAMPLES, drawn_by_numpy, linear_sky, turned, write_body, write_example
 from skips import or_skip
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
 from sssgen.run.render import inner_light, page_values
+from sssgen.scene import scene_loading
 from sssgen.scene.arrays import Array
 from sssgen.scene.geometry import Mesh
-from sssgen.scene.light_response import Incoming, LightResponse, from_light, harmonics
+from sssgen.scene.light_response import Incoming, LightResponse, from_light
 from sssgen.scene.scene import Light
 
+FROM_ABOVE = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
+"""The light of a hemispheric lamp, and of an environment whose upper half is white."""
+SKY = (0.22, 0.25, 0.3), (0.08, 0.06, 0.05)
 QUICK = (("threejs", "webgl"), ("babylonjs", "webgl"), ("playcanvas", "webgl2"))
 
 
@@ -64,18 +68,6 @@ def like_playcanvas(response: LightResponse, light: Light, to_object: Array) -> 
     return incoming._replace(irradiance=np.array([light.color]) * share)
 
 
-def from_above(_: object, to_object: Array) -> Array:
-    """The harmonics of surroundings that a white matt surface shows as (1 + y) / 2."""
-    count = np.arange(20000) + 0.5
-    height, around = 1.0 - 2.0 * count / len(count), np.pi * (3.0 - np.sqrt(5.0)) * count
-    across = np.sqrt(1.0 - height**2)
-    turned = np.stack([across * np.cos(around), height, across * np.sin(around)], axis=1) @ to_object[:3, :3].T
-    turned /= np.linalg.norm(turned, axis=1, keepdims=True)
-    light = np.repeat((0.5 + 0.75 * height)[:, None], 3, axis=1)
-    result: Array = harmonics(turned).T @ light * (4.0 / len(count))
-    return result
-
-
 def check(page: EnginePage, folder: Path, within: float, **changes: Any) -> None:
     """The page's picture of the scene is NumPy's, on 95 % of the body's pixels: the picture of the eye's layers is
     coarse at the silhouette. `changes`: of the scene; `stage` is the page's."""
@@ -97,8 +89,9 @@ def check(page: EnginePage, folder: Path, within: float, **changes: Any) -> None
     )  # fmt: skip
     differences = np.abs(page.draw(drawing) - expected)[..., :3].max(axis=-1)[placed.hit]
     reached = 255.0 * float(np.quantile(differences, 0.95))
-    print(f"{target} {page.name}: {reached:.2f}/255 on 95 % of the pixels, of light up to {expected.max():.2f}")
-    assert np.median(expected[placed.hit][:, :3]) > 0.1
+    title = f"{folder.name}, {target}, {page.name}"
+    print(f"{title}: {reached:.2f}/255 on 95 % of the pixels, of light up to {expected.max():.2f}")
+    assert np.median(expected[placed.hit][:, :3].max(axis=-1)) > 0.1
     assert reached <= within
 
 
@@ -120,5 +113,29 @@ def test_a_refracting_surface(page: EnginePage, refracting: Path, monkeypatch: p
 
 def test_light_from_above(page: EnginePage, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A hemispheric light; in PlayCanvas an environment, whose texels come later."""
-    monkeypatch.setattr(inner_light, "surroundings", from_above)
+    monkeypatch.setattr(inner_light, "surroundings", linear_sky(FROM_ABOVE))
     check(page, folder, 1.5, lights=(), ambient=(0.0, 0.0, 0.0), stage={"around": "hemisphere", "later": True})
+
+
+@pytest.fixture(scope="module", params=EXAMPLES)
+def example(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path]:
+    folder = tmp_path_factory.mktemp(request.param)
+    write_example(request.param, folder)
+    return request.param, folder
+
+
+@pytest.mark.slow
+def test_an_example_under_lamps_that_move(
+    page: EnginePage, example: tuple[str, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Before and behind their move, in one scene of the page, which has a sky, too."""
+    name, folder = example
+    if page.engine.target != "threejs":
+        pytest.skip("examples are drawn in three.js")
+    monkeypatch.setattr(inner_light, "surroundings", linear_sky(SKY))
+    lights = scene_loading.load(str(folder / "scene.toml")).lights
+    stage: dict[str, Any] = {"around": "hemisphere", "above": SKY[0], "below": SKY[1]}
+    changes: dict[str, Any] = {"ambient": (0.0, 0.0, 0.0), "size": EXAMPLES[name]}
+    check(page, folder, 1.0, **changes, lights=lights, stage=stage)
+    before = [light.position or light.direction for light in lights]
+    check(page, folder, 1.0, **changes, lights=turned(lights, 2.0), stage=stage | {"before": before})

@@ -18,6 +18,7 @@ from sssgen.scene.light_response import SUFFIX
 from sssgen.scene.pictures import images
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.file_writer import check_names, write_files
+from sssgen.support.installed_files import is_installed, refusal
 from sssgen.support.paths import posix
 from sssgen.version import VERSION
 
@@ -139,9 +140,11 @@ def mesh_beside(path: str) -> str:
 
 
 def _check_place(path: str) -> None:
-    """Raises SssgenError if the path is a folder, or a parent of it is a file."""
+    """Raises SssgenError if the path is a folder or comes with sssgen, or a parent of it is a file."""
     folder, name = os.path.split(path)
     check_names([name])
+    if is_installed(path):
+        raise refusal(path)
     if os.path.isdir(path):
         raise failure("cannot write the file: a folder has its name", file=posix(path))
     while folder and not os.path.exists(folder):

@@ -13,7 +13,7 @@ from sssgen.material.requirements import BakedFunction
 from sssgen.scene.geometry import Mesh
 from sssgen.scene.geometry_base import unit
 from sssgen.scene.scene import Scene
-from sssgen.support.installed_files import is_installed
+from sssgen.support.installed_files import copy_hint, is_installed
 from sssgen.support.paths import posix, shell_word
 
 
@@ -25,16 +25,23 @@ def advice(function: BakedFunction, material: Material, scene: Scene, given: Map
     bake, file = function.bake, scene.document.reporter.file if in_scene else material.file
     section = "[textures]" if in_scene else f"the stage {function.stage.technique.name}"
     place = f"{section} of {posix(os.path.basename(file))}"
-    folder = "" if is_installed(file) else os.path.dirname(file)
-    command = bake_command(function, material.name, given, _words(material, scene), folder)
+    installed, words = is_installed(file), _words(material, scene)
+    # of an example that names its files, a copy has them: nothing is written beside the example
+    copied = installed and bool(given)
+    if copied and words["scene"]:
+        words["scene"] = shell_word(os.path.basename(scene.document.reporter.file))
+    command = bake_command(function, material.name, given, words, "" if installed else os.path.dirname(file))
     if bake is None or command is None:
         lines = ", ".join(f'{texture.name} = "FILE"' for texture in function.textures if texture.name not in given)
         return f"sssgen bake makes no such texture: paint it{f', and write {lines} in {place}' if lines else ''}"
     lines = ", ".join(f'{name} = "{one}"' for name, one in command.files.items() if name not in given)
     needs_medium = "{scene}" in bake.arguments and "medium" not in scene.measured
     steps = (
+        copy_hint(file) if copied else "",
         "write [medium] in the scene" if needs_medium else "",
-        f"run `{command.text}`" + (f" with your own in place of {' and '.join(command.own)}" if command.own else ""),
+        f"run `{command.text}`"
+        + (" in its folder" if copied else "")
+        + (f" with your own in place of {' and '.join(command.own)}" if command.own else ""),
         f"write {lines} in {place}" if lines else "",
     )
     return ", then ".join(filter(None, steps))

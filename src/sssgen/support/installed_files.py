@@ -24,15 +24,23 @@ def is_installed(path: str | os.PathLike[str]) -> bool:
 def refusal(path: str | os.PathLike[str]) -> SssgenError:
     """The error for a command that would write such a file."""
     if not os.path.exists(path):
-        return failure("this folder comes with sssgen, which does not write here", "name another folder", posix(path))
+        hint = f"name another folder; or {copy_hint(path)}" if _is_example(path) else "name another folder"
+        return failure("this folder comes with sssgen, which does not write here", hint, posix(path))
     return failure("this file comes with sssgen, which does not change it", copy_hint(path), posix(path))
 
 
 def copy_hint(path: str | os.PathLike[str]) -> str:
     """How to get a copy of an installed file that can be changed."""
     folder = os.path.dirname(os.path.realpath(path))
-    example = os.path.basename(folder)
-    if os.path.realpath(os.path.dirname(folder)) != os.path.realpath(place("examples")):
+    if not _is_example(path):
         return "copy it to a folder of your own, and change the copy"
+    example = os.path.basename(folder)
     shown = "scene.toml" if os.path.isfile(os.path.join(folder, "scene.toml")) else f"{example}.toml"
     return f"copy the example with `sssgen new {example} --copy {example}`, and open {example}/{shown}"
+
+
+def _is_example(path: str | os.PathLike[str]) -> bool:
+    """Whether a file is in the folder of an example."""
+    return os.path.realpath(os.path.dirname(os.path.dirname(os.path.realpath(path)))) == os.path.realpath(
+        place("examples")
+    )

@@ -146,8 +146,8 @@ class Tracer:
     def arriving(
         self, extinctions: Array, boundary: Dielectric, towards: Array, rays: int, rng: np.random.Generator
     ) -> Array:
-        """The light that has not been scattered, in all channels, by `rays` rays from the direction `towards` (3,). They
-        are reflected and refracted. The estimates are integrals as those of `trace`: (3, voxels)."""
+        """The light that has not been scattered, in all channels, by `rays` rays from the direction `towards` (3,),
+        which are reflected and refracted. The estimates are integrals as those of `trace`: (3, voxels)."""
         middle = float(np.median(extinctions))
         position, (area,) = self._start(towards[None], rays, rng)
         direction = np.repeat(-towards[None], rays, axis=0)

@@ -52,8 +52,8 @@ def trace(scene: MeasuredScene, samples: int, seed: int) -> list[LightReference]
     inputs = points(scene).inputs
     eye = Eye(*(np.ascontiguousarray(part.T) for part in (inputs["P"], inputs["N"], -inputs["V"])))
     lamps = [Lamp(light.direction, light.position) for light in scene.lights]
-    sky = scene.environment.sky() if scene.environment is not None else None
-    result = readings(scene.geometry, scene.medium, eye, lamps, sky, Sampling(samples, seed))
+    skies = [scene.environment.sky()] if scene.environment is not None else []
+    result = readings(scene.geometry, scene.medium, eye, lamps, skies, Sampling(samples, seed))
     return [
         (mean.T.astype(np.float32), error.T.astype(np.float32))
         for mean, error in zip(result.mean, result.error, strict=True)

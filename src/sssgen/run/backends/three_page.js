@@ -71,6 +71,12 @@ async function draw(plan, piece) {
   const pictures = () => Object.keys(declared).map((name) => material[name]).filter((texture) => texture.isRenderTargetTexture);
   if (stage.first) render(await rendererFor(stage.first), scene, cameraOf(plan, stage.first === 'webgpu'), 5, 4).dispose();
   const foreign = pictures();
+  if (stage.before) {
+    const places = lights.map(({ position }) => position.clone());
+    lights.forEach(({ position }, number) => position.fromArray(stage.before[number]));
+    render(renderer, scene, cameraOf(plan, gpu), plan.width, plan.height).dispose();
+    lights.forEach(({ position }, number) => position.copy(places[number]));
+  }
   const target = render(renderer, scene, cameraOf(plan, gpu), plan.width, plan.height);
   if (pictures().some((texture) => foreign.includes(texture))) throw new Error('two renderers draw into one picture');
   let pixels;

@@ -1,9 +1,14 @@
-## The light inside a body, of all lights and of the surroundings: a volume that is summed when one of them has changed.
+## The light inside a body, of all lights and of the surroundings: a volume that is summed when one of them has changed, by a
+## thread beside the frames.
 class InnerLight extends Pass:
 	## Directions that are spread evenly over the sphere (Fibonacci).
 	const WAYS := 128
+	const NO_TASK := -1
 	var response: Response
 	var volume := ImageTexture3D.new()
+	## The task of the thread. While it runs, `_parts` and `_slices` are its own.
+	var _task := NO_TASK
+	var _slices: Array[Image] = []
 	## What changes the light of a source → that light, for a colour of 1.
 	var _parts := {}
 	## The parts of the volume with their colours.
@@ -48,37 +53,57 @@ class InnerLight extends Pass:
 	func draw(body: GeometryInstance3D, _eye: Camera3D, scene: Node) -> void:
 		if users.is_empty():
 			return
+		# the first light is shown at once, and each one in pictures of a film
+		var waits: bool = scene.inner_light_waits or _slices.is_empty() or OS.has_feature("movie")
+		if _task != NO_TASK:
+			if not waits and not WorkerThreadPool.is_task_completed(_task):
+				return
+			_show()
 		var place := body.get_global_transform_interpolated()
 		var inverse := place.affine_inverse()
-		var parts := {}
+		# what changes the light of a source → the function that computes it
+		var sources := {}
 		var shown := []
 		for light: Light3D in scene.lights_on_body():
 			var facts := Casters.vectors_of(light)
 			var at := Vector3(facts[0].x, facts[0].y, facts[0].z)
 			var afar := facts[0].w == 0.0
 			var key := [(inverse.basis * at).normalized()] if afar else [facts, place]
-			if key not in parts:
-				if key in _parts:
-					parts[key] = _parts[key]
-				elif afar:
-					parts[key] = response.from_afar(key[0])
-				else:
-					parts[key] = response.from_near(inverse * at, _strengths(facts, place))
+			if afar:
+				sources[key] = response.from_afar.bind(key[0])
+			else:
+				sources[key] = func(): return response.from_near(inverse * at, _strengths(facts, place))
 			var color := light.light_color.srgb_to_linear() * light.light_energy * (-1.0 if light.light_negative else 1.0)
 			shown.append([key, Vector4(color.r, color.g, color.b, 0.0)])
 		var around := _around(scene.sky(), place.basis)
 		if around != _dark():
-			parts[around] = _parts[around] if around in _parts else response.from_around(around)
+			sources[around] = response.from_around.bind(around)
 			shown.append([around, Vector4.ONE])
-		_parts = parts
-		if shown != _shown:
-			_shown = shown
-			volume.update(response.slices(_sum()))
+		if shown == _shown:
+			return
+		_shown = shown
+		_task = WorkerThreadPool.add_task(_compute.bind(sources, shown))
+		if waits:
+			_show()
 
-	func _sum() -> PackedVector4Array:
+	## In the thread: the light of sources that are new, and the volume.
+	func _compute(sources: Dictionary, shown: Array) -> void:
+		var parts := {}
+		for key: Variant in sources:
+			parts[key] = _parts[key] if key in _parts else sources[key].call()
+		_parts = parts
+		_slices = response.slices(_sum(shown))
+
+	## Shows what the thread has computed.
+	func _show() -> void:
+		WorkerThreadPool.wait_for_task_completion(_task)
+		_task = NO_TASK
+		volume.update(_slices)
+
+	func _sum(shown: Array) -> PackedVector4Array:
 		var sum := PackedVector4Array()
 		sum.resize(response.count)
-		for source: Array in _shown:
+		for source: Array in shown:
 			var part: PackedVector4Array = _parts[source[0]]
 			var color: Vector4 = source[1]
 			for voxel in response.count:
@@ -131,5 +156,7 @@ class InnerLight extends Pass:
 		return sums
 
 	func release() -> void:
+		if _task != NO_TASK:
+			_show()
 		drawn.erase(volume)
 		super()

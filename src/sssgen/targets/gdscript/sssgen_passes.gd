@@ -17,6 +17,8 @@ const MARGIN := 2e-3
 ## The file of `sssgen bake fluence --relit`, beside which its JSON lies; without one it is the file that the material names,
 ## beside this script.
 @export_file("*.bin") var inner_light_file := ""
+## Whether a frame waits for the light inside the body; otherwise a body shows that of some frames before while a light moves.
+@export var inner_light_waits := false
 
 ## Material → the node whose pictures it has.
 static var _owners := {}
