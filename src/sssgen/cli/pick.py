@@ -122,7 +122,8 @@ def _record(
 
     def show(answer: Provisional) -> None:
         with bar.hide():
-            text = f"provisional, after {answer.seconds:.0f} s: {_point(answer.point)}{unit}"
+            nearest = "" if answer.met else "no chain is within the limit so far; the nearest is "
+            text = f"provisional, after {answer.seconds:.0f} s: {nearest}{_point(answer.point)}{unit}"
             print(text, file=sys.stderr, flush=True)
 
     return racing.race_record(scene, settings, limits, progress, show)

@@ -22,7 +22,7 @@ from sssgen.jobs.work_items import code_stamp
 from sssgen.lab.chart import charting, drawn_lights, race
 from sssgen.lab.chart.charting import Settings, fit_of, results_of, two_views, with_references
 from sssgen.lab.chart.engine_conditions import EVERYTHING, Conditions
-from sssgen.lab.chart.picking import is_allowed, limit_of
+from sssgen.lab.chart.picking import choose, is_allowed, limit_of
 from sssgen.lab.chart.record import Point, Record, check_record
 from sssgen.lab.chart.whole_progress import WholeProgress
 from sssgen.lab.measure import candidates, fluence_inputs
@@ -69,12 +69,14 @@ class Provisional(NamedTuple):
     point: Point
     seconds: float
     """Since the race began"""
+    met: bool
+    """Whether it is within the limit; if not, it is the nearest so far, before something that takes long"""
 
 
 Report = Callable[[Provisional], None]
 
 
-@dataclasses.dataclass
+@dataclasses.dataclass(eq=False)
 class Runner:
     """A chain in the race."""
 
@@ -172,6 +174,9 @@ class _Race:
         self.fitted: list[Point] = []
         self.tier = 0
         self.best: Runner | None = None
+        """The best chain within the limit so far"""
+        self.nearest = ""
+        """The label of the chain that was reported while none was within the limit"""
 
     def run(self) -> list[Point]:
         """The points of the chains that were measured."""
@@ -184,8 +189,11 @@ class _Race:
             if plain:
                 self._measure_first(plain, NO_BAKE)
             elif self._needs_lengths(new):
+                if self.tier:
+                    self._report_nearest()
                 self._add_lengths()
             elif new:
+                self._report_nearest()
                 kind = min(runner.baked_light() for runner in new)
                 self._measure_first([runner for runner in new if runner.baked_light() == kind], kind)
             else:
@@ -320,18 +328,29 @@ class _Race:
 
     def _report(self) -> None:
         """Reports the best chain so far, if it is a new one."""
-        points = [runner for runner in self.runners if runner.point is not None and is_allowed(runner.point)]
-        if self.limits.max_error is not None:
-            limit = self.limits.max_error
-            inside = [runner for runner in points if runner.entrant().high <= limit]
-            best = min(inside, key=lambda runner: runner.cost, default=None)
-        else:
-            allowed = [runner for runner in points if runner.cost <= (self.limits.max_cost or 0.0)]
-            best = min(allowed, key=lambda runner: runner.entrant().high, default=None)
-        if best is not None and best is not self.best:
-            assert best.point is not None
-            self.report(Provisional(best.point, self.progress.seconds))
-        self.best = best
+        best, met = choose(self._points(), self.limits.max_error, self.limits.max_cost)
+        runner = self._runner_of(best) if best is not None and met else None
+        if runner is not None and (self.best is None or runner.candidate != self.best.candidate):
+            assert best is not None
+            self.report(Provisional(best, self.progress.seconds, True))
+        self.best = runner
+
+    def _report_nearest(self) -> None:
+        """Reports the nearest chain so far where none is within the limit, before something that takes long."""
+        best, met = choose(self._points(), self.limits.max_error, self.limits.max_cost)
+        if best is not None and not met and best["label"] != self.nearest:
+            self.nearest = best["label"]
+            self.report(Provisional(best, self.progress.seconds, False))
+
+    def _runner_of(self, point: Point) -> Runner:
+        return next(one for one in self.runners if one.point is not None and one.point["label"] == point["label"])
+
+    def _points(self) -> list[Point]:
+        points = [runner.point for runner in self.runners if runner.point is not None and is_allowed(runner.point)]
+        cost = self.limits.cost
+        if cost is None:
+            return points
+        return [{**point, "cost": {**point["cost"], "value": cost(point["cost"])}} for point in points]
 
     # --- what is known of a candidate ---
 
