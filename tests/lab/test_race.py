@@ -12,8 +12,9 @@ import pytest
 
 from sssgen.cli.main import main
 from sssgen.lab.chart.race import Entrant, within_cost, within_error
-from sssgen.lab.chart.racing import levels
+from sssgen.lab.chart.racing import has_published, levels
 from sssgen.lab.chart.whole_progress import WholeProgress
+from sssgen.lab.measure import candidates
 from sssgen.scene.measured import measured_scene
 from sssgen.scene.pictures.images import read
 from sssgen.support import cache
@@ -215,3 +216,12 @@ def test_a_race_ends_with_a_picture_and_the_error_under_other_lights(
         "held out",
         *(f"light {n}, {name}" for n in range(1, 7) for name in ("own", "held out")),
     }
+
+
+def test_chains_in_the_race_are_those_that_may_be_picked() -> None:
+    """Published baselines of techniques that are not superseded are among them, as in the picks from charts."""
+    chains = [candidate for candidate in candidates.materials([]) if not has_published(candidate)]
+    names = {name for candidate in chains for name in candidate.techniques}
+    assert {"wrap_lighting", "gltf_diffuse_transmission"} <= names
+    assert not {"alisavakis_lobe", "ice_shader_lobe", "three_js_port"} & names
+    assert any(not candidate.techniques for candidate in chains)

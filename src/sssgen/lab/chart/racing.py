@@ -235,7 +235,7 @@ class _Race:
         fresh = [
             candidate
             for candidate in chains
-            if candidate not in present and self._applies(candidate) and not _has_published(candidate)
+            if candidate not in present and self._applies(candidate) and not has_published(candidate)
         ]
         for candidate, price in zip(fresh, self._prices(fresh, stage), strict=True):
             if not self._lacks(candidate, price):
@@ -253,7 +253,7 @@ class _Race:
         """The cost of the cheapest length that is not fitted yet."""
         if self.lengths is None:
             lengths = [*candidates.thickness(), *candidates.view_thickness()]
-            lengths = [one for one in lengths if self._applies(one) and not _has_published(one)]
+            lengths = [one for one in lengths if self._applies(one) and not has_published(one)]
             prices = self._prices(lengths, "lengths")
             self.lengths = [pair for pair in zip(lengths, prices, strict=True) if not self._lacks(*pair)]
         floor = TIERS[self.tier - 1] if self.tier else 0.0
@@ -387,9 +387,9 @@ class _Race:
         return self.progress.of(self.settings, stage, part)
 
 
-def _has_published(candidate: Candidate) -> bool:
+def has_published(candidate: Candidate) -> bool:
     """Whether a chain contains a published form, which is never picked."""
-    return candidate.baseline or any(candidates.is_published(candidates.load(name)) for name in candidate.techniques)
+    return any(candidates.is_published(candidates.load(name)) for name in candidate.techniques)
 
 
 def _fit_item(candidate: Candidate, training: tuple[View, ...]) -> Item:
