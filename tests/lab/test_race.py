@@ -201,7 +201,7 @@ def test_a_race_ends_with_a_picture_and_the_error_under_other_lights(
     assert texels.shape[1] == 2 * 160 + 4 and f"wrote {picture}" in output.out
     # both show the body: they are neither black nor flat
     for half in (texels[:, :160], texels[:, 164:]):
-        assert half.max() > 0.5 and half.std() > 0.05
+        assert half.max() > 0.3 and half.std() > 0.05
     # the second time nothing is measured
     assert main([*common, "--target", "wgsl", "--json"]) == 0
     output = capsys.readouterr()
