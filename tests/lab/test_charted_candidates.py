@@ -19,16 +19,16 @@ def test_refraction_is_charted_where_the_body_refracts() -> None:
         candidates.Candidate("translucency", names[-1], names[-1], (), names, False, "march_light")
         for names in (chain, ("wrap_lighting",))
     )
-    assert [chart._applies(case, bent) for case in (scene, refracting)] == [False, True]
-    assert [chart._applies(case, plain) for case in (scene, refracting)] == [True, True]
-    assert all(chart._applies(scene, candidate) for candidate in candidates.coordinates())
+    assert [chart.applies(case, bent) for case in (scene, refracting)] == [False, True]
+    assert [chart.applies(case, plain) for case in (scene, refracting)] == [True, True]
+    assert all(chart.applies(scene, candidate) for candidate in candidates.coordinates())
     # the light of a bake contains the boundary: one that does not refract is wrong there
     baked, of_boundary = (
         candidates.Candidate("translucency", name, name, (), ("exact_view_thickness", name), False, path)
         for name, path in (("fluence_factored_4", "march_light"), ("fluence_factored_4_refracted", ""))
     )
-    assert [chart._applies(case, baked) for case in (scene, refracting)] == [True, False]
-    assert [chart._applies(case, of_boundary) for case in (scene, refracting)] == [False, True]
+    assert [chart.applies(case, baked) for case in (scene, refracting)] == [True, False]
+    assert [chart.applies(case, of_boundary) for case in (scene, refracting)] == [False, True]
 
 
 def test_maps_of_distant_lights_are_charted_where_all_lights_are_distant() -> None:
@@ -39,5 +39,5 @@ def test_maps_of_distant_lights_are_charted_where_all_lights_are_distant() -> No
         candidates.Candidate("translucency", chain[-1], chain[-1], (), chain, False, path)
         for path in ("depth_map_path", "march_light")
     )
-    assert [chart._applies(case, mapped) for case in (scene, near)] == [True, False]
-    assert [chart._applies(case, marched) for case in (scene, near)] == [True, True]
+    assert [chart.applies(case, mapped) for case in (scene, near)] == [True, False]
+    assert [chart.applies(case, marched) for case in (scene, near)] == [True, True]

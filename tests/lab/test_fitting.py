@@ -121,8 +121,9 @@ def test_scale_and_matte_are_least_squares(training: tuple[View, ...], tmp_path:
     values = fit_problem.values(built, fit.chain_values(result.parameters))
 
     def error(scale: Array, matte: Array) -> float:
-        apart = result._replace(scale=tuple(scale), matte=tuple(matte)).apply(values, fit_problem) - fit_problem.target
-        return float(np.sqrt((apart**2 / (fit_problem.target**2 + fit.EPSILON)).mean()))
+        target, weight = fit_problem.fit_target
+        apart = result._replace(scale=tuple(scale), matte=tuple(matte)).apply(values, fit_problem) - target
+        return float(np.sqrt((weight * apart**2).mean()))
 
     scale, matte = np.array(result.scale), np.array(result.matte)
     assert np.ptp(scale) == 0.0

@@ -398,8 +398,8 @@ def test_fitting_in_two_steps_equals_fitting_the_chain(training: tuple[View, ...
         fit_problem = fit_problem.thin_out(fit.LANES)
         with tempfile.TemporaryDirectory() as folder:
             values = fit_problem.values(chain(whole, view, Path(folder)), fit.chain_values(result.parameters))
-        apart = result.apply(values, fit_problem) - fit_problem.target
-        squares.append((apart**2 / (fit_problem.target**2 + fit.EPSILON)).mean())
+        target, weight = fit_problem.fit_target
+        squares.append((weight * (result.apply(values, fit_problem) - target) ** 2).mean())
     assert np.sqrt(np.mean(squares)) == pytest.approx(result.error, rel=1e-6)
 
 

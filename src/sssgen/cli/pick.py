@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import os
+import sys
 from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from sssgen.cli.chart import add_reference_options, announce, settings_of
+from sssgen.cli.chart import add_reference_options, settings_of
 from sssgen.cli.emit import chosen_targets
 from sssgen.cli.engine_options import add_condition_options, conditions_of, device_of
 from sssgen.cli.options import add_targets
@@ -15,10 +18,17 @@ from sssgen.material.material_loading import parse_material
 from sssgen.pipeline.compiler import compile
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.support.file_writer import write_files
+from sssgen.support.progress import ProgressBar
 
 if TYPE_CHECKING:
+    from sssgen.lab.chart.charting import Settings
+    from sssgen.lab.chart.drawn_lights import DrawnErrors
+    from sssgen.lab.chart.engine_conditions import Conditions
     from sssgen.lab.chart.picking import Pick
-    from sssgen.lab.chart.record import Point
+    from sssgen.lab.chart.racing import Limits, Provisional
+    from sssgen.lab.chart.record import Point, Record
+    from sssgen.lab.chart.whole_progress import WholeProgress
+    from sssgen.lab.gpu.device_costs import Device
     from sssgen.scene.measured.measured_scene import MeasuredScene
 
 
@@ -28,7 +38,8 @@ def add_options(parser: ArgumentParser) -> None:
         "  sssgen pick cube --max-error 0.5\n"
         "  sssgen pick my/scene.toml --max-cost 300 --emit out --target wgsl\n"
         "  sssgen pick cube --max-error 0.3 --light moving --body deforming --without depth-map\n"
-        "The scene is measured first, unless its chart is in the cache."
+        "The chains race: each is measured until it is surely too expensive or surely too far off.\n"
+        "A chart of the scene in the cache is used as it is."
     )
     parser.add_argument("SCENE", help="a scene's .toml file, or one of examples/lab")
     limits = parser.add_mutually_exclusive_group(required=True)
@@ -36,7 +47,9 @@ def add_options(parser: ArgumentParser) -> None:
     limits.add_argument(
         "--max-cost", type=float, metavar="C", help="the largest cost, in operations, or in ns with --device"
     )
-    parser.add_argument("--emit", metavar="DIR", help="write the material and its shaders to this folder")
+    parser.add_argument(
+        "-o", "--emit", metavar="DIR", help="write the material, its shaders and its picture to this folder"
+    )
     add_condition_options(parser)
     add_targets(parser)
     add_reference_options(parser)
@@ -49,43 +62,142 @@ def run(arguments: Namespace) -> int:
         if value is not None and not 0.0 < value < float("inf"):
             raise failure(f"--{name.replace('_', '-')} {value:g} is not a limit", "a number above 0")
     settings, conditions, device = settings_of(arguments), conditions_of(arguments), device_of(arguments)
-    from sssgen.lab.chart import charting as chart
+    from sssgen.lab.chart.picked_steps import next_step
     from sssgen.lab.chart.picking import pick
     from sssgen.scene.measured import measured_scene
 
-    scene = measured_scene.load(arguments.SCENE)
-    announce([scene], settings)
-    record = chart.chart_record([scene], settings)
-    if device is not None:
-        from sssgen.lab.gpu.device_costs import by_device
+    scene, unit = measured_scene.load(arguments.SCENE), " ns" if device is not None else ""
+    targets = _targets(arguments) if arguments.emit else []
+    with _open_bar() as (bar, progress):
+        record = _record(scene, settings, _limits(arguments, conditions, device), bar, progress, unit)
+        if device is not None:
+            from sssgen.lab.gpu.device_costs import by_device
 
-        record = by_device(record, device)
-    picked = pick(record, scene.name, arguments.max_error, arguments.max_cost, conditions)
-    files = _emit(scene, picked, arguments.emit, arguments.target) if arguments.emit else []
+            record = by_device(record, device)
+        picked = pick(record, scene.name, arguments.max_error, arguments.max_cost, conditions)
+        unseen = _unseen(scene, picked, settings, conditions, progress)
+        files, bakes = (
+            _emit(scene, picked, arguments, targets, progress.of(settings, "picture")) if arguments.emit else ([], [])
+        )
+    step = next_step(arguments.emit, _name(scene))
     fields = {**picked._asdict(), "roles": [role._asdict() for role in picked.roles]}
-    text = summary(scene, picked, arguments.max_error, arguments.max_cost, " ns" if device is not None else "")
-    text = "\n".join([text, *(f"wrote {file}" for file in files)])
-    print_result(arguments.json, {"files": files, **fields}, text, picked.met)
+    text = summary(scene, picked, arguments.max_error, arguments.max_cost, unit)
+    lines = [text, *lights_text(picked, unseen, conditions), *(f"wrote {file}" for file in files)]
+    lines += [*(f"bake: {bake}" for bake in bakes), f"next: {step}"]
+    report = {"files": files, **fields, "unseen_lights": unseen and unseen._asdict(), "bakes": bakes, "next": step}
+    print_result(arguments.json, report, "\n".join(lines), picked.met)
     return OK if picked.met else CHECK_FAILED
 
 
-def _emit(scene: MeasuredScene, picked: Pick, folder: str, targets: str) -> list[str]:
-    """Writes the material and its shaders. Raises SssgenError."""
-    from sssgen.lab.chart.picked_material import material_files
+@contextmanager
+def _open_bar() -> Iterator[tuple[ProgressBar, WholeProgress]]:
+    """The bar of the whole run, and its progress."""
+    from sssgen.lab.chart.racing import STAGES
+    from sssgen.lab.chart.whole_progress import WholeProgress
 
-    name = "".join(character if character.isalnum() and character.isascii() else "_" for character in scene.name)
-    name = name if name[:1].isalpha() else f"m_{name}"
-    files = material_files(scene, picked, name)
+    with ProgressBar() as bar:
+        yield bar, WholeProgress(bar, STAGES)
+
+
+def _limits(arguments: Namespace, conditions: Conditions, device: Device | None) -> Limits:
+    from sssgen.lab.chart.racing import Limits
+
+    cost = device.predict if device is not None else None
+    name = repr(device) if device is not None else ""
+    return Limits(arguments.max_error, arguments.max_cost, conditions, cost, name)
+
+
+def _record(
+    scene: MeasuredScene, settings: Settings, limits: Limits, bar: ProgressBar, progress: WholeProgress, unit: str
+) -> Record:
+    """The scene's chart if it is cached or takes seconds, otherwise the record of a race. Raises SssgenError."""
+    from sssgen.lab.chart import charting, racing
+
+    moves = limits.conditions.light == "moving"
+    if scene.medium is None or (not moves and charting.cached_points(scene, settings) is not None):
+        return charting.chart_record([scene], progress.of(settings, "chains", 0.2))
+    if not racing.is_stored(scene, settings, limits):
+        text = f"measuring chains on {scene.name}, the cheapest first: minutes; each finished step is kept"
+        print(text, file=sys.stderr, flush=True)
+
+    def show(answer: Provisional) -> None:
+        with bar.hide():
+            nearest = "" if answer.met else "no chain is within the limit so far; the nearest is "
+            text = f"provisional, after {answer.seconds:.0f} s: {nearest}{_point(answer.point)}{unit}"
+            print(text, file=sys.stderr, flush=True)
+
+    return racing.race_record(scene, settings, limits, progress, show)
+
+
+def _unseen(
+    scene: MeasuredScene, picked: Pick, settings: Settings, conditions: Conditions, progress: WholeProgress
+) -> DrawnErrors | None:
+    """The errors of the picked chain under lights that were not used."""
+    if picked.chain is None:
+        return None
+    from sssgen.lab.chart import racing
+
+    used = racing.LIGHTS if conditions.light == "moving" else 0
+    return racing.unseen_errors(scene, picked.chain, progress.of(settings, "lights"), used)
+
+
+def _targets(arguments: Namespace) -> Sequence[str]:
+    """The targets to emit, checked before anything is measured. Raises SssgenError."""
     wrong: list[Diagnostic] = []
-    chosen = chosen_targets(targets, wrong)
+    chosen = chosen_targets(arguments.target, wrong)
     if wrong:
         raise SssgenError(wrong)
+    return chosen
+
+
+def _name(scene: MeasuredScene) -> str:
+    """The name of the scene's material."""
+    name = "".join(character if character.isalnum() and character.isascii() else "_" for character in scene.name)
+    return name if name[:1].isalpha() else f"m_{name}"
+
+
+def _emit(
+    scene: MeasuredScene, picked: Pick, arguments: Namespace, targets: Sequence[str], settings: Settings
+) -> tuple[list[str], list[str]]:
+    """Writes the material, its shaders and its picture; returns their paths, and what to do for its bakes.
+
+    Raises SssgenError.
+    """
+    from sssgen.lab.chart.picked_material import material_files
+    from sssgen.lab.chart.picked_steps import bakes
+
+    name, folder = _name(scene), arguments.emit
+    files = material_files(scene, picked, name)
     write_files(folder, files)
     material = parse_material(files[f"{name}.toml"], os.path.join(folder, f"{name}.toml"))
-    for target in chosen:
+    for target in targets:
         files |= compile(material, target).files
     write_files(folder, files)
-    return [os.path.join(folder, file) for file in files]
+    paths = [os.path.join(folder, file) for file in files]
+    if picked.chain is not None:
+        from sssgen.lab.chart.picked_picture import side_by_side
+        from sssgen.scene.pictures.images import write_png
+
+        paths.append(os.path.join(folder, f"{name}_beside_path_tracing.png"))
+        write_png(paths[-1], side_by_side(scene, picked.chain, settings))
+    return paths, bakes(material, arguments.SCENE)
+
+
+def lights_text(picked: Pick, unseen: DrawnErrors | None, conditions: Conditions) -> list[str]:
+    """For which lights the limit holds, and the error under others."""
+    if picked.chain is None:
+        return []
+    if conditions.light == "moving":
+        holds = "the limit is for the scene's lights and each of 6 lights drawn at random"
+    else:
+        holds = "the limit is for the scene's own lights; --light moving has it for others, too"
+    if unseen is None:
+        return [f"  lights        {holds}; another light needs another bake"]
+    count = len(unseen.values)
+    found = (
+        f"under {count} lights that were not used the error is {unseen.median:.3g} (median), {unseen.worst:.3g} (worst)"
+    )
+    return [f"  lights        {holds}", f"  other lights  {found}"]
 
 
 def summary(scene: MeasuredScene, picked: Pick, max_error: float | None, max_cost: float | None, unit: str = "") -> str:

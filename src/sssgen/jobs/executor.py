@@ -17,7 +17,7 @@ from sssgen.jobs.result_store import Store
 from sssgen.jobs.work_items import EncodedResult, Failure, Item, Task, execute, task_of
 from sssgen.support.value_bytes import decode
 
-__all__ = ["Failure", "Item", "Progress", "failures", "run"]
+__all__ = ["Failure", "Item", "Progress", "completed", "failures", "run"]
 
 Progress = Callable[[int, int, str], None]
 """Called as each item ends: number of finished items, number of all items, name."""
@@ -37,27 +37,49 @@ def run(
     not computed again, and equal items are computed once. An interrupt ends the workers; finished results stay stored.
     Raises SssgenError if the scheduler does not answer or is lost.
     """
+    results: list[Any] = [None] * len(items)
+    for number, result in completed(items, scheduler, processes, store, progress):
+        results[number] = result
+    return results
+
+
+def completed(
+    items: Sequence[Item],
+    scheduler: str = "",
+    processes: int | None = None,
+    store: Store | None = None,
+    progress: Progress = lambda *_: None,
+) -> Generator[tuple[int, Any]]:
+    """Yields the index and the result of each item as it ends: stored ones at once, others in about their order.
+
+    Closing it ends the workers, and no further item is computed. Otherwise as `run`.
+    """
     store = Store() if store is None else store
     tasks = [task_of(item) for item in items]
-    by_key = {task.key: task for task in tasks}
-    results: dict[str, Any] = {}
+    places: dict[str, list[int]] = {}
+    for number, task in enumerate(tasks):
+        places.setdefault(task.key, []).append(number)
+    done: set[str] = set()
 
-    def add_result(key: str, data: bytes) -> Any:
-        results[key] = decode(data)
-        progress(len(results), len(by_key), by_key[key].name)
-        return results[key]
+    def ended(key: str, data: bytes) -> Generator[tuple[int, Any]]:
+        result = decode(data)
+        done.add(key)
+        progress(len(done), len(places), tasks[places[key][0]].name)
+        if key not in stored and not isinstance(result, Failure):
+            store.put(key, data)
+        for number in places[key]:
+            yield number, _with_name(result, tasks[number].name)
 
-    for key in by_key:
-        if (stored := store.get(key)) is not None:
-            add_result(key, stored)
-    computed = _compute([task for key, task in by_key.items() if key not in results], scheduler, processes)
+    stored = {key: data for key in places if (data := store.get(key)) is not None}
+    for key, data in stored.items():
+        yield from ended(key, data)
+    first = {key: tasks[numbers[0]] for key, numbers in places.items()}
+    computed = _compute([task for key, task in first.items() if key not in stored], scheduler, processes)
     try:
         for key, data in computed:
-            if not isinstance(add_result(key, data), Failure):
-                store.put(key, data)
+            yield from ended(key, data)
     finally:
         computed.close()
-    return [_with_name(results[task.key], task.name) for task in tasks]
 
 
 def _with_name(result: Any, name: str) -> Any:

@@ -86,12 +86,16 @@ def chart_record(scenes: Sequence[MeasuredScene], settings: Settings) -> Record:
             by_key[scene.key] = entry
             cache.write(settings.cache_name(scene), json.dumps(entry).encode())
     results = [result for scene in scenes if (result := by_key[scene.key])]
-    points = on_fronts([point for result in results for point in result["points"]])
+    points = [point for result in results for point in result["points"]]
+    return record_of(settings, [result["scene"] for result in results], points)
+
+
+def record_of(settings: Settings, scenes: list[SceneEntry], points: Sequence[Point]) -> Record:
+    """The record of measured points."""
+    charted = on_fronts(points)
     return {
-        "format": FORMAT, "record": conditions(settings), "cost": "static",
-        "cost_unit": "weighted operations",
-        "scenes": [result["scene"] for result in results],
-        "points": points, "hypervolume": hypervolumes(points),
+        "format": FORMAT, "record": conditions(settings), "cost": "static", "cost_unit": "weighted operations",
+        "scenes": scenes, "points": charted, "hypervolume": hypervolumes(charted),
     }  # fmt: skip
 
 
@@ -112,7 +116,7 @@ def _measure(scenes: Sequence[MeasuredScene], settings: Settings) -> list[SceneP
         if role == "material":
             continue
         jobs = [(scene, candidate) for scene in scenes for candidate in _candidates(role, scene, points[scene.key])]
-        jobs = [job for job in jobs if _applies(*job) and _is_selected(job[1], settings)]
+        jobs = [job for job in jobs if applies(*job) and _is_selected(job[1], settings)]
         for scene, point in _points(jobs, views, settings, {}):
             points[scene.key].append(point)
     if "material" in settings.roles:
@@ -125,13 +129,16 @@ def _measure(scenes: Sequence[MeasuredScene], settings: Settings) -> list[SceneP
                     useful_lengths(points[scene.key], candidates.view_thickness()),
                     useful_paths(points[scene.key]),
                 )
-                jobs += [(scene, candidate) for candidate in whole if _applies(scene, candidate)]
+                jobs += [(scene, candidate) for candidate in whole if applies(scene, candidate)]
                 before |= {
                     (scene.key, *key): values for key, values in distance_function_parameters(points[scene.key]).items()
                 }
         for scene, point in _points(jobs, views, settings, before):
             points[scene.key].append(point)
-    return [{"scene": _description(scene, views[scene.key]), "points": points[scene.key]} for scene in scenes]
+    return [
+        {"scene": scene_entry(scene, [view.name for view in views[scene.key].training]), "points": points[scene.key]}
+        for scene in scenes
+    ]
 
 
 def _candidates(role: str, scene: MeasuredScene, measured: Sequence[Point]) -> list[Candidate]:
@@ -148,7 +155,7 @@ def _candidates(role: str, scene: MeasuredScene, measured: Sequence[Point]) -> l
     return candidates.thickness() if role == "thickness" else candidates.view_thickness()
 
 
-def _applies(scene: MeasuredScene, candidate: Candidate) -> bool:
+def applies(scene: MeasuredScene, candidate: Candidate) -> bool:
     """Whether a candidate is charted on a scene: refraction only where the body refracts, light that is baked without
     refraction only elsewhere, maps of lights from afar only where all lights are, and marches that reach through it."""
     if not candidates.reaches(candidate, span(scene.geometry)):
@@ -272,17 +279,21 @@ def results_of(items: Sequence[Item], settings: Settings) -> list[Any]:
     """The items' results. Raises SssgenError with all failures."""
     with settings.progress_bar() as progress:
         results = run(items, settings.scheduler, settings.processes, progress=progress)
+    raise_failures([result for result in results if isinstance(result, Failure)])
+    return results
+
+
+def raise_failures(failures: Sequence[Failure]) -> None:
+    """Raises SssgenError with all failures, if there are any."""
     failed: dict[tuple[str, str], dict[str, None]] = {}
-    for result in results:
-        if isinstance(result, Failure):
-            failed.setdefault((result.message, result.hint), {})[result.name] = None
+    for result in failures:
+        failed.setdefault((result.message, result.hint), {})[result.name] = None
     if failed:
         diagnostics = []
         for (message, hint), names in failed.items():  # an error of a scene appears in all of its items
             first, more = next(iter(names)), f" and {len(names) - 1} more" if len(names) > 1 else ""
             diagnostics.append(failure(f"{first}{more}: {message}", hint).diagnostics[0])
         raise SssgenError(diagnostics)
-    return results
 
 
 def distance_function_parameters(
@@ -331,8 +342,8 @@ def useful_lengths(points: Sequence[Point], lengths: Sequence[Candidate]) -> lis
     return chosen
 
 
-def _description(scene: MeasuredScene, views: _Views) -> SceneEntry:
-    """A scene's entry in the record."""
+def scene_entry(scene: MeasuredScene, fitted_to: list[str]) -> SceneEntry:
+    """A scene's entry in the record, with the names of its training views."""
     entry: SceneEntry = {"name": scene.name, "title": scene.title, "key": scene.key}
     if (medium := scene.medium) is not None:
         entry["medium"] = {
@@ -340,7 +351,7 @@ def _description(scene: MeasuredScene, views: _Views) -> SceneEntry:
             "ior": medium.ior, "roughness": medium.roughness,
         }  # fmt: skip
         entry["lights"] = scene.lit_by
-        entry["fitted_to"] = [view.name for view in views.training]
+        entry["fitted_to"] = fitted_to
     return entry
 
 

@@ -48,22 +48,29 @@ def directions(count: int) -> list[tuple[float, float, float]]:
     return [(float(x), float(y), float(z)) for x, y, z in drawn / np.linalg.norm(drawn, axis=1, keepdims=True)]
 
 
-def drawn_views(scenes: Sequence[MeasuredScene], count: int, settings: Settings) -> dict[str, tuple[View, ...]]:
-    """Both views of each scene (by its key) under `count` lights, with their references."""
-    lights = tuple(Light(None, direction, (1.0, 1.0, 1.0)) for direction in directions(count))
+def drawn_views(
+    scenes: Sequence[MeasuredScene], count: int, settings: Settings, first: int = 0
+) -> dict[str, tuple[View, ...]]:
+    """Both views of each scene (by its key) under `count` lights after the `first` ones, with their references."""
+    lights = tuple(Light(None, direction, (1.0, 1.0, 1.0)) for direction in directions(first + count)[first:])
     # the references of some scenes are traced for all lights at once
     named = {scene.key: two_views(dataclasses.replace(scene, lights=lights, environment=None)) for scene in scenes}
     return with_references(named, settings._replace(samples=max(settings.samples // SHARE, 2)))
 
 
 def errors(
-    scenes: Sequence[MeasuredScene], chains: Mapping[str, Sequence[FittedChain]], count: int, settings: Settings
+    scenes: Sequence[MeasuredScene],
+    chains: Mapping[str, Sequence[FittedChain]],
+    count: int,
+    settings: Settings,
+    first: int = 0,
 ) -> dict[str, list[DrawnErrors]]:
-    """The errors of each scene's `chains` (by its key; whole materials) over both views, for `count` lights.
+    """The errors of each scene's `chains` (by its key; whole materials) over both views, for `count` lights after the
+    `first` ones.
 
     Raises SssgenError for scenes that cannot be measured, and for missing packages.
     """
-    views = drawn_views(scenes, count, settings)
+    views = drawn_views(scenes, count, settings, first)
     items = []
     for scene in scenes:
         fitted = [(candidate_of(chain), fit_of(chain)) for chain in chains[scene.key]]

@@ -24,6 +24,10 @@ Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
 
+TOGETHER = 4
+"""The flights of a point whose products are added at once: each sum passes over the whole matrix."""
+
+
 class Scattered(NamedTuple):
     """Scattered light as texels."""
 
@@ -62,6 +66,8 @@ def _exchange(
     count = projection.hats.shape[1]
     result = np.zeros((count, count))
     shift = rng.random(3)
+    starts: list[Indices] = []
+    ends: list[Array] = []
     for number in range(flights):
         # a lattice in three dimensions, which is more even than random numbers: Kronecker's
         at = np.arange(len(points)) + number * len(points)
@@ -69,8 +75,14 @@ def _exchange(
         z, angle = 1.0 - 2.0 * u, 2.0 * np.pi * v
         across = np.sqrt(np.maximum(1.0 - z * z, 0.0))
         ways = np.stack([across * np.cos(angle), across * np.sin(angle), z], axis=1)
-        starts, ends = _ends(rays, points, ways, -np.log1p(-w) / medium.extinction, medium.boundary, rng)
-        result += (projection.weighted[:, starts] @ projection.hats_at(ends)).toarray()
+        start, end = _ends(rays, points, ways, -np.log1p(-w) / medium.extinction, medium.boundary, rng)
+        starts.append(start)
+        ends.append(end)
+        if len(starts) == TOGETHER or number == flights - 1:
+            hats = projection.hats_at(np.concatenate(ends))
+            result += (projection.weighted[:, np.concatenate(starts)] @ hats).toarray()
+            starts.clear()
+            ends.clear()
     result *= 0.5 / flights
     result += result.T.copy()
     return result

@@ -15,7 +15,6 @@ from sssgen.ir.types import BY_NAME, components, kind_of
 from sssgen.lab.measure.measured_chain import Chain
 from sssgen.lab.measure.problem import Problem
 from sssgen.run.backends import Array
-from sssgen.scene.pictures.picture_difference import EPSILON
 from sssgen.support.extras import need
 
 LANES = 400
@@ -140,8 +139,8 @@ def chain_values(parameters: Mapping[str, Sequence[float]]) -> dict[str, Any]:
 
 def _residual(fitted: FitResult, values: Array, problem: Problem) -> Array:
     """The relative error of each lane, weighted so that all problems count equally."""
-    difference: Array = (fitted.apply(values, problem) - problem.target) / np.sqrt(problem.target**2 + EPSILON)
-    weighted: Array = difference / np.sqrt(problem.target.size)
+    target, weight = problem.fit_target
+    weighted: Array = (fitted.apply(values, problem) - target) * np.sqrt(weight / target.size)
     return weighted
 
 
@@ -165,7 +164,8 @@ def _with_best_scales(
     targets = []
     for value, problem in zip(values, problems, strict=True):
         for channel in range(channels):
-            weight = 1.0 / np.sqrt((problem.target[channel] ** 2 + EPSILON) * problem.target.size)
+            goals, weights = problem.fit_target
+            weight = np.sqrt(weights[channel] / problem.target.size)
             zeros = np.zeros_like(weight)
             matte = problem.lambert[channel] * weight
             for index, column in enumerate(columns[:-channels]):
@@ -173,7 +173,7 @@ def _with_best_scales(
                 column.append(term if not per_channel or index == channel else zeros)
             for index, column in enumerate(columns[-channels:]):
                 column.append(matte if index == channel else zeros)
-            targets.append(problem.target[channel] * weight)
+            targets.append(goals[channel] * weight)
     basis, target = np.stack([np.concatenate(column) for column in columns], axis=1), np.concatenate(targets)
     best = nnls(basis.T @ basis, basis.T @ target)[0]
     if factor is not None and (best[:-channels] > factor.largest).any():

@@ -58,15 +58,19 @@ def reach(scene: MeasuredScene) -> float:
     return volumes.reach_of(grid_in_box(scene, fitting_voxels(scene))) * scene.geometry.scale
 
 
-def prepare(scene: MeasuredScene, scheduler: str, processes: int | None, progress: Progress) -> None:
-    """Computes the fluence of a scene's body. Chains of several processes find it in the store; otherwise each process
-    would compute it. Raises SssgenError.
+def prepare(
+    scene: MeasuredScene, scheduler: str, processes: int | None, progress: Progress, directions: bool = True
+) -> None:
+    """Computes the fluence of a scene's body, of its lights and, with `directions`, of light from all directions.
+
+    Chains of several processes find it in the store; otherwise each process would compute it. Raises SssgenError.
     """
     if scene.medium is None:
         return
     alone = _without_view(scene)
     settings = field.settings_for(alone)
-    field.field(alone, settings, scheduler, processes, progress)
+    if directions:
+        field.field(alone, settings, scheduler, processes, progress)
     for light in scene.lights:
         field.of_light(alone, _towards(scene, light), settings, scheduler, processes, progress)
 

@@ -16,7 +16,7 @@ from sssgen.lab.measure import fitting
 from sssgen.lab.measure.candidates import PROBES, Candidate, converged_counts, is_calibrated, load
 from sssgen.lab.measure.fitting import FitResult
 from sssgen.lab.measure.measured_chain import Chain, material_of
-from sssgen.lab.measure.measured_point import MeasuredPoint, ViewError
+from sssgen.lab.measure.measured_point import MeasuredPoint, PointCost, ViewError
 from sssgen.lab.measure.needed_data import NeededData, needed_data
 from sssgen.lab.measure.problem import (
     LENGTHS,
@@ -127,10 +127,13 @@ def chain_of(candidate: Candidate, shape: Body, folder: str, dtype: Any = np.flo
     return Chain(material_of(candidate.stages(shape), folder), dtype)
 
 
-def measure_candidate(candidate: Candidate, fitted: FitResult, views: Sequence[View]) -> MeasuredPoint:
+def measure_candidate(
+    candidate: Candidate, fitted: FitResult, views: Sequence[View], thorough: bool = True
+) -> MeasuredPoint:
     """The candidate's error over the views of one scene, with fitted parameters, as a point of a chart's record.
 
-    `failed` of the point is not empty if the chain's output has NaN or infinity. Raises SssgenError.
+    If it is not `thorough`, the point is without FLIP and without the errors of the implementation, which take most of
+    the time. `failed` of the point is not empty if the chain's output has NaN or infinity. Raises SssgenError.
     """
     solvable = [(view, problem) for view in views if (problem := problem_of(candidate.role, view)) is not None]
     if not solvable:
@@ -144,7 +147,7 @@ def measure_candidate(candidate: Candidate, fitted: FitResult, views: Sequence[V
         data = needed_data(chain.material.stages, views[0].scene) if chain is not None else NeededData()
         implementation = {
             kind: difference(_values(variant, fitted, problems[0]), outputs[0])
-            for kind, variant in _variants(candidate, shape, folder)
+            for kind, variant in (_variants(candidate, shape, folder) if thorough else ())
         }
     not_finite = sum(int((~np.isfinite(values)).any(axis=0).sum()) for values in outputs)
     lanes = sum(values.shape[1] for values in outputs)
@@ -158,7 +161,7 @@ def measure_candidate(candidate: Candidate, fitted: FitResult, views: Sequence[V
     for picture, (view, problem) in zip(pictures, solvable, strict=True):
         view_error = metrics.compare(picture, problem.target, problem.noise)
         view_errors[view.name] = {"value": view_error["value"], "low": view_error["low"], "high": view_error["high"]}
-    if candidate.role == "material":
+    if thorough and candidate.role == "material":
         flips = [
             metrics.flip(points(view.scene).picture(picture), points(view.scene).picture(problem.target))
             for picture, (view, problem) in zip(pictures, solvable, strict=True)
@@ -172,14 +175,46 @@ def measure_candidate(candidate: Candidate, fitted: FitResult, views: Sequence[V
         "scale": list(fitted.scale), "matte": list(fitted.matte), "factor": fitted.factor,
         "training_error": fitted.error,
         "requires": list(data.requires), "bytes": data.bytes,
-        "cost": {
-            "value": float(max(cost.weight, 1)), "operations": cost.operations,
-            "transcendentals": cost.transcendentals, "fetches": cost.fetches,
-            "distance_evaluations": cost.distance_evaluations, "gpu_ms": None,
-        },
+        "cost": _point_cost(cost),
         "error": error, "views": view_errors, "implementation": implementation,
         "failed": f"{not_finite} of {lanes} points are not finite" if not_finite else "",
     }  # fmt: skip
+
+
+class Price(NamedTuple):
+    """What is known of a candidate on a scene before it is fitted."""
+
+    cost: PointCost
+    requires: tuple[str, ...]
+    """Of `material.attributes.REQUIREMENTS`"""
+    bytes: int
+    """Of its baked textures"""
+
+
+def price(candidate: Candidate, scene: MeasuredScene) -> Price:
+    """The static cost of a candidate, and the data that it needs. Raises SssgenError."""
+    with tempfile.TemporaryDirectory() as folder:
+        chain = chain_of(candidate, body(scene.geometry), folder)
+        data = needed_data(chain.material.stages, scene) if chain is not None else NeededData()
+        return Price(_point_cost(static_cost(chain)), data.requires, data.bytes)
+
+
+def _point_cost(cost: Cost) -> PointCost:
+    return {
+        "value": float(max(cost.weight, 1)), "operations": cost.operations,
+        "transcendentals": cost.transcendentals, "fetches": cost.fetches,
+        "distance_evaluations": cost.distance_evaluations, "gpu_ms": None,
+    }  # fmt: skip
+
+
+def fit_and_measure(
+    candidate: Candidate,
+    training: Sequence[View],
+    before: Parameters | None,
+    views: Sequence[View],
+) -> MeasuredPoint:
+    """`fit_candidate`, then `measure_candidate`, which is not thorough."""
+    return measure_candidate(candidate, fit_candidate(candidate, training, before), views, thorough=False)
 
 
 def pictures_of(candidate: Candidate, fitted: FitResult, view: View) -> tuple[Array, Array]:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.lab.measure import fluence_inputs, scene_inputs
+from sssgen.lab.measure.error_metric import fit_target
 from sssgen.lab.measure.measured_chain import Chain
 from sssgen.lab.reference import inlay_refraction as refraction
 from sssgen.lab.reference.inside_lengths import thickness
@@ -93,6 +94,11 @@ class Problem:
             # parameters of later techniques with the same names have the same meaning
             parts.append(part._replace(values={**part.values, **parameters, name: output}))
         return replace(self, parts=tuple(parts))
+
+    @cached_property
+    def fit_target(self) -> tuple[Array, Array]:
+        """The target of a fit and its weights, (channels, lanes) each: `error_metric.fit_target`."""
+        return fit_target(self.target, self.noise)
 
     @cached_property
     def _single_part(self) -> Part:

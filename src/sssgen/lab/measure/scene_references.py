@@ -92,11 +92,11 @@ def by_scene(scenes: Sequence[MeasuredScene], results: Sequence[Any]) -> dict[st
     return references
 
 
-def training_scenes(scene: MeasuredScene) -> list[MeasuredScene]:
+def training_scenes(scene: MeasuredScene, side: int = TRAINING_SIDE) -> list[MeasuredScene]:
     """The training scenes: balls and bars of the scene's medium, as large as its body and smaller, and a small slab.
 
     Light leaves a bar to all sides, and a slab to none: a large slab would outweigh the others, and no body is one.
-    Sizes are powers of two, so that scenes with the same medium share them.
+    Sizes are powers of two, so that scenes with the same medium share them. Their views have `side` × `side` pixels.
     """
     assert scene.medium is not None
     corners = world_corners(scene.geometry)
@@ -109,7 +109,7 @@ def training_scenes(scene: MeasuredScene) -> list[MeasuredScene]:
         result.append(lit_body("bar", bar, scene.medium, (0.5 * part, 0.4 * part, 3.1 * part), ROUND_LIGHTS))
     slab = Slab(1.4 * small, 1.4 * small, 0.3 * small)
     result.append(lit_body("slab", slab, scene.medium, (0.9 * small, 0.7 * small, 3.0 * small), SLAB_LIGHTS))
-    return result
+    return [dataclasses.replace(each, size=(side, side)) for each in result]
 
 
 def lit_body(
