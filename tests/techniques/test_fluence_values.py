@@ -268,3 +268,21 @@ def test_the_factored_techniques_behind_a_refracting_surface(name: str) -> None:
     light = np.maximum(tiles[0] + latents[z, y, x] @ tiles[1:], 0.0)
     close(result, share[:, None] * albedo * (1.0 - np.exp(-sigma * chord[:, None])) * light, rtol=1e-5, atol=1e-9)
     assert (light > 0.0).all(axis=1).any()
+
+
+@pytest.mark.parametrize("ior", [1.0, 1.4])
+def test_the_volume_of_all_lights_at_one_place(ior: float) -> None:
+    mean_free_path, sigma, albedo = 0.2, np.array([3.0, 5.0, 7.0]), np.array([0.9, 0.6, 0.4])
+    normal, view, ray, chord, share = refracted_in_ball(ior, 60)
+    texels = rng(7).uniform(0.0, 1.0, (6, 5, 4, 4))
+    matrix = np.diag([0.5, 0.5, 0.5, 1.0])
+    matrix[:3, 3] = 0.5
+    result = technique("fluence_relit_once")(
+        d=2.0 * RADIUS * np.einsum("nc,nc->n", normal, view), P=RADIUS * normal, V=view, N=normal, ior=ior,
+        extinction=sigma, scattering_albedo=albedo, mean_free_path=mean_free_path, world_to_volume=matrix,
+        inner_light=Texture(texels, "nearest", "clamp"),
+    )  # fmt: skip
+    place = RADIUS * normal + np.minimum(np.log(2.0) * mean_free_path, 0.5 * chord)[:, None] * ray
+    x, y, z = (np.clip((0.5 * place + 0.5) * (4, 5, 6), 0, (3, 4, 5)).astype(int)).T
+    light = texels[z, y, x, :3]
+    close(result, share[:, None] * albedo * (1.0 - np.exp(-sigma * chord[:, None])) * light, rtol=1e-5, atol=1e-9)
