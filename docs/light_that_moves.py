@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import argparse
 import io
-from collections.abc import Sequence
+import os
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from statistics import median
 from typing import NamedTuple
@@ -17,14 +18,18 @@ import numpy as np
 from accuracy import INDEX, refracting, scenes
 from accuracy_pictures import displayed, frame
 
+from sssgen.lab.chart.case_errors import NEAR, CaseErrors, cost_of, errors
 from sssgen.lab.chart.charting import Settings, candidate_of, fit_of
 from sssgen.lab.chart.drawing import figure as charts
-from sssgen.lab.chart.drawn_lights import DrawnErrors, drawn_views, errors, views_of_light
+from sssgen.lab.chart.drawn_lights import Case, cases_of, drawn_views, environment_cases, lamp_views
+from sssgen.lab.chart.skies import skies
 from sssgen.lab.measure.measured_point import FittedChain
 from sssgen.lab.measure.measurement import pictures_of
 from sssgen.run.backends import Array
+from sssgen.scene.environment import Environment, digest
 from sssgen.scene.measured import measured_scene
 from sssgen.scene.measured.measured_scene import MeasuredScene
+from sssgen.scene.pictures.images import encode_srgb, png_bytes
 from sssgen.support.extras import need
 from sssgen.support.file_writer import write_files
 from sssgen.support.progress import ProgressBar
@@ -43,15 +48,24 @@ def chain(*techniques: str, path: str = "") -> FittedChain:
     }  # fmt: skip
 
 
-MATCHED = (
-    chain("back_face_thickness", "fluence_factored_8", path="depth_map_path"),
-    chain("fluence_relit"),
-)
-BOUNDARY = (
-    chain("back_face_thickness", "fluence_factored_8_refracted"),
-    chain("fluence_relit_refracted"),
-)
-"""Of each part of the page: what served moving lights before, and the volume of all lights."""
+BEFORE = {
+    1.0: chain("back_face_thickness", "fluence_factored_8", path="depth_map_path"),
+    INDEX: chain("back_face_thickness", "fluence_factored_8_refracted"),
+}
+"""What served moving lights before, by the boundary's index"""
+RELIT = {1.0: chain("fluence_relit"), INDEX: chain("fluence_relit_refracted")}
+"""The volume of all lights"""
+MATTE = chain()
+"""The light that a white matte surface reflects, times the albedo that fits best"""
+
+
+class Row(NamedTuple):
+    """A line of a table: what is measured, and its errors on each body."""
+
+    label: str
+    errors: Sequence[CaseErrors]
+    chain: FittedChain | None = None
+    """The chain, where the table has its cost"""
 
 
 class Part(NamedTuple):
@@ -59,26 +73,29 @@ class Part(NamedTuple):
 
     title: str
     bodies: Sequence[MeasuredScene]
-    chains: Sequence[FittedChain]
-    measured: dict[str, list[DrawnErrors]]
+    index: float
+    tables: dict[str, list[Row]]
+    costs: dict[str, tuple[float, int]]
+    """Operations, and the largest bytes, by the chain's label"""
 
 
 def main() -> None:
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("scenes", nargs="*", metavar="SCENE")
     options.add_argument("--lights", type=int, default=24)
-    options.add_argument("--samples", type=int, default=512, help="of a chart; a light has a quarter")
+    options.add_argument("--samples", type=int, default=512, help="of surroundings; a light has a quarter")
     options.add_argument("--processes", type=int)
     arguments = options.parse_args()
     settings = Settings(arguments.samples, processes=arguments.processes, progress_bar=ProgressBar)
     bodies = [body for body in map(measured_scene.load, arguments.scenes or scenes()) if body.medium is not None]
-    parts = []
-    for title, group, chains in (
-        ("A matched boundary", bodies, MATCHED),
-        (f"A smooth boundary of refractive index {INDEX}", [refracting(body) for body in bodies], BOUNDARY),
-    ):
-        measured = errors(group, {body.key: chains for body in group}, arguments.lights, settings)
-        parts.append(Part(title, group, chains, measured))
+    surroundings = written_skies()
+    parts = [
+        measured("A matched boundary", bodies, 1.0, arguments.lights, surroundings, settings),
+        measured(
+            f"A smooth boundary of refractive index {INDEX}", [refracting(body) for body in bodies], INDEX,
+            arguments.lights, surroundings, settings,
+        ),
+    ]  # fmt: skip
     text = page(parts, arguments)
     if arguments.scenes:
         print(text)
@@ -88,33 +105,88 @@ def main() -> None:
     write_files(str(DOCS), {"light_that_moves.md": text})
 
 
+def written_skies() -> dict[str, Environment]:
+    """The pictures of the surroundings by their names, written beside the page's other pictures."""
+    files: dict[str, str | bytes] = {sky_file(name): png_bytes(encode_srgb(light)) for name, light in skies().items()}
+    write_files(str(DOCS / "accuracy"), files)
+    # a relative path: it is a part of the key of stored results
+    paths = {name: os.path.relpath(DOCS / "accuracy" / sky_file(name)) for name in skies()}
+    return {name: Environment((1.0, 1.0, 1.0), path, digest(path)) for name, path in paths.items()}
+
+
+def sky_file(name: str) -> str:
+    return f"sky_{name.replace(' ', '_')}.png"
+
+
+def measured(
+    title: str, bodies: Sequence[MeasuredScene], index: float, count: int, surroundings: dict[str, Environment],
+    settings: Settings,
+) -> Part:  # fmt: skip
+    """All tables of one kind of surface."""
+    relit, before = RELIT[index], BEFORE[index]
+    keys = [body.key for body in bodies]
+    far, near = drawn_views(bodies, count, settings), lamp_views(bodies, -(-count // 2), settings)
+    scattered, whole = environment_cases(bodies, list(surroundings.values()), settings)
+
+    def rows(label: str, chains: Sequence[FittedChain], cases: Mapping[str, Sequence[Case]]) -> list[Row]:
+        results = errors(bodies, chains, cases, settings)
+        return [
+            Row(label or chain["label"], [results[key][number] for key in keys], None if label else chain)
+            for number, chain in enumerate(chains)
+        ]
+
+    def lit(views: Mapping[str, Case], size: int = 1) -> dict[str, list[Case]]:
+        return {key: cases_of(views[key], size) for key in keys}
+
+    around = []
+    for number, name in enumerate(surroundings):
+        around += rows(f"{name}: volume", [relit], {key: scattered[key][number : number + 1] for key in keys})
+    around += rows("all three: volume", [relit], scattered)
+    around += rows("all three: best matte surface", [MATTE], scattered)
+    around += rows("all three: volume, against light with what is seen through the body", [relit], whole)
+    tables = {
+        "A light from afar": rows("", [before, relit], lit(far)),
+        "Several lights from afar": rows("two", [relit], lit(far, 2)) + rows("three", [relit], lit(far, 3)),
+        "A lamp at one radius from the surface": rows("", [before, relit], lit(near)),
+        "Surroundings": around,
+    }
+    costs = {}
+    for each in (before, relit):
+        of_bodies = [cost_of(each, cases_of(far[key])[0], settings) for key in keys]
+        costs[each["label"]] = of_bodies[0][0], max(size for _, size in of_bodies)
+    return Part(title, bodies, index, tables, costs)
+
+
 def page(parts: Sequence[Part], arguments: argparse.Namespace) -> str:
     """The page's text."""
     lines = [
         "# Light that moves", "",
-        f"`python docs/light_that_moves.py` measures this page: each body under {arguments.lights} lights from "
-        "afar, whose directions are drawn at random, the same for all bodies and chains; none was used in a fit. "
-        f"The reference has {arguments.samples // 4} paths for each point and light. A figure is the error over "
-        "the scene's two views, as in [accuracy.md](accuracy.md): the median over the lights, and the "
-        "worst light in brackets.", "",
+        f"`python docs/light_that_moves.py` measures this page: bodies under {arguments.lights} lights from afar, two "
+        f"and three of these together, {-(-arguments.lights // 2)} lamps at one radius from the surface, and three "
+        "pictures of surroundings. Directions are drawn at random, the same for all bodies and chains; none was used "
+        "in a fit. The reference is path tracing with the true lights and pictures, "
+        f"{arguments.samples // 4} paths for each point and light and {arguments.samples} in surroundings. A figure is "
+        "the error over the scene's two "
+        "views, as in [accuracy.md](accuracy.md): the median over the lights, and the worst light in brackets. At the "
+        f"*edges* are points with both lit and dark ones within {NEAR} pixels. A body's radius is half of the longest "
+        "side of its box.", "",
     ]  # fmt: skip
     for part in parts:
-        names = [body.name for body in part.bodies]
-        lines += [f"## {part.title}", "", f"| chain | operations | bytes | median | {' | '.join(names)} |"]
-        lines.append("|---|---:|---:|---:|" + "---:|" * len(names))
-        for number, each in enumerate(part.chains):
-            of_bodies = [part.measured[body.key][number] for body in part.bodies]
-            cells = [f"{result.median:.3f} ({result.worst:.3f})" for result in of_bodies]
-            middle = f"{median(result.median for result in of_bodies):.3f} ({median(r.worst for r in of_bodies):.3f})"
-            size = max(result.bytes for result in of_bodies) / 1024
-            lines.append(
-                f"| {each['label']} | {of_bodies[0].cost:.0f} | {size:.0f} KiB | {middle} | {' | '.join(cells)} |"
-            )
+        lines += [f"## {part.title}", "", "| chain | operations | bytes |", "|---|---:|---:|"]
+        lines += [f"| {label} | {cost:.0f} | {size / 1024:.0f} KiB |" for label, (cost, size) in part.costs.items()]
         lines.append("")
+        for title, rows in part.tables.items():
+            lines += table(title, [body.name for body in part.bodies], rows)
     lines += [
         "The operations are those of one light; `fluence_relit` and `fluence_relit_refracted` have them once for all "
-        "lights. The bytes are the largest of the bodies' textures; the file of a volume of all lights has about "
-        "0.3 KiB a voxel.",
+        "lights and surroundings. The bytes are the largest of the bodies' textures; the file of a volume of all "
+        "lights has about 0.3 KiB a voxel.",
+        "",
+        "The three surroundings; a volume has their spherical harmonics of order 2, the reference the pictures:", "",
+        " ".join(f"![{name}](accuracy/{sky_file(name)})" for name in skies()), "",
+        "Light that comes through the body without being scattered is a picture of what is behind it, and no light of "
+        "a volume. It is in the last row of the surroundings only, where thin parts and silhouettes with a matched "
+        "boundary show the sky behind them.",
         "",
         "For each body, the light of the median error and the worst one; left half with a matched boundary, right half "
         "with a refracting one:",
@@ -123,16 +195,34 @@ def page(parts: Sequence[Part], arguments: argparse.Namespace) -> str:
     return "\n".join(lines)
 
 
+def table(title: str, names: Sequence[str], rows: Sequence[Row]) -> list[str]:
+    """A table's lines: the medians over the cases, and the worst case in brackets where there are several."""
+    edges = any(np.isfinite(each.edge) for row in rows for each in row.errors)
+    heads = ["chain" if rows[0].chain else "light", "median", *(["edges"] if edges else []), *names]
+    lines = [f"### {title}", "", f"| {' | '.join(heads)} |", "|---|" + "---:|" * (len(heads) - 1)]
+    for row in rows:
+        cells = [cell(median(each.median for each in row.errors), median(each.worst for each in row.errors))]
+        if edges:
+            cells.append(f"{median(each.edge for each in row.errors):.3f}")
+        cells += [cell(each.median, each.worst) for each in row.errors]
+        lines.append(f"| {row.label} | {' | '.join(cells)} |")
+    return [*lines, ""]
+
+
+def cell(middle: float, worst: float) -> str:
+    return f"{middle:.3f}" if middle == worst else f"{middle:.3f} ({worst:.3f})"
+
+
 def picture(parts: Sequence[Part], count: int, settings: Settings) -> bytes:
     """The pictures as a PNG: for each body and surface the median and the worst light, path traced and ours."""
     rows: list[list[Array]] = [[] for _ in parts[0].bodies]
     for part in parts:
         views = drawn_views(part.bodies, count, settings)
-        ours = part.chains[-1]
-        for row, body in zip(rows, part.bodies, strict=True):
-            order = np.argsort(part.measured[body.key][-1].values)
+        ours, far = RELIT[part.index], part.tables["A light from afar"][-1]
+        for row, body, result in zip(rows, part.bodies, far.errors, strict=True):
+            order = np.argsort(result.values)
             for light in (order[(len(order) - 1) // 2], order[-1]):
-                view = views_of_light(views[body.key], int(light))[0]
+                view = cases_of(views[body.key])[int(light)][0]
                 values, reference = pictures_of(candidate_of(ours), fit_of(ours), view)
                 inner = frame(reference)
                 row += [displayed(reference[inner]), displayed(values[inner])]

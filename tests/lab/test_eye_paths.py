@@ -12,7 +12,7 @@ import pytest
 from qualification.closed_forms import henyey_greenstein
 from sssgen.lab.reference import dielectric
 from sssgen.lab.reference.dielectric import Dielectric, axes, fresnel
-from sssgen.lab.reference.eye_paths import BATCHES, Eye, Readings, readings
+from sssgen.lab.reference.eye_paths import BATCHES, Eye, Readings, Sky, readings
 from sssgen.lab.reference.first_light import Lamp, Voxels, first_light, voxels_of
 from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.surface_rays import SurfaceRays
@@ -185,7 +185,7 @@ def test_voxels_hold_the_volume(geometry: Geometry, volume: float) -> None:
 def test_white_furnace(geometry: Geometry, ior: float) -> None:
     # without absorption, under an even sky, each point shows the transmitted share; what is missing is its reflection
     eye = seen(geometry, 16, 12)
-    result = readings(geometry, grey(1.0, ior, 3.0), eye, [], even, Sampling(16))
+    result = readings(geometry, grey(1.0, ior, 3.0), eye, [], [Sky(even)], Sampling(16))
     cosine = -np.einsum("nc,nc->n", eye.normal, eye.direction)
     assert len(cosine) > 8
     assert result.mean[0, :, 0] == pytest.approx(transmitted(cosine, ior)[0], abs=1e-4)
@@ -204,7 +204,7 @@ def test_once_scattered_below_a_plane(cosine_in: float, cosine_out: float, aniso
     sun = np.array([np.sqrt(1.0 - cosine_in**2), 0.0, cosine_in])
     eye = on_top(np.array([cosine_out]))
     medium, lamp = grey(albedo, ior, 1.0, anisotropy), Lamp((sun[0], sun[1], sun[2]))
-    result = readings(slab(12.0, 400.0), medium, eye, [lamp], None, Sampling(5_000, scatterings=1), shape=(3, 3, 240))
+    result = readings(slab(12.0, 400.0), medium, eye, [lamp], [], Sampling(5_000, scatterings=1), shape=(3, 3, 240))
     (share_in, share_out), (inner_in, inner_out) = transmitted(np.array([cosine_in, cosine_out]), ior)
     before = np.array([-sun[0], -sun[1], 0.0]) / ior - [0.0, 0.0, inner_in]
     after = np.array([*(-eye.direction[0, :2] / ior), inner_out])
@@ -232,9 +232,9 @@ def test_slabs_under_a_sky_by_adding_and_doubling(depth: float, albedo: float, a
     reflected, through, _, _ = iadpython.Sample(a=albedo, b=depth, g=anisotropy, n=ior, quad_pts=24).rt()
     eye = on_top(np.array([1.0]))
     first = ((ior - 1.0) / (ior + 1.0)) ** 2
-    assert_agrees(readings(slab(depth), medium, eye, [], above, Sampling(100_000, 1)), [reflected - first], 0.01)
+    assert_agrees(readings(slab(depth), medium, eye, [], [Sky(above)], Sampling(100_000, 1)), [reflected - first], 0.01)
     assert_agrees(
-        readings(slab(depth), medium, eye, [], even, Sampling(100_000, 1)), [reflected + through - first], 0.01
+        readings(slab(depth), medium, eye, [], [Sky(even)], Sampling(100_000, 1)), [reflected + through - first], 0.01
     )
 
 
@@ -245,7 +245,7 @@ def fluxes(depth: float, medium: Medium, samples: int) -> list[tuple[float, floa
     share = 2.0 * weights * cosines
     results = []
     for lamp in (Lamp((0.0, 0.0, 1.0)), Lamp((0.0, 0.0, -1.0))):
-        result = readings(slab(depth), medium, on_top(cosines), [lamp], None, Sampling(samples), shape=(3, 3, 60))
+        result = readings(slab(depth), medium, on_top(cosines), [lamp], [], Sampling(samples), shape=(3, 3, 60))
         # the points share the voxels of a batch, so that their errors add up
         results.append((float(share @ result.mean[0, :, 0]), float(share @ result.error[0, :, 0])))
     return results
@@ -285,7 +285,7 @@ def test_a_rough_surface_conserves_energy(rough: float) -> None:
 
 def test_a_rough_furnace_is_white() -> None:
     eye = on_top(np.array([0.95, 0.3]))
-    result = readings(slab(2.0), grey(1.0, 1.5, 1.0, 0.0, 0.5), eye, [], even, Sampling(20_000))
+    result = readings(slab(2.0), grey(1.0, 1.5, 1.0, 0.0, 0.5), eye, [], [Sky(even)], Sampling(20_000))
     entered = [
         Dielectric(1.5, 0.5).refract(np.repeat(way[None], 20_000, 0), np.repeat(up[None], 20_000, 0), rng).weight.mean()
         for way, up, rng in zip(eye.direction, eye.normal, map(np.random.default_rng, (6, 7)), strict=True)
@@ -308,7 +308,7 @@ def test_a_rough_furnace_is_white() -> None:
 def test_a_matched_boundary_is_that_of_mitsuba(geometry: Geometry, anisotropy: float) -> None:
     medium, sun = grey(0.95, 1.0, 5.0, anisotropy), (0.6, 0.0, -0.8)
     eye = seen(geometry)
-    result = readings(geometry, medium, eye, [Lamp(sun)], None, Sampling(1024))
+    result = readings(geometry, medium, eye, [Lamp(sun)], [], Sampling(1024))
     other = radiance_along(
         geometry, medium, Light(sun), eye.position - 3.0 * eye.direction, eye.direction, Sampling(1024)
     )
@@ -359,7 +359,7 @@ def test_a_rough_surface_is_that_of_mitsuba(monkeypatch: pytest.MonkeyPatch) -> 
     medium = grey(0.9, 1.5, 4.0, 0.0, 0.6)
     through = mitsuba_sky(medium, eye, 4096) - mitsuba_sky(grey(0.0, 1.5, 1e5, 0.0, 0.6), eye, 4096)
     monkeypatch.setattr(dielectric, "MOST_FACETS", 1)
-    result = readings(CUBE, medium, eye, [], even, Sampling(2048))
+    result = readings(CUBE, medium, eye, [], [Sky(even)], Sampling(2048))
     assert len(through) > 8
     assert result.mean[0, :, 0].mean() == pytest.approx(through.mean(), rel=0.01)
     assert result.mean[0, :, 0] == pytest.approx(through, rel=0.1)
@@ -373,7 +373,7 @@ def test_a_distant_point_is_a_light_from_afar() -> None:
     sun = np.array([0.6, 0.0, -0.8])
     place, eye = 300.0 * sun, seen(CUBE)
     lamps = [Lamp((0.6, 0.0, -0.8)), Lamp(None, (float(place[0]), float(place[1]), float(place[2])))]
-    result = readings(CUBE, grey(0.95, 1.4, 5.0), eye, lamps, None, Sampling(256))
+    result = readings(CUBE, grey(0.95, 1.4, 5.0), eye, lamps, [], Sampling(256))
     # both read the same paths, and differ by their voxels only
     assert 300.0**2 * result.mean[1].mean() == pytest.approx(result.mean[0].mean(), rel=0.01)
 
@@ -382,7 +382,7 @@ def test_a_near_point_falls_off() -> None:
     # a small ball far from the light reads 1 / d² of it, whichever way the light's rays are started
     eye, medium = seen(BALL, 8, 6), grey(0.9, 1.3, 2.0)
     lamps = [Lamp(None, (0.2, -0.1, 0.3 - z)) for z in (8.0, 16.0)]
-    result = readings(BALL, medium, eye, lamps, None, Sampling(256), rays=10_000)
+    result = readings(BALL, medium, eye, lamps, [], Sampling(256), rays=10_000)
     near, far = result.mean[:, :, 0].mean(axis=1)
     assert near / far == pytest.approx(4.0, rel=0.05)
 
@@ -401,7 +401,7 @@ def test_a_sky_is_the_sum_of_its_lights() -> None:
 
     lamps = [Lamp((float(x), float(y), float(z))) for x, y, z in ways]
     eye, medium = seen(CUBE, 8, 6), grey(0.9, 1.4, 6.0)
-    result = readings(CUBE, medium, eye, lamps, sky, Sampling(512, int(rng.integers(100))), rays=8000)
+    result = readings(CUBE, medium, eye, lamps, [Sky(sky)], Sampling(512, int(rng.integers(100))), rays=8000)
     # each lamp has the irradiance π L · 4 / count of its part of the sphere; readings of lamps are π L / E
     total = (result.mean[:-1, :, 0] * (1.0 + ways[:, :1]) * 4.0 / count).sum(axis=0)
     assert total.mean() == pytest.approx(result.mean[-1, :, 0].mean(), rel=0.02)
@@ -413,7 +413,8 @@ def test_a_sky_is_the_sum_of_its_lights() -> None:
 def test_the_same_arguments_give_the_same_numbers() -> None:
     eye, medium = seen(CUBE, 6, 5), grey(0.9, 1.4, 4.0)
     first, second, other = (
-        readings(CUBE, medium, eye, [Lamp((0.0, 0.6, -0.8))], even, Sampling(32, seed), rays=2000) for seed in (0, 0, 1)
+        readings(CUBE, medium, eye, [Lamp((0.0, 0.6, -0.8))], [Sky(even)], Sampling(32, seed), rays=2000)
+        for seed in (0, 0, 1)
     )
     assert (first.mean == second.mean).all() and (first.error == second.error).all()
     assert (first.mean != other.mean).any() and BATCHES >= 8
@@ -441,8 +442,8 @@ def test_slivers_of_voxels_have_no_flashes(geometry: Geometry) -> None:
 def test_impossible_arguments_are_refused() -> None:
     eye, medium = seen(CUBE, 6, 5), grey(0.9, 1.4, 4.0)
     with pytest.raises(SssgenError, match="inside the body"):
-        readings(CUBE, medium, eye, [Lamp(None, (0.2, -0.1, 0.3))], None, Sampling(32))
+        readings(CUBE, medium, eye, [Lamp(None, (0.2, -0.1, 0.3))], [], Sampling(32))
     with pytest.raises(SssgenError, match="too few"):
-        readings(CUBE, medium, eye, [], even, Sampling(0))
+        readings(CUBE, medium, eye, [], [Sky(even)], Sampling(0))
     with pytest.raises(SssgenError, match="roughness"):
         grey(0.9, 1.4, rough=1.5)

@@ -184,12 +184,18 @@ def measure_candidate(candidate: Candidate, fitted: FitResult, views: Sequence[V
 
 def pictures_of(candidate: Candidate, fitted: FitResult, view: View) -> tuple[Array, Array]:
     """A view of a material by its chain and by the reference: (height, width, 3) each, linear light, exposed alike."""
+    values, problem = compared(candidate, fitted, view)
+    visible = points(view.scene)
+    return visible.picture(values), visible.picture(problem.target)
+
+
+def compared(candidate: Candidate, fitted: FitResult, view: View) -> tuple[Array, Problem]:
+    """The values of a material on a view, (3, n), and the problem with the reference, exposed alike."""
     problem = problem_of("material", view)
     assert problem is not None
     with tempfile.TemporaryDirectory() as folder:
         values = _values(chain_of(candidate, body(view.scene.geometry), folder), fitted, problem)
-    visible = points(view.scene)
-    return visible.picture(_fitted_values(values, fitted, problem)), visible.picture(problem.target)
+    return _fitted_values(values, fitted, problem), problem
 
 
 def _fitted_values(values: Array, fitted: FitResult, problem: Problem) -> Array:

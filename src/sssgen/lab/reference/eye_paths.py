@@ -26,8 +26,16 @@ from sssgen.scene.measured.media import Medium
 from sssgen.support.diagnostics import failure
 
 Array = npt.NDArray[np.float64]
-Sky = Callable[[Array], Array]
-"""The radiance times π, (n, 3), that arrives from unit directions (n, 3) in world space"""
+
+
+class Sky(NamedTuple):
+    """The surroundings."""
+
+    light: Callable[[Array], Array]
+    """The radiance times π, (n, 3), that arrives from unit directions (n, 3) in world space"""
+    seen_through: bool = True
+    """Whether the light counts that reaches the eye without scattering"""
+
 
 BATCHES = 16
 """Independent batches: each has its own voxels of light; their spread is the noise."""
@@ -42,7 +50,7 @@ class Readings(NamedTuple):
     """Readings π L / E of each light, with their noise."""
 
     mean: Array
-    """(lights, n, 3): the lamps, then the sky if there is one"""
+    """(lights, n, 3): the lamps, then the skies"""
     error: Array
     """The standard error of each mean, from the spread of the batches"""
 
@@ -78,16 +86,16 @@ def readings(
     medium: Medium,
     eye: Eye,
     lamps: Sequence[Lamp],
-    sky: Sky | None,
+    skies: Sequence[Sky],
     sampling: Sampling,
     rays: int = RAYS,
     shape: tuple[int, int, int] | None = None,
 ) -> Readings:
     """The readings of points.
 
-    The light of a lamp that reaches the eye without scattering does not count, but that of the sky does. `rays` are
-    those of a lamp in one batch, and `shape` is the number of voxels along each axis of the object. Raises SssgenError
-    for a point light in the body, and a body without an inside.
+    The light of a lamp that reaches the eye without scattering does not count. `rays` are those of a lamp in one batch,
+    and `shape` is the number of voxels along each axis of the object. Raises SssgenError for a point light in the body,
+    and a body without an inside.
     """
     if sampling.samples < 1:
         raise failure(f"{sampling.samples} samples are too few", "a few hundred are enough for a picture")
@@ -97,7 +105,7 @@ def readings(
     eye = eye._replace(position=surface.entrances(eye.position, eye.normal, eye.direction))
     each = sampling._replace(samples=-(-sampling.samples // BATCHES))
     batches = [
-        _batch(body, eye, lamps, sky, each, rays, np.random.default_rng(part))
+        _batch(body, eye, lamps, skies, each, rays, np.random.default_rng(part))
         for part in np.random.SeedSequence(sampling.seed).spawn(BATCHES)
     ]
     values = np.stack(batches)
@@ -108,7 +116,7 @@ def _batch(
     body: _Body,
     eye: Eye,
     lamps: Sequence[Lamp],
-    sky: Sky | None,
+    skies: Sequence[Sky],
     sampling: Sampling,
     rays: int,
     rng: np.random.Generator,
@@ -125,14 +133,13 @@ def _batch(
         first_light(body.voxels, body.boundary, extinction, lamp, rays, rng, directions=medium.anisotropy != 0.0)
         for lamp in lamps
     ]
-    result = np.zeros((len(lamps) + (sky is not None), len(eye.position), 3))
+    result = np.zeros((len(lamps) + len(skies), len(eye.position), 3))
     for number, channel in enumerate(unique):
         same = [index for index, candidate in enumerate(channels) if candidate == channel]
-        traced = _trace(body, channel, number, eye, fields, sky, sampling, rng)
-        # the sky may differ between channels with the same coefficients
+        traced = _trace(body, channel, number, eye, fields, skies, sampling, rng)
+        # a sky may differ between channels with the same coefficients
         result[: len(lamps), :, same] = traced[: len(lamps), :, None, 0]
-        if sky is not None:
-            result[-1][:, same] = traced[-1][:, same]
+        result[len(lamps) :, :, same] = traced[len(lamps) :, :, same]
     return result
 
 
@@ -171,24 +178,25 @@ def _trace(
     number: int,
     eye: Eye,
     fields: Sequence[FirstLight],
-    sky: Sky | None,
+    skies: Sequence[Sky],
     sampling: Sampling,
     rng: np.random.Generator,
 ) -> Array:
     """The readings of each point in one channel: (lights, n, 3); a lamp's is in the first column."""
     surface, voxels, boundary, _ = body
     samples, count = sampling.samples, len(eye.position)
-    sums = np.zeros((len(fields) + (sky is not None), count, 3))
+    sums = np.zeros((len(fields) + len(skies), count, 3))
     paths = _enter(body, eye, samples, rng)
     # the first free paths of a point's samples are evenly distributed
     chance = (np.tile(np.arange(samples), count) + rng.random(len(paths.point))) / samples
     while len(paths.point):
         crossing = surface.next(paths.position, paths.direction)
-        if sky is not None and not crossing.found.all():
-            out = paths.only(~crossing.found)
-            seen = out.weight[:, None] * sky(out.direction)
+        out = paths.only(~crossing.found)
+        for index, sky in enumerate(skies, len(fields)):
+            shares = out.weight if sky.seen_through else out.weight * (out.collisions > 0)
+            seen = shares[:, None] * sky.light(out.direction)
             for color in range(3):
-                sums[-1, :, color] += np.bincount(out.point, seen[:, color], count)
+                sums[index, :, color] += np.bincount(out.point, seen[:, color], count)
         point, position, direction, weight, collisions = paths.only(crossing.found)
         ahead, normal = crossing.ahead[crossing.found], crossing.normal[crossing.found]
         inside = np.einsum("nc,nc->n", direction, normal) > 0.0
