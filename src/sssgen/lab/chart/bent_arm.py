@@ -9,14 +9,21 @@ lengths that change where the elbow is bent.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from sssgen.lab.measure import fluence_inputs
-from sssgen.lab.measure.measurement import View
-from sssgen.lab.measure.problem import Problem, material_problem
-from sssgen.lab.measure.scene_inputs import SceneTextures
+from sssgen.jobs.executor import Item
+from sssgen.lab.chart.case_errors import CaseErrors, case_error
+from sssgen.lab.chart.charting import Settings, candidate_of, fit_of, results_of
+from sssgen.lab.chart.drawn_lights import Case
+from sssgen.lab.measure import fluence_inputs, scene_inputs
+from sssgen.lab.measure.candidates import Candidate
+from sssgen.lab.measure.fitting import FitResult
+from sssgen.lab.measure.measured_point import FittedChain
+from sssgen.lab.measure.measurement import View, compared_with, problem_of
+from sssgen.lab.measure.problem import Problem
 from sssgen.run.backends import Array
 from sssgen.run.evaluate.evaluation import half
 from sssgen.scene.arrays import Indices
@@ -123,31 +130,61 @@ def scene(degrees: float, medium: Medium) -> MeasuredScene:
     return MeasuredScene(name, name, arm.mesh(), camera, (), medium, None)
 
 
-def rest_problem(view: View, degrees: float, rest: MeasuredScene) -> Problem:
-    """The problem of a bent arm under one light from afar, whose chain reads the volume of the rest pose."""
-    problem, arm, visible = material_problem(view.scene, view.references, True), pose(degrees), points(view.scene)
-    assert problem.together is not None
+def errors_at_rest(
+    chain: FittedChain, degrees: float, medium: Medium, cases: Sequence[Case], settings: Settings
+) -> CaseErrors:
+    """The errors of a chain that reads the volume of the rest pose, in cases of one light from afar on the bent arm.
+
+    Raises SssgenError as `errors` does.
+    """
+    rest = scene(0.0, medium)
+    with settings.progress_bar() as progress:
+        fluence_inputs.prepare(rest, settings.scheduler, settings.processes, progress)
+    pair = candidate_of(chain), fit_of(chain)
+    items = [
+        Item(f"{__name__}:measure_at_rest", (*pair, degrees, rest, tuple(case)), f"bent arm, light {number}")
+        for number, case in enumerate(cases)
+    ]
+    return CaseErrors(*map(tuple, zip(*results_of(items, settings), strict=True)))
+
+
+def measure_at_rest(
+    candidate: Candidate, fit: FitResult, degrees: float, rest: MeasuredScene, case: Case
+) -> tuple[float, float]:
+    """The errors of a case: at all points, and at the edges of shadows."""
+    return case_error([values_at_rest(candidate, fit, degrees, rest, view) for view in case], case)
+
+
+def values_at_rest(
+    candidate: Candidate, fit: FitResult, degrees: float, rest: MeasuredScene, view: View
+) -> tuple[Array, Problem]:
+    """The values on a view of the bent arm, (3, n), and the problem with the reference."""
+    problem = _rest_problem(view, pose(degrees), rest)
+    return compared_with(problem, candidate, fit, view.scene.geometry), problem
+
+
+def _rest_problem(view: View, arm: Pose, rest: MeasuredScene) -> Problem:
+    """The problem of a view, whose part with all lights reads the volume of the rest pose."""
+    problem, visible = problem_of("material", view), points(view.scene)
+    assert problem is not None and problem.together is not None
     rays = np.ascontiguousarray(-visible.inputs["V"].T)
     at_rest = _rest_positions(arm, visible.origin, rays)
-    inputs = {
-        **problem.together.inputs,
-        "P": at_rest.T, "V": arm.turned_back(-rays, at_rest).T, "N": arm.turned_back(visible.inputs["N"].T, at_rest).T,
-    }  # fmt: skip
+    turned = {name: arm.turned_back(visible.inputs[name].T, at_rest).T for name in ("V", "N")}
+    of_rest = scene_inputs.of_scene(rest).values
     (light,) = view.scene.lights
     response = fluence_inputs.response_of(rest)
     towards = arm.turned_back(np.array([light.direction]), response.places())
-    inside = half(Texture(volume(response, [Incoming(towards, np.ones((1, 3)))]), wrap="clamp"))
-    of_rest = material_problem(dataclasses.replace(rest, lights=view.scene.lights), view.references, True).together
-    assert of_rest is not None
-    values = {
-        **problem.together.values,
-        **{name: of_rest.values[name] for name in ("world_to_volume", "fluence_reach")},
-    }
-    textures = SceneTextures(problem.together.textures, {})
-    textures[fluence_inputs.INNER] = inside
-    return dataclasses.replace(
-        problem, together=problem.together._replace(inputs=inputs, values=values, textures=textures)
+    part = problem.together._replace(
+        inputs={**problem.together.inputs, **turned, "P": at_rest.T},
+        values={**problem.together.values, **{name: of_rest[name] for name in ("world_to_volume", "fluence_reach")}},
+        textures={
+            **problem.together.textures,
+            fluence_inputs.INNER: half(
+                Texture(volume(response, [Incoming(towards, np.array([light.color]))]), wrap="clamp")
+            ),
+        },
     )
+    return dataclasses.replace(problem, together=part)
 
 
 def _rest_positions(arm: Pose, eye: Array, rays: Array) -> Array:
