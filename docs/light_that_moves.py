@@ -1,7 +1,7 @@
 """Measures chains under lights that no fit used, and writes docs/light_that_moves.md with pictures.
 
-python docs/light_that_moves.py [SCENE...] [--lights N] [--samples N] [--processes N]. An interrupted run continues where
-it stopped. With scenes, it prints the page of these, and writes only the pictures of the surroundings.
+python docs/light_that_moves.py [SCENE...] [--lights N] [--samples N] [--processes N]. An interrupted run continues
+where it stopped. With scenes, it prints the page of these, and writes only the pictures of the surroundings.
 """
 
 from __future__ import annotations

@@ -293,6 +293,13 @@ def test_a_rough_furnace_is_white() -> None:
     assert result.mean[0, :, 0] == pytest.approx(entered, abs=0.01)
 
 
+def test_the_light_that_is_seen_through_a_slab_is_what_is_not_scattered() -> None:
+    cosines = np.array([1.0, 0.5])
+    skies = [Sky(even, seen_through) for seen_through in (True, False)]
+    whole, scattered = readings(slab(1.5), grey(0.9, 1.0), on_top(cosines), [], skies, Sampling(20_000)).mean[..., 0]
+    assert whole - scattered == pytest.approx(np.exp(-1.5 / cosines), abs=0.005)
+
+
 # --- Mitsuba ---
 
 
