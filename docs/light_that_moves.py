@@ -282,7 +282,7 @@ def arms_picture(pictures: Sequence[tuple[Array, Array]]) -> bytes:
             inner = frame(traced)
             row += [displayed(traced[inner]), displayed(ours[inner])]
         rows.append(row)
-    titles = ["path traced", "rest pose's volume, median light", "path traced", "rest pose's volume, worst light"]
+    titles = ["path traced", "ours, median light", "path traced", "ours, worst light"]
     return grid(rows, titles, [f"{degrees:.0f} degrees" for degrees in BENT])
 
 
@@ -295,12 +295,12 @@ def grid(rows: Sequence[Sequence[Array]], titles: Sequence[str], names: Sequence
             axes.imshow(rows[row][column], interpolation="nearest")
             axes.axis("off")
             if row == 0:
-                axes.set_title(titles[column], size=7.0)
+                axes.set_title(titles[column], size=7.0, pad=3.0)
             if column == 0:
                 axes.text(0.0, -0.03, names[row], size=6.0, va="top", transform=axes.transAxes)
-        figure.tight_layout(pad=0.3)
+        figure.tight_layout(pad=0.3, h_pad=1.4)
         png = io.BytesIO()
-        figure.savefig(png, format="png", dpi=120, metadata={"Software": None})
+        figure.savefig(png, format="png", dpi=120, bbox_inches="tight", metadata={"Software": None})
     return png.getvalue()
 
 
