@@ -21,9 +21,8 @@ from PIL import Image, ImageDraw, ImageFont
 
 from sssgen.bake import baked_files, relit
 from sssgen.lab.fluence.fluence_field import Settings
-from sssgen.lab.reference.eye_paths import Eye, readings
+from sssgen.lab.reference.eye_paths import Eye, Sky, readings
 from sssgen.lab.reference.first_light import Lamp
-from sssgen.lab.reference.inside_lengths import thickness
 from sssgen.lab.reference.sampling import Sampling
 from sssgen.run import backends
 from sssgen.run.backends import Array
@@ -155,12 +154,8 @@ class Loop:
         assert medium is not None
         eye = Eye(*(np.ascontiguousarray(part.T) for part in (inputs["P"], inputs["N"], -inputs["V"])))
         lamps = [Lamp(None, lamp.position) for lamp in self.lamps]
-        skies = [sky.sky() for sky in self.skies]
+        skies = [Sky(sky.sky(), seen_through=False) for sky in self.skies]
         light, noise = readings(self.body.geometry, medium, eye, lamps, skies, Sampling(samples), RAYS)
-        if medium.ior == 1.0:  # what is seen through the body is no light that the body scatters
-            lengths = thickness(self.body.geometry, eye.position, eye.direction)
-            passes = np.exp(-np.outer(lengths, medium.extinction))
-            light[len(lamps) :] -= [sky(eye.direction) * passes for sky in skies]
         colors = [lamp.color for lamp in self.lamps] + [(1.0, 1.0, 1.0)] * len(skies)
         of_all = []
         for values in (light, noise):

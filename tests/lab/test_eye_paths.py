@@ -12,7 +12,7 @@ import pytest
 from qualification.closed_forms import henyey_greenstein
 from sssgen.lab.reference import dielectric
 from sssgen.lab.reference.dielectric import Dielectric, axes, fresnel
-from sssgen.lab.reference.eye_paths import BATCHES, Eye, Readings, readings
+from sssgen.lab.reference.eye_paths import BATCHES, Eye, Readings, Sky, readings
 from sssgen.lab.reference.first_light import Lamp, Voxels, first_light, voxels_of
 from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.surface_rays import SurfaceRays
@@ -185,7 +185,7 @@ def test_voxels_hold_the_volume(geometry: Geometry, volume: float) -> None:
 def test_white_furnace(geometry: Geometry, ior: float) -> None:
     # without absorption, under an even sky, each point shows the transmitted share; what is missing is its reflection
     eye = seen(geometry, 16, 12)
-    result = readings(geometry, grey(1.0, ior, 3.0), eye, [], [even], Sampling(16))
+    result = readings(geometry, grey(1.0, ior, 3.0), eye, [], [Sky(even)], Sampling(16))
     cosine = -np.einsum("nc,nc->n", eye.normal, eye.direction)
     assert len(cosine) > 8
     assert result.mean[0, :, 0] == pytest.approx(transmitted(cosine, ior)[0], abs=1e-4)
@@ -232,9 +232,9 @@ def test_slabs_under_a_sky_by_adding_and_doubling(depth: float, albedo: float, a
     reflected, through, _, _ = iadpython.Sample(a=albedo, b=depth, g=anisotropy, n=ior, quad_pts=24).rt()
     eye = on_top(np.array([1.0]))
     first = ((ior - 1.0) / (ior + 1.0)) ** 2
-    assert_agrees(readings(slab(depth), medium, eye, [], [above], Sampling(100_000, 1)), [reflected - first], 0.01)
+    assert_agrees(readings(slab(depth), medium, eye, [], [Sky(above)], Sampling(100_000, 1)), [reflected - first], 0.01)
     assert_agrees(
-        readings(slab(depth), medium, eye, [], [even], Sampling(100_000, 1)), [reflected + through - first], 0.01
+        readings(slab(depth), medium, eye, [], [Sky(even)], Sampling(100_000, 1)), [reflected + through - first], 0.01
     )
 
 
@@ -285,12 +285,19 @@ def test_a_rough_surface_conserves_energy(rough: float) -> None:
 
 def test_a_rough_furnace_is_white() -> None:
     eye = on_top(np.array([0.95, 0.3]))
-    result = readings(slab(2.0), grey(1.0, 1.5, 1.0, 0.0, 0.5), eye, [], [even], Sampling(20_000))
+    result = readings(slab(2.0), grey(1.0, 1.5, 1.0, 0.0, 0.5), eye, [], [Sky(even)], Sampling(20_000))
     entered = [
         Dielectric(1.5, 0.5).refract(np.repeat(way[None], 20_000, 0), np.repeat(up[None], 20_000, 0), rng).weight.mean()
         for way, up, rng in zip(eye.direction, eye.normal, map(np.random.default_rng, (6, 7)), strict=True)
     ]
     assert result.mean[0, :, 0] == pytest.approx(entered, abs=0.01)
+
+
+def test_the_light_that_is_seen_through_a_slab_is_what_is_not_scattered() -> None:
+    cosines = np.array([1.0, 0.5])
+    skies = [Sky(even, seen_through) for seen_through in (True, False)]
+    whole, scattered = readings(slab(1.5), grey(0.9, 1.0), on_top(cosines), [], skies, Sampling(20_000)).mean[..., 0]
+    assert whole - scattered == pytest.approx(np.exp(-1.5 / cosines), abs=0.005)
 
 
 # --- Mitsuba ---
@@ -359,7 +366,7 @@ def test_a_rough_surface_is_that_of_mitsuba(monkeypatch: pytest.MonkeyPatch) -> 
     medium = grey(0.9, 1.5, 4.0, 0.0, 0.6)
     through = mitsuba_sky(medium, eye, 4096) - mitsuba_sky(grey(0.0, 1.5, 1e5, 0.0, 0.6), eye, 4096)
     monkeypatch.setattr(dielectric, "MOST_FACETS", 1)
-    result = readings(CUBE, medium, eye, [], [even], Sampling(2048))
+    result = readings(CUBE, medium, eye, [], [Sky(even)], Sampling(2048))
     assert len(through) > 8
     assert result.mean[0, :, 0].mean() == pytest.approx(through.mean(), rel=0.01)
     assert result.mean[0, :, 0] == pytest.approx(through, rel=0.1)
@@ -401,7 +408,7 @@ def test_a_sky_is_the_sum_of_its_lights() -> None:
 
     lamps = [Lamp((float(x), float(y), float(z))) for x, y, z in ways]
     eye, medium = seen(CUBE, 8, 6), grey(0.9, 1.4, 6.0)
-    result = readings(CUBE, medium, eye, lamps, [sky], Sampling(512, int(rng.integers(100))), rays=8000)
+    result = readings(CUBE, medium, eye, lamps, [Sky(sky)], Sampling(512, int(rng.integers(100))), rays=8000)
     # each lamp has the irradiance π L · 4 / count of its part of the sphere; readings of lamps are π L / E
     total = (result.mean[:-1, :, 0] * (1.0 + ways[:, :1]) * 4.0 / count).sum(axis=0)
     assert total.mean() == pytest.approx(result.mean[-1, :, 0].mean(), rel=0.02)
@@ -413,7 +420,7 @@ def test_a_sky_is_the_sum_of_its_lights() -> None:
 def test_the_same_arguments_give_the_same_numbers() -> None:
     eye, medium = seen(CUBE, 6, 5), grey(0.9, 1.4, 4.0)
     first, second, other = (
-        readings(CUBE, medium, eye, [Lamp((0.0, 0.6, -0.8))], [even], Sampling(32, seed), rays=2000)
+        readings(CUBE, medium, eye, [Lamp((0.0, 0.6, -0.8))], [Sky(even)], Sampling(32, seed), rays=2000)
         for seed in (0, 0, 1)
     )
     assert (first.mean == second.mean).all() and (first.error == second.error).all()
@@ -444,6 +451,6 @@ def test_impossible_arguments_are_refused() -> None:
     with pytest.raises(SssgenError, match="inside the body"):
         readings(CUBE, medium, eye, [Lamp(None, (0.2, -0.1, 0.3))], [], Sampling(32))
     with pytest.raises(SssgenError, match="too few"):
-        readings(CUBE, medium, eye, [], [even], Sampling(0))
+        readings(CUBE, medium, eye, [], [Sky(even)], Sampling(0))
     with pytest.raises(SssgenError, match="roughness"):
         grey(0.9, 1.4, rough=1.5)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from oracle import Array, close, technique, units
-from sssgen.lab.reference.eye_paths import Eye, readings
+from sssgen.lab.reference.eye_paths import Eye, Sky, readings
 from sssgen.lab.reference.inside_lengths import first_exit, thickness
 from sssgen.lab.reference.sampling import Sampling
 from sssgen.material import library
@@ -129,7 +129,7 @@ def test_a_body_in_a_white_room(name: str, geometry: Geometry, camera: Camera, m
     scene = MeasuredScene(name, name, geometry, camera, (), medium, None, (20, 20))
     place, normal, view = (np.ascontiguousarray(points(scene).inputs[key].T) for key in ("P", "N", "V"))
     eye = Eye(place, normal, -view)
-    traced = readings(geometry, medium, eye, [], [lambda ways: np.ones((len(ways), 3))], Sampling(100))
+    traced = readings(geometry, medium, eye, [], [Sky(lambda ways: np.ones((len(ways), 3)))], Sampling(100))
     straight = np.exp(-np.outer(thickness(geometry, place, -view), medium.extinction))
     lengths = first_exit(geometry, place, -view)
     light = surroundings(

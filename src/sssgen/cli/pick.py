@@ -21,8 +21,8 @@ from sssgen.support.file_writer import write_files
 from sssgen.support.progress import ProgressBar
 
 if TYPE_CHECKING:
+    from sssgen.lab.chart.case_errors import CaseErrors
     from sssgen.lab.chart.charting import Settings
-    from sssgen.lab.chart.drawn_lights import DrawnErrors
     from sssgen.lab.chart.engine_conditions import Conditions
     from sssgen.lab.chart.picking import Pick
     from sssgen.lab.chart.racing import Limits, Provisional
@@ -84,7 +84,7 @@ def run(arguments: Namespace) -> int:
     text = summary(scene, picked, arguments.max_error, arguments.max_cost, unit)
     lines = [text, *lights_text(picked, unseen, conditions), *(f"wrote {file}" for file in files)]
     lines += [*(f"bake: {bake}" for bake in bakes), f"next: {step}"]
-    report = {"files": files, **fields, "unseen_lights": unseen and unseen._asdict(), "bakes": bakes, "next": step}
+    report = {"files": files, **fields, "unseen_lights": unseen and {"values": unseen.values}, "bakes": bakes, "next": step}
     print_result(arguments.json, report, "\n".join(lines), picked.met)
     return OK if picked.met else CHECK_FAILED
 
@@ -131,7 +131,7 @@ def _record(
 
 def _unseen(
     scene: MeasuredScene, picked: Pick, settings: Settings, conditions: Conditions, progress: WholeProgress
-) -> DrawnErrors | None:
+) -> CaseErrors | None:
     """The errors of the picked chain under lights that were not used."""
     if picked.chain is None:
         return None
@@ -183,7 +183,7 @@ def _emit(
     return paths, bakes(material, arguments.SCENE)
 
 
-def lights_text(picked: Pick, unseen: DrawnErrors | None, conditions: Conditions) -> list[str]:
+def lights_text(picked: Pick, unseen: CaseErrors | None, conditions: Conditions) -> list[str]:
     """For which lights the limit holds, and the error under others."""
     if picked.chain is None:
         return []

@@ -20,6 +20,7 @@ from typing import NamedTuple
 from sssgen.jobs.executor import Failure, Item, completed
 from sssgen.jobs.work_items import code_stamp
 from sssgen.lab.chart import charting, drawn_lights, race
+from sssgen.lab.chart.case_errors import CaseErrors, errors
 from sssgen.lab.chart.charting import Settings, fit_of, results_of, two_views, with_references
 from sssgen.lab.chart.engine_conditions import EVERYTHING, Conditions
 from sssgen.lab.chart.picking import choose, is_allowed, limit_of
@@ -142,15 +143,14 @@ def levels(samples: int) -> list[int]:
     return result
 
 
-def unseen_errors(
-    scene: MeasuredScene, point: Point, settings: Settings, first: int = 0
-) -> drawn_lights.DrawnErrors | None:
+def unseen_errors(scene: MeasuredScene, point: Point, settings: Settings, first: int = 0) -> CaseErrors | None:
     """The errors of a chain under lights that neither its fit nor its race used; None for one that needs its light
     baked. The first `first` lights are left out."""
     if "fixed-light" in point["requires"]:
         return None
     half = small(scene)
-    return drawn_lights.errors([half], {half.key: [point]}, LIGHTS, settings, first)[half.key][0]
+    views = drawn_lights.drawn_views([half], LIGHTS, settings, first)
+    return errors([half], [point], {half.key: drawn_lights.cases_of(views[half.key])}, settings)[half.key][0]
 
 
 def small(scene: MeasuredScene) -> MeasuredScene:
@@ -223,8 +223,7 @@ class _Race:
             views = list(with_references({"": two_views(self.scene)}, settings)[""])
             if self.limits.conditions.light == "moving":
                 (drawn,) = drawn_lights.drawn_views([small(self.scene)], LIGHTS, settings).values()
-                for number in range(LIGHTS):
-                    lit = drawn_lights.views_of_light(drawn, number)
+                for number, lit in enumerate(drawn_lights.cases_of(drawn)):
                     views += [view._replace(name=f"light {number + 1}, {view.name}") for view in lit]
             self.own[level] = tuple(views)
         return self.own[level]

@@ -15,7 +15,9 @@ from sssgen.lab.fluence import response
 from sssgen.lab.fluence.traced_body import fitting_voxels, grid_in_box
 from sssgen.run.backends import Array
 from sssgen.run.evaluate.evaluation import half
+from sssgen.run.render.inner_light import surroundings
 from sssgen.scene.bounds import world_corners
+from sssgen.scene.environment import Environment
 from sssgen.scene.light_response import LightResponse, from_light, volume
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.scene import Light
@@ -32,11 +34,12 @@ INNER, RANK = "inner_light", 16
 
 
 def of_light(scene: MeasuredScene, light: Light) -> dict[str, Callable[[], Texture]]:
-    """The textures of `sssgen bake fluence` by their names in techniques."""
+    """The textures of `sssgen bake fluence` by their names in techniques, for a white light."""
     if scene.medium is None:
         return {}
+    white = dataclasses.replace(light, color=(1.0, 1.0, 1.0))
     computed: dict[str, Callable[[], Texture]] = {
-        "fluence_volume": partial(_light_volume, scene, light), INNER: partial(_inner_light, scene, light),
+        "fluence_volume": partial(_light_volume, scene, light), INNER: partial(inner_light, scene, (white,)),
     }  # fmt: skip
     for rank in RANKS:
         computed[f"fluence_table_{rank}"] = partial(_table, scene, rank)
@@ -110,16 +113,20 @@ def _towards(scene: MeasuredScene, light: Light) -> Array:
 
 
 @lru_cache(4)
-def _response(scene: MeasuredScene) -> LightResponse:
+def response_of(scene: MeasuredScene) -> LightResponse:
     return response.response(scene, RANK, field.settings_for(scene), processes=0)[0]
 
 
+def inner_light(scene: MeasuredScene, lights: tuple[Light, ...], environment: Environment | None = None) -> Texture:
+    """The light at each voxel, of all these lights and the surroundings."""
+    return _lit(_without_view(scene), lights, environment)
+
+
 @lru_cache(8)
-def _inner_light(scene: MeasuredScene, light: Light) -> Texture:
-    """The light at each voxel, of a white light."""
-    to_object, body = scene.geometry.to_object(), _response(_without_view(scene))
-    incoming = from_light(body, dataclasses.replace(light, color=(1.0, 1.0, 1.0)), to_object)
-    return half(Texture(volume(body, [incoming]), wrap="clamp"))
+def _lit(scene: MeasuredScene, lights: tuple[Light, ...], environment: Environment | None) -> Texture:
+    to_object, body = scene.geometry.to_object(), response_of(scene)
+    incoming = [from_light(body, light, to_object) for light in lights]
+    return half(Texture(volume(body, incoming, surroundings(environment, to_object)), wrap="clamp"))
 
 
 @lru_cache(8)

@@ -31,6 +31,7 @@ from sssgen.lab.measure.problem import (
 from sssgen.passes.cost import Cost, cost_of
 from sssgen.pipeline.compiler import compile
 from sssgen.run.backends import Array
+from sssgen.scene.geometry import Geometry
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.measured.scene_body import Body, body
 from sssgen.scene.measured.view_points import points
@@ -219,12 +220,23 @@ def fit_and_measure(
 
 def pictures_of(candidate: Candidate, fitted: FitResult, view: View) -> tuple[Array, Array]:
     """A view of a material by its chain and by the reference: (height, width, 3) each, linear light, exposed alike."""
+    values, problem = compared(candidate, fitted, view)
+    visible = points(view.scene)
+    return visible.picture(values), visible.picture(problem.target)
+
+
+def compared(candidate: Candidate, fitted: FitResult, view: View) -> tuple[Array, Problem]:
+    """The values of a material on a view, (3, n), and the problem with the reference, exposed alike."""
     problem = problem_of("material", view)
     assert problem is not None
+    return compared_with(problem, candidate, fitted, view.scene.geometry), problem
+
+
+def compared_with(problem: Problem, candidate: Candidate, fitted: FitResult, geometry: Geometry) -> Array:
+    """The values of a material for a problem on a body, (3, n)."""
     with tempfile.TemporaryDirectory() as folder:
-        values = _values(chain_of(candidate, body(view.scene.geometry), folder), fitted, problem)
-    visible = points(view.scene)
-    return visible.picture(_fitted_values(values, fitted, problem)), visible.picture(problem.target)
+        values = _values(chain_of(candidate, body(geometry), folder), fitted, problem)
+    return _fitted_values(values, fitted, problem)
 
 
 def _fitted_values(values: Array, fitted: FitResult, problem: Problem) -> Array:

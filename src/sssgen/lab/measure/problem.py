@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -67,11 +67,16 @@ class Problem:
     """Indices of the compared lanes among those of all parts"""
     gain: float = 1.0
     """A factor that normalises values to about 1; target, noise and lambert include it already"""
+    together: Part | None = None
+    """All lights and the surroundings in one part, for chains that read a volume of all of them; None without such a
+    volume"""
 
     def values(self, chain: Chain, parameters: Mapping[str, Any]) -> Array:
         """The chain's output: (channels, lanes)."""
-        outputs = []
-        for part in self.parts if any(map(chain.reads, LIGHT_MAPS)) else [self._single_part]:
+        outputs, parts = [], self.parts
+        if self.together is not None and chain.reads(fluence_inputs.INNER):
+            parts = (self.together,)
+        for part in parts if any(map(chain.reads, LIGHT_MAPS)) else [self._single_part]:
             chain.set({**part.values, **parameters}, part.textures)
             if self.role == "coordinates":
                 outputs.append(UV_RANGE * (chain.surface(part.inputs, "albedo")[:2] - 0.5) - part.inputs["uv"])
@@ -80,7 +85,7 @@ class Problem:
                 outputs.append(chain.run(part.inputs, [part.light])[0] * color)
         values = np.concatenate(outputs, axis=1)
         if self.summed:
-            values = values.reshape(len(values), len(self.parts), -1).sum(axis=1)
+            values = values.reshape(len(values), len(parts), -1).sum(axis=1)
         if self.role in LENGTHS:
             values = values[:1]
         return values[:, self.keep] * self.gain
@@ -249,7 +254,8 @@ def material_problem(scene: MeasuredScene, references: Sequence[LightReference],
         lambert = np.concatenate(lit, axis=1)
     gain = exposure(target)
     keep = np.arange(target.shape[1])
-    return Problem("material", tuple(parts), summed, gain * target, gain * noise, gain * lambert, keep, gain)
+    together = _together(scene, parts[0]) if summed and scene.medium is not None else None
+    return Problem("material", tuple(parts), summed, gain * target, gain * noise, gain * lambert, keep, gain, together)
 
 
 def exposure(target: Array) -> float:
@@ -291,6 +297,16 @@ def _part(scene: MeasuredScene, visible: Points, light: Light, color: Array) -> 
         scene_inputs.SceneTextures({**of_body.textures, **of_light.textures}, computed),
         color if light.position is None else color / distance**2, color,
     )  # fmt: skip
+
+
+def _together(scene: MeasuredScene, part: Part) -> Part:
+    """A part, with all lights of its scene in the volume."""
+    textures = scene_inputs.SceneTextures(
+        part.textures,
+        {fluence_inputs.INNER: partial(fluence_inputs.inner_light, scene, scene.lights, scene.environment)},
+    )
+    white = np.ones((3, 1))
+    return part._replace(textures=textures, color=white, plain_color=white)
 
 
 def _lights(scene: MeasuredScene) -> Sequence[Light]:

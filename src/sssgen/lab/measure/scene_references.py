@@ -10,13 +10,14 @@ import numpy as np
 
 from sssgen.jobs.executor import Item
 from sssgen.lab.measure.problem import LightReference
-from sssgen.lab.reference.eye_paths import Eye, readings
+from sssgen.lab.reference.eye_paths import Eye, Sky, readings
 from sssgen.lab.reference.first_light import Lamp
 from sssgen.lab.reference.sampling import Sampling
 from sssgen.lab.reference.transport import radiance_along
 from sssgen.lab.reference.transport_mitsuba import Light as Beam
 from sssgen.scene.bounds import world_corners
 from sssgen.scene.camera import Camera
+from sssgen.scene.environment import Environment
 from sssgen.scene.geometry import Ball, Capsule, Geometry, Slab
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.measured.media import Medium
@@ -48,11 +49,23 @@ def trace(scene: MeasuredScene, samples: int, seed: int) -> list[LightReference]
 
     Readings of a point light are those of an irradiance of 1 at distance 1, those of an environment are π L.
     """
+    return _readings(scene, [Sky(scene.environment.sky())] if scene.environment is not None else [], samples, seed)
+
+
+def trace_environments(
+    scene: MeasuredScene, environments: tuple[Environment, ...], samples: int, seed: int
+) -> list[LightReference]:
+    """Two references of each environment in the place of the scene's light: the light that is scattered in the body,
+    and all light, with what is seen through the body."""
+    skies = [Sky(each.sky(), seen_through) for each in environments for seen_through in (False, True)]
+    return _readings(dataclasses.replace(scene, lights=()), skies, samples, seed)
+
+
+def _readings(scene: MeasuredScene, skies: Sequence[Sky], samples: int, seed: int) -> list[LightReference]:
     assert scene.medium is not None
     inputs = points(scene).inputs
     eye = Eye(*(np.ascontiguousarray(part.T) for part in (inputs["P"], inputs["N"], -inputs["V"])))
     lamps = [Lamp(light.direction, light.position) for light in scene.lights]
-    skies = [scene.environment.sky()] if scene.environment is not None else []
     result = readings(scene.geometry, scene.medium, eye, lamps, skies, Sampling(samples, seed))
     return [
         (mean.T.astype(np.float32), error.T.astype(np.float32))

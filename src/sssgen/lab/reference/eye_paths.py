@@ -26,8 +26,16 @@ from sssgen.scene.measured.media import Medium
 from sssgen.support.diagnostics import failure
 
 Array = npt.NDArray[np.float64]
-Sky = Callable[[Array], Array]
-"""The radiance times π, (n, 3), that arrives from unit directions (n, 3) in world space"""
+
+
+class Sky(NamedTuple):
+    """The surroundings."""
+
+    light: Callable[[Array], Array]
+    """The radiance times π, (n, 3), that arrives from unit directions (n, 3) in world space"""
+    seen_through: bool = True
+    """Whether the light counts that reaches the eye without scattering"""
+
 
 BATCHES = 16
 """Independent batches: each has its own voxels of light; their spread is the noise."""
@@ -85,9 +93,9 @@ def readings(
 ) -> Readings:
     """The readings of points.
 
-    The light of a lamp that reaches the eye without scattering does not count, but that of a sky does. `rays` are
-    those of a lamp in one batch, and `shape` is the number of voxels along each axis of the object. Raises SssgenError
-    for a point light in the body, and a body without an inside.
+    The light of a lamp that reaches the eye without scattering does not count. `rays` are those of a lamp in one batch,
+    and `shape` is the number of voxels along each axis of the object. Raises SssgenError for a point light in the body,
+    and a body without an inside.
     """
     if sampling.samples < 1:
         raise failure(f"{sampling.samples} samples are too few", "a few hundred are enough for a picture")
@@ -184,10 +192,11 @@ def _trace(
     while len(paths.point):
         crossing = surface.next(paths.position, paths.direction)
         out = paths.only(~crossing.found)
-        for place, sky in enumerate(skies, len(fields)):
-            seen = out.weight[:, None] * sky(out.direction)
+        for index, sky in enumerate(skies, len(fields)):
+            shares = out.weight if sky.seen_through else out.weight * (out.collisions > 0)
+            seen = shares[:, None] * sky.light(out.direction)
             for color in range(3):
-                sums[place, :, color] += np.bincount(out.point, seen[:, color], count)
+                sums[index, :, color] += np.bincount(out.point, seen[:, color], count)
         point, position, direction, weight, collisions = paths.only(crossing.found)
         ahead, normal = crossing.ahead[crossing.found], crossing.normal[crossing.found]
         inside = np.einsum("nc,nc->n", direction, normal) > 0.0
