@@ -84,7 +84,8 @@ def run(arguments: Namespace) -> int:
     text = summary(scene, picked, arguments.max_error, arguments.max_cost, unit)
     lines = [text, *lights_text(picked, unseen, conditions), *(f"wrote {file}" for file in files)]
     lines += [*(f"bake: {bake}" for bake in bakes), f"next: {step}"]
-    report = {"files": files, **fields, "unseen_lights": unseen and {"values": unseen.values}, "bakes": bakes, "next": step}
+    others = unseen and {"values": unseen.values}
+    report = {"files": files, **fields, "unseen_lights": others, "bakes": bakes, "next": step}
     print_result(arguments.json, report, "\n".join(lines), picked.met)
     return OK if picked.met else CHECK_FAILED
 
