@@ -108,7 +108,8 @@ class Page:
 
     def alive(self) -> bool:
         """Whether the browser still runs."""
-        return self.process.poll() is None
+        # while another thread ends it, `poll` knows nothing
+        return self.close.alive and self.process.poll() is None
 
     def send(self, head: str, data: bytes, seconds: float) -> None:
         """Sends a text and bytes to the page. Raises LostError."""
