@@ -21,6 +21,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from sssgen.bake import baked_files, relit
 from sssgen.lab.fluence.fluence_field import Settings
+from sssgen.lab.fluence.traced_body import fitting_voxels
 from sssgen.lab.reference.eye_paths import Eye, Sky, readings
 from sssgen.lab.reference.first_light import Lamp
 from sssgen.lab.reference.sampling import Sampling
@@ -72,7 +73,7 @@ def main() -> None:
     options.add_argument("--frames", type=int, default=24)
     options.add_argument("--size", type=int, default=160)
     options.add_argument("--samples", type=int, default=64, help="paths of a pixel")
-    options.add_argument("--voxels", type=int, default=Settings().voxels)
+    options.add_argument("--voxels", type=int, help="along the longest side (default: about 4096 in the body)")
     options.add_argument("--index", type=float, help="the refractive index of the bodies (default: the scene's)")
     options.add_argument("-o", "--output", type=Path, default=FOLDER)
     arguments = options.parse_args()
@@ -86,8 +87,8 @@ def main() -> None:
         body = dataclasses.replace(body, size=(arguments.size, arguments.size))
         with tempfile.TemporaryDirectory() as folder:
             loop = Loop(scene, body, arguments.frames, folder)
-            ours = loop.drawn(arguments.voxels)
-            traced, noise = loop.traced(arguments.samples)
+            ours = loop.draw(arguments.voxels or fitting_voxels(body.body_alone()))
+            traced, noise = loop.trace(arguments.samples)
         for title, *frames in zip(("a lamp", "surroundings"), ours, traced, noise, strict=True):
             errors = [relative(*frame) for frame in zip(*frames, strict=True)]
             print(f"{body.name}, {title}: error {np.median(errors):.3f}, of the worst frame {max(errors):.3f}")
@@ -123,7 +124,7 @@ class Loop:
         np.save(file, np.roll(window + room, COLUMNS_OF_FRAME * number, axis=1)[::-1])  # row 0 is at the bottom
         return Environment((1.0, 1.0, 1.0), file, digest(file))
 
-    def drawn(self, voxels: int) -> list[Array]:
+    def draw(self, voxels: int) -> list[Array]:
         """Ours, for the lamp and for the surroundings."""
         data, facts = relit.bake(self.body.body_alone(), RANK, Settings(voxels=voxels))
         baked_files.write_response(str(Path(self.folder, "body.bin")), data, facts)
@@ -147,7 +148,7 @@ class Loop:
         )
         return [lit - mirrored, around]
 
-    def traced(self, samples: int) -> tuple[list[Array], list[Array]]:
+    def trace(self, samples: int) -> tuple[list[Array], list[Array]]:
         """The reference, likewise, and its standard error: the same paths for all lamps and all surroundings."""
         visible = points(self.body)
         inputs, medium = visible.inputs, self.body.medium

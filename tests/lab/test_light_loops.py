@@ -27,7 +27,7 @@ def test_a_lamp_and_surroundings_go_around(tmp_path: Path, monkeypatch: pytest.M
     scene = scene_loading.load(measured_scenes()["torus"], draws=False)
     body = measured_scene.of_scene(scene, "torus.toml")
     loop = script["Loop"](scene, dataclasses.replace(body, size=(40, 40)), 3, str(tmp_path))
-    ours, (traced, noise) = loop.drawn(16), loop.traced(64)
+    ours, (traced, noise) = loop.draw(16), loop.trace(64)
     for drawn, reference, error in zip(ours, traced, noise, strict=True):
         errors = [script["relative"](*frame) for frame in zip(drawn, reference, error, strict=True)]
         # those of each frame and the reference of the one before

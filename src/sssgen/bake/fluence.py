@@ -20,7 +20,7 @@ from sssgen.lab.fluence import fluence_field
 from sssgen.lab.fluence import fluence_volumes as volumes
 from sssgen.lab.fluence.exchange import solver_bytes
 from sssgen.lab.fluence.fluence_field import Field, Settings
-from sssgen.lab.fluence.traced_body import fitting_voxels, grid_in_box, projection_of
+from sssgen.lab.fluence.traced_body import grid_in_box, projection_of
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.scene import body_identity, geometry_mesh
 from sssgen.scene.camera import Camera
@@ -116,13 +116,6 @@ def bake(
 def variant(medium: Medium) -> str:
     """The end of the name of the technique that reads a bake: behind a refracting surface it is another one."""
     return "_refracted" if medium.ior != 1.0 else ""
-
-
-def voxels_of(scene: MeasuredScene) -> int:
-    """The voxels along the longest side of the body's box, by default. Raises SssgenError for an open mesh."""
-    if isinstance(scene.geometry, Mesh):
-        geometry_mesh.mesh_of(scene.geometry)
-    return fitting_voxels(scene)
 
 
 def check(scene: MeasuredScene, settings: Settings) -> None:

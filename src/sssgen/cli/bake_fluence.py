@@ -40,6 +40,7 @@ def bake(arguments: Namespace) -> Result:
     from sssgen.bake import bake_light, fluence
     from sssgen.bake import baked_files as output
     from sssgen.lab.fluence.fluence_field import Settings
+    from sssgen.lab.fluence.traced_body import fitting_voxels
 
     relit = arguments.relit is not None
     if relit:
@@ -47,7 +48,7 @@ def bake(arguments: Namespace) -> Result:
     format = "" if relit else output.volume_format(arguments.output, arguments.format)
     output.check_apart(arguments.output, [arguments.BODY, arguments.light or ""])
     scene = fluence.body(arguments.BODY, arguments.medium, arguments.unit_mm)
-    voxels = fluence.voxels_of(scene) if arguments.voxels is None else arguments.voxels
+    voxels = fitting_voxels(scene) if arguments.voxels is None else arguments.voxels
     settings = Settings(voxels, photons=arguments.photons, seed=arguments.seed)
     if relit:
         if arguments.light or arguments.format:

@@ -43,7 +43,7 @@ TRAINING_SIDE = 24
 LIGHTS = 6
 """Lights that are drawn at random: in the race for light that moves, and again as many for the error beside it."""
 TIERS = (150.0, 400.0, 1600.0, float("inf"))
-"""The operations of lengths that are fitted together: dear ones only where no chain with a cheap one is enough."""
+"""The operations of lengths that are fitted together: expensive ones only where no chain with a cheap one is enough."""
 NO_BAKE, LIGHT, DIRECTIONS = range(3)
 """The light that a chain needs baked: none, that of the scene's lights, that of all directions."""
 STAGES = {
@@ -183,7 +183,7 @@ class _Race:
         self._trace_training()
         self._views(1)
         self._add(candidates.materials([]), "alone")
-        while (wanted := self._wanted()) or self._needs_lengths([]):
+        while (wanted := self._next()) or self._needs_lengths([]):
             new = [runner for runner in wanted if runner.level == 0]
             plain = [runner for runner in new if runner.baked_light() == NO_BAKE]
             if plain:
@@ -200,7 +200,7 @@ class _Race:
                 self._measure_again(wanted)
         return [runner.point for runner in self.runners if runner.point is not None]
 
-    def _wanted(self) -> list[Runner]:
+    def _next(self) -> list[Runner]:
         """The chains to measure next, by the rule of the race."""
         entrants, last = [runner.entrant() for runner in self.runners], len(self.levels)
         if self.limits.max_error is not None:
@@ -241,12 +241,12 @@ class _Race:
                 self.runners.append(Runner(candidate, price, self._cost(price)))
 
     def _needs_lengths(self, new: Sequence[Runner]) -> bool:
-        """Whether chains with dearer lengths come next: such a chain can cost less than the answer so far and than the
-        chains that wait for a bake."""
+        """Whether chains with more expensive lengths come next: such a chain can cost less than the answer so far and
+        than the chains that wait for a bake."""
         if self.tier == len(TIERS):
             return False
         least = self._least_cost()
-        return least < self._dearest() and all(least < runner.cost for runner in new)
+        return least < self._cost_limit() and all(least < runner.cost for runner in new)
 
     def _least_cost(self) -> float:
         """The cost of the cheapest length that is not fitted yet."""
@@ -267,7 +267,7 @@ class _Race:
         priced = [
             (length, price)
             for length, price in self.lengths
-            if floor < price.cost["value"] <= ceiling and self._cost(price) < self._dearest()
+            if floor < price.cost["value"] <= ceiling and self._cost(price) < self._cost_limit()
         ]
         items = [_fit_item(length, self._unlit_training()) for length, _ in priced]
         fits: list[FitResult] = results_of(items, self._settings("lengths", 0.4))
@@ -321,7 +321,7 @@ class _Race:
                     point: Point = {"scene": self.scene.name, **measured}
                     runner.point, runner.level = point, level
                     self._report()
-                    if not any(other in runners and other.level < level for other in self._wanted()):
+                    if not any(other in runners and other.level < level for other in self._next()):
                         break
         charting.raise_failures(failed)
 
@@ -363,7 +363,7 @@ class _Race:
     def _cost(self, price: Price) -> float:
         return self.limits.cost(price.cost) if self.limits.cost is not None else float(price.cost["value"])
 
-    def _dearest(self) -> float:
+    def _cost_limit(self) -> float:
         """The cost from which a chain cannot be the answer."""
         if self.limits.max_cost is not None:
             return self.limits.max_cost

@@ -36,9 +36,10 @@ def grid_in_box(scene: MeasuredScene, voxels: int) -> Grid:
 
 @lru_cache(16)
 def fitting_voxels(scene: MeasuredScene) -> int:
-    """The voxels along the longest side of the box with which the body has about BUDGET voxels."""
-    low, high = grid_in_box(scene, MOST)[:2]
+    """The voxels along the longest side of the box with which the body has about BUDGET voxels. Raises SssgenError for
+    an open mesh."""
     body = _body_of(scene)
+    low, high = grid_in_box(scene, MOST)[:2]
     corners = body.vertices[body.faces]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     volume = abs(float(np.einsum("fc,fc->", corners[:, 0], across))) / 6.0
