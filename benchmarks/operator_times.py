@@ -1,7 +1,7 @@
 """Times of chains on a GPU: what operators cost there, and whether predicted costs order chains as their times do.
 
 `measured_device` finds the cost of each operator from the times of shaders that consist of one kind of operator
-(operators/). `order_of_pairs` says how often a prediction orders two chains as their times do.
+(operators/) and of whole materials. `order_of_pairs` says how often a prediction orders two chains as their times do.
 """
 
 from __future__ import annotations
@@ -44,6 +44,12 @@ class TimedChains(NamedTuple):
     """Nanoseconds per pixel, (chains, rounds), without the shader around the chain"""
     driver: Driver
 
+    @property
+    def typical(self) -> Array:
+        """(chains,): the time of each chain that counts, in nanoseconds per pixel."""
+        times: Array = np.percentile(self.ns, TYPICAL, axis=1)
+        return times
+
 
 def time_chains(
     candidates: Sequence[Candidate], scene: MeasuredScene, size: tuple[int, int], rounds: int
@@ -58,6 +64,19 @@ def time_chains(
     ns = [per_pixel * (times.net_times[str(index)] - bare) for index in range(len(points))]
     labels = tuple(candidate.label for candidate in candidates)
     return TimedChains(labels, tuple(counts), np.array(ns), times.device)
+
+
+def joined(first: TimedChains, second: TimedChains) -> TimedChains:
+    """Chains that were timed with the same rounds on the same device."""
+    return TimedChains(
+        first.labels + second.labels, first.counts + second.counts, np.concatenate([first.ns, second.ns]), first.driver
+    )
+
+
+def chosen(chains: TimedChains, numbers: Sequence[int]) -> TimedChains:
+    """The chains with these numbers."""
+    labels, counts = (chains.labels[number] for number in numbers), (chains.counts[number] for number in numbers)
+    return TimedChains(tuple(labels), tuple(counts), chains.ns[list(numbers)], chains.driver)
 
 
 def _unfitted(candidate: Candidate) -> FittedChain:
@@ -83,9 +102,12 @@ def _program(operator: str) -> str:
 
 
 def measured_device(name: str, chains: TimedChains) -> Device:
-    """The costs, at least 0, that explain the times of `operator_chains`, by least squares of the relative error."""
+    """The costs, at least 0, that explain the times of chains, by least squares of the relative error.
+
+    Raises SssgenError for a program that takes no time.
+    """
     nnls = need("scipy.optimize", "scipy", "chart").nnls
-    times = np.percentile(chains.ns, TYPICAL, axis=1)
+    times = chains.typical
     if not (times > 0.0).all():
         raise failure("a program is too fast for the clock of this device", "time a larger picture, or more rounds")
     counts = np.array([[count[operator] for operator in OPERATORS] for count in chains.counts], float)
@@ -107,7 +129,7 @@ class PairOrder(NamedTuple):
 
 def order_of_pairs(chains: TimedChains, predicted: Sequence[float]) -> PairOrder:
     """Counts the pairs of chains in the measured order. Chains that are predicted equal are not in order."""
-    typical, high = np.percentile(chains.ns, [TYPICAL, 90.0], axis=1)
+    typical, high = chains.typical, np.percentile(chains.ns, 90.0, axis=1)
     pairs, agree, distinct, distinct_agree = 0, 0, 0, 0
     for a, b in combinations(range(len(typical)), 2):
         first, second = (a, b) if typical[a] <= typical[b] else (b, a)

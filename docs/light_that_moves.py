@@ -2,8 +2,6 @@
 
 python docs/light_that_moves.py [SCENE...] [--lights N] [--samples N] [--processes N]. An interrupted run continues
 where it stopped. With scenes, it prints the page of these, and writes only the pictures of the surroundings.
-With few paths the subtraction of the reference's noise makes small errors too small: errors below 0.05 need
-`--samples 2048` or more.
 """
 
 from __future__ import annotations

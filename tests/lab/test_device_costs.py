@@ -24,7 +24,7 @@ from sssgen.support.diagnostics import SssgenError
 
 pytest.importorskip("scipy", reason="scipy is missing: pip install -e '.[chart]'")
 
-NS = (0.05, 0.4, 7.0, 2.0)
+NS = (0.05, 0.4, 7.0, 9.0, 2.0)
 DRIVER = Driver("A device", "4.6", False)
 
 
@@ -48,9 +48,9 @@ def test_each_operator_has_a_program_that_mostly_consists_of_it() -> None:
     for index, operator in enumerate(OPERATORS):
         few, many = counts[2 * index : 2 * index + 2]
         assert many[operator] - few[operator] >= operator_times.ROUNDS[1] - operator_times.ROUNDS[0]
-        assert all(few[other] <= 1 for other in ("fetches", "distance_evaluations") if other != operator), operator
+        assert all(few[other] <= 1 for other in OPERATORS[2:] if other != operator), operator
     matrix = np.array([[count[operator] for operator in OPERATORS] for count in counts], float)
-    assert np.linalg.cond(matrix / np.linalg.norm(matrix, axis=0)) < 100.0  # the times determine all four costs
+    assert np.linalg.cond(matrix / np.linalg.norm(matrix, axis=0)) < 100.0  # the times determine all costs
 
 
 def test_costs_follow_from_times() -> None:
@@ -60,7 +60,7 @@ def test_costs_follow_from_times() -> None:
     disturbed = operator_times.measured_device("mine", timed(counts, noise=0.03))
     assert disturbed.ns[0] == pytest.approx(NS[0], rel=0.05) and disturbed.ns[2] == pytest.approx(NS[2], rel=0.1)
     with pytest.raises(SssgenError, match="too fast for the clock"):
-        operator_times.measured_device("mine", timed(counts, (0.0, 0.0, 7.0, 0.0)))
+        operator_times.measured_device("mine", timed(counts, (0.0, 0.0, 7.0, 0.0, 0.0)))
 
 
 def test_the_order_of_pairs() -> None:
@@ -84,13 +84,14 @@ def test_a_device_is_stored_and_loaded(tmp_path: Path) -> None:
     device = Device("mine", "A device", "4.6", False, NS)
     (tmp_path / "mine.toml").write_text(device.text(), encoding="utf-8")
     assert device_costs.load(str(tmp_path / "mine.toml")) == device
-    assert device.predict(dict(zip(OPERATORS, (100, 10, 2, 3), strict=True))) == pytest.approx(5.0 + 4.0 + 14.0 + 6.0)
+    counts = dict(zip(OPERATORS, (100, 10, 2, 1, 3), strict=True))
+    assert device.predict(counts) == pytest.approx(5.0 + 4.0 + 14.0 + 9.0 + 6.0)
     assert device.predict(dict.fromkeys(OPERATORS, 0)) == device_costs.LEAST
-    for text in ("", "ns = 3", device.text().replace("fetches = 7", 'fetches = "x"'), "["):
+    for text in ("", "ns = 3", device.text().replace("\nfetches = 7", '\nfetches = "x"'), "["):
         (tmp_path / "wrong.toml").write_text(text, encoding="utf-8")
         with pytest.raises(SssgenError, match="is not the file of a device"):
             device_costs.load(str(tmp_path / "wrong.toml"))
-    (tmp_path / "wrong.toml").write_text(device.text().replace("fetches = 7", "fetches = -7"), encoding="utf-8")
+    (tmp_path / "wrong.toml").write_text(device.text().replace("\nfetches = 7", "\nfetches = -7"), encoding="utf-8")
     with pytest.raises(SssgenError, match="below 0"):
         device_costs.load(str(tmp_path / "wrong.toml"))
     with pytest.raises(SssgenError, match="unknown device 'llvmpip'") as caught:
@@ -112,7 +113,7 @@ def test_a_record_with_predicted_costs_has_their_fronts() -> None:
         return {"scene": "s", "role": "material", "name": label, "label": label, "baseline": False, "failed": "",
                 "error": {"value": error}, "cost": {"value": float(counts[0]), **cost, "gpu_ms": None}}  # fmt: skip
 
-    points = on_fronts([point("reads", (50, 0, 4, 0), 0.3), point("computes", (100, 0, 0, 0), 0.2)])
+    points = on_fronts([point("reads", (50, 0, 4, 0, 0), 0.3), point("computes", (100, 0, 0, 0, 0), 0.2)])
     record = {"format": 1, "record": {}, "scenes": [{"name": "s"}], "points": points, "cost": "static",
               "cost_unit": "operations", "hypervolume": hypervolumes(points)}  # fmt: skip
     assert [one["front"] for one in points] == [True, True]
@@ -127,5 +128,15 @@ def test_a_record_with_predicted_costs_has_their_fronts() -> None:
 def test_the_programs_run(backend: Callable[[str], Backend]) -> None:
     backend("gl")
     chains = operator_times.time_chains(operator_times.operator_chains(), measured_scene.load("cube"), (32, 32), 2)
-    assert chains.ns.shape == (8, 2) and np.isfinite(chains.ns).all() and chains.driver.renderer
+    assert chains.ns.shape == (10, 2) and np.isfinite(chains.ns).all() and chains.driver.renderer
     assert chains.labels[0] == "operations, 64 rounds" and chains.counts[1]["operations"] > 2000
+
+
+def test_operators_and_materials_are_fitted_together() -> None:
+    operators = timed(counted())
+    materials = timed([dict(zip(OPERATORS, row, strict=True)) for row in ((90, 5, 2, 1, 0), (40, 2, 1, 3, 0))])
+    first, second = operator_times.chosen(materials, [0]), operator_times.chosen(materials, [1])
+    assert (first.labels, second.labels) == (("0",), ("1",)) and first.counts[0]["operations"] == 90
+    assert operator_times.joined(first, second).typical == pytest.approx(materials.typical)
+    device = operator_times.measured_device("mine", operator_times.joined(operators, first))
+    assert device.predict(second.counts[0]) == pytest.approx(second.typical[0])

@@ -55,15 +55,15 @@ def trials(apart: float, noise: float, count: int = 1500, lanes: int = 400) -> t
 def test_noise_is_unbiased_and_the_bars_contain_the_truth(apart: float, noise: float) -> None:
     right, result = trials(apart, noise)
     relmse, low, high, value, plain = result.T
-    # a bias of fourth order remains: at most a quarter of the correction
+    # a bias of a high order remains: at most a twentieth of the correction
     assert plain.mean() > 1.005 * right
-    assert abs(relmse.mean() - right) < 0.25 * (plain.mean() - right)
+    assert abs(relmse.mean() - right) < 0.05 * (plain.mean() - right)
     covered = ((low <= sqrt(right)) & (sqrt(right) <= high)).mean()
     assert covered >= 0.94
     assert ((low <= value) & (value <= high)).all()
-    # the bars are not too wide: bars of a quarter of the width often miss the truth
-    narrow = value + 0.25 * np.stack([low - value, high - value])
-    assert ((narrow[0] <= sqrt(right)) & (sqrt(right) <= narrow[1])).mean() < 0.6
+    # the bars are not too wide: bars of an eighth of the width mostly miss the truth
+    narrow = value + 0.125 * np.stack([low - value, high - value])
+    assert ((narrow[0] <= sqrt(right)) & (sqrt(right) <= narrow[1])).mean() < 0.5
 
 
 @pytest.mark.parametrize("factor", [0.8, 0.9, 1.05, 1.1, 1.3])
@@ -84,7 +84,7 @@ def test_the_bars_of_few_samples_contain_the_truth(factor: float) -> None:
         inside += error["low"] <= sqrt(right) <= error["high"]
         mean += error["relmse"] / 200
     assert inside >= 0.8 * 200
-    assert abs(sqrt(max(mean, 0.0)) - sqrt(right)) < 0.025
+    assert abs(sqrt(max(mean, 0.0)) - sqrt(right)) < 0.005
 
 
 def test_a_fit_to_noisy_targets_is_not_too_low() -> None:

@@ -97,5 +97,8 @@ def test_opengl(view: View, compiler: Callable[[str], Any]) -> None:
 
 
 def test_silhouettes_are_where_rounding_decides() -> None:
-    """In float32 the ray of this pixel ends a step earlier, in a shadow, and the color differs by 28/255."""
-    assert by_hand(VIEWS["from behind"]).silhouette[16, 55]
+    """The only excluded pixel of this view lies on an edge: a neighbour has another colour."""
+    picture = by_hand(VIEWS["from behind"])
+    ((row, column),) = np.argwhere(picture.silhouette)
+    around = picture.color[row - 1 : row + 2, column - 1 : column + 2]
+    assert np.abs(around - picture.color[row, column]).max() > 10.0 * LEVEL

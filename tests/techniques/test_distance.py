@@ -245,6 +245,29 @@ def test_raymarch_stops_at_its_maximum_distance() -> None:
     assert away[1][1] < 200.0 < 1e9 < upwards[1][1]  # the published march has no far limit
 
 
+def test_raymarch_ground_meets_the_body_or_the_ground() -> None:
+    origin = 4.0 * units(500, 3)
+    origin[:, 1] = 0.1 + np.abs(origin[:, 1])
+    ray = unit(1.6 * units(500, 4) - origin)
+    hit, p, n, v = technique("raymarch_ground", scene_distance="sphere")(
+        ray_origin=origin, ray_direction=ray, max_distance=20.0
+    )
+    to_ball, down = ray_to_sphere(origin, ray), ray[:, 1] < 0.0
+    to_ground = np.where(down, origin[:, 1] / np.where(down, -ray[:, 1], 1.0), np.inf)
+    ball = np.nan_to_num(to_ball, nan=np.inf) < to_ground
+    sure = np.abs(np.linalg.norm(np.cross(origin, ray), axis=1) - 1.0) > 5e-3
+    ground = sure & ~ball & (to_ground < 20.0)
+    above = sure & ball
+    assert min(above.sum(), ground.sum(), (sure & ~ball & ~ground).sum()) > 40
+    assert (hit == (ball | (to_ground < 20.0)))[sure].all()
+    close(p[ground], origin[ground] + to_ground[ground, None] * ray[ground], atol=1e-9)
+    close(n[ground], np.broadcast_to(UP, (int(ground.sum()), 3)))
+    steep = above & (np.einsum("nc,nc->n", ray, p) < -0.2)
+    close(p[steep], origin[steep] + to_ball[steep, None] * ray[steep], atol=6e-3)
+    close(n[steep], p[steep], atol=6e-3)
+    close(v, -ray)
+
+
 def test_normals_of_the_march_are_central_and_those_of_seed_0_one_sided() -> None:
     """On the paraboloid y = x^2, one-sided differences tilt the normal by half the step times the curvature."""
     bowl = "float bowl(world_position p) { return 0.5 * (p.y - p.x * p.x); }"

@@ -60,8 +60,10 @@ class Hits(NamedTuple):
 
     points: Array
     """(n, 3)."""
-    steps: Array
-    """(n,): the number of steps of the ray; -1 if it misses."""
+    met: Array
+    """(n,), bool: not the sky."""
+    floor: Array
+    """(n,), bool: the floor."""
 
 
 def cube_distances(p: Array) -> Array:
@@ -73,8 +75,8 @@ def cube_distances(p: Array) -> Array:
 
 
 def scene(p: Array) -> Array:
-    """The distance to the cubes or to the floor, y = 0."""
-    result: Array = np.minimum(cube_distances(p).min(axis=-1), p[..., 1])
+    """The distance to the cubes."""
+    result: Array = cube_distances(p).min(axis=-1)
     return result
 
 
@@ -99,23 +101,27 @@ def unit(v: Array) -> Array:
 
 
 def trace(eye: Array, directions: Array, tolerance: float) -> Hits:
-    """Sphere tracing: each step is the distance, until it is below the tolerance or the way is too long."""
-    way, steps = np.zeros(len(directions)), np.full(len(directions), -1)
+    """Sphere tracing: each step is the distance, until it is below the tolerance, the floor is met or the way is too
+    long."""
+    way, cube = np.zeros(len(directions)), np.zeros(len(directions), bool)
+    down = -directions[:, 1]
+    end = np.minimum(np.where(down > 0.0, eye[1] / np.where(down > 0.0, down, 1.0), FARTHEST), FARTHEST)
     going = np.arange(len(directions))
-    for step in range(STEPS):
-        going = going[way[going] < FARTHEST]
+    for _ in range(STEPS):
+        going = going[way[going] < end[going]]
         gap = scene(eye + way[going, None] * directions[going])
         near = gap < tolerance
-        steps[going[near]] = step
+        cube[going[near]] = True
         going = going[~near]
         way[going] += gap[~near]
-    return Hits(eye + way[:, None] * directions, steps)
+    floor = ~cube & (end < FARTHEST)
+    return Hits(eye + np.where(cube, way, end)[:, None] * directions, cube | floor, floor)
 
 
-def normals(p: Array) -> Array:
-    """The gradient, from four points near each point."""
+def normals(p: Array, floor: Array) -> Array:
+    """The gradient, from four points near each point; of the floor, upwards."""
     around = TOLERANCE * TETRAHEDRON
-    return unit(scene(p[:, None] + around) @ TETRAHEDRON)
+    return np.where(floor[:, None], [0.0, 1.0, 0.0], unit(scene(p[:, None] + around) @ TETRAHEDRON))
 
 
 def shadow(p: Array) -> Array:
@@ -174,9 +180,9 @@ def kinds(p: Array) -> Array:
     return np.where(p[:, 1] < cubes.min(axis=-1), np.where(bright, 3, 2), cubes.argmin(axis=-1))
 
 
-def radiance(p: Array, directions: Array) -> Array:
+def radiance(p: Array, floor: Array, directions: Array) -> Array:
     """The light from the hit points, (n, 3), linear."""
-    n, kind = normals(p), kinds(p)
+    n, kind = normals(p, floor), kinds(p)
     free, facing, up = shadow(p + TOLERANCE * n), np.maximum(n @ KEY, 0.0), n[:, 1]
     behind = np.maximum(n @ (KEY * [-1.0, 0.0, -1.0]), 0.0)
     dome, bounce = 0.2 + 0.8 * np.maximum(up, 0.0), 0.2 - 0.8 * np.minimum(up, 0.0)
@@ -191,8 +197,8 @@ def radiance(p: Array, directions: Array) -> Array:
 def draw(eye: Array, directions: Array, tolerance: float) -> Array:
     """The colours of rays, (n, 3), encoded."""
     hits = trace(eye, directions, tolerance)
-    color, met = sky(directions[:, 1]), hits.steps >= 0
-    color[met] = radiance(hits.points[met], directions[met])
+    color, met = sky(directions[:, 1]), hits.met
+    color[met] = radiance(hits.points[met], hits.floor[met], directions[met])
     encoded: Array = color ** (1.0 / 2.2)
     return encoded
 

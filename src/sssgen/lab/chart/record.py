@@ -23,12 +23,14 @@ FORMAT = 1
 ROLES = ("coordinates", "thickness", "view_thickness", "translucency", "material")
 """Points of the same role are compared; in the order of the charts."""
 
-CostName = Literal["value", "operations", "transcendentals", "fetches", "distance_evaluations", "gpu_ms"]
+CostName = Literal[
+    "value", "operations", "transcendentals", "fetches", "volume_fetches", "distance_evaluations", "gpu_ms"
+]
 ErrorName = Literal["value", "low", "high", "relmse", "bias", "p99", "max", "flip"]
 
 COSTS: dict[CostName, str] = {
     "value": "cost", "operations": "operations", "transcendentals": "transcendentals", "fetches": "fetches",
-    "distance_evaluations": "distance evaluations", "gpu_ms": "GPU ms",
+    "volume_fetches": "volume fetches", "distance_evaluations": "distance evaluations", "gpu_ms": "GPU ms",
 }  # fmt: skip
 """Key of a point's cost → table column; charts show `value`."""
 

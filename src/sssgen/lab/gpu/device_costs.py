@@ -1,8 +1,8 @@
 """The cost of operators on a device, measured once: nanoseconds of a chain without drawing it.
 
-A device's file has the nanoseconds per pixel of an operation, a transcendental, a texture fetch and a distance
-evaluation, which benchmarks/device_costs.py measures. The predicted cost of a chain is their sum over its static
-counts.
+A device's file has the nanoseconds per pixel of an operation, a transcendental, a fetch of a picture and of a volume,
+and a distance evaluation, which benchmarks/device_costs.py measures. The predicted cost of a chain is their sum over
+its static counts.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from sssgen.lab.measure.measured_point import PointCost
 from sssgen.support.diagnostics import did_you_mean, failure
 
 FOLDER = os.path.join(os.path.dirname(__file__), "devices")
-Operator = Literal["operations", "transcendentals", "fetches", "distance_evaluations"]
+Operator = Literal["operations", "transcendentals", "fetches", "volume_fetches", "distance_evaluations"]
 
-OPERATORS: tuple[Operator, ...] = ("operations", "transcendentals", "fetches", "distance_evaluations")
+OPERATORS: tuple[Operator, ...] = ("operations", "transcendentals", "fetches", "volume_fetches", "distance_evaluations")
 """The static counts of a chain that have a cost."""
 LEAST = 1e-3
 """The least predicted cost, in nanoseconds: an empty chain costs nothing."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from sssgen.lab.measure.measured_point import PointError
@@ -15,6 +17,10 @@ BARS = 2.0
 NODES, SHARES = np.polynomial.hermite_e.hermegauss(5)
 """Values of a normal variable and their weights, for the mean of a smooth function of it."""
 SHARES = SHARES / SHARES.sum()
+EXTRAPOLATED = ((0.0, 4.0), (1.0, -6.0), (2.0, 4.0), (3.0, -1.0))
+"""Variances of added noise, relative to that of the reference's own noise, and the factors of the means with them: the
+cubic polynomial through these means has the value without any noise at a variance of -1. A straight line makes small
+errors too small, a parabola too large where few paths bring much of the light."""
 LEAST_SHARE = 0.25
 """The least share of its usual weight that a lane has in a fit."""
 
@@ -27,20 +33,24 @@ def compare(values: Array, reference: Array, noise: Array | None = None) -> Poin
     `max`: of the absolute differences. The last three are relative to the reference's mean. The result is NaN if a
     value is not finite.
 
-    The noise is in the numerator and in the weight. Its effect is what the same noise adds when it is added once more
-    (as in Cook and Stefanski, "Simulation-extrapolation estimation in parametric measurement error models", 1994); the
-    mean over that noise is a sum over `NODES`.
+    The noise is in the numerator and in the weight. Its effect is extrapolated from what the same noise adds when it is
+    added up to three times more (Cook and Stefanski, "Simulation-extrapolation estimation in parametric measurement
+    error models", 1994, with a cubic polynomial); the mean over that noise is a sum over `NODES`.
     """
     difference = values - reference
-    terms, deviation = difference**2 / (reference**2 + EPSILON), 0.0
+
+    def square(target: Array) -> Array:
+        term: Array = (values - target) ** 2 / (target**2 + EPSILON)
+        return term
+
+    terms, deviation = square(reference), 0.0
     if noise is not None:
-        noisier = [reference + node * noise for node in NODES]
-        squares = [(values - one) ** 2 / (one**2 + EPSILON) for one in noisier]
         with np.errstate(invalid="ignore"):  # values that are not finite
-            expected = sum(share * square for share, square in zip(SHARES, squares, strict=True))
-            spread = sum(share * (square - expected) ** 2 for share, square in zip(SHARES, squares, strict=True))
-            terms = 2.0 * terms - expected
-        deviation = float(np.sqrt(np.sum(spread))) / difference.size
+            terms = without_noise(square, reference, noise)
+            # per standard error of the reference; where noise prevails this is less than the spread itself, whose
+            # largest part is noise that the extrapolation removes
+            change = 0.5 * (square(reference + noise) - square(reference - noise))
+        deviation = float(np.sqrt(np.sum(change**2))) / difference.size
     relmse = float(terms.mean())
     scale = max(float(np.abs(reference).mean()), 1e-9)
     return {
@@ -63,14 +73,26 @@ def fit_target(reference: Array, noise: Array) -> tuple[Array, Array]:
     usual = 1.0 / (reference**2 + EPSILON)
     if not noise.any():
         return reference, usual
-    noisier = [reference + node * noise for node in NODES]
-    weights = [1.0 / (one**2 + EPSILON) for one in noisier]
-    weight = 2.0 * usual - sum(share * part for share, part in zip(SHARES, weights, strict=True))
-    product = 2.0 * reference * usual - sum(
-        share * part * one for share, part, one in zip(SHARES, weights, noisier, strict=True)
-    )
+    weight = without_noise(lambda target: 1.0 / (target**2 + EPSILON), reference, noise)
+    product = without_noise(lambda target: target / (target**2 + EPSILON), reference, noise)
     kept = weight >= LEAST_SHARE * usual  # lanes that are mostly noise have no such form
     return np.where(kept, product / np.where(kept, weight, 1.0), reference), np.where(kept, weight, usual)
+
+
+def with_noise(function: Callable[[Array], Array], reference: Array, noise: Array) -> Array:
+    """The mean of a function of the reference when normal noise with the standard errors `noise` is added to it."""
+    parts = [share * function(reference + node * noise) for node, share in zip(NODES, SHARES, strict=True)]
+    result: Array = np.sum(parts, axis=0)
+    return result
+
+
+def without_noise(function: Callable[[Array], Array], reference: Array, noise: Array) -> Array:
+    """A function of the reference, extrapolated to a reference without the noise that it has."""
+    parts = [
+        factor * with_noise(function, reference, float(np.sqrt(variance)) * noise) for variance, factor in EXTRAPOLATED
+    ]
+    result: Array = np.sum(parts, axis=0)
+    return result
 
 
 def _root(square: float) -> float:

@@ -33,6 +33,7 @@ class PointCost(GpuTimes):
     operations: NotRequired[int]
     transcendentals: NotRequired[int]
     fetches: NotRequired[int]
+    volume_fetches: NotRequired[int]
     distance_evaluations: NotRequired[int]
 
 

@@ -203,7 +203,7 @@ def price(candidate: Candidate, scene: MeasuredScene) -> Price:
 def _point_cost(cost: Cost) -> PointCost:
     return {
         "value": float(max(cost.weight, 1)), "operations": cost.operations,
-        "transcendentals": cost.transcendentals, "fetches": cost.fetches,
+        "transcendentals": cost.transcendentals, "fetches": cost.fetches, "volume_fetches": cost.volume_fetches,
         "distance_evaluations": cost.distance_evaluations, "gpu_ms": None,
     }  # fmt: skip
 

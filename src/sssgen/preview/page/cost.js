@@ -3,7 +3,7 @@
 import { make } from './elements.js';
 
 const DELAY = 400;
-const UNITS = { operations: 'operations', transcendentals: 'transcendental functions', fetches: 'texture reads', distance_evaluations: 'distances' };
+const UNITS = { operations: 'operations', transcendentals: 'transcendental functions', fetches: 'texture reads', volume_fetches: 'volume reads', distance_evaluations: 'distances' };
 
 /** The box; `ask` sends a question to Python. */
 export class CostBox {
