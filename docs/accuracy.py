@@ -20,6 +20,7 @@ from typing import TypedDict
 import accuracy_goals
 import accuracy_pictures
 import accuracy_points
+import moving_goals
 import pick_trial
 from choice_pictures import ScenePictures, scene_pictures
 
@@ -123,6 +124,7 @@ def page(
     text = (FOLDER / "page.md.in").read_text(encoding="utf-8")
     parts: dict[str, Callable[[], str]] = {
         "scenes": lambda: scene_table(record), "fronts": lambda: fronts(record),
+        "moving goals": lambda: "\n".join(moving_goals.rows(moving_goals.load())),
         "goals": lambda: accuracy_goals.table(record, bent, bench_gpu()["interior"]),
         "medians": lambda: accuracy_goals.medians(record, True),
         "moving": lambda: accuracy_goals.medians(record, False),

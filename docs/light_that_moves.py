@@ -15,6 +15,7 @@ from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
+import moving_goals
 import numpy as np
 from accuracy import INDEX, refracting, scenes
 from accuracy_pictures import displayed, frame
@@ -109,8 +110,34 @@ def main() -> None:
     if arguments.scenes:
         print(text)
         return
+    files[moving_goals.RECORD.name] = json.dumps(record_of(parts, arguments), indent=1) + "\n"
     write_files(str(DOCS / "accuracy"), {PICTURE: picture(parts, arguments.lights, settings), **files})
     write_files(str(DOCS), {"light_that_moves.md": text})
+
+
+def record_of(parts: Sequence[Part], arguments: argparse.Namespace) -> moving_goals.MovingRecord:
+    """The page's figures."""
+    return {
+        "lights": arguments.lights, "samples": arguments.samples,
+        "parts": [
+            {
+                "index": part.index, "bodies": [body.name for body in part.bodies],
+                "costs": {
+                    label: {"operations": operations, "bytes": size}
+                    for label, (operations, size) in part.costs.items()
+                },
+                "tables": {
+                    title: [
+                        {"label": row.label, "median": [each.median for each in row.errors],
+                         "worst": [each.worst for each in row.errors]}
+                        for row in rows
+                    ]
+                    for title, rows in part.tables.items()
+                },
+            }
+            for part in parts
+        ],
+    }  # fmt: skip
 
 
 def written_skies() -> dict[str, Environment]:
@@ -149,14 +176,14 @@ def measured(
     around = []
     for number, name in enumerate(surroundings):
         around += rows(f"{name}: volume", [relit], {key: scattered[key][number : number + 1] for key in keys})
-    around += rows("all three: volume", [relit], scattered)
+    around += rows(moving_goals.ALL_AROUND, [relit], scattered)
     around += rows("all three: best matte surface", [MATTE], scattered)
     around += rows("all three: volume, against light with what is seen through the body", [relit], whole)
     tables = {
-        "A light from afar": rows("", [before, ONCE, relit], lit(far)),
+        moving_goals.AFAR: rows("", [before, ONCE, relit], lit(far)),
         "Several lights from afar": rows("two", [relit], lit(far, 2)) + rows("three", [relit], lit(far, 3)),
-        "A lamp at one radius from the surface": rows("", [before, ONCE, relit], lit(near)),
-        "Surroundings": around,
+        moving_goals.NEAR: rows("", [before, ONCE, relit], lit(near)),
+        moving_goals.AROUND: around,
     }
     costs = {}
     for each in (before, ONCE, relit):
@@ -197,6 +224,7 @@ def bent_arms(count: int, settings: Settings) -> tuple[list[str], dict[str, str 
 
 def page(parts: Sequence[Part], arms: Sequence[str], arguments: argparse.Namespace) -> str:
     """The page's text."""
+    goals = moving_goals.rows(record_of(parts, arguments)) if len(parts[0].bodies) > 1 else []
     lines = [
         "# Light that moves", "",
         f"`python docs/light_that_moves.py` measures this page: bodies under {arguments.lights} lights from afar, two "
@@ -208,6 +236,7 @@ def page(parts: Sequence[Part], arms: Sequence[str], arguments: argparse.Namespa
         "views, as in [accuracy.md](accuracy.md): the median over the lights, and the worst light in brackets. At the "
         f"*edges* are points with both lit and dark ones within {NEAR} pixels. A body's radius is half of the longest "
         "side of its box.", "",
+        "| goal: medians over the bodies | measured | |", "|---|---|---|", *goals, "",
     ]  # fmt: skip
     for part in parts:
         lines += [f"## {part.title}", "", "| chain | operations | bytes |", "|---|---:|---:|"]
@@ -263,7 +292,7 @@ def picture(parts: Sequence[Part], count: int, settings: Settings) -> bytes:
     rows: list[list[Array]] = [[] for _ in parts[0].bodies]
     for part in parts:
         views = drawn_views(part.bodies, count, settings)
-        ours, far = RELIT[part.index], part.tables["A light from afar"][-1]
+        ours, far = RELIT[part.index], part.tables[moving_goals.AFAR][-1]
         for row, body, result in zip(rows, part.bodies, far.errors, strict=True):
             order = np.argsort(result.values)
             for light in (order[(len(order) - 1) // 2], order[-1]):
