@@ -66,6 +66,9 @@ PER_LIGHT = frozenset({"L", "L_object", "light_color", "light_nearness"})
 
 EYE_DISTANCE = "eye_distance"
 
+DETAIL_LEVEL = "detail_level"
+"""The uniform that chooses the level of detail, in a material with several ones."""
+
 RAYS = frozenset({"ray_origin", "ray_direction"})
 """The inputs of a material that fills the screen, which has no mesh."""
 
@@ -93,7 +96,7 @@ _APART = ("lighting", "shadow", "environment", IRRADIANCE, *_LAST)
 
 
 TAKEN = frozenset(
-    {"Surface", "surface", "light", "shade_fragment", "MAX_LIGHTS", "safe_normalize", "tangent_frame", *INPUTS}
+    {DETAIL_LEVEL, "Surface", "surface", "light", "shade_fragment", "MAX_LIGHTS", "safe_normalize", "tangent_frame", *INPUTS}
     | {"facet_light", "reflected_light", "coated_light", "towards_light", "way_out_of_box", "light_entry"}
     | {"towards_area", "area_light"}
     | {f"evaluate_{kind}" for kind in ("surface", "translucency", "color", *_APART)}
@@ -116,6 +119,8 @@ class ChainFunction(NamedTuple):
     """Whether its result is added once and not multiplied by a light's colour"""
     uv: str = "uv"
     """The value that its parameter `uv` is, and, of a coordinates stage, its result: `uv`, or `uv2`."""
+    levels: tuple[int, ...] = ()
+    """The levels of detail that it belongs to; () for all of them"""
 
 
 class Entry(NamedTuple):

@@ -35,6 +35,8 @@ class TechniqueUse(NamedTuple):
     """The position of the stage's `technique = …` line."""
     uv: str = "uv"
     """The set of texture coordinates that the technique reads, one of `UV_SETS`."""
+    levels: tuple[int, ...] = ()
+    """The levels of detail that it belongs to, sorted; () for all of them."""
 
 
 class Material(NamedTuple):
@@ -55,6 +57,8 @@ class Material(NamedTuple):
     """Whether back faces are drawn, too, and lit with the reversed normal"""
     surroundings: bool = True
     """Whether light of the surroundings comes through, where the techniques say how"""
+    levels: int = 1
+    """The number of levels of detail, of which a uniform chooses one; 1 to `MOST_LEVELS`"""
 
     @property
     def path(self) -> Path:
@@ -70,6 +74,7 @@ class Material(NamedTuple):
 
 
 UV_SETS = ("uv", "uv2")
+MOST_LEVELS = 8
 SHADINGS = ("lit", "unlit")
 ALPHA_MODES = ("opaque", "mask", "blend")
 

@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
+from sssgen.ir.frame_passes import pass_name
 from sssgen.ir.nodes import Call, Constant, Expr, Function, Global, Module, Span, StructDecl, Uniform
 from sssgen.ir.text import print_meaning
 from sssgen.ir.transform import rewrite, rewrite_function
-from sssgen.ir.types import Struct, spell
+from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.ir.walk import all_expressions, subexpressions
 from sssgen.passes.scopes import fresh
 from sssgen.passes.struct_types import rename_structs
@@ -36,6 +37,8 @@ class LinkInput(NamedTuple):
     """Uniforms that the material folds into the text."""
     number: int = 0
     """The stage of the material: functions with the same number share its parameters."""
+    levels: tuple[int, ...] = ()
+    """The levels of detail that it belongs to: those with the same levels share the parameters of included files."""
 
 
 class LinkedModule(NamedTuple):
@@ -176,9 +179,16 @@ class _Linker:
         return self.global_names[constant.span]
 
     def uniform(self, uniform: Uniform, index: int, stage: LinkInput) -> str:
-        """A technique's own uniforms are the stage's; those of shared files and bound functions are common."""
-        own = uniform.span.file == stage.function.span.file
-        identity = (uniform.span, index if own else None)
+        """A technique's own uniforms are the stage's; those of shared files and bound functions are common.
+
+        All stages share what a pass draws. Stages of different levels of detail share textures, but not numbers.
+        """
+        sharing: int | tuple[int, ...] = () if isinstance(uniform.type, Sampler) else stage.levels
+        if pass_name(uniform):
+            sharing = ()
+        elif uniform.span.file == stage.function.span.file:
+            sharing = index
+        identity = (uniform.span, sharing)
         name = self.global_names.get(identity)
         if name is None:
             name = self.free_name(uniform.name, stage.technique)
