@@ -11,9 +11,10 @@ from typing import Any
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Array, Matrix, Sampler, components, kind_of
 from sssgen.material import library, roles, slots
+from sssgen.material.level_reader import LEVELED
 from sssgen.material.library import Technique
 from sssgen.material.material_loading import examples
-from sssgen.material.material_reader import CHOICES, FLAGS, LEVELED, MATERIAL_KEYS, STAGE_KEYS, parameter_names
+from sssgen.material.material_reader import CHOICES, FLAGS, MATERIAL_KEYS, STAGE_KEYS, parameter_names
 from sssgen.material.model import MOST_LEVELS, NAME, UV_SETS
 from sssgen.material.shell_stages import choices
 from sssgen.material.technique_facts import uniform_facts, uniform_text
@@ -60,7 +61,8 @@ def _section(section: str, techniques: Iterable[Technique]) -> Schema:
     names = [technique.name for technique in techniques if technique.role in allowed]
     named = {"anyOf": [{"enum": names}, _TECHNIQUE_FILE]}
     level: Schema = {"type": "integer", "minimum": 0, "maximum": MOST_LEVELS - 1}
-    leveled = {"level": {"anyOf": [level, {"type": "array", "items": level, "minItems": 1}]}} if section in LEVELED else {}
+    levels: Schema = {"anyOf": [level, {"type": "array", "items": level, "minItems": 1}]}
+    leveled = {"level": levels} if section in LEVELED else {}
     stage = {
         "type": "object",
         "required": ["technique"],

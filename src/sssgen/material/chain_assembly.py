@@ -96,12 +96,12 @@ _APART = ("lighting", "shadow", "environment", IRRADIANCE, *_LAST)
 
 
 TAKEN = frozenset(
-    {DETAIL_LEVEL, "Surface", "surface", "light", "shade_fragment", "MAX_LIGHTS", "safe_normalize", "tangent_frame", *INPUTS}
+    {"Surface", "surface", "light", "shade_fragment", "MAX_LIGHTS", "safe_normalize", "tangent_frame", *INPUTS}
     | {"facet_light", "reflected_light", "coated_light", "towards_light", "way_out_of_box", "light_entry"}
     | {"towards_area", "area_light"}
     | {f"evaluate_{kind}" for kind in ("surface", "translucency", "color", *_APART)}
     | {"entering_light", "fall_of_light", "share_that_passes", "is_free", "sky_light", "sky_light_matrix"}
-    | {"occluder_map", "occluded_lights"}
+    | {"occluder_map", "occluded_lights", DETAIL_LEVEL}
     | {"occluder_matrix", "occluder_matrix_2", "occluder_matrix_3", "occluder_matrix_4"}
 )
 """The names of the assembled functions, their shell, inputs and surface, which no uniform may have. The other names

@@ -48,16 +48,18 @@ def assemble_levels(
         for kind in kinds
     }
     structs = [StructDecl(surface, "Surface values that the techniques compute.", NOWHERE)] if surface else []
-    switch = Uniform(
-        DETAIL_LEVEL, INT, (0.0,), (("hint_range", (0.0, levels - 1.0)),), "",
-        "The level of detail: 0 is for the nearest body.", NOWHERE,
-    )  # fmt: skip
     merged = module._replace(
         structs=(*module.structs, *structs),
-        uniforms=(switch, *module.uniforms),
+        uniforms=(level_uniform(levels), *module.uniforms),
         functions=(*module.functions, *(entry.function for entry in entries.values())),
     )
     return Chain(merged, entries, surface)
+
+
+def level_uniform(levels: int) -> Uniform:
+    """The uniform that chooses one of the levels."""
+    limits = ("hint_range", (0.0, levels - 1.0))
+    return Uniform(DETAIL_LEVEL, INT, (0.0,), (limits,), "", "The level of detail: 0 is for the nearest body.", NOWHERE)
 
 
 def _common_surface(surfaces: Iterable[Struct]) -> Struct | None:

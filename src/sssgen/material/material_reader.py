@@ -10,17 +10,9 @@ from sssgen.ir.nodes import Function, Span, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.lang.source_lines import keep_lines
 from sssgen.material import baked, library, roles, slots
+from sssgen.material.level_reader import level_count, stage_levels
 from sssgen.material.library import Technique
-from sssgen.material.model import (
-    ALPHA_MODES,
-    MOST_LEVELS,
-    SHADINGS,
-    UV_SETS,
-    Binding,
-    Material,
-    TechniqueUse,
-    wrong_name,
-)
+from sssgen.material.model import ALPHA_MODES, SHADINGS, UV_SETS, Binding, Material, TechniqueUse, wrong_name
 from sssgen.material.values import WrongValue, read_texture, read_value
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean
 from sssgen.support.paths import display_name
@@ -31,8 +23,6 @@ FLAGS = ("two_sided", "surroundings")
 MATERIAL_KEYS = (*_TEXTS, *FLAGS, "levels")
 STAGE_KEYS = ("technique", "bind", "uv", "level")
 """The keys of a stage that are not parameters."""
-LEVELED = ("coordinates", "thickness", "surface", "translucency")
-"""The sections whose stages may belong to some levels of detail."""
 CHOICES = {
     "shading": (SHADINGS, "lit: the engine lights it; unlit: the chain gives the color"),
     "alpha_mode": (ALPHA_MODES, "opaque: alpha is ignored; mask: cut off at one half; blend: transparent"),
@@ -91,30 +81,18 @@ class _Reader:
                 hint = f"sections: {', '.join(sections)}" if key not in MATERIAL_KEYS else "it belongs below [material]"
                 error(place(key).key, f"'{key}' is outside any section", hint)
         name, title, doc, shading, alpha_mode = self.head(data.get("material"))
-        self.levels = self.level_count(data.get("material"))
+        self.levels = level_count(self.document, data.get("material"))
         stages = [stage for section in roles.SECTIONS for stage in self.section(section, data.get(section))]
         if not any(section in data for section in roles.SECTIONS):
             hint = f"add a section with a technique: {', '.join(f'[{section}]' for section in roles.SECTIONS)}"
             error(place("material").value, "the material has no stages", hint)
         elif self.complete and not self.foreign:
-            self.check_chains(stages, shading)
+            links = [roles.Link(stage.technique, stage.span, stage.levels) for stage in stages]
+            roles.check_levels(links, self.levels, shading, error)
         sides = self.two_sided(data.get("material"), stages)
         title = title or name.replace("_", " ").capitalize()
         around = self.flag(data.get("material"), "surroundings", True)
         return Material(name, title, doc, shading, tuple(stages), self.path, alpha_mode, sides, around, self.levels)
-
-    def check_chains(self, stages: Sequence[TechniqueUse], shading: str) -> None:
-        """Checks the chain of each level; an error of several levels is reported once."""
-        reported: set[tuple[Span, str]] = set()
-
-        def report(span: Span, message: str, hint: str) -> None:
-            if (span, message) not in reported:
-                reported.add((span, message))
-                self.document.error(span, message, hint)
-
-        for level in range(self.levels):
-            links = [roles.Link(use.technique, use.span) for use in stages if not use.levels or level in use.levels]
-            roles.check_chain(links, shading, report)
 
     # The head
 
@@ -165,16 +143,6 @@ class _Reader:
         )
         return default
 
-    def level_count(self, table: Any) -> int:
-        """The number of levels of detail in the [material] section."""
-        value = table.get("levels", 1) if isinstance(table, dict) else 1
-        if isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= MOST_LEVELS:
-            return value
-        message = f"'levels' takes a number of levels of detail, 1 to {MOST_LEVELS}"
-        self.document.error(self.document.place("material", "levels").value, message, "write levels = 2")
-        self.complete = False
-        return MOST_LEVELS
-
     def text(self, raw: object, key: str) -> str:
         """A text of the [material] section; only `doc` may have several lines."""
         span = self.document.place("material", key).value
@@ -219,7 +187,9 @@ class _Reader:
         for binding in bindings.values():
             names, _ = slots.needs(binding.module, binding.function)
             uniforms |= {uniform.span: uniform for uniform in binding.module.uniforms if uniform.name in names}
-        levels = self.stage_levels(section, (*path, "level"), table["level"]) if "level" in table else ()
+        levels: tuple[int, ...] = ()
+        if "level" in table:
+            levels = stage_levels(self.document, (*path, "level"), table["level"], self.levels)
         stage = TechniqueUse(technique, {}, frozenset(), {}, bindings, span, levels=levels)
         key_of: dict[Span, str] = {}
         for key, raw in table.items():
@@ -248,24 +218,6 @@ class _Reader:
         elif all(param.name != "uv" for param in technique.function.params):
             self.document.error(place.key, f"'{technique.name}' reads no texture coordinates", "omit uv")
         return str(raw)
-
-    def stage_levels(self, section: str, path: tuple[str | int, ...], raw: object) -> tuple[int, ...]:
-        """The levels of detail that a stage belongs to, sorted."""
-        place, last = self.document.place(*path), self.levels - 1
-        numbers = raw if isinstance(raw, list) else [raw]
-        if section not in LEVELED:
-            message = f"a [{section}] stage belongs to all levels of detail"
-            self.document.error(place.key, message, f"omit level; sections that may have it: {', '.join(LEVELED)}")
-        elif not numbers or not all(isinstance(one, int) and not isinstance(one, bool) for one in numbers):
-            message = "'level' takes the number of a level of detail, or a list of numbers"
-            self.document.error(place.value, message, "write level = 0, or level = [0, 1]")
-        elif not all(0 <= one <= last for one in numbers):
-            has = f"the levels are 0 to {last}" if last else "the material has one level"
-            hint = f"write levels = {max(*numbers, 1) + 1} in [material]" if min(numbers) >= 0 else "levels begin at 0"
-            self.document.error(place.value, f"'level' is {raw}, but {has}", hint)
-        else:
-            return tuple(sorted(set(numbers)))
-        return ()
 
     def technique(self, section: str, path: tuple[str | int, ...], table: dict[str, Any]) -> Technique | None:
         """The technique that a stage names."""
