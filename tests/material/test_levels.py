@@ -69,7 +69,11 @@ def test_levels_share_textures_but_no_numbers(tmp_path: Path) -> None:
     [
         (HEAD.replace("2", "0") + ALIKE + LIGHT, "'levels' takes a number of levels of detail, 1 to 8", "write levels"),
         (HEAD.replace("2", "true") + ALIKE + LIGHT, "'levels' takes a number", "write levels = 2"),
-        (HEAD + ALIKE.replace("1", "2") + LIGHT, "'level' is 2, but the levels are 0 to 1", "write levels = 3 in [mate"),
+        (
+            HEAD + ALIKE.replace("1", "2") + LIGHT,
+            "'level' is 2, but the levels are 0 to 1",
+            "write levels = 3 in",
+        ),
         (HEAD + ALIKE.replace("1", "-1") + LIGHT, "'level' is -1, but", "levels are 0 to 7"),
         (HEAD.replace("2", "1") + ALIKE + LIGHT, "'level' is 1, but the material has one level", "write levels = 2"),
         (HEAD + ALIKE.replace("1", '"far"') + LIGHT, "'level' takes the number of a level", "write level = 0, or"),
