@@ -67,6 +67,11 @@ class Material(NamedTuple):
 
         return Path(self.file)
 
+    def at_level(self, level: int) -> Material:
+        """The material with the stages of one level of detail alone."""
+        stages = [stage._replace(levels=()) for stage in self.stages if not stage.levels or level in stage.levels]
+        return self._replace(stages=tuple(stages), levels=1)
+
     @property
     def makes_rays(self) -> bool:
         """Whether a technique finds the surface along rays: then the material has no body, and fills a picture."""
