@@ -88,3 +88,11 @@ def test_errors(text: str, message: str, hint: str) -> None:
     texts = [(error.message, error.hint) for error in raised.value.diagnostics]
     assert any(message in found and hint in more for found, more in texts), texts
     assert len(set(texts)) == len(texts)
+
+
+@pytest.mark.parametrize(("first", "second"), [("level = 0", "level = 1"), ('uv = "uv"', 'uv = "uv2"')])
+def test_a_changed_line_is_another_program(first: str, second: str, tmp_path: Path) -> None:
+    """No value of a uniform changes, and no place: the cached program must not be used."""
+    stage = '[[surface]]\ntechnique = "base_color"\n'
+    texts = [emitted(HEAD + stage + line + "\n", tmp_path) for line in (first, second)]
+    assert texts[0] != texts[1]
