@@ -13,7 +13,7 @@ import pytest
 
 from measured_views import candidate
 from sssgen.cli.main import main
-from sssgen.lab.chart.levels import COLUMNS, ROWS, Goal, chosen, goals, levels
+from sssgen.lab.chart.levels import COLUMNS, ROWS, Goal, Level, chosen, goals, levels
 from sssgen.lab.chart.picked_material import by_level, level_files
 from sssgen.lab.chart.race import Entrant, within_budget
 from sssgen.lab.gpu import device_costs
@@ -149,11 +149,11 @@ def stage(name: str, value: float, *numbers: int) -> MaterialSection:
 
 def test_equal_stages_of_several_levels_are_one() -> None:
     a, b, c = stage("a", 1.0), stage("b", 1.0), stage("c", 1.0)
-    assert by_level([[a, b], [a, c], [c, b]]) == [stage("a", 1.0, 0, 1), stage("c", 1.0, 1, 2), stage("b", 1.0, 0, 2)]
+    assert by_level([[a, b], [c, b], [a, c]]) == [stage("a", 1.0, 0, 2), stage("c", 1.0, 1, 2), stage("b", 1.0, 0, 1)]
     assert by_level([[a, b], [a]]) == [a, stage("b", 1.0, 0)]
     # the order of each level is kept, and another value is another stage
-    assert by_level([[a, b], [b, a]]) == [stage("a", 1.0, 0), b, stage("a", 1.0, 1)]
-    assert by_level([[a], [stage("a", 2.0)]]) == [stage("a", 2.0, 1), stage("a", 1.0, 0)]
+    assert by_level([[a, b], [b, a]]) == [stage("b", 1.0, 1), a, stage("b", 1.0, 0)]
+    assert by_level([[a], [stage("a", 2.0)]]) == [stage("a", 1.0, 0), stage("a", 2.0, 1)]
 
 
 def test_the_material_has_a_level_for_each_chain(cube: View, training: tuple[View, ...], tmp_path: Path) -> None:
@@ -162,12 +162,13 @@ def test_the_material_has_a_level_for_each_chain(cube: View, training: tuple[Vie
         tested = candidate(*names) if names else measure.Candidate("material", "none", "none", (), ())
         measured = measure.fit_and_measure(tested, training[:1], None, [cube], (17, cube.scene.size[1]))
         assert measured["views_at"][str(cube.scene.size[1])]["own"] == pytest.approx(measured["views"]["own"])
-        chains.append(measured)
+        end = float(len(chains) + 2) if names else None
+        chains.append(Level(len(chains) + 1.0, end, {"scene": "cube", **measured}, 0.1, 0.1, 0.1, 0.1, True))
     for name, text in level_files(cube.scene, chains, "mine").items():
         (tmp_path / name).write_text(text)
     material = parse_material((tmp_path / "mine.toml").read_text(), str(tmp_path / "mine.toml"))
-    assert material.levels == 3
-    assert [stage.levels for stage in material.stages if stage.technique.role == "translucency"] == [(1,), (0,)]
+    assert material.levels == 3 and material.doc.endswith(": level 0: 1 to 2; level 1: 2 to 3; level 2: from 3.")
+    assert [stage.levels for stage in material.stages if stage.technique.role == "translucency"] == [(0,), (1,)]
     for target in ("glsl-330", "wgsl", "hlsl"):
         compiled = compile(material, target)
         assert "detail_level" in [uniform["name"] for uniform in compiled.reflection["uniforms"]]

@@ -13,6 +13,7 @@ from sssgen.run.render.scene_render import render
 from sssgen.scene.scene_loading import load
 
 DRAWING = ["numpy", "gl", "gl-es", "webgpu", "hlsl", "metal", "unity-urp"]
+ENGINES = ["threejs", "babylonjs", "playcanvas", "godot"]
 LEVELS = 3
 # A level whose light has a thickness of its own, one whose thickness all lights share, and one without thickness. The
 # third level has no stage of its own in [translucency] but the one that it shares with the first.
@@ -67,7 +68,7 @@ def picture(folder: Path, material: str, parameters: str, backend: Backend) -> n
     return render(load(folder / "scene.toml"), backend).linear
 
 
-@pytest.mark.parametrize("name", DRAWING)
+@pytest.mark.parametrize("name", [*DRAWING, *ENGINES])
 def test_a_level_has_the_values_of_its_own_stages(name: str, backend: Callable[[str], Backend], tmp_path: Path) -> None:
     driver = backend(name)
     alone = [picture(tmp_path, material_text(level), "", driver) for level in range(LEVELS)]

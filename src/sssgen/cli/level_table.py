@@ -19,7 +19,7 @@ def level_table(levels: Sequence[Level], unseen: Sequence[CaseErrors | None]) ->
         others = f"{lights.median:.3g} ({lights.worst:.3g})" if lights is not None else "another bake"
         error = f"{level.error:.3g} ({level.low:.3g} to {level.high:.3g})" + ("" if level.within else " *")
         baked = f"{level.point.get('bytes', 0):,}".replace(",", " ")
-        rows.append((str(number), range_text(level), f"{level.ms:.3g}", error, others, baked, level.point["label"]))
+        rows.append((str(number), level.range_text, f"{level.ms:.3g}", error, others, baked, level.point["label"]))
     widths = [max(len(row[column]) for row in rows) for column in range(len(_TITLES))]
     lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
     return [f"  {line}" for line in lines]
@@ -37,8 +37,3 @@ def notes(levels: Sequence[Level], goals: Sequence[Goal], max_error: float, budg
     if not all(level.within for level in levels):
         lines.append(f"* above {max_error:g}: the least error within {budget_ms:g} ms")
     return [f"  {line}" for line in lines]
-
-
-def range_text(level: Level) -> str:
-    """The distances of a level."""
-    return f"from {level.begin:g}" if level.end is None else f"{level.begin:g} to {level.end:g}"

@@ -178,8 +178,7 @@ def _run_levels(arguments: Namespace, settings: Settings, conditions: Conditions
         files: list[str] = []
         bakes: list[str] = []
         if arguments.emit:
-            chains = [level.point for level in chosen]
-            texts = level_files(scene, chains, _name(scene))
+            chains, texts = [level.point for level in chosen], level_files(scene, chosen, _name(scene))
             files, bakes = _emit(scene, texts, chains, arguments, targets, progress.of(settings, "picture"))
     step = next_step(arguments.emit, _name(scene))
     count = f"{lights} light{'s' * (lights > 1)}"

@@ -51,6 +51,11 @@ class Level(NamedTuple):
     within: bool
     """Whether the error is below the limit; if not, it is the least one within the budget"""
 
+    @property
+    def range_text(self) -> str:
+        """The distances, as `0.5 to 2`, or `from 2`."""
+        return f"from {self.begin:g}" if self.end is None else f"{self.begin:g} to {self.end:g}"
+
 
 def goals(scene: MeasuredScene, budget_ms: float, distances: Sequence[float]) -> tuple[Goal, ...]:
     """The goals for increasing distances. Raises SssgenError for a scene whose camera does not see its body."""

@@ -9,6 +9,7 @@ import numpy as np
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import components, kind_of
 from sssgen.lab.chart.charting import candidate_of
+from sssgen.lab.chart.levels import Level
 from sssgen.lab.chart.picking import Pick
 from sssgen.lab.measure.candidates import load
 from sssgen.lab.measure.measured_point import FittedChain
@@ -31,27 +32,28 @@ def material_files(scene: MeasuredScene, picked: Pick, name: str) -> dict[str, s
     return _files(scene, name, [*stages, *_chain_stages(scene, picked.chain, shape)])
 
 
-def level_files(scene: MeasuredScene, chains: Sequence[FittedChain], name: str) -> dict[str, str]:
-    """The same for a material with a level of detail for each chain."""
+def level_files(scene: MeasuredScene, levels: Sequence[Level], name: str) -> dict[str, str]:
+    """The same for a material with levels of detail; its `doc` has the distances of each."""
     shape = body(scene.geometry)
-    stages = by_level([_chain_stages(scene, chain, shape) for chain in chains])
-    return _files(scene, name, stages, len(chains))
+    stages = by_level([_chain_stages(scene, level.point, shape) for level in levels])
+    ranges = (f"level {number}: {level.range_text}" for number, level in enumerate(levels))
+    distances = f" Distances, 1 is that of the scene's camera: {'; '.join(ranges)}." if len(levels) > 1 else ""
+    return _files(scene, name, stages, distances, len(levels))
 
 
 def by_level(levels: Sequence[Sequence[MaterialSection]]) -> list[MaterialSection]:
     """The stages of all levels. Each level has its own stages in their order; equal ones of several levels are one."""
     result: list[MaterialSection] = []
     for level, stages in enumerate(levels):
-        start = 0
-        for stage in stages:
-            alike = (index for index in range(start, len(result)) if result[index]._replace(levels=()) == stage)
+        end = len(result)
+        for stage in reversed(stages):
+            alike = (index for index in reversed(range(end)) if result[index]._replace(levels=()) == stage)
             index = next(alike, None)
             if index is None:
-                result.insert(start, stage._replace(levels=(level,)))
+                result.insert(end, stage._replace(levels=(level,)))
             else:
                 result[index] = result[index]._replace(levels=(*result[index].levels, level))
-                start = index
-            start += 1
+                end = index
     everywhere = tuple(range(len(levels)))
     return [stage._replace(levels=()) if stage.levels == everywhere else stage for stage in result]
 
@@ -63,8 +65,10 @@ def _chain_stages(scene: MeasuredScene, chain: FittedChain | None, shape: Body) 
     return [*stages, _surface("albedo", [*matte, 1.0]), _surface("roughness", 1.0)]
 
 
-def _files(scene: MeasuredScene, name: str, stages: Sequence[MaterialSection], levels: int = 1) -> dict[str, str]:
-    doc = f"Picked for the scene {scene.name}: {scene.title}."
+def _files(
+    scene: MeasuredScene, name: str, stages: Sequence[MaterialSection], more: str = "", levels: int = 1
+) -> dict[str, str]:
+    doc = f"Picked for the scene {scene.name}: {scene.title}.{more}"
     used = {bound for stage in stages for _, bound in stage.bind}
     shapes = body(scene.geometry).files.items()
     files = {file: text for file, text in shapes if any(bound.startswith(file) for bound in used)}
