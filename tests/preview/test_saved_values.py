@@ -58,6 +58,16 @@ def test_numbers_are_the_shortest_of_float32(stone: Path) -> None:
     assert "thickness_factor = 0.3  # metres" in stone.read_text(encoding="utf-8")
 
 
+def test_the_level_of_detail_is_shown_and_not_saved(stone: Path) -> None:
+    """The engine sets it."""
+    text = TEXT.replace('shading = "lit"', "levels = 2") + "level = 0\n"
+    stone.write_text(text, encoding="utf-8")
+    shown = Pane(str(stone))
+    (control,) = [one for one in shown.picture.head["controls"] if one["property"] == "detailLevel"]
+    assert control["range"] == [0.0, 1.0]
+    assert shown.save({"detailLevel": [1.0]}) == "" and stone.read_text(encoding="utf-8") == text
+
+
 def test_a_value_of_the_scene_is_saved_in_the_scene(stone: Path) -> None:
     scene = stone.with_name("scene.toml")
     scene.write_text(

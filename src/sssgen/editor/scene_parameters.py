@@ -5,6 +5,8 @@ from __future__ import annotations
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import library
+from sssgen.material.chain_assembly import DETAIL_LEVEL
+from sssgen.material.level_assembly import level_uniform
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.material.requirements import read_uniforms
@@ -39,6 +41,8 @@ def uniforms_of(scene: Scene, material: Material) -> dict[str, Uniform]:
         for use in material.stages
         for uniform in read_uniforms(use)
     }
+    if material.levels > 1:
+        uniforms[DETAIL_LEVEL] = level_uniform(material.levels)
     shells = {registry.load(target).lighting for target in registry.names()} if material.shading == "lit" else set()
     for name in filter(None, (*shells, *scene.shell.values())):
         if name != NONE:

@@ -11,10 +11,11 @@ from typing import Any
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Array, Matrix, Sampler, components, kind_of
 from sssgen.material import library, roles, slots
+from sssgen.material.level_reader import LEVELED
 from sssgen.material.library import Technique
 from sssgen.material.material_loading import examples
 from sssgen.material.material_reader import CHOICES, FLAGS, MATERIAL_KEYS, STAGE_KEYS, parameter_names
-from sssgen.material.model import NAME, UV_SETS
+from sssgen.material.model import MOST_LEVELS, NAME, UV_SETS
 from sssgen.material.shell_stages import choices
 from sssgen.material.technique_facts import uniform_facts, uniform_text
 from sssgen.material.values import HEX_COLOUR, is_colour, limits
@@ -48,6 +49,7 @@ def _head() -> Schema:
     keys: dict[str, Schema] = {key: {"type": "string"} for key in MATERIAL_KEYS}
     keys["name"] = {"type": "string", "pattern": f"^(?:{NAME.pattern})$"}
     keys |= {flag: {"type": "boolean"} for flag in FLAGS}
+    keys["levels"] = {"type": "integer", "minimum": 1, "maximum": MOST_LEVELS}
     for key, (words, meaning) in CHOICES.items():
         keys[key] = {"enum": list(words), "description": meaning}
     return _table(keys, required=["name"])
@@ -58,10 +60,13 @@ def _section(section: str, techniques: Iterable[Technique]) -> Schema:
     allowed = roles.allowed_roles(section)
     names = [technique.name for technique in techniques if technique.role in allowed]
     named = {"anyOf": [{"enum": names}, _TECHNIQUE_FILE]}
+    level: Schema = {"type": "integer", "minimum": 0, "maximum": MOST_LEVELS - 1}
+    levels: Schema = {"anyOf": [level, {"type": "array", "items": level, "minItems": 1}]}
+    leveled = {"level": levels} if section in LEVELED else {}
     stage = {
         "type": "object",
         "required": ["technique"],
-        "properties": {"technique": named, "uv": {"enum": list(UV_SETS)}, "bind": _texts()},
+        "properties": {"technique": named, "uv": {"enum": list(UV_SETS)}, "bind": _texts()} | leveled,
         "allOf": [
             {"if": {"properties": {"technique": {"const": name}}}, "then": {"$ref": f"#/definitions/{name}"}}
             for name in names

@@ -29,8 +29,9 @@ class GltfWriter:
     """The glTF material of a material; `report` gets a row for each element and each stage that is left out."""
 
     def __init__(self, material: Material, report: Report) -> None:
-        self.material, self.report = material, report
-        self.parameters = Parameters(material)
+        self.material, self.report = material.at_level(0), report
+        self.parameters = Parameters(self.material)
+        self.levels = material.levels
         self.json: dict[str, Any] = {"name": material.title or material.name, "pbrMetallicRoughness": {}}
         self.pictures: dict[str, bytes] = {}
         """Name → PNG file"""
@@ -40,6 +41,8 @@ class GltfWriter:
 
     def write(self) -> dict[str, Any]:
         """The glTF material."""
+        if self.levels > 1:
+            self.report.add_omission("detail_level", f"{self.levels} levels", "glTF has the level 0 alone")
         self.base()
         self.surface()
         self.reflection()

@@ -66,6 +66,9 @@ PER_LIGHT = frozenset({"L", "L_object", "light_color", "light_nearness"})
 
 EYE_DISTANCE = "eye_distance"
 
+DETAIL_LEVEL = "detail_level"
+"""The uniform that chooses the level of detail, in a material with several ones."""
+
 RAYS = frozenset({"ray_origin", "ray_direction"})
 """The inputs of a material that fills the screen, which has no mesh."""
 
@@ -98,7 +101,7 @@ TAKEN = frozenset(
     | {"towards_area", "area_light"}
     | {f"evaluate_{kind}" for kind in ("surface", "translucency", "color", *_APART)}
     | {"entering_light", "fall_of_light", "share_that_passes", "is_free", "sky_light", "sky_light_matrix"}
-    | {"occluder_map", "occluded_lights"}
+    | {"occluder_map", "occluded_lights", DETAIL_LEVEL}
     | {"occluder_matrix", "occluder_matrix_2", "occluder_matrix_3", "occluder_matrix_4"}
 )
 """The names of the assembled functions, their shell, inputs and surface, which no uniform may have. The other names
@@ -116,6 +119,8 @@ class ChainFunction(NamedTuple):
     """Whether its result is added once and not multiplied by a light's colour"""
     uv: str = "uv"
     """The value that its parameter `uv` is, and, of a coordinates stage, its result: `uv`, or `uv2`."""
+    levels: tuple[int, ...] = ()
+    """The levels of detail that it belongs to; () for all of them"""
 
 
 class Entry(NamedTuple):

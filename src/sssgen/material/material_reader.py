@@ -10,6 +10,7 @@ from sssgen.ir.nodes import Function, Span, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.lang.source_lines import keep_lines
 from sssgen.material import baked, library, roles, slots
+from sssgen.material.level_reader import level_count, stage_levels
 from sssgen.material.library import Technique
 from sssgen.material.model import ALPHA_MODES, SHADINGS, UV_SETS, Binding, Material, TechniqueUse, wrong_name
 from sssgen.material.values import WrongValue, read_texture, read_value
@@ -19,8 +20,8 @@ from sssgen.support.toml_source import Document, parse
 
 _TEXTS = ("name", "title", "doc", "shading", "alpha_mode")
 FLAGS = ("two_sided", "surroundings")
-MATERIAL_KEYS = (*_TEXTS, *FLAGS)
-STAGE_KEYS = ("technique", "bind", "uv")
+MATERIAL_KEYS = (*_TEXTS, *FLAGS, "levels")
+STAGE_KEYS = ("technique", "bind", "uv", "level")
 """The keys of a stage that are not parameters."""
 CHOICES = {
     "shading": (SHADINGS, "lit: the engine lights it; unlit: the chain gives the color"),
@@ -55,7 +56,9 @@ class _Reader:
         self.path = path
         self.foreign: list[Diagnostic] = []
         """The errors of the technique files that the material names."""
-        self.shared: dict[Span, _SharedValue] = {}
+        self.levels = 1
+        self.shared: dict[tuple[Span, tuple[int, ...]], _SharedValue] = {}
+        """By the place of a parameter, and the levels of detail of the stages that share it."""
         self.complete = True
         """Whether every stage has a technique, so that the chain can be checked."""
 
@@ -78,17 +81,18 @@ class _Reader:
                 hint = f"sections: {', '.join(sections)}" if key not in MATERIAL_KEYS else "it belongs below [material]"
                 error(place(key).key, f"'{key}' is outside any section", hint)
         name, title, doc, shading, alpha_mode = self.head(data.get("material"))
+        self.levels = level_count(self.document, data.get("material"))
         stages = [stage for section in roles.SECTIONS for stage in self.section(section, data.get(section))]
         if not any(section in data for section in roles.SECTIONS):
             hint = f"add a section with a technique: {', '.join(f'[{section}]' for section in roles.SECTIONS)}"
             error(place("material").value, "the material has no stages", hint)
         elif self.complete and not self.foreign:
-            links = [roles.Link(stage.technique, stage.span) for stage in stages]
-            roles.check_chain(links, shading, error)
+            links = [roles.Link(stage.technique, stage.span, stage.levels) for stage in stages]
+            roles.check_levels(links, self.levels, shading, error)
         sides = self.two_sided(data.get("material"), stages)
         title = title or name.replace("_", " ").capitalize()
         around = self.flag(data.get("material"), "surroundings", True)
-        return Material(name, title, doc, shading, tuple(stages), self.path, alpha_mode, sides, around)
+        return Material(name, title, doc, shading, tuple(stages), self.path, alpha_mode, sides, around, self.levels)
 
     # The head
 
@@ -183,7 +187,10 @@ class _Reader:
         for binding in bindings.values():
             names, _ = slots.needs(binding.module, binding.function)
             uniforms |= {uniform.span: uniform for uniform in binding.module.uniforms if uniform.name in names}
-        stage = TechniqueUse(technique, {}, frozenset(), {}, bindings, span)
+        levels: tuple[int, ...] = ()
+        if "level" in table:
+            levels = stage_levels(self.document, (*path, "level"), table["level"], self.levels)
+        stage = TechniqueUse(technique, {}, frozenset(), {}, bindings, span, levels=levels)
         key_of: dict[Span, str] = {}
         for key, raw in table.items():
             if key in STAGE_KEYS:
@@ -351,7 +358,8 @@ class _Reader:
         Those of included files and of bound functions are shared.
         """
         span = self.document.place(*path).value
-        earlier = self.shared.setdefault(uniform.span, _SharedValue(value, stage.technique.name, span.line))
+        shared = _SharedValue(value, stage.technique.name, span.line)
+        earlier = self.shared.setdefault((uniform.span, stage.levels), shared)
         if earlier.value != value:
             message = f"'{uniform.name}' has another value in '{earlier.technique}', line {earlier.line}"
             file = display_name(uniform.span.file)

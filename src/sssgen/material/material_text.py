@@ -20,6 +20,8 @@ class MaterialSection(NamedTuple):
     """Slot → function"""
     comment: str = ""
     """A line above the section"""
+    levels: tuple[int, ...] = ()
+    """The levels of detail that it belongs to; () for all of them"""
 
 
 def material_text(
@@ -35,6 +37,8 @@ def material_text(
     for stage in stages:
         lines += ["", *([f"# {stage.comment}"] if stage.comment else [])]
         lines += [f"[[{stage.section}]]", f"technique = {toml_value(stage.technique)}"]
+        if stage.levels:
+            lines.append(f"level = {toml_value(stage.levels if len(stage.levels) > 1 else stage.levels[0])}")
         if stage.bind:
             lines.append(f"bind = {{ {', '.join(f'{slot} = {toml_value(to)}' for slot, to in stage.bind)} }}")
         for key, value in stage.values:

@@ -35,6 +35,8 @@ class TechniqueUse(NamedTuple):
     """The position of the stage's `technique = …` line."""
     uv: str = "uv"
     """The set of texture coordinates that the technique reads, one of `UV_SETS`."""
+    levels: tuple[int, ...] = ()
+    """The levels of detail that it belongs to, sorted; () for all of them."""
 
 
 class Material(NamedTuple):
@@ -55,6 +57,8 @@ class Material(NamedTuple):
     """Whether back faces are drawn, too, and lit with the reversed normal"""
     surroundings: bool = True
     """Whether light of the surroundings comes through, where the techniques say how"""
+    levels: int = 1
+    """The number of levels of detail, of which a uniform chooses one; 1 to `MOST_LEVELS`"""
 
     @property
     def path(self) -> Path:
@@ -63,6 +67,11 @@ class Material(NamedTuple):
 
         return Path(self.file)
 
+    def at_level(self, level: int) -> Material:
+        """The material with the stages of one level of detail alone."""
+        stages = [stage._replace(levels=()) for stage in self.stages if not stage.levels or level in stage.levels]
+        return self._replace(stages=tuple(stages), levels=1)
+
     @property
     def makes_rays(self) -> bool:
         """Whether a technique finds the surface along rays: then the material has no body, and fills a picture."""
@@ -70,6 +79,7 @@ class Material(NamedTuple):
 
 
 UV_SETS = ("uv", "uv2")
+MOST_LEVELS = 8
 SHADINGS = ("lit", "unlit")
 ALPHA_MODES = ("opaque", "mask", "blend")
 

@@ -42,6 +42,8 @@ class Link(NamedTuple):
 
     technique: Technique
     span: Span
+    levels: tuple[int, ...] = ()
+    """The levels of detail that it belongs to; () for all of them"""
 
 
 class _Value(NamedTuple):
@@ -54,6 +56,16 @@ def allowed_roles(section: str) -> tuple[str, ...]:
     return ("thickness", "conversion") if section == "thickness" else (section,)
 
 
+def check_levels(links: Sequence[Link], levels: int, shading: str, report: Report) -> None:
+    """As `check_chain`, for the chain of each level of detail; what several of them have is reported once."""
+    reports: dict[tuple[Span, str, str], None] = {}
+    for level in range(levels):
+        own = [link for link in links if not link.levels or level in link.levels]
+        check_chain(own, shading, lambda *content: reports.setdefault(content))
+    for content in reports:
+        report(*content)
+
+
 def check_chain(links: Sequence[Link], shading: str, report: Report) -> None:
     """Reports each parameter that no stage supplies, and each technique whose result does not fit its role."""
     values = {name: _Value(type_, VALUE_QUANTITIES.get(name, "")) for name, type_ in INPUTS.items()}
@@ -62,7 +74,7 @@ def check_chain(links: Sequence[Link], shading: str, report: Report) -> None:
     unread: set[str] = set()
     of_lights: set[str] = set()
     colored = False
-    for technique, span in links:
+    for technique, span, _ in links:
         if error := wrong_result(technique):
             report(span, error, "")
         written = {technique.function.quantity} & set(SCALARS)

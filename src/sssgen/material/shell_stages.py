@@ -28,7 +28,8 @@ def with_shell(material: Material, options: Sequence[str]) -> Material:
             stages.append(TechniqueUse(technique, {}, frozenset(), {}, {}, technique.function.span))
     order = {role: number for number, section in enumerate(roles.SECTIONS) for role in roles.allowed_roles(section)}
     stages.sort(key=lambda stage: order[stage.technique.role])
-    roles.check_chain([roles.Link(stage.technique, stage.span) for stage in stages], material.shading, _refuse)
+    links = [roles.Link(stage.technique, stage.span, stage.levels) for stage in stages]
+    roles.check_levels(links, material.levels, material.shading, _refuse)
     return material._replace(stages=tuple(stages))
 
 

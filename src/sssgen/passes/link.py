@@ -10,10 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
+from sssgen.ir.frame_passes import pass_name
 from sssgen.ir.nodes import Call, Constant, Expr, Function, Global, Module, Span, StructDecl, Uniform
 from sssgen.ir.text import print_meaning
 from sssgen.ir.transform import rewrite, rewrite_function
-from sssgen.ir.types import Struct, spell
+from sssgen.ir.types import Sampler, Struct, spell
 from sssgen.ir.walk import all_expressions, subexpressions
 from sssgen.passes.scopes import fresh
 from sssgen.passes.struct_types import rename_structs
@@ -36,6 +37,8 @@ class LinkInput(NamedTuple):
     """Uniforms that the material folds into the text."""
     number: int = 0
     """The stage of the material: functions with the same number share its parameters."""
+    levels: tuple[int, ...] = ()
+    """The levels of detail that it belongs to: those with the same levels share the parameters of included files."""
 
 
 class LinkedModule(NamedTuple):
@@ -93,6 +96,10 @@ class _Linker:
         """The same by their meaning, under their own names."""
         self.global_names: dict[object, str] = {}
         """The linked name of each uniform and constant, by its place, and of each constant by its meaning, too."""
+        self.sharers: dict[tuple[Span, int], int] = {}
+        """By the place of a texture and the number of a stage of some levels: the first stage that has this texture."""
+        self.levels_with: dict[Span, dict[int, set[int]]] = {}
+        """By the place of a texture: the first stage → the levels of the stages that share it."""
         self.modules: dict[int, tuple[Module, Module]] = {}
         """By its id: a module with structs of taken names, and the same without."""
 
@@ -176,9 +183,16 @@ class _Linker:
         return self.global_names[constant.span]
 
     def uniform(self, uniform: Uniform, index: int, stage: LinkInput) -> str:
-        """A technique's own uniforms are the stage's; those of shared files and bound functions are common."""
-        own = uniform.span.file == stage.function.span.file
-        identity = (uniform.span, index if own else None)
+        """A technique's own uniforms are the stage's; those of shared files and bound functions are common.
+
+        All stages share what a pass draws. Levels of detail share textures, but not numbers.
+        """
+        sharing: int | tuple[int, ...] = () if isinstance(uniform.type, Sampler) else stage.levels
+        if pass_name(uniform):
+            sharing = ()
+        elif uniform.span.file == stage.function.span.file:
+            sharing = self.texture_sharer(uniform, index, stage)
+        identity = (uniform.span, sharing)
         name = self.global_names.get(identity)
         if name is None:
             name = self.free_name(uniform.name, stage.technique)
@@ -194,6 +208,17 @@ class _Linker:
         if uniform.name in stage.fixed:
             self.fixed[name] = self.uniforms[name].default
         return name
+
+    def texture_sharer(self, uniform: Uniform, index: int, stage: LinkInput) -> int:
+        """The first stage with a technique's own uniform: for a texture one of the same technique in another level."""
+        if not isinstance(uniform.type, Sampler) or not stage.levels:
+            return index
+        if (uniform.span, index) not in self.sharers:
+            groups = self.levels_with.setdefault(uniform.span, {})
+            first = next((first for first, levels in groups.items() if levels.isdisjoint(stage.levels)), index)
+            groups.setdefault(first, set()).update(stage.levels)
+            self.sharers[uniform.span, index] = first
+        return self.sharers[uniform.span, index]
 
     def free_name(self, name: str, technique: str) -> str:
         taken = self.uniforms.keys() | self.constants.keys() | set(self.taken)

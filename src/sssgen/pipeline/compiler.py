@@ -248,13 +248,14 @@ def _structure(structural: Material, target: Target) -> str:
         structural.alpha_mode,
         structural.two_sided,
         structural.surroundings,
+        structural.levels,
     ]
     for stage in structural.stages:
         technique, bindings = stage.technique, stage.bindings
         modules += [technique.module, *(binding.module for binding in bindings.values())]
         functions = [(slot, binding.function.key) for slot, binding in bindings.items()]
-        values = sorted(stage.values.items())
-        parts.append((technique.name, technique.role, functions, values, sorted(stage.fixed), stage.span))
+        values, fixed = sorted(stage.values.items()), sorted(stage.fixed)
+        parts.append((technique.name, technique.role, functions, values, fixed, stage.span, stage.uv, stage.levels))
     keys = [key_of(module) for module in modules]
     return repr((parts, keys)) if all(keys) else ""
 

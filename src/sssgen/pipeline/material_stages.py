@@ -103,6 +103,7 @@ def _link_input(stage: TechniqueUse, number: int) -> LinkInput:
         stage.values,
         stage.fixed,
         number,
+        stage.levels,
     )
 
 

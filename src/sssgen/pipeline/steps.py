@@ -9,7 +9,8 @@ from sssgen.ir.nodes import Module
 from sssgen.lang.polyfills import guard as guard_source
 from sssgen.lang.polyfills import polyfill
 from sssgen.lang.source_lines import source_line
-from sssgen.material.chain_assembly import TAKEN, ChainFunction, Entry, assemble
+from sssgen.material.chain_assembly import TAKEN, ChainFunction, Entry
+from sssgen.material.level_assembly import assemble_levels
 from sssgen.material.shell_assembly import add_shell, without_unread_parameters
 from sssgen.passes.cost import cost_of
 from sssgen.passes.fold import fold
@@ -70,10 +71,13 @@ def assemble_chain(state: State) -> Module:
     material = state.material
     assert material is not None
     stages = [
-        ChainFunction(stage.link.role, stage.link.technique, function, stage.span, stage.glows, stage.uv)
+        ChainFunction(
+            stage.link.role, stage.link.technique, function, stage.span, stage.glows, stage.uv, stage.link.levels
+        )
         for stage, function in zip(state.stages, state.linked, strict=True)
     ]
-    chain = assemble(state.module, stages, material.shading == "lit", material.alpha_mode == "opaque")
+    lit, opaque = material.shading == "lit", material.alpha_mode == "opaque"
+    chain = assemble_levels(state.module, stages, material.levels, lit, opaque)
     state.entries, state.surface = dict(chain.entries), chain.surface
     state.roots = [entry.function.key for entry in chain.entries.values()]
     return chain.module

@@ -145,7 +145,9 @@ class Pane:
             own = {controls[name]["label"]: values[name] for name in in_scene}
             save_to_scene(scene.document.reporter.file, own)
             written.append(f"{', '.join(own)} in {posix(scene.document.reporter.file)}")
-        if others := {name: values[name] for name in values if name not in in_scene}:
+        # the level of detail is of no technique: the engine sets it, and the material has no value for it
+        others = {name: values[name] for name in values if name not in in_scene and controls[name]["technique"]}
+        if others:
             changes = {(controls[name]["technique"], controls[name]["name"]): value for name, value in others.items()}
             save_to_material(material, changes)
             labels = ", ".join(controls[name]["label"] for name in others)

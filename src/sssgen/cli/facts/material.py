@@ -35,6 +35,7 @@ def describe(name: str) -> dict[str, Any]:
         "shading": material.shading,
         "alpha_mode": material.alpha_mode,
         "two_sided": material.two_sided,
+        "levels": material.levels,
         "stages": [_stage(use, values) for use in material.stages],
         "requires": list(requirements(material.stages)),
         "passes": reflection["passes"] if reflection else [],
@@ -63,6 +64,7 @@ def _stage(use: TechniqueUse, values: Mapping[str, Any]) -> dict[str, Any]:
         "technique": use.technique.name,
         "summary": use.technique.doc.get("summary", ""),
         "uv": use.uv,
+        "levels": list(use.levels),
         "parameters": parameters,
         "textures": textures,
         "slots": {slot: binding.function.name for slot, binding in use.bindings.items()},
@@ -105,7 +107,8 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
     column = max(len(stage["role"]) for stage in facts["stages"])
     for stage in facts["stages"]:
         uv = "" if stage["uv"] == "uv" else f", with {stage['uv']}"
-        text.append(f"  {stage['role']:{column}}  {stage['technique']}{uv}")
+        level = f", level {', '.join(map(str, stage['levels']))}" if stage["levels"] else ""
+        text.append(f"  {stage['role']:{column}}  {stage['technique']}{uv}{level}")
         for row in (*map(_parameter, stage["parameters"]), *map(_texture, stage["textures"])):
             text += wrap(row, width, "      ", "          ")
         text += [f"      {slot} = {function}" for slot, function in stage["slots"].items()]

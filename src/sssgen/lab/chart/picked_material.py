@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import components, kind_of
 from sssgen.lab.chart.charting import candidate_of
+from sssgen.lab.chart.levels import Level
 from sssgen.lab.chart.picking import Pick
 from sssgen.lab.measure.candidates import load
 from sssgen.lab.measure.measured_point import FittedChain
@@ -28,14 +29,51 @@ def material_files(scene: MeasuredScene, picked: Pick, name: str) -> dict[str, s
     stages: list[MaterialSection] = []
     if picked.coordinates is not None and picked.coordinates["name"] != "none":
         stages += _coordinates(scene, picked.coordinates, shape)
-    if picked.chain is not None:
-        stages += stages_of(picked.chain, shape, scene.medium)
-    matte = picked.chain["matte"] if picked.chain is not None else [1.0, 1.0, 1.0]
-    stages += [_surface("albedo", [*matte, 1.0]), _surface("roughness", 1.0)]
-    doc = f"Picked for the scene {scene.name}: {scene.title}."
+    return _files(scene, name, [*stages, *_chain_stages(scene, picked.chain, shape)])
+
+
+def level_files(scene: MeasuredScene, levels: Sequence[Level], name: str) -> dict[str, str]:
+    """The same for a material with levels of detail; its `doc` has the distances of each."""
+    shape = body(scene.geometry)
+    stages = by_level([_chain_stages(scene, level.point, shape) for level in levels])
+    ranges = (f"level {number}: {level.range_text}" for number, level in enumerate(levels))
+    distances = f" Distances, 1 is that of the scene's camera: {'; '.join(ranges)}." if len(levels) > 1 else ""
+    return _files(scene, name, stages, distances, len(levels))
+
+
+def by_level(levels: Sequence[Sequence[MaterialSection]]) -> list[MaterialSection]:
+    """The stages of all levels. Each level has its own stages in their order; equal ones of several levels are one."""
+    result: list[MaterialSection] = []
+    for level, stages in enumerate(levels):
+        end = len(result)
+        for stage in reversed(stages):
+            alike = (index for index in reversed(range(end)) if result[index]._replace(levels=()) == stage)
+            index = next(alike, None)
+            if index is None:
+                result.insert(end, stage._replace(levels=(level,)))
+            else:
+                result[index] = result[index]._replace(levels=(*result[index].levels, level))
+                end = index
+    everywhere = tuple(range(len(levels)))
+    return [stage._replace(levels=()) if stage.levels == everywhere else stage for stage in result]
+
+
+def _chain_stages(scene: MeasuredScene, chain: FittedChain | None, shape: Body) -> list[MaterialSection]:
+    """The stages of a chain with its reflection."""
+    stages = stages_of(chain, shape, scene.medium) if chain is not None else []
+    matte = chain["matte"] if chain is not None else [1.0, 1.0, 1.0]
+    return [*stages, _surface("albedo", [*matte, 1.0]), _surface("roughness", 1.0)]
+
+
+def _files(
+    scene: MeasuredScene, name: str, stages: Sequence[MaterialSection], more: str = "", levels: int = 1
+) -> dict[str, str]:
+    doc = f"Picked for the scene {scene.name}: {scene.title}.{more}"
     used = {bound for stage in stages for _, bound in stage.bind}
-    files = {file: text for file, text in shape.files.items() if any(bound.startswith(file) for bound in used)}
-    return {f"{name}.toml": material_text(name, stages, scene.title, doc), **files}
+    shapes = body(scene.geometry).files.items()
+    files = {file: text for file, text in shapes if any(bound.startswith(file) for bound in used)}
+    settings = {"levels": levels} if levels > 1 else {}
+    return {f"{name}.toml": material_text(name, stages, scene.title, doc, settings), **files}
 
 
 def _surface(name: str, value: object) -> MaterialSection:

@@ -1,8 +1,9 @@
-"""The picture of a picked chain beside the path traced one."""
+"""The pictures of picked chains beside the path traced one."""
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -21,21 +22,27 @@ GAP = 4
 """Pixels between both."""
 
 
-def side_by_side(scene: MeasuredScene, point: FittedChain, settings: Settings) -> Array:
-    """The path traced picture on the left, the chain's on the right, exposed alike, as encoded sRGB.
+def side_by_side(scene: MeasuredScene, chains: Sequence[FittedChain], settings: Settings) -> Array:
+    """The path traced picture on the left, then those of the chains, exposed alike, as encoded sRGB.
 
-    Shape (height, 2 · width + GAP, 3). Raises SssgenError as `charting.chart_record`.
+    Shape (height, the widths with GAP between them, 3). Raises SssgenError as `charting.chart_record`.
     """
     scale = SIDE / max(scene.size)
     width, height = (max(8, round(scale * side)) for side in scene.size)
     larger = dataclasses.replace(scene, size=(width, height))
     few = settings._replace(samples=min(settings.samples, SAMPLES))
     (view,) = with_references({"": [("picture", larger)]}, few)[""]
-    item = Item(
-        "sssgen.lab.measure.measurement:pictures_of",
-        (candidate_of(point), fit_of(point), view),
-        f"picture of {scene.name}",
-    )
-    ((picture, reference),) = results_of([item], settings)
+    items = [
+        Item(
+            "sssgen.lab.measure.measurement:pictures_of",
+            (candidate_of(chain), fit_of(chain), view),
+            f"picture of {chain['label']}",
+        )
+        for chain in chains
+    ]
+    results = results_of(items, settings)
     between = np.ones((height, GAP, 3))
-    return np.concatenate([encode_srgb(reference), between, encode_srgb(picture)], axis=1)
+    parts = [encode_srgb(results[0][1])]
+    for picture, _ in results:
+        parts += [between, encode_srgb(picture)]
+    return np.concatenate(parts, axis=1)

@@ -52,6 +52,17 @@ def within_cost(entrants: Sequence[Entrant], limit: float, last: int) -> list[in
     return _lowest(entrants, sorted(pending, key=lambda number: entrants[number].cost))
 
 
+def within_budget(entrants: Sequence[Entrant], max_cost: float, max_error: float, last: int) -> list[int]:
+    """The entrants to measure next for the cheapest one within `max_error`, of those of at most the cost `max_cost`;
+    where none of these is, for the most accurate one."""
+    allowed = [number for number, entrant in enumerate(entrants) if entrant.cost <= max_cost]
+    cheap = [entrants[number] for number in allowed]
+    pending = within_error(cheap, max_error, last)
+    if not pending and all(entrant.high > max_error for entrant in cheap):
+        pending = within_cost(cheap, max_cost, last)
+    return [allowed[number] for number in pending]
+
+
 def _lowest(entrants: Sequence[Entrant], pending: Sequence[int]) -> list[int]:
     """Those of the lowest level: samples grow together."""
     level = min((entrants[number].level for number in pending), default=0)

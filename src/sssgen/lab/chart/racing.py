@@ -23,6 +23,7 @@ from sssgen.lab.chart import charting, drawn_lights, race
 from sssgen.lab.chart.case_errors import CaseErrors, errors
 from sssgen.lab.chart.charting import Settings, fit_of, results_of, two_views, with_references
 from sssgen.lab.chart.engine_conditions import EVERYTHING, Conditions
+from sssgen.lab.chart.levels import Goal, low_of, seen_at
 from sssgen.lab.chart.picking import choose, is_allowed, limit_of
 from sssgen.lab.chart.record import Point, Record, check_record
 from sssgen.lab.chart.whole_progress import WholeProgress
@@ -53,7 +54,7 @@ STAGES = {
 
 
 class Limits(NamedTuple):
-    """What is picked; one of both limits is None."""
+    """What is picked; one of both limits is None. With goals, the error is that of each of them."""
 
     max_error: float | None = None
     max_cost: float | None = None
@@ -62,6 +63,13 @@ class Limits(NamedTuple):
     """The cost of static counts; None for the weighted operations"""
     cost_name: str = ""
     """Differs between functions that differ"""
+    goals: tuple[Goal, ...] = ()
+    """The distances of a budget"""
+
+    @property
+    def rows(self) -> tuple[int, ...]:
+        """The sizes at which errors are measured."""
+        return tuple(dict.fromkeys(goal.rows for goal in self.goals))
 
 
 class Provisional(NamedTuple):
@@ -87,13 +95,14 @@ class Runner:
     point: Point | None = None
     level: int = 0
 
-    def entrant(self) -> race.Entrant:
+    def entrant(self, rows: int | None = None) -> race.Entrant:
+        """The chain as the rule sees it, at the size `rows`."""
         if self.point is None:
             return race.Entrant(self.cost)
         if self.point["failed"]:
             return race.Entrant(self.cost, self.level, float("inf"))
-        lows = [float(view["low"] or 0.0) for view in self.point["views"].values()]
-        return race.Entrant(self.cost, self.level, max(lows), limit_of(self.point))
+        point = self.point if rows is None else seen_at(self.point, rows)
+        return race.Entrant(self.cost, self.level, low_of(point), limit_of(point))
 
     def baked_light(self) -> int:
         if not candidates.reads_fluence(self.candidate):
@@ -131,7 +140,7 @@ def is_stored(scene: MeasuredScene, settings: Settings, limits: Limits) -> bool:
 
 
 def _cache_name(scene: MeasuredScene, settings: Settings, limits: Limits) -> str:
-    chosen = limits.max_error, limits.max_cost, limits.conditions, limits.cost_name
+    chosen = limits.max_error, limits.max_cost, limits.conditions, limits.cost_name, limits.goals
     return f"race-{cache.digest(repr((scene.key, settings.samples, settings.seed, chosen, code_stamp(__name__))))}.json"
 
 
@@ -202,11 +211,26 @@ class _Race:
 
     def _next(self) -> list[Runner]:
         """The chains to measure next, by the rule of the race."""
-        entrants, last = [runner.entrant() for runner in self.runners], len(self.levels)
+        last = len(self.levels)
+        if self.limits.goals:
+            return self._next_of_goals(last)
+        entrants = [runner.entrant() for runner in self.runners]
         if self.limits.max_error is not None:
             return [self.runners[number] for number in race.within_error(entrants, self.limits.max_error, last)]
         assert self.limits.max_cost is not None
         return [self.runners[number] for number in race.within_cost(entrants, self.limits.max_cost, last)]
+
+    def _next_of_goals(self, last: int) -> list[Runner]:
+        """The chains to measure next for all goals of a budget together: those of the lowest level, the cheapest
+        first."""
+        assert self.limits.max_error is not None
+        wanted: set[int] = set()
+        for goal in self.limits.goals:
+            entrants = [runner.entrant(goal.rows) for runner in self.runners]
+            wanted.update(race.within_budget(entrants, goal.max_cost, self.limits.max_error, last))
+        runners = sorted((self.runners[number] for number in wanted), key=lambda runner: runner.cost)
+        level = min((runner.level for runner in runners), default=0)
+        return [runner for runner in runners if runner.level == level]
 
     # --- what is measured ---
 
@@ -293,7 +317,7 @@ class _Race:
         calibrated = candidates.is_calibrated(candidate)
         training = () if calibrated else self.training
         before = self.before.get((candidate.techniques[:1], candidate.settings))
-        arguments = (candidate, training, before, self._views(1))
+        arguments = (candidate, training, before, self._views(1), self.limits.rows)
         return Item("sssgen.lab.measure.measurement:fit_and_measure", arguments, candidate.label)
 
     def _measure_again(self, runners: Sequence[Runner]) -> None:
@@ -302,7 +326,7 @@ class _Race:
         items = []
         for runner in runners:
             assert runner.point is not None
-            arguments = (runner.candidate, fit_of(runner.point), self._views(level), False)
+            arguments = (runner.candidate, fit_of(runner.point), self._views(level), False, self.limits.rows)
             items.append(Item("sssgen.lab.measure.measurement:measure_candidate", arguments, runner.candidate.label))
         self._measure(runners, items, level)
 
@@ -326,7 +350,9 @@ class _Race:
         charting.raise_failures(failed)
 
     def _report(self) -> None:
-        """Reports the best chain so far, if it is a new one."""
+        """Reports the best chain so far, if it is a new one and there is one for all distances."""
+        if self.limits.goals:
+            return
         best, met = choose(self._points(), self.limits.max_error, self.limits.max_cost)
         runner = self._runner_of(best) if best is not None and met else None
         if runner is not None and (self.best is None or runner.candidate != self.best.candidate):
@@ -336,6 +362,8 @@ class _Race:
 
     def _report_nearest(self) -> None:
         """Reports the nearest chain so far where none is within the limit, before something that takes long."""
+        if self.limits.goals:
+            return
         best, met = choose(self._points(), self.limits.max_error, self.limits.max_cost)
         if best is not None and not met and best["label"] != self.nearest:
             self.nearest = best["label"]
@@ -365,9 +393,18 @@ class _Race:
 
     def _cost_limit(self) -> float:
         """The cost from which a chain cannot be the answer."""
+        if self.limits.goals:
+            return max(map(self._cost_limit_of, self.limits.goals))
         if self.limits.max_cost is not None:
             return self.limits.max_cost
         return self.best.cost if self.best is not None else float("inf")
+
+    def _cost_limit_of(self, goal: Goal) -> float:
+        """The same for one distance."""
+        assert self.limits.max_error is not None
+        entrants = [runner.entrant(goal.rows) for runner in self.runners]
+        inside = [entrant.cost for entrant in entrants if entrant.high <= self.limits.max_error]
+        return min((*inside, goal.max_cost))
 
     def _lacks(self, candidate: Candidate, price: Price) -> bool:
         """Whether the engine lacks what a chain needs."""

@@ -36,9 +36,12 @@ class Device(NamedTuple):
     ns: tuple[float, ...]
     """Nanoseconds per pixel, in the order of OPERATORS"""
 
-    def predict(self, cost: PointCost) -> float:
-        """The nanoseconds per pixel of a chain with these static counts."""
-        return max(sum(ns * float(cost[name]) for name, ns in zip(OPERATORS, self.ns, strict=True)), LEAST)
+    def predict(self, cost: PointCost, lights: int = 1) -> float:
+        """The nanoseconds per pixel of a chain with these static counts. What it does `once`, it does not repeat for
+        each light."""
+        once = cost.get("once", {})
+        counts = [lights * cost[name] - (lights - 1) * once.get(name, 0) for name in OPERATORS]
+        return max(sum(ns * float(count) for ns, count in zip(self.ns, counts, strict=True)), LEAST)
 
     def text(self) -> str:
         """The device's file."""
@@ -77,14 +80,21 @@ def load(name: str) -> Device:
     return Device(os.path.basename(path).removesuffix(".toml"), *about, ns)
 
 
-def by_device(record: Record, device: Device) -> Record:
+def by_device(record: Record, device: Device, lights: int = 1) -> Record:
     """The record with the predicted nanoseconds as the cost, for drawing and picking."""
     points: list[Point] = [
-        {**point, "cost": {**point["cost"], "static": point["cost"]["value"], "value": device.predict(point["cost"])}}
+        {
+            **point,
+            "cost": {
+                **point["cost"],
+                "static": point["cost"]["value"],
+                "value": device.predict(point["cost"], lights),
+            },
+        }
         for point in record["points"]
     ]
     about: Measurement = {
         **record["record"], "device": device.renderer, "driver": device.driver, "software": device.software
     }  # fmt: skip
-    unit = f"ns per pixel on {device.name}, predicted"
+    unit = f"ns per pixel on {device.name}, predicted" + (f", {lights} lights" if lights > 1 else "")
     return fronts_of({**record, "record": about, "points": points, "cost": "device", "cost_unit": unit})

@@ -35,6 +35,8 @@ class PointCost(GpuTimes):
     fetches: NotRequired[int]
     volume_fetches: NotRequired[int]
     distance_evaluations: NotRequired[int]
+    once: NotRequired[dict[str, int]]
+    """Of a material: the part of these four counts that is the same for any number of lights"""
 
 
 class ViewError(TypedDict):
@@ -96,6 +98,8 @@ class MeasuredPoint(FittedChain):
     cost: PointCost
     error: PointError
     views: NotRequired[dict[str, ViewError]]
+    views_at: NotRequired[dict[str, dict[str, ViewError]]]
+    """Rows of pixels in which the screen shows a view → its views, at that size"""
     implementation: NotRequired[Mapping[str, float | None]]
     """The relative errors of float32 and of finite counts, without the error of the model"""
     failed: NotRequired[str]

@@ -28,6 +28,7 @@ from sssgen.lab.measure.problem import (
     translucency_problem,
     view_thickness_problem,
 )
+from sssgen.lab.measure.seen_size import error_at
 from sssgen.passes.cost import Cost, cost_of
 from sssgen.pipeline.compiler import compile
 from sssgen.run.backends import Array
@@ -129,11 +130,12 @@ def chain_of(candidate: Candidate, shape: Body, folder: str, dtype: Any = np.flo
 
 
 def measure_candidate(
-    candidate: Candidate, fitted: FitResult, views: Sequence[View], thorough: bool = True
+    candidate: Candidate, fitted: FitResult, views: Sequence[View], thorough: bool = True, rows: Sequence[int] = ()
 ) -> MeasuredPoint:
     """The candidate's error over the views of one scene, with fitted parameters, as a point of a chart's record.
 
-    If it is not `thorough`, the point is without FLIP and without the errors of the implementation, which take most of
+    The errors of a material are measured at the sizes `rows`, too (`seen_size.error_at`). If it
+    is not `thorough`, the point is without FLIP and without the errors of the implementation, which take most of
     the time. `failed` of the point is not empty if the chain's output has NaN or infinity. Raises SssgenError.
     """
     solvable = [(view, problem) for view in views if (problem := problem_of(candidate.role, view)) is not None]
@@ -144,7 +146,7 @@ def measure_candidate(
     with tempfile.TemporaryDirectory() as folder:
         chain = chain_of(candidate, shape, folder)
         outputs = [_values(chain, fitted, problem) for problem in problems]
-        cost = static_cost(chain)
+        cost = _point_cost(chain, candidate.role)
         data = needed_data(chain.material.stages, views[0].scene) if chain is not None else NeededData()
         implementation = {
             kind: difference(_values(variant, fitted, problems[0]), outputs[0])
@@ -176,8 +178,15 @@ def measure_candidate(
         "scale": list(fitted.scale), "matte": list(fitted.matte), "factor": fitted.factor,
         "training_error": fitted.error,
         "requires": list(data.requires), "bytes": data.bytes,
-        "cost": _point_cost(cost),
+        "cost": cost,
         "error": error, "views": view_errors, "implementation": implementation,
+        "views_at": {
+            str(size): {
+                view.name: error_at(size, points(view.scene).valid, picture, problem.target, problem.noise)
+                for picture, (view, problem) in zip(pictures, solvable, strict=True)
+            }
+            for size in rows
+        },
         "failed": f"{not_finite} of {lanes} points are not finite" if not_finite else "",
     }  # fmt: skip
 
@@ -197,15 +206,19 @@ def price(candidate: Candidate, scene: MeasuredScene) -> Price:
     with tempfile.TemporaryDirectory() as folder:
         chain = chain_of(candidate, body(scene.geometry), folder)
         data = needed_data(chain.material.stages, scene) if chain is not None else NeededData()
-        return Price(_point_cost(static_cost(chain)), data.requires, data.bytes)
+        return Price(_point_cost(chain, candidate.role), data.requires, data.bytes)
 
 
-def _point_cost(cost: Cost) -> PointCost:
-    return {
+def _point_cost(chain: Chain | None, role: str) -> PointCost:
+    cost = static_cost(chain)
+    result: PointCost = {
         "value": float(max(cost.weight, 1)), "operations": cost.operations,
         "transcendentals": cost.transcendentals, "fetches": cost.fetches, "volume_fetches": cost.volume_fetches,
         "distance_evaluations": cost.distance_evaluations, "gpu_ms": None,
     }  # fmt: skip
+    if role == "material":
+        result["once"] = _entry_cost(chain, ("surface",))._asdict()
+    return result
 
 
 def fit_and_measure(
@@ -213,9 +226,10 @@ def fit_and_measure(
     training: Sequence[View],
     before: Parameters | None,
     views: Sequence[View],
+    rows: Sequence[int] = (),
 ) -> MeasuredPoint:
     """`fit_candidate`, then `measure_candidate`, which is not thorough."""
-    return measure_candidate(candidate, fit_candidate(candidate, training, before), views, thorough=False)
+    return measure_candidate(candidate, fit_candidate(candidate, training, before), views, False, rows)
 
 
 def pictures_of(candidate: Candidate, fitted: FitResult, view: View) -> tuple[Array, Array]:
@@ -266,17 +280,24 @@ def _values(chain: Chain | None, fitted: FitResult, problem: Problem) -> Array:
 
 def static_cost(chain: Chain | None) -> Cost:
     """The cost of an evaluation of a chain for one light, without its probes."""
+    total = _entry_cost(chain, ("surface", "translucency"))
     if chain is None:
-        return Cost()
-    entries = compile(chain.material, COST_TARGET, "functions").reflection["entries"]
-    total = Cost()
-    for kind in ("surface", "translucency"):
-        if kind in entries:
-            total = total.plus(Cost(**entries[kind]["cost"]))
+        return total
     probes = [
         stage.technique.name for stage in chain.material.stages if os.path.dirname(stage.technique.path) == PROBES
     ]
     return total.plus(_probe_cost(probes[-1]), -1) if probes else total
+
+
+def _entry_cost(chain: Chain | None, kinds: Sequence[str]) -> Cost:
+    """The cost of functions that a shell calls: `surface` once, `translucency` for each light."""
+    total = Cost()
+    if chain is not None:
+        entries = compile(chain.material, COST_TARGET, "functions").reflection["entries"]
+        for kind in kinds:
+            if kind in entries:
+                total = total.plus(Cost(**entries[kind]["cost"]))
+    return total
 
 
 @cache

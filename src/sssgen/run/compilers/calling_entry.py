@@ -2,14 +2,16 @@
 
 Compilers check unused functions less: GL drivers drop them, DXC makes no code for them, and
 WGSL's uniformity analysis reports only what an entry point reaches. So a library is checked through
-calls, with arguments that are not uniform. The entry is appended: the library's own line numbers stay
-true.
+calls, with arguments that are not uniform, except the level of detail, which a material's functions branch
+on. The entry is appended: the library's own line numbers stay true.
 """
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+
+from sssgen.material.chain_assembly import DETAIL_LEVEL
 
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*|^[ \t]*#(?:\\\n|[^\n])*", re.DOTALL | re.MULTILINE)
 _C_FUNCTION = re.compile(r"([A-Za-z_]\w*)\s+([A-Za-z_]\w*)\s*\(([^()]*)\)\s*(?::\s*\w+\s*)?\{\}")
@@ -67,11 +69,13 @@ def wgsl_entry(text: str) -> str:
     body: list[str] = []
     for i, function in enumerate(functions(text, wgsl=True)):
         arguments = []
-        for j, (kind, _, _) in enumerate(function.parameters):
+        for j, (kind, parameter, _) in enumerate(function.parameters):
             name = f"sssgen_check_{i}_{j}"
             pointer = re.fullmatch(r"ptr<\s*\w+\s*,\s*(.+?)\s*>", kind)
             if _OPAQUE.match(kind):
                 globals_.append(f"@group(3) @binding({len(globals_)}) var {name}: {kind};")
+            elif parameter.endswith(DETAIL_LEVEL):
+                globals_.append(f"@group(3) @binding({len(globals_)}) var<uniform> {name}: {kind};")
             else:
                 globals_.append(f"var<private> {name}: {pointer[1] if pointer else kind};")
             if pointer:

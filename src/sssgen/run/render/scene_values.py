@@ -14,6 +14,8 @@ from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import with_article
 from sssgen.material import baked
 from sssgen.material.baked import BakeFile
+from sssgen.material.chain_assembly import DETAIL_LEVEL
+from sssgen.material.level_assembly import level_uniform
 from sssgen.material.model import Material
 from sssgen.material.values import WrongValue, read_value
 from sssgen.run.evaluate import input_files as inputs
@@ -266,6 +268,8 @@ def _in_world_space(sidecar: BakeFile, geometry: Geometry | None) -> dict[str, A
 
 def _uniform(material: Material, entry: DeclarationRecord) -> Uniform:
     """The uniform that an entry of the reflection comes from."""
+    if entry["source_name"] == DETAIL_LEVEL:
+        return level_uniform(material.levels)
     for stage in material.stages:
         modules = [stage.technique.module, *(binding.module for binding in stage.bindings.values())]
         for uniform in (uniform for module in modules for uniform in module.uniforms):
