@@ -70,7 +70,7 @@ def assemble_chain(state: State) -> Module:
     material = state.material
     assert material is not None
     stages = [
-        ChainFunction(stage.link.role, stage.link.technique, function, stage.span, stage.glows, stage.uv)
+        ChainFunction(stage.link.role, stage.link.technique, function, stage.span, stage.glows, stage.uv, stage.at_rest)
         for stage, function in zip(state.stages, state.linked, strict=True)
     ]
     chain = assemble(state.module, stages, material.shading == "lit", material.alpha_mode == "opaque")

@@ -50,10 +50,12 @@ async function draw(plan, piece) {
   if (plan.withoutTangents) geometry.deleteAttribute('tangent');
   geometry.setIndex(new THREE.BufferAttribute(indices(piece(plan.triangles)), 1));
   const placed = (/** @type {number[]} */ model, size = 1) => {
-    const mesh = new THREE.Mesh(size === 1 ? geometry : geometry.clone().scale(size, size, size), material);
+    const own = size === 1 ? geometry : geometry.clone().scale(size, size, size);
+    const mesh = new (stage.bones ? THREE.SkinnedMesh : THREE.Mesh)(own, material);
     mesh.frustumCulled = false;
     mesh.matrixAutoUpdate = false;
     mesh.matrix.fromArray(model);
+    if (stage.bones && mesh instanceof THREE.SkinnedMesh) move(mesh, stage.bones);
     mesh.castShadow = mesh.receiveShadow = true;
     return mesh;
   };
@@ -89,6 +91,16 @@ async function draw(plan, piece) {
   renderer.setRenderTarget(null);
   [...meshes.map(({ geometry }) => geometry), material, target, ...Object.values(textures)].forEach((one) => one.dispose());
   return pixels;
+}
+
+/** Gives a mesh two bones, which have moved. @param {THREE.SkinnedMesh} mesh @param {import('./engine_page.js').Bones} bones */
+function move(mesh, { weights, matrices }) {
+  const bones = matrices.map(() => Object.assign(new THREE.Bone(), { matrixAutoUpdate: false }));
+  mesh.geometry.setAttribute('skinIndex', new THREE.Uint16BufferAttribute(weights.flatMap(() => [0, 1, 0, 0]), 4));
+  mesh.geometry.setAttribute('skinWeight', new THREE.Float32BufferAttribute(weights.flatMap((weight) => [1 - weight, weight, 0, 0]), 4));
+  mesh.add(...bones);
+  mesh.bind(new THREE.Skeleton(bones));
+  bones.forEach(({ matrix }, number) => matrix.fromArray(matrices[number]));
 }
 
 /** @type {Record<string, (stage: import('./engine_page.js').Stage) => THREE.Light>} (1 + y) / 2 on a white matte surface, or the colours of the stage. */

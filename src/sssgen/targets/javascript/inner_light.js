@@ -28,6 +28,16 @@ export const harmonics = ([x = 0, y = 0, z = 0]) => [
 ];
 
 /**
+ * A pose of a skinned body, by its voxels: InnerPose of inner_pose.js.
+ * @typedef {object} Pose
+ * @property {Uint16Array} bones four of each voxel
+ * @property {Float32Array} weights of these
+ * @property {((way: number[]) => number[])[]} turns a direction of the rest pose behind the rotation of each bone
+ * @property {(voxel: number, result: number[]) => void} place where a voxel is
+ * @property {(voxel: number, way: Float64Array) => void} turnBack a direction there, for the rest pose
+ */
+
+/**
  * How a body responds to light, as a `.bin` and the JSON beside it have it: its numbers are explained where they are made, in
  * sssgen's light_response.py.
  */
@@ -97,11 +107,13 @@ export class LightResponse {
    *   a white matt surface white
    * @param {number[][] | null} surroundings for each harmonic the integrals of the light of three channels
    * @param {Uint16Array} texels gets four half floats a texel
+   * @param {Pose | null} pose of a skinned body: its lights are in the space of the bent body, its texels are those of the rest pose
    */
-  light(lights, surroundings, texels) {
+  light(lights, surroundings, texels, pose = null) {
     for (const channel of this.sum) channel.fill(0);
-    for (const light of lights) (light.directional ? this.#addDistant(light) : this.#addNear(light));
-    if (surroundings) this.#addSurroundings(surroundings);
+    for (const light of lights) (light.directional && !pose ? this.#addDistant(light) : this.#addNear(light, pose));
+    if (surroundings && pose) this.#addTurned(surroundings, pose);
+    else if (surroundings) this.#addSurroundings(surroundings);
     const { nearest, halves, distance } = this;
     this.sum.forEach((values, channel) => {
       for (let voxel = 0; voxel < values.length; voxel++) halves[voxel] = toHalf(Math.max(values[voxel], 0));
@@ -143,12 +155,14 @@ export class LightResponse {
     }
   }
 
-  /** Adds a light whose direction and strength differ between voxels. */
-  #addNear({ place, colorAt }) {
+  /** Adds a light whose direction or strength differs between voxels. */
+  #addNear({ directional, place, colorAt }, pose) {
     const { mix, row, latents, count, rank, passing, shares, sum } = this, own = [0, 0, 0];
     for (let voxel = 0; voxel < count; voxel++) {
-      this.place(voxel, own);
-      for (let axis = 0; axis < 3; axis++) mix.way[axis] = place[axis] - own[axis];
+      if (pose) pose.place(voxel, own);
+      else this.place(voxel, own);
+      for (let axis = 0; axis < 3; axis++) mix.way[axis] = directional ? place[axis] : place[axis] - own[axis];
+      pose?.turnBack(voxel, mix.way);
       this.#look();
       const color = colorAt(own), { texels, weights } = mix;
       let root = 0.5;
@@ -170,6 +184,22 @@ export class LightResponse {
         const first = (3 * harmonic + channel) * count;
         const ofChannel = sum[channel];
         for (let voxel = 0; voxel < count; voxel++) ofChannel[voxel] += weight * around[first + voxel];
+      }
+    }
+  }
+
+  /** Adds surroundings to a skinned body: each voxel has a mean of what its bones turn back. */
+  #addTurned(light, { bones, weights, turns }) {
+    const { around, count, largest, sum } = this, ofBones = new Map();
+    for (const bone of new Set(bones)) {
+      ofBones.set(bone, turnedSurroundings(light, turns[bone]).flatMap((color, harmonic) => (
+        color.map((value, channel) => (value * largest[harmonic][channel]) / 127)
+      )));
+    }
+    for (let at = 0; at < bones.length; at++) {
+      const voxel = Math.floor(at / 4), ofBone = ofBones.get(bones[at]);
+      for (let number = 0; weights[at] && number < 27; number++) {
+        sum[number % 3][voxel] += weights[at] * ofBone[number] * around[number * count + voxel];
       }
     }
   }
@@ -227,6 +257,23 @@ export function surroundingsOf(shown) {
   }
   const solidAngle = (4 * Math.PI) / AROUND.length;
   return sums.map((sum, harmonic) => sum.map((value) => (value * solidAngle) / COSINE[ORDER[harmonic]]));
+}
+
+/**
+ * Surroundings for a body that is turned: each direction in its own space has the light of the direction behind `turn`.
+ * @param {number[][]} light the integrals times the harmonics
+ * @param {(way: number[]) => number[]} turn
+ */
+function turnedSurroundings(light, turn) {
+  const sums = ORDER.map(() => [0, 0, 0]), share = (4 * Math.PI) / AROUND.length;
+  for (const { way, values } of AROUND) {
+    const there = harmonics(turn(way));
+    for (let channel = 0; channel < 3; channel++) {
+      const value = there.reduce((sum, part, harmonic) => sum + part * light[harmonic][channel], 0) * share;
+      values.forEach((part, harmonic) => { sums[harmonic][channel] += part * value; });
+    }
+  }
+  return sums;
 }
 
 /** What was compressed. @param {BufferSource} data */
