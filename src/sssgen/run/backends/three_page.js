@@ -55,7 +55,7 @@ async function draw(plan, piece) {
     mesh.frustumCulled = false;
     mesh.matrixAutoUpdate = false;
     mesh.matrix.fromArray(model);
-    if (stage.bones && mesh instanceof THREE.SkinnedMesh) move(mesh, stage.bones);
+    if (stage.bones && mesh instanceof THREE.SkinnedMesh) bind(mesh, stage.bones);
     mesh.castShadow = mesh.receiveShadow = true;
     return mesh;
   };
@@ -79,6 +79,11 @@ async function draw(plan, piece) {
     render(renderer, scene, cameraOf(plan, gpu), plan.width, plan.height).dispose();
     lights.forEach(({ position }, number) => position.copy(places[number]));
   }
+  if (stage.bones) {
+    render(renderer, scene, cameraOf(plan, gpu), plan.width, plan.height).dispose();
+    await new Promise(requestAnimationFrame); // WebGPURenderer reads bones once in a frame
+    meshes.forEach(({ children }) => children.forEach(({ matrix }, number) => matrix.fromArray(stage.bones.matrices[number])));
+  }
   const target = render(renderer, scene, cameraOf(plan, gpu), plan.width, plan.height);
   if (pictures().some((texture) => foreign.includes(texture))) throw new Error('two renderers draw into one picture');
   let pixels;
@@ -93,14 +98,13 @@ async function draw(plan, piece) {
   return pixels;
 }
 
-/** Gives a mesh two bones, which have moved. @param {THREE.SkinnedMesh} mesh @param {import('./engine_page.js').Bones} bones */
-function move(mesh, { weights, matrices }) {
+/** Gives a mesh bones at rest. @param {THREE.SkinnedMesh} mesh @param {import('./engine_page.js').Bones} bones */
+function bind(mesh, { weights, matrices }) {
   const bones = matrices.map(() => Object.assign(new THREE.Bone(), { matrixAutoUpdate: false }));
   mesh.geometry.setAttribute('skinIndex', new THREE.Uint16BufferAttribute(weights.flatMap(() => [0, 1, 0, 0]), 4));
   mesh.geometry.setAttribute('skinWeight', new THREE.Float32BufferAttribute(weights.flatMap((weight) => [1 - weight, weight, 0, 0]), 4));
   mesh.add(...bones);
   mesh.bind(new THREE.Skeleton(bones));
-  bones.forEach(({ matrix }, number) => matrix.fromArray(matrices[number]));
 }
 
 /** @type {Record<string, (stage: import('./engine_page.js').Stage) => THREE.Light>} (1 + y) / 2 on a white matte surface, or the colours of the stage. */

@@ -137,12 +137,14 @@ function poseOf({ geometry }, response) {
   return new InnerPose(response, places, bones, weights);
 }
 
-/** What each bone does to points in the space of a skinned object: matrices, by columns. */
-function bonesOf({ skeleton, bindMatrix, bindMatrixInverse }) {
-  skeleton.update(); // WebGPURenderer does it later
+/**
+ * What each bone does to points in the space of a skinned object: matrices, by columns. WebGPURenderer updates those of the skeleton
+ * later, and keeps the last ones for velocities.
+ */
+function bonesOf({ skeleton: { bones, boneInverses }, bindMatrix, bindMatrixInverse }) {
   const matrix = new THREE.Matrix4();
-  return skeleton.bones.map((_, index) => (
-    matrix.fromArray(skeleton.boneMatrices, 16 * index).multiply(bindMatrix).premultiply(bindMatrixInverse).toArray()
+  return bones.map(({ matrixWorld }, index) => (
+    matrix.multiplyMatrices(matrixWorld, boneInverses[index]).multiply(bindMatrix).premultiply(bindMatrixInverse).toArray()
   ));
 }
 
