@@ -265,15 +265,23 @@ export function surroundingsOf(shown) {
  * @param {(way: number[]) => number[]} turn
  */
 function turnedSurroundings(light, turn) {
-  const sums = ORDER.map(() => [0, 0, 0]), share = (4 * Math.PI) / AROUND.length;
-  for (const { way, values } of AROUND) {
-    const there = harmonics(turn(way));
-    for (let channel = 0; channel < 3; channel++) {
-      const value = there.reduce((sum, part, harmonic) => sum + part * light[harmonic][channel], 0) * share;
-      values.forEach((part, harmonic) => { sums[harmonic][channel] += part * value; });
-    }
-  }
-  return sums;
+  const axes = [turn([1, 0, 0]), turn([0, 1, 0]), turn([0, 0, 1])], height = 0.31539157, square = 0.54627422; // as in `harmonics`
+  const channels = [0, 1, 2].map((channel) => {
+    const [same = 0, y = 0, z = 0, x = 0, xy = 0, yz = 0, zz = 0, xz = 0, xx = 0] = light.map((color) => color[channel]);
+    // harmonics of order 2 are a symmetric matrix: its product with a direction, from both sides
+    const rows = [
+      [square * xx - height * zz, square * xy, square * xz], [square * xy, -square * xx - height * zz, square * yz],
+      [square * xz, square * yz, 2 * height * zz],
+    ];
+    const along = axes.map((axis) => axis[0] * x + axis[1] * y + axis[2] * z);
+    const behind = axes.map((axis) => rows.map((row) => row[0] * axis[0] + row[1] * axis[1] + row[2] * axis[2]));
+    const at = (/** @type {number} */ i, /** @type {number} */ j) => axes[i][0] * behind[j][0] + axes[i][1] * behind[j][1] + axes[i][2] * behind[j][2];
+    return [
+      same, along[1], along[2], along[0], at(0, 1) / square, at(1, 2) / square, at(2, 2) / (2 * height), at(0, 2) / square,
+      (at(0, 0) - at(1, 1)) / (2 * square),
+    ];
+  });
+  return ORDER.map((_, harmonic) => channels.map((values) => values[harmonic]));
 }
 
 /** What was compressed. @param {BufferSource} data */
