@@ -164,6 +164,8 @@ VOLUME = point(("march_view", "interior_sample"), 30.0, 0.22, path="march_light"
                requires=["bake", "rigid"], bytes=5000)  # fmt: skip
 STILL = point(("march_view", "interior_octaves"), 20.0, 0.21, path="march_light",
               requires=["bake", "rigid", "fixed-light"], bytes=400)  # fmt: skip
+SUMMED = point(("back_face_thickness", "interior_sample"), 25.0, 0.19,
+               requires=["bake", "inner-light", "rest-pose"], bytes=900)  # fmt: skip
 CHOICES: dict[str, Any] = {"points": [NONE, WRAP, BAKED, DRAWN, VOLUME, STILL]}
 
 
@@ -185,6 +187,13 @@ def test_a_pick_needs_only_what_the_engine_has(conditions: Conditions, expected:
     result = pick(CHOICES, "cube", 0.4, None, conditions)
     assert result.chain is expected and result.met
     assert (result.excluded, result.excluded_by) == ((STILL, option) if option else (None, ""))
+
+
+@pytest.mark.parametrize(("body", "expected"), [("rigid", STILL), ("skinned", SUMMED), ("deforming", BAKED)])
+def test_a_skinned_body_keeps_what_the_rest_pose_has(body: str, expected: Any) -> None:
+    result = pick({"points": [*CHOICES["points"], SUMMED]}, "cube", 0.4, None, Conditions(body=body))
+    assert result.chain is expected
+    assert result.excluded_by == ("" if body == "rigid" else f"--body {body}")
 
 
 def test_without_a_chain_within_the_limit_the_nearest_usable_one_is_picked() -> None:
@@ -327,7 +336,7 @@ def test_the_picked_chain_is_emitted(stored_chart: str, tmp_path: Path, capsys: 
         (["--max-cost", "3", "--device", "gtx"], "devices: h200, llvmpipe"),
         (["--max-cost", "3", "--max-bytes", "-1"], "0 or more; 0 bakes nothing"),
         (["--max-cost", "3", "--light", "movin"], "did you mean 'moving'"),
-        (["--max-cost", "3", "--body", "soft"], "choose from: rigid, deforming"),
+        (["--max-cost", "3", "--body", "soft"], "choose from: rigid, skinned, deforming"),
         (["--max-cost", "3", "--without", "depthmap"], "did you mean 'depth-map'"),
         (["--max-cost", "3", "--samples", "1"], "--samples 1 is not a number of samples"),
         (["--max-cost", "99", "--emit", "out", "--target", "wgls"], "did you mean 'wgsl'"),

@@ -20,7 +20,7 @@ from folders import ROOT
 from sssgen import SssgenError
 from sssgen.cli.main import main
 from sssgen.lang.check.shader_interface import BUILTIN_VARIABLES
-from sssgen.material.chain_assembly import INPUTS
+from sssgen.material.chain_assembly import AT_REST, INPUTS
 from sssgen.passes.capabilities import Capabilities
 from sssgen.targets import descriptor, plugins, registry
 from sssgen.targets.descriptor_table import table_of
@@ -312,5 +312,5 @@ def test_own_descriptors_declare_every_capability() -> None:
 
 
 def test_the_keys_of_descriptors_equal_the_inputs_of_the_chain() -> None:
-    assert set(descriptor.CHAIN_INPUTS) == {*INPUTS, "surface", "color"}
+    assert set(descriptor.CHAIN_INPUTS) == {*INPUTS, *AT_REST.values(), "surface", "color"}
     assert set(descriptor.STAGE_BUILTINS) < set(BUILTIN_VARIABLES)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import sssgen
 from engine_cases import BLACK, ENGINES, RENDERERS
@@ -70,9 +71,11 @@ def like_playcanvas(response: LightResponse, light: Light, to_object: Array) -> 
 
 def check(page: EnginePage, folder: Path, within: float, **changes: Any) -> None:
     """The page's picture of the scene is NumPy's, on 95 % of the body's pixels: the picture of the eye's layers is
-    coarse at the silhouette. `changes`: of the scene; `stage` is the page's."""
+    coarse at the silhouette. `changes`: of the scene; `stage` is the page's. `bones`: what two bones do to the body,
+    which then stands where they bring it back."""
     target = page.engine.target
     stage = {"stage": changes.pop("stage")} if "stage" in changes else {}
+    bones: Array = changes.pop("bones", np.eye(4))
     scene, placed, expected = drawn_by_numpy(folder, **changes)
     body, shell = scene.geometry, placed.shell
     assert isinstance(body, Mesh)
@@ -84,7 +87,8 @@ def check(page: EnginePage, folder: Path, within: float, **changes: Any) -> None
     }
     drawing = EngineDrawing(
         page_values.modules_of(sssgen.compile(scene.material, target)), placed.size, vertices, body.triangles.corners,
-        placed.shell.view_projection, shell.camera_position, shell.model, shell.light_positions, shell.light_colors,
+        placed.shell.view_projection, shell.camera_position, shell.model @ np.linalg.inv(bones),
+        shell.light_positions, shell.light_colors,
         ambient=shell.ambient, properties=BLACK[target] | {"innerLight": response} | stage,
     )  # fmt: skip
     differences = np.abs(page.draw(drawing) - expected)[..., :3].max(axis=-1)[placed.hit]
@@ -115,6 +119,25 @@ def test_light_from_above(page: EnginePage, folder: Path, monkeypatch: pytest.Mo
     """A hemispheric light; in PlayCanvas an environment, whose texels come later."""
     monkeypatch.setattr(inner_light, "surroundings", linear_sky(FROM_ABOVE))
     check(page, folder, 1.5, lights=(), ambient=(0.0, 0.0, 0.0), stage={"around": "hemisphere", "later": True})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("angle", [0.0, 130.0])
+def test_bones_that_turn_the_whole_body(
+    page: EnginePage, folder: Path, refracting: Path, angle: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A skinned body that its bones do not bend is lit as one without bones in the same place."""
+    if page.engine.target != "threejs":
+        pytest.skip("this engine does not know the rest pose yet")
+    monkeypatch.setattr(inner_light, "surroundings", linear_sky(SKY))
+    around = np.radians(angle) * np.array([0.3, -0.8, 0.52])
+    bones = np.eye(4)
+    bones[:3, :3] = Rotation.from_rotvec(around).as_matrix()
+    bones[:3, 3] = np.sin(np.radians(angle)) * np.array([0.4, -0.1, 0.2])
+    stage: dict[str, Any] = {"around": "hemisphere", "above": SKY[0], "below": SKY[1]}
+    stage["bones"] = {"weights": [0.3] * 512, "matrices": [bones.T.ravel().tolist()] * 2}
+    for body, within in ((folder, 1.0), (refracting, 2.0)):
+        check(page, body, within, ambient=(0.0, 0.0, 0.0), stage=stage, bones=bones)
 
 
 @pytest.fixture(scope="module", params=EXAMPLES)

@@ -86,8 +86,8 @@ WRONG_ATTRIBUTES = {
     "requires: depth-mop": ("unknown requirement 'depth-mop'", "did you mean 'depth-map'?"),
     "requires: sunshine": (
         "unknown requirement 'sunshine'",
-        "requirements: bake, depth-map, depth-layers, back-faces, eye-layers, matt-light, inner-light, rigid, "
-        "fixed-light",
+        "requirements: bake, depth-map, depth-layers, back-faces, eye-layers, matt-light, inner-light, rest-pose, "
+        "rigid, fixed-light",
     ),
     "sets: tint": ("'tint' is not a setting", "write, for example, `sets: albedo by tint`"),
     "sets: albedo by tint": ("'f' does not write 'albedo'", ""),
@@ -145,7 +145,7 @@ def test_requirements_follow_from_declarations(tmp_path: Path) -> None:
         ("bake", "back-faces", "eye-layers", "rigid", "fixed-light"),
         4,
     )
-    relit = ("bake", "back-faces", "eye-layers", "inner-light", "rigid")
+    relit = ("bake", "back-faces", "eye-layers", "inner-light", "rest-pose")
     assert required(light.format("fluence_relit")) == (relit, 8)
     assert required(faces + inside.format("march_light", body.format("sphere"))) == (("back-faces", "rigid"), 0)
     texture = body.format("distance_texture_world")

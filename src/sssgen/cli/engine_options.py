@@ -22,8 +22,9 @@ def add_condition_options(parser: ArgumentParser) -> None:
         help="whether the light moves relative to the body (default: fixed)",
     )  # fmt: skip
     add(
-        "--body", choices=("rigid", "deforming"), default="rigid",
-        help="a rigid mesh (default), or one that deforms, for which nothing baked is right",
+        "--body", choices=("rigid", "skinned", "deforming"), default="rigid",
+        help="a rigid mesh (default); one that bones bend, in an engine that knows its rest pose, as three.js; or one "
+        "that deforms otherwise",
     )  # fmt: skip
     add(
         "--without", choices=OMISSIONS, action="append", default=[], metavar="DATA",

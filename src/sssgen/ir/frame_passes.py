@@ -127,7 +127,8 @@ EYE_PICTURES = (BACK_FACES, EYE_LAYERS)
 CUBES = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.seen_from == "everywhere")
 """What is drawn into a cube map."""
 VOLUMES = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.seen_from == "inside")
-"""What is computed into a volume, from a bake."""
+"""What is computed into a volume, from a bake: of the body's rest pose, so that techniques that read it take the place,
+the normal and the view of that pose, where a target has them."""
 DISTANT_VIEWS = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.seen_from == "distant light")
 """What is drawn in the view of a light from afar."""
 LIGHT_VIEWS = tuple(name for name, drawn in FRAME_PASSES.items() if drawn.seen_from.endswith("light"))

@@ -34,13 +34,13 @@ SHAPES = ("box", "sphere", "torus", "texture")
 """The values of `shape`, the body that a distance function describes."""
 
 REQUIREMENTS = (
-    "bake", "depth-map", "depth-layers", "back-faces", "eye-layers", "matt-light", "inner-light", "rigid",
-    "fixed-light",
+    "bake", "depth-map", "depth-layers", "back-faces", "eye-layers", "matt-light", "inner-light", "rest-pose",
+    "rigid", "fixed-light",
 )  # fmt: skip
 """What `requires` can name: a texture baked from the body; the light's depth map; that map with further layers; a
 picture of the body's back faces from the eye; that picture with what lies behind them; a picture of what the body
-reflects if it is white; a volume of the light inside it; a rigid mesh; a light that does not move relative to the
-body."""
+reflects if it is white; a volume of the light inside it; a mesh that is rigid, or whose rest pose the engine knows; a
+rigid mesh; a light that does not move relative to the body."""
 
 OMISSIONS = REQUIREMENTS[:5]
 """Those that `chart` and `pick` can leave out: of what they measure, engines may not provide these."""

@@ -62,6 +62,10 @@ INPUTS: dict[str, Type] = {
 }  # fmt: skip
 """The inputs that a shell can supply."""
 
+AT_REST = {"P": "P_rest", "N": "N_rest", "V": "V_rest"}
+"""Inputs of a body that bones bend → the same in its rest pose. Some shells supply them: techniques read the former."""
+_SUPPLIED = INPUTS | {rest: INPUTS[name] for name, rest in AT_REST.items()}
+
 PER_LIGHT = frozenset({"L", "L_object", "light_color", "light_nearness"})
 
 EYE_DISTANCE = "eye_distance"
@@ -96,7 +100,7 @@ _APART = ("lighting", "shadow", "environment", IRRADIANCE, *_LAST)
 
 
 TAKEN = frozenset(
-    {"Surface", "surface", "light", "shade_fragment", "MAX_LIGHTS", "safe_normalize", "tangent_frame", *INPUTS}
+    {"Surface", "surface", "light", "shade_fragment", "MAX_LIGHTS", "safe_normalize", "tangent_frame", *_SUPPLIED}
     | {"facet_light", "reflected_light", "coated_light", "towards_light", "way_out_of_box", "light_entry"}
     | {"towards_area", "area_light"}
     | {f"evaluate_{kind}" for kind in ("surface", "translucency", "color", *_APART)}
@@ -121,6 +125,8 @@ class ChainFunction(NamedTuple):
     """The value that its parameter `uv` is, and, of a coordinates stage, its result: `uv`, or `uv2`."""
     levels: tuple[int, ...] = ()
     """The levels of detail that it belongs to; () for all of them"""
+    at_rest: bool = False
+    """Whether it takes the values of the rest pose, `AT_REST`."""
 
 
 class Entry(NamedTuple):
@@ -228,6 +234,8 @@ def _result_name(stage: ChainFunction) -> str:
 
 def _value_name(param: Param, stage: ChainFunction) -> str:
     name = param.quantity if param.quantity in SCALARS else param.name
+    if stage.at_rest and param.direction == "in":
+        name = AT_REST.get(name, name)
     return stage.uv if name == "uv" else name
 
 
@@ -333,8 +341,8 @@ class _Body:
         if self.surface is not None and self.surface.hands_over(name):
             self.crossing[name] = None
             return Member(param.type, Local(_SURFACE, "surface", span), name, span)
-        if name in INPUTS:
-            self.supply(name, INPUTS[name])
+        if name in _SUPPLIED:
+            self.supply(name, _SUPPLIED[name])
             return Local(param.type, name, span)
         if name in DEFAULTS:
             return literal(*DEFAULTS[name], span)

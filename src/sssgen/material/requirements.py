@@ -1,8 +1,8 @@
 """What a technique requires besides its parameters: a bake, the light's depth map, back faces, a rigid body.
 
 Most of it follows from declarations: a texture that `holds` a quantity or has `texel_bytes` is baked; a volume is baked
-for a rigid mesh, and a distance function describes a rigid body; `drawn` names a picture that the engine draws. A
-technique states the rest: `requires: fixed-light`.
+for a rigid mesh, but one whose light the engine computes for a rest pose; a distance function describes a rigid body;
+`drawn` names a picture that the engine draws. A technique states the rest: `requires: fixed-light`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,16 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from sssgen.ir.baked_textures import is_baked, is_volume
-from sssgen.ir.frame_passes import BACK_FACES, EYE_LAYERS, FRAME_PASSES, INNER_LIGHT, LIGHT_VIEWS, MATT, pass_name
+from sssgen.ir.frame_passes import (
+    BACK_FACES,
+    EYE_LAYERS,
+    FRAME_PASSES,
+    INNER_LIGHT,
+    LIGHT_VIEWS,
+    MATT,
+    VOLUMES,
+    pass_name,
+)
 from sssgen.ir.nodes import Function, Module, Uniform
 from sssgen.ir.types import Sampler
 from sssgen.material import attributes
@@ -28,6 +37,7 @@ DESCRIPTIONS = {
     "eye-layers": "a picture of what lies behind them",
     "matt-light": "a picture of what the body would reflect if it were white",
     "inner-light": "a volume of the light inside the body",
+    "rest-pose": "a rigid mesh, or a skinned one where the engine knows its rest pose",
     "rigid": "a rigid mesh",
     "fixed-light": "a light that does not move relative to the body",
 }
@@ -46,12 +56,13 @@ def requirements(uses: Iterable[TechniqueUse]) -> tuple[str, ...]:
         for module, function in _functions(use):
             required.update(_attributes(function).requires)
             textures = [uniform for uniform in _uniforms_read(module, function) if isinstance(uniform.type, Sampler)]
-            volume = any(is_volume(uniform) for uniform in textures)
+            volumes = [pass_name(texture) for texture in textures if is_volume(texture)]
             slots = needs(module, function)[1]
             for texture in textures:
                 required.update(needed_for(pass_name(texture)))
             required.update({"bake"} if any(map(is_baked, textures)) else ())
-            required.update({"rigid"} if volume or any(map(_is_distance, slots)) else ())
+            required.update("rest-pose" if name in VOLUMES else "rigid" for name in volumes)
+            required.update({"rigid"} if any(map(_is_distance, slots)) else ())
     return tuple(name for name in REQUIREMENTS if name in required)
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from sssgen.ir.frame_passes import VOLUMES, pass_name
 from sssgen.ir.nodes import Module, Span
 from sssgen.lang.source_lines import source_line
 from sssgen.material import library
 from sssgen.material.chain_assembly import IRRADIANCE, SURROUNDINGS
 from sssgen.material.model import Material, TechniqueUse
+from sssgen.material.requirements import read_uniforms
 from sssgen.material.unwritten import unwritten, with_constants
 from sssgen.passes.link import LinkInput
 from sssgen.support.diagnostics import Diagnostic, UnsupportedError
@@ -28,16 +30,20 @@ class TargetTechnique(NamedTuple):
     """Whether its technique is documented to glow: its light needs no lamp."""
     uv: str = "uv"
     """The set of texture coordinates that it reads."""
+    at_rest: bool = False
+    """Whether it reads a volume of the body's rest pose."""
 
 
 def stages_for(material: Material, target: Target) -> list[TargetTechnique]:
     """The material's stages without what the engine does, with the lighting that the target adds."""
     lit = material.shading == "lit"
+    bends = lit and target.has_rest_pose
     transmits = lit and material.surroundings and target.has_surroundings
     stages = []
     for number, stage in enumerate(material.stages):
         link = _link_input(stage, number)
-        stages.append(TargetTechnique(link, stage.span, stage.technique.attributes.glows, stage.uv))
+        at_rest = bends and any(pass_name(uniform) in VOLUMES for uniform in read_uniforms(stage))
+        stages.append(TargetTechnique(link, stage.span, stage.technique.attributes.glows, stage.uv, at_rest))
         around = stage.technique.surroundings
         if transmits and around is not None:
             role = _AROUND[link.role]

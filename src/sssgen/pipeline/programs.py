@@ -33,7 +33,7 @@ from sssgen.targets.assemble import About, Program, print_parts
 from sssgen.targets.descriptor import Target
 from sssgen.targets.uniform_support import check_uniforms
 
-_material_programs: dict[tuple[str, str, tuple[str, ...], bool, bool, bool, str, str, str], State] = {}
+_material_programs: dict[tuple[str, str, tuple[str, ...], bool, bool, bool, bool, str, str, str], State] = {}
 """The states after the passes of a material, which are the same for all targets of one kind."""
 _CACHED = 8
 """Few, as materials are compiled one after another, each for all targets."""
@@ -153,8 +153,8 @@ def _material_program(
     """The state after the passes of a material; cached for the other targets of the same kind."""
     new = State(Module(), form, guards, target, material=material)
     shell = (target.fragment_shell, str(target.own_body), *target.given_inputs) if new.has_shell else ()
-    of_target = (target.lighting, shell, target.engine_encodes, target.clustered_lights, target.has_surroundings)
-    key = (structure, *of_target, form, guards, new.format.name)
+    of_engine = (target.engine_encodes, target.clustered_lights, target.has_surroundings, target.has_rest_pose)
+    key = (structure, target.lighting, shell, *of_engine, form, guards, new.format.name)
     state = _material_programs.get(key) if structure else None
     if state is None:
         state = pass_list.run(pass_list.MATERIAL, new, trace)

@@ -72,7 +72,14 @@ def assemble_chain(state: State) -> Module:
     assert material is not None
     stages = [
         ChainFunction(
-            stage.link.role, stage.link.technique, function, stage.span, stage.glows, stage.uv, stage.link.levels
+            stage.link.role,
+            stage.link.technique,
+            function,
+            stage.span,
+            stage.glows,
+            stage.uv,
+            stage.link.levels,
+            stage.at_rest,
         )
         for stage, function in zip(state.stages, state.linked, strict=True)
     ]

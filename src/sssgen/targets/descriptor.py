@@ -326,6 +326,11 @@ class Target(NamedTuple):
         """Whether its shell knows the light of the surroundings: one of the language does, an engine's has a text."""
         return bool(self.fragment_shell) or "irradiance_behind" in self.given_inputs
 
+    @property
+    def has_rest_pose(self) -> bool:
+        """Whether its shell knows where a point of a skinned body is without its bones."""
+        return "P_rest" in self.given_inputs
+
     def declares(self, form: str) -> bool:
         """Whether the text of a form declares the uniforms and textures."""
         return form not in self.parameters or form in self.declared

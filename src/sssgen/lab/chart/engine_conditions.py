@@ -9,7 +9,8 @@ from sssgen.lab.chart.record import Point, Record, fronts_of
 from sssgen.support.diagnostics import failure
 
 LIGHTS = ("fixed", "moving")
-BODIES = ("rigid", "deforming")
+BODIES = {"rigid": (), "skinned": ("rigid",), "deforming": ("rigid", "rest-pose")}
+"""Each kind of body with the requirements that it does not meet."""
 
 
 class Conditions(NamedTuple):
@@ -20,7 +21,7 @@ class Conditions(NamedTuple):
     light: str = "fixed"
     """moving: it moves relative to the body"""
     body: str = "rigid"
-    """deforming: it does not keep its shape"""
+    """skinned: bones bend it, and the engine knows its rest pose; deforming: it does not keep its shape"""
     without: tuple[str, ...] = ()
     """Of `material.attributes.OMISSIONS`"""
 
@@ -32,8 +33,8 @@ class Conditions(NamedTuple):
                 return f"--without {name}"
         if self.light == "moving" and "fixed-light" in requires:
             return "--light moving"
-        if self.body == "deforming" and "rigid" in requires:
-            return "--body deforming"
+        if any(name in requires for name in BODIES[self.body]):
+            return f"--body {self.body}"
         if self.max_bytes is not None and point.get("bytes", 0) > self.max_bytes:
             return f"--max-bytes {self.max_bytes}"
         return ""

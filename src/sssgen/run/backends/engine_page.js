@@ -14,14 +14,16 @@
  *   withoutTangents: boolean }} Plan  Matrices are by columns; an attribute has its first float in a vertex, and its size. */
 /** @typedef {{ shadows?: boolean, cascades?: boolean, spot?: number, walls?: number[][], copies?: { size: number, model: number[] }[],
  *   instances?: number[][], leftHanded?: boolean, first?: string, around?: string, area?: Area,
- *   above?: number[], below?: number[], later?: boolean, before?: number[][] }} Stage
+ *   above?: number[], below?: number[], later?: boolean, before?: number[][], bones?: Bones }} Stage
  *   What stands around the mesh, in the property `stage`: whether lights have shadows, of cascades or of one map; the angle of lights
  *   with a position that are spots and shine at the origin; matrices of walls, which are boxes of size 1; copies of the mesh with
  *   the same material, whose vertices have another size; matrices of instances that the mesh is drawn as, in one call; whether z of
  *   the engine's world is mirrored, in Babylon.js; another renderer of three.js that draws the scene first, in another size;
  *   what shines from above, environment, hemisphere or probe; its light on a white matte surface that faces up and down; a light with an area;
  *   whether the picture is of a frame after texels of the environment have been read, in PlayCanvas; where the lights were in
- *   a frame before, in three.js. */
+ *   a frame before, in three.js; the bones of the mesh, in three.js. */
+/** @typedef {{ weights: number[], matrices: number[][] }} Bones  For each vertex the weight of the second of two bones; what each
+ *   does, in object space, after a frame in which they do nothing. */
 /** @typedef {{ model: number[], size: number[], radiance: number, shape?: string, shadows?: boolean }} Area  It shines along the -z
  *   of its matrix, with sides along x and y; `shape` is PlayCanvas's. */
 /** @typedef {(place: Piece) => Uint8Array} PieceOf */

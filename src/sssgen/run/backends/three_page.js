@@ -50,10 +50,12 @@ async function draw(plan, piece) {
   if (plan.withoutTangents) geometry.deleteAttribute('tangent');
   geometry.setIndex(new THREE.BufferAttribute(indices(piece(plan.triangles)), 1));
   const placed = (/** @type {number[]} */ model, size = 1) => {
-    const mesh = new THREE.Mesh(size === 1 ? geometry : geometry.clone().scale(size, size, size), material);
+    const own = size === 1 ? geometry : geometry.clone().scale(size, size, size);
+    const mesh = new (stage.bones ? THREE.SkinnedMesh : THREE.Mesh)(own, material);
     mesh.frustumCulled = false;
     mesh.matrixAutoUpdate = false;
     mesh.matrix.fromArray(model);
+    if (stage.bones && mesh instanceof THREE.SkinnedMesh) bind(mesh, stage.bones);
     mesh.castShadow = mesh.receiveShadow = true;
     return mesh;
   };
@@ -77,6 +79,11 @@ async function draw(plan, piece) {
     render(renderer, scene, cameraOf(plan, gpu), plan.width, plan.height).dispose();
     lights.forEach(({ position }, number) => position.copy(places[number]));
   }
+  if (stage.bones) {
+    render(renderer, scene, cameraOf(plan, gpu), plan.width, plan.height).dispose();
+    await new Promise(requestAnimationFrame); // WebGPURenderer reads bones once in a frame
+    meshes.forEach(({ children }) => children.forEach(({ matrix }, number) => matrix.fromArray(stage.bones.matrices[number])));
+  }
   const target = render(renderer, scene, cameraOf(plan, gpu), plan.width, plan.height);
   if (pictures().some((texture) => foreign.includes(texture))) throw new Error('two renderers draw into one picture');
   let pixels;
@@ -89,6 +96,15 @@ async function draw(plan, piece) {
   renderer.setRenderTarget(null);
   [...meshes.map(({ geometry }) => geometry), material, target, ...Object.values(textures)].forEach((one) => one.dispose());
   return pixels;
+}
+
+/** Gives a mesh bones at rest. @param {THREE.SkinnedMesh} mesh @param {import('./engine_page.js').Bones} bones */
+function bind(mesh, { weights, matrices }) {
+  const bones = matrices.map(() => Object.assign(new THREE.Bone(), { matrixAutoUpdate: false }));
+  mesh.geometry.setAttribute('skinIndex', new THREE.Uint16BufferAttribute(weights.flatMap(() => [0, 1, 0, 0]), 4));
+  mesh.geometry.setAttribute('skinWeight', new THREE.Float32BufferAttribute(weights.flatMap((weight) => [1 - weight, weight, 0, 0]), 4));
+  mesh.add(...bones);
+  mesh.bind(new THREE.Skeleton(bones));
 }
 
 /** @type {Record<string, (stage: import('./engine_page.js').Stage) => THREE.Light>} (1 + y) / 2 on a white matte surface, or the colours of the stage. */

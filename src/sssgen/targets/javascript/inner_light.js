@@ -28,6 +28,16 @@ export const harmonics = ([x = 0, y = 0, z = 0]) => [
 ];
 
 /**
+ * A pose of a skinned body, by its voxels: InnerPose of inner_pose.js.
+ * @typedef {object} Pose
+ * @property {Uint16Array} bones four of each voxel
+ * @property {Float32Array} weights of these
+ * @property {((way: number[]) => number[])[]} turns a direction of the rest pose behind the rotation of each bone
+ * @property {(voxel: number, result: number[]) => void} place where a voxel is
+ * @property {(voxel: number, way: Float64Array) => void} turnBack a direction there, for the rest pose
+ */
+
+/**
  * How a body responds to light, as a `.bin` and the JSON beside it have it: its numbers are explained where they are made, in
  * sssgen's light_response.py.
  */
@@ -97,11 +107,13 @@ export class LightResponse {
    *   a white matt surface white
    * @param {number[][] | null} surroundings for each harmonic the integrals of the light of three channels
    * @param {Uint16Array} texels gets four half floats a texel
+   * @param {Pose | null} pose of a skinned body: its lights are in the space of the bent body, its texels are those of the rest pose
    */
-  light(lights, surroundings, texels) {
+  light(lights, surroundings, texels, pose = null) {
     for (const channel of this.sum) channel.fill(0);
-    for (const light of lights) (light.directional ? this.#addDistant(light) : this.#addNear(light));
-    if (surroundings) this.#addSurroundings(surroundings);
+    for (const light of lights) (light.directional && !pose ? this.#addDistant(light) : this.#addNear(light, pose));
+    if (surroundings && pose) this.#addTurned(surroundings, pose);
+    else if (surroundings) this.#addSurroundings(surroundings);
     const { nearest, halves, distance } = this;
     this.sum.forEach((values, channel) => {
       for (let voxel = 0; voxel < values.length; voxel++) halves[voxel] = toHalf(Math.max(values[voxel], 0));
@@ -143,12 +155,14 @@ export class LightResponse {
     }
   }
 
-  /** Adds a light whose direction and strength differ between voxels. */
-  #addNear({ place, colorAt }) {
+  /** Adds a light whose direction or strength differs between voxels. */
+  #addNear({ directional, place, colorAt }, pose) {
     const { mix, row, latents, count, rank, passing, shares, sum } = this, own = [0, 0, 0];
     for (let voxel = 0; voxel < count; voxel++) {
-      this.place(voxel, own);
-      for (let axis = 0; axis < 3; axis++) mix.way[axis] = place[axis] - own[axis];
+      if (pose) pose.place(voxel, own);
+      else this.place(voxel, own);
+      for (let axis = 0; axis < 3; axis++) mix.way[axis] = directional ? place[axis] : place[axis] - own[axis];
+      pose?.turnBack(voxel, mix.way);
       this.#look();
       const color = colorAt(own), { texels, weights } = mix;
       let root = 0.5;
@@ -170,6 +184,22 @@ export class LightResponse {
         const first = (3 * harmonic + channel) * count;
         const ofChannel = sum[channel];
         for (let voxel = 0; voxel < count; voxel++) ofChannel[voxel] += weight * around[first + voxel];
+      }
+    }
+  }
+
+  /** Adds surroundings to a skinned body: each voxel has a mean of what its bones turn back. */
+  #addTurned(light, { bones, weights, turns }) {
+    const { around, count, largest, sum } = this, ofBones = new Map();
+    for (const bone of new Set(bones)) {
+      ofBones.set(bone, turnedSurroundings(light, turns[bone]).flatMap((color, harmonic) => (
+        color.map((value, channel) => (value * largest[harmonic][channel]) / 127)
+      )));
+    }
+    for (let at = 0; at < bones.length; at++) {
+      const voxel = Math.floor(at / 4), ofBone = ofBones.get(bones[at]);
+      for (let number = 0; weights[at] && number < 27; number++) {
+        sum[number % 3][voxel] += weights[at] * ofBone[number] * around[number * count + voxel];
       }
     }
   }
@@ -227,6 +257,31 @@ export function surroundingsOf(shown) {
   }
   const solidAngle = (4 * Math.PI) / AROUND.length;
   return sums.map((sum, harmonic) => sum.map((value) => (value * solidAngle) / COSINE[ORDER[harmonic]]));
+}
+
+/**
+ * Surroundings for a body that is turned: each direction in its own space has the light of the direction behind `turn`.
+ * @param {number[][]} light the integrals times the harmonics
+ * @param {(way: number[]) => number[]} turn
+ */
+function turnedSurroundings(light, turn) {
+  const axes = [turn([1, 0, 0]), turn([0, 1, 0]), turn([0, 0, 1])], height = 0.31539157, square = 0.54627422; // as in `harmonics`
+  const channels = [0, 1, 2].map((channel) => {
+    const [same = 0, y = 0, z = 0, x = 0, xy = 0, yz = 0, zz = 0, xz = 0, xx = 0] = light.map((color) => color[channel]);
+    // harmonics of order 2 are a symmetric matrix: its product with a direction, from both sides
+    const rows = [
+      [square * xx - height * zz, square * xy, square * xz], [square * xy, -square * xx - height * zz, square * yz],
+      [square * xz, square * yz, 2 * height * zz],
+    ];
+    const along = axes.map((axis) => axis[0] * x + axis[1] * y + axis[2] * z);
+    const behind = axes.map((axis) => rows.map((row) => row[0] * axis[0] + row[1] * axis[1] + row[2] * axis[2]));
+    const at = (/** @type {number} */ i, /** @type {number} */ j) => axes[i][0] * behind[j][0] + axes[i][1] * behind[j][1] + axes[i][2] * behind[j][2];
+    return [
+      same, along[1], along[2], along[0], at(0, 1) / square, at(1, 2) / square, at(2, 2) / (2 * height), at(0, 2) / square,
+      (at(0, 0) - at(1, 1)) / (2 * square),
+    ];
+  });
+  return ORDER.map((_, harmonic) => channels.map((values) => values[harmonic]));
 }
 
 /** What was compressed. @param {BufferSource} data */

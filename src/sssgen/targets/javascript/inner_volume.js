@@ -65,12 +65,13 @@ export class InnerTexels {
    * Computes them where the light has changed, and says whether it has.
    * @param {any[]} lamps
    * @param {number[][]} surroundings
+   * @param {import('./inner_pose.js').InnerPose | null} pose of a skinned body
    */
-  follow(lamps, surroundings) {
-    const light = JSON.stringify([lamps, surroundings]); // all numbers, without the functions
+  follow(lamps, surroundings, pose = null) {
+    const light = JSON.stringify([lamps, surroundings, pose?.matrices]); // all numbers, without the functions
     if (light === this.#light) return false;
     this.#light = light;
-    this.response.light(lamps, surroundings, this.data);
+    this.response.light(lamps, surroundings, this.data, pose);
     return true;
   }
 }

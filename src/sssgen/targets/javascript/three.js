@@ -7,6 +7,7 @@ import { spreadOf } from './frame_passes.js';
 import { nodesOf } from './three_nodes.js';
 import { ObjectUniforms, placedValue } from './three_object.js';
 import { Passes } from './three_passes.js';
+import { REST_POSE } from './three_rest_pose.js';
 import { entryChunks, entryFunction } from './three_shadows.js';
 import { SURROUNDINGS } from './three_surroundings.js';
 import { Properties, TEXELS } from './values.js';
@@ -101,9 +102,17 @@ void sss_direct_area(const in RectAreaLight rectAreaLight, ${POINT.parameters}) 
 #endif
 ${entryFunction(entry)}${SURROUNDINGS}`;
 
+/** The texts with the values of the rest pose, of a body that bones move or of any other. */
+function withRestPose(webgl, skinned) {
+  const { varyings, vertex, variables } = skinned ? REST_POSE.skinned : REST_POSE.rigid;
+  return { ...webgl, varyings: webgl.varyings + varyings, vertex: webgl.vertex + vertex, variables: webgl.variables + variables };
+}
+
 /** Adds a material's text to a shader of three: behind its includes, and in place of two of them. */
 function patch(shader, description, uniforms) {
-  const { name, parameters, textures, webgl, glsl } = description;
+  const { name, parameters, textures, calls, glsl } = description;
+  const isAtRest = Object.values(calls).some(({ inputs }) => inputs.some((input) => input.endsWith('_rest')));
+  const webgl = isAtRest ? withRestPose(description.webgl, shader.skinning) : description.webgl;
   const declarations = [];
   for (const [property, declared] of Object.entries({ ...parameters, ...textures, ...OWN_UNIFORMS })) {
     if (!uniforms[property]) continue;

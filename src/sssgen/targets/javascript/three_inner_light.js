@@ -2,6 +2,7 @@
 
 import * as THREE from 'three/webgpu';
 import { surroundingsOf } from './inner_light.js';
+import { InnerPose } from './inner_pose.js';
 import { InnerTexels, distantLamp, nearLamp } from './inner_volume.js';
 
 /** The width of a picture of a ball in the surroundings, in texels. */
@@ -124,10 +125,33 @@ class Ball {
   }
 }
 
+/** The pose of a skinned object, for its response. */
+function poseOf({ geometry }, response) {
+  const numbersOf = ({ itemSize, count }, attribute) => (
+    Float32Array.from({ length: count * itemSize }, (_, at) => attribute.getComponent(Math.floor(at / itemSize), at % itemSize))
+  );
+  const [places, bones, weights] = ['position', 'skinIndex', 'skinWeight'].map((name) => {
+    const attribute = geometry.getAttribute(name);
+    return numbersOf(attribute, attribute);
+  });
+  return new InnerPose(response, places, bones, weights);
+}
+
+/**
+ * What each bone does to points in the space of a skinned object: matrices, by columns. WebGPURenderer updates those of the skeleton
+ * later, and keeps the last ones for velocities.
+ */
+function bonesOf({ skeleton: { bones, boneInverses }, bindMatrix, bindMatrixInverse }) {
+  const matrix = new THREE.Matrix4();
+  return bones.map(({ matrixWorld }, index) => (
+    matrix.multiplyMatrices(matrixWorld, boneInverses[index]).multiply(bindMatrix).premultiply(bindMatrixInverse).toArray()
+  ));
+}
+
 /** The volumes of the light inside of objects, in one renderer. */
 export class InnerLight {
   #ball = new Ball();
-  /** @type {Map<THREE.Object3D, { texture: THREE.Data3DTexture, texels: InnerTexels }>} */
+  /** @type {Map<THREE.Object3D, { texture: THREE.Data3DTexture, texels: InnerTexels, pose: InnerPose | null }>} */
   #volumes = new Map();
 
   /** The volume of an object with a `response`, for the light of now. */
@@ -143,11 +167,12 @@ export class InnerLight {
       this.#ball.add(way, sum);
       return [sum.r, sum.g, sum.b];
     });
-    if (volume.texels.follow(lamps, around)) volume.texture.needsUpdate = true;
+    volume.pose?.bend(bonesOf(object));
+    if (volume.texels.follow(lamps, around, volume.pose)) volume.texture.needsUpdate = true;
     return volume.texture;
   }
 
-  /** @returns {{ texture: THREE.Data3DTexture, texels: InnerTexels }} */
+  /** @returns {{ texture: THREE.Data3DTexture, texels: InnerTexels, pose: InnerPose | null }} */
   #volumeOf(object, response) {
     const before = this.#volumes.get(object);
     if (before && before.texels.response === response) return before;
@@ -155,7 +180,7 @@ export class InnerLight {
     const texels = new InnerTexels(response);
     const texture = new THREE.Data3DTexture(texels.data, response.width, response.height, response.depth);
     Object.assign(texture, { format: THREE.RGBAFormat, type: THREE.HalfFloatType, minFilter: THREE.LinearFilter, magFilter: THREE.LinearFilter });
-    const volume = { texture, texels };
+    const volume = { texture, texels, pose: object.isSkinnedMesh ? poseOf(object, response) : null };
     this.#volumes.set(object, volume);
     return volume;
   }

@@ -3,6 +3,7 @@
 import * as THREE from 'three/webgpu';
 import * as TSL from 'three/tsl';
 import { spreadOf } from './frame_passes.js';
+import { restPosition, turnedBack, unit } from './three_rest_pose.js';
 import { entryShadow, hasEntryShadow } from './three_shadows.js';
 import { surroundings } from './three_surroundings.js';
 
@@ -17,8 +18,6 @@ import { surroundings } from './three_surroundings.js';
 /** The variable of the texts that has the surface. */
 const SURFACE = 'sss_surface';
 
-/** v / |v|; 0 stays 0, of which normalize makes NaN. */
-const unit = (v) => v.mul(v.dot(v).max(1e-30).inverseSqrt());
 /** A direction in another space. */
 const turned = (matrix, v) => unit(matrix.mul(TSL.vec4(v, 0)).xyz);
 const viewDirection = turned(TSL.cameraWorldMatrix, TSL.positionViewDirection);
@@ -106,6 +105,9 @@ const INPUTS = {
   P_object: [TSL.positionGeometry, 'vec3'],
   N_object: [unit(TSL.normalGeometry).mul(side), 'vec3'],
   V_object: [turned(worldToBody, viewDirection), 'vec3'],
+  P_rest: [restPosition, 'vec3'],
+  N_rest: [turnedBack(geometryNormal), 'vec3'],
+  V_rest: [turnedBack(viewDirection), 'vec3'],
   screen_uv: [textureScreenUV(), 'vec2'],
   eye_distance: [TSL.positionView.length(), 'float'],
   ray_origin: [TSL.cameraPosition, 'vec3'],
