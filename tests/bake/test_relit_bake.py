@@ -72,7 +72,7 @@ def test_one_seed_gives_one_file_and_its_json_explains_it() -> None:
     about = facts("ball.bin")
     assert about["technique"] == "fluence_relit" and about["rank"] == 8 and about["error"]["standard_error"] > 0.0
     stored = from_bytes(first, about)
-    assert stored.latents.shape == (8, len(stored.cells)) and stored.passing.shape == (1024, len(stored.cells))
+    assert stored.latents.shape == (8, len(stored.cells)) and stored.arriving.shape == (len(stored.cells), 1024)
     assert bake() == 0
     assert Path("ball.bin").read_bytes() == first
 
@@ -85,9 +85,9 @@ def test_the_stored_numbers_are_those_of_the_field() -> None:
     for direction in (7, 100, 200):
         rows = packed.table[direction].astype(float)
         scattered = rows[0][:, None] + rows[1:].T @ (packed.latents / 255.0)
-        light = traced.values[:, direction] + traced.unscattered[:, direction]
+        light = traced.whole[:, direction]
         assert np.sqrt(((scattered - traced.values[:, direction]) ** 2).mean()) < 0.03 * light.max()
-    root = packed.passing * (packed.highest / 255.0)
+    root = packed.arriving.T * (packed.highest / 255.0)
     step = packed.highest / response.LEVELS
     # of one channel, and by powers of it of the others
     expected = np.maximum(traced.shares, 0.0) ** (0.5 / packed.powers[:, None, None])
@@ -120,7 +120,7 @@ def test_media_that_it_traces_otherwise() -> None:
     write("anisotropy = 0.5\n" + FIRST)
     assert bake("--photons", "50") == 0
     stored = from_bytes(Path("ball.bin").read_bytes(), facts("ball.bin"))
-    assert stored.passing.shape == (1024, len(stored.cells)) and stored.passing.max() > 200
+    assert stored.arriving.shape == (len(stored.cells), 1024) and stored.arriving.max() > 200
 
 
 def test_a_render_sums_the_lights() -> None:
@@ -136,7 +136,7 @@ def test_a_render_sums_the_lights() -> None:
 
 def test_a_render_without_a_right_file_says_what_to_do() -> None:
     write(FIRST)
-    with pytest.raises(SssgenError, match=r"sssgen bake fluence scene\.toml --relit 16"):
+    with pytest.raises(SssgenError, match=r"sssgen bake fluence scene\.toml --relit 32"):
         render(load("scene.toml"), backends.get("numpy"))
     assert bake() == 0
     Path("ball.bin").write_bytes(Path("ball.bin").read_bytes()[:64])

@@ -84,7 +84,7 @@ def test_light_from_everywhere_is_the_same_inside_where_nothing_is_absorbed(ior:
     the light by the square of the index."""
     traced = field.field(body(Box((0.8, 0.8, 0.8)), 3.0, ior=ior), FEW._replace(voxels=8, photons=8000), processes=0)
     angles = octahedron.solid_angles(FEW.side)
-    light = np.einsum("dv,d->v", (traced.values + traced.unscattered)[0], angles) / (np.pi * ior**2)
+    light = np.einsum("dv,d->v", traced.whole[0], angles) / (np.pi * ior**2)
     inner = np.abs(traced.grid.centres()[:, 0]).max(axis=1) < 0.3
     assert inner.sum() > 100
     # refraction has a sum over few directions that is less even
@@ -103,7 +103,7 @@ def test_flights_for_all_directions_give_what_photons_of_each_do(albedo: float, 
     tracer, medium = traced_body.tracer(scene, settings.voxels), traced_body.medium_of(scene, 0)
     photons = projection.folded(tracer.trace(medium, towards, 40_000, np.random.default_rng(1)))
     # photons behind a refracting surface count all light
-    light = traced.values if ior == 1.0 else traced.values + traced.unscattered
+    light = traced.values if ior == 1.0 else traced.whole
     flights = light[0] @ projection.mass.toarray()
     along = tracer.grid.centres()[traced.cells, 0] @ towards.T
     for number in range(len(towards)):

@@ -39,10 +39,8 @@ OPAQUE = 3.0
 """The optical depth of a voxel above which light does not reach from one voxel to the next: the bake warns."""
 MOST_OPAQUE = 10.0
 """The optical depth of a voxel above which a bake is refused: all light ends in the first voxel."""
-BYTES = 3 * 4 * 4
-"""Bytes of memory for each voxel and direction: three channels, in float64 and float32, and their averages."""
-BYTES_OF_SHARES = 2 * 3 * 4 * fluence_field.FINER**2
-"""The same for the shares of finer directions: twice three channels in float32."""
+BYTES = 3 * 6 * 8
+"""Bytes of memory for each voxel of the body and direction: three channels, of the field and of its factors."""
 
 
 class Part(NamedTuple):
@@ -137,10 +135,9 @@ def check(scene: MeasuredScene, settings: Settings) -> None:
             f"a voxel is {depth:.3g} mean free paths long in one channel, and at most {MOST_OPAQUE:g} are traced",
             "use more voxels, or a smaller unit: --unit-mm, unit_mm of [medium]",
         )
-    memory.check(grid.voxels * settings.side**2 * BYTES, "use fewer voxels")
     inside = int(projection_of(scene, settings.voxels).counting.sum())
-    shares = inside * settings.side**2 * BYTES_OF_SHARES
-    memory.check(shares + (solver_bytes(inside) if fluence_field.by_flights(scene) else 0), "use fewer voxels")
+    solver = solver_bytes(inside) if fluence_field.by_flights(scene) else 0
+    memory.check(inside * settings.side**2 * BYTES + solver, "use fewer voxels")
 
 
 def _factor(traced: Field, rank: int) -> list[Part]:

@@ -41,9 +41,9 @@ class LightResponse(NamedTuple):
     """(rank, voxels): numbers in 0..1, times 255"""
     table: npt.NDArray[np.float16]
     """(side², 1 + rank, 3): for each direction of an octahedral map the constant and what the numbers weight"""
-    passing: npt.NDArray[np.uint8]
-    """(side², voxels): the root of the share that is not scattered in one channel, times 255 / `highest`, for a map of
-    directions that is finer than the table's; (0, voxels) where the table has all light"""
+    arriving: npt.NDArray[np.uint8]
+    """(voxels, side²): the root of the share that arrives without being scattered in one channel, times 255 /
+    `highest`, for the directions of an octahedral map; (voxels, 0) where the table has all light"""
     highest: float
     powers: Array
     """(3,): the powers of this share that are those of the channels"""
@@ -100,8 +100,8 @@ def lit(response: LightResponse, lights: list[Incoming], surroundings: Array | N
     numbers = response.latents / 255.0
     for towards, irradiance in lights:
         light += irradiance.T * _scattered(response, numbers, towards)
-        if len(response.passing):
-            light += irradiance.T * (UNSCATTERED * _passing(response, towards))
+        if response.arriving.size:
+            light += irradiance.T * (UNSCATTERED * _arriving(response, towards))
     if surroundings is not None:
         weights = response.surroundings * (response.largest / 127.0)[..., None]
         light += np.einsum("kcv,kc->cv", weights, surroundings)
@@ -126,13 +126,10 @@ def _scattered(response: LightResponse, numbers: Array, towards: Array) -> Array
     return result
 
 
-def _passing(response: LightResponse, towards: Array) -> Array:
+def _arriving(response: LightResponse, towards: Array) -> Array:
     """(3, voxels): the share of light that arrives without being scattered."""
-    texels, weights = octahedron.mix(towards, octahedron.side_of(response.passing))
-    if len(texels) == 1:
-        root = weights[0] @ response.passing[texels[0]]
-    else:
-        root = (weights * response.passing[texels, np.arange(len(texels))[:, None]]).sum(axis=1)
+    texels, weights = octahedron.mix(towards, octahedron.side_of(response.arriving.T))
+    root = (weights * response.arriving[np.arange(len(response.arriving))[:, None], texels]).sum(axis=1)
     share: Array = np.maximum(root * (response.highest / 255.0), 1e-9) ** (2.0 * response.powers[:, None])
     return share
 
@@ -152,7 +149,7 @@ def harmonics(directions: Array) -> Array:
 
 # Files: arrays one behind the other, which the JSON beside them describes; all are compressed (zlib, RFC 1950).
 
-_ARRAYS = ("cells", "nearest", "latents", "table", "passing", "surroundings", "distance")
+_ARRAYS = ("cells", "nearest", "latents", "table", "arriving", "surroundings", "distance")
 
 
 def to_bytes(response: LightResponse) -> tuple[bytes, dict[str, Any]]:

@@ -13,6 +13,8 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 
 ROUNDS = 6
+MORE, ITERATIONS = 8, 4
+"""Of the first guess: columns beside those of the rank, and how often they are improved."""
 RIDGE = 1e-6
 """The weight of the factors' own squares, relative to the mean weight of a row: it keeps the equations solvable."""
 
@@ -25,13 +27,22 @@ def factors(field: Array, rank: int, floor: float, smooth: Array) -> tuple[Array
     """
     rank = min(rank, *field.shape)
     weight = 1.0 / (smooth**2 + floor**2)
-    scaled = field * np.sqrt(weight.mean(axis=1, keepdims=True))
-    right: Array = np.linalg.svd(scaled, full_matrices=False)[2][:rank]
+    right = _rows(field * np.sqrt(weight.mean(axis=1, keepdims=True)), rank)
     left: Array = np.zeros((len(field), rank))
     for _ in range(ROUNDS):
         left = _solve(right, field, weight)
         right = _solve(left.T, field.T, weight.T).T
     return left, right
+
+
+def _rows(matrix: Array, rank: int) -> Array:
+    """The right singular vectors of the largest singular values, nearly: by iterations of a random subspace (Halko,
+    Martinsson and Tropp, Finding structure with randomness, SIAM Review 2011, algorithm 4.4)."""
+    basis = np.random.default_rng(0).normal(size=(matrix.shape[1], rank + MORE))
+    for _ in range(ITERATIONS):
+        basis = np.linalg.qr(matrix.T @ (matrix @ basis))[0]
+    rows: Array = np.linalg.svd(matrix @ basis, full_matrices=False)[2][:rank] @ basis.T
+    return rows
 
 
 def _solve(basis: Array, field: Array, weight: Array) -> Array:

@@ -26,9 +26,10 @@ PHOTONS_OF_FLIGHT = 500
 """Where flights serve all directions, one from each point for so many photons: about the same noise."""
 PHOTONS_OF_RAY = 4
 """Behind a refracting surface, one ray of light that has not been scattered for so many photons."""
-FINER = 2
-"""Along each side of the octahedral map, the directions of light that has not been scattered for one of other light:
-the body shades itself with sharp edges."""
+OF_NEIGHBOURS = 4
+"""A direction of many has the photons divided by this: products of few factors share those of its neighbours."""
+OF_FIXED = 16
+"""A light that is fixed to the body has so many times the photons."""
 
 
 class Settings(NamedTuple):
@@ -36,13 +37,13 @@ class Settings(NamedTuple):
 
     voxels: int = 24
     """Along the longest side of the box"""
-    side: int = 16
-    """Light directions along each side of the octahedral map"""
+    side: int = 32
+    """Light directions along each side of the octahedral map: parts of a body shade each other with sharp edges"""
     photons: int = 24000
-    """For each direction and channel"""
+    """For a light in each channel; see `OF_NEIGHBOURS` and `OF_FIXED`"""
     seed: int = 0
     fixed: bool = False
-    """For one light: the field includes light that is not scattered, and the light has `side` times as many photons"""
+    """For one light: the field includes light that is not scattered"""
 
 
 class Field(NamedTuple):
@@ -52,12 +53,10 @@ class Field(NamedTuple):
     """In the body's object space"""
     values: Array
     """(3, directions, voxels), of voxels that count (see `cells`): texels for trilinear interpolation, which noise
-    may make negative. Of light that is scattered at least once; of all light where `unscattered` is empty"""
-    unscattered: Array
-    """(3, directions, voxels): of light that has not been scattered; (3, 0, voxels) where `values` has it"""
+    may make negative. Of light that is scattered at least once; of all light where `shares` is empty"""
     shares: npt.NDArray[np.float32]
-    """(3, FINER² directions, voxels): the share of light that has not been scattered, for a finer octahedral map;
-    for directions that are no map, of these; (3, 0, voxels) where `values` has all light"""
+    """(3, directions, voxels): the share of light that arrives without being scattered; (3, 0, voxels) where `values`
+    has it"""
     cells: npt.NDArray[np.int64]
     """(voxels,): the numbers of the voxels that count in the grid"""
     nearest: npt.NDArray[np.int64]
@@ -70,6 +69,11 @@ class Field(NamedTuple):
     """`values` averaged over neighbouring voxels"""
     distance: Array
     """(voxels of the grid,), from the surface to the voxels' centres, negative inside, in object space"""
+
+    @property
+    def whole(self) -> Array:
+        """All light, as `values`."""
+        return self.values + UNSCATTERED * self.shares if self.shares.size else self.values
 
 
 Directions = tuple[tuple[float, float, float], ...]
@@ -135,10 +139,7 @@ def field(
 ) -> Field:  # fmt: skip
     """The fluence of a scene's body for lights from everywhere. Raises SssgenError for a body without an inside, or
     a part of the work that failed."""
-    work = _Work(scene, settings, scheduler, processes, progress)
-    fine = work.shares(octahedron.directions(FINER * settings.side))
-    parts = fine.reshape(3, -1, FINER, settings.side, FINER, fine.shape[2])
-    return work.field(octahedron.directions(settings.side), fine, parts.mean((2, 4)).reshape(3, -1, fine.shape[2]))
+    return of_directions(scene, octahedron.directions(settings.side), settings, scheduler, processes, progress)
 
 
 def of_light(
@@ -155,8 +156,7 @@ def of_directions(
 ) -> Field:  # fmt: skip
     """The fluence for lights in some directions (n, 3), object space. Raises SssgenError as `field` does."""
     work = _Work(scene, settings, scheduler, processes, progress)
-    shares = work.shares(directions)
-    return work.field(directions, shares, shares)
+    return work.field(directions, work.shares(directions))
 
 
 def for_light(settings: Settings) -> Settings:
@@ -188,26 +188,25 @@ class _Work(NamedTuple):
         function = "trace_shares"
         traced: tuple[int, ...] = ()
         if refracts:
-            photons = settings.photons * (settings.side if settings.fixed else 1)
+            photons = settings.photons * (OF_FIXED if settings.fixed else 1)
             function, traced = "trace_arriving", (max(photons // PHOTONS_OF_RAY, 1), settings.seed)
         groups = _groups(directions)
         parts = self._results(function, [(scene, group, settings.voxels, *traced) for group in groups])
         return np.concatenate(parts, axis=1)
 
-    def field(self, directions: Array, fine: npt.NDArray[np.float32], shares: npt.NDArray[np.float32]) -> Field:
-        """The field with the `shares` for its directions, and the `fine` ones for more of them."""
+    def field(self, directions: Array, shares: npt.NDArray[np.float32]) -> Field:
+        """The field with the `shares` for its directions."""
         scene, settings = self.scene, self.settings
         grid, projection = grid_in_box(scene, settings.voxels), projection_of(scene, settings.voxels)
         channels = range(3)
         each: list[tuple[Any, ...]]
-        unscattered = UNSCATTERED * shares.astype(np.float64)
         if by_flights(scene):
             flights = max(settings.photons // PHOTONS_OF_FLIGHT, 2)
             each = [(scene, channel, shares[channel], settings.voxels, flights, settings.seed) for channel in channels]
             results = self._results("trace_flights", each)
             values = np.stack([texels for texels, _ in results]).astype(np.float64)
         else:
-            photons = settings.photons * settings.side if settings.fixed else settings.photons
+            photons = settings.photons * OF_FIXED if settings.fixed else max(settings.photons // OF_NEIGHBOURS, 2)
             rest = (settings.voxels, photons, settings.seed, settings.fixed)
             groups = _groups(directions)
             each = [(scene, channel, group, *rest) for channel in channels for group in groups]
@@ -215,13 +214,13 @@ class _Work(NamedTuple):
             estimates = np.concatenate([part for part, _ in results]).astype(np.float64)
             values = projection.texels(projection.folded(estimates)).reshape(3, len(directions), -1)
         noise = float(np.sqrt(np.mean([error**2 for _, error in results]))) / max(float(values.mean()), 1e-30)
-        if settings.fixed and unscattered.size:
-            values, unscattered = values + unscattered, unscattered[:, :0]
+        if settings.fixed and shares.size:
+            values, shares = values + UNSCATTERED * shares, shares[:, :0]
         distance = scene.geometry.distance(grid.centres()[:, 0])
         smooth = _smooth(values, projection.counting, grid)
         cells = np.flatnonzero(projection.counting)
         return Field(
-            grid, values, unscattered, fine, cells, projection.nearest, directions, noise, smooth, distance
+            grid, values, shares, cells, projection.nearest, directions, noise, smooth, distance
         )  # fmt: skip
 
     def _results(self, function: str, each: list[tuple[Any, ...]]) -> list[Any]:

@@ -40,10 +40,9 @@ def pack(scene: MeasuredScene, traced: Field, rank: int) -> LightResponse:
     extinctions = np.array([medium_of(scene, channel).extinction for channel in range(3)])
     # the channel whose share of light that is not scattered stands for the others
     base = int(np.argsort(extinctions)[1])
-    unscattered = traced.unscattered if traced.unscattered.size else np.zeros((3, 1, 1))
     columns = traced.values.reshape(channels * count, voxels).T
     # errors count relative to all light
-    whole = (traced.smooth + unscattered).reshape(channels * count, voxels).T
+    whole = (traced.smooth + traced.whole - traced.values).reshape(channels * count, voxels).T
     latents, rows = factors(columns, rank, FLOOR * float(np.percentile(whole, 99.0)), whole)
     low, high = latents.min(axis=0), latents.max(axis=0)
     size = np.maximum(high - low, 1e-12)
@@ -51,7 +50,7 @@ def pack(scene: MeasuredScene, traced: Field, rank: int) -> LightResponse:
     table = np.concatenate([(low @ rows)[None], size[:, None] * rows]).reshape(-1, channels, count)
     root = np.sqrt(np.maximum(traced.shares[base].astype(np.float64), 0.0))
     highest = max(float(root.max(initial=0.0)), 1e-12)
-    around = _around(traced, unscattered)
+    around = _around(traced)
     largest = np.maximum(np.abs(around).max(axis=2), 1e-12)
     number = np.uint16 if traced.grid.voxels < 1 << 16 else np.uint32
     levels = np.rint(root * (LEVELS / highest)) * (255 // LEVELS)
@@ -59,15 +58,15 @@ def pack(scene: MeasuredScene, traced: Field, rank: int) -> LightResponse:
         traced.grid.low, traced.grid.high, traced.cells.astype(number),
         traced.nearest.reshape(traced.grid.shape[::-1]).astype(number),
         np.rint(255.0 * (latents - low) / size).astype(np.uint8).T, np.moveaxis(table, 2, 0).astype(np.float16),
-        levels.astype(np.uint8), highest, extinctions / extinctions[base],
+        levels.astype(np.uint8).T, highest, extinctions / extinctions[base],
         np.rint(127.0 * around / largest[..., None]).astype(np.int8), largest,
         stored_distance(traced).reshape(traced.grid.shape[::-1]),
     )  # fmt: skip
 
 
-def _around(traced: Field, unscattered: Array) -> Array:
+def _around(traced: Field) -> Array:
     """The integrals of the response times the harmonics, (9, 3, voxels)."""
     angles = octahedron.solid_angles(octahedron.side_of(traced.directions))
     weights = harmonics(traced.directions) * angles[:, None]
-    result: Array = np.einsum("dk,cdv->kcv", weights, traced.values + unscattered)
+    result: Array = np.einsum("dk,cdv->kcv", weights, traced.whole)
     return result

@@ -29,7 +29,7 @@ RANKS = (4, 8)
 """The ranks of the techniques fluence_factored_N."""
 LATENTS = 4
 """The numbers in a texel of a volume."""
-INNER, RANK = "inner_light", 16
+INNER, RANK = "inner_light", 32
 """The volume of the technique fluence_relit, and the numbers in a voxel of its bake."""
 
 

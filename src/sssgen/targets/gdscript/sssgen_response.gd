@@ -20,11 +20,11 @@ class Response:
 	var _side: int
 	var _constants := PackedVector4Array()
 	var _matrices: Array[Projection] = []
-	## Of a finer map: for each direction with a border the texel without it, for each texel the roots of voxels, and for
-	## each root the light that has not been scattered.
-	var _passing_side: int
+	## Of the map of light that has not been scattered: for each direction with a border the texel without it, for each voxel
+	## the roots of the texels, and for each root the light.
+	var _arriving_side: int
 	var _texels: PackedInt32Array
-	var _passing: PackedByteArray
+	var _arriving: PackedByteArray
 	var _shares := PackedVector4Array()
 	## For each voxel the weights of nine harmonics.
 	var _around := PackedVector4Array()
@@ -36,7 +36,7 @@ class Response:
 	static func load_from(path: String) -> Response:
 		var facts: Variant = JSON.parse_string(FileAccess.get_file_as_string(path + ".json"))
 		var file := FileAccess.get_file_as_bytes(path)
-		if file.is_empty() or not (facts is Dictionary and facts.has("arrays")):
+		if file.is_empty() or not (facts is Dictionary and facts.has("arrays") and facts["arrays"].has("arriving")):
 			return null
 		var data := file.decompress_dynamic(-1, FileAccess.COMPRESSION_DEFLATE)
 		return Response.new(data, facts) if not data.is_empty() else null
@@ -48,9 +48,9 @@ class Response:
 		size = Vector3i(int(shape[2]), int(shape[1]), int(shape[0]))
 		_nearest = _whole_numbers(data, about["nearest"])
 		_distance = _bytes(data, about["distance"])
-		_passing = _bytes(data, about["passing"])
-		_passing_side = roundi(sqrt(about["passing"]["shape"][0]))
-		_texels = _with_border(_passing_side)
+		_arriving = _bytes(data, about["arriving"])
+		_arriving_side = roundi(sqrt(about["arriving"]["shape"][1]))
+		_texels = _with_border(_arriving_side)
 		var cells := _whole_numbers(data, about["cells"])
 		count = cells.size()
 		var low := _vector(facts["box_min"])
@@ -173,15 +173,17 @@ class Response:
 			for voxel in count:
 				light[voxel] += matrix * _numbers[at]
 				at += _groups
-		if not _passing.is_empty():
-			_find(way, _passing_side)
-			var a := _texels[_corners[0]] * count
-			var b := _texels[_corners[1]] * count
-			var c := _texels[_corners[2]] * count
-			var d := _texels[_corners[3]] * count
+		if not _arriving.is_empty():
+			_find(way, _arriving_side)
+			var a := _texels[_corners[0]]
+			var b := _texels[_corners[1]]
+			var c := _texels[_corners[2]]
+			var d := _texels[_corners[3]]
 			var w := _weights
+			var at := 0
 			for voxel in count:
-				light[voxel] += _shares[int(w.x * _passing[a + voxel] + w.y * _passing[b + voxel] + w.z * _passing[c + voxel] + w.w * _passing[d + voxel] + 0.5)]
+				light[voxel] += _shares[int(w.x * _arriving[at + a] + w.y * _arriving[at + b] + w.z * _arriving[at + c] + w.w * _arriving[at + d] + 0.5)]
+				at += _arriving_side * _arriving_side
 		return light
 
 	## The same of a light at a place in object space; `strengths` are the irradiances in the voxels.
@@ -200,11 +202,12 @@ class Response:
 				for group in _groups:
 					of_corner += _matrices[texel * _groups + group] * _numbers[voxel * _groups + group]
 				sum += _weights[corner] * of_corner
-			if not _passing.is_empty():
-				_find(way, _passing_side)
+			if not _arriving.is_empty():
+				_find(way, _arriving_side)
+				var at := voxel * _arriving_side * _arriving_side
 				var root := 0.5
 				for corner in 4:
-					root += _weights[corner] * _passing[_texels[_corners[corner]] * count + voxel]
+					root += _weights[corner] * _arriving[at + _texels[_corners[corner]]]
 				sum += _shares[int(root)]
 			light[voxel] = strengths[voxel] * sum
 		return light

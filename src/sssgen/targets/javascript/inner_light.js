@@ -44,7 +44,7 @@ export const harmonics = ([x = 0, y = 0, z = 0]) => [
 export class LightResponse {
   /** @param {ArrayBuffer} data the decompressed file @param {any} facts the content of its JSON */
   constructor(data, facts) {
-    if (!facts?.arrays || !facts.object_to_volume) throw new TypeError('this is no response of a body: sssgen bake fluence --relit makes one');
+    if (!facts?.arrays?.arriving || !facts.object_to_volume) throw new TypeError('this is no response of a body: sssgen bake fluence --relit makes one');
     const read = (name) => {
       const { type, shape, start } = facts.arrays[name];
       return new TYPES[type](data, start, shape.reduce((product, count) => product * count, 1));
@@ -62,7 +62,7 @@ export class LightResponse {
     this.nearest = read('nearest');
     this.latents = read('latents');
     this.table = Float32Array.from(read('table'), fromHalf);
-    this.passing = read('passing');
+    this.arriving = read('arriving');
     this.around = read('surroundings');
     /** The distance of each texel from the surface, in half floats: 0 to 1. */
     this.distance = Uint16Array.from(read('distance'), (stored) => toHalf(stored / 255));
@@ -71,7 +71,7 @@ export class LightResponse {
     this.rank = this.latents.length / this.count;
     /** The directions along the sides of the maps: of the table, and of light that has not been scattered. */
     this.side = Math.round(Math.sqrt(this.table.length / (3 * (1 + this.rank))));
-    this.passingSide = Math.round(Math.sqrt(this.passing.length / this.count));
+    this.arrivingSide = Math.round(Math.sqrt(this.arriving.length / this.count));
     /** For each stored root the light of each channel that has not been scattered. */
     this.shares = facts.powers.map((power) => (
       Float32Array.from({ length: 256 }, (_, root) => UNSCATTERED * (Math.max((root * facts.highest) / 255, 3e-5) ** (2 * power)))
@@ -134,17 +134,17 @@ export class LightResponse {
 
   /** Adds a distant light: row by row of the stored numbers, as they lie in memory. */
   #addDistant({ place, colorAt }) {
-    const { mix, row, latents, count, rank, passing, shares, sum } = this, color = colorAt(this.low);
+    const { mix, row, latents, count, rank, arriving, shares, sum } = this, color = colorAt(this.low);
     mix.way.set(place);
     this.#look();
-    mixOf(mix, this.passingSide);
-    const [first, second, third, fourth] = mix.texels.map((texel) => texel * count), [a, b, c, d] = mix.weights;
+    mixOf(mix, this.arrivingSide);
+    const [first, second, third, fourth] = mix.texels, [a, b, c, d] = mix.weights, texels = this.arrivingSide ** 2;
     for (let channel = 0; channel < 3; channel++) {
       const ofChannel = sum[channel], strength = color[channel], start = strength * row[channel];
-      if (passing.length) {
+      if (arriving.length) {
         const share = shares[channel];
-        for (let voxel = 0; voxel < count; voxel++) {
-          const root = a * passing[first + voxel] + b * passing[second + voxel] + c * passing[third + voxel] + d * passing[fourth + voxel];
+        for (let voxel = 0, at = 0; voxel < count; voxel++, at += texels) {
+          const root = a * arriving[at + first] + b * arriving[at + second] + c * arriving[at + third] + d * arriving[at + fourth];
           ofChannel[voxel] += start + strength * share[(root + 0.5) | 0];
         }
       } else for (let voxel = 0; voxel < count; voxel++) ofChannel[voxel] += start;
@@ -157,7 +157,7 @@ export class LightResponse {
 
   /** Adds a light whose direction or strength differs between voxels. */
   #addNear({ directional, place, colorAt }, pose) {
-    const { mix, row, latents, count, rank, passing, shares, sum } = this, own = [0, 0, 0];
+    const { mix, row, latents, count, rank, arriving, shares, sum } = this, own = [0, 0, 0];
     for (let voxel = 0; voxel < count; voxel++) {
       if (pose) pose.place(voxel, own);
       else this.place(voxel, own);
@@ -166,10 +166,11 @@ export class LightResponse {
       this.#look();
       const color = colorAt(own), { texels, weights } = mix;
       let root = 0.5;
-      mixOf(mix, this.passingSide);
-      if (passing.length) for (let corner = 0; corner < 4; corner++) root += weights[corner] * passing[texels[corner] * count + voxel];
+      mixOf(mix, this.arrivingSide);
+      const at = voxel * this.arrivingSide ** 2;
+      if (arriving.length) for (let corner = 0; corner < 4; corner++) root += weights[corner] * arriving[at + texels[corner]];
       for (let channel = 0; channel < 3; channel++) {
-        let light = passing.length ? shares[channel][root | 0] : 0;
+        let light = arriving.length ? shares[channel][root | 0] : 0;
         for (let number = 0; number < rank; number++) light += row[3 * (number + 1) + channel] * (latents[number * count + voxel] / 255);
         sum[channel][voxel] += color[channel] * (row[channel] + light);
       }
