@@ -362,7 +362,6 @@ def inside() -> str:
     rows += [
         f"| {label} | {ratio * record['added_ms']:.3f} | {ratio:.3f} |"
         for label, ratio in record["of_thinness"].items()
-        if " → " in label
     ]
     return "\n".join(rows)
 
