@@ -51,9 +51,11 @@ class MeshRays:
         return self._cast(origins, directions)[0]
 
     def nearest(self, origins: Array, directions: Array) -> tuple[Indices, Array]:
-        """The first triangle of each ray, (n,), -1 for a miss, and its distance."""
+        """The first triangle of each ray, (n,), -1 for a miss, and its distance, at least 0."""
         faces, ahead = self._cast(origins, directions)
-        return faces, self._lengths(faces, origins, directions, ahead)
+        # Embree may still see a triangle just ahead that in float64 is just behind: a path that goes back to it, and a
+        # step ahead, would never end
+        return faces, np.maximum(self._lengths(faces, origins, directions, ahead), 0.0)
 
     def all(self, origins: Array, directions: Array) -> AllHits:
         """Every triangle that rays hit. Directions are unit."""
