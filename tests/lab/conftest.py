@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from measured_views import SIZE, small, synthetic_view
+from sssgen.lab.fluence import traced_body
 from sssgen.lab.measure import (
     scene_references as references,
 )
@@ -23,6 +24,15 @@ def no_cache() -> Iterator[None]:
         patch.setenv("SSSGEN_CACHE", "")
         yield
     cache._folder = None
+
+
+@pytest.fixture
+def few_voxels(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Bakes of this process have a few hundred voxels in the body."""
+    monkeypatch.setattr(traced_body, "BUDGET", 300)
+    traced_body.fitting_voxels.cache_clear()
+    yield
+    traced_body.fitting_voxels.cache_clear()
 
 
 @pytest.fixture(scope="module")

@@ -17,6 +17,8 @@ from sssgen.lab.measure.measurement import compared
 from sssgen.scene.geometry_mesh import mesh_of
 from sssgen.scene.measured import measured_scene
 
+pytestmark = pytest.mark.usefixtures("few_voxels")
+
 RELIT: FittedChain = {
     "role": "material", "name": "relit", "label": "relit", "baseline": False, "settings": {},
     "chain": ["fluence_relit"], "parameters": {}, "scale": [1.0] * 3, "matte": [0.0] * 3, "factor": "",

@@ -19,6 +19,8 @@ from sssgen.scene.measured import measured_scene
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.scene import Light
 
+pytestmark = pytest.mark.usefixtures("few_voxels")
+
 EMPTY: FittedChain = {
     "role": "material", "name": "none", "label": "none", "baseline": False, "settings": {}, "chain": [],
     "parameters": {}, "scale": [1.0] * 3, "matte": [0.2] * 3, "factor": "", "training_error": 0.0,

@@ -34,6 +34,11 @@ def response(
     return pack(scene, traced, rank), traced
 
 
+def packed(scene: MeasuredScene, rank: int, settings: Settings) -> LightResponse:
+    """`response` as a work item, whose field is in the store. Raises SssgenError."""
+    return response(scene, rank, settings, processes=0)[0]
+
+
 def pack(scene: MeasuredScene, traced: Field, rank: int) -> LightResponse:
     """The numbers of a field as they are stored."""
     channels, count, voxels = traced.values.shape

@@ -8,10 +8,9 @@ from functools import lru_cache, partial
 
 import numpy as np
 
-from sssgen.jobs.executor import Progress
+from sssgen.jobs.executor import Failure, Item, Progress, run
 from sssgen.lab.fluence import fluence_field as field
 from sssgen.lab.fluence import fluence_volumes as volumes
-from sssgen.lab.fluence import response
 from sssgen.lab.fluence.traced_body import fitting_voxels, grid_in_box
 from sssgen.run.backends import Array
 from sssgen.run.evaluate.evaluation import half
@@ -21,6 +20,7 @@ from sssgen.scene.environment import Environment
 from sssgen.scene.light_response import LightResponse, from_light, volume
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.scene import Light
+from sssgen.support.diagnostics import failure
 from sssgen.targets.runtime.numpy_textures import Texture
 
 PREFIX = "fluence_"
@@ -74,6 +74,7 @@ def prepare(
     settings = field.settings_for(alone)
     if directions:
         field.field(alone, settings, scheduler, processes, progress)
+        run([_response_item(alone)], scheduler, processes, progress=progress)
     for light in scene.lights:
         field.of_light(alone, _towards(scene, light), settings, scheduler, processes, progress)
 
@@ -114,7 +115,17 @@ def _towards(scene: MeasuredScene, light: Light) -> Array:
 
 @lru_cache(4)
 def response_of(scene: MeasuredScene) -> LightResponse:
-    return response.response(scene, RANK, field.settings_for(scene), processes=0)[0]
+    """The response of a body to light from anywhere. Raises SssgenError."""
+    (result,) = run([_response_item(scene)], processes=0)
+    if isinstance(result, Failure):
+        raise failure(f"{result.name}: {result.message}", result.hint)
+    packed: LightResponse = result
+    return packed
+
+
+def _response_item(scene: MeasuredScene) -> Item:
+    arguments = scene, RANK, field.settings_for(scene)
+    return Item("sssgen.lab.fluence.response:packed", arguments, f"response of {scene.name}")
 
 
 def inner_light(scene: MeasuredScene, lights: tuple[Light, ...], environment: Environment | None = None) -> Texture:
