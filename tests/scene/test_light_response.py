@@ -27,7 +27,7 @@ def example_response(seed: int = 1) -> LightResponse:
     response = LightResponse(
         np.array([-1.0, -0.8, -0.6]), np.array([1.0, 0.8, 0.6]), cells.astype(np.uint16), nearest.astype(np.uint16),
         random.integers(0, 256, (RANK, len(cells))).astype(np.uint8), table,
-        random.integers(0, 256, (SIDE * SIDE, len(cells))).astype(np.uint8), 1.1, np.array([0.8, 1.0, 1.3]),
+        random.integers(0, 256, (len(cells), SIDE * SIDE)).astype(np.uint8), 1.1, np.array([0.8, 1.0, 1.3]),
         np.zeros((9, 3, len(cells)), np.int8), np.ones((9, 3)),
             random.integers(0, 256, nearest.shape).astype(np.uint8),
     )  # fmt: skip

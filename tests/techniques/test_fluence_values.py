@@ -17,10 +17,15 @@ from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.measured.media import Medium
 from sssgen.targets.runtime.numpy_textures import Texture
 
+SIDE = 34
+"""The texels along a map's side, with its border."""
+NUMBER = 400
+"""Of a direction of the map"""
+
 
 def maps_of(table: Array, rank: int) -> Array:
     """The rank + 1 maps of a table: those beside each other, and those in their alphas."""
-    tiles = table.reshape(18, -1, 18, 4).transpose(1, 0, 2, 3)
+    tiles = table.reshape(SIDE, -1, SIDE, 4).transpose(1, 0, 2, 3)
     count = rank + 1 - len(tiles)
     alphas = [
         np.stack([tiles[3 * number + channel, ..., 3] for channel in range(3)], axis=2) for number in range(count)
@@ -34,7 +39,7 @@ def traced() -> field.Field:
     """The light inside a small ball."""
     medium = Medium("test", (0.6,) * 3, (5.4,) * 3, 0.0, 1.0, "the test")
     scene = MeasuredScene("body", "body", Ball(0.5), Camera(), (), medium, None)
-    return field.field(scene, Settings(voxels=8, side=16, photons=300), processes=0)
+    return field.field(scene, Settings(voxels=8, side=SIDE - 2, photons=300), processes=0)
 
 
 @pytest.mark.parametrize("name", ["fluence_factored_4", "fluence_factored_8"])
@@ -53,16 +58,16 @@ def test_the_techniques_read_what_the_bake_writes(name: str, traced: field.Field
     lit = technique(name, light_path=constant)
     centres = traced.grid.centres()[:, 0]
     chosen = np.flatnonzero(np.linalg.norm(centres, axis=1) < 0.3)[::7]
-    light = traced.directions[100]
+    light = traced.directions[NUMBER]
     zeros = np.zeros((len(chosen), 3))
     result = lit(
         d=np.full(len(chosen), 1e9), P=centres[chosen], V=zeros, L=zeros, L_object=np.tile(light, (len(chosen), 1)),
         extinction=(6.0,) * 3, scattering_albedo=(0.9,) * 3, world_to_volume=matrix, **names,
     )  # fmt: skip
     numbers = stored.latents.reshape(-1, rank)[chosen] / 255.0
-    tiles = maps_of(stored.table, rank)[:, 1 + 100 // 16, 1 + 100 % 16]
+    tiles = maps_of(stored.table, rank)[:, 1 + NUMBER // (SIDE - 2), 1 + NUMBER % (SIDE - 2)]
     close(result, 0.9 * np.maximum(tiles[0] + numbers @ tiles[1:], 0.0), rtol=1e-6)
-    exact = 0.9 * traced.smooth[:, 100][:, traced.nearest[chosen]].T
+    exact = 0.9 * traced.smooth[:, NUMBER][:, traced.nearest[chosen]].T
     assert np.median(np.abs(result / exact - 1.0)) < 0.25
 
 
@@ -74,7 +79,7 @@ def test_the_unscattered_light_of_two_nodes(name: str) -> None:
     lit = technique(name, light_path=path)
     length, zeros = np.array([0.1, 0.7, 50.0]), np.zeros((3, 3))
     ups = np.tile([0.0, 0.0, -1.0], (3, 1))
-    names = {f"fluence_table_{rank}": Texture(np.zeros((18, 18 * (4 if rank == 4 else 7), 4)), wrap="clamp")}
+    names = {f"fluence_table_{rank}": Texture(np.zeros((SIDE, SIDE * (4 if rank == 4 else 7), 4)), wrap="clamp")}
     names |= {f"fluence_latents_{rank}_{number + 1}": Texture(np.zeros((2, 2, 2, 4))) for number in range(rank // 4)}
     values = {"d": length, "P": zeros, "V": ups, "L": zeros, "L_object": ups, "scattering_albedo": (1.0,) * 3, **names}
     nodes = np.minimum(-0.25 * np.log([0.7886751, 0.2113249]), length[:, None] * [0.2113249, 0.7886751])
@@ -248,7 +253,7 @@ def test_the_factored_techniques_behind_a_refracting_surface(name: str) -> None:
     normal, view, ray, chord, share = refracted_in_ball(ior, 60)
     sigma, albedo = np.array([3.0, 5.0, 7.0]), np.array([0.9, 0.6, 0.4])
     latents = rng(5).uniform(0.0, 1.0, (6, 5, 4, rank))
-    table = rng(6).uniform(-0.2, 1.0, (18, 18 * (4 if rank == 4 else 7), 4))
+    table = rng(6).uniform(-0.2, 1.0, (SIDE, SIDE * (4 if rank == 4 else 7), 4))
     names = {f"fluence_table_{rank}": Texture(table, wrap="clamp")}
     for number in range(rank // 4):
         names[f"fluence_latents_{rank}_{number + 1}"] = Texture(
@@ -264,7 +269,7 @@ def test_the_factored_techniques_behind_a_refracting_surface(name: str) -> None:
     place = RADIUS * normal + np.minimum(np.log(2.0) * mean_free_path, 0.5 * chord)[:, None] * ray
     x, y, z = (np.clip((0.5 * place + 0.5) * (4, 5, 6), 0, (3, 4, 5)).astype(int)).T
     # the direction +z is in the middle of each tile: between four texels
-    tiles = maps_of(table, rank)[:, 8:10, 8:10].mean(axis=(1, 2))
+    tiles = maps_of(table, rank)[:, SIDE // 2 - 1 : SIDE // 2 + 1, SIDE // 2 - 1 : SIDE // 2 + 1].mean(axis=(1, 2))
     light = np.maximum(tiles[0] + latents[z, y, x] @ tiles[1:], 0.0)
     close(result, share[:, None] * albedo * (1.0 - np.exp(-sigma * chord[:, None])) * light, rtol=1e-5, atol=1e-9)
     assert (light > 0.0).all(axis=1).any()
