@@ -55,9 +55,9 @@ def trials(apart: float, noise: float, count: int = 1500, lanes: int = 400) -> t
 def test_noise_is_unbiased_and_the_bars_contain_the_truth(apart: float, noise: float) -> None:
     right, result = trials(apart, noise)
     relmse, low, high, value, plain = result.T
-    # a bias of a high order remains: at most a twentieth of the correction
+    # a bias of a high order remains: at most a seventh of the correction
     assert plain.mean() > 1.005 * right
-    assert abs(relmse.mean() - right) < 0.05 * (plain.mean() - right)
+    assert abs(relmse.mean() - right) < 0.15 * (plain.mean() - right)
     covered = ((low <= sqrt(right)) & (sqrt(right) <= high)).mean()
     assert covered >= 0.94
     assert ((low <= value) & (value <= high)).all()
@@ -67,8 +67,11 @@ def test_noise_is_unbiased_and_the_bars_contain_the_truth(apart: float, noise: f
 
 
 @pytest.mark.parametrize("factor", [0.8, 0.9, 1.05, 1.1, 1.3])
-def test_the_bars_of_few_samples_contain_the_truth(factor: float) -> None:
+@pytest.mark.parametrize(("tail", "bias"), [(0.6, 0.005), (0.2, 0.03)])
+def test_the_bars_of_few_samples_contain_the_truth(tail: float, bias: float, factor: float) -> None:
     """Means of 128 paths, of which few reach the light, with the noise that 8 batches of them have.
+
+    Fewer paths bring most of the light if `tail`, the shape of the gamma distribution, is small.
 
     Values that are in proportion to the reference are the hard case: chance makes the reference too low in some lanes,
     and these have larger weights.
@@ -78,13 +81,13 @@ def test_the_bars_of_few_samples_contain_the_truth(factor: float) -> None:
     values = factor * truth
     right, inside, mean = compare(values, truth)["relmse"], 0, 0.0
     for _ in range(200):
-        paths = generator.gamma(0.6, truth / 0.6, (128, *truth.shape)).reshape(8, 16, *truth.shape)
+        paths = generator.gamma(tail, truth / tail, (128, *truth.shape)).reshape(8, 16, *truth.shape)
         batches = paths.mean(axis=1)
         error = compare(values, batches.mean(axis=0), batches.std(axis=0, ddof=1) / sqrt(8.0))
         inside += error["low"] <= sqrt(right) <= error["high"]
         mean += error["relmse"] / 200
     assert inside >= 0.8 * 200
-    assert abs(sqrt(max(mean, 0.0)) - sqrt(right)) < 0.005
+    assert abs(sqrt(max(mean, 0.0)) - sqrt(right)) < bias
 
 
 def test_a_fit_to_noisy_targets_is_not_too_low() -> None:
