@@ -47,7 +47,7 @@ class Level(NamedTuple):
     error: float
     low: float
     high: float
-    """The error and its bar, at the size at which the body is seen there; of the worst view"""
+    """The error and its bar, at the size at which the body is seen there; each is the largest of the views"""
     within: bool
     """Whether the error is below the limit; if not, it is the least one within the budget"""
 
@@ -104,11 +104,11 @@ def levels(candidates: Sequence[Point], wanted: Sequence[Goal], max_error: float
     result = []
     for group, end in zip(groups, (*ends, None), strict=True):
         worst = max((point for _, point in group), key=limit_of)
-        view = max(worst["views"].values(), key=lambda view: float(view["high"] or 0.0))
+        error = max(float(view["value"] or 0.0) for view in worst["views"].values())
         nearest, point = group[0]
         result.append(
             Level(
-                nearest.distance, end, point, cost_of(point) * nearest.pixels * 1e-6, float(view["value"] or 0.0),
+                nearest.distance, end, point, cost_of(point) * nearest.pixels * 1e-6, error,
                 low_of(worst), limit_of(worst), limit_of(worst) <= max_error,
             )
         )  # fmt: skip
