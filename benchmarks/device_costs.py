@@ -45,9 +45,9 @@ def main() -> int:
     if not arguments.check:
         operators = operator_times.time_chains(operator_times.operator_chains(), scene, size, arguments.rounds)
         fitted = [number for number in range(0, len(materials), 2) if chains.typical[number] > 0.0]
-        both = operator_times.joined(operators, operator_times.chosen(chains, fitted))
+        both = operator_times.union(operators, operator_times.subset(chains, fitted))
         measured = operator_times.measured_device(arguments.NAME, both)
-        chains = operator_times.chosen(chains, range(1, len(materials), 2))
+        chains = operator_times.subset(chains, range(1, len(materials), 2))
         # not by file_writer, which protects the files of an installation: this program makes them
         path = Path(device_costs.FOLDER) / f"{arguments.NAME}.toml"
         path.write_text(measured.text(), encoding="utf-8")

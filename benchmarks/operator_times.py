@@ -66,14 +66,14 @@ def time_chains(
     return TimedChains(labels, tuple(counts), np.array(ns), times.device)
 
 
-def joined(first: TimedChains, second: TimedChains) -> TimedChains:
+def union(first: TimedChains, second: TimedChains) -> TimedChains:
     """Chains that were timed with the same rounds on the same device."""
     return TimedChains(
         first.labels + second.labels, first.counts + second.counts, np.concatenate([first.ns, second.ns]), first.driver
     )
 
 
-def chosen(chains: TimedChains, numbers: Sequence[int]) -> TimedChains:
+def subset(chains: TimedChains, numbers: Sequence[int]) -> TimedChains:
     """The chains with these numbers."""
     labels, counts = (chains.labels[number] for number in numbers), (chains.counts[number] for number in numbers)
     return TimedChains(tuple(labels), tuple(counts), chains.ns[list(numbers)], chains.driver)

@@ -135,8 +135,8 @@ def test_the_programs_run(backend: Callable[[str], Backend]) -> None:
 def test_operators_and_materials_are_fitted_together() -> None:
     operators = timed(counted())
     materials = timed([dict(zip(OPERATORS, row, strict=True)) for row in ((90, 5, 2, 1, 0), (40, 2, 1, 3, 0))])
-    first, second = operator_times.chosen(materials, [0]), operator_times.chosen(materials, [1])
+    first, second = operator_times.subset(materials, [0]), operator_times.subset(materials, [1])
     assert (first.labels, second.labels) == (("0",), ("1",)) and first.counts[0]["operations"] == 90
-    assert operator_times.joined(first, second).typical == pytest.approx(materials.typical)
-    device = operator_times.measured_device("mine", operator_times.joined(operators, first))
+    assert operator_times.union(first, second).typical == pytest.approx(materials.typical)
+    device = operator_times.measured_device("mine", operator_times.union(operators, first))
     assert device.predict(second.counts[0]) == pytest.approx(second.typical[0])

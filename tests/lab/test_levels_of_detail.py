@@ -13,7 +13,7 @@ import pytest
 
 from measured_views import candidate
 from sssgen.cli.main import main
-from sssgen.lab.chart.levels import COLUMNS, ROWS, Goal, Level, chosen, goals, levels
+from sssgen.lab.chart.levels import COLUMNS, ROWS, Goal, Level, choice, goals, levels
 from sssgen.lab.chart.picked_material import by_level, level_files
 from sssgen.lab.chart.race import Entrant, within_budget
 from sssgen.lab.gpu import device_costs
@@ -101,7 +101,7 @@ CLOSE, BAKE = point("close", 0.9, 0.105), point("bake", 1.0, 0.1)
 )  # fmt: skip
 def test_the_chain_within_the_budget(max_cost: float, max_error: float, expected: Any) -> None:
     """Within the error the cheapest one; beyond it the cheapest of those that the bars cannot tell from the best."""
-    assert chosen([BAKE, MAP, NONE, CLOSE, WRAP], max_cost, max_error) is expected
+    assert choice([BAKE, MAP, NONE, CLOSE, WRAP], max_cost, max_error) is expected
 
 
 def test_neighbouring_distances_with_the_same_chain_are_one_level() -> None:

@@ -40,7 +40,7 @@ OPAQUE = 3.0
 MOST_OPAQUE = 10.0
 """The optical depth of a voxel above which a bake is refused: all light ends in the first voxel."""
 BYTES = 3 * 6 * 8
-"""Bytes of memory for each voxel of the body and direction: three channels, of the field and of its factors."""
+"""Bytes of memory for each voxel and direction: three channels, of the field and of its factors."""
 
 
 class Part(NamedTuple):
@@ -136,8 +136,10 @@ def check(scene: MeasuredScene, settings: Settings) -> None:
             "use more voxels, or a smaller unit: --unit-mm, unit_mm of [medium]",
         )
     inside = int(projection_of(scene, settings.voxels).counting.sum())
-    solver = solver_bytes(inside) if fluence_field.by_flights(scene) else 0
-    memory.check(inside * settings.side**2 * BYTES + solver, "use fewer voxels")
+    if fluence_field.by_flights(scene):
+        memory.check(inside * settings.side**2 * BYTES + solver_bytes(inside), "use fewer voxels")
+    else:  # photons have estimates for all voxels of the grid
+        memory.check(grid.voxels * settings.side**2 * BYTES, "use fewer voxels")
 
 
 def _factor(traced: Field, rank: int) -> list[Part]:

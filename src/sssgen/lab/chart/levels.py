@@ -79,7 +79,7 @@ def low_of(point: Point) -> float:
     return max(float(view["low"] or 0.0) for view in point["views"].values())
 
 
-def chosen(candidates: Sequence[Point], max_cost: float, max_error: float) -> Point:
+def choice(candidates: Sequence[Point], max_cost: float, max_error: float) -> Point:
     """The cheapest point within the error, of those within the cost. Without one: the most accurate, or the cheapest
     one whose bar meets that of the most accurate. Without any within the cost: the cheapest of all."""
     allowed = [point for point in candidates if cost_of(point) <= max_cost]
@@ -98,7 +98,7 @@ def levels(candidates: Sequence[Point], wanted: Sequence[Goal], max_error: float
     choices = []
     for goal in wanted:
         seen = [seen_at(point, goal.rows) for point in candidates]
-        choices.append((goal, chosen(seen, goal.max_cost, max_error)))
+        choices.append((goal, choice(seen, goal.max_cost, max_error)))
     groups = [list(group) for _, group in groupby(choices, key=lambda choice: choice[1]["label"])]
     ends = [group[0][0].distance for group in groups[1:]]
     result = []
