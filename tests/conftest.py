@@ -14,7 +14,7 @@ from hypothesis import settings
 from amounts import COUNTED
 from command_line import CommandResult, Run
 from skips import compiler_or_skip, or_skip
-from sssgen.analyse.verify.verification import Machines, start_machines
+from sssgen.analyse.verify.machines import Machines, start_machines
 from sssgen.analyse.verify.verification_report import BACKENDS
 from sssgen.cli import main as cli
 from sssgen.run import backends, compilers

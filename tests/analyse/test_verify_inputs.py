@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from sssgen.analyse.verify import verification
-from sssgen.analyse.verify.verification import Machines, Options, verify
+from sssgen.analyse.verify.machines import Machines
+from sssgen.analyse.verify.verification import Options, verify
 from sssgen.analyse.verify.verification_report import Coverage, Row
 from sssgen.pipeline import compiler
 

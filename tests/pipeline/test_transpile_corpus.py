@@ -15,7 +15,7 @@ from skips import compiler_or_skip
 from snapshot import check_snapshot
 from sssgen.analyse.verify import verification
 from sssgen.analyse.verify.inline_includes import expand
-from sssgen.analyse.verify.verification import Machines
+from sssgen.analyse.verify.machines import Machines
 from sssgen.ir.text import print_module
 from sssgen.lang.plain_glsl import load_glsl, load_glsl_text
 from sssgen.pipeline.compiler import transpile

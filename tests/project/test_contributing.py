@@ -22,7 +22,9 @@ from sssgen.cli.main import main
 from sssgen.lang.check.shader_interface import BUILTIN_VARIABLES
 from sssgen.material.chain_assembly import AT_REST, INPUTS
 from sssgen.passes.capabilities import Capabilities
-from sssgen.targets import descriptor, plugins, registry
+from sssgen.targets import descriptor_reader, plugins, registry
+from sssgen.targets.chain_inputs import CHAIN_INPUTS
+from sssgen.targets.descriptor import STAGE_BUILTINS
 from sssgen.targets.descriptor_table import table_of
 
 CONTRIBUTING = ROOT / "CONTRIBUTING.md"
@@ -177,7 +179,7 @@ def test_a_faulty_descriptor_is_named(tmp_path: Path) -> None:
     ):  # fmt: skip
         path.write_text(text, encoding="utf-8")
         with pytest.raises(SssgenError, match=message):
-            descriptor.read(path)
+            descriptor_reader.read(path)
 
 
 def changed(old: str, new: str, tmp_path: Path) -> str:
@@ -187,7 +189,7 @@ def changed(old: str, new: str, tmp_path: Path) -> str:
     path = tmp_path / "vulkan.toml"
     path.write_text(text.replace(old, new), encoding="utf-8")
     with pytest.raises(SssgenError) as error:
-        descriptor.read(path)
+        descriptor_reader.read(path)
     return error.value.diagnostics[0].render()
 
 
@@ -243,7 +245,7 @@ def test_a_descriptor_inherits(tmp_path: Path) -> None:
         toy=f"title = 'Toy'\nextends = 'middle'\nwords = 'words.txt'\n{FILES}[types]\nvec2 = ''\nvec3 = 'three'\n",
         middle="extends = 'glsl-330'\nalso = ['block']\n[capabilities]\nternary = false\n[names]\nshell = 'lamp'\n",
     )
-    toy, base = descriptor.read(path), registry.load("glsl-330")
+    toy, base = descriptor_reader.read(path), registry.load("glsl-330")
     assert (toy.name, toy.title, toy.also, toy.language, toy.version) == ("toy", "Toy", (), base.language, base.version)
     assert toy.types == {**{name: text for name, text in base.types.items() if name != "vec2"}, "vec3": "three"}
     assert list(toy.files) == ["functions"] and toy.inputs == base.inputs
@@ -267,7 +269,7 @@ def test_a_descriptor_inherits(tmp_path: Path) -> None:
 def test_a_faulty_base_is_named(tmp_path: Path, texts: dict[str, str], message: str, hint: str) -> None:
     (tmp_path / "words.txt").write_text("play\n", encoding="utf-8")
     with pytest.raises(SssgenError) as error:
-        descriptor.read(write(tmp_path, **texts))
+        descriptor_reader.read(write(tmp_path, **texts))
     shown = error.value.diagnostics[0].render()
     assert message in shown and hint in shown and ".t" in shown.splitlines()[1]
 
@@ -277,7 +279,7 @@ def test_a_descriptor_inherits_from_a_plugin(plugin: Callable[[str, str], None],
     folder.mkdir()
     base = write(folder, toy=f"title = 'Toy'\nextends = 'wgsl'\nversion = '7'\n{FILES}")
     plugin("toy = toy_target:path", f"path = {str(base)!r}")
-    target = descriptor.read(write(tmp_path, smaller=f"title = 'Smaller'\nextends = 'toy'\n{FILES}"))
+    target = descriptor_reader.read(write(tmp_path, smaller=f"title = 'Smaller'\nextends = 'toy'\n{FILES}"))
     assert (target.language, target.version) == ("wgsl", "7")
 
 
@@ -312,5 +314,5 @@ def test_own_descriptors_declare_every_capability() -> None:
 
 
 def test_the_keys_of_descriptors_equal_the_inputs_of_the_chain() -> None:
-    assert set(descriptor.CHAIN_INPUTS) == {*INPUTS, *AT_REST.values(), "surface", "color"}
-    assert set(descriptor.STAGE_BUILTINS) < set(BUILTIN_VARIABLES)
+    assert set(CHAIN_INPUTS) == {*INPUTS, *AT_REST.values(), "surface", "color"}
+    assert set(STAGE_BUILTINS) < set(BUILTIN_VARIABLES)

@@ -18,7 +18,7 @@ from sssgen.pipeline.compiler import all_targets
 from sssgen.pipeline.frame_functions import check_word
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import folder
-from sssgen.targets.descriptor import read
+from sssgen.targets.descriptor_reader import read
 from sssgen.targets.frame import Variant, used_parts
 from sssgen.targets.printed_places import Places, check_places
 from sssgen.targets.used_frame import check_inputs, with_names

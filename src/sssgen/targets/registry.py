@@ -15,7 +15,8 @@ from typing import Any
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.paths import place, stem
 from sssgen.targets import plugins
-from sssgen.targets.descriptor import Names, Target, read, target_of
+from sssgen.targets.descriptor import Names, Target
+from sssgen.targets.descriptor_reader import read, target_of
 from sssgen.targets.descriptor_table import table_of
 
 

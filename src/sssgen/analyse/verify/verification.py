@@ -18,9 +18,9 @@ A uniform has one value in each of several rounds. Functions that cannot be run 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager, nullcontext
+from contextlib import nullcontext
 from functools import partial
 from typing import NamedTuple
 
@@ -30,14 +30,13 @@ from sssgen.analyse.verify.branch_outcomes import Outcomes, branches
 from sssgen.analyse.verify.input_search import Search, select_inputs, select_quads
 from sssgen.analyse.verify.lane_interpreter import Program, Run
 from sssgen.analyse.verify.loop_inputs import loop_inputs
+from sssgen.analyse.verify.machines import Machines, backends_of, start_machines
 from sssgen.analyse.verify.plain_inputs import Source, picture, select_lanes
 from sssgen.analyse.verify.plain_probes import TEXTURES, FunctionProbes, Leaf, Probe, probe_functions
 from sssgen.analyse.verify.rounding_noise import is_explained, noise
 from sssgen.analyse.verify.stage_variables import MAIN, Plain, plain, without_functions
 from sssgen.analyse.verify.verification_report import (
-    BACKENDS,
     EVERY,
-    TRANSLATIONS,
     Comparison,
     Coverage,
     Report,
@@ -52,7 +51,7 @@ from sssgen.passes.reachable import keep_reachable
 from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
 from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
 from sssgen.pipeline.compiler import transpile
-from sssgen.run.backends import Array, Bound, Call, CompilerMissing, Place, Stage, Text
+from sssgen.run.backends import Array, Bound, Call, Place, Stage, Text
 from sssgen.run.backends import call_program as calls
 from sssgen.run.backends.backend_process import BackendProcess
 from sssgen.run.evaluate.deviation import GOAL, errors
@@ -66,8 +65,6 @@ ROUNDS = 16
 """How many values a uniform has."""
 SAME_TEXT = {"glsl"}
 """The translations whose builtins are those of the author's text."""
-SECONDS = 30.0
-"""The time limit of one function on one back end."""
 DRAWS_EACH = (16, 128)
 """How many runs with errors a deviation is compared with; the second number for what the first does not explain."""
 _SCREEN = "void main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }"
@@ -128,15 +125,6 @@ def verify(
     return Report(rows, missing, (*running, *missing))
 
 
-def backends_of(target: str) -> tuple[str, ...]:
-    """The back ends that run a target's text, and the author's; '' for all. Raises SssgenError."""
-    if not target:
-        return tuple(BACKENDS.values())
-    if target not in TRANSLATIONS:
-        raise failure(f"--verify runs no text of the target '{target}'", f"choose from: {', '.join(TRANSLATIONS)}")
-    return tuple(dict.fromkeys(["gl", *TRANSLATIONS[target].values()]))
-
-
 def _functions_named(name: str, functions: list[Function], shown: str) -> list[Function]:
     """The functions of this name, which may be overloads. Raises SssgenError where there is none."""
     names = {part.name.replace(MAIN, "main") for part in functions}
@@ -152,36 +140,6 @@ def _scene(text: str) -> str:
     version = re.match(r"\s*#\s*version[^\n]*\n", text)
     start = version.end() if version is not None else 0
     return text[:start] + " ".join(lines) + "\n" + text[start:]
-
-
-class Machines(NamedTuple):
-    """The back ends, each in its own process; and why the others are missing, by name."""
-
-    running: dict[str, BackendProcess]
-    missing: dict[str, str]
-
-
-@contextmanager
-def start_machines(names: Sequence[str] = tuple(BACKENDS.values())) -> Iterator[Machines]:
-    """The back ends of `verify`, or some of them; they end with the block. Raises SssgenError without OpenGL."""
-    machines: dict[str, BackendProcess] = {}
-    missing: dict[str, str] = {}
-
-    def start(name: str) -> None:
-        try:
-            machines[name] = BackendProcess(name, SECONDS)
-        except CompilerMissing as reason:
-            missing[name] = str(reason)
-
-    try:
-        with ThreadPoolExecutor(len(names)) as pool:
-            list(pool.map(start, names))
-        if "gl" in missing:
-            raise failure("OpenGL is missing: it runs the text as written", missing["gl"])
-        yield Machines(machines, missing)
-    finally:
-        for machine in machines.values():
-            machine.close()
 
 
 class Inputs(NamedTuple):

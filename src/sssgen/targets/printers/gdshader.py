@@ -8,8 +8,9 @@ from sssgen.ir import nodes as ir
 from sssgen.ir.types import VEC4, Array, Matrix, Sampler, Scalar, Type, Vector, components, kind_of
 from sssgen.targets.descriptor import Target
 from sssgen.targets.printers.glsl import GlslPrinter
+from sssgen.targets.printers.number_text import float_text
 from sssgen.targets.printers.printed_lines import Line, comment_text, wrap
-from sssgen.targets.printers.printer import PRIMARY, float_text
+from sssgen.targets.printers.printer import PRIMARY
 from sssgen.targets.texture_import import has_hint, import_of
 from sssgen.targets.uniform_layout import Member
 

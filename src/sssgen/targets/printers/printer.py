@@ -6,23 +6,20 @@ source that it came from.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from sssgen.ir import nodes as ir
 from sssgen.ir import signatures
-from sssgen.ir.formats import FLOAT32, Format
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.memory_operations import MEMORY
 from sssgen.ir.operators import PRECEDENCE
-from sssgen.ir.rules import FLOAT_MAX
 from sssgen.ir.types import FLOAT, INT, UINT, Array, Sampler, Scalar, Struct, Type, components, spell, unnested
 from sssgen.passes.scopes import claim, declared
 from sssgen.passes.stage.stage_interface import Stage
 from sssgen.support.diagnostics import failure
 from sssgen.targets.descriptor import Target
+from sssgen.targets.printers.number_text import float_text
 from sssgen.targets.printers.printed_lines import WIDTH, Line, comment_text, summary, wrap
 from sssgen.targets.uniform_layout import Member
 
@@ -34,8 +31,6 @@ _COLOR_LETTERS = str.maketrans("xyzw", "rgba")
 UNARY, POSTFIX, PRIMARY, TERNARY = 13, 14, 15, -1
 _SUM, _RELATIONAL, _EQUALITY = PRECEDENCE["+"], PRECEDENCE["<"], PRECEDENCE["=="]
 _ALONE = frozenset(("<<", ">>", "&", "|", "^", "&&", "||"))
-_SMALLEST = 2.0**-126
-"""The smallest normal float32."""
 
 
 Comments = Callable[[str, int], list[str]]
@@ -475,37 +470,3 @@ def _channel(arg: ir.Expr) -> str:
     """The name of the channel with this literal index; Red for any other expression."""
     number = int(arg.value) if isinstance(arg, ir.Literal) and arg.type == INT else 0
     return ("Red", "Green", "Blue", "Alpha")[number] if 0 <= number < 4 else "Red"
-
-
-def float_text(value: float, kept: bool = False) -> str:
-    """The shortest decimal that reads back to the same float32, always with a point; `kept`: to the same float64."""
-    if kept and _SMALLEST <= abs(value) < FLOAT_MAX:
-        return _with_point(repr(value))
-    if abs(value) > FLOAT_MAX:  # a shorter decimal would exceed the largest float, which WGSL refuses
-        value = math.copysign(FLOAT_MAX, value)
-    if abs(value) == FLOAT_MAX:
-        return "-3.4028234e38" if value < 0.0 else "3.4028234e38"
-    if value == 0.0:
-        return "-0.0" if math.copysign(1.0, value) < 0.0 else "0.0"
-    return shortest(value, FLOAT32)
-
-
-@lru_cache(4096)
-def shortest(value: float, format: Format) -> str:
-    """The shortest decimal, always with a point, that reads back to the same number of the format; not for 0."""
-    nearest = format.rounded(value)
-    for digits in range(1, 10):
-        text = f"{nearest:.{digits}g}"
-        if format.rounded(float(text)) == nearest:
-            break
-    exponent = text.partition("e")[2]
-    if exponent and -5 < int(exponent) < 8:
-        text = f"{float(text):.{max(1, digits - int(exponent) - 1)}f}"
-    return _with_point(text)
-
-
-def _with_point(text: str) -> str:
-    mantissa, _, exponent = text.partition("e")
-    if "." not in mantissa:
-        mantissa += ".0"
-    return f"{mantissa}e{int(exponent)}" if exponent else mantissa

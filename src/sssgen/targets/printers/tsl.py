@@ -15,8 +15,9 @@ from sssgen.ir.walk import all_expressions
 from sssgen.passes.scopes import assigned
 from sssgen.support.diagnostics import Diagnostic, SssgenError
 from sssgen.targets.descriptor import Target
+from sssgen.targets.printers.number_text import float_text
 from sssgen.targets.printers.printed_lines import WIDTH, Line, wrap
-from sssgen.targets.printers.printer import PRIMARY, Printer, float_text
+from sssgen.targets.printers.printer import PRIMARY, Printer
 
 _METHODS = {
     "+": "add", "-": "sub", "*": "mul", "/": "div", "%": "mod", "&&": "and", "||": "or", "<": "lessThan",

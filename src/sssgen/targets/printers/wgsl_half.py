@@ -14,8 +14,9 @@ from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import FLOAT, Sampler, kind_of
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
 from sssgen.targets.descriptor import Target
+from sssgen.targets.printers.number_text import shortest
 from sssgen.targets.printers.printed_lines import Line
-from sssgen.targets.printers.printer import PRIMARY, shortest
+from sssgen.targets.printers.printer import PRIMARY
 from sssgen.targets.printers.wgsl import WgslPrinter
 from sssgen.targets.registry import load
 from sssgen.targets.uniform_layout import Member
