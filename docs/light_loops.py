@@ -22,6 +22,7 @@ from PIL import Image, ImageDraw, ImageFont
 from sssgen.bake import baked_files, relit
 from sssgen.lab.fluence.fluence_field import Settings
 from sssgen.lab.fluence.traced_body import fitting_voxels
+from sssgen.lab.measure import fluence_inputs
 from sssgen.lab.reference.eye_paths import Eye, Sky, readings
 from sssgen.lab.reference.first_light import Lamp
 from sssgen.lab.reference.sampling import Sampling
@@ -40,7 +41,6 @@ from sssgen.scene.scene import Light, Scene
 from sssgen.support.file_writer import write_files
 
 FOLDER = Path(__file__).with_name("light_loops")
-RANK = 16
 COLUMNS_OF_FRAME = 4
 """Of the picture of the surroundings: how far it turns from frame to frame."""
 RAYS = 20_000
@@ -126,7 +126,7 @@ class Loop:
 
     def draw(self, voxels: int) -> list[Array]:
         """Ours, for the lamp and for the surroundings."""
-        data, facts = relit.bake(self.body.body_alone(), RANK, Settings(voxels=voxels))
+        data, facts = relit.bake(self.body.body_alone(), fluence_inputs.RANK, Settings(voxels=voxels))
         baked_files.write_response(str(Path(self.folder, "body.bin")), data, facts)
         material, opaque = Path(self.folder, "loop.toml"), Path(self.folder, "opaque.toml")
         material.write_text(OPAQUE + TRANSLUCENT.format(technique=facts["technique"]), "utf-8")

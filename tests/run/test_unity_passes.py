@@ -23,10 +23,10 @@ from unity_frames import (
     Lamp,
     Replay,
     compile_feature,
-    feature_text,
     mirrored,
     passes_of,
     run_feature,
+    runtime_of,
     texture_numbers,
 )
 
@@ -101,7 +101,7 @@ def test_the_feature_is_written_for_materials_with_passes_alone() -> None:
     compiled = sssgen.compile("jade_ring", "unity-urp")
     listed = [file["name"] for file in compiled.reflection["files"]]
     assert listed == ["jade_ring.unity-urp.shader", "SssgenPasses.cs"]
-    assert compiled.files["SssgenPasses.cs"] == feature_text()
+    assert compiled.files["SssgenPasses.cs"] == runtime_of("SssgenPasses.cs")
     assert "SssgenPasses.cs" not in sssgen.compile("ice", "unity-urp").files
 
 

@@ -82,10 +82,10 @@ def mono() -> tuple[str, str]:
     return programs[0], programs[1]
 
 
-def feature_text() -> str:
-    """The renderer feature as `emit` writes it."""
+def runtime_of(name: str) -> str:
+    """A C# file as `emit` writes it for URP."""
     target = registry.load("unity-urp")
-    (file,) = (file for file in target.files["shader"] if file.sources)
+    (file,) = (file for file in target.files["shader"] if file.name == name)
     return runtime_text(file.sources, target.folder)
 
 
@@ -94,7 +94,7 @@ def compile_feature(version: str, folder: Path) -> Path:
     program = folder / "frame.exe"
     symbols = [f"-define:{symbol}" for symbol in VERSIONS[version]]
     feature = folder / "SssgenPasses.cs"
-    feature.write_text(feature_text(), encoding="utf-8")
+    feature.write_text(runtime_of(feature.name), encoding="utf-8")
     sources = map(str, [*sorted(STAND_INS.glob("*.cs")), feature])
     call = [mono()[0], "-langversion:latest", "-warnaserror", *symbols, f"-out:{program}", *sources]
     done = subprocess.run(call, capture_output=True, text=True, check=False, timeout=120)

@@ -238,10 +238,7 @@ def _drawers(material: str, names: Sequence[str], form: str, drawn: str) -> list
     from sssgen.pipeline.compiler import all_targets
 
     targets = [all_targets()[name] for name in names]
-    draws = [form == "shader" and target.draws(drawn) for target in targets]
-    texts = [
-        target.draws_passes.format(material=material) if own else "" for target, own in zip(targets, draws, strict=True)
-    ]
+    texts = [target.drawer(drawn).format(material=material) if form == "shader" else "" for target in targets]
     if len(set(texts)) == 1:
         return texts[:1] if texts[0] else []
     return [f"{text} in {target.title}" for target, text in zip(targets, texts, strict=True) if text]

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sssgen.ir.baked_textures import is_baked, is_volume
 from sssgen.ir.constant_expressions import literal
-from sssgen.ir.frame_passes import FRAME_PASSES, pass_name
+from sssgen.ir.frame_passes import FRAME_PASSES, VOLUMES, pass_name
 from sssgen.ir.nodes import NOWHERE, Function, Local, Module, Param, Span, Uniform
 from sssgen.ir.surface_fields import FIELDS
 from sssgen.ir.types import Sampler, Struct, spell
@@ -335,6 +335,7 @@ def _context(
     per_light = [program.surface_reads[kind] for kind in PER_LIGHT if kind in kinds]
     read_per_light = frozenset(named_per_light(used)).union(*per_light)
     texts_of_names = {**target.spelling, **program.frame_functions} | _surface_values(target, printer, fields)
+    passes = pass_variables(target, program.module.uniforms, program.source_names)
     return {
         "frame": Places({place: with_names(text, texts_of_names) for place, text in used.frame.items()}),
         "surface": Places({place: with_names(text, texts_of_names) for place, text in used.surface.items()}),
@@ -342,7 +343,7 @@ def _context(
         "facts": {*program.about.facts, *used.facts},
         "target": target,
         "form": form,
-        "header": _header(target, program, target.draws_passes if form == "shader" else ""),
+        "header": _header(target, program, form),
         "code": code,
         "uniforms": [
             uniform_variables(printer, uniform, source)
@@ -353,7 +354,9 @@ def _context(
             {**texture_variables(printer, *texture, index), **_needed_variables(program, texture[0])}
             for index, texture in enumerate(textures)
         ],
-        "passes": pass_variables(target, program.module.uniforms, program.source_names),
+        "passes": passes,
+        "pictures": [drawn for drawn in passes if drawn["name"] not in VOLUMES],
+        "volumes": [drawn for drawn in passes if drawn["name"] in VOLUMES],
         "entries": entries,
         "inputs": inputs,
         "surface_fields": members,
@@ -376,8 +379,8 @@ def _surface_values(target: Target, printer: Printer, fields: Collection[str]) -
     }
 
 
-def _header(target: Target, program: Program, drawer: str) -> list[str]:
-    """The comment at the head of a file: its contents, and where to change them. `drawer` draws its passes, or ''."""
+def _header(target: Target, program: Program, form: str) -> list[str]:
+    """The comment at the head of a file: its contents, and where to change them."""
     about = program.about
     description = f"{about.title}: {about.doc}" if about.doc else about.title
     origin = "the material" if program.entries else "the source"
@@ -385,8 +388,7 @@ def _header(target: Target, program: Program, drawer: str) -> list[str]:
     head = ["", *map(comment_text, about.head)] if about.head else []
     sides = ["Two-sided: drawn without culling; back faces have the reversed normal."] if about.two_sided else []
     made_for = f"Made for the body of {' and '.join(about.bodies)}: on another mesh the light inside is wrong."
-    drawer = drawer and f"drawn by {with_names(drawer, {'material': about.name})}"
-    supplied = [_supplied(target, program, uniform, drawer) for uniform in program.module.uniforms]
+    supplied = [_supplied(target, program, uniform, form) for uniform in program.module.uniforms]
     needed = [*([made_for] if about.bodies and not about.raymarched else []), *supplied]
     lines = [line for text in needed for line in textwrap.wrap(text, 100)]
     return [comment_text(line) for line in (*textwrap.wrap(description, 100), notice, *sides, *lines)] + head
@@ -410,7 +412,7 @@ def _needed_variables(program: Program, texture: Uniform) -> dict[str, str | Non
     return {"needed": how, "file": file}
 
 
-def _supplied(target: Target, program: Program, uniform: Uniform, drawer: str) -> str:
+def _supplied(target: Target, program: Program, uniform: Uniform, form: str) -> str:
     """How a texture that is drawn or baked is supplied, or ''."""
     drawn = pass_name(uniform)
     baked = bool(program.entries) and is_baked(uniform)  # a texture of plain GLSL may hold anything
@@ -421,8 +423,8 @@ def _supplied(target: Target, program: Program, uniform: Uniform, drawer: str) -
         name = property_name(target, program.source_names.get(name, name))
     if not drawn:
         return f"{name}: bake it from the body (sssgen bake)."
-    by = drawer if target.draws(drawn) else ""
-    return f"{name}: {by or FRAME_PASSES[drawn].how}."
+    drawer = with_names(target.drawer(drawn), {"material": program.about.name}) if form == "shader" else ""
+    return f"{name}: {f'drawn by {drawer}' if drawer else FRAME_PASSES[drawn].how}."
 
 
 def _entry(

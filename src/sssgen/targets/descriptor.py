@@ -275,8 +275,8 @@ class Target(NamedTuple):
     """What draws the passes of a material in the form `shader`; '' where the user's program does."""
     draws_light: bool = False
     """Whether it draws the light on the body, too."""
-    draws_inside: bool = False
-    """Whether it computes the light inside the body, too."""
+    draws_inside: str = ""
+    """What computes the light inside a body there; '' where the user's program does."""
     clustered_lights: bool = False
     """Whether the number of lights differs from pixel to pixel: functions per light then read textures at level 0."""
     uniform_style: str = "plain"
@@ -316,11 +316,11 @@ class Target(NamedTuple):
         """The values with an expression of the target's own: a shell does not compute them."""
         return tuple([name for name, text in self.inputs.items() if text != name])
 
-    def draws(self, name: str) -> bool:
-        """Whether what draws its passes draws the one with this name."""
+    def drawer(self, name: str) -> str:
+        """What draws the pass with this name; '' where the user's program does."""
         if name in VOLUMES:
             return self.draws_inside
-        return self.draws_light or not shows_light(name)
+        return self.draws_passes if self.draws_light or not shows_light(name) else ""
 
     @property
     def has_surroundings(self) -> bool:

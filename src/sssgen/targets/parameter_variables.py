@@ -74,7 +74,7 @@ def pass_variables(target: Target, uniforms: Iterable[Uniform], sources: Mapping
         }
         for use in passes_of(uniforms)
         for drawn in [FRAME_PASSES[use.name]]
-        if drawn.of != "surroundings" and (use.name not in VOLUMES or target.draws(use.name))
+        if drawn.of != "surroundings" and (use.name not in VOLUMES or target.drawer(use.name))
     ]  # fmt: skip
 
 

@@ -26,15 +26,34 @@ namespace UnityEngine {
     public sealed class SerializeField : Attribute { }
     public sealed class RangeAttribute : Attribute { public RangeAttribute(float low, float high) { } }
     public sealed class MinAttribute : Attribute { public MinAttribute(float low) { } }
+    public sealed class ExecuteAlways : Attribute { }
+    public sealed class RequireComponent : Attribute { public RequireComponent(Type type) { } }
 
     public static class Mathf {
-        public const float Rad2Deg = 57.29578f;
+        public const float Rad2Deg = 57.29578f, Deg2Rad = 1 / Rad2Deg, PI = 3.1415927f;
         public static float Abs(float x) => Math.Abs(x);
         public static float Asin(float x) => (float)Math.Asin(x);
         public static float Max(float x, float y) => Math.Max(x, y);
         public static float Min(float x, float y) => Math.Min(x, y);
         public static int Min(int x, int y) => Math.Min(x, y);
         public static float Pow(float x, float y) => (float)Math.Pow(x, y);
+        public static float Sqrt(float x) => (float)Math.Sqrt(x);
+        public static float Sin(float x) => (float)Math.Sin(x);
+        public static float Cos(float x) => (float)Math.Cos(x);
+        public static float Clamp(float x, float low, float high) => Math.Min(Math.Max(x, low), high);
+        public static int Clamp(int x, int low, int high) => Math.Min(Math.Max(x, low), high);
+        public static float Clamp01(float x) => Clamp(x, 0, 1);
+        public static int FloorToInt(float x) => (int)Math.Floor(x);
+        public static int RoundToInt(float x) => (int)Math.Round(x);
+        public static float HalfToFloat(ushort half) {
+            int exponent = half >> 10 & 31, fraction = half & 1023;
+            double size = exponent == 0 ? fraction * Math.Pow(2, -24) : (1 + fraction / 1024.0) * Math.Pow(2, exponent - 15);
+            return (float)((half & 32768) != 0 ? -size : size);
+        }
+        public static ushort FloatToHalf(float x) { // not negative
+            int bits = BitConverter.ToInt32(BitConverter.GetBytes(x), 0);
+            return (ushort)(bits < 0x38800000 ? (int)Math.Round(x * Math.Pow(2, 24)) : bits - 0x38000000 + 0x1000 >> 13);
+        }
     }
 
     public struct Vector2Int {
@@ -45,6 +64,7 @@ namespace UnityEngine {
     public struct Vector3 {
         public float x, y, z;
         public Vector3(float x, float y, float z) { this.x = x; this.y = y; this.z = z; }
+        public static Vector3 zero => new Vector3();
         public static Vector3 right => new Vector3(1, 0, 0);
         public static Vector3 up => new Vector3(0, 1, 0);
         public static Vector3 forward => new Vector3(0, 0, 1);
@@ -61,6 +81,7 @@ namespace UnityEngine {
         public static Vector3 operator -(Vector3 a, Vector3 b) => a + -b;
         public static Vector3 operator -(Vector3 a) => a * -1;
         public static Vector3 operator *(Vector3 a, float b) => new Vector3(a.x * b, a.y * b, a.z * b);
+        public static Vector3 operator *(float b, Vector3 a) => a * b;
     }
 
     public struct Vector4 {
@@ -77,6 +98,20 @@ namespace UnityEngine {
         private Vector4 row0, row1, row2, row3;
         public static Matrix4x4 zero => new Matrix4x4();
         public static Matrix4x4 identity => Of(1, 1, 1, 1);
+        public static Matrix4x4 Scale(Vector3 scale) => Of(scale.x, scale.y, scale.z, 1);
+        /// <summary>By columns.</summary>
+        public float this[int index] {
+            get { Vector4 row = GetRow(index % 4); return new[] { row.x, row.y, row.z, row.w }[index / 4]; }
+            set {
+                Vector4 row = GetRow(index % 4);
+                var parts = new[] { row.x, row.y, row.z, row.w };
+                parts[index / 4] = value;
+                SetRow(index % 4, new Vector4(parts[0], parts[1], parts[2], parts[3]));
+            }
+        }
+        public Vector3 MultiplyVector(Vector3 way) => MultiplyPoint3x4(way) - MultiplyPoint3x4(Vector3.zero);
+        public Vector3 MultiplyPoint3x4(Vector3 place) => new Vector3(Behind(row0, place), Behind(row1, place), Behind(row2, place));
+        private static float Behind(Vector4 row, Vector3 place) => row.x * place.x + row.y * place.y + row.z * place.z + row.w;
         public Vector4 GetRow(int row) => row == 0 ? row0 : row == 1 ? row1 : row == 2 ? row2 : row3;
         public void SetRow(int row, Vector4 value) {
             if (row == 0) row0 = value;
@@ -136,7 +171,9 @@ namespace UnityEngine {
         public static void LogWarning(object message, Object context) => Warnings.Add(message.ToString());
     }
 
+    [Flags] public enum HideFlags { HideAndDontSave = 61 }
     public class Object {
+        public HideFlags hideFlags;
         public static readonly List<Object> Scene = new List<Object>();
         public string name = "";
 #if UNITY_2022_2_OR_NEWER
@@ -157,12 +194,19 @@ namespace UnityEngine {
         public readonly Transform transform = new Transform();
     }
     public class Behaviour : Component { public bool isActiveAndEnabled = true; }
+    public class MonoBehaviour : Behaviour { public T GetComponent<T>() where T : Component => Scene.OfType<T>().First(); }
+    public sealed class TextAsset : Object { public byte[] bytes; public string text; }
+    public static class RenderSettings { public static Rendering.SphericalHarmonicsL2 ambientProbe; }
+    public static class LightProbes {
+        public static void GetInterpolatedProbe(Vector3 place, Renderer body, out Rendering.SphericalHarmonicsL2 probe) =>
+            probe = RenderSettings.ambientProbe;
+    }
 
     public enum LightType { Spot, Directional, Point, Rectangle }
     public sealed class Light : Behaviour {
         public LightType type;
         public Color color;
-        public float intensity = 1, range = 1e4f, spotAngle = 30;
+        public float intensity = 1, range = 1e4f, spotAngle = 30, innerSpotAngle = 20;
     }
 
     public enum CameraType { Game = 1, Preview = 4 }
@@ -183,6 +227,14 @@ namespace UnityEngine {
     public class Texture : Object { public int width, height; public FilterMode filterMode; public TextureWrapMode wrapMode; }
     public enum FilterMode { Point, Bilinear }
     public enum TextureWrapMode { Repeat, Clamp }
+    public enum TextureFormat { RGBAHalf = 17 }
+    public sealed class Texture3D : Texture {
+        public ushort[] Texels;
+        public int Applied;
+        public Texture3D(int width, int height, int depth, TextureFormat format, bool mipmaps) { this.width = width; this.height = height; }
+        public void SetPixelData<T>(T[] data, int level) => Texels = (ushort[])(object)data.Clone();
+        public void Apply(bool mipmaps) => Applied++;
+    }
     public enum RenderTextureFormat { ARGBFloat = 11, RFloat = 14 }
     public enum RenderTextureReadWrite { Linear = 1 }
     public struct RenderTextureDescriptor { public int width, height; }
@@ -228,11 +280,15 @@ namespace UnityEngine {
         public readonly Dictionary<int, object> Values = new Dictionary<int, object>();
         public Texture GetTexture(int name) => Values.TryGetValue(name, out object texture) ? (Texture)texture : null;
         public void SetMatrix(int name, Matrix4x4 value) => Values[name] = value;
+        public void SetVector(int name, Vector4 value) => Values[name] = value;
+        public void SetFloat(int name, float value) => Values[name] = value;
         public void SetTexture(int name, Texture value) => Values[name] = value;
     }
     public sealed class Renderer : Component {
         public bool enabled = true;
         public Bounds bounds;
+        public Matrix4x4 localToWorldMatrix, worldToLocalMatrix;
+        public Rendering.LightProbeUsage lightProbeUsage = Rendering.LightProbeUsage.BlendProbes;
         public Material[] Materials;
         public readonly Dictionary<int, object> Values = new Dictionary<int, object>();
         public void GetSharedMaterials(List<Material> materials) { materials.Clear(); materials.AddRange(Materials); }

@@ -69,6 +69,15 @@ namespace UnityEngine.Rendering {
         public static CommandBuffer Get(string name) => new CommandBuffer();
         public static void Release(CommandBuffer commands) { }
     }
+    public enum LightProbeUsage { Off = 0, BlendProbes = 1 }
+    public struct SphericalHarmonicsL2 {
+        private float[] numbers;
+        /// <summary>By channel and number.</summary>
+        public float this[int channel, int number] {
+            get => numbers == null ? 0 : numbers[9 * channel + number];
+            set => (numbers = numbers ?? new float[27])[9 * channel + number] = value;
+        }
+    }
     public static class CoreUtils {
         public static void Destroy(Object one) { }
     }
