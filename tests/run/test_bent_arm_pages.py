@@ -1,4 +1,4 @@
-"""An arm that three.js bends by skinning: the light inside it is that of the lab, which turns voxels back itself."""
+"""An arm that an engine of the web bends by skinning: the light inside it is that of the lab, which turns voxels back itself."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from sssgen.lab.measure.measured_point import FittedChain
 from sssgen.lab.measure.measurement import View
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
 from sssgen.run.backends.engine_page import EngineDrawing, EnginePage
-from sssgen.run.backends.web_engines import THREE
+from sssgen.run.backends.web_engines import BABYLON, PLAYCANVAS, THREE
 from sssgen.run.render import page_values
 from sssgen.scene.measured import measured_scene
 from sssgen.scene.measured.measured_scene import MeasuredScene
@@ -42,9 +42,14 @@ LIGHTS = ((0.9, 0.3, -0.3), (-0.5, 0.3, 0.8))
 pytestmark = pytest.mark.slow
 
 
-@pytest.fixture(scope="module", params=list(THREE.renderers))
+@pytest.fixture(
+    scope="module",
+    params=[(engine, renderer) for engine in (THREE, BABYLON, PLAYCANVAS) for renderer in engine.renderers],
+    ids=lambda param: f"{param[0].title}, {param[1]}",
+)
 def page(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
-    renderer: EnginePage = or_skip(partial(EnginePage, THREE, seconds=400.0), request.param)
+    engine, name = request.param
+    renderer: EnginePage = or_skip(partial(EnginePage, engine, seconds=400.0), name)
     yield renderer
     renderer.page.close()
 
@@ -85,7 +90,7 @@ def test_a_bent_arm(
         candidate_of(RELIT), fit_of(RELIT), degrees, rest, View("arm", scene, ((nothing, nothing),))
     )
     expected = values / problem.gain
-    drawn = page.draw(_drawing(arm, scene, material, response))[seen.valid][:, :3].T
+    drawn = page.draw(_drawing(page, arm, scene, material, response))[seen.valid][:, :3].T
     differences = 255.0 * np.abs(drawn - expected).max(axis=0)
     reached = float(np.quantile(differences, 0.95))
     print(f"arm at {degrees:g} degrees, {page.name}: {reached:.2f}/255 on 95 % of the pixels")
@@ -93,7 +98,9 @@ def test_a_bent_arm(
     assert reached <= 1.0
 
 
-def _drawing(arm: bent_arm.Pose, scene: MeasuredScene, material: str, response: dict[str, Any]) -> EngineDrawing:
+def _drawing(
+    page: EnginePage, arm: bent_arm.Pose, scene: MeasuredScene, material: str, response: dict[str, Any]
+) -> EngineDrawing:
     """The arm at rest with two bones, which bend it."""
     angle = np.radians(arm.degrees)
     bent = np.eye(4)
@@ -105,8 +112,8 @@ def _drawing(arm: bent_arm.Pose, scene: MeasuredScene, material: str, response: 
     assert light.direction is not None
     stage = {"bones": {"weights": arm.weights(arm.rest).tolist(), "matrices": matrices}}
     return EngineDrawing(
-        page_values.modules_of(sssgen.compile(material, "threejs")), SIZE, vertices, arm.corners,
+        page_values.modules_of(sssgen.compile(material, page.engine.target)), SIZE, vertices, arm.corners,
         scene.camera.view_projection(SIZE[0] / SIZE[1]), scene.camera.position, np.eye(4),
         np.array([[*light.direction, 0.0]]), np.array([light.color]),
-        properties=BLACK["threejs"] | {"innerLight": response, "stage": stage},
+        properties=BLACK[page.engine.target] | {"innerLight": response, "stage": stage},
     )  # fmt: skip

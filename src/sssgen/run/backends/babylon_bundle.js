@@ -5,6 +5,8 @@ export * from '@babylonjs/core/Engines/engineStore.js';
 export * from '@babylonjs/core/Engines/shaderStore.js';
 export * from '@babylonjs/core/Engines/webgpuEngine.js';
 export * from '@babylonjs/core/scene.js';
+export * from '@babylonjs/core/Bones/bone.js';
+export * from '@babylonjs/core/Bones/skeleton.js';
 export * from '@babylonjs/core/Cameras/camera.js';
 export * from '@babylonjs/core/Lights/directionalLight.js';
 export * from '@babylonjs/core/Lights/hemisphericLight.js';

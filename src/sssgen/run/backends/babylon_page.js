@@ -1,5 +1,7 @@
 // Babylon.js in a page: draws meshes with emitted modules, as plans say (engine_page.js).
 
+import { Bone } from '@babylonjs/core/Bones/bone.js';
+import { Skeleton } from '@babylonjs/core/Bones/skeleton.js';
 import { Camera } from '@babylonjs/core/Cameras/camera.js';
 import { Engine } from '@babylonjs/core/Engines/engine.js';
 import { WebGPUEngine } from '@babylonjs/core/Engines/webgpuEngine.js';
@@ -108,6 +110,7 @@ async function draw(plan, piece) {
     return mesh;
   };
   const meshes = [placed(vertexDataOf(plan, piece), plan.model)];
+  if (stage.bones) bind(meshes[0], stage.bones, scene);
   for (const model of stage.instances ?? []) meshes[0].thinInstanceAdd(Matrix.FromArray(model));
   for (const { size, model } of stage.copies ?? []) meshes.push(placed(vertexDataOf(plan, piece, size), model));
   const walls = (stage.walls ?? []).map((model) => placed(CreateBoxVertexData({}), model));
@@ -151,6 +154,18 @@ function vertexDataOf(plan, piece, size = 1) {
     positions: part('position').map((one) => one * size), normals: part('normal'), tangents: plan.withoutTangents ? null : part('tangent'), uvs: part('uv'),
     uvs2: part('uv2'), colors: part('color'), indices: indices(piece(plan.triangles)),
   });
+}
+
+/** Gives a mesh bones, which bend it. @param {Mesh} mesh @param {import('./engine_page.js').Bones} bones @param {Scene} scene */
+function bind(mesh, { weights, matrices }, scene) {
+  mesh.setVerticesData('matricesIndices', weights.flatMap(() => [0, 1, 0, 0]));
+  mesh.setVerticesData('matricesWeights', weights.flatMap((weight) => [1 - weight, weight, 0, 0]));
+  mesh.skeleton = new Skeleton('bones', 'bones', scene);
+  for (const matrix of matrices) {
+    const bone = new Bone('bone', mesh.skeleton, null, Matrix.Identity());
+    bone.getLocalMatrix().copyFrom(Matrix.FromArray(matrix));
+    bone.markAsDirty();
+  }
 }
 
 /** A cube whose upper half is white. @param {Scene} scene */

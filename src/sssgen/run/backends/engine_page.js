@@ -21,9 +21,9 @@
  *   the engine's world is mirrored, in Babylon.js; another renderer of three.js that draws the scene first, in another size;
  *   what shines from above, environment, hemisphere or probe; its light on a white matte surface that faces up and down; a light with an area;
  *   whether the picture is of a frame after texels of the environment have been read, in PlayCanvas; where the lights were in
- *   a frame before, in three.js; the bones of the mesh, in three.js. */
+ *   a frame before, in three.js; the bones of the mesh. */
 /** @typedef {{ weights: number[], matrices: number[][] }} Bones  For each vertex the weight of the second of two bones; what each
- *   does, in object space, after a frame in which they do nothing. */
+ *   does, in object space; in three.js after a frame in which they do nothing. */
 /** @typedef {{ model: number[], size: number[], radiance: number, shape?: string, shadows?: boolean }} Area  It shines along the -z
  *   of its matrix, with sides along x and y; `shape` is PlayCanvas's. */
 /** @typedef {(place: Piece) => Uint8Array} PieceOf */

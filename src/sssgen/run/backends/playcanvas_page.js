@@ -87,7 +87,8 @@ async function draw(plan, piece) {
     setMatrix(entity, model);
     return entity;
   };
-  const bodies = [placed(meshOf(device, plan, piece), plan.model)];
+  const bodies = [placed(meshOf(device, plan, piece, 1, stage.bones), plan.model)];
+  if (stage.bones) bind(bodies[0], stage.bones, app);
   if (stage.instances) instancesOf(bodies[0], device, stage.instances);
   for (const { size, model } of stage.copies ?? []) bodies.push(placed(meshOf(device, plan, piece, size), model));
   for (const model of stage.walls ?? []) bodies.push(placed(pc.Mesh.fromGeometry(device, new pc.BoxGeometry()), model));
@@ -155,8 +156,9 @@ const SEMANTICS = {
   uv: pc.SEMANTIC_TEXCOORD0, uv2: pc.SEMANTIC_TEXCOORD1, color: pc.SEMANTIC_COLOR,
 };
 
-/** @param {pc.GraphicsDevice} device @param {Plan} plan @param {PieceOf} piece @param {number} [scale] of positions */
-function meshOf(device, plan, piece, scale = 1) {
+/** @param {pc.GraphicsDevice} device @param {Plan} plan @param {PieceOf} piece @param {number} [scale] of positions
+ * @param {import('./engine_page.js').Bones} [bones] */
+function meshOf(device, plan, piece, scale = 1, bones) {
   const rows = floats(piece(plan.vertices));
   const count = rows.length / plan.vertexSize;
   const mesh = new pc.Mesh(device);
@@ -164,6 +166,10 @@ function meshOf(device, plan, piece, scale = 1) {
     if (name === 'tangent' && plan.withoutTangents) continue;
     const part = Float32Array.from({ length: count * size }, (_, i) => rows[Math.floor(i / size) * plan.vertexSize + first + i % size]);
     mesh.setVertexStream(SEMANTICS[name], name === 'position' ? part.map((one) => one * scale) : part, size);
+  }
+  if (bones) {
+    mesh.setVertexStream(pc.SEMANTIC_BLENDINDICES, bones.weights.flatMap(() => [0, 1, 0, 0]), 4, count, pc.TYPE_UINT8);
+    mesh.setVertexStream(pc.SEMANTIC_BLENDWEIGHT, bones.weights.flatMap((weight) => [1 - weight, weight, 0, 0]), 4);
   }
   mesh.setIndices(indices(piece(plan.triangles)));
   mesh.update();
@@ -201,6 +207,21 @@ function areaLightOf(app, { model, size, radiance, shape = 'rectangle', shadows 
   entity.setRotation(new pc.Quat().setFromMat4(matrix).mul(new pc.Quat().setFromEulerAngles(90, 0, 0)));
   entity.setLocalScale(size[0], 1, size[1]);
   return entity;
+}
+
+/** Gives an entity's mesh bones, which bend it.
+ * @param {pc.Entity} entity @param {import('./engine_page.js').Bones} bones @param {pc.AppBase} app */
+function bind(entity, { matrices }, app) {
+  const instance = /** @type {pc.MeshInstance} */ (entity.render?.meshInstances[0]);
+  const skin = new pc.Skin(app.graphicsDevice, matrices.map(() => new pc.Mat4()), matrices.map((_, number) => `bone ${number}`));
+  Object.assign(instance.mesh ?? {}, { skin });
+  instance.skinInstance = new pc.SkinInstance(skin);
+  instance.skinInstance.bones = matrices.map((matrix) => {
+    const bone = new pc.Entity('', app);
+    entity.addChild(bone);
+    setMatrix(bone, matrix);
+    return bone;
+  });
 }
 
 /** Draws an entity's mesh with these matrices.

@@ -7,6 +7,7 @@ import { Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { DIRECTIONAL, POINT, SPOT, axisOf, lightOf, lightsOn } from './babylon_lights.js';
 import { shownAround } from './babylon_surroundings.js';
 import { surroundingsOf } from './inner_light.js';
+import { InnerPose } from './inner_pose.js';
 import { InnerTexels, directionBehind, distantLamp, nearLamp } from './inner_volume.js';
 
 /** The kinds of fall-off, as Babylon's lights number them. */
@@ -43,9 +44,24 @@ function lampsOf(mesh, material) {
   });
 }
 
+/** The pose of a mesh whose bones its shader reads; null for another one. */
+function poseOf(mesh, response) {
+  if (!mesh.useBones || !mesh.computeBonesUsingShaders || !mesh.skeleton) return null;
+  const [places, bones, weights] = ['position', 'matricesIndices', 'matricesWeights'].map((kind) => mesh.getVerticesData(kind));
+  return new InnerPose(response, places, bones, weights);
+}
+
+/** What each bone does to points in the space of the mesh: matrices, by columns. */
+function bonesOf(mesh) {
+  const numbers = mesh.skeleton.getTransformMatrices(mesh);
+  return mesh.skeleton.bones.map((_, bone) => Array.from(numbers.subarray(16 * bone, 16 * bone + 16)));
+}
+
 /** The volume of the light inside a mesh. */
 export class InnerVolume extends RawTexture3D {
   #texels;
+  /** @type {InnerPose | null | undefined} */
+  #pose;
 
   /** @param {import('./inner_light.js').LightResponse} response */
   constructor(response, scene) {
@@ -63,6 +79,8 @@ export class InnerVolume extends RawTexture3D {
   follow(mesh, material) {
     const shown = shownAround(mesh, material), world = mesh.getWorldMatrix().m;
     const around = surroundingsOf((way) => shown(Vector3.FromArray(directionBehind(world, way))));
-    if (this.#texels.follow(lampsOf(mesh, material), around)) this.update(this.#texels.data);
+    this.#pose ??= poseOf(mesh, this.response);
+    this.#pose?.bend(bonesOf(mesh));
+    if (this.#texels.follow(lampsOf(mesh, material), around, this.#pose)) this.update(this.#texels.data);
   }
 }

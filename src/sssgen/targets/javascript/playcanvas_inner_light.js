@@ -2,6 +2,7 @@
 
 import * as pc from 'playcanvas';
 import { fromHalf, surroundingsOf } from './inner_light.js';
+import { InnerPose } from './inner_pose.js';
 import { InnerTexels, directionBehind, distantLamp, nearLamp } from './inner_volume.js';
 import { refill, volumeOf } from './playcanvas_volume.js';
 
@@ -81,8 +82,31 @@ export class Surroundings {
   }
 }
 
+/** The pose of a skinned mesh instance; null for another one. */
+function poseOf({ mesh, skinInstance }, response) {
+  if (!skinInstance) return null;
+  const [places, bones, weights] = [pc.SEMANTIC_POSITION, pc.SEMANTIC_BLENDINDICES, pc.SEMANTIC_BLENDWEIGHT].map((semantic) => {
+    /** @type {number[]} */
+    const numbers = [];
+    mesh.getVertexStream(semantic, numbers);
+    return Float32Array.from(numbers);
+  });
+  return new InnerPose(response, places, bones, weights);
+}
+
+/** What each bone does to points in the space of the mesh: matrices, by columns. PlayCanvas computes its own later in the frame. */
+function bonesOf({ node, skinInstance: { bones, skin } }) {
+  const toObject = node.getWorldTransform().clone().invert();
+  return bones.map((bone, number) => (
+    Array.from(new pc.Mat4().mul2(toObject, bone.getWorldTransform()).mul(skin.inverseBindPose[number]).data)
+  ));
+}
+
 /** The volume of the light inside a mesh instance. */
 export class InnerVolume {
+  /** @type {InnerPose | null | undefined} */
+  #pose;
+
   /** @param {import('./inner_light.js').LightResponse} response */
   constructor(device, name, response) {
     this.texels = new InnerTexels(response);
@@ -93,6 +117,8 @@ export class InnerVolume {
   follow(instance, lights, surroundings) {
     const world = instance.node.getWorldTransform().data;
     const around = surroundingsOf((way) => surroundings.shown(directionBehind(world, way)));
-    if (this.texels.follow(lampsOf(instance, lights), around)) refill(this.texture);
+    this.#pose ??= poseOf(instance, this.texels.response);
+    this.#pose?.bend(bonesOf(instance));
+    if (this.texels.follow(lampsOf(instance, lights), around, this.#pose)) refill(this.texture);
   }
 }

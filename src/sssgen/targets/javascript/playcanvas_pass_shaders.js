@@ -5,7 +5,8 @@ import * as pc from 'playcanvas';
 import { LAYERS, PACKING } from './frame_passes.js';
 
 const ATTRIBUTES = {
-  vertex_position: pc.SEMANTIC_POSITION, instance_line1: pc.SEMANTIC_ATTR11, instance_line2: pc.SEMANTIC_ATTR12,
+  vertex_position: pc.SEMANTIC_POSITION, vertex_boneIndices: pc.SEMANTIC_BLENDINDICES, vertex_boneWeights: pc.SEMANTIC_BLENDWEIGHT,
+  instance_line1: pc.SEMANTIC_ATTR11, instance_line2: pc.SEMANTIC_ATTR12,
   instance_line3: pc.SEMANTIC_ATTR14, instance_line4: pc.SEMANTIC_ATTR15,
 };
 
