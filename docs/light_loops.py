@@ -1,9 +1,9 @@
-"""Draws loops of bodies with light inside from a bake, beside path traced ones: docs/light_loops/NAME.webp.
+"""Draws loops of bodies with light inside from a bake, beside path traced ones: docs/light_loops/NAME.webp and .json.
 
 python docs/light_loops.py [SCENE...] [--frames N] [--size N] [--samples N] [--voxels N] [--index N] [-o FOLDER]: some
 minutes for each scene; without scenes, those of the charts. In the upper half a lamp goes around the body once, in the
-lower half the surroundings turn. What surfaces reflect is left out. It prints the error of the
-frames without the noise of the reference: the median and the worst.
+lower half the surroundings turn. What surfaces reflect is left out. The JSON has the error of the frames
+without the noise of the reference, the median and the worst, which is printed, too.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import io
+import json
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
@@ -81,7 +82,8 @@ def main() -> None:
         path = measured_scenes().get(name, name)
         scene = scene_loading.load(path, draws=False)
         body = measured_scene.of_scene(scene, path)
-        assert body.medium is not None
+        if body.medium is None:
+            continue
         if arguments.index is not None:
             body = dataclasses.replace(body, medium=dataclasses.replace(body.medium, ior=arguments.index))
         body = dataclasses.replace(body, size=(arguments.size, arguments.size))
@@ -89,11 +91,14 @@ def main() -> None:
             loop = Loop(scene, body, arguments.frames, folder)
             ours = loop.draw(arguments.voxels or fitting_voxels(body.body_alone()))
             traced, noise = loop.trace(arguments.samples)
-        for title, *frames in zip(("a lamp", "surroundings"), ours, traced, noise, strict=True):
+        measured = {}
+        for title, *frames in zip(("lamp", "surroundings"), ours, traced, noise, strict=True):
             errors = [relative(*frame) for frame in zip(*frames, strict=True)]
+            measured[title] = {"median": float(np.median(errors)), "worst": max(errors)}
             print(f"{body.name}, {title}: error {np.median(errors):.3f}, of the worst frame {max(errors):.3f}")
         label = Path(path).parent.name if Path(path).stem.startswith("scene") else body.name
-        write_files(str(arguments.output), {f"{label}.webp": animation(ours, traced)})
+        record = json.dumps(measured, indent=1) + "\n"
+        write_files(str(arguments.output), {f"{label}.webp": animation(ours, traced), f"{label}.json": record})
 
 
 class Loop:

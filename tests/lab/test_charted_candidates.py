@@ -29,6 +29,9 @@ def test_refraction_is_charted_where_the_body_refracts() -> None:
     )
     assert [chart.applies(case, baked) for case in (scene, refracting)] == [True, False]
     assert [chart.applies(case, of_boundary) for case in (scene, refracting)] == [False, True]
+    chain = ("exact_view_thickness", "fluence_relit_once")  # which says that it is for both
+    both = candidates.Candidate("translucency", chain[-1], chain[-1], (), chain, False, "")
+    assert [chart.applies(case, both) for case in (scene, refracting)] == [True, True]
 
 
 def test_maps_of_distant_lights_are_charted_where_all_lights_are_distant() -> None:

@@ -1,4 +1,4 @@
-"""An arm that an engine of the web bends by skinning: the light inside it is that of the lab, which turns voxels back itself."""
+"""An arm that an engine of the web bends by skinning: its light inside is the lab's, which turns voxels itself."""
 
 from __future__ import annotations
 

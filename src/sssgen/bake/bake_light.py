@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.bake.voxel_grid import Array
-from sssgen.scene.light_view import LightView, directional_view, point_view
+from sssgen.scene.light_view import LightView, directional_view, is_before, point_view
 from sssgen.support import json_source
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
@@ -34,8 +34,12 @@ class BakeLight(NamedTuple):
         return unit
 
     def view(self, corners: Array, size: tuple[int, int]) -> LightView:
-        """Its view of the box of corners (n, 3); `size` is (width, height)."""
-        return directional_view(corners, self.place, size) if self.afar else point_view(corners, self.place, size)
+        """Its view of the box of corners (n, 3); `size`: width, height. Raises SssgenError for a light in it."""
+        if self.afar:
+            return directional_view(corners, self.place, size)
+        if not is_before(corners, self.place):
+            raise failure("the light is inside the body or next to it", "use a direction instead: a distant light")
+        return point_view(corners, self.place, size)
 
     def facts(self) -> dict[str, list[float]]:
         """Its entry in a JSON file: its `direction` or its `position`."""

@@ -24,6 +24,7 @@ TEXTS = (
     "glows",
     "legend",
     "calibrated",
+    "matched",
 )
 """Attributes of free text; `role` is checked by the library."""
 
@@ -76,6 +77,8 @@ class Attributes(NamedTuple):
     """Its light is not a factor on a lamp's colour: it is added once, to the emission."""
     calibrated: bool = False
     """Its light has the right scale and colour without a fit: the data that it reads contain them."""
+    matched: bool = False
+    """It refracts, and reads light that is baked for a refractive index of 1, too."""
     suggested: tuple[str, str] | None = None
     """(source, target): error messages suggest it where this conversion is missing."""
     legend: str = ""
@@ -129,6 +132,7 @@ def read_attributes(texts: Mapping[str, str], shown: str) -> Attributes:
         uncharted="uncharted" in texts,
         glows="glows" in texts,
         calibrated="calibrated" in texts,
+        matched="matched" in texts,
         suggested=_conversion(texts["suggested"], shown) if "suggested" in texts else None,
         legend=texts.get("legend", ""),
         shape=shape,

@@ -108,14 +108,15 @@ def check(baked_texture: BakeFile, uniform: Uniform, name: str) -> None:
         )
 
 
-def check_boundary(baked_texture: BakeFile, parameters: Collection[str], name: str) -> None:
+def check_boundary(baked_texture: BakeFile, parameters: Collection[str], matched: bool, name: str) -> None:
     """Raises SssgenError if light is baked with a refracting surface and the technique, with these parameters, has no
-    refractive index, or the reverse: then the unscattered light counts twice, or not at all.
+    refractive index, or the reverse, unless it is for a matched boundary, too: then the unscattered light counts twice,
+    or not at all.
     """
     if baked_texture.kind != "fluence" or INDEX not in baked_texture.parameters:
         return
     index, refracts = baked_texture.parameters[INDEX], INDEX in parameters
-    if refracts != (index != 1.0):
+    if refracts != (index != 1.0) and not (matched and index == 1.0):
         does = "refracts" if refracts else "does not refract"
         technique = baked_texture.facts.get("technique", "")
         hint = f"use {technique}" if technique else "use the technique for this boundary"

@@ -330,7 +330,8 @@ class _Reader:
                 if texture is None:
                     continue
                 baked.check(texture, uniform, stage.textures[uniform.name])
-                baked.check_boundary(texture, [other.name for other in uniforms], stage.textures[uniform.name])
+                matched = stage.technique.attributes.matched
+                baked.check_boundary(texture, [other.name for other in uniforms], matched, stage.textures[uniform.name])
                 baked.check_medium(texture, stage.values, stage.textures[uniform.name])
             except SssgenError as error:
                 for diagnostic in error.diagnostics:

@@ -7,10 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from sssgen.scene.arrays import Array
-from sssgen.support.diagnostics import failure
 
 MARGIN = 1.1
 """The width of the map relative to the body."""
+LEAST_DEPTH = 0.1
+"""What is less far ahead of a light, relative to the middle of the body's box, is as far as this for its view."""
 FAR = 2.0
 """The depth of a texel whose ray hits nothing, in widths of the map: behind the whole body."""
 
@@ -49,15 +50,19 @@ def directional_view(corners: Array, towards: Array, size: tuple[int, int]) -> L
     return LightView(matrix, origins, directions, np.ones(len(origins)), FAR * wide)
 
 
+def is_before(corners: Array, position: Array) -> bool:
+    """Whether all of a body within `corners` is before a light that looks at it from `position`."""
+    ahead = corners.mean(axis=0) - position
+    return bool(((corners - position) @ ahead).min() > 0.01 * (ahead @ ahead))
+
+
 def point_view(corners: Array, position: Array, size: tuple[int, int]) -> LightView:
-    """The view from `position` on a body within `corners`. Raises SssgenError unless all of it is in front."""
+    """The view from `position` on a body within `corners`. A light in the box sees what is before it."""
     ahead = corners.mean(axis=0) - position
     distance = float(np.linalg.norm(ahead))
-    ahead = ahead / max(distance, 1e-300)
+    ahead = ahead / distance if distance else np.array([0.0, 0.0, 1.0])
     local = corners - position
-    depth = local @ ahead
-    if distance == 0.0 or depth.min() <= 0.01 * distance:
-        raise failure("the light is inside the body or next to it", "use a direction instead: a distant light")
+    depth = np.maximum(local @ ahead, max(LEAST_DEPTH * distance, 1e-3 * float(np.ptp(corners))))
     side, up = _frame(ahead)
     wide = MARGIN * 2.0 * max(float(np.abs(local @ axis / depth).max()) for axis in (side, up))  # at distance 1
     across, along = (((np.arange(count) + 0.5) / count - 0.5) * wide for count in size)

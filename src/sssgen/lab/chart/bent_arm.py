@@ -174,15 +174,11 @@ def _rest_problem(view: View, arm: Pose, rest: MeasuredScene) -> Problem:
     (light,) = view.scene.lights
     response = fluence_inputs.response_of(rest)
     towards = arm.turned_back(np.array([light.direction]), response.places())
+    inner = half(Texture(volume(response, [Incoming(towards, np.array([light.color]))]), wrap="clamp"))
     part = problem.together._replace(
         inputs={**problem.together.inputs, **turned, "P": at_rest.T},
-        values={**problem.together.values, **{name: of_rest[name] for name in ("world_to_volume", "fluence_reach")}},
-        textures={
-            **problem.together.textures,
-            fluence_inputs.INNER: half(
-                Texture(volume(response, [Incoming(towards, np.array([light.color]))]), wrap="clamp")
-            ),
-        },
+        values=problem.together.values | {name: of_rest[name] for name in ("world_to_volume", "fluence_reach")},
+        textures=problem.together.textures | {fluence_inputs.INNER: inner},
     )
     return dataclasses.replace(problem, together=part)
 

@@ -156,8 +156,11 @@ def _candidates(role: str, scene: MeasuredScene, measured: Sequence[Point]) -> l
 
 
 def applies(scene: MeasuredScene, candidate: Candidate) -> bool:
-    """Whether a candidate is charted on a scene: refraction only where the body refracts, light that is baked without
-    refraction only elsewhere, maps of lights from afar only where all lights are, and marches that reach through it."""
+    """Whether a candidate is charted on a scene.
+
+    Refraction only where the body refracts or a technique is for both, light that is baked without refraction only
+    elsewhere, maps of lights from afar only where all lights are, and marches that reach through it.
+    """
     if not candidates.reaches(candidate, span(scene.geometry)):
         return False
     if any(light.position is not None for light in scene.lights) and candidates.needs_distant_light(candidate):
@@ -165,7 +168,7 @@ def applies(scene: MeasuredScene, candidate: Candidate) -> bool:
     if candidate.role == "coordinates" or scene.medium is None:
         return True
     if scene.medium.ior == 1.0:
-        return not candidates.refracts(candidate)
+        return candidates.is_for_matched(candidate)
     return candidates.refracts(candidate) or not candidates.is_calibrated(candidate)
 
 

@@ -351,6 +351,11 @@ def refracts(candidate: Candidate) -> bool:
     return any(uniform.name == INDEX for name in candidate.techniques for uniform in load(name).uniforms)
 
 
+def is_for_matched(candidate: Candidate) -> bool:
+    """Whether the chain is for a body with a matched boundary."""
+    return not refracts(candidate) or any(load(name).attributes.matched for name in candidate.techniques)
+
+
 def is_calibrated(candidate: Candidate) -> bool:
     """Whether a bake has the scale of the chain's light, so that nothing is fitted."""
     return bool(candidate.techniques) and load(candidate.techniques[-1]).attributes.calibrated

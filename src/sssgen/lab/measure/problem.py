@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any, NamedTuple
@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from sssgen.lab.measure import fluence_inputs, scene_inputs
+from sssgen.lab.measure.deferred import Deferred
 from sssgen.lab.measure.error_metric import fit_target
 from sssgen.lab.measure.measured_chain import Chain
 from sssgen.lab.reference import inlay_refraction as refraction
@@ -40,8 +41,8 @@ class Part(NamedTuple):
     inputs: dict[str, Array]
     """The chain's inputs, with n lanes in the last axis"""
     light: dict[str, Array]
-    values: dict[str, Any]
-    textures: dict[str, Texture]
+    values: Deferred[Any]
+    textures: Deferred[Texture]
     color: Array
     """(3, 1) or (3, n): the factor of the light's contribution"""
     plain_color: Array
@@ -77,7 +78,7 @@ class Problem:
         if self.together is not None and chain.reads(fluence_inputs.INNER):
             parts = (self.together,)
         for part in parts if any(map(chain.reads, LIGHT_MAPS)) else [self._single_part]:
-            chain.set({**part.values, **parameters}, part.textures)
+            chain.set(part.values | parameters, part.textures)
             if self.role == "coordinates":
                 outputs.append(UV_RANGE * (chain.surface(part.inputs, "albedo")[:2] - 0.5) - part.inputs["uv"])
             else:
@@ -94,10 +95,10 @@ class Problem:
         """The same problem with one more parameter, `name`: the first channel of another chain's output."""
         parts = []
         for part in self.parts:
-            chain.set({**part.values, **parameters}, part.textures)
+            chain.set(part.values | parameters, part.textures)
             output = chain.run(part.inputs, [part.light])[0][0]
             # parameters of later techniques with the same names have the same meaning
-            parts.append(part._replace(values={**part.values, **parameters, name: output}))
+            parts.append(part._replace(values=part.values | {**parameters, name: output}))
         return replace(self, parts=tuple(parts))
 
     @cached_property
@@ -112,20 +113,20 @@ class Problem:
             return self.parts[0]
         counts = [part.inputs["P"].shape[1] for part in self.parts]
 
-        def merge(groups: Sequence[Mapping[str, Any]], names: Collection[str]) -> dict[str, Any]:
-            return {name: _concatenate([values[name] for values in groups], counts) for name in names}
+        def merge(groups: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+            return {name: _concatenate([values[name] for values in groups], counts) for name in groups[0]}
+
+        def value_of(name: str) -> Any:
+            values = [part.values[name] for part in self.parts]
+            # a value of each point, such as a curvature, is repeated for each part
+            shared = all(value is values[0] for value in values) and np.shape(values[0])[-1:] != (counts[0],)
+            return values[0] if shared else _concatenate(values, counts)
 
         first = self.parts[0]
-        shared = {
-            name
-            for name, value in first.values.items()
-            if all(part.values[name] is value for part in self.parts) and np.shape(value)[-1:] != (counts[0],)
-        }  # a value of each point, such as a curvature, is repeated for each part
-        values = merge([part.values for part in self.parts], first.values.keys() - shared)
         return Part(
-            merge([part.inputs for part in self.parts], first.inputs.keys()),
-            merge([part.light for part in self.parts], first.light.keys()),
-            {**{name: first.values[name] for name in shared}, **values},
+            merge([part.inputs for part in self.parts]),
+            merge([part.light for part in self.parts]),
+            Deferred({}, {name: partial(value_of, name) for name in first.values}),
             first.textures,
             _concatenate([part.color for part in self.parts], counts),
             _concatenate([part.plain_color for part in self.parts], counts),
@@ -165,14 +166,13 @@ def _concatenate(values: Sequence[Any], counts: Sequence[int]) -> Any:
 def _lanes_of(part: Part, lanes: Array, count: int) -> Part:
     """The part with only some of its `count` lanes."""
 
-    def select(values: Mapping[str, Any]) -> dict[str, Any]:
-        return {
-            name: value[..., lanes] if np.ndim(value) and np.shape(value)[-1] == count else value
-            for name, value in values.items()
-        }
+    def select(values: Mapping[str, Any], name: str) -> Any:
+        value = values[name]
+        return value[..., lanes] if np.ndim(value) and np.shape(value)[-1] == count else value
 
     color = part.color[:, lanes] if part.color.shape[1] == count else part.color
-    inputs, light, values = select(part.inputs), select(part.light), select(part.values)
+    inputs, light = ({name: select(own, name) for name in own} for own in (part.inputs, part.light))
+    values = Deferred({}, {name: partial(select, part.values, name) for name in part.values})
     return part._replace(inputs=inputs, light=light, values=values, color=color, plain_color=part.plain_color)
 
 
@@ -281,7 +281,14 @@ def coordinates_problem(scene: MeasuredScene) -> Problem:
     }  # fmt: skip
     curvature = scene_inputs.curvature_of(scene)
     white = np.ones((3, 1))
-    part = Part({**visible.inputs, **curvature.inputs}, {}, values | curvature.values, curvature.textures, white, white)
+    part = Part(
+        {**visible.inputs, **curvature.inputs},
+        {},
+        Deferred(values, {}) | curvature.values,
+        curvature.textures,
+        white,
+        white,
+    )
     target = inlay.offset[:, keep] / inlay.depth
     zeros = np.zeros_like(target)
     return Problem("coordinates", (part,), False, target, zeros, zeros, keep)
@@ -290,22 +297,19 @@ def coordinates_problem(scene: MeasuredScene) -> Problem:
 def _part(scene: MeasuredScene, visible: Points, light: Light, color: Array) -> Part:
     """A light in a view; `color` without the fall-off of a point light."""
     of_body, of_light = scene_inputs.of_scene(scene), scene_inputs.of_light(scene, light)
-    computed = fluence_inputs.of_light(scene, light) | scene_inputs.directional_maps(scene)
     distance = visible.towards(light)[1]
     return Part(
-        {**visible.inputs, **of_body.inputs}, visible.light(light), {**of_body.values, **of_light.values},
-        scene_inputs.SceneTextures({**of_body.textures, **of_light.textures}, computed),
+        {**visible.inputs, **of_body.inputs}, visible.light(light), of_body.values | of_light.values,
+        of_body.textures | of_light.textures,
         color if light.position is None else color / distance**2, color,
     )  # fmt: skip
 
 
 def _together(scene: MeasuredScene, part: Part) -> Part:
     """A part, with all lights of its scene in the volume."""
-    textures = scene_inputs.SceneTextures(
-        part.textures,
-        {fluence_inputs.INNER: partial(fluence_inputs.inner_light, scene, scene.lights, scene.environment)},
-    )
+    volume = partial(fluence_inputs.inner_light, scene, scene.lights, scene.environment)
     white = np.ones((3, 1))
+    textures = part.textures | Deferred({}, {fluence_inputs.INNER: volume})
     return part._replace(textures=textures, color=white, plain_color=white)
 
 

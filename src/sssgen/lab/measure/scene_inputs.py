@@ -5,15 +5,15 @@ Maps are ideal: each point reads its own texel, which has the exact value. So a 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
 from functools import lru_cache, partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from sssgen.ir.frame_passes import BACK_FACES, EYE_LAYERS
 from sssgen.lab.measure import fluence_inputs
+from sssgen.lab.measure.deferred import Deferred
 from sssgen.lab.reference import view_harmonics
 from sssgen.lab.reference.curvature import normal_curvature
 from sssgen.lab.reference.inside_lengths import first_exit, thickness
@@ -23,7 +23,7 @@ from sssgen.run.evaluate.evaluation import half
 from sssgen.scene.bounds import world_corners
 from sssgen.scene.drawn_views import eye_layers
 from sssgen.scene.inside_intervals import intervals
-from sssgen.scene.light_view import directional_view, point_view
+from sssgen.scene.light_view import LightView, directional_view, point_view
 from sssgen.scene.measured import scene_body as body
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.measured.view_points import points
@@ -40,26 +40,13 @@ CURVATURE_STEP = 0.02
 """The length over which curvatures are measured, relative to the longest side of the body."""
 
 
-class SceneTextures(dict[str, Texture]):
-    """Textures by their names in techniques; those that take long to compute are computed when one is read."""
+class SceneInputs(NamedTuple):
+    """Parameters and textures by their names in techniques."""
 
-    def __init__(self, textures: Mapping[str, Texture], computed: Mapping[str, Callable[[], Texture]]) -> None:
-        super().__init__(textures)
-        self.computed = computed
-
-    def get(self, name: str, default: Any = None) -> Any:
-        if name not in self and name in self.computed:
-            self[name] = self.computed[name]()
-        return super().get(name, default)
-
-
-@dataclass(eq=False)
-class SceneInputs:
-    """Parameters and textures by their names in techniques; inputs that replace those of the points."""
-
-    values: dict[str, Any] = field(default_factory=dict)
-    textures: dict[str, Texture] = field(default_factory=dict)
-    inputs: dict[str, Array] = field(default_factory=dict)
+    values: Deferred[Any]
+    textures: Deferred[Texture]
+    inputs: dict[str, Array]
+    """What replaces inputs of the points"""
 
 
 @lru_cache(48)
@@ -67,40 +54,38 @@ def of_scene(scene: MeasuredScene) -> SceneInputs:
     """The inputs that do not depend on a light."""
     geometry, visible = scene.geometry, points(scene)
     distances = body.distance_texture(geometry)
-    chord = mean_chord(scene)
-    longest = max(float(chord.max(initial=0.0)), 1e-9)
-    typical = max(float(np.median(chord)), 1e-9) if visible.count else 1.0
-
     # one lane for all points, so that a vector of three components does not become three lanes
     parameters = body.texture_parameters(distances) | placement(geometry) | {"stored_range": distances.range}
     values = {
         name: np.array(value)[:, None] if isinstance(value, list) else value for name, value in parameters.items()
     }
     values["world_to_volume"] = _to_box(geometry.to_object(), distances.box_min, distances.box_max).T[..., None]
-    values["fluence_reach"] = fluence_inputs.reach(scene)
     if scene.medium is not None:
         values |= {
             name: np.array(value)[:, None] if isinstance(value, list) else value
             for name, value in scene.medium.parameters.items()
         }
-    exact_view = view_lengths(scene)
-    values["exact_view_length"] = exact_view
-    values["mean_curvature"] = np.maximum(principal_curvatures(scene).mean(axis=0), 0.0)
-    values["fade_length"] = fade_length(scene)
     for number in range(1, IMAGES + 1):
         values |= {
             f"harmonics_lowest_{number}": np.full((3, 1), -LARGEST),
             f"harmonics_span_{number}": np.full((3, 1), 2.0 * LARGEST),
         }
-    textures = {
-        "back_face_map": eye_picture(scene, BACK_FACES),
-        "eye_layer_map": eye_picture(scene, EYE_LAYERS),
-        "distance_map": half(Texture(distances.values(geometry), wrap="clamp")),
-        "thickness_texture": _ideal((chord / longest)[..., None]),
-        "thinness_texture": _ideal((1.0 - chord / longest)[..., None]),
-        "transmittance_texture": _ideal(np.exp(-chord / typical)[..., None]),
+    computed: dict[str, Callable[[], Any]] = {
+        "fluence_reach": partial(fluence_inputs.reach, scene),
+        "exact_view_length": partial(view_lengths, scene),
+        "mean_curvature": lambda: np.maximum(principal_curvatures(scene).mean(axis=0), 0.0),
+        "fade_length": partial(fade_length, scene),
     }
-    return SceneInputs(values, textures, {"uv": _texels(visible.count)})
+    textures: dict[str, Callable[[], Texture]] = {
+        "back_face_map": partial(eye_picture, scene, BACK_FACES),
+        "eye_layer_map": partial(eye_picture, scene, EYE_LAYERS),
+        "distance_map": lambda: half(Texture(distances.values(geometry), wrap="clamp")),
+        "thickness_texture": lambda: _ideal(relative_chord(scene)[:, None]),
+        "thinness_texture": lambda: _ideal(1.0 - relative_chord(scene)[:, None]),
+        "transmittance_texture": partial(_transmittance, scene),
+        **directional_maps(scene),
+    }
+    return SceneInputs(Deferred(values, computed), Deferred({}, textures), {"uv": _texels(visible.count)})
 
 
 @lru_cache(48)
@@ -110,7 +95,7 @@ def curvature_of(scene: MeasuredScene) -> SceneInputs:
     largest = max(float(np.abs(curvatures).max(initial=0.0)), 1e-9)
     values = {"curvature": curvatures, "curvature_range": largest}
     textures = {"curvature_texture": _ideal(0.5 + 0.5 * curvatures.T / largest)}
-    return SceneInputs(values, textures, {"uv": _texels(curvatures.shape[1])})
+    return SceneInputs(Deferred(values, {}), Deferred(textures, {}), {"uv": _texels(curvatures.shape[1])})
 
 
 def _texels(count: int) -> Array:
@@ -125,14 +110,29 @@ def _ideal(values: Array) -> Texture:
 
 @lru_cache(192)
 def of_light(scene: MeasuredScene, light: Light) -> SceneInputs:
-    """The inputs that depend on a light: the exact thickness towards it, and its depth map."""
+    """The inputs that depend on a light: the exact thickness towards it, its depth map, and light from a bake."""
+    view = _view(scene, light)
+    depth_only = np.zeros((4, 4))  # the depth is the distance from the plane of the light
+    depth_only[2], depth_only[3, 3] = view.matrix[2], 1.0
+    matrices = {"light_matrix": view.matrix, "light_texture": view.matrix, "light_view": depth_only}
+    values = {name: matrix.T[..., None] for name, matrix in matrices.items()}
+    textures = {
+        "light_depth_map": lambda: Texture(_depth_layers(scene, light)[..., :1], "linear", "clamp"),
+        "light_layer_map": lambda: Texture(_depth_layers(scene, light), "linear", "clamp"),
+        **fluence_inputs.of_light(scene, light),
+    }
+    exact: dict[str, Callable[[], Any]] = {"exact_length": partial(lengths_towards, scene, light)}
+    return SceneInputs(Deferred(values, exact), Deferred({}, textures), {})
+
+
+def lengths_towards(scene: MeasuredScene, light: Light) -> Array:
+    """The exact length inside the body towards a light: (n,)."""
     geometry, visible = scene.geometry, points(scene)
     towards = np.ascontiguousarray(visible.towards(light)[0].T)
     exact = thickness(geometry, np.ascontiguousarray(visible.inputs["P"].T), towards)
     if light.position is not None:  # what is behind the light does not count
         exact = exact - thickness(geometry, np.broadcast_to(light.position, towards.shape).copy(), towards)
-    values, textures = _depth_map(scene, light)
-    return SceneInputs(values | {"exact_length": exact}, textures)
+    return exact
 
 
 def _to_box(to_object: Array, low: Sequence[float], high: Sequence[float]) -> Array:
@@ -144,6 +144,21 @@ def _to_box(to_object: Array, low: Sequence[float], high: Sequence[float]) -> Ar
     return matrix
 
 
+def relative_chord(scene: MeasuredScene) -> Array:
+    """The mean chord relative to the longest one: (n,)."""
+    chord = mean_chord(scene)
+    relative: Array = chord / max(float(chord.max(initial=0.0)), 1e-9)
+    return relative
+
+
+def _transmittance(scene: MeasuredScene) -> Texture:
+    """A map of what a medium transmits whose mean free path is the median of the mean chords."""
+    chord = mean_chord(scene)
+    typical = max(float(np.median(chord)), 1e-9) if len(chord) else 1.0
+    return _ideal(np.exp(-chord / typical)[:, None])
+
+
+@lru_cache(8)
 def mean_chord(scene: MeasuredScene) -> Array:
     """The mean length inside the body over inward directions, weighted by the cosine to −N: (n,)."""
     visible = points(scene)
@@ -211,17 +226,18 @@ def eye_picture(scene: MeasuredScene, name: str) -> Texture:
     return Texture(picture, "nearest", "clamp")
 
 
-def _depth_map(scene: MeasuredScene, light: Light) -> tuple[dict[str, Any], dict[str, Texture]]:
-    """The light's view: matrices for the techniques, the depth of the first surface, and three layers.
-
-    Raises SssgenError for a point light beside the body: its map must show the whole body.
-    """
-    geometry = scene.geometry
-    corners, size = world_corners(geometry), (DEPTH_MAP, DEPTH_MAP)
+def _view(scene: MeasuredScene, light: Light) -> LightView:
+    """The view of a light on the body."""
+    corners, size = world_corners(scene.geometry), (DEPTH_MAP, DEPTH_MAP)
     if light.position is not None:
-        view = point_view(corners, np.array(light.position), size)
-    else:
-        view = directional_view(corners, np.array(light.direction), size)
+        return point_view(corners, np.array(light.position), size)
+    return directional_view(corners, np.array(light.direction), size)
+
+
+@lru_cache(8)
+def _depth_layers(scene: MeasuredScene, light: Light) -> Array:
+    """The distances of three surfaces from the light's plane, (DEPTH_MAP, DEPTH_MAP, 3)."""
+    geometry, view = scene.geometry, _view(scene, light)
     to_object = geometry.to_object()
     origins = view.origins @ to_object[:3, :3].T + to_object[:3, 3]
     directions = view.directions @ to_object[:3, :3].T * geometry.scale
@@ -230,10 +246,4 @@ def _depth_map(scene: MeasuredScene, light: Light) -> tuple[dict[str, Any], dict
     parts = np.sort(np.where(filled, inside, np.inf), axis=1) * geometry.scale * view.slopes[:, None, None]
     parts = np.pad(parts, ((0, 0), (0, 2), (0, 0)), constant_values=np.inf)
     layers = np.stack([parts[:, 0, 0], parts[:, 0, 1], parts[:, 1, 0]], axis=1)
-    layers = np.where(np.isfinite(layers), layers, view.far).reshape(DEPTH_MAP, DEPTH_MAP, 3)
-    depth_only = np.zeros((4, 4))  # the depth is the distance from the plane of the light
-    depth_only[2], depth_only[3, 3] = view.matrix[2], 1.0
-    matrices = {"light_matrix": view.matrix, "light_texture": view.matrix, "light_view": depth_only}
-    values = {name: matrix.T[..., None] for name, matrix in matrices.items()}
-    maps = {"light_depth_map": layers[..., :1], "light_layer_map": layers}
-    return values, {name: Texture(texels, "linear", "clamp") for name, texels in maps.items()}
+    return np.where(np.isfinite(layers), layers, view.far).reshape(DEPTH_MAP, DEPTH_MAP, 3)

@@ -214,7 +214,8 @@ def _baked_parameters(scene: Scene, material: Material, reflection: Reflection) 
             baked.check(sidecar, _uniform(material, texture), os.path.basename(file))
             stages = [stage for stage in material.stages if stage.technique.name == texture["technique"]]
             declared = [uniform.name for stage in stages for uniform in stage.technique.uniforms]
-            baked.check_boundary(sidecar, declared, os.path.basename(file))
+            matched = any(stage.technique.attributes.matched for stage in stages)
+            baked.check_boundary(sidecar, declared, matched, os.path.basename(file))
             for stage in stages:
                 baked.check_medium(sidecar, stage.values, os.path.basename(file))
             if scene.geometry is not None:
