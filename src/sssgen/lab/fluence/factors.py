@@ -48,8 +48,11 @@ def _rows(matrix: Array, rank: int) -> Array:
 def _solve(basis: Array, field: Array, weight: Array) -> Array:
     """The coefficients (rows, rank) of `basis` (rank, columns) that fit each row of the field best."""
     rank = len(basis)
-    pairs = (basis[:, None] * basis[None]).reshape(rank * rank, -1)
-    matrices = (weight @ pairs.T).reshape(-1, rank, rank)
+    # the matrices are symmetric
+    row, column = np.triu_indices(rank)
+    matrices = np.empty((len(field), rank, rank))
+    matrices[:, row, column] = weight @ (basis[row] * basis[column]).T
+    matrices[:, column, row] = matrices[:, row, column]
     trace = np.trace(matrices, axis1=1, axis2=2)[:, None, None] / rank
     solution: Array = np.linalg.solve(matrices + RIDGE * trace * np.eye(rank), ((weight * field) @ basis.T)[..., None])[
         ..., 0

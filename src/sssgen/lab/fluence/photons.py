@@ -66,6 +66,7 @@ class Tracer:
         self.rays = MeshRays(body.vertices, body.faces)
         first, second, third = np.moveaxis(body.vertices[body.faces], 1, 0)
         normal = np.cross(second - first, third - first)
+        self.step = STEP * body.size  # off a wall
         self.normals: Array = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
 
     def walls(self, position: Array, direction: Array) -> tuple[Bools, Array, Array]:
@@ -81,7 +82,7 @@ class Tracer:
         """Reflects or refracts rays at walls, and moves them off: the share of each that is left, 1 or 0."""
         turn = boundary.reflect_or_refract(direction, normal, rng)
         direction[:] = turn.direction
-        position += STEP * self.body.size * turn.direction
+        position += self.step * turn.direction
         return turn.weight
 
     def lengths(self, points: Array, towards: Array) -> Singles:
@@ -98,7 +99,7 @@ class Tracer:
                 if not len(active):
                     break
                 total[active] += np.where(np.einsum("nc,nc->n", ways, normal) > 0.0, ahead, 0.0)
-                origins = origins + (ahead + STEP * self.body.size)[:, None] * ways
+                origins = origins + (ahead + self.step)[:, None] * ways
             result[first : first + group] = np.maximum(total, 0.0).reshape(len(some), -1)
         return result
 

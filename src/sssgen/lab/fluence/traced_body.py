@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from sssgen.lab.fluence.photons import STEP, Body, Medium, Tracer
+from sssgen.lab.fluence.photons import Body, Medium, Tracer
 from sssgen.lab.fluence.projection import Projection, inside_shares
 from sssgen.lab.fluence.voxels import Grid
 from sssgen.lab.reference.dielectric import Dielectric
@@ -90,7 +90,7 @@ def _move_inside(scene: MeasuredScene, rays: Tracer, points: Array, distances: A
     hit, ahead, normal = rays.walls(points[near], inward)
     entering = np.einsum("nc,nc->n", inward[hit], normal) < 0.0
     moved = np.flatnonzero(hit)[entering]
-    points[near[moved]] += (ahead[entering] + STEP * rays.body.size)[:, None] * inward[moved]
+    points[near[moved]] += (ahead[entering] + rays.step)[:, None] * inward[moved]
 
 
 def medium_of(scene: MeasuredScene, channel: int) -> Medium:
