@@ -1,7 +1,8 @@
 // The light inside a body in a page that draws with WebGPU itself: of the lights and the ambient light that the page gives.
 
 import { surroundingsOf } from './inner_light.js';
-import { InnerTexels, distantLamp, nearLamp } from './inner_volume.js';
+import { distantLamp, nearLamp } from './inner_volume.js';
+import { Relight } from './webgpu_relight.js';
 
 /** The inverse of a matrix of places, both with 16 numbers by columns. @param {number[]} matrix */
 function inverseOf(matrix) {
@@ -22,19 +23,16 @@ function timesMatrix(first, second) {
   });
 }
 
-const bySquare = (distance) => 1 / Math.max(distance, 0.01) ** 2;
-
 /** The volume of the light inside a body. */
 export class InnerTexture {
-  #texels;
+  #light = '';
 
   /** @param {GPUDevice} device @param {import('./inner_light.js').LightResponse} response */
   constructor(device, response) {
-    const { width, height, depth } = response, usage = GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST;
-    this.device = device;
+    const { width, height, depth } = response, usage = GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.STORAGE_BINDING;
     this.response = response;
     this.texture = device.createTexture({ label: 'inner light', size: [width, height, depth], dimension: '3d', format: 'rgba16float', usage });
-    this.#texels = new InnerTexels(response);
+    this.relight = new Relight(device, response, this.texture);
   }
 
   /**
@@ -45,13 +43,13 @@ export class InnerTexture {
    * @returns {Record<string, number[]>}
    */
   follow(model, lights, ambient) {
-    const toObject = inverseOf(model), { width, height, depth, parameters } = this.response;
+    const toObject = inverseOf(model), { parameters } = this.response;
     const lamps = lights.map(({ position: [x, y, z, near], color }) => (
-      near ? nearLamp({ position: [x, y, z], color, settings: [] }, bySquare, model, toObject) : distantLamp([x, y, z], color, toObject)
+      near ? nearLamp({ position: [x, y, z], color, settings: [] }, () => 1, model, toObject) : distantLamp([x, y, z], color, toObject)
     ));
-    if (this.#texels.follow(lamps, surroundingsOf(() => ambient))) {
-      this.device.queue.writeTexture({ texture: this.texture }, this.#texels.data, { bytesPerRow: 8 * width, rowsPerImage: height }, [width, height, depth]);
-    }
+    const light = JSON.stringify([lamps, ambient, model]); // all numbers, without the functions
+    if (light !== this.#light) this.relight.compute(model, lamps, surroundingsOf(() => ambient));
+    this.#light = light;
     const values = Object.entries(parameters).map(([name, value]) => [name, [value].flat()]);
     return { ...Object.fromEntries(values), world_to_volume: timesMatrix(parameters.world_to_volume, toObject) };
   }
