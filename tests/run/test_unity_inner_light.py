@@ -27,6 +27,8 @@ RANGE, SPOT, INNER = 4.0, 60.0, 25.0
 COLORS = np.array([[2.0, 1.6, 1.2], [0.2, 0.4, 0.8], [3.0, 0.5, 1.0]])
 SUN, LAMP, TORCH = np.array([-0.6, 0.3, -0.8]), np.array([0.9, -0.2, 0.7]), np.array([-1.1, 0.9, 0.8])
 """The direction towards the sun, and the places of the other two."""
+WARM = [1.0, 0.5, 0.25]
+"""The colour of the lamp's temperature in the stand-in, by which Unity multiplies its own."""
 
 
 class Frame(NamedTuple):
@@ -114,7 +116,7 @@ def incoming(response: LightResponse, place: Array, torch: Array = TORCH) -> lis
     to_object = np.linalg.inv(place)
     at = response.places() @ place[:3, :3].T + place[:3, 3]
     lights = [Incoming(unit((to_object[:3, :3] @ SUN)[None]), COLORS[:1])]
-    for lamp, color in ((LAMP, COLORS[1]), (torch, COLORS[2])):
+    for lamp, color in ((LAMP, COLORS[1] * WARM), (torch, COLORS[2])):
         way = lamp - at
         away = np.linalg.norm(way, axis=1, keepdims=True)
         share = np.clip(1.0 - (away / RANGE) ** 4, 0.0, None) ** 2 / away**2

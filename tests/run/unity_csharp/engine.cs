@@ -43,6 +43,7 @@ namespace UnityEngine {
         public static float Clamp(float x, float low, float high) => Math.Min(Math.Max(x, low), high);
         public static int Clamp(int x, int low, int high) => Math.Min(Math.Max(x, low), high);
         public static float Clamp01(float x) => Clamp(x, 0, 1);
+        public static Color CorrelatedColorTemperatureToRGB(float kelvin) => new Color(1, 0.5f, 0.25f);
         public static int FloorToInt(float x) => (int)Math.Floor(x);
         public static int RoundToInt(float x) => (int)Math.Round(x);
         public static float HalfToFloat(ushort half) {
@@ -162,6 +163,7 @@ namespace UnityEngine {
         public Color(float r, float g, float b, float a = 1) { this.r = r; this.g = g; this.b = b; this.a = a; }
         public Color linear => this; // the scene has linear colours
         public float maxColorComponent => Math.Max(r, Math.Max(g, b));
+        public static Color operator *(Color a, Color b) => new Color(a.r * b.r, a.g * b.g, a.b * b.b, a.a * b.a);
     }
 
     public struct Plane { }
@@ -206,7 +208,8 @@ namespace UnityEngine {
     public sealed class Light : Behaviour {
         public LightType type;
         public Color color;
-        public float intensity = 1, range = 1e4f, spotAngle = 30, innerSpotAngle = 20;
+        public float intensity = 1, range = 1e4f, spotAngle = 30, innerSpotAngle = 20, colorTemperature = 6570;
+        public bool useColorTemperature;
     }
 
     public enum CameraType { Game = 1, Preview = 4 }

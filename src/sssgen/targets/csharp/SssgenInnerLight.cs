@@ -29,9 +29,24 @@ namespace Sssgen {
         private Texture3D volume;
         private ushort[] texels;
         private float nextSearch;
+        private bool isStale;
 
         private void OnEnable() {
+            isStale = true;
+        }
+
+        // the editor has changed a field; textures must not be destroyed here
+        private void OnValidate() {
+            isStale = true;
+        }
+
+        private void OnDisable() {
             Release();
+        }
+
+        private void Load() {
+            Release();
+            isStale = false;
             body = GetComponent<Renderer>();
             nextSearch = 0;
             if (bake == null || facts == null) {
@@ -48,17 +63,6 @@ namespace Sssgen {
             texels = new ushort[4 * response.Width * response.Height * response.Depth];
         }
 
-        // the editor has changed a field
-        private void OnValidate() {
-            if (isActiveAndEnabled) {
-                OnEnable();
-            }
-        }
-
-        private void OnDisable() {
-            Release();
-        }
-
         private void Release() {
             response = null;
             before.Clear();
@@ -69,6 +73,9 @@ namespace Sssgen {
         }
 
         private void LateUpdate() {
+            if (isStale) {
+                Load();
+            }
             if (response == null) {
                 return;
             }
@@ -102,8 +109,11 @@ namespace Sssgen {
 
         /// <summary>A light at the body, with URP's falloff; areas are left out, as in URP's own lighting.</summary>
         private void AddLamp(Light lamp, Matrix4x4 toWorld, Matrix4x4 toBake, List<InnerLamp> lamps) {
-            Color linear = lamp.color.linear;
-            Vector3 color = lamp.intensity * new Vector3(linear.r, linear.g, linear.b), ahead = lamp.transform.forward;
+            Color shown = lamp.color.linear;
+            if (lamp.useColorTemperature) {
+                shown *= Mathf.CorrelatedColorTemperatureToRGB(lamp.colorTemperature);
+            }
+            Vector3 color = lamp.intensity * new Vector3(shown.r, shown.g, shown.b), ahead = lamp.transform.forward;
             if (lamp.type == LightType.Directional) {
                 lamps.Add(new InnerLamp { Color = color, Place = toBake.MultiplyVector(-ahead) });
                 Note((int)lamp.type, color, ahead);

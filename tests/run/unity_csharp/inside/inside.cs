@@ -37,7 +37,7 @@ public static class Inside {
                 case "light":
                     var light = new Light {
                         type = (LightType)Enum.Parse(typeof(LightType), row[1]), range = numbers[9], spotAngle = numbers[10],
-                        innerSpotAngle = numbers[11], color = new Color(numbers[6], numbers[7], numbers[8]), intensity = 0.5f,
+                        innerSpotAngle = numbers[11], useColorTemperature = row[1] == "Point", color = new Color(numbers[6], numbers[7], numbers[8]), intensity = 0.5f,
                     };
                     light.transform.position = new Vector3(numbers[0], numbers[1], numbers[2]);
                     light.transform.forward = new Vector3(numbers[3], numbers[4], numbers[5]);
