@@ -234,8 +234,8 @@ def page(parts: Sequence[Part], arms: Sequence[str], arguments: argparse.Namespa
         f"and three of these together, {-(-arguments.lights // 2)} lamps at one radius from the surface, and three "
         "pictures of surroundings. Directions are drawn at random, the same for all bodies and chains; none was used "
         "in a fit. The reference is path tracing with the true lights and pictures, "
-        f"{arguments.samples // 4} paths for each point and light and {arguments.samples} in surroundings. A figure is "
-        "the error over the scene's two "
+        f"{arguments.samples // 4} paths for each point and light and {arguments.samples} in surroundings: for a light "
+        "what is less than about .02 is within the noise. A figure is the error over the scene's two "
         "views, as in [accuracy.md](accuracy.md): the median over the lights, and the worst light in brackets. At the "
         f"*edges* are points with both lit and dark ones within {NEAR} pixels. A body's radius is half of the longest "
         "side of its box.", "",
@@ -343,16 +343,16 @@ def arms_picture(pictures: Sequence[tuple[Array, Array]]) -> bytes:
 def grid(rows: Sequence[Sequence[Array]], titles: Sequence[str], names: Sequence[str]) -> bytes:
     """Pictures in rows with the columns' titles and the rows' names, as a PNG."""
     with charts.settings():
-        figure = need("matplotlib.figure", extra="chart").Figure(figsize=(1.4 * len(titles), 1.5 * len(rows)))
+        figure = need("matplotlib.figure", extra="chart").Figure(figsize=(1.3 * len(titles), 1.4 * len(rows)))
         for index, axes in enumerate(figure.subplots(len(rows), len(titles)).flat):
             row, column = divmod(index, len(titles))
             axes.imshow(rows[row][column], interpolation="nearest")
             axes.axis("off")
             if row == 0:
-                axes.set_title(titles[column], size=7.0, pad=3.0)
+                axes.set_title(titles[column], size=6.5, pad=3.0)
             if column == 0:
                 axes.text(0.0, -0.03, names[row], size=6.0, va="top", transform=axes.transAxes)
-        figure.tight_layout(pad=0.3, h_pad=1.4)
+        figure.subplots_adjust(0.0, 0.0, 1.0, 1.0, wspace=0.04, hspace=0.12)
         png = io.BytesIO()
         figure.savefig(png, format="png", dpi=120, bbox_inches="tight", metadata={"Software": None})
     return png.getvalue()
