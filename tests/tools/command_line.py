@@ -37,8 +37,8 @@ class Target(NamedTuple):
     draws_passes: str = ""
     draws_light: bool = False
 
-    def draws(self, name: str) -> bool:
-        return self.draws_light
+    def drawer(self, name: str) -> str:
+        return self.draws_passes if self.draws_light else ""
 
 
 class FakeCompiler(types.ModuleType):
