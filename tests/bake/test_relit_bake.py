@@ -111,6 +111,7 @@ def test_wrong_options_are_errors(options: list[str], said: str, capsys: pytest.
     assert not Path("ball.bin").exists()
 
 
+@pytest.mark.slow
 def test_media_that_it_traces_otherwise() -> None:
     """A refracting surface has a technique of its own; an anisotropic medium has light that is not scattered, too."""
     write("ior = 1.4\n" + FIRST)

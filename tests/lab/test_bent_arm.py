@@ -45,6 +45,7 @@ def test_the_mesh_is_closed_and_its_faces_look_outward() -> None:
     close(np.einsum("nc,nc->n", first, np.cross(second, third)).sum() / 6.0, whole, rtol=0.1)
 
 
+@pytest.mark.slow
 def test_the_straight_arm_reads_its_own_volume() -> None:
     pytest.importorskip("mitsuba", reason="mitsuba is missing: pip install -e '.[reference]'")
     medium = measured_scene.load("capsule").medium

@@ -425,6 +425,7 @@ def test_a_chart_of_bytes_or_of_a_device(capsys: pytest.CaptureFixture[str]) -> 
     assert all(point["cost"]["static"] >= 1.0 for point in report["points"])
 
 
+@pytest.mark.slow
 def test_the_fit_command_shows_parameters(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["fit", "cube", "wrap_lighting", "--samples", "8", "--processes", "1"]) == 0
     output = capsys.readouterr().out

@@ -42,7 +42,7 @@ def test_directions_are_uniform_and_the_first_ones_stay() -> None:
     close(np.array(drawn_lights.directions(3)), directions[:3])
 
 
-@pytest.mark.parametrize("ior", [1.0, 1.4])
+@pytest.mark.parametrize("ior", [1.0, pytest.param(1.4, marks=pytest.mark.slow)])
 def test_each_light_is_measured_alone(ior: float) -> None:
     """Whether the references of the lights are traced together or one by one."""
     scene, settings = small_capsule(ior), Settings(samples=64, processes=0)

@@ -113,6 +113,7 @@ def test_flights_for_all_directions_give_what_photons_of_each_do(albedo: float, 
         close(flights[number].sum(), photons[number].sum(), rtol=0.02)
 
 
+@pytest.mark.slow
 def test_unscattered_light_behind_a_refracting_surface() -> None:
     """In a box that only absorbs, light along the normal fades exponentially; a little comes back from the far side."""
     extinction, ior, side = 4.0, 1.4, 0.8

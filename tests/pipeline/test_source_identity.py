@@ -62,6 +62,7 @@ def test_the_folder_does_not_change_a_byte(tmp_path: Path, name: str) -> None:
     assert all(other == first for other in others)
 
 
+@pytest.mark.slow
 def test_the_folder_does_not_change_a_byte_of_any_example(tmp_path: Path) -> None:
     targets = ",".join(TARGETS)  # both can express every example
     paths = [Path(path) for path in examples().values()]
