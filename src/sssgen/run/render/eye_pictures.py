@@ -37,7 +37,8 @@ def with_eye_pictures(
         if name in EYE_PICTURES:
             distances = np.zeros((len(directions), len(FRAME_PASSES[name].layers)))
             distances[shown] = eye_layers(geometry, origin, directions[shown], name)
-            screens[picture] = half(Texture(distances.reshape(height, width, -1), wrap="clamp"))
+            # a filter would mix distances with those of other surfaces, and with FAR
+            screens[picture] = half(Texture(distances.reshape(height, width, -1), "nearest", "clamp"))
         if name == MATT:
             texels = np.tile([0.0, 0.0, 0.0, FAR], (len(directions), 1))
             points, normals = hits.position[shown], hits.normal[shown]
