@@ -60,12 +60,8 @@ tint = [0.0, 0.0, 0.0, 1.0]
 [[surface]]
 technique = "specular_level"
 dielectric_specular = 0.0
-[[surface]]
-technique = "pbr_constants"
-surface_roughness = 1.0
 """
-"""A black surface, which reflects at grazing angles all the same: its picture is subtracted. It is rough, as a sharp
-highlight at a silhouette differs between two programs."""
+"""A black surface, which mirrors at grazing angles all the same: its picture is subtracted."""
 TRANSLUCENT = """[translucency]
 technique = "{technique}"
 inner_light = "body.bin"

@@ -13,6 +13,7 @@ import pytest
 
 from folders import EXAMPLES
 from lamp_scene import largest_difference
+from sssgen.bake.bake_light import BakeLight
 from sssgen.ir.frame_passes import BACK_FACES, EYE_LAYERS, FAR, FRAME_PASSES, LAYERS
 from sssgen.material.material_loading import load_material
 from sssgen.pipeline.compiler import all_targets, compile
@@ -25,6 +26,7 @@ from sssgen.run.render.shell_values import Shell
 from sssgen.scene.camera import Camera
 from sssgen.scene.drawn_views import TEXELS, eye_layers, light_depth
 from sssgen.scene.geometry import Ball, Box, Geometry, Mesh, Torus, Union
+from sssgen.scene.light_view import point_view
 from sssgen.scene.scene_loading import parse_scene
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets.registry import load as load_target
@@ -331,3 +333,16 @@ def test_shells_and_reflection_say_how(target: str, form: str, folder: Path) -> 
             for texture, words in how.items():
                 said = f"drawn by {drawer}." if drawer else f"draw the translucent body {words}"
                 assert f"{names[texture]}: {said}" in comment
+
+
+@pytest.mark.parametrize("place", [(0.1, 0.0, 0.2), (0.0, 0.0, 0.0)])
+def test_a_lamp_in_the_box_sees_what_is_before_it(place: tuple[float, float, float]) -> None:
+    """As the views of engines; a bake, whose map must have the whole body, refuses it."""
+    corners = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-0.3, 0.3) for z in (-1.0, 1.0)])
+    view = point_view(corners, np.array(place), (8, 8))
+    assert np.isfinite(view.matrix).all() and np.isfinite(view.directions).all() and view.far > 0.0
+    ahead = view.matrix[3, :3]
+    *_, depth, w = view.matrix @ np.append(np.array(place) + 0.5 * ahead, 1.0)
+    assert depth == pytest.approx(0.5) and w == pytest.approx(0.5)
+    with pytest.raises(SssgenError, match="inside the body or next to it"):
+        BakeLight(np.array(place), False).view(corners, (8, 8))

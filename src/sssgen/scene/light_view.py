@@ -11,7 +11,8 @@ from sssgen.scene.arrays import Array
 MARGIN = 1.1
 """The width of the map relative to the body."""
 LEAST_DEPTH = 0.1
-"""What is less far ahead of a light, relative to the middle of the body's box, is as far as this for its view."""
+"""The least depth of a corner of the body's box in the view of a lamp, relative to that of the middle of the box: the
+lamp may be in the box, or beside it."""
 FAR = 2.0
 """The depth of a texel whose ray hits nothing, in widths of the map: behind the whole body."""
 

@@ -53,4 +53,9 @@ export class InnerTexture {
     const values = Object.entries(parameters).map(([name, value]) => [name, [value].flat()]);
     return { ...Object.fromEntries(values), world_to_volume: timesMatrix(parameters.world_to_volume, toObject) };
   }
+  /** Frees the texture and what it is computed from. */
+  destroy() {
+    this.texture.destroy();
+    this.relight.destroy();
+  }
 }

@@ -262,7 +262,7 @@ class Passes {
 
   /** Frees the pictures of a body. @param {Body} body */
   forget(body) {
-    this.#volumes.get(body)?.texture.destroy();
+    this.#volumes.get(body)?.destroy();
     this.#volumes.delete(body);
     for (const picture of this.#pictures.get(body)?.values() ?? []) picture.destroy();
     this.#pictures.delete(body);

@@ -156,6 +156,7 @@ function dataOf(response) {
 export class Relight {
   /** @param {GPUDevice} device @param {import('./inner_light.js').LightResponse} response @param {GPUTexture} texture */
   constructor(device, response, texture) {
+    if (response.arriving.length && response.arrivingSide !== response.side) throw new TypeError('this bake has maps of two sizes: bake it again');
     this.device = device;
     this.response = response;
     const module = device.createShaderModule({ label: 'inner light', code: RELIGHT });
@@ -172,7 +173,8 @@ export class Relight {
     const sums = device.createBuffer({ size: 16 * response.count, usage: GPUBufferUsage.STORAGE });
     this.buffers = [...dataOf(response).map(bufferOf), sums];
     this.frame = device.createBuffer({ size: 16, usage: GPUBufferUsage.STORAGE });
-    const resources = [bufferOf(nearest), sums].map((buffer) => ({ buffer }));
+    this.texels = bufferOf(nearest);
+    const resources = [this.texels, sums].map((buffer) => ({ buffer }));
     this.written = device.createBindGroup({
       layout: this.show.getBindGroupLayout(0),
       entries: [...resources, texture.createView()].map((resource, number) => ({ binding: 8 + number, resource })),
@@ -208,5 +210,9 @@ export class Relight {
     pass.dispatchWorkgroups(Math.ceil((width * height * depth) / WORKGROUP));
     pass.end();
     device.queue.submit([encoder.finish()]);
+  }
+  /** Frees the buffers. */
+  destroy() {
+    [...this.buffers, this.texels, this.frame].forEach((buffer) => buffer.destroy());
   }
 }
