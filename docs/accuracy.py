@@ -21,6 +21,7 @@ import accuracy_goals
 import accuracy_pictures
 import accuracy_points
 import moving_goals
+import moving_trial
 import pick_trial
 from choice_pictures import ScenePictures, scene_pictures
 
@@ -125,6 +126,7 @@ def page(
     parts: dict[str, Callable[[], str]] = {
         "scenes": lambda: scene_table(record), "fronts": lambda: fronts(record),
         "moving goals": lambda: "\n".join(moving_goals.rows(moving_goals.load())),
+        "moving pick": lambda: moving_trial.goal(moving_trial.load()),
         "goals": lambda: accuracy_goals.table(record, bent, bench_gpu()["interior"]),
         "medians": lambda: accuracy_goals.medians(record, True),
         "moving": lambda: accuracy_goals.medians(record, False),
@@ -133,6 +135,7 @@ def page(
         "known": lambda: expected_results(record), "losses": lambda: baselines_on_fronts(record),
         "implementation": lambda: implementation(record), "gpu": gpu, "by_hand": by_hand, "inside": inside,
         "pick": lambda: pick_trial.table(trial) if trial is not None else UNMEASURED,
+        "moving picks": lambda: moving_trial.table(moving_trial.load()),
     }  # fmt: skip
     for name, part in parts.items():
         mark = f"<!-- {name} -->"

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from carried import carrying
-from example_cases import example_cases
+from slow_cases import some_slow
 from sssgen.cli import main as cli
 from sssgen.ir.types import Sampler, kind_of
 from sssgen.material.material_loading import examples, load_material, parse_material
@@ -148,7 +148,7 @@ def _edited(stage: TechniqueUse, number: int) -> TechniqueUse:
     return stage._replace(values=values)
 
 
-@pytest.mark.parametrize("name", example_cases())
+@pytest.mark.parametrize("name", some_slow(examples(), "ice", "jade_ring"))
 def test_a_variant_equals_a_compilation_from_source(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     original, variant = load_material(name), edited(load_material(name), 0)
     stored = {}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from sssgen.preview.pane import Pane
@@ -66,6 +67,24 @@ def test_the_level_of_detail_is_shown_and_not_saved(stone: Path) -> None:
     (control,) = [one for one in shown.picture.head["controls"] if one["property"] == "detailLevel"]
     assert control["range"] == [0.0, 1.0]
     assert shown.save({"detailLevel": [1.0]}) == "" and stone.read_text(encoding="utf-8") == text
+
+
+def test_a_level_of_detail_keeps_its_own_value(stone: Path) -> None:
+    """Two stages of a technique have different values; a third one sets none, which is the default."""
+    near, far, plain = ('[[surface]]\ntechnique = "base_color"\n' + end for end in (
+        "tint = [0.1, 0.2, 0.3, 1.0]\nlevel = 0\n", "tint = [0.5, 0.2, 0.3, 1.0]\nlevel = 1\n", "level = 2\n"
+    ))  # fmt: skip
+    text = '[material]\nname = "stone"\nlevels = 3\n\n' + near + far + plain
+    stone.write_text(text, encoding="utf-8")
+    shown = Pane(str(stone))
+    tints = [control for control in shown.picture.head["controls"] if control["name"] == "tint"]
+    far_property, plain_property = (
+        next(control["property"] for control in tints if np.allclose(control["default"], value))
+        for value in ([0.5, 0.2, 0.3, 1.0], [1.0, 1.0, 1.0, 1.0])
+    )
+    shown.save({far_property: [0.6, 0.2, 0.3, 1.0], plain_property: [0.8, 0.8, 0.8, 1.0]})
+    expected = text.replace("0.5, 0.2", "0.6, 0.2") + "tint = [0.8, 0.8, 0.8, 1.0]\n"
+    assert stone.read_text(encoding="utf-8") == expected
 
 
 def test_a_value_of_the_scene_is_saved_in_the_scene(stone: Path) -> None:

@@ -12,6 +12,7 @@ import pytest
 from folders import DOCS
 from qualification.pages import parity as parity_page
 from qualification.parity import BACKENDS, FULL, Figure, cases, measure, oracle, supported
+from slow_cases import back_end_cases
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.types import FLOAT
 from sssgen.lang import polyfills
@@ -24,7 +25,7 @@ def failures(figures: dict[str, Figure]) -> str:
     return "\n".join(f"{name}: {figure}" for name, figure in figures.items() if not figure.right)
 
 
-@pytest.mark.parametrize("name", [*BACKENDS, "metal"])
+@pytest.mark.parametrize("name", back_end_cases([*BACKENDS, "metal"], "unity", "metal"))
 def test_every_builtin_is_within_its_limits(name: str, backend: Callable[[str], Backend]) -> None:
     gpu = backend(name)
     figures = measure(gpu, cases(LANES))

@@ -27,6 +27,7 @@ from engine_cases import (
 from folders import ROOT
 from shadow_cases import Scene, check_absence, check_shadows, modules_of
 from skips import or_skip
+from slow_cases import some_slow
 from sssgen.material.material_loading import load_material, parse_material
 from sssgen.run.backends import Array
 from sssgen.run.backends.engine_page import EnginePage
@@ -66,14 +67,7 @@ SLOW = pytest.mark.slow
 QUICK = "wax_mouse"
 
 
-def some_slow(*quick: Any, others: Any) -> list[Any]:
-    """Parameters, all but the quick ones marked slow: each engine and each drawing takes seconds on the processor."""
-    return [*quick, *(pytest.param(*(one if isinstance(one, tuple) else (one,)), marks=SLOW) for one in others)]
-
-
-@pytest.fixture(
-    scope="module", params=some_slow("webgl", others=[name for name in BABYLON.renderers if name != "webgl"])
-)
+@pytest.fixture(scope="module", params=some_slow(BABYLON.renderers, "webgl"))
 def babylon(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
     renderer: EnginePage = or_skip(partial(EnginePage, BABYLON), request.param)
     yield renderer
@@ -90,7 +84,7 @@ def drawn(babylon: EnginePage, material: str, mesh: PlacedMesh, **options: Any) 
     return page_values.shade(compiled, mesh.shell, babylon, mesh.size, mesh.points, **({"properties": BLACK} | options))
 
 
-@pytest.mark.parametrize("name", some_slow(QUICK, others=[name for name in MESHES if name != QUICK]))
+@pytest.mark.parametrize("name", some_slow(MESHES, QUICK))
 def test_light_that_comes_through_is_that_of_the_oracle(babylon: EnginePage, name: str) -> None:
     mesh = mesh_of(name)
     expected = through(name, mesh)
@@ -120,9 +114,7 @@ CHAINS = [
 QUICK_CHAIN = ("lit", False, "point")
 
 
-@pytest.mark.parametrize(
-    ("name", "front", "light"), some_slow(QUICK_CHAIN, others=[case for case in CHAINS if case != QUICK_CHAIN])
-)
+@pytest.mark.parametrize(("name", "front", "light"), some_slow(CHAINS, QUICK_CHAIN))
 def test_every_value_of_the_chain(babylon: EnginePage, name: str, front: bool, light: str, tmp_path: Path) -> None:
     """A turned, stretched and mirrored body from both sides: every input is in its space, per surface and light."""
     case = chain_case(name, front, light, tmp_path)
@@ -152,7 +144,7 @@ def test_a_leaf_from_both_sides(babylon: EnginePage, front: bool, lit_from: str,
     assert (picture[..., :3][inner].max() > 0.1) == (lit_from == "behind")
 
 
-@pytest.mark.parametrize("lamp", some_slow("direction", "point", others=["cascades", "spot"]))
+@pytest.mark.parametrize("lamp", some_slow(["direction", "point", "cascades", "spot"], "direction", "point"))
 def test_other_bodies_shadow_the_light_that_comes_through(babylon: EnginePage, lamp: str, tmp_path: Path) -> None:
     """A wall does, wherever it is; the body does not, nor one of another scale with the same material."""
     check_shadows(Scene(babylon, modules_of("babylonjs", tmp_path), BLACK, lamp))

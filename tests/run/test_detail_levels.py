@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from slow_cases import back_end_cases
 from sssgen.run.backends import Backend
 from sssgen.run.render.scene_render import render
 from sssgen.scene.scene_loading import load
@@ -68,7 +69,7 @@ def picture(folder: Path, material: str, parameters: str, backend: Backend) -> n
     return render(load(folder / "scene.toml"), backend).linear
 
 
-@pytest.mark.parametrize("name", [*DRAWING, *ENGINES[:-1], pytest.param(ENGINES[-1], marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", back_end_cases([*DRAWING, *ENGINES], "threejs"))
 def test_a_level_has_the_values_of_its_own_stages(name: str, backend: Callable[[str], Backend], tmp_path: Path) -> None:
     driver = backend(name)
     alone = [picture(tmp_path, material_text(level), "", driver) for level in range(LEVELS)]

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import sssgen
-from engine_cases import BLACK, ENGINES, HEAD, RENDERERS, mesh_of, through
+from engine_cases import BLACK, ENGINES, HEAD, PAGES, mesh_of, through
 from skips import or_skip
 from sssgen.material.material_loading import load_material
 from sssgen.run.backends import Array, engine_page
@@ -78,14 +78,14 @@ def differences(page: EnginePage, case: Case, **properties: Any) -> Array:
 
 
 @pytest.mark.parametrize("several", [False, True], ids=["one light", "several lights"])
-@pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
+@pytest.mark.parametrize("page", PAGES, indirect=True)
 def test_the_engine_draws_the_passes(page: EnginePage, several: bool, case_of: Callable[[bool], Case]) -> None:
     """Without textures from the page, the light that comes through is that of the oracle."""
     # the oracle's depths are half floats, so that every back end has the same
     assert np.quantile(differences(page, case_of(several)), 0.98) < 1.0 / 255.0
 
 
-@pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
+@pytest.mark.parametrize("page", PAGES, indirect=True)
 def test_the_eyes_layers(page: EnginePage, tmp_path: Path) -> None:
     """The length inside the ring's near side, the gap behind it, and the length inside its far side."""
     path = lengths_scene(tmp_path)
@@ -97,7 +97,7 @@ def test_the_eyes_layers(page: EnginePage, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("several", [False, True], ids=["depth map", "layers of each light"])
-@pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
+@pytest.mark.parametrize("page", PAGES, indirect=True)
 def test_a_rectangle_of_light_is_as_a_point(page: EnginePage, several: bool, tmp_path: Path) -> None:
     """A pass shows the body from the rectangle's centre: what comes through is that of a point light there.
 
@@ -146,7 +146,7 @@ def test_two_renderers(page: EnginePage, case_of: Callable[[bool], Case]) -> Non
 
 
 @pytest.mark.parametrize("size", [1.0, 0.5])
-@pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
+@pytest.mark.parametrize("page", PAGES, indirect=True)
 def test_values_of_the_object_come_from_its_matrix(page: EnginePage, size: float) -> None:
     """wax_mouse and another one of half its size have one material; the page sets no scale."""
     mesh, target = mesh_of("wax_mouse"), page.engine.target
@@ -185,7 +185,7 @@ def bare(target: str, name: str) -> EngineDrawing:
     )
 
 
-@pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
+@pytest.mark.parametrize("page", PAGES, indirect=True)
 def test_a_texture_that_is_missing_is_named_once(page: EnginePage) -> None:
     """The console has the command that bakes it; what is optional may be missing. A second body says nothing more."""
     drawing = bare(page.engine.target, "wax_mouse")
@@ -212,7 +212,7 @@ def test_a_mesh_without_texture_coordinates_is_one_warning(page: EnginePage, mon
 TRANSFORMS = {"threejs": "coverTexture.rotation", "babylonjs": "coverTexture.uScale"}
 
 
-@pytest.mark.parametrize("page", [one for one in RENDERERS if one[0] in TRANSFORMS], ids="-".join, indirect=True)
+@pytest.mark.parametrize("page", [page for page in PAGES if page.values[0][0] in TRANSFORMS], indirect=True)
 def test_a_transform_of_a_texture_is_not_applied(page: EnginePage) -> None:
     drawing = bare(page.engine.target, "ice")._replace(
         textures={"coverTexture": Texture(np.ones((2, 2, 4), np.float32))}
@@ -229,7 +229,7 @@ uniform mat4 to_texture : placed = mat4(1.0);
 """
 
 
-@pytest.mark.parametrize("page", RENDERERS, ids="-".join, indirect=True)
+@pytest.mark.parametrize("page", PAGES, indirect=True)
 def test_matrices_of_the_object_come_from_its_matrix(page: EnginePage, tmp_path: Path) -> None:
     """A body that is turned, stretched and mirrored, and one elsewhere."""
     (tmp_path / "shown.sss").write_text(PLACED, encoding="utf-8")

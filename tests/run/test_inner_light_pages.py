@@ -14,7 +14,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import sssgen
-from engine_cases import BLACK, ENGINES, RENDERERS
+from engine_cases import BLACK, ENGINES, PAGES
 from relit_cases import EXAMPLES, drawn_by_numpy, linear_sky, turned, write_body, write_example
 from skips import or_skip
 from sssgen.run.backends.backend_interface import VERTEX_SIZE
@@ -29,7 +29,6 @@ from sssgen.scene.scene import Light
 FROM_ABOVE = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 """The light of a hemispheric lamp, and of an environment whose upper half is white."""
 SKY = (0.22, 0.25, 0.3), (0.08, 0.06, 0.05)
-QUICK = (("threejs", "webgl"), ("babylonjs", "webgl"), ("playcanvas", "webgl2"))
 
 
 @pytest.fixture(scope="module")
@@ -46,12 +45,7 @@ def refracting(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture(
-    scope="module",
-    params=[
-        pytest.param(pair, marks=[] if pair in QUICK else [pytest.mark.slow], id="-".join(pair)) for pair in RENDERERS
-    ],
-)
+@pytest.fixture(scope="module", params=PAGES)
 def page(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
     target, name = request.param
     renderer: EnginePage = or_skip(partial(EnginePage, ENGINES[target], seconds=400.0), name)

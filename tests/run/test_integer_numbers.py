@@ -10,6 +10,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from slow_cases import back_end_cases
 from sssgen.ir.types import components, kind_of
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
@@ -103,7 +104,7 @@ SCOPES = [
 CASES = WRAPPED + TYPES + BOOLS + PLACES + SCOPES
 
 
-@pytest.mark.parametrize("name", SINGLE)
+@pytest.mark.parametrize("name", back_end_cases(SINGLE, "metal"))
 def test_numbers(name: str, backend: Callable[[str], Backend]) -> None:
     """All cases of a back end in one test, which costs a start of the driver."""
     machine = backend(name)

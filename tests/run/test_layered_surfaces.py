@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from skips import or_skip
+from slow_cases import some_slow
 from sssgen.material.material_loading import load_material, parse_material
 from sssgen.pipeline.compiler import all_targets, compile
 from sssgen.run import backends
@@ -118,7 +119,7 @@ OF_THREE: Mapping[str, Mapping[str, float]] = {
 """Stages → the properties of three's own material that do the same."""
 
 
-@pytest.mark.parametrize("stages", OF_THREE, ids=["coat", "sheen"])
+@pytest.mark.parametrize("stages", some_slow(OF_THREE, SHEEN), ids=["coat", "sheen"])
 def test_three_draws_them_as_its_own_material(stages: str, tmp_path: Path) -> None:
     """The same picture as without the stages, with three's properties in their place."""
     (tmp_path / "ball.toml").write_text(BALL, encoding="utf-8")

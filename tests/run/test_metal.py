@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 import sssgen
-from example_cases import example_cases
 from folders import EXAMPLES
+from slow_cases import some_slow
 from sssgen.ir.types import FLOAT
+from sssgen.material.material_loading import examples
 from sssgen.run import backends
 from sssgen.run.backends import Backend, Call, Text
 from sssgen.run.compilers import Compiler, Source, errors
@@ -91,7 +92,7 @@ def test_the_layout_of_the_uniforms(tmp_path: Path, backend: Callable[[str], Bac
     assert np.frombuffer(block, np.int32, 3, places["steps"]).tolist() == [1, -2, 3] and block[places["on"]] == 1
 
 
-@pytest.mark.parametrize("name", [case for case in example_cases() if case.values[0] != "marble_idol"])
+@pytest.mark.parametrize("name", some_slow([name for name in examples() if name != "marble_idol"], "ice", "jelly"))
 def test_examples_equal_numpy(name: str, backend: Callable[[str], Backend]) -> None:
     scene = load(EXAMPLES / name / "scene.toml")
     shown, oracle = (render(scene, one, (48, 36)).encoded for one in (backend("metal"), backends.get("numpy")))

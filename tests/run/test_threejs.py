@@ -25,6 +25,7 @@ from engine_cases import (
 )
 from folders import ROOT
 from skips import or_skip
+from slow_cases import some_slow
 from sssgen.material.material_loading import load_material
 from sssgen.run.backends.engine_page import EnginePage
 from sssgen.run.backends.web_engines import THREE
@@ -38,7 +39,7 @@ BLACK = {"color": 0.0, "specularIntensity": 0.0}
 """three's own reflection is gone: what is left is emission, and the light that comes through."""
 
 
-@pytest.fixture(scope="module", params=list(THREE.renderers))
+@pytest.fixture(scope="module", params=some_slow(THREE.renderers, "webgpu", "webgl2"))
 def three(request: pytest.FixtureRequest) -> Iterator[EnginePage]:
     renderer: EnginePage = or_skip(partial(EnginePage, THREE), request.param)
     yield renderer

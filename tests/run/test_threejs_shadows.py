@@ -14,6 +14,7 @@ import pytest
 import sssgen
 from engine_cases import HEAD
 from skips import or_skip
+from slow_cases import some_slow
 from sssgen.run.backends import Array
 from sssgen.run.backends.engine_page import EnginePage
 from sssgen.run.backends.web_engines import THREE
@@ -77,7 +78,7 @@ def _with_the_sun(packages: Path) -> Mapping[str, Path]:
     return {**THREE.modules(packages), **sun}
 
 
-@pytest.fixture(scope="module", params=list(THREE.renderers))
+@pytest.fixture(scope="module", params=some_slow(THREE.renderers, "webgpu", "webgl2"))
 def scenes(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Scenes]:
     engine = THREE._replace(script=str(Path(__file__).with_name("three_shadow_page.js")), modules=_with_the_sun)
     page: EnginePage = or_skip(partial(EnginePage, engine), request.param)

@@ -12,7 +12,7 @@ import weakref
 
 from sssgen.material.model import Material
 from sssgen.preview.emitted_head import Slot
-from sssgen.preview.saved_values import is_saved_in_scene, save_to_material, save_to_scene
+from sssgen.preview.saved_values import Change, is_saved_in_scene, save_to_material, save_to_scene
 from sssgen.scene.pictures import images
 from sssgen.scene.scene import Picture, Scene
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
@@ -82,7 +82,7 @@ def save_texture(row: Slot, file: str, scene: Scene, material: Material) -> str:
     if in_scene:
         save_to_scene(toml, {name: relative}, "textures")
     else:
-        save_to_material(material, {(row["technique"], row["name"]): relative})
+        save_to_material(material, [Change(row["technique"], row["name"], relative)])
     return f"{relative} is written, and {posix(toml)} names it."
 
 

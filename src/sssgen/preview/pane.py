@@ -14,7 +14,7 @@ from sssgen.preview.emitted_head import Control, Slot
 from sssgen.preview.flat_head import is_plain, transpile_plain
 from sssgen.preview.flat_picture import plain_picture, raymarched_picture
 from sssgen.preview.picture import Choices, Picture, picture_of
-from sssgen.preview.saved_values import is_saved_in_scene, save_to_material, save_to_scene, saves_where
+from sssgen.preview.saved_values import Change, is_saved_in_scene, save_to_material, save_to_scene, saves_where
 from sssgen.preview.technique_scene import SAVES, is_technique, scene_of_technique
 from sssgen.scene.geometry import Mesh
 from sssgen.scene.preview_scene import scene_of
@@ -148,11 +148,14 @@ class Pane:
         # the level of detail is of no technique: the engine sets it, and the material has no value for it
         others = {name: values[name] for name in values if name not in in_scene and controls[name]["technique"]}
         if others:
-            changes = {(controls[name]["technique"], controls[name]["name"]): value for name, value in others.items()}
-            save_to_material(material, changes)
+            save_to_material(material, [_change(controls[name], value) for name, value in others.items()])
             labels = ", ".join(controls[name]["label"] for name in others)
             written.append(f"{labels} in {posix(material.file)}")
         return f"Saved: {'; '.join(written)}." if written else ""
+
+
+def _change(control: Control, value: Sequence[float]) -> Change:
+    return Change(control["technique"], control["name"], value, control["default"])
 
 
 class StartPane(Pane):

@@ -7,8 +7,8 @@ changed: where the scene is a person's own, the scene gets its changes.
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -46,15 +46,28 @@ def _scene_gets_all(scene: Scene, material: Material) -> bool:
     return is_installed(material.file) and not is_installed(scene.document.reporter.file)
 
 
-def save_to_material(material: Material, changes: Mapping[tuple[str, str], Sequence[float] | str]) -> None:
-    """Writes (technique, parameter or texture) → value into the material's file.
+class Change(NamedTuple):
+    """A new value of a technique's parameter or texture."""
 
-    It is written at every stage of that technique that sets it, or, where none does, at its first stage; one that a
-    stage fixes keeps `fixed`. Raises SssgenError for a file that cannot be read or written, or a stage that is gone.
+    technique: str
+    parameter: str
+    value: Sequence[float] | str
+    old: Sequence[float] | None = None
+    """The value that the material had: of stages with other values, such as those of another level of detail, none is
+    changed. None for a texture, which all stages share"""
+
+
+def save_to_material(material: Material, changes: Iterable[Change]) -> None:
+    """Writes changes into the material's file.
+
+    A value is written at every stage of its technique that sets the old one, or, where none does, at the first stage
+    that sets none; one that a stage fixes keeps `fixed`. Raises SssgenError for a file that cannot be read or written,
+    or a stage that is gone.
     """
     document = _parse(material.file)
     stages = [(stage.technique.role, stage.technique.name) for stage in material.stages]
-    for (technique, parameter), value in changes.items():
+    for change in changes:
+        technique, parameter = change.technique, change.parameter
         tables = [
             table
             for role in dict.fromkeys(role for role, name in stages if name == technique)
@@ -63,14 +76,32 @@ def save_to_material(material: Material, changes: Mapping[tuple[str, str], Seque
         ]
         if not tables:
             raise failure(f"the file has no stage of '{technique}' any more", "reload the page", posix(material.file))
-        chosen = [table for table in tables if parameter in table] or tables[:1]
-        for table in chosen:
+        for table in _changed_stages(tables, change):
             old = table.get(parameter)
             if isinstance(old, dict) and "value" in old:
-                old["value"] = _value(value)
+                old["value"] = _value(change.value)
             else:
-                table[parameter] = _value(value)
+                table[parameter] = _value(change.value)
     _write(material.file, document)
+
+
+def _changed_stages(tables: Sequence[Any], change: Change) -> Sequence[Any]:
+    """The stages of a technique that get a new value."""
+    having = [table for table in tables if change.parameter in table]
+    others = [table for table in tables if change.parameter not in table]
+    if change.old is None:
+        return having or others[:1]
+    same = [table for table in having if _is_equal(table[change.parameter], change.old)]
+    return same or others[:1] or having
+
+
+def _is_equal(stored: Any, numbers: Sequence[float]) -> bool:
+    """Whether a value in a file is these numbers, in float32."""
+    value = stored["value"] if isinstance(stored, dict) and "value" in stored else stored
+    parts = value if isinstance(value, list) else [value]
+    if len(parts) != len(numbers) or not all(isinstance(part, (int, float)) for part in parts):
+        return False
+    return bool(np.array_equal(np.array(parts, np.float32), np.array(numbers, np.float32)))
 
 
 def save_to_scene(path: str, changes: Mapping[str, Sequence[float] | str], section: str = "parameters") -> None:
