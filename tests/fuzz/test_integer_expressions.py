@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from amounts import COUNTED, examples
 from integer_expressions import HIGHEST, LOWEST, MOST, PARAMETERS, Expressions, Part, program, result_of
+from slow_cases import back_end_cases
 from sssgen.ir.types import INT, UINT, Scalar
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.pipeline.compiler import transpile
@@ -49,7 +50,7 @@ def wrong(parts: list[Part], backend: Backend) -> list[str]:
     return [f"{part.text}\n{result}, not {part.value[0]}" for part, result in pairs if result != part.value[0]]
 
 
-@pytest.mark.parametrize("name", SINGLE)
+@pytest.mark.parametrize("name", back_end_cases(SINGLE, "unity"))
 @examples(2, 0.1, shrink=False)  # a seed that is smaller makes no smaller expression
 @given(seed=SEEDS)
 def test_expressions_agree(backend: Callable[[str], Backend], name: str, seed: int) -> None:
@@ -76,7 +77,7 @@ SIGNED = ("abs", "sign")
 COUNTS = ("bitCount", "findLSB", "findMSB")
 
 
-@pytest.mark.parametrize("name", SINGLE)
+@pytest.mark.parametrize("name", back_end_cases(SINGLE, "unity"))
 @pytest.mark.parametrize("kind", ["int", "uint"])
 def test_builtins_at_their_boundaries(backend: Callable[[str], Backend], name: str, kind: str) -> None:
     """Scalars and vectors, with arguments that no compiler knows: all fields, all numbers at a boundary."""

@@ -8,7 +8,7 @@ import pytest
 
 import sssgen
 from carried import carrying
-from example_cases import marks
+from slow_cases import some_slow
 from sssgen.ir.spans import NOWHERE
 from sssgen.material.material_loading import examples
 from sssgen.targets.printers.printed_lines import WIDTH, first_sentence, summary, wrap
@@ -79,7 +79,7 @@ def test_the_rest_of_a_head_is_indented_twice() -> None:
     assert "".join([lines[0].strip(), " ", lines[1].strip()]) == f"if ({condition}) {{"
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=marks(name)) for name in examples()])
+@pytest.mark.parametrize("name", some_slow(examples(), "ice", "jade_ring"))
 def test_long_lines_of_an_example_are_broken_outside_of_types(name: str) -> None:
     """The functions alone: a template may indent them, or have long lines of its own, such as the rows of a table."""
     count = 0
@@ -94,7 +94,7 @@ def test_long_lines_of_an_example_are_broken_outside_of_types(name: str) -> None
     assert count
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=marks(name)) for name in examples()])
+@pytest.mark.parametrize("name", some_slow(examples(), "ice", "jade_ring"))
 def test_no_comment_of_an_example_stops_inside_a_sentence(name: str) -> None:
     count = 0
     for target in {"glsl-330", "numpy"} & set(carrying(name)):
