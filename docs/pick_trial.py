@@ -26,6 +26,8 @@ from sssgen.scene.scene import Light
 SCENES = 5
 LIMITS = 8
 """Limits per scene, from the smallest error to the error without any translucency."""
+LEAST = 0.02
+"""The smallest limit: smaller errors are noise, and can be 0."""
 MEDIA = ("apple", "chicken1", "ketchup", "skin2", "wholemilk", "spectralon", "jade", "wax")
 """Media that the charts do not use."""
 CLOSE = 1.10
@@ -93,7 +95,7 @@ def trial_rows(settings: Settings) -> list[Row]:
         candidates = [point for point in points if is_allowed(point)]
         errors = [true[scene.name, point["label"]] for point in candidates]
         without = next(true[scene.name, point["label"]] for point in candidates if point["name"] == "none")
-        for limit in np.geomspace(1.02 * min(errors), 0.98 * without, LIMITS):
+        for limit in np.geomspace(max(1.02 * min(errors), LEAST), 0.98 * without, LIMITS):
             picked, _ = choose(candidates, float(limit), None)
             assert picked is not None
             within = [cost_of(point) for point, error in zip(candidates, errors, strict=True) if error <= limit]
