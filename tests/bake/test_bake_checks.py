@@ -221,6 +221,7 @@ BAD: dict[str, tuple[list[str], list[str]]] = {
     "a lamp inside": (["lamp.toml"], ["the light is inside the body", "move it out"]),
     "a light with a position": (["box.obj", "--medium", "marble", "--light", "lamp.json"], ["has a position"]),
     "no scattering": (["black.toml"], ["does not scatter"]),
+    "nearly clear": (["clear.toml"], ["nearly clear", "at least 0.05", "seen_through"]),
     "opaque voxels": (["dense.toml"], ["mean free paths long", "at most 10", "more voxels"]),
     "too many voxels": (["box.obj", "--medium", "marble", "--voxels", "500"], ["500 voxels"]),
     "no technique": (["box.obj", "--medium", "marble", "--rank", "5"], ["rank 5", "4, 8"]),
@@ -245,6 +246,7 @@ def test_bad_input_is_refused(case: str, folder: Path, capsys: pytest.CaptureFix
     body = SCENE.replace('material = "stone.toml"', "")
     Path("lamp.toml").write_text(body.replace("direction = [0.4, 0.8", "position = [0.1, 0.1") + MEDIUM, "utf-8")
     Path("black.toml").write_text(body + MEDIUM.replace("[4.0, 4.0, 4.0]", "[0.0, 0.0, 0.0]"), "utf-8")
+    Path("clear.toml").write_text(body + MEDIUM.replace("[4.0, 4.0, 4.0]", "[1e-4, 1e-4, 1e-4]"), "utf-8")
     Path("dense.toml").write_text(body + MEDIUM.replace("[4.0, 4.0, 4.0]", "[900.0, 900.0, 900.0]"), "utf-8")
     words, parts = BAD[case]
     text = refused(capsys, *FEW, *words)

@@ -102,6 +102,7 @@ def test_the_stored_numbers_are_those_of_the_field() -> None:
         (["--relit", "2"], "between 4 and 32"),
         (["--light", "0,1,0"], "--relit and --light exclude each other"),
         (["--format", "dds"], "--relit and --format exclude each other"),
+        (["--rank", "4"], "--relit and --rank exclude each other"),
     ],
 )
 def test_wrong_options_are_errors(options: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -141,5 +142,5 @@ def test_a_render_without_a_right_file_says_what_to_do() -> None:
         render(load("scene.toml"), backends.get("numpy"))
     assert bake() == 0
     Path("ball.bin").write_bytes(Path("ball.bin").read_bytes()[:64])
-    with pytest.raises(SssgenError, match="no response of a body"):
+    with pytest.raises(SssgenError, match="the JSON is that of another file"):
         render(load("scene.toml"), backends.get("numpy"))

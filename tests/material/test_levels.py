@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import sssgen
-from sssgen.material.material_loading import parse_material
+from sssgen.material.material_loading import load_material, parse_material
 from sssgen.support.diagnostics import SssgenError
 
 HEAD = '[material]\nname = "wax"\nlevels = 2\n'
@@ -62,6 +62,26 @@ def test_levels_share_textures_but_no_numbers(tmp_path: Path) -> None:
     textures = [texture["name"] for texture in reflection["textures"]]
     assert textures.count("inner_light") == 1 and len(set(textures)) == len(textures)
     assert [drawn["name"] for drawn in reflection["passes"]].count("inner_light") == 1
+
+
+@pytest.mark.parametrize(("files", "count"), [(("a.png", "a.png"), 1), (("a.png", "b.png"), 2)])
+def test_levels_share_a_texture_if_its_file_is_the_same(files: tuple[str, str], count: int, tmp_path: Path) -> None:
+    stages = "".join(
+        f'[[surface]]\ntechnique = "metallic_roughness_map"\nmetallic_roughness_texture = "{file}"\nlevel = {level}\n'
+        for level, file in enumerate(files)
+    )
+    assert emitted(HEAD + stages, tmp_path).count("uniform sampler2D ") == count
+
+
+def test_levels_have_one_file_for_a_volume_that_a_pass_draws(tmp_path: Path) -> None:
+    """The volume of the light inside is drawn once, from one file."""
+    stages = "".join(
+        f'[[translucency]]\ntechnique = "fluence_relit"\ninner_light = "{file}"\nlevel = {level}\n'
+        for level, file in enumerate(("a.bin", "b.bin"))
+    )
+    (tmp_path / "wax.toml").write_text(HEAD + stages)
+    with pytest.raises(SssgenError, match="'inner_light' has another value in 'fluence_relit', line 6"):
+        load_material(tmp_path / "wax.toml")
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 
 from oracle import Array, close, rng, unit
 from sssgen.scene import octahedron
-from sssgen.scene.light_response import LightResponse, from_bytes, from_light, harmonics, lit, to_bytes
+from sssgen.scene.light_response import LightResponse, checksum, from_bytes, from_light, harmonics, lit, to_bytes
 from sssgen.scene.scene import Light
 
 SIDE, RANK, SHAPE = 8, 3, (3, 4, 5)
@@ -112,6 +112,7 @@ def test_the_bytes_of_a_file() -> None:
     facts: dict[str, Any] = {
         "arrays": arrays, "box_min": response.low.tolist(), "box_max": response.high.tolist(),
         "highest": response.highest, "powers": response.powers.tolist(), "largest": response.largest.tolist(),
+        "file": {"bytes": len(data), "adler32": checksum(data)},
     }  # fmt: skip
     read = from_bytes(data, facts)
     for before, after in zip(response, read, strict=True):
@@ -120,6 +121,14 @@ def test_the_bytes_of_a_file() -> None:
         from_bytes(data[:100], facts)
     with pytest.raises(KeyError):
         from_bytes(data, {})
+    other, _ = to_bytes(response._replace(highest=2.0, distance=255 - response.distance))
+    for file in (other, data + b"more"):
+        with pytest.raises(ValueError, match="that of another file"):
+            from_bytes(file, facts)
+    for name, shape in {"latents": [2, 3], "surroundings": [1, 3, 9], "table": [1, 1, 3]}.items():
+        changed = {**facts, "arrays": {**arrays, name: {**arrays[name], "shape": shape}}}
+        with pytest.raises(ValueError, match="belong together"):
+            from_bytes(data, changed)
 
 
 def test_the_octahedral_map_is_continuous_and_exact_at_its_texels() -> None:

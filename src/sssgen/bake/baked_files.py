@@ -14,10 +14,10 @@ import numpy.typing as npt
 from sssgen.bake.bake_facts import BakeFacts
 from sssgen.bake.volume_files import FORMATS, encode_volume, layout
 from sssgen.material import baked
-from sssgen.scene.light_response import SUFFIX
+from sssgen.scene.light_response import SUFFIX, checksum
 from sssgen.scene.pictures import images
 from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.support.file_writer import check_names, write_files
+from sssgen.support.file_writer import check_folder, check_names, write_files
 from sssgen.support.installed_files import is_installed, refusal
 from sssgen.support.paths import posix
 from sssgen.version import VERSION
@@ -36,6 +36,8 @@ def volume_format(path: str, format: str | None) -> str:
         formats = [name for name, ending in FORMATS.items() if ending == suffix]
         if not formats:
             hint = did_you_mean(suffix, FORMATS.values()) or f"end it in {', '.join(FORMATS.values())}"
+            if suffix == SUFFIX:
+                hint = "a .bin is for all lights: add --relit 16"
             raise failure(f"'{suffix}' is not the suffix of a volume file", f"{hint}, or name a --format", posix(path))
         return formats[0]
     if format not in FORMATS:
@@ -55,7 +57,8 @@ def check_response_path(path: str) -> None:
 
 def write_response(path: str, data: bytes, facts: BakeFacts) -> list[str]:
     """Writes the response of a body to light, and its JSON; returns the paths."""
-    return _write(path, data, {**facts, "file": {"name": os.path.basename(path), "bytes": len(data)}})
+    about = {"name": os.path.basename(path), "bytes": len(data), "adler32": checksum(data)}
+    return _write(path, data, {**facts, "file": about})
 
 
 def write_volume(path: str, texels: npt.NDArray[Any], format: str, facts: BakeFacts) -> list[str]:
@@ -140,17 +143,15 @@ def mesh_beside(path: str) -> str:
 
 
 def _check_place(path: str) -> None:
-    """Raises SssgenError if the path is a folder or comes with sssgen, or a parent of it is a file."""
+    """Raises SssgenError if the path, or that of its JSON, is a folder or comes with sssgen, or a parent is a file."""
     folder, name = os.path.split(path)
     check_names([name])
     if is_installed(path):
         raise refusal(path)
-    if os.path.isdir(path):
-        raise failure("cannot write the file: a folder has its name", file=posix(path))
-    while folder and not os.path.exists(folder):
-        folder = os.path.dirname(folder)
-    if folder and not os.path.isdir(folder):
-        raise failure("cannot write the file: this is not a folder", "choose another folder with -o", posix(folder))
+    for file in (path, baked.sidecar(path)):
+        if os.path.isdir(file):
+            raise failure("cannot write the file: a folder has its name", file=posix(file))
+    check_folder(folder)
 
 
 def _write(path: str, data: bytes, facts: Mapping[str, object], beside: Mapping[str, str] | None = None) -> list[str]:

@@ -39,6 +39,9 @@ OPAQUE = 3.0
 """The optical depth of a voxel above which light does not reach from one voxel to the next: the bake warns."""
 MOST_OPAQUE = 10.0
 """The optical depth of a voxel above which a bake is refused: all light ends in the first voxel."""
+LEAST_SCATTERING = 0.05
+"""The scattering along the longest side, in mean free paths, below which a bake is refused: nearly no path scatters, so
+that the noise of the few that do is larger than the light."""
 BYTES = 3 * 6 * 8
 """Bytes of memory for each voxel and direction: three channels, of the field and of its factors."""
 
@@ -134,6 +137,13 @@ def check(scene: MeasuredScene, settings: Settings) -> None:
         raise failure(
             f"a voxel is {depth:.3g} mean free paths long in one channel, and at most {MOST_OPAQUE:g} are traced",
             "use more voxels, or a smaller unit: --unit-mm, unit_mm of [medium]",
+        )
+    scattering = max(scene.medium.scattering) * _voxel(scene, grid) * max(grid.shape)
+    if scattering < LEAST_SCATTERING:
+        raise failure(
+            f"the body is nearly clear: its longest side is {scattering:.2g} mean free paths of scattering, and at "
+            f"least {LEAST_SCATTERING:g} are traced",
+            "use the technique seen_through, which needs no bake, or a medium that scatters more",
         )
     inside = int(projection_of(scene, settings.voxels).counting.sum())
     if fluence_field.by_flights(scene):

@@ -22,7 +22,10 @@ def bake(
 ) -> tuple[bytes, RelitFacts]:  # fmt: skip
     """The file with `rank` numbers in a voxel, and the facts for its JSON. Raises SssgenError."""
     if not RANKS[0] <= rank <= RANKS[1]:
-        raise failure(f"{rank} numbers in a voxel are not between {RANKS[0]} and {RANKS[1]}", "8 or 16 are enough")
+        raise failure(
+            f"{rank} numbers in a voxel are not between {RANKS[0]} and {RANKS[1]}",
+            "16 are enough, 32 for a body with thin parts",
+        )
     check(scene, settings)
     stored, traced = response.response(scene, rank, settings, scheduler, processes, progress)
     data, arrays = to_bytes(stored)

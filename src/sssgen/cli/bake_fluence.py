@@ -17,16 +17,19 @@ if TYPE_CHECKING:
 
 Result: TypeAlias = "tuple[list[str], FluenceFacts, list[str]]"
 """The files that were written, the content of their JSON, and the lines to print."""
+NOISY = 1.0
+"""The standard error of a voxel, relative to the mean, from which the bake warns."""
 
 
 def add_options(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("BODY", metavar="SCENE|MESH", help="a scene with [medium], or a mesh, for which --medium names the medium")
-    add_output(parser, "FILE", "a .npy, .dds or .ktx2; the names of several files are made of it", required=True)
+    output = "a .npy, .dds or .ktx2, with --relit a .bin; the names of several files are made of it"
+    add_output(parser, "FILE", output, required=True)
     add("--medium", default="", metavar="NAME", help="the medium of a mesh: a name of `sssgen list media`")
     add("--unit-mm", type=float, default=10.0, metavar="U", help="millimetres in a unit of the mesh (default: 10)")
-    add("--rank", type=int, default=8, metavar="K", help="numbers in a voxel, for any distant light: 4 or 8 (default)")
-    add("--relit", type=int, metavar="K", help="K numbers in a voxel, for all lights and surroundings: a .bin; 8 or 16")
+    add("--rank", type=int, metavar="K", help="numbers in a voxel, for any distant light: 4 or 8 (default)")
+    add("--relit", type=int, metavar="K", help="K numbers in a voxel, for all lights and surroundings: a .bin; 8 to 32")
     add("--light", metavar="LIGHT", help="one light that is fixed to the body: a .json with direction, or X,Y,Z")
     add("--voxels", type=int, metavar="N", help="voxels along the longest side (default: about 4096 in the body)")
     add("--photons", type=int, default=24000, metavar="N", help="for each direction and channel (default: 24000)")
@@ -51,13 +54,14 @@ def bake(arguments: Namespace) -> Result:
     voxels = fitting_voxels(scene) if arguments.voxels is None else arguments.voxels
     settings = Settings(voxels, photons=arguments.photons, seed=arguments.seed)
     if relit:
-        if arguments.light or arguments.format:
-            option = "--light" if arguments.light else "--format"
+        others = {"--light": arguments.light, "--format": arguments.format, "--rank": arguments.rank}
+        for option in (name for name, value in others.items() if value):
             raise failure(f"--relit and {option} exclude each other", f"leave {option} out: a .bin serves all lights")
         return _relit(arguments, scene, settings)
     light = bake_light.read_light(arguments.light) if arguments.light else None
+    rank = 8 if arguments.rank is None else arguments.rank
     with ProgressBar() as bar:
-        baked = fluence.bake(scene, arguments.rank, light, settings, arguments.scheduler, arguments.processes, bar)
+        baked = fluence.bake(scene, rank, light, settings, arguments.scheduler, arguments.processes, bar)
     paths = []
     for part in baked.parts:
         facts: FluenceFacts = {**baked.facts, "texture": part.texture}
@@ -90,6 +94,8 @@ def _lines(scene: MeasuredScene, facts: FluenceFacts) -> list[str]:
     ]
     if getattr(scene.geometry, "inside_out", False):
         lines.append("the mesh is inside out: it was reversed")
+    if facts["error"]["standard_error"] > NOISY:
+        lines.append("warning: the noise is as large as the light: use more --photons, or a medium that scatters more")
     if facts["opaque_voxels"]:
         lines.append("warning: a voxel is opaque in one channel: use more voxels, or a smaller --unit-mm")
     return lines

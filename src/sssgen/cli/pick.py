@@ -19,7 +19,7 @@ from sssgen.material.material_loading import parse_material
 from sssgen.material.model import MOST_LEVELS
 from sssgen.pipeline.compiler import compile
 from sssgen.support.diagnostics import Diagnostic, SssgenError, failure
-from sssgen.support.file_writer import write_files
+from sssgen.support.file_writer import check_folder, write_files
 from sssgen.support.progress import ProgressBar
 
 if TYPE_CHECKING:
@@ -73,6 +73,7 @@ def add_options(parser: ArgumentParser) -> None:
 def run(arguments: Namespace) -> int:
     """Measures if necessary, picks, and prints the reasons."""
     _check_limits(arguments)
+    check_folder(arguments.emit or "")
     settings, conditions, device = settings_of(arguments), conditions_of(arguments), device_of(arguments)
     if arguments.budget_ms is not None:
         return _run_levels(arguments, settings, conditions, device)

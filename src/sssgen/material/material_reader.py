@@ -356,11 +356,12 @@ class _Reader:
     def share(self, stage: TechniqueUse, uniform: Uniform, path: tuple[str | int, ...], value: object) -> None:
         """Checks that all stages agree about a parameter that they share.
 
-        Those of included files and of bound functions are shared.
+        Those of included files and of bound functions are shared, textures in all levels of detail.
         """
         span = self.document.place(*path).value
         shared = _SharedValue(value, stage.technique.name, span.line)
-        earlier = self.shared.setdefault((uniform.span, stage.levels), shared)
+        levels = () if isinstance(uniform.type, Sampler) else stage.levels
+        earlier = self.shared.setdefault((uniform.span, levels), shared)
         if earlier.value != value:
             message = f"'{uniform.name}' has another value in '{earlier.technique}', line {earlier.line}"
             file = display_name(uniform.span.file)

@@ -39,6 +39,8 @@ class LinkInput(NamedTuple):
     """The stage of the material: functions with the same number share its parameters."""
     levels: tuple[int, ...] = ()
     """The levels of detail that it belongs to: those with the same levels share the parameters of included files."""
+    files: Mapping[str, str] = {}
+    """Texture → its file: levels of detail share a technique's texture where its file is the same."""
 
 
 class LinkedModule(NamedTuple):
@@ -98,7 +100,7 @@ class _Linker:
         """The linked name of each uniform and constant, by its place, and of each constant by its meaning, too."""
         self.sharers: dict[tuple[Span, int], int] = {}
         """By the place of a texture and the number of a stage of some levels: the first stage that has this texture."""
-        self.levels_with: dict[Span, dict[int, set[int]]] = {}
+        self.levels_with: dict[tuple[Span, str], dict[int, set[int]]] = {}
         """By the place of a texture: the first stage → the levels of the stages that share it."""
         self.modules: dict[int, tuple[Module, Module]] = {}
         """By its id: a module with structs of taken names, and the same without."""
@@ -210,11 +212,12 @@ class _Linker:
         return name
 
     def texture_sharer(self, uniform: Uniform, index: int, stage: LinkInput) -> int:
-        """The first stage with a technique's own uniform: for a texture one of the same technique in another level."""
+        """The first stage with a technique's own uniform: for a texture one of the same technique and with the same
+        file in another level."""
         if not isinstance(uniform.type, Sampler) or not stage.levels:
             return index
         if (uniform.span, index) not in self.sharers:
-            groups = self.levels_with.setdefault(uniform.span, {})
+            groups = self.levels_with.setdefault((uniform.span, stage.files.get(uniform.name, "")), {})
             first = next((first for first, levels in groups.items() if levels.isdisjoint(stage.levels)), index)
             groups.setdefault(first, set()).update(stage.levels)
             self.sharers[uniform.span, index] = first

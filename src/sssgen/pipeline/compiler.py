@@ -256,6 +256,7 @@ def _structure(structural: Material, target: Target) -> str:
         functions = [(slot, binding.function.key) for slot, binding in bindings.items()]
         values, fixed = sorted(stage.values.items()), sorted(stage.fixed)
         parts.append((technique.name, technique.role, functions, values, fixed, stage.span, stage.uv, stage.levels))
+        parts.append(sorted(stage.textures.items()) if stage.levels else None)
     keys = [key_of(module) for module in modules]
     return repr((parts, keys)) if all(keys) else ""
 

@@ -165,20 +165,46 @@ def to_bytes(response: LightResponse) -> tuple[bytes, dict[str, Any]]:
     return zlib.compress(b"".join(parts), 9), described
 
 
+def checksum(data: bytes) -> int:
+    """The Adler-32 of what is compressed, which ends a stream of zlib: the JSON has it, so that readers notice the JSON
+    of another file."""
+    return int.from_bytes(data[-4:], "big")
+
+
 def from_bytes(data: bytes, facts: Mapping[str, Any]) -> LightResponse:
     """The response of a file with its JSON. Raises KeyError, TypeError or ValueError for a JSON of another file, and
     for a file of another kind."""
+    about = facts["file"]
+    if len(data) != about["bytes"] or checksum(data) != about.get("adler32", checksum(data)):
+        raise ValueError("the JSON is that of another file")
     try:
         data = zlib.decompress(data)
     except zlib.error as error:
         raise ValueError(str(error)) from error
-    arrays = {}
+    arrays: dict[str, Any] = {}
     for name in _ARRAYS:
         about = facts["arrays"][name]
         count = int(np.prod(about["shape"]))
         dtype = np.dtype(about["type"]).newbyteorder("<")
         arrays[name] = np.frombuffer(data, dtype, count, about["start"]).reshape(about["shape"])
-    return LightResponse(
+    response = LightResponse(
         np.array(facts["box_min"], float), np.array(facts["box_max"], float), highest=float(facts["highest"]),
         powers=np.array(facts["powers"], float), largest=np.array(facts["largest"], float), **arrays,
     )  # fmt: skip
+    _check_shapes(response)
+    return response
+
+
+def _check_shapes(response: LightResponse) -> None:
+    """Raises ValueError for arrays that do not belong together."""
+    voxels, rank = len(response.cells), len(response.latents)
+    directions = response.arriving.shape[1]
+    fits = (
+        response.latents.shape == (rank, voxels) and response.table.shape[1:] == (1 + rank, 3)
+        and response.arriving.shape == (voxels, directions) and response.surroundings.shape == (HARMONICS, 3, voxels)
+        and response.largest.shape == (HARMONICS, 3) and response.distance.shape == response.nearest.shape
+        and response.low.shape == response.high.shape == response.powers.shape == (3,)
+        and max(response.nearest.max(), -1) < voxels and max(response.cells.max(), -1) < response.nearest.size
+    )  # fmt: skip
+    if not fits:
+        raise ValueError("the arrays do not belong together")

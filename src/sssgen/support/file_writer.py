@@ -56,6 +56,15 @@ def _fault(name: str) -> str:
     return ""
 
 
+def check_folder(folder: str) -> None:
+    """Raises SssgenError if files cannot be written to a folder because a file has its name, or that of a parent.
+    Commands call it before work that takes long."""
+    while folder and not os.path.exists(folder):
+        folder = os.path.dirname(folder)
+    if folder and not os.path.isdir(folder):
+        raise failure("cannot write the file: this is not a folder", "choose another folder with -o", posix(folder))
+
+
 def write_files(
     folder: str | os.PathLike[str], files: Mapping[str, str | bytes], installed: bool = False
 ) -> list[Written]:

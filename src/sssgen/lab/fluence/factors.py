@@ -17,6 +17,8 @@ MORE, ITERATIONS = 8, 4
 """Of the first guess: columns beside those of the rank, and how often they are improved."""
 RIDGE = 1e-6
 """The weight of the factors' own squares, relative to the mean weight of a row: it keeps the equations solvable."""
+LEAST_SQUARE = 1e-30
+"""Of light: where there is none, its error has a weight, too."""
 
 
 def factors(field: Array, rank: int, floor: float, smooth: Array) -> tuple[Array, Array]:
@@ -26,7 +28,7 @@ def factors(field: Array, rank: int, floor: float, smooth: Array) -> tuple[Array
     noise: weights of noisy values would prefer those that are too small.
     """
     rank = min(rank, *field.shape)
-    weight = 1.0 / (smooth**2 + floor**2)
+    weight = 1.0 / np.maximum(smooth**2 + floor**2, LEAST_SQUARE)
     right = _rows(field * np.sqrt(weight.mean(axis=1, keepdims=True)), rank)
     left: Array = np.zeros((len(field), rank))
     for _ in range(ROUNDS):
@@ -53,8 +55,8 @@ def _solve(basis: Array, field: Array, weight: Array) -> Array:
     matrices = np.empty((len(field), rank, rank))
     matrices[:, row, column] = weight @ (basis[row] * basis[column]).T
     matrices[:, column, row] = matrices[:, row, column]
-    trace = np.trace(matrices, axis1=1, axis2=2)[:, None, None] / rank
-    solution: Array = np.linalg.solve(matrices + RIDGE * trace * np.eye(rank), ((weight * field) @ basis.T)[..., None])[
-        ..., 0
-    ]
-    return solution
+    mean = np.trace(matrices, axis1=1, axis2=2)[:, None] / rank
+    # a row without light has the mean 0: its coefficients are 0
+    matrices[:, range(rank), range(rank)] += np.where(mean > 0.0, RIDGE * mean, 1.0)
+    solution = np.linalg.solve(matrices, ((weight * field) @ basis.T)[..., None])[..., 0]
+    return solution.astype(np.float64, copy=False)

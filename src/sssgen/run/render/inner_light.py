@@ -29,13 +29,19 @@ def inner_light(file: str, scene: Scene, environment: Environment | None) -> Tex
     assert scene.geometry is not None
     note(file)
     sidecar = baked.read_bake_file(file)
+    if sidecar is None:
+        hint = "both come from `sssgen bake fluence --relit`: copy them together"
+        raise failure(
+            f"the response of a body lacks the JSON beside it, {posix(baked.sidecar(file))}", hint, posix(file)
+        )
     try:
         with open(file, "rb") as opened:
-            response = from_bytes(opened.read(), sidecar.facts if sidecar else {})
-    except (KeyError, TypeError, ValueError):
+            response = from_bytes(opened.read(), sidecar.facts)
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        reason = f": {error}" if type(error) is ValueError else ""
         raise failure(
-            "this is no response of a body to light, with its .json beside it", "sssgen bake fluence --relit makes one",
-            posix(file),
+            f"this and {posix(baked.sidecar(file))} are not the response of a body to light{reason}",
+            "bake again with `sssgen bake fluence --relit`, or copy both files together", posix(file),
         ) from None  # fmt: skip
     to_object = scene.geometry.to_object()
     lights = [from_light(response, light, to_object) for light in scene.lights]

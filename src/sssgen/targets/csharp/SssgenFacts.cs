@@ -29,6 +29,9 @@ namespace Sssgen {
             return Regex.Replace("_" + name, "_(.)", letter => letter.Groups[1].Value.ToUpperInvariant()).Insert(0, "_");
         }
 
+        /// <summary>The size of the file that this JSON describes.</summary>
+        public int FileBytes => (int)Numbers(Table(facts["file"])["bytes"])[0];
+
         /// <summary>The numbers of an entry, those of inner lists one behind the other.</summary>
         public float[] Numbers(string name) {
             return Numbers(facts[name]);

@@ -50,7 +50,8 @@ namespace Sssgen {
         /// <summary>The response of a file and its JSON; null where they are of another kind.</summary>
         public static LightResponse Of(byte[] file, string json) {
             try {
-                return new LightResponse(Decompressed(file), new InnerFacts(json));
+                var facts = new InnerFacts(json);
+                return facts.FileBytes == file.Length ? new LightResponse(Decompressed(file), facts) : null;
             } catch (Exception error) when (error is FormatException || error is KeyNotFoundException
                 || error is InvalidDataException || error is IOException) { // what is not compressed, as .NET and Mono have it
                 return null;

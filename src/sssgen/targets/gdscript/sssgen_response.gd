@@ -38,6 +38,8 @@ class Response:
 		var file := FileAccess.get_file_as_bytes(path)
 		if file.is_empty() or not (facts is Dictionary and facts.has("arrays") and facts["arrays"].has("arriving")):
 			return null
+		if file.size() != int(facts["file"]["bytes"]): # the JSON of another bake
+			return null
 		var data := file.decompress_dynamic(-1, FileAccess.COMPRESSION_DEFLATE)
 		return Response.new(data, facts) if not data.is_empty() else null
 

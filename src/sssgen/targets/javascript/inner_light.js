@@ -285,6 +285,20 @@ function turnedSurroundings(light, turn) {
   return ORDER.map((_, harmonic) => channels.map((values) => values[harmonic]));
 }
 
+/**
+ * The response of a body from the bytes of a file and the content of its JSON.
+ * @param {BufferSource} data
+ * @param {any} facts
+ */
+async function responseFrom(data, facts) {
+  const view = ArrayBuffer.isView(data) ? new DataView(data.buffer, data.byteOffset, data.byteLength) : new DataView(data);
+  const { bytes, adler32 } = facts.file; // the checksum of what is compressed ends the file
+  if (view.byteLength !== bytes || (adler32 !== undefined && view.getUint32(bytes - 4) !== adler32)) {
+    throw new Error(`${facts.file.name}.json is the JSON of another bake: copy both files of a bake together`);
+  }
+  return new LightResponse(await decompressed(data), facts);
+}
+
 /** What was compressed. @param {BufferSource} data */
 function decompressed(data) {
   return new Response(new Blob([data]).stream().pipeThrough(new DecompressionStream('deflate'))).arrayBuffer();
@@ -296,12 +310,12 @@ function decompressed(data) {
  * @param {string | { data: BufferSource, facts: any }} source
  */
 export async function responseOf(source) {
-  if (typeof source !== 'string') return new LightResponse(await decompressed(source.data), source.facts);
+  if (typeof source !== 'string') return responseFrom(source.data, source.facts);
   const load = async (/** @type {string} */ url) => {
     const answer = await fetch(url);
     if (!answer.ok) throw new Error(`cannot load ${url}: ${answer.status}`);
     return answer;
   };
   const [data, facts] = await Promise.all([load(source), load(`${source}.json`)]);
-  return new LightResponse(await decompressed(await data.arrayBuffer()), await facts.json());
+  return responseFrom(await data.arrayBuffer(), await facts.json());
 }
