@@ -132,6 +132,7 @@ def test_a_distance_texture_has_the_technique_s_convention() -> None:
         ('material = "paper_lanter"\n', "did you mean 'paper_lantern'", 1),
         ('material = "none.toml"\n', "cannot find the file 'none.toml'", 1),
         ("material = 3\n", "takes one line of text", 1),
+        ('[material]\nname = "wax"\n[[surface]]\ntechnique = "base_color"\n', "this is a material, and no scene", 1),
         (HEAD + "sise = [1, 1]\n", "did you mean 'size'", 2),
         (HEAD + "size = [0, 480]\n", "'size' cannot be 0", 2),
         (HEAD + "size = [640.0, 480]\n", "takes whole numbers", 2),

@@ -49,6 +49,10 @@ def read_scene(document: Document, folder: str, draws: bool = True) -> Scene:
 
     Raises SssgenError with all errors; a missing picture is one unless nothing `draws` the scene.
     """
+    if isinstance(document.data.get("material"), dict):
+        hint = 'name a scene: a file with material = "…" and, for its body, [geometry]'
+        document.error(document.place("material").key, "this is a material, and no scene", hint)
+        document.reporter.check()
     reader = _Reader(document, folder)
     scene = reader.scene()
     if draws:
