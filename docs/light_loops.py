@@ -197,7 +197,7 @@ def animation(ours: Sequence[Array], traced: Sequence[Array]) -> bytes:
     file = io.BytesIO()
     sheets[0].save(
         file, "WEBP", save_all=True, append_images=sheets[1:], duration=round(1000.0 * SECONDS / count), loop=0,
-        quality=80, method=6,
+        quality=90, method=6,
     )  # fmt: skip
     return file.getvalue()
 
