@@ -221,6 +221,7 @@ BAD: dict[str, tuple[list[str], list[str]]] = {
     "a lamp inside": (["lamp.toml"], ["the light is inside the body", "move it out"]),
     "a light with a position": (["box.obj", "--medium", "marble", "--light", "lamp.json"], ["has a position"]),
     "no scattering": (["black.toml"], ["does not scatter"]),
+    "a .bin": (["box.obj", "--medium", "marble", "-o", "out.bin"], ["for all lights and surroundings", "add --relit"]),
     "nearly clear": (["clear.toml"], ["nearly clear", "at least 0.05", "seen_through"]),
     "opaque voxels": (["dense.toml"], ["mean free paths long", "at most 10", "more voxels"]),
     "too many voxels": (["box.obj", "--medium", "marble", "--voxels", "500"], ["500 voxels"]),
@@ -230,7 +231,7 @@ BAD: dict[str, tuple[list[str], list[str]]] = {
 
 def refused(capsys: pytest.CaptureFixture[str], *words: str) -> str:
     """The message of a bake that fails with the exit code of an error, and writes nothing."""
-    assert main(["bake", "fluence", *words, "-o", "out.npy"]) == 2
+    assert main(["bake", "fluence", "-o", "out.npy", *words]) == 2
     text = capsys.readouterr().err
     assert "Traceback" not in text and not list(Path().glob("out*"))
     return text

@@ -102,7 +102,7 @@ def test_the_stored_numbers_are_those_of_the_field() -> None:
         (["--relit", "2"], "between 4 and 32"),
         (["--light", "0,1,0"], "--relit and --light exclude each other"),
         (["--format", "dds"], "--relit and --format exclude each other"),
-        (["--rank", "4"], "--relit and --rank exclude each other"),
+        (["--rank", "0"], "--relit and --rank exclude each other"),
     ],
 )
 def test_wrong_options_are_errors(options: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -54,3 +54,22 @@ def test_surroundings_that_bones_turn(tmp_path: Path) -> None:
     close(drawn.astype(float), expected, rtol=2e-3, atol=1e-3)
     distances = np.linalg.norm(places[:, None] - others.astype(np.float32)[None], axis=2)
     assert said["nearest"] == distances.argmin(axis=1).tolist()
+
+
+@pytest.mark.parametrize("entry", ["bytes", "adler32"])
+def test_a_page_refuses_the_json_of_another_bake(entry: str, tmp_path: Path) -> None:
+    write_body(tmp_path)
+    sidecar = tmp_path / "body.bin.json"
+    facts = json.loads(sidecar.read_text("utf-8"))
+    facts["file"][entry] += 1
+    sidecar.write_text(json.dumps(facts), "utf-8")
+    module = (ROOT / "src" / "sssgen" / "targets" / "javascript" / "inner_light.js").as_uri()
+    script = f"""
+        import {{ readFileSync }} from 'node:fs';
+        import {{ responseOf }} from '{module}';
+        const facts = JSON.parse(readFileSync('body.bin.json', 'utf8'));
+        await responseOf({{ data: readFileSync('body.bin'), facts }});
+    """
+    command = ["node", "--input-type=module", "-e", script]
+    ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert ran.returncode != 0 and "body.bin.json is the JSON of another bake" in ran.stderr, ran.stderr

@@ -59,7 +59,7 @@ MESHES = ("ice", "ice_inlay", "jade_ring", "marble_idol", "paper_lantern", "resi
 ENGINES = {engine.target: engine for engine in (THREE, BABYLON, PLAYCANVAS)}
 RENDERERS = [(target, name) for target, engine in ENGINES.items() for name in engine.renderers]
 QUICK = {("threejs", "webgl2"), ("threejs", "webgpu"), ("babylonjs", "webgl"), ("playcanvas", "webgpu")}
-"""Each engine and each of its languages: a page takes seconds on the processor."""
+"""Each engine, and both languages: a page takes seconds on the processor."""
 PAGES = [pytest.param(pair, id="-".join(pair), marks=[] if pair in QUICK else [pytest.mark.slow]) for pair in RENDERERS]
 """Parameters of a fixture that opens a page: those that are not quick run in `make test-long`."""
 SIZE = (96, 72)

@@ -36,8 +36,6 @@ def volume_format(path: str, format: str | None) -> str:
         formats = [name for name, ending in FORMATS.items() if ending == suffix]
         if not formats:
             hint = did_you_mean(suffix, FORMATS.values()) or f"end it in {', '.join(FORMATS.values())}"
-            if suffix == SUFFIX:
-                hint = "a .bin is for all lights: add --relit 16"
             raise failure(f"'{suffix}' is not the suffix of a volume file", f"{hint}, or name a --format", posix(path))
         return formats[0]
     if format not in FORMATS:

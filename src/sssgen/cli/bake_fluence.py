@@ -44,10 +44,13 @@ def bake(arguments: Namespace) -> Result:
     from sssgen.bake import baked_files as output
     from sssgen.lab.fluence.fluence_field import Settings
     from sssgen.lab.fluence.traced_body import fitting_voxels
+    from sssgen.scene.light_response import SUFFIX
 
     relit = arguments.relit is not None
     if relit:
         output.check_response_path(arguments.output)
+    elif arguments.output.lower().endswith(SUFFIX):
+        raise failure(f"a {SUFFIX} is for all lights and surroundings", "add --relit 16, or end FILE in .dds")
     format = "" if relit else output.volume_format(arguments.output, arguments.format)
     output.check_apart(arguments.output, [arguments.BODY, arguments.light or ""])
     scene = fluence.body(arguments.BODY, arguments.medium, arguments.unit_mm)
@@ -55,7 +58,8 @@ def bake(arguments: Namespace) -> Result:
     settings = Settings(voxels, photons=arguments.photons, seed=arguments.seed)
     if relit:
         others = {"--light": arguments.light, "--format": arguments.format, "--rank": arguments.rank}
-        for option in (name for name, value in others.items() if value):
+        option = next((name for name, value in others.items() if value is not None), "")
+        if option:
             raise failure(f"--relit and {option} exclude each other", f"leave {option} out: a .bin serves all lights")
         return _relit(arguments, scene, settings)
     light = bake_light.read_light(arguments.light) if arguments.light else None

@@ -110,7 +110,7 @@ def _link_input(stage: TechniqueUse, number: int) -> LinkInput:
         stage.fixed,
         number,
         stage.levels,
-        stage.textures if stage.levels else {},
+        stage.textures,
     )
 
 

@@ -198,13 +198,13 @@ def from_bytes(data: bytes, facts: Mapping[str, Any]) -> LightResponse:
 def _check_shapes(response: LightResponse) -> None:
     """Raises ValueError for arrays that do not belong together."""
     voxels, rank = len(response.cells), len(response.latents)
-    directions = response.arriving.shape[1]
     fits = (
         response.latents.shape == (rank, voxels) and response.table.shape[1:] == (1 + rank, 3)
-        and response.arriving.shape == (voxels, directions) and response.surroundings.shape == (HARMONICS, 3, voxels)
+        and response.arriving.ndim == 2 and len(response.arriving) == voxels
+        and response.surroundings.shape == (HARMONICS, 3, voxels)
         and response.largest.shape == (HARMONICS, 3) and response.distance.shape == response.nearest.shape
         and response.low.shape == response.high.shape == response.powers.shape == (3,)
-        and max(response.nearest.max(), -1) < voxels and max(response.cells.max(), -1) < response.nearest.size
+        and response.nearest.max() < voxels and response.cells.max() < response.nearest.size
     )  # fmt: skip
     if not fits:
         raise ValueError("the arrays do not belong together")

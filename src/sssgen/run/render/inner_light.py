@@ -37,8 +37,8 @@ def inner_light(file: str, scene: Scene, environment: Environment | None) -> Tex
     try:
         with open(file, "rb") as opened:
             response = from_bytes(opened.read(), sidecar.facts)
-    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
-        reason = f": {error}" if type(error) is ValueError else ""
+    except (KeyError, TypeError, ValueError) as error:
+        reason = f": {error}" if isinstance(error, ValueError) else ""
         raise failure(
             f"this and {posix(baked.sidecar(file))} are not the response of a body to light{reason}",
             "bake again with `sssgen bake fluence --relit`, or copy both files together", posix(file),
