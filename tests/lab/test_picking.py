@@ -340,6 +340,7 @@ def test_the_picked_chain_is_emitted(stored_chart: str, tmp_path: Path, capsys: 
         (["--max-cost", "3", "--without", "depthmap"], "did you mean 'depth-map'"),
         (["--max-cost", "3", "--samples", "1"], "--samples 1 is not a number of samples"),
         (["--max-cost", "99", "--emit", "out", "--target", "wgls"], "did you mean 'wgsl'"),
+        (["--max-cost", "99", "--emit", __file__], "this is not a folder"),
     ],
 )
 def test_wrong_arguments(
