@@ -54,6 +54,13 @@ def test_a_material(run: Run) -> None:
     assert "tint = (0.035, 0.06, 0.045, 1)" in text
 
 
+def test_emit_names_the_targets_whose_passes_are_drawn_by_the_users_program(run: Run) -> None:
+    emitted = run("emit", "jade_ring", "--target", "threejs,wgsl,hlsl", "-o", "out").out.splitlines()[-1]
+    drawers = "(drawn by the material itself in three.js, by your own program for wgsl, hlsl)"
+    assert emitted.count(drawers) == 2
+    assert "drawn by" not in run("emit", "jade_ring", "--target", "wgsl,hlsl", "-o", "out").out
+
+
 def test_the_parameters_of_a_material_are_those_of_its_shader(run: Run) -> None:
     """Stages share a parameter: each shows the value that the shader has."""
     stages = json.loads(run("show", "ice", "--json").out)["stages"]

@@ -234,14 +234,16 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
 
 
 def _drawers(material: str, names: Sequence[str], form: str, drawn: str) -> list[str]:
-    """What draws a pass of a material: of each of several targets, with its name."""
+    """What draws a pass of a material: of each of several targets, with its name, where they differ."""
     from sssgen.pipeline.compiler import all_targets
 
     targets = [all_targets()[name] for name in names]
     texts = [target.drawer(drawn).format(material=material) if form == "shader" else "" for target in targets]
     if len(set(texts)) == 1:
         return texts[:1] if texts[0] else []
-    return [f"{text} in {target.title}" for target, text in zip(targets, texts, strict=True) if text]
+    drawers = [f"{text} in {target.title}" for target, text in zip(targets, texts, strict=True) if text]
+    undrawn = [name for name, text in zip(names, texts, strict=True) if not text]
+    return [*drawers, f"your own program for {', '.join(undrawn)}"] if undrawn else drawers
 
 
 def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:
