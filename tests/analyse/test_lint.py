@@ -514,3 +514,31 @@ def test_a_file_with_errors_does_not_stop_the_others(tmp_path: Path, capsys: pyt
     report = json.loads(capsys.readouterr().out)
     assert not report["ok"] and len(report["results"]) == 1 and "'y'" in report["diagnostics"][0]["message"]
     assert main([*arguments, "--sarif", str(log)]) == 2 and not log.exists()
+
+
+def test_a_scene_of_shadertoy_needs_no_option(tmp_path: Path) -> None:
+    """Its uniforms and their ranges are those of the site, also for the examples of its functions."""
+    scene, part = tmp_path / "scene.glsl", tmp_path / "part.glsl"
+    scene.write_text(
+        "float wave(float x) { return sqrt(x) * iTime; }\n"
+        "void mainImage(out vec4 color, in vec2 at)\n"
+        "{\n"
+        "    color = vec4(wave(1.0 - at.x / iResolution.x), 1.0 / iMouse.x, 0.0, 1.0);\n"
+        "}\n",
+        encoding="utf-8",
+    )
+    found = {entry.span.line: entry for entry in lint(str(scene)).unproven()}
+    assert found.keys() == {1, 4}  # iMouse.x may be 0, iResolution.x is at least 1
+    part.write_text("float wave(float x) { return sqrt(x * x) * iTime; }\n", encoding="utf-8")
+    with pytest.raises(SssgenError, match=r"write uniform float iTime;, or transpile with --entry shadertoy"):
+        lint(str(part))
+
+
+def test_examples_keep_to_the_ranges_of_uniforms(tmp_path: Path) -> None:
+    path = tmp_path / "film.glsl"
+    path.write_text(
+        "uniform float film_ior : hint_range(1.0, 2.5) = 1.3;\nfloat phase(float c) { return c / (film_ior - 1.0); }\n",
+        encoding="utf-8",
+    )
+    (finding,) = lint(str(path)).unproven()
+    assert finding.verdict == MAY_FAIL and '"film_ior": 1.0' in finding.example

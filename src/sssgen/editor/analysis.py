@@ -11,7 +11,7 @@ from sssgen.editor.documents import GLSL, MATERIAL, SCENE, TECHNIQUE, Document
 from sssgen.ir.nodes import Function, Module
 from sssgen.lang.assumption_comments import AssumedInput
 from sssgen.lang.loader import load_file
-from sssgen.lang.plain_glsl import load_glsl
+from sssgen.lang.plain_glsl import AUTO, load_glsl
 from sssgen.material import library
 from sssgen.material.library import ROLES, Technique, folder_of, load_path
 from sssgen.material.material_loading import parse_material
@@ -24,8 +24,6 @@ from sssgen.support.paths import source_name, stem
 from sssgen.support.text_files import read_text
 
 _ROLE = re.compile(r"^[\s/*]*role[ \t]*:", re.MULTILINE)
-_SHADERTOY = re.compile(r"\bvoid\s+mainImage\s*\(")
-_MAIN = re.compile(r"\bvoid\s+main\s*\(")
 
 
 class Analysis(NamedTuple):
@@ -87,8 +85,7 @@ def _technique(document: Document) -> Analysis:
 
 
 def _glsl(document: Document) -> Analysis:
-    entry = "shadertoy" if _SHADERTOY.search(document.text) and not _MAIN.search(document.text) else ""
-    loaded = load_glsl(document.path, document.display_name, entry=entry, assumptions=True)
+    loaded = load_glsl(document.path, document.display_name, entry=AUTO, assumptions=True)
     return Analysis(tuple(loaded.warnings), module=loaded.module, assumed=tuple(loaded.assumed))
 
 

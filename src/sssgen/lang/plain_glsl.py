@@ -21,7 +21,9 @@ from sssgen.support.diagnostics import Diagnostic, Reporter, SssgenError, did_yo
 from sssgen.support.gc_pause import pause_gc
 from sssgen.support.text_files import read_code
 
-ENTRIES = ("shadertoy",)
+AUTO = "auto"
+"""The entry `shadertoy` for a file that has a mainImage and no main, else none."""
+ENTRIES = ("shadertoy", AUTO)
 """The conventions for a file's entry point other than `main()`."""
 
 _GENERATED = re.compile("Made by sssgen for |Paste it below the #version")
@@ -60,8 +62,8 @@ def load_glsl(
     """The checked module of a GLSL file and all it includes.
 
     `label` is the file's name in messages; `roots` are the folders in which included files are looked for after the
-    one that they are included from; `defines` are macros; `entry` is '' or `shadertoy`; `assumptions`: comments with
-    `sssgen: assume` count.
+    one that they are included from; `defines` are macros; `entry` is empty, `shadertoy` or `AUTO`; `assumptions`:
+    comments with `sssgen: assume` count.
     Raises SssgenError for a missing, unreadable, too large or faulty file.
     """
     name = label or os.fspath(path)
@@ -95,7 +97,7 @@ def _load(text: str, label: str, source: PreprocessedText, entry: str, assumptio
         tokens, assumed = with_assumptions(tokens, source.comments, {label: text, **source.texts})
     texts = dict(source.texts)
     texts.setdefault(label, text)
-    if entry == "shadertoy":
+    if entry == "shadertoy" or (entry == AUTO and shadertoy.is_scene(tokens)):
         tokens, added = shadertoy.with_entry(tokens, label)
         texts[shadertoy.FILE] = added
     keep_lines(texts)

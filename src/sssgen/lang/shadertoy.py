@@ -12,9 +12,10 @@ FILE = "shadertoy"
 """The name in messages for the lines that are added around a file's own."""
 
 UNIFORMS = {
-    "iResolution": "uniform vec3 iResolution;  // of the picture, in pixels; z is the pixels' aspect",
-    "iTime": "uniform float iTime;  // seconds",
-    "iGlobalTime": "uniform float iGlobalTime;  // iTime, as it was called",
+    "iResolution": "uniform vec3 iResolution : hint_range(1.0, 16384.0) = vec3(1.0);"
+    "  // of the picture, in pixels; z is the pixels' aspect",
+    "iTime": "uniform float iTime : hint_range(0.0, 1e6);  // seconds",
+    "iGlobalTime": "uniform float iGlobalTime : hint_range(0.0, 1e6);  // iTime, as it was called",
     "iTimeDelta": "uniform float iTimeDelta;  // seconds for the last frame",
     "iFrameRate": "uniform float iFrameRate;  // frames a second",
     "iFrame": "uniform int iFrame;  // frames so far",
@@ -33,6 +34,12 @@ void main() {
     mainImage(shadertoy_color, gl_FragCoord.xy);
 }
 """
+
+
+def is_scene(tokens: Sequence[Token]) -> bool:
+    """Whether a file has a mainImage and no main of its own."""
+    names = {token.text for token in tokens if token.type == "NAME"}
+    return "mainImage" in names and "main" not in names
 
 
 def with_entry(tokens: Sequence[Token], label: str) -> tuple[list[Token], str]:

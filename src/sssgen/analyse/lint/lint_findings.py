@@ -21,7 +21,7 @@ from sssgen.ir.spans import Span
 from sssgen.ir.types import Matrix, Scalar, Vector, Void
 from sssgen.ir.walk import operands, statements, subexpressions
 from sssgen.lang.check.termination import endless
-from sssgen.lang.plain_glsl import load_glsl
+from sssgen.lang.plain_glsl import AUTO, load_glsl
 from sssgen.lang.source_lines import excerpt, source_line, source_text, whole
 from sssgen.material import library
 from sssgen.material.material_loading import examples, load_material
@@ -242,7 +242,7 @@ def lint(
 def _plain(path: str, with_examples: bool, kinds: Collection[Kind], assumed: Sequence[str]) -> Report:
     """The findings of plain functions, which have no guards."""
     rules = load_rules(assumed)
-    loaded = load_glsl(path, path, assumptions=True)
+    loaded = load_glsl(path, path, entry=AUTO, assumptions=True)
     module = loaded.module
     rules += rules_of_comments(loaded.assumed, input_names(module))
     assumptions = Assumptions(rules, stage_kind(module) == "vertex")

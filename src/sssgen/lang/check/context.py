@@ -121,7 +121,8 @@ class CheckContext:
             return AlreadyReported()
         hint = did_you_mean(name, candidates)
         if self.plain and name in shadertoy.UNIFORMS:
-            hint = "it is a uniform of Shadertoy: add --entry shadertoy"
+            declaration = shadertoy.UNIFORMS[name].partition(" :")[0].partition(";")[0]
+            hint = f"it is a uniform of Shadertoy: write {declaration};, or transpile with --entry shadertoy"
         return self.fail(span, f"unknown {kind} '{name}'", hint)
 
     def extent(self, name: str) -> tuple[float, float]:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from sssgen.ir.nodes import Call, Declare, Evaluate, Function, Local, Module, Param, Return, Stmt, Uniform
 from sssgen.ir.types import VOID, Type
 from sssgen.lang.loader import load_file
-from sssgen.lang.plain_glsl import load_glsl
+from sssgen.lang.plain_glsl import AUTO, load_glsl
 from sssgen.material import library, slots
 from sssgen.material.slots import find, needs
 from sssgen.passes.fold import fold
@@ -100,7 +100,7 @@ def _technique(name: str) -> tuple[Module, Function, str]:
     if not _is_function(name):
         technique = library.load(name)
         return technique.module, technique.function, technique.role
-    module = load_file(file, (library.TECHNIQUES,)) if file.endswith(".sss") else load_glsl(file).module
+    module = load_file(file, (library.TECHNIQUES,)) if file.endswith(".sss") else load_glsl(file, entry=AUTO).module
     named = {function.name: function for function in module.functions if function.body is not None}
     if inner not in named:
         raise failure(f"{file} has no function '{inner}'", did_you_mean(inner, named) or f"it has: {', '.join(named)}")
