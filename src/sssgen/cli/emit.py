@@ -172,6 +172,7 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
     A material with an error has no files in the result. Raises SssgenError for faulty options, with all errors.
     """
     from sssgen.ir.frame_passes import BACK_FACES, INNER_LIGHT, MATT
+    from sssgen.material.missing_files import missing_files
     from sssgen.material.requirements import describe
     from sssgen.pipeline.compiler import compile
     from sssgen.pipeline.trace import Trace
@@ -229,6 +230,9 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
         for material in materials
         if material.name not in failed
     }
+    warnings += [
+        warning for material in materials if material.name not in failed for warning in missing_files(material)
+    ]
     texts = {file: files[file] for file in sources}
     return EmittedFiles(texts, sources, list(dict.fromkeys(warnings)), required, list(dict.fromkeys(errors)))
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
-from sssgen.material.model import Material
+from sssgen.ir.nodes import Span
+from sssgen.material.model import Material, TechniqueUse
 from sssgen.material.requirements import needed_textures
 from sssgen.scene.bake_advice import advice, is_scene
 from sssgen.scene.scene import Scene
@@ -39,9 +40,14 @@ def missing_textures(
             shown = f"textures {', '.join(others)} and {last}" if others else f"texture {last}"
             about = f"{function.name} reads the {shown}, baked from the body, and there is no file"
             hint = advice(function, material, scene, given, is_scene(scene, material) and not given)
-            errors.append(Diagnostic("error", about, stage.span, hint))
+            errors.append(Diagnostic("error", about, _span(stage, names), hint))
         elif missing:
             about = f"cannot find the file '{given[names[0]]}' of the texture '{names[0]}'"
             hint = f"it is searched for next to the material, in {posix(os.path.dirname(material.file) or '.')}"
-            errors.append(Diagnostic("error", about, stage.span, hint))
+            errors.append(Diagnostic("error", about, _span(stage, names), hint))
     return errors
+
+
+def _span(stage: TechniqueUse, names: Sequence[str]) -> Span:
+    """The place of the first file that a stage names, or that of the stage."""
+    return next((stage.texture_spans[name] for name in names if name in stage.texture_spans), stage.span)

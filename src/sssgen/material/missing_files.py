@@ -1,0 +1,32 @@
+"""The texture files that a material names and that are not beside it."""
+
+from __future__ import annotations
+
+import os
+
+from sssgen.material.bake_commands import bake_command, parameter_words
+from sssgen.material.model import Material
+from sssgen.material.requirements import needed_textures
+from sssgen.support.diagnostics import Diagnostic
+from sssgen.support.file_memo import note
+from sssgen.support.paths import posix
+
+
+def missing_files(material: Material) -> list[Diagnostic]:
+    """A warning for each missing file, at its place in the material, with the command that bakes it where one does."""
+    warnings: dict[str, Diagnostic] = {}
+    folder = os.path.dirname(material.file)
+    for stage, names, function in needed_textures(material.stages):
+        given = {name: stage.textures[name] for name in names if name in stage.textures}
+        for name, file in given.items():
+            path = os.path.join(folder, file)
+            note(path)
+            if os.path.isfile(path):
+                continue
+            command = function and bake_command(function, material.name, given, parameter_words(material), folder)
+            place = f"it is searched for next to the material, in {posix(folder or '.')}"
+            hint = f"run `{command.text}`" if command else place
+            message = f"cannot find the file '{file}' of the texture '{name}': the shader needs it"
+            span = stage.texture_spans.get(name, stage.span)
+            warnings.setdefault(file, Diagnostic("warning", message, span, hint))
+    return list(warnings.values())
