@@ -222,17 +222,15 @@ def compile_all(arguments: Namespace, traces: list[Trace] | None = None) -> Emit
     if wrong:
         raise SssgenError(dict.fromkeys([*wrong, *errors]))
     sources = {file: source for file, source in sources.items() if source[0] not in failed}
+    right = [material for material in materials if material.name not in failed]
     required = {
         material.name: describe(
             material.stages,
             *(_drawers(material.name, names, arguments.form, drawn) for drawn in (BACK_FACES, MATT, INNER_LIGHT)),
         )
-        for material in materials
-        if material.name not in failed
+        for material in right
     }
-    warnings += [
-        warning for material in materials if material.name not in failed for warning in missing_files(material)
-    ]
+    warnings += [warning for material in right for warning in missing_files(material)]
     texts = {file: files[file] for file in sources}
     return EmittedFiles(texts, sources, list(dict.fromkeys(warnings)), required, list(dict.fromkeys(errors)))
 

@@ -300,7 +300,7 @@ class _Reader:
                 if fixed:
                     error(place(*path).value, "a texture cannot be fixed", "leave 'fixed' out")
                 value: object = read_texture(uniform, raw)
-                spans = {**stage.texture_spans, uniform.name: place(*path).value}
+                spans = (*stage.texture_spans, (uniform.name, place(*path).value))
                 stage = stage._replace(textures={**stage.textures, uniform.name: str(value)}, texture_spans=spans)
             else:
                 components = uniform.default if isinstance(raw, dict) else read_value(uniform, raw)

@@ -27,6 +27,6 @@ def missing_files(material: Material) -> list[Diagnostic]:
             place = f"it is searched for next to the material, in {posix(folder or '.')}"
             hint = f"run `{command.text}`" if command else place
             message = f"cannot find the file '{file}' of the texture '{name}': the shader needs it"
-            span = stage.texture_spans.get(name, stage.span)
+            span = dict(stage.texture_spans).get(name, stage.span)
             warnings.setdefault(file, Diagnostic("warning", message, span, hint))
     return list(warnings.values())

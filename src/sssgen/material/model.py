@@ -37,7 +37,7 @@ class TechniqueUse(NamedTuple):
     """The set of texture coordinates that the technique reads, one of `UV_SETS`."""
     levels: tuple[int, ...] = ()
     """The levels of detail that it belongs to, sorted; () for all of them."""
-    texture_spans: dict[str, Span] = {}
+    texture_spans: tuple[tuple[str, Span], ...] = ()
     """Texture uniform → the position of its file's name in the material."""
 
 

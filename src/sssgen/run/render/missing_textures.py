@@ -50,4 +50,4 @@ def missing_textures(
 
 def _span(stage: TechniqueUse, names: Sequence[str]) -> Span:
     """The place of the first file that a stage names, or that of the stage."""
-    return next((stage.texture_spans[name] for name in names if name in stage.texture_spans), stage.span)
+    return next((span for name, span in stage.texture_spans if name in names), stage.span)
