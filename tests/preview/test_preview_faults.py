@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from sssgen.preview import preview_server
-from sssgen.preview.page_library import Library
+from sssgen.run.web_library import Library
 from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import PreviewServer
 

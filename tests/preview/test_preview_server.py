@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from sssgen.cli.main import main
-from sssgen.preview.page_library import Library
+from sssgen.run.web_library import Library
 from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import FILES, HOST, PAGE, PreviewServer
 from sssgen.support.diagnostics import SssgenError

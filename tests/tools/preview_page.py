@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sssgen.preview.page_library import library
+from sssgen.run.web_library import library
 from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import PreviewServer
 from sssgen.run.machine_parts import chromium

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from python_bundle import write_bundle
 from sssgen.pipeline.compiler import all_targets
-from sssgen.preview.page_library import library
+from sssgen.run.web_library import library
 from sssgen.support import paths
 from starts import all_starts, write_start
 

@@ -35,6 +35,7 @@ class Command(NamedTuple):
 
 
 COMMANDS = {
+    "use": Command("use", "make", "put a ready material on a mesh, as a project that an engine opens", "import"),
     "new": Command("new", "make", "write a commented material to start from, or copy an example"),
     "emit": Command("emit", "make", "write the shaders of materials"),
     "watch": Command("watch", "make", "write the shaders of materials after every change", "preview"),

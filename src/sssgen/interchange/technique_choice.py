@@ -31,6 +31,8 @@ _ONE_MEDIUM = (
 )
 _LONGEST, _DENSEST = 10.0, 1000.0
 """The largest thickness and extinction that techniques take, in world units."""
+_DENSEST_INSIDE = 10000.0
+"""The largest extinction of techniques for light inside"""
 
 
 class Choice(NamedTuple):
@@ -50,12 +52,12 @@ class Choice(NamedTuple):
 
 
 class _Chooser:
-    def __init__(self, model: SurfaceModel, notes: Notes, mean_chord: float) -> None:
+    def __init__(self, model: SurfaceModel, notes: Notes, mean_chord: float, metres: float, light_path: str) -> None:
         self.model, self.notes, self.mean_chord = model, notes, mean_chord
         self.composer = Composer(model)
         self.stages: list[MaterialSection] = []
         self.clamped: dict[str, str] = {}
-        self.metres = _unit(model)
+        self.metres, self.light_path = metres, light_path
 
     def add(self, section: str, technique: str, bind: dict[str, str] | None = None, **values: object) -> None:
         """Adds a stage; a `ComposedTexture` also sets the stage's set of coordinates."""
@@ -278,8 +280,8 @@ class _Chooser:
         became = f"four exponentials and a matte share in place of light transport; extinction {extinction} per metre"
         self.notes.add_approximation("interior", became)
         self.add(
-            "translucency", "interior_octaves", {"light_path": "depth_map_path"},
-            extinction=[min(part * self.metres, _DENSEST) for part in medium.extinction],
+            "translucency", "interior_octaves", {"light_path": self.light_path},
+            extinction=[min(part * self.metres, _DENSEST_INSIDE) for part in medium.extinction],
             scattering_albedo=medium.albedo,
             octaves=[weight * part for part in self.shares().octaves],
             mean_free_path=min(max(medium.mean_free_path / self.metres, 1e-4), 100.0),
@@ -298,7 +300,16 @@ def choose(model: SurfaceModel, notes: Notes, mean_chord: float) -> Choice:
 
     `notes` gets what the stages cannot express.
     """
-    return _Chooser(as_matte(limit_numbers(model, notes), notes, mean_chord), notes, mean_chord).choose()
+    model = as_matte(limit_numbers(model, notes), notes, mean_chord)
+    return _Chooser(model, notes, mean_chord, _unit(model), "depth_map_path").choose()
+
+
+def choose_for_lights(model: SurfaceModel, notes: Notes, mean_chord: float) -> Choice:
+    """The stages for several lights of any kind; lengths of the record are world units. See `choose`.
+
+    A dense body transmits light where it is thin, so that it has no other technique.
+    """
+    return _Chooser(limit_numbers(model, notes), notes, mean_chord, 1.0, "light_layers_path").choose()
 
 
 def _limit_pair(pair: tuple[float, float]) -> tuple[float, float]:

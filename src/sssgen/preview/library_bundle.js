@@ -8,3 +8,5 @@ export { PMREMGenerator } from 'three';
 export { AtomicFunctionNode, WebGLCapabilities } from 'three/webgpu';
 export { log } from 'three/tsl';
 export { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+export { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+export { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-from sssgen.preview.page_library import Library, library
+from sssgen.run.web_library import Library, library
 from sssgen.preview.page_messages import MOST_BYTES, MOST_TEXT, PageMessages, parse, unpack
 from sssgen.preview.pane import Pane
 from sssgen.support.diagnostics import SssgenError, failure

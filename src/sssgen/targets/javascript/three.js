@@ -100,7 +100,7 @@ void sss_direct_area(const in RectAreaLight rectAreaLight, ${POINT.parameters}) 
 #undef RE_Direct_RectArea
 #define RE_Direct_RectArea sss_direct_area
 #endif
-${entryFunction(entry)}${SURROUNDINGS}`;
+${entryFunction(entry)}`;
 
 /** The texts with the values of the rest pose, of a body that bones move or of any other. */
 function withRestPose(webgl, skinned) {
@@ -130,7 +130,9 @@ function patch(shader, description, uniforms) {
       common: declarations.join('\n') + webgl.varyings + glsl + webgl.variables, map_fragment: webgl.fragment, ...webgl.includes,
     },
   };
-  if (webgl.light) texts.fragmentShader.lights_physical_pars_fragment = lightFunction(description);
+  const light = webgl.light ? lightFunction(description) : '';
+  const around = webgl.fragment.includes('sss_surroundings(') ? SURROUNDINGS : '';
+  if (light || around) texts.fragmentShader.lights_physical_pars_fragment = light + around;
   for (const [stage, behind] of Object.entries(texts)) {
     for (const [file, text] of Object.entries(behind)) replace(stage, file, (include) => `${include}\n${text}`);
   }

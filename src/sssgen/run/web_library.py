@@ -1,4 +1,4 @@
-"""What the page imports: the bundle that `make setup` makes and the wheel has, or else npm's own files."""
+"""What pages with three.js import: the bundle that `make setup` makes and the wheel has, or else npm's own files."""
 
 from __future__ import annotations
 
@@ -18,9 +18,15 @@ NPM = {
     "three/webgpu": "three/build/three.webgpu.js",
     "three/tsl": "three/build/three.tsl.js",
     "three/addons/controls/OrbitControls.js": "three/examples/jsm/controls/OrbitControls.js",
+    "three/addons/loaders/GLTFLoader.js": "three/examples/jsm/loaders/GLTFLoader.js",
+    "three/addons/environments/RoomEnvironment.js": "three/examples/jsm/environments/RoomEnvironment.js",
 }
 """What the page imports → the file among npm's packages. `library_bundle.js` exports the same."""
-_IMPORTED_BY_THESE = ("three/build/three.core.js",)
+_IMPORTED_BY_THESE = (
+    "three/build/three.core.js",
+    "three/examples/jsm/utils/BufferGeometryUtils.js",
+    "three/examples/jsm/utils/SkeletonUtils.js",
+)
 
 
 class Library(NamedTuple):

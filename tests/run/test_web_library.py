@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from sssgen.preview import page_library as module
-from sssgen.preview.page_library import BUNDLE, NPM, bundle, library
+from sssgen.run import web_library as module
+from sssgen.run.web_library import BUNDLE, NPM, bundle, library
 from sssgen.support.diagnostics import SssgenError
 
-PAGE = Path(module.__file__).with_name("page")
-EXPORTED = Path(module.__file__).with_name("library_bundle.js")
+PREVIEW = Path(module.__file__).parent.parent / "preview"
+PAGE, EXPORTED = PREVIEW / "page", PREVIEW / "library_bundle.js"
 
 
 @pytest.fixture
@@ -44,7 +44,7 @@ def test_the_bundle_is_one_file_for_every_import(empty: Path, monkeypatch: pytes
 
 
 def test_npms_files_serve_where_there_is_no_bundle(empty: Path) -> None:
-    for file in (*NPM.values(), "three/build/three.core.js"):
+    for file in (*NPM.values(), *module._IMPORTED_BY_THESE):
         written(empty / "node_modules" / file)
     found = library()
     assert set(found.imports.values()) <= set(found.files)

@@ -1,0 +1,1 @@
+"""Ready materials that work on any mesh, and projects of engines that show them."""

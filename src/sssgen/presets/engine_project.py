@@ -1,0 +1,138 @@
+"""A project of an engine that shows a preset on a mesh: its material, shaders, mesh, scene and page.
+
+The files of an engine are the templates of `templates/projects/TARGET/`; those beside the folders are for all engines.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from functools import cache
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from sssgen.material.material_loading import parse_material
+from sssgen.material.material_text import toml_value
+from sssgen.pipeline.compiler import compile
+from sssgen.presets.preset import Preset
+from sssgen.presets.preset_stages import QUALITIES, RESPONSE, preset_text
+from sssgen.presets.used_mesh import UsedMesh
+from sssgen.run.web_library import library
+from sssgen.support.paths import place
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+Files = dict[str, str | bytes]
+MESH = "body.glb"
+RANK = 16
+"""The numbers of a voxel of baked light."""
+_LAMP = 260
+"""The intensity of the lamp at a distance of one radius, with light units of three.js."""
+_EYE, _FRONT = (1.3, 0.75, 3.7), 3.4
+"""The place of the eye, and the distance of the lamp, in radii of the body."""
+
+
+class Engine(NamedTuple):
+    """What a project of a target is."""
+
+    title: str
+    opened: str
+    """How it is opened, for its README"""
+    is_page: bool = False
+    """Whether a browser opens it, which needs a server"""
+
+
+_PAGE = "Open it: `python3 -m http.server` in this folder, then http://localhost:8000 in a browser."
+ENGINES = {
+    "threejs": Engine("three.js", _PAGE, is_page=True),
+}
+"""Target → its project."""
+
+
+class Wish(NamedTuple):
+    """What somebody wants."""
+
+    preset: Preset
+    mesh: UsedMesh
+    target: str
+    quality: str
+    command: str
+    """The command line, for the README"""
+
+    @property
+    def baked(self) -> bool:
+        """Whether the material reads a bake of the light inside."""
+        return self.quality == "best" and self.preset.scatters
+
+    @property
+    def name(self) -> str:
+        """Of the material and its files."""
+        return self.preset.name
+
+
+def material_files(wish: Wish) -> Files:
+    """The material, the mesh and the scene, which `sssgen render`, `preview` and `bake` read."""
+    text = preset_text(wish.preset, wish.quality, wish.name, wish.mesh.size)
+    return {f"{wish.name}.toml": text, MESH: wish.mesh.glb, "scene.toml": _template("scene.toml", **_values(wish))}
+
+
+def engine_files(wish: Wish, folder: str) -> Files:
+    """The shaders and the project around them. The material and its bakes are in `folder` already.
+
+    Raises SssgenError where the target cannot express the material.
+    """
+    path = os.path.join(folder, f"{wish.name}.toml")
+    with open(path, encoding="utf-8") as file:
+        material = parse_material(file.read(), path)
+    files: Files = dict(compile(material, wish.target).files)
+    values = _values(wish)
+    if ENGINES[wish.target].is_page:
+        web = library()
+        files |= {f"library/{name}": source.read_bytes() for name, source in web.files.items()}
+        values["import_map"] = web.import_map()
+    source = os.path.join(place("templates"), "projects", wish.target)
+    for name in sorted(os.listdir(source)):
+        files[name] = _template(f"{wish.target}/{name}", **values)
+    files["README.md"] = _template("README.md", **values)
+    return files
+
+
+def _values(wish: Wish) -> dict[str, object]:
+    """What the templates see."""
+    preset, mesh = wish.preset, wish.mesh
+    center = 0.5 * (np.array(mesh.low) + np.array(mesh.high))
+    places = {"eye": _EYE, "lamp_place": (0.5 * _FRONT, 1.5, -0.86 * _FRONT)}
+    placed = {key: toml_value((center + mesh.radius * np.array(at)).tolist()) for key, at in places.items()}
+    return {
+        **placed,
+        "title": preset.title, "name": wish.name, "mesh": os.path.basename(mesh.path), "target": wish.target,
+        "quality": f"{wish.quality}, {QUALITIES[wish.quality]}", "unit_mm": f"{mesh.size.unit_mm:.4g}",
+        "center": toml_value(center.tolist()), "command": wish.command, "baked": wish.baked, "response": RESPONSE, "rank": RANK,
+        "open": ENGINES[wish.target].opened, "medium": _medium(wish), "lamp": _LAMP, "room": 0.1 if wish.preset.scatters else 0.7,
+    }  # fmt: skip
+
+
+def _medium(wish: Wish) -> Mapping[str, str] | None:
+    """The section [medium] of the scene, of a body that scatters."""
+    if not wish.preset.scatters:
+        return None
+    medium = wish.preset.interior(wish.mesh.size.unit_mm)
+    keys = {"absorption": [*medium.absorption], "scattering": [*medium.scattering], "ior": medium.ior}
+    return {key: toml_value(value) for key, value in keys.items()}
+
+
+@cache
+def _environment() -> Environment:
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    folder = os.path.join(place("templates"), "projects")
+    return Environment(
+        loader=FileSystemLoader(folder), undefined=StrictUndefined, trim_blocks=True, keep_trailing_newline=True,
+        autoescape=False,
+    )  # fmt: skip
+
+
+def _template(file: str, /, **values: object) -> str:
+    return _environment().get_template(file).render(**values)

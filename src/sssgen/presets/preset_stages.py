@@ -1,0 +1,110 @@
+"""The material file of a preset for a body, in three qualities.
+
+`fast` needs nothing but lights, `good` measures the body in each frame, and `best` reads a bake of the light inside.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from sssgen.interchange.dense_bodies import isotropic_medium
+from sssgen.interchange.imported_material import Notes
+from sssgen.interchange.scatter_color import multiscatter_of_albedo
+from sssgen.interchange.technique_choice import choose_for_lights
+from sssgen.material.material_text import MaterialSection, material_text
+from sssgen.presets.preset import Preset
+
+QUALITIES = {
+    "fast": "lights alone: no pictures of the body, no bake",
+    "good": "the body is drawn from its back and from the lights in each frame",
+    "best": "the light inside is baked for the mesh, for all lights and surroundings",
+}
+RESPONSE = "light.bin"
+"""The file of the baked light, beside the material."""
+_OPAQUE = 12.0
+"""The mean chord in mean free paths from which nothing is seen through a body."""
+_MOST_THICKNESS = 10.0
+"""The largest value of `constant_thickness`."""
+
+
+class BodySize(NamedTuple):
+    """What a material must know of a mesh."""
+
+    unit_mm: float
+    """Millimetres in a world unit"""
+    mean_chord: float
+    """World units: the mean length of straight lines inside"""
+
+
+def preset_text(preset: Preset, quality: str, name: str, size: BodySize) -> str:
+    """The material file of a preset, called `name`, for a body of a size."""
+    stages = preset_stages(preset, quality, size)
+    doc = f"{preset.doc} A world unit is {size.unit_mm:.4g} mm. {preset.source}."
+    two_sided: dict[str, object] = {"two_sided": True} if any(preset.sheet) else {}
+    return material_text(name, stages, preset.title, doc, {"shading": "lit", **two_sided})
+
+
+def preset_stages(preset: Preset, quality: str, size: BodySize) -> list[MaterialSection]:
+    """The stages. A sheet is the same in all qualities: it needs no picture and no bake."""
+    chosen = choose_for_lights(preset.model(size.unit_mm), Notes(), size.mean_chord).stages
+    if any(preset.sheet) or (quality == "fast" and not preset.scatters):
+        return chosen
+    if quality == "good" or not preset.scatters:
+        return _seen_through(preset, size, chosen)
+    surface = [stage for stage in chosen if stage.section == "surface" and stage.technique != "base_color"]
+    return [*(_fast if quality == "fast" else _best)(preset, size), *surface]
+
+
+def _seen_through(preset: Preset, size: BodySize, stages: list[MaterialSection]) -> list[MaterialSection]:
+    """The stages with the length along each ray of the eye, and with what is seen through the body without scattering."""
+    medium = isotropic_medium(preset.interior(size.unit_mm))
+    if min(medium.extinction) * size.mean_chord > _OPAQUE:
+        return stages
+    kept = [stage for stage in stages if stage.technique not in ("constant_thickness", "seen_through")]
+    lengths = [] if preset.scatters else [MaterialSection("thickness", "back_face_thickness")]
+    share = 1.0 if preset.scatters else preset.clear
+    values = (
+        ("entering_color", [share] * 3), ("extinction", [*medium.extinction]), ("ior", preset.ior),
+        ("sky_below", [0.0, 0.0, 0.0]), ("sky_above", [0.0, 0.0, 0.0]),
+    )  # fmt: skip
+    comment = "The engine's surroundings are seen through; for a sky of two colours set sky_below and sky_above."
+    return [*lengths, *kept, MaterialSection("translucency", "seen_through_body", values, comment=comment)]
+
+
+def _fast(preset: Preset, size: BodySize) -> list[MaterialSection]:
+    """A matte colour that reaches around, and a lobe behind: diffusion through a slab as thick as half the mean chord.
+
+    The slab transmits 4 / (3 tau + 4) exp(-d sqrt(3 absorption extinction)), tau its thickness in mean free paths.
+    """
+    medium = isotropic_medium(preset.interior(size.unit_mm))
+    color = multiscatter_of_albedo(medium.albedo)
+    depth = 0.5 * size.mean_chord
+    transmitted = [
+        4.0 / (3.0 * extinction * depth + 4.0) * math.exp(-depth * math.sqrt(3.0 * absorption * extinction))
+        for extinction, absorption in zip(medium.extinction, medium.absorption, strict=True)
+    ]
+    strongest = max(transmitted)
+    reach = [min(medium.mean_free_path / max(depth, 1e-6), 1.0)] * 3
+    lobe = (
+        ("subsurface_color", [part / strongest for part in transmitted]),
+        ("scale", min(3.0 * strongest, 20.0)), ("power", 4.0), ("distortion", 0.3), ("ambient", min(strongest, 0.3)),
+    )  # fmt: skip
+    return [
+        MaterialSection("thickness", "constant_thickness", (("thickness_factor", min(depth, _MOST_THICKNESS)),)),
+        MaterialSection("thickness", "beer_lambert", (("attenuation_distance", min(4.0 * depth, _MOST_THICKNESS)),)),
+        MaterialSection("surface", "base_color", (("tint", [*(0.85 * part for part in color), 1.0]),)),
+        MaterialSection(
+            "translucency", "wrap_lighting", (("wrap", 0.5 * reach[0]), ("subsurface_color", [0.85 * c for c in color]))
+        ),
+        MaterialSection("translucency", "lobe_normalized", lobe),
+    ]
+
+
+def _best(preset: Preset, size: BodySize) -> list[MaterialSection]:
+    """The volume contains the diffuse reflection; its medium is in the bake's JSON."""
+    technique = "fluence_relit_refracted" if preset.ior > 1.0 else "fluence_relit"
+    return [
+        MaterialSection("surface", "base_color", (("tint", [0.0, 0.0, 0.0, 1.0]),)),
+        MaterialSection("translucency", technique, (("inner_light", RESPONSE),)),
+    ]
