@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import dataclasses
+import json
 from collections.abc import Iterator
 from functools import partial
 from typing import Any
@@ -15,7 +16,7 @@ import sssgen
 from engine_cases import BLACK
 from relit_cases import MATERIAL
 from skips import or_skip
-from sssgen.bake import relit
+from sssgen.bake import baked_files, relit
 from sssgen.lab.chart import bent_arm
 from sssgen.lab.chart.charting import candidate_of, fit_of
 from sssgen.lab.fluence import fluence_field as field
@@ -70,7 +71,9 @@ def baked(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[MeasuredSc
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(field, "settings_for", lambda _: field.Settings(voxels=16, side=8, photons=4000))
         data, facts = relit.bake(rest.body_alone(), fluence_inputs.RANK, field.settings_for(rest), processes=0)
-        yield rest, {"response": base64.b64encode(data).decode(), "facts": facts}, str(folder / "relit.toml")
+        baked_files.write_response(str(folder / "arm.bin"), data, facts)
+        described = json.loads((folder / "arm.bin.json").read_text("utf-8"))
+        yield rest, {"response": base64.b64encode(data).decode(), "facts": described}, str(folder / "relit.toml")
 
 
 @pytest.mark.parametrize("degrees", [0.0, 60.0, 90.0])

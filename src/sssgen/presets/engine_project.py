@@ -30,8 +30,8 @@ RANK = 16
 """The numbers of a voxel of baked light."""
 _LAMP = 260
 """The intensity of the lamp at a distance of one radius, with light units of three.js."""
-_EYE, _FRONT = (1.3, 0.75, 3.7), 3.4
-"""The place of the eye, and the distance of the lamp, in radii of the body."""
+_EYE, _LAMP_PLACE, _FRONT_LAMP = (1.3, 0.75, 3.7), (-0.9, 1.5, -3.3), (2.0, 3.0, 4.0)
+"""The places of the eye, of the lamp behind and of the lamp in front, in radii of the body."""
 
 
 class Engine(NamedTuple):
@@ -47,6 +47,7 @@ class Engine(NamedTuple):
 _PAGE = "Open it: `python3 -m http.server` in this folder, then http://localhost:8000 in a browser."
 ENGINES = {
     "threejs": Engine("three.js", _PAGE, is_page=True),
+    "godot": Engine("Godot 4", "Open it: import `project.godot` of this folder in Godot's project manager, and press F5."),
 }
 """Target → its project."""
 
@@ -87,7 +88,7 @@ def engine_files(wish: Wish, folder: str) -> Files:
     with open(path, encoding="utf-8") as file:
         material = parse_material(file.read(), path)
     files: Files = dict(compile(material, wish.target).files)
-    values = _values(wish)
+    values = _values(wish) | {"passes": f"{wish.name}_passes.gd" in files}
     if ENGINES[wish.target].is_page:
         web = library()
         files |= {f"library/{name}": source.read_bytes() for name, source in web.files.items()}
@@ -103,13 +104,15 @@ def _values(wish: Wish) -> dict[str, object]:
     """What the templates see."""
     preset, mesh = wish.preset, wish.mesh
     center = 0.5 * (np.array(mesh.low) + np.array(mesh.high))
-    places = {"eye": _EYE, "lamp_place": (0.5 * _FRONT, 1.5, -0.86 * _FRONT)}
+    places = {"eye": _EYE, "lamp_place": _LAMP_PLACE}
     placed = {key: toml_value((center + mesh.radius * np.array(at)).tolist()) for key, at in places.items()}
     return {
         **placed,
         "title": preset.title, "name": wish.name, "mesh": os.path.basename(mesh.path), "target": wish.target,
         "quality": f"{wish.quality}, {QUALITIES[wish.quality]}", "unit_mm": f"{mesh.size.unit_mm:.4g}",
-        "center": toml_value(center.tolist()), "command": wish.command, "baked": wish.baked, "response": RESPONSE, "rank": RANK,
+        "center": toml_value(center.tolist()), "center_xyz": center.round(6).tolist(), "low_y": mesh.low[1],
+        "radius": round(mesh.radius, 6), "front": (center + mesh.radius * np.array(_FRONT_LAMP)).round(6).tolist(),
+        "scatters": preset.scatters, "body": MESH, "command": wish.command, "baked": wish.baked, "response": RESPONSE, "rank": RANK,
         "open": ENGINES[wish.target].opened, "medium": _medium(wish), "lamp": _LAMP, "room": 0.1 if wish.preset.scatters else 0.7,
     }  # fmt: skip
 

@@ -108,9 +108,11 @@ class View extends FloatView:
 	var camera := Camera3D.new()
 	## How far away from the camera the plane is from which distances count.
 	var plane: float
+	var is_far: bool
 
 	func _init(above: Node, empty: float) -> void:
 		super(above)
+		is_far = empty > 0.0
 		camera.environment = Environment.new()
 		camera.environment.background_mode = Environment.BG_COLOR
 		camera.environment.background_color = Color(empty, empty, empty)
@@ -139,6 +141,13 @@ class View extends FloatView:
 		else:
 			var half := minf(asin(minf(ball.radius / distance, 1.0)), 1.5)
 			camera.set_perspective(rad_to_deg(2.0 * half), plane, distance + ball.radius)
+		if is_far:
+			# a larger distance than that of the end would spread where a filter blends texels
+			var end := maxf(camera.far - plane, 1.0)
+			var color := Color(end, end, end)
+			# Compatibility, which has no such device, takes colours as they are
+			var converts := RenderingServer.get_rendering_device() != null
+			camera.environment.background_color = color.linear_to_srgb() if converts else color
 		way = way.normalized()
 		var up := Vector3.BACK if absf(way.y) > 0.99 else Vector3.UP
 		camera.transform = Transform3D(Basis.looking_at(-way, up), ball.center + way * distance)
