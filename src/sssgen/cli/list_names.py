@@ -19,7 +19,7 @@ from sssgen.support.diagnostics import failure
 from sssgen.support.paths import display_name, posix, source_name
 from sssgen.targets import registry
 
-LISTS = ("techniques", "targets", "materials", "scenes", "media", "builtins", "backends")
+LISTS = ("techniques", "targets", "materials", "presets", "scenes", "media", "builtins", "backends")
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -41,7 +41,7 @@ def run(arguments: Namespace) -> int:
         if arguments.role not in library.ROLES:
             raise unknown_name("role", arguments.role, library.ROLES)
     rows = {
-        "techniques": _techniques, "targets": _targets, "materials": _materials, "scenes": _scenes, "media": _media,
+        "techniques": _techniques, "targets": _targets, "materials": _materials, "scenes": _scenes, "media": _media, "presets": _presets,
         "builtins": _builtins, "backends": _backends,
     }[kind]()  # fmt: skip
     if arguments.role is not None:
@@ -103,6 +103,12 @@ def _media() -> list[dict[str, Any]]:
     from sssgen.scene.measured import media
 
     return [{"name": name, "summary": medium.source} for name, medium in media.media().items()]
+
+
+def _presets() -> list[dict[str, Any]]:
+    from sssgen.presets import preset
+
+    return [{"name": name, "summary": row.doc, "size_mm": row.size_mm} for name, row in preset.presets().items()]
 
 
 def _scenes() -> list[dict[str, Any]]:

@@ -21,6 +21,7 @@ KINDS = {
     "builtin": "builtin function",
     "scene": "scene",
     "backend": "back end",
+    "preset": "preset",
     "medium": "medium",
 }
 """Kind, which is also the module of `cli/facts` → its title. A name of several kinds is shown as the first of them."""
