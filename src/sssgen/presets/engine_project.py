@@ -5,6 +5,7 @@ The files of an engine are the templates of `templates/projects/TARGET/`; those 
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping
 from functools import cache
@@ -42,12 +43,19 @@ class Engine(NamedTuple):
     """How it is opened, for its README"""
     is_page: bool = False
     """Whether a browser opens it, which needs a server"""
+    has_library: bool = False
+    """Whether the engine is among the files"""
 
 
-_PAGE = "Open it: `python3 -m http.server` in this folder, then http://localhost:8000 in a browser."
+_SERVE = "`python3 -m http.server` in this folder, then http://localhost:8000 in a browser."
+_PAGE, _NPM_PAGE = f"Open it: {_SERVE}", f"Open it: `npm install`, then {_SERVE}"
 ENGINES = {
-    "threejs": Engine("three.js", _PAGE, is_page=True),
-    "godot": Engine("Godot 4", "Open it: import `project.godot` of this folder in Godot's project manager, and press F5."),
+    "threejs": Engine("three.js", _PAGE, is_page=True, has_library=True),
+    "babylonjs": Engine("Babylon.js", _NPM_PAGE, is_page=True),
+    "playcanvas": Engine("PlayCanvas", _NPM_PAGE, is_page=True),
+    "godot": Engine(
+        "Godot 4", "Open it: import `project.godot` of this folder in Godot's project manager, and press F5."
+    ),
 }
 """Target → its project."""
 
@@ -89,7 +97,7 @@ def engine_files(wish: Wish, folder: str) -> Files:
         material = parse_material(file.read(), path)
     files: Files = dict(compile(material, wish.target).files)
     values = _values(wish) | {"passes": f"{wish.name}_passes.gd" in files}
-    if ENGINES[wish.target].is_page:
+    if ENGINES[wish.target].has_library:
         web = library()
         files |= {f"library/{name}": source.read_bytes() for name, source in web.files.items()}
         values["import_map"] = web.import_map()
@@ -113,7 +121,7 @@ def _values(wish: Wish) -> dict[str, object]:
         "center": toml_value(center.tolist()), "center_xyz": center.round(6).tolist(), "low_y": mesh.low[1],
         "radius": round(mesh.radius, 6), "front": (center + mesh.radius * np.array(_FRONT_LAMP)).round(6).tolist(),
         "scatters": preset.scatters, "body": MESH, "command": wish.command, "baked": wish.baked, "response": RESPONSE, "rank": RANK,
-        "open": ENGINES[wish.target].opened, "medium": _medium(wish), "lamp": _LAMP, "room": 0.1 if wish.preset.scatters else 0.7,
+        "open": ENGINES[wish.target].opened, "medium": _medium(wish), "lamp": _LAMP, "lamp_brightness": round(1.6 * _LAMP / 13.8 / math.pi, 1), "room": 0.1 if wish.preset.scatters else 0.7,
     }  # fmt: skip
 
 

@@ -42,9 +42,7 @@ def used_mesh(path: str, longest_mm: float) -> UsedMesh:
     longest = float((high - low).max())
     content = _content(mesh, geometry.inside_out)
     size = BodySize(longest_mm / longest, mean_chord(content))
-    return UsedMesh(
-        path, mesh_file(content), size, _corner(low), _corner(high), len(mesh.corners), is_closed(geometry)
-    )
+    return UsedMesh(path, mesh_file(content), size, _corner(low), _corner(high), len(mesh.corners), is_closed(geometry))
 
 
 def _content(mesh: Triangles, inside_out: bool) -> FileContent:
@@ -56,9 +54,7 @@ def _content(mesh: Triangles, inside_out: bool) -> FileContent:
     vertices, numbers = np.unique(corners, axis=0, return_inverse=True)
     faces = numbers.reshape(count, 3)
     faces = faces[:, ::-1] if inside_out else faces
-    return FileContent(
-        vertices[:, :3], faces, None if mesh.uv is None else vertices[:, 6:8], normals=vertices[:, 3:6]
-    )
+    return FileContent(vertices[:, :3], faces, None if mesh.uv is None else vertices[:, 6:8], normals=vertices[:, 3:6])
 
 
 def _corner(point: Array) -> tuple[float, float, float]:
