@@ -79,7 +79,8 @@ def test_a_name_of_several_kinds(run: Run) -> None:
     ran = run("show", "ice")
     assert ran.out.startswith("ice (material): Ice\n")
     assert ran.out.endswith(
-        "also a scene: sssgen show --kind scene ice\nalso a preset: sssgen show --kind preset ice\nalso a medium: sssgen show --kind medium ice\n"
+        "also a scene: sssgen show --kind scene ice\nalso a preset: sssgen show --kind preset ice\n"
+        "also a medium: sssgen show --kind medium ice\n"
     )
     assert run("show", "--kind", "scene", "ice").out.startswith("ice (scene)\n")
     assert "also a" not in run("show", "beer_lambert").out

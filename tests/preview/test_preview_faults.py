@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 from sssgen.preview import preview_server
-from sssgen.run.web_library import Library
 from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import PreviewServer
+from sssgen.run.web_library import Library
 
 aiohttp = pytest.importorskip("aiohttp")
 pytest.importorskip("watchfiles")

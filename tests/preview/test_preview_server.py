@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 
 from sssgen.cli.main import main
-from sssgen.run.web_library import Library
 from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import FILES, HOST, PAGE, PreviewServer
+from sssgen.run.web_library import Library
 from sssgen.support.diagnostics import SssgenError
 
 aiohttp = pytest.importorskip("aiohttp")

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sssgen.run.web_library import library
 from sssgen.preview.pane import Pane
 from sssgen.preview.preview_server import PreviewServer
 from sssgen.run.machine_parts import chromium
+from sssgen.run.web_library import library
 from sssgen.support.diagnostics import SssgenError
 
 SWITCHES = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]

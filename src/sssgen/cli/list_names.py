@@ -41,8 +41,8 @@ def run(arguments: Namespace) -> int:
         if arguments.role not in library.ROLES:
             raise unknown_name("role", arguments.role, library.ROLES)
     rows = {
-        "techniques": _techniques, "targets": _targets, "materials": _materials, "scenes": _scenes, "media": _media, "presets": _presets,
-        "builtins": _builtins, "backends": _backends,
+        "techniques": _techniques, "targets": _targets, "materials": _materials, "presets": _presets,
+        "scenes": _scenes, "media": _media, "builtins": _builtins, "backends": _backends,
     }[kind]()  # fmt: skip
     if arguments.role is not None:
         rows = [row for row in rows if row["role"] == arguments.role]

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from sssgen.interchange.material_writer import SURROUNDINGS
 from sssgen.material.material_loading import parse_material
 from sssgen.material.material_text import toml_value
 from sssgen.pipeline.compiler import compile
@@ -30,7 +31,13 @@ MESH = "body.glb"
 RANK = 16
 """The numbers of a voxel of baked light."""
 _LAMP = 260
-"""The intensity of the lamp at a distance of one radius, with light units of three.js."""
+"""The intensity of the lamp for a radius of 1, with light units of three.js: its irradiance is this over the squared
+distance."""
+_LAMP_COLOR = (1.0, 0.94, 0.86)
+_LAMP_SQUARE = 13.8
+"""The squared distance of the lamp from the centre, in radii."""
+_ROOM, _BRIGHT_ROOM = 0.1, 0.7
+"""The strength of the surroundings, for bodies that a lamp makes glow and for clear ones."""
 _EYE, _LAMP_PLACE, _FRONT_LAMP = (1.3, 0.75, 3.7), (-0.9, 1.5, -3.3), (2.0, 3.0, 4.0)
 """The places of the eye, of the lamp behind and of the lamp in front, in radii of the body."""
 
@@ -84,7 +91,10 @@ class Wish(NamedTuple):
 def material_files(wish: Wish) -> Files:
     """The material, the mesh and the scene, which `sssgen render`, `preview` and `bake` read."""
     text = preset_text(wish.preset, wish.quality, wish.name, wish.mesh.size)
-    return {f"{wish.name}.toml": text, MESH: wish.mesh.glb, "scene.toml": _template("scene.toml", **_values(wish))}
+    with open(os.path.join(place("examples"), "surroundings", "textures", "studio.png"), "rb") as file:
+        picture = file.read()
+    scene = _template("scene.toml", **_values(wish))
+    return {f"{wish.name}.toml": text, MESH: wish.mesh.glb, "scene.toml": scene, SURROUNDINGS: picture}
 
 
 def engine_files(wish: Wish, folder: str) -> Files:
@@ -102,7 +112,7 @@ def engine_files(wish: Wish, folder: str) -> Files:
         files |= {f"library/{name}": source.read_bytes() for name, source in web.files.items()}
         values["import_map"] = web.import_map()
     source = os.path.join(place("templates"), "projects", wish.target)
-    for name in sorted(os.listdir(source)):
+    for name in sorted(entry.removesuffix(".j2") for entry in os.listdir(source)):
         files[name] = _template(f"{wish.target}/{name}", **values)
     files["README.md"] = _template("README.md", **values)
     return files
@@ -112,17 +122,28 @@ def _values(wish: Wish) -> dict[str, object]:
     """What the templates see."""
     preset, mesh = wish.preset, wish.mesh
     center = 0.5 * (np.array(mesh.low) + np.array(mesh.high))
-    places = {"eye": _EYE, "lamp_place": _LAMP_PLACE}
-    placed = {key: toml_value((center + mesh.radius * np.array(at)).tolist()) for key, at in places.items()}
-    return {
-        **placed,
+
+    def at(place: tuple[float, float, float]) -> list[float]:
+        found: list[float] = (center + mesh.radius * np.array(place)).round(6).tolist()
+        return found
+
+    texts = {
         "title": preset.title, "name": wish.name, "mesh": os.path.basename(mesh.path), "target": wish.target,
         "quality": f"{wish.quality}, {QUALITIES[wish.quality]}", "unit_mm": f"{mesh.size.unit_mm:.4g}",
-        "center": toml_value(center.tolist()), "center_xyz": center.round(6).tolist(), "low_y": mesh.low[1],
-        "radius": round(mesh.radius, 6), "front": (center + mesh.radius * np.array(_FRONT_LAMP)).round(6).tolist(),
-        "scatters": preset.scatters, "body": MESH, "command": wish.command, "baked": wish.baked, "response": RESPONSE, "rank": RANK,
-        "open": ENGINES[wish.target].opened, "medium": _medium(wish), "lamp": _LAMP, "lamp_brightness": round(1.6 * _LAMP / 13.8 / math.pi, 1), "room": 0.1 if wish.preset.scatters else 0.7,
+        "command": wish.command, "open": ENGINES[wish.target].opened, "body": MESH,
     }  # fmt: skip
+    places = {
+        "center": center.round(6).tolist(), "radius": round(mesh.radius, 6), "low_y": mesh.low[1],
+        "eye": at(_EYE), "lamp_place": at(_LAMP_PLACE), "front": at(_FRONT_LAMP),
+    }  # fmt: skip
+    strength = _LAMP / math.pi * mesh.radius**2
+    light = {
+        "surroundings": SURROUNDINGS, "lamp_color": [round(strength * part, 4) for part in _LAMP_COLOR],
+        "lamp": _LAMP, "lamp_brightness": round(_LAMP / (math.pi * _LAMP_SQUARE), 1), "lamp_square": _LAMP_SQUARE,
+        "room": _ROOM if preset.scatters else _BRIGHT_ROOM, "scatters": preset.scatters,
+        "medium": _medium(wish), "baked": wish.baked, "response": RESPONSE, "rank": RANK,
+    }  # fmt: skip
+    return texts | places | light
 
 
 def _medium(wish: Wish) -> Mapping[str, str] | None:
@@ -146,4 +167,4 @@ def _environment() -> Environment:
 
 
 def _template(file: str, /, **values: object) -> str:
-    return _environment().get_template(file).render(**values)
+    return _environment().get_template(f"{file}.j2").render(**values)

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from sssgen.interchange.albedo_inversion import subsurface_medium
-from sssgen.interchange.surface_model import ONE, ZERO, Quantity, SurfaceModel, extinction_of_color
+from sssgen.interchange.surface_model import ONE, WHITE, Quantity, SurfaceModel, extinction_of_color
 from sssgen.scene.measured import media
 from sssgen.scene.measured.media import Medium
 from sssgen.scene.toml_table import Table, number, text, vector
@@ -93,18 +93,17 @@ class Preset:
         )
         if any(self.sheet):
             color, share = _share(self.sheet)
-            sheet = {"diffuse_transmission": Quantity((share,)), "diffuse_transmission_color": Quantity(color)}
-            # what is left over for the reflection
+            # the chooser leaves the share of a sheet out of the reflection
             base = Quantity(tuple(min(part / (1.0 - share), 1.0) for part in self.base))
-            return dataclasses.replace(surface, base_color=base, thin_walled=True, two_sided=True, **sheet)
+            return dataclasses.replace(
+                surface, base_color=base, thin_walled=True, two_sided=True,
+                diffuse_transmission=Quantity((share,)), diffuse_transmission_color=Quantity(color),
+            )  # fmt: skip
         interior = self.interior(unit_mm)
         if self.scatters:
             return dataclasses.replace(surface, subsurface=ONE, interior=interior)
-        tint = Quantity((1.0, 1.0, 1.0))
         clear = Quantity((self.clear,))
-        return dataclasses.replace(
-            surface, transmission=clear, transmission_tint=tint, subsurface=ZERO, interior=interior
-        )
+        return dataclasses.replace(surface, transmission=clear, transmission_tint=WHITE, interior=interior)
 
 
 def presets() -> Mapping[str, Preset]:

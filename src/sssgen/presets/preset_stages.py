@@ -14,6 +14,7 @@ from sssgen.interchange.scatter_color import multiscatter_of_albedo
 from sssgen.interchange.technique_choice import choose_for_lights
 from sssgen.material.material_text import MaterialSection, material_text
 from sssgen.presets.preset import Preset
+from sssgen.scene.measured.media import Medium
 
 QUALITIES = {
     "fast": "lights alone: no pictures of the body, no bake",
@@ -24,6 +25,8 @@ RESPONSE = "light.bin"
 """The file of the baked light, beside the material."""
 _OPAQUE = 12.0
 """The mean chord in mean free paths from which nothing is seen through a body."""
+_THICK = 4.0
+"""The mean chord in mean free paths from which light is scattered many times."""
 _MOST_THICKNESS = 10.0
 """The largest value of `constant_thickness`."""
 
@@ -51,13 +54,33 @@ def preset_stages(preset: Preset, quality: str, size: BodySize) -> list[Material
     if any(preset.sheet) or (quality == "fast" and not preset.scatters):
         return chosen
     if quality == "good" or not preset.scatters:
-        return _seen_through(preset, size, chosen)
+        return _seen_through(preset, size, [_colored(preset, size, stage) for stage in chosen])
     surface = [stage for stage in chosen if stage.section == "surface" and stage.technique != "base_color"]
     return [*(_fast if quality == "fast" else _best)(preset, size), *surface]
 
 
+def _colored(preset: Preset, size: BodySize, stage: MaterialSection) -> MaterialSection:
+    """The stage with the hue of light that comes through a thick body, which its octaves lack: they have shares that
+    are equal for all channels. Their light has the square of the albedo."""
+    medium = isotropic_medium(preset.interior(size.unit_mm))
+    if stage.technique != "interior_octaves" or medium.mean_free_path * _THICK > size.mean_chord:
+        return stage
+    through = _transmitted(medium, 0.5 * size.mean_chord)
+    albedo = [min(a, math.sqrt(t / max(through))) for a, t in zip(medium.albedo, through, strict=True)]
+    return stage._replace(values=tuple((key, albedo if key == "scattering_albedo" else old) for key, old in stage.values))
+
+
+def _transmitted(medium: Medium, depth: float) -> list[float]:
+    """What a slab transmits of diffuse light, per channel: 4 / (3 tau + 4) exp(-depth sqrt(3 absorption extinction)),
+    tau its thickness in mean free paths (diffusion, with a matched boundary)."""
+    return [
+        4.0 / (3.0 * extinction * depth + 4.0) * math.exp(-depth * math.sqrt(3.0 * absorption * extinction))
+        for extinction, absorption in zip(medium.extinction, medium.absorption, strict=True)
+    ]
+
+
 def _seen_through(preset: Preset, size: BodySize, stages: list[MaterialSection]) -> list[MaterialSection]:
-    """The stages with the length along each ray of the eye, and with what is seen through the body without scattering."""
+    """The stages with the length along each ray of the eye, and the light that comes through without scattering."""
     medium = isotropic_medium(preset.interior(size.unit_mm))
     if min(medium.extinction) * size.mean_chord > _OPAQUE:
         return stages
@@ -73,17 +96,11 @@ def _seen_through(preset: Preset, size: BodySize, stages: list[MaterialSection])
 
 
 def _fast(preset: Preset, size: BodySize) -> list[MaterialSection]:
-    """A matte colour that reaches around, and a lobe behind: diffusion through a slab as thick as half the mean chord.
-
-    The slab transmits 4 / (3 tau + 4) exp(-d sqrt(3 absorption extinction)), tau its thickness in mean free paths.
-    """
+    """A matte colour that reaches around, and a lobe behind: diffusion through a slab as thick as half the mean chord."""
     medium = isotropic_medium(preset.interior(size.unit_mm))
     color = multiscatter_of_albedo(medium.albedo)
     depth = 0.5 * size.mean_chord
-    transmitted = [
-        4.0 / (3.0 * extinction * depth + 4.0) * math.exp(-depth * math.sqrt(3.0 * absorption * extinction))
-        for extinction, absorption in zip(medium.extinction, medium.absorption, strict=True)
-    ]
+    transmitted = _transmitted(medium, depth)
     strongest = max(transmitted)
     reach = [min(medium.mean_free_path / max(depth, 1e-6), 1.0)] * 3
     lobe = (

@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-from sssgen.run.web_library import Library, library
 from sssgen.preview.page_messages import MOST_BYTES, MOST_TEXT, PageMessages, parse, unpack
 from sssgen.preview.pane import Pane
+from sssgen.run.web_library import Library, library
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.extras import need
 from sssgen.support.file_changes import changes
