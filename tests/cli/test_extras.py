@@ -64,6 +64,7 @@ NEEDS: dict[str, str | None] = {
     "chart cube": "chart,reference",
     "pick cube --max-error 0.5": "chart,reference",
     "fit cube lobe_exp2": "chart,reference",
+    "use wax a.obj -o out": "import",
     "import lamp.gltf -o out": "import",
     "export-gltf soap -o soap.glb": "import",
     "bake sdf a.obj -o a.npy": "bake",

@@ -38,6 +38,7 @@ LAZY_IMPORTS = {
     "sssgen.cli.sizes": HELP,
     "sssgen.cli.stress": HELP,
     "sssgen.cli.transpile": EXTRA,
+    "sssgen.cli.use": HELP,
     "sssgen.run.backends.browser_page": EXTRA,
     "sssgen.run.backends.opengl": EXTRA,
     "sssgen.run.backends.dispatch": EXTRA,

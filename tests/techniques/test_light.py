@@ -114,6 +114,17 @@ LOBES: dict[str, tuple[dict[str, Any], Callable[[], Array]]] = {
         * (0.5 - 0.5 * V[:, 1:2])
         * (1.0 - (1.0 - np.abs(dot(N, V))) ** 5)[:, None],
     ),
+    "seen_through_body": (
+        {
+            "uv": np.zeros((COUNT, 2)), "d": THROUGH, "V": V, "N": N, "ior": 1.0,
+            "entering_color": COLOR, "entering_texture": HALF, "extinction": (1.0, 2.0, 3.0),
+            "sky_below": (1.0, 1.0, 1.0), "sky_above": (1.0, 1.0, 1.0),
+        },
+        lambda: 0.5
+        * COLOR
+        * np.exp(-np.outer(THROUGH, (1.0, 2.0, 3.0)))
+        * (1.0 - (1.0 - np.abs(dot(N, V))) ** 5)[:, None],
+    ),
     "base_color_alone": (
         {"albedo": np.outer(THROUGH, COLOR), "emission": COLOR},
         lambda: np.outer(THROUGH, COLOR) + COLOR,

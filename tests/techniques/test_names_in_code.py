@@ -11,7 +11,7 @@ EXAMPLE, SHAPE, HINT = "an example in a text for users", "a shape of a body", "a
 CHOSEN_FOR_IMPORTS = {
     "back_face_thickness", "base_color", "base_color_alone", "clearcoat_constants", "clearcoat_map",
     "constant_thickness", "depth_map_path", "diffuse_transmission_map", "emission_map", "interior_octaves",
-    "metallic_roughness_map",
+    "light_layers_path", "metallic_roughness_map",
     "normal_map", "normal_map_directx", "occlusion_map", "pbr_constants", "seen_through", "specular_level",
     "specular_map", "thickness_map", "uv_transform", "vertex_tint",
 }  # fmt: skip
@@ -39,6 +39,22 @@ PERMITTED = {
     "interchange/technique_choice.py": (
         "the choice of techniques for a foreign material",
         CHOSEN_FOR_IMPORTS,
+    ),
+    "presets/preset_stages.py": (
+        "the stages of ready materials",
+        {
+            "back_face_thickness",
+            "base_color",
+            "beer_lambert",
+            "constant_thickness",
+            "fluence_relit",
+            "fluence_relit_refracted",
+            "interior_octaves",
+            "lobe_normalized",
+            "seen_through",
+            "seen_through_body",
+            "wrap_lighting",
+        },
     ),
     "lab/chart/charting.py": ("names of scenes", {"capsule", "torus"}),
     "lab/gpu/timed_programs.py": (EXAMPLE, {"lobe_exp2"}),

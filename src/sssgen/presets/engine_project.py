@@ -9,9 +9,10 @@ import math
 import os
 from collections.abc import Mapping
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from sssgen.interchange.material_writer import SURROUNDINGS
 from sssgen.material.material_loading import parse_material
@@ -22,9 +23,6 @@ from sssgen.presets.preset_stages import QUALITIES, RESPONSE, preset_text
 from sssgen.presets.used_mesh import UsedMesh
 from sssgen.run.web_library import library
 from sssgen.support.paths import place
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
 
 Files = dict[str, str | bytes]
 MESH = "body.glb"
@@ -157,8 +155,6 @@ def _medium(wish: Wish) -> Mapping[str, str] | None:
 
 @cache
 def _environment() -> Environment:
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
     folder = os.path.join(place("templates"), "projects")
     return Environment(
         loader=FileSystemLoader(folder), undefined=StrictUndefined, trim_blocks=True, keep_trailing_newline=True,

@@ -67,7 +67,9 @@ def _colored(preset: Preset, size: BodySize, stage: MaterialSection) -> Material
         return stage
     through = _transmitted(medium, 0.5 * size.mean_chord)
     albedo = [min(a, math.sqrt(t / max(through))) for a, t in zip(medium.albedo, through, strict=True)]
-    return stage._replace(values=tuple((key, albedo if key == "scattering_albedo" else old) for key, old in stage.values))
+    return stage._replace(
+        values=tuple((key, albedo if key == "scattering_albedo" else old) for key, old in stage.values)
+    )
 
 
 def _transmitted(medium: Medium, depth: float) -> list[float]:
@@ -96,7 +98,7 @@ def _seen_through(preset: Preset, size: BodySize, stages: list[MaterialSection])
 
 
 def _fast(preset: Preset, size: BodySize) -> list[MaterialSection]:
-    """A matte colour that reaches around, and a lobe behind: diffusion through a slab as thick as half the mean chord."""
+    """A matte colour that reaches around, and a lobe behind: diffusion through a slab of half the mean chord."""
     medium = isotropic_medium(preset.interior(size.unit_mm))
     color = multiscatter_of_albedo(medium.albedo)
     depth = 0.5 * size.mean_chord
