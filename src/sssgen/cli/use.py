@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import shlex
 from argparse import ArgumentParser, Namespace
+from collections.abc import Mapping
 
 from sssgen.cli.options import add_output
 from sssgen.cli.output import OK, print_result
 from sssgen.support.diagnostics import did_you_mean, failure
-from sssgen.support.file_writer import Written, check_folder, write_files
+from sssgen.support.file_writer import Written, check_folder, check_unchanged, write_files
 from sssgen.support.paths import posix, shell_word
 from sssgen.support.progress import ProgressBar
 
@@ -56,11 +57,11 @@ def run(arguments: Namespace) -> int:
         bar(0, 3, f"reading {os.path.basename(arguments.MESH)}")
         mesh = used_mesh(arguments.MESH, size)
         wish = Wish(chosen, mesh, target, arguments.quality, _command(arguments))
-        written = write_files(folder, material_files(wish))
+        written = _write(folder, material_files(wish), arguments.force)
         if wish.baked:
             written += _bake(folder, bar)
         bar(2, 3, "emitting")
-        written += write_files(folder, engine_files(wish, folder))
+        written += _write(folder, engine_files(wish, folder), arguments.force)
     lines = [f"{'wrote' if file.changed else 'kept '} {posix(file.path)}" for file in written]
     if not mesh.closed and chosen.scatters:
         lines.append("warning: the mesh has holes: light inside needs a closed body, and is wrong near them")
@@ -69,6 +70,13 @@ def run(arguments: Namespace) -> int:
     if arguments.open:
         _show(folder)
     return OK
+
+
+def _write(folder: str, files: Mapping[str, str | bytes], force: bool) -> list[Written]:
+    """Writes files; without `force` one that is there with another content is an error, as it may have been edited."""
+    if not force:
+        check_unchanged(folder, files)
+    return write_files(folder, files)
 
 
 def _bake(folder: str, bar: ProgressBar) -> list[Written]:

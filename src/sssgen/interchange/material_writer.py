@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,9 +17,8 @@ from sssgen.interchange.texture_composer import Coordinates
 from sssgen.material.material_text import material_text
 from sssgen.material.model import wrong_name
 from sssgen.scene.mesh_files import FileContent
-from sssgen.support.diagnostics import failure
-from sssgen.support.file_writer import as_bytes, has_content, write_files
-from sssgen.support.paths import place, posix
+from sssgen.support.file_writer import check_unchanged, write_files
+from sssgen.support.paths import place
 from sssgen.support.progress import Progress, silent
 
 _LONGEST_NAME = 48
@@ -69,19 +68,10 @@ def write_import(
     reports: dict[str, str | bytes] = {"report.md": report.markdown(), "report.json": report.json_text()}
     if not force:
         imported_before = all(os.path.isfile(os.path.join(folder, name)) for name in reports)
-        _check_unchanged(folder, files if imported_before else files | reports)
+        check_unchanged(folder, files if imported_before else files | reports)
     files |= reports
     write_files(folder, files)
     return written
-
-
-def _check_unchanged(folder: str, files: Mapping[str, str | bytes]) -> None:
-    """Raises SssgenError where a file is there already with another content."""
-    for name, content in files.items():
-        path = os.path.join(folder, name)
-        if os.path.isfile(path) and not has_content(path, as_bytes(content)):
-            hint = "it may have been edited: choose another folder, or replace all files with --force"
-            raise failure("the file already exists, with another content", hint, posix(path))
 
 
 def _material_files(imported: ImportedMaterial, choice: Choice, name: str) -> dict[str, str | bytes]:

@@ -56,6 +56,15 @@ def _fault(name: str) -> str:
     return ""
 
 
+def check_unchanged(folder: str, files: Mapping[str, str | bytes]) -> None:
+    """Raises SssgenError where a file is there already with another content."""
+    for name, content in files.items():
+        path = os.path.join(folder, name)
+        if os.path.isfile(path) and not has_content(path, as_bytes(content)):
+            hint = "it may have been edited: choose another folder, or replace all files with --force"
+            raise failure("the file already exists, with another content", hint, posix(path))
+
+
 def check_folder(folder: str) -> None:
     """Raises SssgenError if files cannot be written to a folder because a file has its name, or that of a parent.
     Commands call it before work that takes long."""

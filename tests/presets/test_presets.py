@@ -1,0 +1,93 @@
+"""Ready materials: each is a right material in each quality, and its numbers are those of its medium or its colour."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import sssgen
+from sssgen.interchange.scatter_color import multiscatter_of_albedo
+from sssgen.material.material_loading import parse_material
+from sssgen.material.requirements import requirements
+from sssgen.presets.engine_project import ENGINES
+from sssgen.presets.preset import Preset, preset, presets
+from sssgen.presets.preset_stages import QUALITIES, BodySize, preset_text
+from sssgen.support.diagnostics import SssgenError
+
+SIZE = BodySize(20.0, 0.5)
+
+
+def required(name: str, quality: str) -> tuple[str, ...]:
+    text = preset_text(preset(name), quality, name, SIZE)
+    return requirements(parse_material(text, f"{name}.toml").stages)
+
+
+@pytest.mark.parametrize("name", presets())
+def test_a_preset_is_a_material_in_each_quality(name: str) -> None:
+    row = preset(name)
+    assert row.title and row.doc.endswith(".") and row.source
+    for quality in QUALITIES:
+        material = parse_material(preset_text(row, quality, name, SIZE), f"{name}.toml")
+        assert material.name == name and "20 mm" in material.doc
+        needs = requirements(material.stages)
+        assert quality != "fast" or not needs, "fast needs lights alone"
+        assert quality != "good" or "bake" not in needs
+        assert (quality == "best" and row.scatters) == ("bake" in needs)
+
+
+@pytest.mark.parametrize("target", ENGINES)
+def test_a_preset_compiles_for_every_engine(target: str) -> None:
+    for name in ("wax", "gummy", "honey", "leaf"):
+        for quality in QUALITIES:
+            material = parse_material(preset_text(preset(name), quality, name, SIZE), f"{name}.toml")
+            assert sssgen.compile(material, target).files
+
+
+def test_a_measured_medium_is_that_of_the_table_in_world_units() -> None:
+    medium = preset("marble").interior(5.0)
+    assert medium.scattering == pytest.approx([5.0 * 2.19, 5.0 * 2.62, 5.0 * 3.0])
+    assert medium.ior == preset("marble").ior
+
+
+def test_a_color_is_what_a_thick_body_reflects() -> None:
+    row = preset("coral")
+    medium = row.interior(1.0)
+    assert multiscatter_of_albedo(medium.albedo) == pytest.approx(row.color, abs=0.02)
+    assert [1.0 / part for part in medium.extinction] == pytest.approx(row.depth_mm)
+
+
+def test_a_larger_body_is_denser() -> None:
+    def extinction(unit_mm: float) -> list[float]:
+        material = parse_material(preset_text(preset("wax"), "good", "wax", BodySize(unit_mm, 0.5)), "wax.toml")
+        (stage,) = [stage for stage in material.stages if "octaves" in stage.values]
+        return list(stage.values["extinction"])
+
+    assert np.array(extinction(40.0)) == pytest.approx(2.0 * np.array(extinction(20.0)), rel=1e-4)
+
+
+def test_light_through_a_thick_body_has_the_hue_of_its_absorption() -> None:
+    """Wax absorbs blue: what comes through is warmer than what it reflects."""
+    material = parse_material(preset_text(preset("wax"), "good", "wax", SIZE), "wax.toml")
+    (albedo,) = [stage.values["scattering_albedo"] for stage in material.stages if "octaves" in stage.values]
+    assert albedo[0] > albedo[1] > albedo[2]
+    (tint,) = [stage.values["tint"] for stage in material.stages if "tint" in stage.values]
+    assert albedo[2] / albedo[0] < tint[2] / tint[0]
+
+
+def test_qualities_need_what_they_say() -> None:
+    assert "depth-layers" in required("wax", "good") and "back-faces" in required("honey", "good")
+    assert {"bake", "inner-light"} <= set(required("wax", "best"))
+    assert required("paper", "best") == ()
+
+
+def test_an_unknown_preset_is_an_error_with_the_nearest_name() -> None:
+    with pytest.raises(SssgenError, match="did you mean 'wax'"):
+        preset("waxx")
+
+
+def test_every_preset_says_one_thing_about_its_inside() -> None:
+    def kinds(row: Preset) -> int:
+        return bool(row.medium) + any(row.color) + bool(row.clear) + any(row.sheet)
+
+    assert all(kinds(row) == 1 for row in presets().values())
+    assert len(presets()) >= 16

@@ -1,0 +1,117 @@
+"""`sssgen use`: the files of a project, errors, and what a repeated call keeps."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sssgen.cli.main import main
+from sssgen.presets.engine_project import ENGINES
+from sssgen.presets.used_mesh import used_mesh
+from sssgen.scene.mesh_files import read
+
+pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[import]'")
+
+CORNERS = np.array([[x, y, z] for x in (0, 2) for y in (0, 1) for z in (0, 1)], float)
+
+
+@pytest.fixture
+def block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """A block of 2 × 1 × 1, in a folder of its own."""
+    import trimesh
+
+    monkeypatch.chdir(tmp_path)
+    trimesh.convex.convex_hull(CORNERS).export("block.obj")
+    return "block.obj"
+
+
+@pytest.mark.parametrize("target", ENGINES)
+def test_a_project_has_the_material_the_mesh_and_what_opens_it(target: str, block: str) -> None:
+    assert main(["use", "jade", block, "--target", target, "-o", "out"]) == 0
+    files = {path.relative_to("out").as_posix() for path in Path("out").rglob("*") if path.is_file()}
+    opened = "project.godot" if target == "godot" else "index.html"
+    assert {"jade.toml", "body.glb", "scene.toml", "surroundings.png", "README.md", opened} <= files
+    for name in files:
+        if name.startswith(("main.", "index.", "project.", "scene.", "README")):
+            text = Path("out", name).read_text(encoding="utf-8")
+            assert "{{" not in text and "{%" not in text, name
+    assert f"sssgen use jade {block} --target {target}" in Path("out", "README.md").read_text(encoding="utf-8")
+
+
+def test_a_repeated_call_changes_nothing(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["use", "wax", block, "-o", "out"]
+    assert main(command) == 0 and "kept" not in capsys.readouterr().out
+    assert main(command) == 0 and "wrote" not in capsys.readouterr().out
+
+
+def test_edited_files_are_kept_without_force(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["use", "wax", block, "-o", "out"]
+    assert main(command) == 0
+    page = Path("out", "main.js")
+    page.write_text("// mine\n", encoding="utf-8")
+    assert main(command) == 2 and "main.js" in capsys.readouterr().err
+    assert page.read_text(encoding="utf-8") == "// mine\n"
+    assert main([*command, "--force"]) == 0 and "createMaterial" in page.read_text(encoding="utf-8")
+
+
+def test_the_mesh_keeps_its_place_and_gets_normals(block: str) -> None:
+    mesh = used_mesh(block, 40.0)
+    assert (mesh.low, mesh.high) == ((0.0, 0.0, 0.0), (2.0, 1.0, 1.0))
+    assert mesh.size.unit_mm == pytest.approx(20.0) and mesh.closed
+    assert mesh.size.mean_chord == pytest.approx(4.0 * 2.0 / 10.0)  # 4 V / S
+    Path("body.glb").write_bytes(mesh.glb)
+    content = read("body.glb")
+    assert content.normals is not None and np.linalg.norm(content.normals, axis=1) == pytest.approx(1.0)
+
+
+def test_a_mesh_that_is_inside_out_is_turned(block: str) -> None:
+    import trimesh
+
+    turned = trimesh.convex.convex_hull(CORNERS)
+    turned.invert()
+    turned.export("turned.obj")
+    Path("body.glb").write_bytes(used_mesh("turned.obj", 40.0).glb)
+    content = read("body.glb")
+    first, second, third = np.moveaxis(content.vertices[content.faces], 1, 0)
+    outwards = np.einsum("nc,nc->n", np.cross(second - first, third - first), first - CORNERS.mean(axis=0))
+    assert (outwards > 0.0).all()
+    assert content.normals is not None
+    assert (np.einsum("nc,nc->n", content.normals, content.vertices - CORNERS.mean(axis=0)) > 0.0).all()
+
+
+def test_an_open_mesh_has_a_warning(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = Path(block).read_text(encoding="utf-8").splitlines()
+    last = max(index for index, line in enumerate(lines) if line.startswith("f "))
+    Path("open.obj").write_text("\n".join(lines[:last]), encoding="utf-8")
+    assert main(["use", "wax", "open.obj", "-o", "out"]) == 0 and "has holes" in capsys.readouterr().out
+    assert main(["use", "leaf", "open.obj", "-o", "leaf"]) == 0 and "has holes" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (["use", "waxx", "block.obj", "-o", "out"], "did you mean 'wax'"),
+        (["use", "wax", "blok.obj", "-o", "out"], "cannot find the mesh"),
+        (["use", "wax", "block.obj", "-t", "threjs", "-o", "out"], "did you mean 'threejs'"),
+        (["use", "wax", "block.obj", "-t", "unreal", "-o", "out"], "there is no project for the target 'unreal'"),
+        (["use", "wax", "block.obj", "-t", "godot", "-o", "out", "--open"], "--open shows pages"),
+        (["use", "wax", "block.obj", "-o", "out", "--size", "0"], "cannot be 0 mm large"),
+        (["use", "wax", "block.obj", "-o", "out", "--size", "nan"], "cannot be nan mm large"),
+        (["use", "wax", "block.obj", "-o", "block.obj"], "block.obj"),
+    ],
+)
+def test_mistakes_are_errors_and_write_nothing(
+    arguments: list[str], message: str, block: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 2
+    assert message in capsys.readouterr().err
+    assert {path.name for path in Path().iterdir()} <= {"block.obj", "material.mtl"}
+
+
+def test_the_report_as_json(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["use", "honey", block, "-o", "out", "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["ok"] and "out/index.html" in report["files"]
