@@ -110,9 +110,9 @@ def _show(folder: str) -> None:
         def log_message(self, format: str, *args: object) -> None:
             """Requests are not printed."""
 
-    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Handler, directory=folder))
-    address = f"http://127.0.0.1:{server.server_address[1]}/"
-    print(f"{address}  Ctrl+C ends", flush=True)
-    webbrowser.open(address)
-    with contextlib.suppress(KeyboardInterrupt):
-        server.serve_forever()
+    with ThreadingHTTPServer(("127.0.0.1", 0), partial(Handler, directory=folder)) as server:
+        address = f"http://127.0.0.1:{server.server_address[1]}/"
+        print(f"{address}  Ctrl+C ends", flush=True)
+        webbrowser.open(address)
+        with contextlib.suppress(KeyboardInterrupt):
+            server.serve_forever()

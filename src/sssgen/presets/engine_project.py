@@ -28,13 +28,13 @@ Files = dict[str, str | bytes]
 MESH = "body.glb"
 RANK = 16
 """The numbers of a voxel of baked light."""
-_LAMP = 260
+_LAMP, _SHEET_LAMP = 260, 50
 """The intensity of the lamp for a radius of 1, with light units of three.js: its irradiance is this over the squared
 distance."""
 _LAMP_COLOR = (1.0, 0.94, 0.86)
 _LAMP_SQUARE = 13.8
 """The squared distance of the lamp from the centre, in radii."""
-_ROOM, _BRIGHT_ROOM = 0.1, 0.7
+_ROOM, _BRIGHT_ROOM = 0.15, 0.7
 """The strength of the surroundings, for bodies that a lamp makes glow and for clear ones."""
 _EYE, _LAMP_PLACE, _FRONT_LAMP = (1.3, 0.75, 3.7), (-0.9, 1.5, -3.3), (2.0, 3.0, 4.0)
 """The places of the eye, of the lamp behind and of the lamp in front, in radii of the body."""
@@ -134,10 +134,11 @@ def _values(wish: Wish) -> dict[str, object]:
         "center": center.round(6).tolist(), "radius": round(mesh.radius, 6), "low_y": mesh.low[1],
         "eye": at(_EYE), "lamp_place": at(_LAMP_PLACE), "front": at(_FRONT_LAMP),
     }  # fmt: skip
-    strength = _LAMP / math.pi * mesh.radius**2
+    lamp = _SHEET_LAMP if any(preset.sheet) else _LAMP
+    strength = lamp / math.pi * mesh.radius**2
     light = {
         "surroundings": SURROUNDINGS, "lamp_color": [round(strength * part, 4) for part in _LAMP_COLOR],
-        "lamp": _LAMP, "lamp_brightness": round(_LAMP / (math.pi * _LAMP_SQUARE), 1), "lamp_square": _LAMP_SQUARE,
+        "lamp": lamp, "lamp_brightness": round(lamp / (math.pi * _LAMP_SQUARE), 1), "lamp_square": _LAMP_SQUARE,
         "room": _ROOM if preset.scatters else _BRIGHT_ROOM, "scatters": preset.scatters,
         "medium": _medium(wish), "baked": wish.baked, "response": RESPONSE, "rank": RANK,
     }  # fmt: skip
