@@ -115,3 +115,22 @@ def test_the_report_as_json(block: str, capsys: pytest.CaptureFixture[str]) -> N
     assert main(["use", "honey", block, "-o", "out", "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert report["ok"] and "out/index.html" in report["files"]
+
+
+@pytest.mark.parametrize("scale", [1e-5, 1e4])
+def test_a_mesh_of_a_few_units_is_asked_for(scale: float, block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    import trimesh
+
+    trimesh.convex.convex_hull(scale * CORNERS).export("scaled.obj")
+    assert main(["use", "wax", "scaled.obj", "-o", "out"]) == 2 and not Path("out").exists()
+    assert "scale the mesh" in capsys.readouterr().err
+    assert main(["use", "paper", "scaled.obj", "-o", "out"]) == 0
+
+
+def test_a_new_material_begins_with_a_preset(block: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "mine", "--from", "jade"]) == 0
+    text = Path("mine.toml").read_text(encoding="utf-8")
+    assert 'name = "mine"' in text and 'title = "Jade"' in text and "A world unit is 15 mm" in text
+    assert main(["emit", "mine.toml", "--target", "wgsl", "-o", "out"]) == 0
+    assert main(["new", "other", "--from", "jad"]) == 2 and "did you mean 'jade'" in capsys.readouterr().err
+    assert main(["new", "other", "--from", "jade", "--copy", "ice"]) == 2 and not Path("other").exists()

@@ -28,6 +28,7 @@ LAZY_IMPORTS = {
     "sssgen.cli.layout": EMIT,
     "sssgen.cli.lint": HELP,
     "sssgen.cli.lsp": HELP,
+    "sssgen.cli.new": EXTRA,
     "sssgen.cli.main": "only an internal error needs it, and `sssgen emit` starts faster",
     "sssgen.cli.output": EMIT,
     "sssgen.cli.pick": HELP,

@@ -17,6 +17,9 @@ from sssgen.support.file_writer import write_files
 STARTER = Path(__file__).with_name("starter.toml")
 """The material to start from, with `$file`, `$name` and `$title`."""
 
+MEAN_CHORD = 0.6
+"""Of a body that is two units large, as figures have it: the mean length of lines inside."""
+
 _ELSEWHERE = re.compile(r'"(\.\./\w+/)([\w./]+)"')
 """The name of a file in the folder of another example, in two parts: a copy has the file at the second part."""
 
@@ -24,16 +27,23 @@ _ELSEWHERE = re.compile(r'"(\.\./\w+/)([\w./]+)"')
 def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
         "examples:\n  sssgen new wood\n  sssgen new materials/soap.toml\n  sssgen new my_ring --copy jade_ring\n"
+        "  sssgen new my_wax --from wax\n"
         "The copy of an example is a folder with its material, scene, techniques and textures."
     )
     parser.add_argument("MATERIAL", help="the material's name, or a .toml file; no file is overwritten")
     parser.add_argument("--copy", metavar="EXAMPLE", help="copy this example into the new folder MATERIAL")
+    parser.add_argument(
+        "--from", dest="preset", metavar="PRESET",
+        help="begin with a ready material of `sssgen list presets`, for a body that is two units large",
+    )  # fmt: skip
 
 
 def run(arguments: Namespace) -> int:
     """Writes the starter, or copies an example; refuses to overwrite a file."""
     to, example = arguments.MATERIAL, arguments.copy
-    written = _write_starter(to) if example is None else _copy(example, to)
+    if example is not None and arguments.preset is not None:
+        raise failure("--copy and --from exclude each other", "an example is a folder, a preset is one file")
+    written = [_write_material(to, arguments.preset)] if example is None else _copy(example, to)
     text = "\n".join(f"wrote {file}" for file in written)
     print_result(arguments.json, {"file": written[0], "files": written}, text)
     return OK
@@ -57,15 +67,15 @@ def _copy(name: str, to: str) -> list[str]:
     return [(folder / file).as_posix() for file in names]
 
 
-def _write_starter(argument: str) -> list[str]:
+def _write_material(argument: str, preset: str | None) -> str:
+    """Writes the file of a preset, or the starter without one; returns its path."""
     path = Path(argument)
     if path.suffix != ".toml":
         path = path.with_name(f"{path.name}.toml") if path.name else path / "material.toml"
     name, shown = path.stem, path.as_posix()
     if problem := wrong_name(name):
         raise failure(*problem)
-    starter = Template(STARTER.read_text(encoding="utf-8"))
-    text = starter.substitute(file=shown, name=name, title=name.replace("_", " ").capitalize())
+    text = _preset(preset, name) if preset is not None else _starter(shown, name)
     try:
         with path.open("x", encoding="utf-8", newline="\n") as file:
             file.write(text)
@@ -74,4 +84,18 @@ def _write_starter(argument: str) -> list[str]:
     except OSError as error:
         hint = "make the folder first" if isinstance(error, FileNotFoundError) else "choose another folder"
         raise failure(f"cannot write: {error.strerror or error}", hint, shown) from None
-    return [shown]
+    return shown
+
+
+def _starter(file: str, name: str) -> str:
+    starter = Template(STARTER.read_text(encoding="utf-8"))
+    return starter.substitute(file=file, name=name, title=name.replace("_", " ").capitalize())
+
+
+def _preset(preset: str, name: str) -> str:
+    """The material of a preset, with the quality that needs no bake."""
+    from sssgen.presets.preset import preset as named
+    from sssgen.presets.preset_stages import BodySize, preset_text
+
+    chosen = named(preset)
+    return preset_text(chosen, "good", name, BodySize(0.5 * chosen.size_mm, MEAN_CHORD))

@@ -125,8 +125,9 @@ def _values(wish: Wish) -> dict[str, object]:
         found: list[float] = (center + mesh.radius * np.array(place)).round(6).tolist()
         return found
 
+    shown = " ".join(os.path.basename(mesh.path).split())
     texts = {
-        "title": preset.title, "name": wish.name, "mesh": os.path.basename(mesh.path), "target": wish.target,
+        "title": preset.title, "name": wish.name, "mesh": shown, "target": wish.target,
         "quality": f"{wish.quality}, {QUALITIES[wish.quality]}", "unit_mm": f"{mesh.size.unit_mm:.4g}",
         "command": wish.command, "open": ENGINES[wish.target].opened, "body": MESH,
     }  # fmt: skip

@@ -15,6 +15,7 @@ from sssgen.interchange.technique_choice import choose_for_lights
 from sssgen.material.material_text import MaterialSection, material_text
 from sssgen.presets.preset import Preset
 from sssgen.scene.measured.media import Medium
+from sssgen.support.diagnostics import failure
 
 QUALITIES = {
     "fast": "lights alone: no pictures of the body, no bake",
@@ -27,8 +28,10 @@ _OPAQUE = 12.0
 """The mean chord in mean free paths from which nothing is seen through a body."""
 _THICK = 4.0
 """The mean chord in mean free paths from which light is scattered many times."""
-_MOST_THICKNESS = 10.0
-"""The largest value of `constant_thickness`."""
+_DENSEST = 10000.0
+"""The largest extinction of techniques for light inside."""
+_LONGEST_PATH = 100.0
+"""The largest mean free path."""
 
 
 class BodySize(NamedTuple):
@@ -49,14 +52,28 @@ def preset_text(preset: Preset, quality: str, name: str, size: BodySize) -> str:
 
 
 def preset_stages(preset: Preset, quality: str, size: BodySize) -> list[MaterialSection]:
-    """The stages. A sheet is the same in all qualities: it needs no picture and no bake."""
-    chosen = choose_for_lights(preset.model(size.unit_mm), Notes(), size.mean_chord).stages
+    """The stages. A sheet is the same in all qualities: it needs no picture and no bake.
+
+    Raises SssgenError for a mesh whose unit is too small or too large for the parameters of techniques.
+    """
+    _check_unit(preset, size)
     if any(preset.sheet) or (quality == "fast" and not preset.scatters):
-        return chosen
+        # one thickness: its unit is free, and here it is the mean chord
+        return choose_for_lights(preset.model(size.unit_mm * size.mean_chord), Notes(), 1.0).stages
+    chosen = choose_for_lights(preset.model(size.unit_mm), Notes(), size.mean_chord).stages
     if quality == "good" or not preset.scatters:
         return _seen_through(preset, size, [_colored(preset, size, stage) for stage in chosen])
     surface = [stage for stage in chosen if stage.section == "surface" and stage.technique != "base_color"]
     return [*(_fast if quality == "fast" else _best)(preset, size), *surface]
+
+
+def _check_unit(preset: Preset, size: BodySize) -> None:
+    """Raises SssgenError where a length in units of the mesh is outside of what techniques take."""
+    medium = preset.interior(size.unit_mm)
+    if not preset.scatters or (max(medium.extinction) <= _DENSEST and medium.mean_free_path <= _LONGEST_PATH):
+        return
+    hint = "scale the mesh: it is best between 1 and 10 units large"
+    raise failure(f"a unit of the mesh is {size.unit_mm:.3g} mm: the numbers of the material leave their ranges", hint)
 
 
 def _colored(preset: Preset, size: BodySize, stage: MaterialSection) -> MaterialSection:
@@ -110,8 +127,8 @@ def _fast(preset: Preset, size: BodySize) -> list[MaterialSection]:
         ("scale", min(3.0 * strongest, 20.0)), ("power", 4.0), ("distortion", 0.3), ("ambient", min(strongest, 0.3)),
     )  # fmt: skip
     return [
-        MaterialSection("thickness", "constant_thickness", (("thickness_factor", min(depth, _MOST_THICKNESS)),)),
-        MaterialSection("thickness", "beer_lambert", (("attenuation_distance", min(4.0 * depth, _MOST_THICKNESS)),)),
+        MaterialSection("thickness", "constant_thickness", (("thickness_factor", 1.0),)),
+        MaterialSection("thickness", "beer_lambert", (("attenuation_distance", 4.0),)),
         MaterialSection("surface", "base_color", (("tint", [*(0.85 * part for part in color), 1.0]),)),
         MaterialSection(
             "translucency", "wrap_lighting", (("wrap", 0.5 * reach[0]), ("subsurface_color", [0.85 * c for c in color]))
