@@ -134,3 +134,10 @@ def test_a_new_material_begins_with_a_preset(block: str, capsys: pytest.CaptureF
     assert main(["emit", "mine.toml", "--target", "wgsl", "-o", "out"]) == 0
     assert main(["new", "other", "--from", "jad"]) == 2 and "did you mean 'jade'" in capsys.readouterr().err
     assert main(["new", "other", "--from", "jade", "--copy", "ice"]) == 2 and not Path("other").exists()
+
+
+def test_a_page_without_the_bundle_loads_three_from_the_network(block: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SSSGEN_NODE_MODULES", str(Path("none").resolve()))
+    assert main(["use", "wax", block, "-o", "out"]) == 0
+    assert "https://cdn.jsdelivr.net/npm/three@" in Path("out", "index.html").read_text(encoding="utf-8")
+    assert not Path("out", "library").exists()

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from folders import ROOT
 from sssgen.run import web_library as module
 from sssgen.run.web_library import BUNDLE, NPM, bundle, library
 from sssgen.support.diagnostics import SssgenError
@@ -56,3 +57,10 @@ def test_all_that_the_page_imports_is_in_the_bundle() -> None:
     imported = {name for name in re.findall(r"from '([^']+)'", text) if not name.startswith(".")}
     exported = set(re.findall(r"from '([^']+)'", EXPORTED.read_text(encoding="utf-8")))
     assert imported <= exported == set(NPM)
+
+
+def test_the_network_has_every_import() -> None:
+    addresses = json.loads(module.network_import_map())["imports"]
+    assert addresses.keys() == NPM.keys()
+    assert addresses["three"] == f"https://cdn.jsdelivr.net/npm/three@{module.VERSION}/build/three.module.js"
+    assert f"three@{module.VERSION} " in (ROOT / "Makefile").read_text(encoding="utf-8")

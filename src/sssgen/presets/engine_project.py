@@ -21,7 +21,8 @@ from sssgen.pipeline.compiler import compile
 from sssgen.presets.preset import Preset
 from sssgen.presets.preset_stages import QUALITIES, RESPONSE, preset_text
 from sssgen.presets.used_mesh import UsedMesh
-from sssgen.run.web_library import library
+from sssgen.run.web_library import library, network_import_map
+from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import place
 
 Files = dict[str, str | bytes]
@@ -106,14 +107,23 @@ def engine_files(wish: Wish, folder: str) -> Files:
     files: Files = dict(compile(material, wish.target).files)
     values = _values(wish) | {"passes": f"{wish.name}_passes.gd" in files}
     if ENGINES[wish.target].has_library:
-        web = library()
-        files |= {f"library/{name}": source.read_bytes() for name, source in web.files.items()}
-        values["import_map"] = web.import_map()
+        values["import_map"], libraries = _three()
+        files |= libraries
     source = os.path.join(place("templates"), "projects", wish.target)
     for name in sorted(entry.removesuffix(".j2") for entry in os.listdir(source)):
         files[name] = _template(f"{wish.target}/{name}", **values)
     files["README.md"] = _template("README.md", **values)
     return files
+
+
+def _three() -> tuple[str, Files]:
+    """The import map of a page with three.js, and its files: none where sssgen was installed without npm, which makes
+    the bundle. A browser then loads them from the network."""
+    try:
+        web = library()
+    except SssgenError:
+        return network_import_map(), {}
+    return web.import_map(), {f"library/{name}": source.read_bytes() for name, source in web.files.items()}
 
 
 def _values(wish: Wish) -> dict[str, object]:

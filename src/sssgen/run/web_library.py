@@ -22,6 +22,9 @@ NPM = {
     "three/addons/environments/RoomEnvironment.js": "three/examples/jsm/environments/RoomEnvironment.js",
 }
 """What the page imports → the file among npm's packages. `library_bundle.js` exports the same."""
+VERSION = "0.187.0"
+"""Of three.js, as in the Makefile."""
+_NETWORK = f"https://cdn.jsdelivr.net/npm/three@{VERSION}"
 _IMPORTED_BY_THESE = (
     "three/build/three.core.js",
     "three/examples/jsm/utils/BufferGeometryUtils.js",
@@ -40,6 +43,12 @@ class Library(NamedTuple):
     def import_map(self) -> str:
         """The import map of the page, for files in its folder `library`."""
         return json.dumps({"imports": {name: f"./library/{file}" for name, file in self.imports.items()}}, indent=2)
+
+
+def network_import_map() -> str:
+    """An import map whose files a browser loads from a public mirror of npm."""
+    addresses = {name: file.replace("three", _NETWORK, 1) for name, file in NPM.items()}
+    return json.dumps({"imports": addresses}, indent=2)
 
 
 def bundle() -> Path:
