@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -141,3 +142,24 @@ def test_a_page_without_the_bundle_loads_three_from_the_network(block: str, monk
     assert main(["use", "wax", block, "-o", "out"]) == 0
     assert "https://cdn.jsdelivr.net/npm/three@" in Path("out", "index.html").read_text(encoding="utf-8")
     assert not Path("out", "library").exists()
+
+
+def test_the_bake_of_best_is_kept_for_its_body_and_medium(block: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("mitsuba", reason="mitsuba is missing: pip install -e '.[reference]'")
+    from sssgen.bake import relit
+    from sssgen.lab.fluence.fluence_field import Settings
+
+    bakes, original = [], relit.bake
+
+    def coarse(scene: Any, rank: int, settings: Settings, **_: object) -> Any:
+        bakes.append(scene.medium.extinction[0])
+        return original(scene, 8, Settings(voxels=8, side=8, photons=200), processes=0)
+
+    monkeypatch.setattr(relit, "bake", coarse)
+    command = ["use", "wax", block, "-o", "out", "--quality", "best"]
+    assert main(command) == 0 and main(command) == 0 and len(bakes) == 1
+    assert main([*command, "--size", "40", "--force"]) == 0 and len(bakes) == 2  # a denser medium
+    Path("out", "light.bin").write_bytes(b"broken")
+    assert main([*command, "--size", "40", "--force"]) == 0 and len(bakes) == 3
+    page = Path("out", "main.js").read_text(encoding="utf-8")
+    assert "createMaterial({ innerLight: 'light.bin' })" in page

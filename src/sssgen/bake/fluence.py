@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.bake import memory_check as memory
-from sssgen.bake.bake_facts import FluenceFacts
+from sssgen.bake.bake_facts import FluenceFacts, MediumFacts
 from sssgen.bake.bake_light import BakeLight
 from sssgen.jobs.executor import Progress
 from sssgen.lab.fluence import fluence_field
@@ -176,10 +176,7 @@ def facts_of(scene: MeasuredScene, settings: Settings, traced: Field) -> Fluence
     return {
         "kind": "fluence", "holds": None,
         "body": body_identity.identity(scene.geometry, scaled=True),
-        "medium": {
-            "name": medium.name, "extinction": [*medium.extinction], "albedo": [*medium.albedo],
-            "anisotropy": medium.anisotropy, "ior": medium.ior,
-        },
+        "medium": medium_facts(medium),
         "texels": list(traced.grid.shape), "voxel": voxel,
         "box_min": traced.grid.low.tolist(), "box_max": traced.grid.high.tolist(),
         "photons": settings.photons, "directions": len(traced.directions), "seed": settings.seed,
@@ -189,6 +186,14 @@ def facts_of(scene: MeasuredScene, settings: Settings, traced: Field) -> Fluence
         # of a body that is not moved; an engine multiplies the matrix with world space to object space
         "parameters": {**medium.parameters, "world_to_volume": matrix.T.ravel().tolist()},
         "import": import_settings("3D", "clamp", mipmaps=False),
+    }  # fmt: skip
+
+
+def medium_facts(medium: Medium) -> MediumFacts:
+    """The entry `medium` of a JSON file."""
+    return {
+        "name": medium.name, "extinction": [*medium.extinction], "albedo": [*medium.albedo],
+        "anisotropy": medium.anisotropy, "ior": medium.ior,
     }  # fmt: skip
 
 

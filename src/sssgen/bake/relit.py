@@ -2,18 +2,38 @@
 
 from __future__ import annotations
 
+import os
+from typing import Any
+
 from sssgen.bake.bake_facts import RelitFacts
-from sssgen.bake.fluence import check, facts_of, variant
+from sssgen.bake.fluence import check, facts_of, medium_facts, variant
 from sssgen.jobs.executor import Progress
 from sssgen.lab.fluence import response
 from sssgen.lab.fluence.fluence_field import Settings
 from sssgen.lab.fluence.fluence_volumes import reach_of
-from sssgen.scene.light_response import to_bytes
+from sssgen.material.baked import read_bake_file
+from sssgen.scene.body_identity import identity
+from sssgen.scene.light_response import checksum, to_bytes
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.support.diagnostics import failure
 
 RANKS = (4, 32)
 """The least and the largest count of numbers in a voxel."""
+
+
+def is_current(path: str, scene: MeasuredScene) -> bool:
+    """Whether a file and its JSON are of a body and its medium, however many numbers and photons they have."""
+    assert scene.medium is not None
+    if not (os.path.isfile(path) and (described := read_bake_file(path))):
+        return False
+    facts: Any = described.facts
+    body, medium = identity(scene.geometry, scaled=True), medium_facts(scene.medium)
+    same = {**facts["medium"], "name": ""} == {**medium, "name": ""}
+    about = facts["file"]
+    with open(path, "rb") as file:
+        data = file.read()
+    whole = len(data) == about["bytes"] and checksum(data) == about.get("adler32")
+    return same and whole and (facts["body"]["key"], facts["body"]["scale"]) == (body["key"], body["scale"])
 
 
 def bake(

@@ -80,16 +80,18 @@ def _write(folder: str, files: Mapping[str, str | bytes], force: bool) -> list[W
 
 
 def _bake(folder: str, bar: ProgressBar) -> list[Written]:
-    """Bakes the light inside the body of the scene in a folder."""
+    """Bakes the light inside the body of the scene in a folder; a bake of this body and medium is kept."""
     from sssgen.bake import baked_files, fluence, relit
     from sssgen.lab.fluence.fluence_field import Settings
     from sssgen.lab.fluence.traced_body import fitting_voxels
     from sssgen.presets.engine_project import RANK
     from sssgen.presets.preset_stages import RESPONSE
 
-    scene = fluence.body(os.path.join(folder, "scene.toml"), "", 10.0)
+    scene, path = fluence.body(os.path.join(folder, "scene.toml"), "", 10.0), os.path.join(folder, RESPONSE)
+    if relit.is_current(path, scene):
+        return [Written(path, False)]
     data, facts = relit.bake(scene, RANK, Settings(fitting_voxels(scene)), progress=bar)
-    return [Written(path, True) for path in baked_files.write_response(os.path.join(folder, RESPONSE), data, facts)]
+    return [Written(path, True) for path in baked_files.write_response(path, data, facts)]
 
 
 def _command(arguments: Namespace) -> str:
