@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 STANDARD_OUTPUT = "-"
 
+NAMED_TARGETS = 4
+"""More targets than these, of which nothing draws a pass, are not named one by one."""
+
 
 def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
@@ -245,7 +248,8 @@ def _drawers(material: str, names: Sequence[str], form: str, drawn: str) -> list
         return texts[:1] if texts[0] else []
     drawers = [f"{text} in {target.title}" for target, text in zip(targets, texts, strict=True) if text]
     undrawn = [name for name, text in zip(names, texts, strict=True) if not text]
-    return [*drawers, f"your own program for {', '.join(undrawn)}"] if undrawn else drawers
+    others = ", ".join(undrawn) if len(undrawn) <= NAMED_TARGETS else "the other targets"
+    return [*drawers, f"your own program for {others}"] if undrawn else drawers
 
 
 def chosen_targets(text: str, wrong: list[Diagnostic]) -> list[str]:
