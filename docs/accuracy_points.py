@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping, Sequence
 
+from sssgen.ir.baked_textures import is_baked
 from sssgen.lab.chart.record import Point, Record, measures
 from sssgen.lab.measure.technique_chain import is_drawn, textures_of
 from sssgen.material import library
@@ -54,4 +55,5 @@ def _best(chains: Iterable[Point]) -> dict[str, dict[str, object]]:
 
 
 def _is_baked(name: str) -> bool:
-    return any(not is_drawn(uniform) for uniform in textures_of(library.load(name.partition(":")[0])))
+    textures = textures_of(library.load(name.partition(":")[0]))
+    return any(is_baked(texture) or not is_drawn(texture) for texture in textures)

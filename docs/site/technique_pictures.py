@@ -8,6 +8,7 @@ needs a bake, and for cameras and marches; the page says why.
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import functools
 import tempfile
@@ -33,6 +34,7 @@ from sssgen.material.library import Technique
 from sssgen.material.material_text import MaterialSection, material_text
 from sssgen.material.technique_facts import facts_of
 from sssgen.run.backends import Array, Backend
+from sssgen.run.render.missing_textures import MissingTextures
 from sssgen.run.render.scene_render import RenderedPicture, render
 from sssgen.scene import scene_loading
 from sssgen.scene.example_scenes import measured_scenes
@@ -81,7 +83,8 @@ technique = "{}"
 def draw(technique: Technique, backend: Backend) -> Picture | None:
     """The picture of a technique; None if there is none."""
     if point := best_point(technique.name):
-        return _measured(point, backend)
+        with contextlib.suppress(MissingTextures):  # its chain reads a baked distance
+            return _measured(point, backend)
     return _drawn(technique, backend) or default_curve(technique)
 
 
