@@ -1,15 +1,14 @@
 """Draws every preset on the mouse of the examples, as `sssgen use` writes its page of three.js: docs/presets/*.png.
 
-Chromium draws the pages without a GPU; all take some minutes. `--target godot` and so on are not drawn here.
+Chromium draws the pages without a GPU; all take some minutes. The projects of other engines are not drawn here.
 """
 
 from __future__ import annotations
 
 import argparse
-import functools
+import contextlib
 import tempfile
-import threading
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +20,7 @@ from sssgen.presets.preset import presets
 from sssgen.run.machine_parts import chromium
 from sssgen.scene.geometry_mesh import mesh_of
 from sssgen.scene.measured import measured_scene
+from sssgen.support.folder_server import served
 
 PICTURES = Path(__file__).parent / "presets"
 SIZE, SHOWN = (640, 480), (400, 300)
@@ -37,30 +37,17 @@ def write_mouse(path: Path) -> None:
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-class Quiet(SimpleHTTPRequestHandler):
-    def log_message(self, format: str, *arguments: object) -> None:
-        """Requests are not printed."""
-
-
 def shot(browser: Any, folder: Path) -> Image.Image:
     """The page of a folder, without its panel. Raises RuntimeError where the page has a message."""
-    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory=str(folder)))
-    threading.Thread(target=server.serve_forever, daemon=True).start()
     page = browser.new_page(viewport={"width": SIZE[0], "height": SIZE[1]})
     page.set_default_timeout(120_000)
-    try:
-        page.goto(f"http://127.0.0.1:{server.server_address[1]}/")
+    with contextlib.closing(page), served(str(folder)) as address:
+        page.goto(address)
         page.wait_for_timeout(4000)
         if message := page.inner_text("#message"):
             raise RuntimeError(f"{folder.name}: {message}")
         page.evaluate("document.querySelector('#panel').remove()")
-        file = folder / "shot.png"
-        page.screenshot(path=str(file))
-        return Image.open(file).convert("RGB")
-    finally:
-        page.close()
-        server.shutdown()
-        server.server_close()
+        return Image.open(BytesIO(page.screenshot())).convert("RGB")
 
 
 def main() -> None:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 import sssgen
+from folders import ROOT
 from sssgen.interchange.scatter_color import multiscatter_of_albedo
 from sssgen.material.material_loading import parse_material
 from sssgen.material.requirements import requirements
 from sssgen.presets.engine_project import ENGINES
 from sssgen.presets.preset import Preset, preset, presets
-from sssgen.presets.preset_stages import QUALITIES, BodySize, preset_text
+from sssgen.presets.preset_stages import BodySize, preset_text
+from sssgen.presets.qualities import QUALITIES
 from sssgen.support.diagnostics import SssgenError
 
 SIZE = BodySize(20.0, 0.5)
@@ -91,3 +95,17 @@ def test_every_preset_says_one_thing_about_its_inside() -> None:
 
     assert all(kinds(row) == 1 for row in presets().values())
     assert len(presets()) >= 16
+
+
+def test_small_bodies_in_metres_are_in_range() -> None:
+    """A drop of 15 mm in a scene in metres, of every preset."""
+    for name in presets():
+        text = preset_text(preset(name), "good", name, BodySize(1000.0, 0.003))
+        assert parse_material(text, f"{name}.toml").stages
+
+
+def test_the_documents_name_every_preset() -> None:
+    page = (ROOT / "docs" / "presets.md").read_text(encoding="utf-8")
+    listed = page.partition("In their order: ")[2].partition(".")[0]
+    assert re.findall(r"\w+", listed) == list(presets())
+    assert f"[{len(presets())} presets](docs/presets.md)" in (ROOT / "README.md").read_text(encoding="utf-8")

@@ -145,7 +145,6 @@ def test_a_page_without_the_bundle_loads_three_from_the_network(block: str, monk
 
 
 def test_the_bake_of_best_is_kept_for_its_body_and_medium(block: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("mitsuba", reason="mitsuba is missing: pip install -e '.[reference]'")
     from sssgen.bake import relit
     from sssgen.lab.fluence.fluence_field import Settings
 

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import functools
+import contextlib
 import subprocess
-import threading
-from collections.abc import Iterator
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -14,13 +11,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from preview_page import NEEDS, SWITCHES
+from preview_page import NEEDS
 from skips import or_skip
 from sssgen.cli.main import main
 from sssgen.run import compilers
 from sssgen.run.compilers.godot_process import find
-from sssgen.run.machine_parts import chromium
 from sssgen.scene.arrays import Array
+from sssgen.support.folder_server import served
 
 SIZE = (320, 240)
 SHOT = """extends SceneTree
@@ -56,41 +53,20 @@ def check_coral(picture: Array) -> None:
     assert 0.02 < red.mean() < 0.5
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as driver:
-        opened = driver.chromium.launch(executable_path=chromium(), args=SWITCHES)
-        yield opened
-        opened.close()
-
-
-class Quiet(SimpleHTTPRequestHandler):
-    def log_message(self, format: str, *arguments: object) -> None:
-        """Requests are not printed."""
-
-
 class TestPage:
     pytestmark = NEEDS
 
     @pytest.mark.parametrize("quality", ["fast", "good"])
     def test_the_page_of_three(self, quality: str, ring: str, browser: Any) -> None:
         assert main(["use", "coral", ring, "-o", "out", "--quality", quality]) == 0
-        server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory="out"))
-        threading.Thread(target=server.serve_forever, daemon=True).start()
         page = browser.new_page(viewport={"width": SIZE[0], "height": SIZE[1]})
         page.set_default_timeout(120_000)
-        try:
-            page.goto(f"http://127.0.0.1:{server.server_address[1]}/")
+        with contextlib.closing(page), served("out") as address:
+            page.goto(address)
             page.wait_for_timeout(3000)
             assert page.inner_text("#message") == ""
             page.evaluate("document.querySelector('#panel').remove()")
             check_coral(pixels(page.screenshot()))
-        finally:
-            page.close()
-            server.shutdown()
-            server.server_close()
 
 
 @pytest.mark.slow

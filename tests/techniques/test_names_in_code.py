@@ -47,8 +47,6 @@ PERMITTED = {
             "base_color",
             "beer_lambert",
             "constant_thickness",
-            "fluence_relit",
-            "fluence_relit_refracted",
             "interior_octaves",
             "lobe_normalized",
             "seen_through",

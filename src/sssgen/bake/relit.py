@@ -13,7 +13,7 @@ from sssgen.lab.fluence.fluence_field import Settings
 from sssgen.lab.fluence.fluence_volumes import reach_of
 from sssgen.material.baked import read_bake_file
 from sssgen.scene.body_identity import identity
-from sssgen.scene.light_response import checksum, to_bytes
+from sssgen.scene.light_response import is_of_file, to_bytes
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.support.diagnostics import failure
 
@@ -24,16 +24,14 @@ RANKS = (4, 32)
 def is_current(path: str, scene: MeasuredScene) -> bool:
     """Whether a file and its JSON are of a body and its medium, however many numbers and photons they have."""
     assert scene.medium is not None
-    if not (os.path.isfile(path) and (described := read_bake_file(path))):
+    if not (os.path.isfile(path) and (described := read_bake_file(path)) and described.kind == "fluence"):
         return False
     facts: Any = described.facts
     body, medium = identity(scene.geometry, scaled=True), medium_facts(scene.medium)
     same = {**facts["medium"], "name": ""} == {**medium, "name": ""}
-    about = facts["file"]
+    same = same and (facts["body"]["key"], facts["body"]["scale"]) == (body["key"], body["scale"])
     with open(path, "rb") as file:
-        data = file.read()
-    whole = len(data) == about["bytes"] and checksum(data) == about.get("adler32")
-    return same and whole and (facts["body"]["key"], facts["body"]["scale"]) == (body["key"], body["scale"])
+        return same and is_of_file(file.read(), facts["file"])
 
 
 def bake(

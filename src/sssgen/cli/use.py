@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shlex
 from argparse import ArgumentParser, Namespace
@@ -9,10 +10,13 @@ from collections.abc import Mapping
 
 from sssgen.cli.options import add_output
 from sssgen.cli.output import OK, print_result
+from sssgen.presets.qualities import QUALITIES
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.file_writer import Written, check_folder, check_unchanged, write_files
 from sssgen.support.paths import posix, shell_word
 from sssgen.support.progress import ProgressBar
+
+HOLES = "the mesh has holes: light inside needs a closed body, and is wrong near them"
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -29,8 +33,8 @@ def add_options(parser: ArgumentParser) -> None:
     add("--target", "-t", metavar="T", default="threejs", help="the engine (default: threejs)")
     add_output(parser, "DIR", "the folder to write to", required=True)
     add(
-        "--quality", choices=("fast", "good", "best"), default="good",
-        help="fast: lights alone; good: the body is measured in each frame (default); best: light inside is baked",
+        "--quality", choices=tuple(QUALITIES), default="good",
+        help=f"{'; '.join(f'{name}: {needs}' for name, needs in QUALITIES.items())} (default: good)",
     )  # fmt: skip
     add("--size", type=float, metavar="MM", help="the mesh's longest side in millimetres (default: the preset's)")
     add("--open", action="store_true", help="show the page in a browser, until Ctrl+C")
@@ -39,7 +43,7 @@ def add_options(parser: ArgumentParser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Writes the project; with --open also serves and opens it."""
-    from sssgen.presets.engine_project import ENGINES, Wish, engine_files, material_files
+    from sssgen.presets.engine_project import ENGINES, Request, engine_files, material_files
     from sssgen.presets.preset import preset
     from sssgen.presets.used_mesh import used_mesh
 
@@ -56,17 +60,18 @@ def run(arguments: Namespace) -> int:
     with ProgressBar() as bar:
         bar(0, 3, f"reading {os.path.basename(arguments.MESH)}")
         mesh = used_mesh(arguments.MESH, size)
-        wish = Wish(chosen, mesh, target, arguments.quality, _command(arguments))
-        written = _write(folder, material_files(wish), arguments.force)
-        if wish.baked:
+        request = Request(chosen, mesh, target, arguments.quality, _command(arguments))
+        written = _write(folder, material_files(request), arguments.force)
+        if request.baked:
             written += _bake(folder, bar)
         bar(2, 3, "emitting")
-        written += _write(folder, engine_files(wish, folder), arguments.force)
+        written += _write(folder, engine_files(request, folder), arguments.force)
     lines = [f"{'wrote' if file.changed else 'kept '} {posix(file.path)}" for file in written]
-    if not mesh.closed and chosen.scatters:
-        lines.append("warning: the mesh has holes: light inside needs a closed body, and is wrong near them")
+    warnings = [HOLES] if not mesh.closed and chosen.scatters else []
+    lines += [f"warning: {warning}" for warning in warnings]
     lines.append(ENGINES[target].opened.replace("this folder", shell_word(posix(folder))))
-    print_result(arguments.json, {"files": [posix(file.path) for file in written]}, "\n".join(lines))
+    report = {"files": [posix(file.path) for file in written], "warnings": warnings}
+    print_result(arguments.json, report, "\n".join(lines))
     if arguments.open:
         _show(folder)
     return OK
@@ -103,18 +108,12 @@ def _command(arguments: Namespace) -> str:
 
 def _show(folder: str) -> None:
     """Serves a folder on this machine alone and opens it in the browser, until Ctrl+C."""
-    import contextlib
+    import threading
     import webbrowser
-    from functools import partial
-    from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 
-    class Handler(SimpleHTTPRequestHandler):
-        def log_message(self, format: str, *args: object) -> None:
-            """Requests are not printed."""
+    from sssgen.support.folder_server import served
 
-    with ThreadingHTTPServer(("127.0.0.1", 0), partial(Handler, directory=folder)) as server:
-        address = f"http://127.0.0.1:{server.server_address[1]}/"
+    with served(folder) as address, contextlib.suppress(KeyboardInterrupt):
         print(f"{address}  Ctrl+C ends", flush=True)
         webbrowser.open(address)
-        with contextlib.suppress(KeyboardInterrupt):
-            server.serve_forever()
+        threading.Event().wait()

@@ -19,7 +19,8 @@ from sssgen.material.material_loading import parse_material
 from sssgen.material.material_text import toml_value
 from sssgen.pipeline.compiler import compile
 from sssgen.presets.preset import Preset
-from sssgen.presets.preset_stages import QUALITIES, RESPONSE, preset_text
+from sssgen.presets.preset_stages import RESPONSE, preset_text
+from sssgen.presets.qualities import QUALITIES
 from sssgen.presets.used_mesh import UsedMesh
 from sssgen.run.web_library import library, network_import_map
 from sssgen.support.diagnostics import SssgenError
@@ -36,7 +37,8 @@ _LAMP_COLOR = (1.0, 0.94, 0.86)
 _LAMP_SQUARE = 13.8
 """The squared distance of the lamp from the centre, in radii."""
 _ROOM, _BRIGHT_ROOM = 0.15, 0.7
-"""The strength of the surroundings, for bodies that a lamp makes glow and for clear ones."""
+"""The strength of the surroundings, for bodies that a lamp makes glow and for clear ones. Engines have other
+surroundings and falloffs: the factors in `_values` were chosen so that the projects look alike."""
 _EYE, _LAMP_PLACE, _FRONT_LAMP = (1.3, 0.75, 3.7), (-0.9, 1.5, -3.3), (2.0, 3.0, 4.0)
 """The places of the eye, of the lamp behind and of the lamp in front, in radii of the body."""
 
@@ -66,8 +68,8 @@ ENGINES = {
 """Target → its project."""
 
 
-class Wish(NamedTuple):
-    """What somebody wants."""
+class Request(NamedTuple):
+    """A ready material on a mesh, for an engine."""
 
     preset: Preset
     mesh: UsedMesh
@@ -87,31 +89,31 @@ class Wish(NamedTuple):
         return self.preset.name
 
 
-def material_files(wish: Wish) -> Files:
+def material_files(request: Request) -> Files:
     """The material, the mesh and the scene, which `sssgen render`, `preview` and `bake` read."""
-    text = preset_text(wish.preset, wish.quality, wish.name, wish.mesh.size)
+    text = preset_text(request.preset, request.quality, request.name, request.mesh.size)
     with open(os.path.join(place("examples"), "surroundings", "textures", "studio.png"), "rb") as file:
         picture = file.read()
-    scene = _template("scene.toml", **_values(wish))
-    return {f"{wish.name}.toml": text, MESH: wish.mesh.glb, "scene.toml": scene, SURROUNDINGS: picture}
+    scene = _template("scene.toml", **_values(request))
+    return {f"{request.name}.toml": text, MESH: request.mesh.glb, "scene.toml": scene, SURROUNDINGS: picture}
 
 
-def engine_files(wish: Wish, folder: str) -> Files:
+def engine_files(request: Request, folder: str) -> Files:
     """The shaders and the project around them. The material and its bakes are in `folder` already.
 
     Raises SssgenError where the target cannot express the material.
     """
-    path = os.path.join(folder, f"{wish.name}.toml")
+    path = os.path.join(folder, f"{request.name}.toml")
     with open(path, encoding="utf-8") as file:
         material = parse_material(file.read(), path)
-    files: Files = dict(compile(material, wish.target).files)
-    values = _values(wish) | {"passes": f"{wish.name}_passes.gd" in files}
-    if ENGINES[wish.target].has_library:
+    files: Files = dict(compile(material, request.target).files)
+    values = _values(request) | {"passes": f"{request.name}_passes.gd" in files}
+    if ENGINES[request.target].has_library:
         values["import_map"], libraries = _three()
         files |= libraries
-    source = os.path.join(place("templates"), "projects", wish.target)
+    source = os.path.join(place("templates"), "projects", request.target)
     for name in sorted(entry.removesuffix(".j2") for entry in os.listdir(source)):
-        files[name] = _template(f"{wish.target}/{name}", **values)
+        files[name] = _template(f"{request.target}/{name}", **values)
     files["README.md"] = _template("README.md", **values)
     return files
 
@@ -126,41 +128,43 @@ def _three() -> tuple[str, Files]:
     return web.import_map(), {f"library/{name}": source.read_bytes() for name, source in web.files.items()}
 
 
-def _values(wish: Wish) -> dict[str, object]:
+def _values(request: Request) -> dict[str, object]:
     """What the templates see."""
-    preset, mesh = wish.preset, wish.mesh
+    preset, mesh = request.preset, request.mesh
     center = 0.5 * (np.array(mesh.low) + np.array(mesh.high))
 
     def at(place: tuple[float, float, float]) -> list[float]:
-        found: list[float] = (center + mesh.radius * np.array(place)).round(6).tolist()
-        return found
+        position: list[float] = (center + mesh.radius * np.array(place)).round(6).tolist()
+        return position
 
     shown = " ".join(os.path.basename(mesh.path).split())
     texts = {
-        "title": preset.title, "name": wish.name, "mesh": shown, "target": wish.target,
-        "quality": f"{wish.quality}, {QUALITIES[wish.quality]}", "unit_mm": f"{mesh.size.unit_mm:.4g}",
-        "command": wish.command, "open": ENGINES[wish.target].opened, "body": MESH,
+        "title": preset.title, "name": request.name, "mesh": shown, "target": request.target,
+        "quality": f"{request.quality}, {QUALITIES[request.quality]}", "unit_mm": f"{mesh.size.unit_mm:.4g}",
+        "command": request.command, "open": ENGINES[request.target].opened, "body": MESH,
     }  # fmt: skip
     places = {
         "center": center.round(6).tolist(), "radius": round(mesh.radius, 6), "low_y": mesh.low[1],
         "eye": at(_EYE), "lamp_place": at(_LAMP_PLACE), "front": at(_FRONT_LAMP),
     }  # fmt: skip
     lamp = _SHEET_LAMP if any(preset.sheet) else _LAMP
+    room = _ROOM if preset.scatters else _BRIGHT_ROOM
     strength = lamp / math.pi * mesh.radius**2
     light = {
         "surroundings": SURROUNDINGS, "lamp_color": [round(strength * part, 4) for part in _LAMP_COLOR],
-        "lamp": lamp, "lamp_brightness": round(lamp / (math.pi * _LAMP_SQUARE), 1), "lamp_square": _LAMP_SQUARE,
-        "room": _ROOM if preset.scatters else _BRIGHT_ROOM, "scatters": preset.scatters,
-        "medium": _medium(wish), "baked": wish.baked, "response": RESPONSE, "rank": RANK,
+        "lamp": lamp, "lamp_square": _LAMP_SQUARE, "godot_lamp": 1.0 if any(preset.sheet) else 4.0,
+        "playcanvas_lamp": round(1.6 * lamp / (math.pi * _LAMP_SQUARE), 1),
+        "room": room, "scene_room": 2.0 * room,
+        "medium": _medium(request), "baked": request.baked, "response": RESPONSE, "rank": RANK,
     }  # fmt: skip
     return texts | places | light
 
 
-def _medium(wish: Wish) -> Mapping[str, str] | None:
+def _medium(request: Request) -> Mapping[str, str] | None:
     """The section [medium] of the scene, of a body that scatters."""
-    if not wish.preset.scatters:
+    if not request.preset.scatters:
         return None
-    medium = wish.preset.interior(wish.mesh.size.unit_mm)
+    medium = request.preset.interior(request.mesh.size.unit_mm)
     keys = {"absorption": [*medium.absorption], "scattering": [*medium.scattering], "ior": medium.ior}
     return {key: toml_value(value) for key, value in keys.items()}
 

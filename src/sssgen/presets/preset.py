@@ -49,6 +49,7 @@ class Preset:
     """The longest side of a mesh, unless the user gives another"""
     roughness: float
     ior: float
+    """That of the medium, where the row has no other"""
     medium: str = ""
     """The name of a published medium"""
     color: Color = _BLACK
@@ -81,8 +82,8 @@ class Preset:
             return dataclasses.replace(media.preset(self.medium, unit_mm), ior=self.ior)
         if any(self.color):
             red, green, blue = (depth / unit_mm for depth in self.depth_mm)
-            found = subsurface_medium(self.color, (red, green, blue))
-            return dataclasses.replace(found, name=self.name, ior=self.ior)
+            inside = subsurface_medium(self.color, (red, green, blue))
+            return dataclasses.replace(inside, name=self.name, ior=self.ior)
         red, green, blue = extinction_of_color(self.clear_color, self.clear_depth_mm / unit_mm)
         return Medium(self.name, (red, green, blue), _BLACK, ior=self.ior)
 
@@ -108,13 +109,16 @@ class Preset:
 
 def presets() -> Mapping[str, Preset]:
     """All presets by name, in the order of their file. Raises SssgenError for a faulty file."""
+    measured = media.media()
     document = parse(read_text(FILE, posix(FILE)), posix(FILE))
     result = {}
     for name, content in document.data.items():
         table = Table(document, (name,), content, _KEYS)
+        medium = table.text("medium", "", measured)
+        index = measured[medium].ior if medium else 1.5
         result[name] = Preset(
             name, table.text("title", name), table.text("doc", ""), table.number("size_mm", 100.0),
-            table.number("roughness", 0.5), table.number("ior", 1.5), table.text("medium", ""),
+            table.number("roughness", 0.5), table.number("ior", index), medium,
             table.vector("color", _BLACK), table.vector("depth_mm", (1.0, 1.0, 1.0)), table.number("clear", 0.0),
             table.vector("clear_color", _BLACK), table.number("clear_depth_mm", 1.0), table.vector("sheet", _BLACK),
             table.vector("base", _BLACK),

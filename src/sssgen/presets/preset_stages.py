@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from sssgen.bake.fluence import variant
 from sssgen.interchange.dense_bodies import isotropic_medium
 from sssgen.interchange.imported_material import Notes
 from sssgen.interchange.scatter_color import multiscatter_of_albedo
@@ -17,13 +18,10 @@ from sssgen.presets.preset import Preset
 from sssgen.scene.measured.media import Medium
 from sssgen.support.diagnostics import failure
 
-QUALITIES = {
-    "fast": "lights alone: no pictures of the body, no bake",
-    "good": "the body is drawn from its back and from the lights in each frame",
-    "best": "the light inside is baked for the mesh, for all lights and surroundings",
-}
 RESPONSE = "light.bin"
 """The file of the baked light, beside the material."""
+_MATTE = 0.85
+"""The share of a thick body's colour that `fast` reflects; the rest is in the light behind."""
 _OPAQUE = 12.0
 """The mean chord in mean free paths from which nothing is seen through a body."""
 _THICK = 4.0
@@ -121,7 +119,8 @@ def _fast(preset: Preset, size: BodySize) -> list[MaterialSection]:
     depth = 0.5 * size.mean_chord
     transmitted = _transmitted(medium, depth)
     strongest = max(transmitted)
-    reach = [min(medium.mean_free_path / max(depth, 1e-6), 1.0)] * 3
+    wrap = 0.5 * min(medium.mean_free_path / max(depth, 1e-6), 1.0)
+    matte = [_MATTE * part for part in color]
     lobe = (
         ("subsurface_color", [part / strongest for part in transmitted]),
         ("scale", min(3.0 * strongest, 20.0)), ("power", 4.0), ("distortion", 0.3), ("ambient", min(strongest, 0.3)),
@@ -129,17 +128,15 @@ def _fast(preset: Preset, size: BodySize) -> list[MaterialSection]:
     return [
         MaterialSection("thickness", "constant_thickness", (("thickness_factor", 1.0),)),
         MaterialSection("thickness", "beer_lambert", (("attenuation_distance", 4.0),)),
-        MaterialSection("surface", "base_color", (("tint", [*(0.85 * part for part in color), 1.0]),)),
-        MaterialSection(
-            "translucency", "wrap_lighting", (("wrap", 0.5 * reach[0]), ("subsurface_color", [0.85 * c for c in color]))
-        ),
+        MaterialSection("surface", "base_color", (("tint", [*matte, 1.0]),)),
+        MaterialSection("translucency", "wrap_lighting", (("wrap", wrap), ("subsurface_color", matte))),
         MaterialSection("translucency", "lobe_normalized", lobe),
     ]
 
 
 def _best(preset: Preset, size: BodySize) -> list[MaterialSection]:
     """The volume contains the diffuse reflection; its medium is in the bake's JSON."""
-    technique = "fluence_relit_refracted" if preset.ior > 1.0 else "fluence_relit"
+    technique = f"fluence_relit{variant(preset.interior(size.unit_mm))}"
     return [
         MaterialSection("surface", "base_color", (("tint", [0.0, 0.0, 0.0, 1.0]),)),
         MaterialSection("translucency", technique, (("inner_light", RESPONSE),)),

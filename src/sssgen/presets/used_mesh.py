@@ -25,7 +25,6 @@ class UsedMesh(NamedTuple):
     low: tuple[float, float, float]
     high: tuple[float, float, float]
     """The corners of its box"""
-    triangles: int
     closed: bool
 
     @property
@@ -35,14 +34,14 @@ class UsedMesh(NamedTuple):
 
 
 def used_mesh(path: str, longest_mm: float) -> UsedMesh:
-    """Reads a mesh whose longest side is `longest_mm` millimetres. Raises SssgenError for a faulty or a flat file."""
+    """Reads a mesh whose longest side is `longest_mm` millimetres. Raises SssgenError for a faulty file."""
     geometry = Mesh(path=path)
     mesh = geometry.triangles
     low, high = geometry.bounds()
     longest = float((high - low).max())
     content = _content(mesh, geometry.inside_out)
     size = BodySize(longest_mm / longest, mean_chord(content))
-    return UsedMesh(path, mesh_file(content), size, _corner(low), _corner(high), len(mesh.corners), is_closed(geometry))
+    return UsedMesh(path, mesh_file(content), size, _corner(low), _corner(high), is_closed(geometry))
 
 
 def _content(mesh: Triangles, inside_out: bool) -> FileContent:

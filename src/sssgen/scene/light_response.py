@@ -171,11 +171,15 @@ def checksum(data: bytes) -> int:
     return int.from_bytes(data[-4:], "big")
 
 
+def is_of_file(data: bytes, about: Mapping[str, Any]) -> bool:
+    """Whether a file's bytes are those that the entry `file` of a JSON describes; older JSONs have no checksum."""
+    return bool(len(data) == about["bytes"] and checksum(data) == about.get("adler32", checksum(data)))
+
+
 def from_bytes(data: bytes, facts: Mapping[str, Any]) -> LightResponse:
     """The response of a file with its JSON. Raises KeyError, TypeError or ValueError for a JSON of another file, and
     for a file of another kind."""
-    about = facts["file"]
-    if len(data) != about["bytes"] or checksum(data) != about.get("adler32", checksum(data)):
+    if not is_of_file(data, facts["file"]):
         raise ValueError("the JSON is that of another file")
     try:
         data = zlib.decompress(data)

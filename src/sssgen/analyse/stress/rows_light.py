@@ -112,7 +112,7 @@ def thick_matter(specimen: Specimen) -> Iterator[Trial]:
 def lengths_of_the_eye(specimen: Specimen) -> Iterator[Trial]:
     """The eye's ray does not enter, or has no end; eye and lamp in one direction; no normal; a point far from the body.
 
-    Nothing is scattered along a ray of length 0. A technique that glows shows the sky, which does not change.
+    Nothing is scattered along a ray of length 0. A technique that glows shows the sky along it.
     """
     name = next((name for name, param in specimen.subject.params.items() if param.quantity == VIEW_LENGTH), "")
     if not name or specimen.role != "translucency":

@@ -108,6 +108,7 @@ class View extends FloatView:
 	var camera := Camera3D.new()
 	## How far away from the camera the plane is from which distances count.
 	var plane: float
+	## Whether what is empty is far away.
 	var is_far: bool
 
 	func _init(above: Node, empty: float) -> void:
