@@ -11,13 +11,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from preview_page import NEEDS
+from preview_page import NEEDS, browser
 from skips import or_skip
 from sssgen.cli.main import main
 from sssgen.run import compilers
 from sssgen.run.compilers.godot_process import find
 from sssgen.scene.arrays import Array
 from sssgen.support.folder_server import served
+
+__all__ = ["browser"]  # the fixture
 
 SIZE = (320, 240)
 SHOT = """extends SceneTree
