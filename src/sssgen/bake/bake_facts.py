@@ -96,7 +96,7 @@ class SurfaceMapFacts(BakeFacts):
 
 
 class ThicknessError(TypedDict):
-    """Standard errors of a thickness map, in the unit of its range."""
+    """Standard errors of a thickness map, or those of its quadrature, in the unit of its range."""
 
     mean_standard_error: float
     largest_standard_error: float
@@ -106,6 +106,8 @@ class ThicknessFacts(SurfaceMapFacts):
     """A map of thickness or transmittance."""
 
     mode: str
+    by_rays: float
+    """The share of texels whose values come from rays; those of the others are integrals"""
     light: dict[str, list[float]] | None
     """See `BakeLight.facts`"""
     range: list[float]

@@ -11,6 +11,8 @@ from sssgen.bake import memory_check as memory
 from sssgen.bake.atlas import SHARED, Atlas, atlas, fill_map
 from sssgen.bake.bake_facts import SurfaceMapFacts, ThicknessFacts
 from sssgen.bake.bake_light import BakeLight
+from sssgen.bake.chord_lengths import Chords
+from sssgen.bake.mean_length import in_halves
 from sssgen.bake.texture_unwrap import obj, unwrap_mesh
 from sssgen.bake.voxel_grid import Array
 from sssgen.jobs.executor import Item, Progress, failures, run
@@ -24,6 +26,8 @@ from sssgen.targets.texture_import import import_settings
 
 RAYS = 2**18
 """Rays in a block of work, which takes a few hundred megabytes."""
+GROUP, GROUPS = 256, 16
+"""The most texels in a group of near ones, whose integrals share work, and the groups in a block of work."""
 
 
 class Request(NamedTuple):
@@ -74,11 +78,7 @@ def thickness_map(
     surface = atlas(mesh, uv, size, path)
     if body.inside_out:
         surface = surface._replace(flat=-surface.flat)
-    chords = [
-        np.concatenate(parts)
-        for parts in zip(*_measure_chords(path, surface, request, processes, scheduler, progress), strict=True)
-    ]
-    value, error, lost = chords
+    value, error, lost, rays = _measure_chords(body, surface, request, processes, scheduler, progress)
     if lost.min(initial=0.0) >= 1.0 or not value.any():
         raise failure("no ray leaves the mesh: it has no inside", "a flat sheet has no thickness", posix(path))
     is_transmittance = request.mode == "transmittance"
@@ -97,7 +97,8 @@ def thickness_map(
         "error": {
             "mean_standard_error": float(error.mean()), "largest_standard_error": float(error.max()),
         },
-        "rays": 1 if _is_exact(request) else request.rays, "lost_rays": round(float(lost.mean()), 6),
+        "rays": int(rays.max()), "by_rays": round(float((rays > 0.0).mean()), 6),
+        "lost_rays": round(float(lost.mean()), 6),
         "attenuation_distance": request.attenuation or None,
         "parameters": {} if is_transmittance else {"thickness_factor": largest},
         "import": import_settings(),
@@ -138,26 +139,34 @@ def _check(request: Request) -> None:
 
 
 def _measure_chords(
-    path: str, surface: Atlas, request: Request, processes: int | None, scheduler: str, progress: Progress
-) -> list[Any]:
-    """The chords of each block of texels, in order."""
-    with open(path, "rb") as file:
-        digest = cache.digest(file.read())
-    path, items = os.path.abspath(path), list[Item]()
-    exact = _is_exact(request)
-    block = max(1, RAYS // (1 if exact else request.rays))
-    for number, start in enumerate(range(0, len(surface.texels), block)):
-        points, flat = surface.places[start : start + block], surface.flat[start : start + block]
-        name = f"{min(start + block, len(surface.texels))} texels"
-        if exact:
+    body: Mesh, surface: Atlas, request: Request, processes: int | None, scheduler: str, progress: Progress
+) -> Chords:
+    """The chords of all texels, computed in blocks."""
+    with open(body.path, "rb") as file:
+        mesh = os.path.abspath(body.path), cache.digest(file.read())
+    count, items = len(surface.texels), list[Item]()
+    by_integral = request.mode == "mean" and request.light is None and body.closed
+    if by_integral:
+        groups = np.minimum(in_halves(surface.places, GROUP), count - 1)
+        blocks = np.split(groups, range(GROUPS, len(groups), GROUPS))
+    else:
+        block = max(1, RAYS // (1 if _is_exact(request) else request.rays))
+        blocks = np.split(np.arange(count), range(block, count, block))
+    for number, texels in enumerate(blocks):
+        points, flat = surface.places[texels], surface.flat[texels]
+        arguments: tuple[Any, ...]
+        if by_integral:
+            function, arguments = "mean", (flat, request.rays, (request.seed, number * GROUPS))
+        elif _is_exact(request):
             directions = request.light.towards(points) if request.light else -flat
-            items.append(
-                Item("sssgen.bake.chord_lengths:along", (path, digest, points, directions, request.attenuation), name)
-            )
+            function, arguments = "along", (directions, request.attenuation)
         else:
-            sampling = (request.rays, request.attenuation, (request.seed, number))
-            items.append(Item("sssgen.bake.chord_lengths:inward", (path, digest, points, flat, *sampling), name))
+            function, arguments = "inward", (flat, request.rays, request.attenuation, (request.seed, number))
+        items.append(
+            Item(f"sssgen.bake.chord_lengths:{function}", (*mesh, points, *arguments), f"{texels.size} texels")
+        )
     results = run(items, scheduler, processes, Store(""), progress)
     if failed := failures(results):
-        raise failure(f"a part of the map failed: {failed[0].message}", failed[0].hint, file=posix(path))
-    return results
+        raise failure(f"a part of the map failed: {failed[0].message}", failed[0].hint, file=posix(body.path))
+    order = np.argsort(np.concatenate([texels.ravel() for texels in blocks]), kind="stable")[:count]
+    return Chords(*(np.concatenate(parts)[order] for parts in zip(*results, strict=True)))

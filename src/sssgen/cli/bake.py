@@ -129,7 +129,10 @@ def _thickness_options(parser: ArgumentParser) -> None:
     )  # fmt: skip
     add("--direction", metavar="LIGHT", help="the length towards a light: a .json with direction or position, or X,Y,Z")
     _add_size(parser)
-    add("--rays", type=int, default=256, metavar="N", help="rays per texel (default: 256)")
+    add(
+        "--rays", type=int, default=256, metavar="N",
+        help="rays per texel (default: 256); the mean length in a closed mesh without overlaps needs none",
+    )  # fmt: skip
     add("--attenuation", type=float, metavar="D", help="for --mode transmittance: the length that transmits 1/e")
     add_seed(parser, "the seed of the rays")
     add("--unwrap", action="store_true", help="compute new texture coordinates; a mesh without any always gets them")
@@ -161,11 +164,18 @@ def _thickness(arguments: Namespace) -> Result:
     lines = [
         f"{baked.facts['holds']} from 0 to {top:.4g}, mean {baked.facts['mean']:.4g}",
         f"standard error {errors['mean_standard_error']:.2g} on average, at most "
-        f"{errors['largest_standard_error']:.2g}, of {baked.facts['rays']} rays per texel",
+        f"{errors['largest_standard_error']:.2g}, {_method(baked.facts['rays'], baked.facts['by_rays'])}",
         *([f"{posix(mesh)} is the mesh with its new texture coordinates: use it"] if baked.mesh else []),
         *(f"warning: {warning}" for warning in warnings(baked.facts)),
     ]
     return paths, baked.facts, lines
+
+
+def _method(rays: int, by_rays: float) -> str:
+    if by_rays == 0.0:
+        return "of an integral over the triangles"
+    part = "" if by_rays == 1.0 else f" in {by_rays:.1%} of the texels, where parts overlap, and of an integral"
+    return f"of {rays} rays per texel{part}"
 
 
 def _depth_options(parser: ArgumentParser) -> None:

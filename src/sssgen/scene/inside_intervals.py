@@ -7,12 +7,16 @@ gaps, has several intervals.
 from __future__ import annotations
 
 from functools import singledispatch
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
-from sssgen.scene.arrays import Array
+from sssgen.scene.arrays import Array, Indices
 from sssgen.scene.geometry import Ball, Box, Capsule, Distance, Geometry, Mesh, Slab, Torus, Union
+
+SURFACE = 1e-5
+"""The distance, in sizes of a mesh, of the surface that a ray starts from: crossings up to it do not count."""
 
 
 def in_object_space(geometry: Geometry, origins: Array, directions: Array) -> tuple[Array, Array]:
@@ -102,14 +106,28 @@ def merge(parts: Array) -> Array:
     return result
 
 
-@intervals.register
-def _(geometry: Mesh, origins: Array, directions: Array, needed: int | None = None) -> Array:
-    """The triangles that a ray crosses: it leaves along a face's normal, and enters against it."""
-    mesh = geometry.triangles
-    size = float(np.linalg.norm(mesh.places.max(axis=0) - mesh.places.min(axis=0)))
-    rays, faces, t = geometry.rays.all(origins, directions)
-    side = np.sign(np.einsum("nc,nc->n", mesh.flat[faces], directions[rays])) * (-1.0 if geometry.inside_out else 1.0)
-    keep = (t > 1e-5 * size) & (side != 0.0)  # without the surface that the ray starts from
+class Crossings(NamedTuple):
+    """The crossings of rays with the surface of a mesh, in the order of the rays and along each: (m,)."""
+
+    rays: Indices
+    t: Array
+    """The distance along the ray"""
+    side: Array
+    """1 where the ray leaves a part of the body, -1 where it enters"""
+    exits: Array
+    """The number of exits of the ray up to here, this crossing included, minus that of entrances"""
+    first: npt.NDArray[np.bool_]
+    """Whether it is the ray's first crossing"""
+
+
+def crossings(mesh: Mesh, origins: Array, directions: Array) -> Crossings:
+    """The crossings of rays with a mesh, in object space: a ray leaves along a face's normal, and enters against it."""
+    triangles = mesh.triangles
+    size = float(np.linalg.norm(triangles.places.max(axis=0) - triangles.places.min(axis=0)))
+    rays, faces, t = mesh.rays.all(origins, directions, SURFACE * size)
+    slope = np.einsum("nc,nc->n", triangles.flat[faces], directions[rays])
+    side = np.sign(-slope if mesh.inside_out else slope)
+    keep = (t > SURFACE * size) & (side != 0.0)
     order = np.lexsort((t[keep], rays[keep]))
     t, rays, side = t[keep][order], rays[keep][order], side[keep][order]
     # a ray through an edge crosses both of its triangles, but the surface only once
@@ -117,20 +135,53 @@ def _(geometry: Mesh, origins: Array, directions: Array, needed: int | None = No
         (np.diff(rays, prepend=-1) == 0) & (np.diff(t, prepend=0.0) < 1e-7 * size) & (np.diff(side, prepend=0.0) == 0.0)
     )
     t, rays, side = t[~repeated], rays[~repeated], side[~repeated]
-    first = np.searchsorted(rays, np.arange(len(origins)))
-    count = int(np.bincount(rays, minlength=1).max(initial=0)) + 1
-    result = np.zeros((len(origins), count, 2))
-    starts = np.diff(rays, prepend=-1) != 0
+    first = np.diff(rays, prepend=-1) != 0
     exits = np.cumsum(side)
-    exits -= np.repeat((exits - side)[starts], np.diff(np.flatnonzero(starts), append=len(rays)))
+    exits -= np.repeat((exits - side)[first], np.diff(np.flatnonzero(first), append=len(rays)))
+    return Crossings(rays, t, side, exits, first)
+
+
+def _inside_parts(mesh: Mesh, origins: Array, directions: Array) -> tuple[Indices, Array, Array, Indices]:
+    """The parts of rays inside a mesh between two crossings: their rays, starts, ends, and numbers along the ray."""
+    rays, t, side, exits, first = crossings(mesh, origins, directions)
     # parts may be nested; a ray starts inside a part if it leaves more often than it enters
     depth = np.zeros(len(origins))
     np.maximum.at(depth, rays, exits)
     inside = depth[rays] - exits + side > 0.0
-    rank = np.arange(len(rays)) - first[rays]
-    begins = np.where(starts, 0.0, np.roll(t, 1))
-    result[rays[inside], rank[inside]] = np.stack([begins, t], axis=1)[inside]
+    starts: Array = np.where(first, 0.0, np.roll(t, 1))
+    number = np.arange(len(rays)) - np.maximum.accumulate(np.where(first, np.arange(len(rays)), 0))
+    return rays[inside], starts[inside], t[inside], number[inside]
+
+
+@intervals.register
+def _(geometry: Mesh, origins: Array, directions: Array, needed: int | None = None) -> Array:
+    rays, starts, ends, number = _inside_parts(geometry, origins, directions)
+    result = np.zeros((len(origins), int(number.max(initial=0)) + 1, 2))
+    result[rays, number] = np.stack([starts, ends], axis=1)
     return merge(result)
+
+
+def alternate(mesh: Mesh, origins: Array, directions: Array) -> npt.NDArray[np.bool_]:
+    """Whether rays inward from the surface leave the mesh and enter it by turns, and end outside, (n,).
+
+    Otherwise the mesh has a hole there, or its parts overlap.
+    """
+    rays, _, _, exits, _ = crossings(mesh, origins, directions)
+    passed = np.bincount(rays, (exits < 0.0) | (exits > 1.0), len(origins)) == 0.0
+    ends = np.zeros(len(origins))
+    ends[rays] = exits  # the last crossing of each ray remains
+    result: npt.NDArray[np.bool_] = passed & (ends == 1.0)
+    return result
+
+
+def lengths_ahead(geometry: Geometry, origins: Array, directions: Array) -> Array:
+    """The length of rays inside the body, in object space: (n,)."""
+    if isinstance(geometry, Mesh):  # its parts need not be merged for a sum
+        rays, starts, ends, _ = _inside_parts(geometry, origins, directions)
+        return np.bincount(rays, ends - starts, len(origins)).astype(np.float64)
+    parts = np.maximum(intervals(geometry, origins, directions), 0.0)
+    lengths: Array = (parts[..., 1] - parts[..., 0]).sum(axis=1)
+    return lengths
 
 
 @intervals.register

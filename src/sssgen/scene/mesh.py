@@ -12,7 +12,7 @@ import numpy.typing as npt
 from sssgen.scene import mesh_files
 from sssgen.scene.arrays import Array, Indices
 from sssgen.scene.geometry_base import Geometry, Hits, any_tangent, spherical, spread, tangent_of, unit
-from sssgen.scene.mesh_distance import MeshDistance, is_inside_out
+from sssgen.scene.mesh_distance import MeshDistance, is_inside_out, rim_length
 from sssgen.scene.mesh_rays import MeshRays
 from sssgen.scene.toml_table import ANY
 from sssgen.support.diagnostics import failure
@@ -131,6 +131,11 @@ class Mesh(Geometry):
     def inside_out(self) -> bool:
         """Whether most of the triangles' normals point inwards (by volume)."""
         return is_inside_out(self.triangles.places, self.triangles.corners)
+
+    @cached_property
+    def closed(self) -> bool:
+        """Whether the mesh has no hole."""
+        return rim_length(self.triangles.places, self.triangles.corners) == 0.0
 
     @cached_property
     def rays(self) -> MeshRays:

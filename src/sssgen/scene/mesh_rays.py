@@ -57,10 +57,10 @@ class MeshRays:
         # step ahead, would never end
         return faces, np.maximum(self._lengths(faces, origins, directions, ahead), 0.0)
 
-    def all(self, origins: Array, directions: Array) -> AllHits:
-        """Every triangle that rays hit. Directions are unit."""
+    def all(self, origins: Array, directions: Array, beyond: float = 0.0) -> AllHits:
+        """Every triangle that rays hit, from about the distance `beyond` on. Directions are unit."""
         active = np.arange(len(origins))
-        reached = np.zeros(len(origins))
+        reached = np.full(len(origins), beyond)
         hits = []
         for _ in range(MAX_HITS):
             before = reached[active]

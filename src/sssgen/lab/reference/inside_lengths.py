@@ -9,7 +9,7 @@ import numpy as np
 
 from sssgen.scene.arrays import Array
 from sssgen.scene.geometry import Geometry
-from sssgen.scene.inside_intervals import in_object_space, intervals
+from sssgen.scene.inside_intervals import in_object_space, intervals, lengths_ahead
 
 SURFACE = 1e-4
 """Intervals that begin within this part of the points' extent begin at the surface."""
@@ -21,9 +21,7 @@ def thickness(geometry: Geometry, origins: Array, directions: Array) -> Array:
     Parts behind the origin do not count. Raises SssgenError for a mesh that cannot be read.
     """
     starts, rays = in_object_space(geometry, origins, directions)
-    parts = np.maximum(intervals(geometry, starts, rays), 0.0)
-    length: Array = geometry.scale * (parts[..., 1] - parts[..., 0]).sum(axis=1)
-    return length
+    return geometry.scale * lengths_ahead(geometry, starts, rays)
 
 
 def first_exit(geometry: Geometry, origins: Array, directions: Array) -> Array:
