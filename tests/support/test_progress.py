@@ -18,7 +18,54 @@ def test_a_log_gets_few_lines(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Ca
         for item in range(100):
             clock[0] += 0.25
             bar(item + 1, 100, f"item {item}")
-    assert capsys.readouterr() == ("", "40 of 100: item 39\n80 of 100: item 79\n")
+    assert capsys.readouterr() == (
+        "", "40 of 100: item 39; about 15 s left\n80 of 100: item 79; about 5 s left\n",
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("seconds", "expected"),
+    [
+        (0.04, ""),  # 4 s in all
+        (0.25, "5 of 100: item 4; about 24 s left\n"),  # one line, after a second of work
+        (20.0, "2 of 100: item 1; about 33 min left\n"),  # there is no estimate before the second item has ended
+    ],
+)
+def test_one_line_has_the_time_left(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], seconds: float, expected: str
+) -> None:
+    clock = [100.0]
+    monkeypatch.setattr("sssgen.support.progress.time.monotonic", lambda: clock[0])
+    monkeypatch.setattr(progress, "QUIET", 1000.0)
+    with progress.ProgressBar(one_line=True) as bar:
+        for item in range(100):
+            clock[0] += seconds
+            bar(item + 1, 100, f"item {item}")
+    assert capsys.readouterr() == ("", expected)
+
+
+def test_one_line_tells_the_item_where_nothing_can_be_estimated(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(progress, "DELAY", 0.01)
+    monkeypatch.setattr(progress, "QUIET", 0.03)
+    with progress.ProgressBar(one_line=True) as bar:
+        bar(0, 1, "texture coordinates")
+        assert bar.ended.wait(0.3) is False
+    assert capsys.readouterr() == ("", "0 of 1: texture coordinates\n")
+
+
+def test_the_time_left_is_that_of_the_current_stage(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    clock = [0.0]
+    monkeypatch.setattr("sssgen.support.progress.time.monotonic", lambda: clock[0])
+    with progress.ProgressBar(one_line=True) as bar:
+        bar(1, 1, "quick stage")
+        for item in range(3):
+            clock[0] += 2.0
+            bar(item, 10, "slow stage")
+    assert capsys.readouterr().err == "1 of 10: slow stage; about 18 s left\n"
 
 
 def test_a_log_shows_an_item_that_takes_long(

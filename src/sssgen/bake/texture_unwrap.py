@@ -33,6 +33,7 @@ def unwrap_mesh(mesh: Triangles, progress: Progress = lambda *_: None) -> Array:
     facing = 2 * axis + (mesh.flat[np.arange(len(axis)), axis] < 0.0)
     result: Any = None
     for parts in (np.zeros(len(axis), np.int64), facing):
+        progress(0, 1, f"texture coordinates of {len(axis)} triangles")
         item = Item("sssgen.bake.texture_unwrap:charts", (places, mesh.corners, parts), "texture coordinates")
         (result,) = run([item], processes=1, store=Store(""), progress=progress)
         if not isinstance(result, Failure):

@@ -15,6 +15,8 @@ Distances: TypeAlias = npt.NDArray[np.float32]
 
 BLOCK = 2**18
 """Points of one query, at about a hundred bytes each."""
+STEP = 2**13
+"""Points between two reports of the progress."""
 TILE = 4
 """Voxels along a side of a tile: tiles are queried in sequence."""
 SPLIT = 3
@@ -35,10 +37,13 @@ def distances(body: MeshDistance, grid: Grid, progress: Progress = lambda *_: No
         end = min(start + layers, deep)
         if end - start < layers:
             order = _in_tiles((end - start, up, across))
-        block = np.empty(len(order))
-        block[order] = body.unsigned_distance(grid.slab(start, end)[order])
+        block, points = np.empty(len(order)), grid.slab(start, end)
+        for first in range(0, len(order), STEP):
+            part = order[first : first + STEP]
+            progress(start + (end - start) * first / len(order), deep, "layers of distances")
+            block[part] = body.unsigned_distance(points[part])
         result[start:end] = block.reshape(end - start, up, across)
-        progress(end, deep, "distances")
+    progress(deep, deep, "layers of distances")
     return result
 
 

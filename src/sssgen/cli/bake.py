@@ -93,7 +93,7 @@ def _sdf(arguments: Namespace) -> Result:
 
     format = output.volume_format(arguments.output, arguments.format)
     output.check_apart(arguments.output, [arguments.MESH])
-    with ProgressBar() as bar:
+    with ProgressBar(one_line=True) as bar:
         baked = sdf(
             arguments.MESH,
             whole_numbers(arguments.resolution, "resolution"),
@@ -153,7 +153,7 @@ def _thickness(arguments: Namespace) -> Result:
         arguments.seed,
     )
     size = picture_size(arguments.size)
-    with ProgressBar() as bar:
+    with ProgressBar(one_line=True) as bar:
         baked = thickness_map(
             arguments.MESH, size, request, arguments.unwrap, arguments.processes, arguments.scheduler, bar
         )
@@ -194,7 +194,7 @@ def _depth(arguments: Namespace) -> Result:
     output.picture_suffix(arguments.output, (".exr", ".npy"))
     output.check_apart(arguments.output, [arguments.MESH, arguments.direction])
     light, size = bake_light.read_light(arguments.direction), picture_size(arguments.size)
-    with ProgressBar() as bar:
+    with ProgressBar(one_line=True) as bar:
         values, facts = depth_map(arguments.MESH, light, size, bar)
     paths = output.write_picture(arguments.output, values, facts)
     low, high = facts["range"]
@@ -226,7 +226,7 @@ def _view_thickness(arguments: Namespace) -> Result:
     mesh, length = view_thickness.body(arguments.BODY, arguments.mean_free_path, arguments.medium, arguments.unit_mm)
     output.check_apart(arguments.output, [arguments.BODY, mesh.path])
     size = picture_size(arguments.size)
-    with ProgressBar() as bar:
+    with ProgressBar(one_line=True) as bar:
         baked = view_thickness.bake(
             mesh, size, length, arguments.rays, arguments.unwrap, arguments.processes, arguments.scheduler, bar
         )
@@ -278,7 +278,7 @@ def _voronoi(arguments: Namespace) -> Result:
     pattern = cells.Pattern(
         size, count, arguments.jitter, arguments.seed, tiles, arguments.feature, arguments.bevel, arguments.variation
     )
-    with ProgressBar() as bar:
+    with ProgressBar(one_line=True) as bar:
         texels = cells.voronoi(pattern, bar)
         facts: CellFacts = {
             "kind": "cells", "holds": "thickness", "feature": arguments.feature,
@@ -312,7 +312,7 @@ def _normal(arguments: Namespace) -> Result:
     output.picture_suffix(arguments.output)
     output.check_apart(arguments.output, [arguments.HEIGHT])
     tiles = not arguments.no_tile
-    with ProgressBar() as bar:
+    with ProgressBar(one_line=True) as bar:
         bar(0, 3, f"reading {arguments.HEIGHT}")
         height = images.upright(arguments.HEIGHT)
         bar(1, 3, "normals")
@@ -344,7 +344,7 @@ def _pack(arguments: Namespace) -> Result:
         raise failure("there is nothing to pack", "--red a.png --green b.png --blue 1-c.png")
     sources = [packing.parse(text) if text else None for text in sources_by_channel.values()]
     output.check_apart(arguments.output, [source.file for source in sources if source and source.file])
-    with ProgressBar() as bar:
+    with ProgressBar(one_line=True) as bar:
         texels = packing.pack(packing.load(sources, bar))
         facts: PackedFacts = {
             "kind": "packed", "holds": None, "channels": sources_by_channel, "parameters": {},
@@ -372,7 +372,7 @@ def _environment(arguments: Namespace) -> Result:
     if not 0.0 < arguments.intensity < float("inf"):
         raise failure(f"the intensity {arguments.intensity:g} is not a factor of light", "give a number above 0")
     environment = Environment((arguments.intensity,) * 3, arguments.SKY, digest(arguments.SKY))
-    with ProgressBar() as bar:
+    with ProgressBar(one_line=True) as bar:
         bar(0, 2, "reflections")
         reflections = half(maps.reflection_map(environment))
         bar(1, 2, "irradiance")

@@ -64,7 +64,7 @@ def bake(arguments: Namespace) -> Result:
         return _relit(arguments, scene, settings)
     light = bake_light.read_light(arguments.light) if arguments.light else None
     rank = 8 if arguments.rank is None else arguments.rank
-    with ProgressBar() as bar:
+    with ProgressBar(one_line=True) as bar:
         baked = fluence.bake(scene, rank, light, settings, arguments.scheduler, arguments.processes, bar)
     paths = []
     for part in baked.parts:
@@ -82,7 +82,7 @@ def bake(arguments: Namespace) -> Result:
 def _relit(arguments: Namespace, scene: MeasuredScene, settings: Settings) -> Result:
     from sssgen.bake import baked_files, relit
 
-    with ProgressBar() as bar:
+    with ProgressBar(one_line=True) as bar:
         data, facts = relit.bake(scene, arguments.relit, settings, arguments.scheduler, arguments.processes, bar)
     paths = baked_files.write_response(arguments.output, data, facts)
     return paths, facts, [*_lines(scene, facts), f"{len(data) / 1024:.0f} KiB"]

@@ -154,11 +154,14 @@ def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
     uv, uv2 = _usable(uv, (len(vertices), 2)), _usable(uv2, (len(vertices), 2))
     color = _usable(color, (len(vertices), 4))
     own_normals = _usable(own_normals, (len(vertices), 3))
-    used, index_of = np.unique(faces, return_inverse=True)  # a file may have vertices that belong to no triangle
+    # a file may have vertices that belong to no triangle
+    used = np.flatnonzero(np.bincount(faces.ravel(), minlength=len(vertices)))
     places, place_of = np.unique(vertices[used], axis=0, return_inverse=True)
     if (size := float(np.ptp(places, axis=0).max())) < SMALLEST:
         raise failure(f"the mesh is only {size:.1g} units large", f"scale it: at least {SMALLEST:g}", shown)
-    corners = place_of.reshape(-1)[index_of.reshape(faces.shape)]
+    number = np.zeros(len(vertices), np.int64)
+    number[used] = place_of.reshape(-1)
+    corners = number[faces]
     first, second, third = np.moveaxis(places[corners], 1, 0)
     across = np.cross(second - first, third - first)
     area = np.linalg.norm(across, axis=1)
@@ -166,8 +169,8 @@ def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
         raise failure("no triangle has an area", "", shown)
     valid = area > 0.0
     faces, corners, across = faces[valid], corners[valid], across[valid]
-    normals = np.zeros_like(places)
-    np.add.at(normals, corners, across[:, None, :])
+    sums = [np.bincount(corners.ravel(), np.repeat(across[:, axis], 3), len(places)) for axis in range(3)]
+    normals = np.stack(sums, axis=1)
     own = None if own_normals is None else unit(own_normals)
     further = [None if values is None else values[faces] for values in (uv2, color, own)]
     mesh = Triangles(places, corners, unit(across), unit(normals), None, None, np.ones(len(faces)), *further)

@@ -17,22 +17,35 @@ DELAY = 1.0
 """Seconds before the bar: what is quick shows none, and does not import rich."""
 QUIET = 10.0
 """Seconds between the lines, and before the first."""
+LONG = 5.0
+"""Seconds of all the work from which an estimate is printed as soon as there is one."""
+OBSERVED = 1.0
+"""Seconds of work on which an estimate is based."""
 
 
 def silent(done: float, total: int, name: str) -> None:
     """The progress that nobody wants to see."""
 
 
+def time_left(seconds: float) -> str:
+    """An estimate, as text."""
+    return f"about {seconds / 60.0:.0f} min left" if seconds >= 90.0 else f"about {max(seconds, 1.0):.0f} s left"
+
+
 class ProgressBar:
     """`with ProgressBar() as progress: run(items, progress=progress)`: on the standard error stream.
 
-    On a terminal with rich it is a bar that is erased at the end; in a pipe or a log, a line every 10 seconds, also
-    while one item takes longer.
+    On a terminal with rich it is a bar that is erased at the end, with the time left; in a pipe or a log, a line every
+    10 seconds, also while one item takes longer. With `one_line` a pipe gets one line alone: as soon as the time left
+    can be estimated, where the whole work takes more than 5 seconds.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, one_line: bool = False) -> None:
+        self.one_line, self.printed = one_line, False
         self.bar: Any = None
         self.state: tuple[float, int, str] | None = None
+        self.first: tuple[float, float, int] | None = None
+        """The time of the first call for a total, how much was done, and the total"""
         self.started = self.shown = time.monotonic()
         self.lock = threading.RLock()
         self.ended = threading.Event()
@@ -57,6 +70,8 @@ class ProgressBar:
         """Shows how many of `total` items are done, and the name of the current one."""
         with self.lock:
             self.state = done, total, name
+            if self.first is None or self.first[2] != total or done < self.first[1]:
+                self.first = time.monotonic(), done, total
             self._show()
 
     @contextlib.contextmanager
@@ -117,6 +132,20 @@ class ProgressBar:
             from rich.markup import escape
 
             self.bar.update(self.task, completed=done, total=total, description=escape(name))
-        elif not self.terminal and sys.stderr is not None and time.monotonic() - self.shown >= QUIET:
-            self.shown = time.monotonic()
-            print(f"{done:.4g} of {total}: {name}", file=sys.stderr, flush=True)
+        elif not self.terminal and sys.stderr is not None:
+            now, left = time.monotonic(), self._left()
+            early = self.one_line and left is not None and now - self.started + left > LONG
+            if (early or now - self.shown >= QUIET) and not (self.one_line and self.printed):
+                self.shown, self.printed = now, True
+                more = "" if left is None else f"; {time_left(left)}"
+                print(f"{done:.4g} of {total}: {name}{more}", file=sys.stderr, flush=True)
+
+    def _left(self) -> float | None:
+        """The estimated seconds to the end of this total; None before enough is done."""
+        if self.state is None or self.first is None:
+            return None
+        (done, total, _), (start, before, _) = self.state, self.first
+        spent = time.monotonic() - start
+        if done <= before or spent < OBSERVED:
+            return None
+        return (total - done) * spent / (done - before)

@@ -8,6 +8,7 @@ from contextlib import nullcontext
 
 from sssgen.jobs.executor import Progress
 from sssgen.lab.chart.charting import Settings
+from sssgen.support.progress import time_left
 
 LAST = 99
 """The percentage before the end."""
@@ -49,5 +50,4 @@ class WholeProgress:
         """The time left, as text; '' in the first seconds."""
         if self.seconds < 10.0 or self.percent < 2:
             return ""
-        left = self.seconds * (100 - self.percent) / self.percent
-        return f"; about {left / 60.0:.0f} min left" if left >= 90.0 else f"; about {left:.0f} s left"
+        return f"; {time_left(self.seconds * (100 - self.percent) / self.percent)}"
