@@ -104,13 +104,20 @@ def facts() -> str:
         rows += [
             f"| {title}, distance texture | {x} × {y} × {z} | ±{volume['range']:.3g} | {fine['at_texels']:.1e} at "
             f"texels, ≤ {fine['between_texels']:.2g} between (a texel is {volume['voxel'][0]:.2g}) |",
-            f"| {title}, thickness map | {chord['texels']} | 0 to {chord['range'][1]:.3g} | mean standard error "
-            f"{spread['mean_standard_error']:.1e}, ≤ {spread['largest_standard_error']:.1e}; "
-            f"{chord['rays']} rays per texel, {chord['lost_rays']:.2%} lost in holes |",
+            f"| {title}, thickness map | {chord['texels']} | 0 to {chord['range'][1]:.3g} | mean "
+            f"{'standard ' if chord['rays'] else ''}error {spread['mean_standard_error']:.1e}, "
+            f"≤ {spread['largest_standard_error']:.1e}; {method(chord)} |",
             f"| {title}, depth map | {size['x']} × {size['y']} | {depth['range'][0]:.3g} to {depth['range'][1]:.3g} | "
             "only the rounding to float32 |",
         ]
     return "\n".join(rows)
+
+
+def method(chord: Any) -> str:
+    """How the lengths of a thickness map were computed."""
+    if not chord["rays"]:
+        return "an integral over the triangles"
+    return f"{chord['rays']} rays per texel, {chord['lost_rays']:.2%} lost in holes"
 
 
 def sidecar() -> str:
