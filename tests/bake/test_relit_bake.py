@@ -144,3 +144,13 @@ def test_a_render_without_a_right_file_says_what_to_do() -> None:
     Path("ball.bin").write_bytes(Path("ball.bin").read_bytes()[:64])
     with pytest.raises(SssgenError, match="the JSON is that of another file"):
         render(load("scene.toml"), backends.get("numpy"))
+
+
+@pytest.mark.parametrize(("photons", "noisy"), [("2", True), ("1000", False)])
+def test_a_noisy_bake_is_warned_of(capsys: pytest.CaptureFixture[str], photons: str, noisy: bool) -> None:
+    """Photons serve an anisotropic medium; two of them reach few voxels."""
+    write(f"anisotropy = 0.8\n{FIRST}")
+    few = ["--voxels", "16", "--photons", photons, "--processes", "1", "--light", "0,0,1", "-o", "ball.npy"]
+    assert main(["bake", "fluence", "scene.toml", *few]) == 0
+    assert ("warning: the noise is as large as the light: use more --photons" in capsys.readouterr().out) is noisy
+    assert (facts("ball.npy")["error"]["standard_error"] > 1.0) is noisy

@@ -13,11 +13,11 @@ from sssgen.bake.bake_facts import DistanceError, DistanceFacts
 from sssgen.bake.distance_encoding import ENCODINGS, encode, error_at_texels
 from sssgen.bake.voxel_distance import BLOCK, distances, inside
 from sssgen.bake.voxel_grid import Array, Grid, around
-from sssgen.jobs.executor import Progress
 from sssgen.scene.mesh import Mesh
 from sssgen.scene.mesh_distance import mixed_sides
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
+from sssgen.support.progress import Progress
 from sssgen.targets.texture_import import import_settings
 
 SHEET = 1e-5

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from sssgen.bake.voxel_grid import Array, Grid
-from sssgen.jobs.executor import Progress
 from sssgen.scene.mesh_distance import INSIDE, MeshDistance
+from sssgen.support.progress import Progress
 
 Distances: TypeAlias = npt.NDArray[np.float32]
 

@@ -65,7 +65,7 @@ def bake_thickness(imported: ImportedMaterial, report: Report, progress: Progres
         return imported
     error_of_mean = facts["error"]["mean_standard_error"]
     became = f"the mesh's own, baked: 0 to {facts['range'][1]:.4g} m, mean {facts['mean']:.4g} m"
-    report.add_approximation(path, value, became, f"{error_of_mean:.2g} m, the mean standard error of the rays")
+    report.add_approximation(path, value, became, f"{error_of_mean:.2g} m, the mean error of the lengths")
     image = Image(Picture("baked thickness", picture), "r", uv_set=BAKED_SET, wrap="clamp")
     return imported._replace(
         model=replace(model, thickness=Quantity((facts["range"][1],), image), thin_walled=False),

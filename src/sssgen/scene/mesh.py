@@ -170,7 +170,7 @@ def _prepare(content: mesh_files.FileContent, shown: str) -> Triangles:
     valid = area > 0.0
     faces, corners, across = faces[valid], corners[valid], across[valid]
     sums = [np.bincount(corners.ravel(), np.repeat(across[:, axis], 3), len(places)) for axis in range(3)]
-    normals = np.stack(sums, axis=1)
+    normals: Array = np.stack(sums, axis=1).astype(np.float64)
     own = None if own_normals is None else unit(own_normals)
     further = [None if values is None else values[faces] for values in (uv2, color, own)]
     mesh = Triangles(places, corners, unit(across), unit(normals), None, None, np.ones(len(faces)), *further)

@@ -132,7 +132,7 @@ class ProgressBar:
             from rich.markup import escape
 
             self.bar.update(self.task, completed=done, total=total, description=escape(name))
-        elif not self.terminal and sys.stderr is not None:
+        elif not self.terminal and sys.stderr is not None and done < total:
             now, left = time.monotonic(), self._left()
             early = self.one_line and left is not None and now - self.started + left > LONG
             if (early or now - self.shown >= QUIET) and not (self.one_line and self.printed):
