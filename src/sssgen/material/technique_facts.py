@@ -9,6 +9,7 @@ from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, kind_of, spell
 from sssgen.material import slots
 from sssgen.material.library import Technique
+from sssgen.material.medium_look import look_keys
 from sssgen.support.paths import display_name, source_name
 
 _OTHERWISE_SHOWN = ("hint_range", "unit", "alias", "holds", "sample_range", "bound_range")
@@ -26,6 +27,7 @@ def facts_of(technique: Technique) -> dict[str, Any]:
         "summary": doc.pop("summary", ""),
         "signature": slots.signature(technique.function),
         "parameters": [uniform_facts(uniform) for uniform in read if not isinstance(uniform.type, Sampler)],
+        "look": [uniform_facts(key) for key in look_keys(read).values()],
         "textures": [uniform_facts(uniform) for uniform in read if isinstance(uniform.type, Sampler)],
         "slots": [
             {

@@ -11,9 +11,9 @@ from typing import NamedTuple
 from sssgen.bake.fluence import variant
 from sssgen.interchange.dense_bodies import isotropic_medium
 from sssgen.interchange.imported_material import Notes
-from sssgen.interchange.scatter_color import multiscatter_of_albedo
 from sssgen.interchange.technique_choice import choose_for_lights
 from sssgen.material.material_text import MaterialSection, material_text
+from sssgen.material.scatter_color import multiscatter_of_albedo
 from sssgen.presets.preset import Preset
 from sssgen.scene.measured.media import Medium
 from sssgen.support.diagnostics import failure
