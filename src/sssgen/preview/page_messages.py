@@ -4,9 +4,9 @@ A message is a JSON object with a `kind`; one from the page may carry the bytes 
 page that is connected to a server and one that runs this module in the browser.
 
 From the page: `shape` (a body from the list), `beside` (what stands beside the picture), `mesh` (a file as the body),
-`texture` (a file, or none, in a slot), `save` (parameters and chosen textures, for the files); the question `measured`
-(the error in a chart); and, while the page shows emitted text, `text` (of a target and a form) and `source` (a file
-that lines come from). To the page: `picture` (of the pane `pane`), `said` and `error` (a text), and the answer to a
+`texture` (a file, or none, in a slot), `save` (parameters and chosen textures, for the files), `save_as` (the same, for
+a new folder); the questions `existing` (the files that `save_as` would replace) and `measured` (the error in a chart);
+and, while the page shows emitted text, `text` (of a target and a form) and `source` (a file that lines come from). To the page: `picture` (of the pane `pane`), `said` and `error` (a text), and the answer to a
 question, which has its kind.
 """
 
@@ -21,8 +21,10 @@ from sssgen.preview.bodies import OWN_MESH, SHAPES, dropped_mesh
 from sssgen.preview.emitted_text import source_of, text_of
 from sssgen.preview.measured_error import measured_error
 from sssgen.preview.pane import Pane, StartPane
+from sssgen.preview.saved_copy import Copy, existing_files, write_copy
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import FileState
+from sssgen.support.paths import posix
 
 MOST_BYTES = 64 << 20
 """The largest file that a page may send."""
@@ -64,12 +66,16 @@ class PageMessages:
             "mesh": self._mesh,
             "texture": self._texture,
             "save": self._save,
+            "save_as": self._save_as,
         }
         self._questions: Mapping[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
             "text": self._text,
             "source": self._source,
             "measured": self._measured_error,
+            "existing": self._existing,
         }
+        self._top = os.getcwd()
+        """Below it the pages may write new folders"""
 
     @property
     def files(self) -> dict[str, FileState]:
@@ -164,10 +170,29 @@ class PageMessages:
         return ""
 
     def _save(self, message: dict[str, Any], _: bytes) -> str:
-        values: Mapping[str, Sequence[Any]] = message["values"]
         pane = self._pane(message)
         try:
-            written = pane.save({str(name): [float(number) for number in value] for name, value in values.items()})
+            written = pane.save(_numbers(message["values"]), _numbers(message.get("look", {})))
             return " ".join(filter(None, (written, pane.save_textures())))
         finally:
             self.renew()
+
+    def _existing(self, message: dict[str, Any]) -> dict[str, Any]:
+        folder, copy = self._copy(message)
+        return {"kind": "existing", "name": folder, "files": existing_files(os.path.join(self._top, folder), copy)}
+
+    def _save_as(self, message: dict[str, Any], data: bytes) -> str:
+        folder, copy = self._copy(message)
+        path = write_copy(self._top, folder, copy, message.get("replace") is True)
+        self._pane(message).follow(os.path.relpath(path))
+        return " ".join(filter(None, (f"{posix(os.path.relpath(path))} is written.", self._save(message, data))))
+
+    def _copy(self, message: dict[str, Any]) -> tuple[str, Copy]:
+        """The folder of a copy, relative to the top, and its files."""
+        folder = str(message["name"]).replace("\\", "/")
+        return folder, self._pane(message).copy(folder.rpartition("/")[2])
+
+
+def _numbers(values: Mapping[str, Sequence[Any]]) -> dict[str, list[float]]:
+    """Values as the page sends them. Raises ValueError, TypeError or AttributeError for others."""
+    return {str(name): [float(number) for number in value] for name, value in values.items()}
