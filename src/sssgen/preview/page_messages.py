@@ -5,9 +5,11 @@ page that is connected to a server and one that runs this module in the browser.
 
 From the page: `shape` (a body from the list), `beside` (what stands beside the picture), `mesh` (a file as the body),
 `texture` (a file, or none, in a slot), `save` (parameters and chosen textures, for the files), `save_as` (the same, for
-a new folder); the questions `existing` (the files that `save_as` would replace) and `measured` (the error in a chart);
-and, while the page shows emitted text, `text` (of a target and a form) and `source` (a file that lines come from). To the page: `picture` (of the pane `pane`), `said` and `error` (a text), and the answer to a
-question, which has its kind.
+a new folder), `edit` (a change of the chain) and `undo` (of what was written last); the questions `existing` (the files
+that `save_as` would replace), `menus` (presets and media), `techniques` (for a place in the chain), `medium` (the
+parameters of a medium by name) and `measured` (the error in a chart); and, while the page shows emitted text, `text`
+(of a target and a form) and `source` (a file that lines come from). To the page: `picture` (of the pane `pane`), `said`
+and `error` (a text), and the answer to a question, which has its kind.
 """
 
 from __future__ import annotations

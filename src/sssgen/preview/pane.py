@@ -25,7 +25,6 @@ from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.file_memo import FileState, noted_files
 from sssgen.support.paths import posix
 
-
 Values = Mapping[str, Sequence[float]]
 """A parameter's property on the page → its numbers."""
 
