@@ -9,7 +9,6 @@ from typing import NamedTuple, TypeAlias
 from sssgen.editor import toml_places
 from sssgen.editor.analysis import Analysis, function_around
 from sssgen.editor.documents import MATERIAL, SCENE, TECHNIQUE, Document, Word
-from sssgen.editor.scene_parameters import uniforms_of
 from sssgen.editor.source_files import path_of
 from sssgen.ir.nodes import Constant, Declare, Expr, Function, Local, Module, Param, StructDecl, Uniform, Variable
 from sssgen.ir.spans import Span
@@ -22,6 +21,7 @@ from sssgen.material.material_loading import examples
 from sssgen.material.material_reader import parameter_names
 from sssgen.material.medium_look import look_keys
 from sssgen.material.model import Material
+from sssgen.scene.scene_parameters import uniforms_of
 from sssgen.scene.scene_reader import material_beside
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import builtin_facts

@@ -19,11 +19,14 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from sssgen.presets.preset_list import MENU_QUALITIES, media_list, preset_list
 from sssgen.preview.bodies import OWN_MESH, SHAPES, dropped_mesh
+from sssgen.preview.chain_edits import technique_rows
 from sssgen.preview.emitted_text import source_of, text_of
 from sssgen.preview.measured_error import measured_error
 from sssgen.preview.pane import Pane, StartPane
 from sssgen.preview.saved_copy import Copy, existing_files, write_copy
+from sssgen.scene.measured import media
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import FileState
 from sssgen.support.paths import posix
@@ -69,12 +72,17 @@ class PageMessages:
             "texture": self._texture,
             "save": self._save,
             "save_as": self._save_as,
+            "edit": self._edit,
+            "undo": self._undo,
         }
         self._questions: Mapping[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
             "text": self._text,
             "source": self._source,
             "measured": self._measured_error,
             "existing": self._existing,
+            "menus": self._menus,
+            "techniques": self._techniques,
+            "medium": self._medium,
         }
         self._top = os.getcwd()
         """Below it the pages may write new folders"""
@@ -174,10 +182,34 @@ class PageMessages:
     def _save(self, message: dict[str, Any], _: bytes) -> str:
         pane = self._pane(message)
         try:
-            written = pane.save(_numbers(message["values"]), _numbers(message.get("look", {})))
-            return " ".join(filter(None, (written, pane.save_textures())))
+            with pane.history.recorded(pane.written_files()):
+                written = pane.save(_numbers(message["values"]), _numbers(message.get("look", {})))
+                return " ".join(filter(None, (written, pane.save_textures())))
         finally:
             self.renew()
+
+    def _edit(self, message: dict[str, Any], _: bytes) -> str:
+        pane = self._pane(message)
+        pane.edit(message)
+        self.renew()
+        return f"{pane.history.last()} is changed."
+
+    def _undo(self, message: dict[str, Any], _: bytes) -> str:
+        said = self._pane(message).history.undo()
+        self.renew()
+        return said
+
+    def _menus(self, message: dict[str, Any]) -> dict[str, Any]:
+        return {"kind": "menus", "presets": preset_list(), "media": media_list(), "qualities": MENU_QUALITIES}
+
+    def _techniques(self, message: dict[str, Any]) -> dict[str, Any]:
+        material, path = self._pane(message).picture.material, tuple(message.get("path", ()))
+        rows = technique_rows(material, path) if material is not None else []
+        return {"kind": "techniques", "path": list(path), "rows": [row._asdict() for row in rows]}
+
+    def _medium(self, message: dict[str, Any]) -> dict[str, Any]:
+        medium = media.preset(str(message["name"]), float(message["unit_mm"]))
+        return {"kind": "medium", "name": medium.name, "parameters": medium.parameters}
 
     def _existing(self, message: dict[str, Any]) -> dict[str, Any]:
         folder, copy = self._copy(message)

@@ -10,13 +10,22 @@ from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.preview.bodies import OWN_MESH
+from sssgen.preview.chain_edits import edited_files
 from sssgen.preview.chosen_textures import ChosenTextures, save_texture
 from sssgen.preview.emitted_head import Control, Slot, follows
+from sssgen.preview.file_history import FileHistory
 from sssgen.preview.flat_head import is_plain, transpile_plain
 from sssgen.preview.flat_picture import plain_picture, raymarched_picture
-from sssgen.preview.picture import Choices, Picture, picture_of
+from sssgen.preview.picture import Choices, Picture, on_shape, picture_of
 from sssgen.preview.saved_copy import Copy, copy_of
-from sssgen.preview.saved_values import Change, is_saved_in_scene, save_to_material, save_to_scene, saves_where
+from sssgen.preview.saved_values import (
+    Change,
+    is_saved_in_scene,
+    save_to_material,
+    save_to_scene,
+    saves_where,
+    write_text,
+)
 from sssgen.preview.technique_scene import SAVES, is_technique, scene_of_technique
 from sssgen.scene.geometry import Mesh
 from sssgen.scene.preview_scene import scene_of
@@ -24,6 +33,7 @@ from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.file_memo import FileState, noted_files
 from sssgen.support.paths import posix
+from sssgen.support.unsaved import kept
 
 Values = Mapping[str, Sequence[float]]
 """A parameter's property on the page → its numbers."""
@@ -40,6 +50,7 @@ class Pane:
         self._textures = ChosenTextures()
         self._make()
         self.first = self.scene, self.picture
+        self.history = FileHistory()
 
     @property
     def pieces(self) -> Mapping[str, bytes]:
@@ -92,6 +103,7 @@ class Pane:
             "version": self.version,
             "error": self.error or self.picture.head.get("missing", ""),
             "label": self.label,
+            "undoes": self.history.last(),
             "picture": self.picture.head,
         }
 
@@ -131,6 +143,24 @@ class Pane:
         if self.scene is None or self.picture.material is None or self.picture.head["saves"]:
             raise failure("nothing can be saved here", self.picture.head["saves"])
         return self.scene, self.picture.material
+
+    def edit(self, change: Mapping[str, Any]) -> None:
+        """Changes the chain in the material's file, see `edited_files`. Raises SssgenError, and changes no file, where
+        the picture of the changed files has an error."""
+        scene, material = self.scene, self.picture.material
+        if scene is None or material is None or not self.picture.head.get("copies"):
+            raise failure("this has no chain that can be changed", self.picture.head["saves"])
+        files = edited_files(on_shape(scene, self.choices), material, change)
+        with kept(files):
+            self._new_picture()
+        with self.history.recorded(files):
+            for path, text in files.items():
+                write_text(path, text)
+
+    def written_files(self) -> list[str]:
+        """The files that Save may write."""
+        scene, material = self.scene, self.picture.material
+        return [] if scene is None or material is None else [material.file, scene.document.reporter.file]
 
     def copy(self, name: str) -> Copy:
         """The files of the material under another name. Raises SssgenError where it cannot be copied."""

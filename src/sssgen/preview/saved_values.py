@@ -179,8 +179,8 @@ def parse_document(path: str) -> Any:
 
 
 def section_of(technique: Technique) -> str:
-    """The section of a technique's stages."""
-    return next(section for section in SECTIONS if technique.role in allowed_roles(section))
+    """The section of a technique's stages; '' for a technique that is bound to slots."""
+    return next((section for section in SECTIONS if technique.role in allowed_roles(section)), "")
 
 
 def stages_of(document: Any, section: str) -> dict[Path, Any]:
