@@ -150,3 +150,18 @@ def test_a_medium_is_given_for_the_size_of_a_unit(talk: PageMessages) -> None:
     assert answer is not None and answer["parameters"] == preset("marble", 20.0).parameters
     with pytest.raises(SssgenError, match="did you mean 'marble'"):
         talk.reply({"kind": "medium", "name": "marbel", "unit_mm": 20.0})
+
+
+def test_a_mesh_that_does_not_suit_is_said(talk: PageMessages, ring: Path) -> None:
+    """The ring's material follows light through the body; one that is lit alone takes any mesh."""
+    faces = ["1 3 2", "1 2 4", "1 4 3"]
+    lines = [f"v {x} {y} {z}" for x, y, z in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))]
+    sheet = "\n".join([*lines, *(f"f {face}" for face in faces)])
+    assert talk.messages()[0]["picture"]["warnings"] == []
+    talk.answer({"kind": "mesh", "name": "open.obj"}, sheet.encode())
+    (warning,) = talk.messages()[0]["picture"]["warnings"]
+    assert "has holes (3 open edges)" in warning
+    talk.answer({"kind": "save", "values": {"meanFreePath": [5.0]}})
+    assert any("mean free paths thick" in warning for warning in talk.messages()[0]["picture"]["warnings"])
+    edit(talk, "preset", preset="leaf", quality="fast")
+    assert talk.messages()[0]["picture"]["warnings"] == []

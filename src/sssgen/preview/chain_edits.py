@@ -6,9 +6,6 @@ import os
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from sssgen.interchange.material_writer import mean_chord
 from sssgen.lab.measure.technique_chain import bindings_of
 from sssgen.material import library, slots
 from sssgen.material.library import Technique
@@ -19,13 +16,11 @@ from sssgen.material.medium_look import look_keys
 from sssgen.material.model import Material, TechniqueUse
 from sssgen.material.requirements import DESCRIPTIONS, requirements
 from sssgen.presets.preset import preset
-from sssgen.presets.preset_stages import BodySize, preset_stages
-from sssgen.preview.bodies import extent, packed_triangles
+from sssgen.presets.preset_stages import preset_stages
+from sssgen.preview.bodies import body_size
 from sssgen.preview.saved_values import parse_document, section_of
 from sssgen.preview.stage_edits import ChainText
 from sssgen.scene.bake_advice import is_scene
-from sssgen.scene.geometry import Geometry
-from sssgen.scene.mesh_files import FileContent
 from sssgen.scene.scene import Scene
 from sssgen.scene.scene_parameters import uniforms_of
 from sssgen.support.diagnostics import SssgenError, failure
@@ -162,13 +157,6 @@ def _with_preset(chain: ChainText, scene: Scene, edit: Mapping[str, Any]) -> str
     has_sides = "two_sided" in chain.document.data["material"]
     settings = ["two_sided = true"] if any(chosen.sheet) and not has_sides else []
     return chain.with_chain(preset_stages(chosen, str(edit["quality"]), size), settings)
-
-
-def body_size(geometry: Geometry, longest_mm: float) -> BodySize:
-    """The size of a body whose longest side is so many millimetres."""
-    corners = np.frombuffer(packed_triangles(geometry), "<f4").reshape(-1, 8)[:, :3].astype(np.float64)
-    content = FileContent(corners, np.arange(len(corners)).reshape(-1, 3), None)
-    return BodySize(longest_mm / extent(geometry).size, geometry.scale * mean_chord(content))
 
 
 def _scene_without(scene: Scene, material: Material, changed: Material) -> dict[str, str]:

@@ -17,6 +17,7 @@ from sssgen.material.requirements import bodies
 from sssgen.pipeline.compiler import compile
 from sssgen.preview.bodies import OWN_MESH, SHAPES, fit, frame, packed_triangles
 from sssgen.preview.emitted_head import DRAWN_BY_PAGE, TARGET, Slot, emitted_head
+from sssgen.preview.mesh_notes import mesh_notes
 from sssgen.run.render.missing_textures import missing_textures
 from sssgen.run.render.scene_values import shell_of
 from sssgen.run.render.shell_values import Shell
@@ -87,6 +88,7 @@ def picture_of(scene: Scene, material: Material, choices: Choices) -> Picture:
         "shapes": ["", *SHAPES, *([OWN_MESH] if choices.mesh is not None else [])],
         "saves": "",
         "note": _note(material, choices.shape),
+        "warnings": mesh_notes(scene, material),
         "missing": missing_text(drawn, material, reflection, shell),
         "mesh": os.path.basename(choices.mesh.path) if choices.mesh is not None else "",
         "body": pieces.add(packed_triangles(scene.geometry)),
