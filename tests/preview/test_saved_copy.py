@@ -96,6 +96,8 @@ def test_a_name_that_leaves_the_folder_or_names_no_material_is_refused(name: str
     talk = PageMessages(Pane("jade_ring"))
     with pytest.raises(SssgenError):
         save_as(talk, name)
+    with pytest.raises(SssgenError):
+        talk.reply({"kind": "existing", "name": name})
     assert list(here.iterdir()) == []
 
 

@@ -47,5 +47,5 @@ def media_list() -> list[dict[str, Any]]:
     for name, entry in media.media().items():
         medium = media.preset(name)
         color, depth = multiscatter_of_albedo(medium.albedo), medium.mean_free_path
-        rows.append({"name": name, "doc": entry.source, "color": [*color], "depth_mm": depth})
+        rows.append({"name": name, "doc": f"{entry.source}.", "color": [*color], "depth_mm": depth})
     return rows

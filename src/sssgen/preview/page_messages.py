@@ -23,7 +23,7 @@ from sssgen.presets.preset_list import MENU_QUALITIES, media_list, preset_list
 from sssgen.preview.bodies import OWN_MESH, SHAPES, dropped_mesh
 from sssgen.preview.chain_edits import technique_rows
 from sssgen.preview.emitted_text import source_of, text_of
-from sssgen.preview.measured_error import measured_error
+from sssgen.preview.measured_error import MeasuredError, measured_error
 from sssgen.preview.pane import Pane, StartPane
 from sssgen.preview.saved_copy import Copy, existing_files, write_copy
 from sssgen.scene.measured import media
@@ -147,7 +147,8 @@ class PageMessages:
     def _measured_error(self, message: dict[str, Any]) -> dict[str, Any]:
         pane = self._pane(message)
         scene, material = pane.scene, pane.picture.material
-        return {"kind": "measured", "text": measured_error(scene, material) if scene and material else ""}
+        answer = measured_error(scene, material) if scene and material else MeasuredError("", "")
+        return {"kind": "measured", **answer._asdict()}
 
     def _shape(self, message: dict[str, Any], _: bytes) -> str:
         shape = message["shape"]
@@ -213,7 +214,7 @@ class PageMessages:
 
     def _existing(self, message: dict[str, Any]) -> dict[str, Any]:
         folder, copy = self._copy(message)
-        return {"kind": "existing", "name": folder, "files": existing_files(os.path.join(self._top, folder), copy)}
+        return {"kind": "existing", "name": folder, "files": existing_files(self._top, folder, copy)}
 
     def _save_as(self, message: dict[str, Any], data: bytes) -> str:
         folder, copy = self._copy(message)

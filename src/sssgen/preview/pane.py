@@ -10,7 +10,7 @@ from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.preview.bodies import OWN_MESH
-from sssgen.preview.chain_edits import edited_files
+from sssgen.preview.chain_edits import edited_files, stage_rows
 from sssgen.preview.chosen_textures import ChosenTextures, save_texture
 from sssgen.preview.emitted_head import Control, Slot, follows
 from sssgen.preview.file_history import FileHistory
@@ -104,8 +104,19 @@ class Pane:
             "error": self.error or self.picture.head.get("missing", ""),
             "label": self.label,
             "undoes": self.history.last(),
+            "stages": self._stages(),
             "picture": self.picture.head,
         }
+
+    def _stages(self) -> list[dict[str, Any]]:
+        """The chain, where the menus of the page change it."""
+        material = self.picture.material
+        if material is None or self.error or not self.picture.head.get("copies"):
+            return []
+        try:
+            return stage_rows(material)
+        except SssgenError:  # it is written in a way that the menus cannot change
+            return []
 
     def emit(self, target: str, form: str) -> Compiled:
         """The text of a target. Raises SssgenError where the target cannot carry the material."""

@@ -10,8 +10,8 @@ from sssgen.material.model import Material, wrong_name
 from sssgen.preview.saved_values import parse_document
 from sssgen.scene.bake_advice import is_scene
 from sssgen.scene.scene import Scene
-from sssgen.support.diagnostics import failure
-from sssgen.support.file_writer import check_names, has_content, write_files
+from sssgen.support.diagnostics import SssgenError, failure
+from sssgen.support.file_writer import as_bytes, check_names, has_content, write_files
 from sssgen.support.paths import PACKAGE, place, posix, stem
 
 SCENE = "scene.toml"
@@ -55,12 +55,15 @@ def copy_of(scene: Scene, material: Material, read: Collection[str], name: str) 
     return Copy(files, SCENE if len(documents) > 1 else documents[main])
 
 
-def existing_files(folder: str, copy: Copy) -> list[str]:
-    """The files of a folder that a copy would replace by others. Raises SssgenError for names that leave the folder."""
-    check_names(copy.files)
-    paths = {name: os.path.join(folder, name) for name in copy.files}
-    contents = {name: data.encode() if isinstance(data, str) else data for name, data in copy.files.items()}
-    return [name for name, path in paths.items() if os.path.lexists(path) and not has_content(path, contents[name])]
+def existing_files(top: str, folder: str, copy: Copy) -> list[str]:
+    """The files in a folder below `top` that a copy would replace by others. Raises SssgenError for a folder elsewhere."""
+    inside = _inside(folder, copy)
+    paths = {name: os.path.join(top, folder, name) for name in copy.files}
+    return [
+        name
+        for name, content in zip(copy.files, inside.values(), strict=True)
+        if os.path.lexists(paths[name]) and not has_content(paths[name], as_bytes(content))
+    ]
 
 
 def write_copy(top: str, folder: str, copy: Copy, replaces: bool) -> str:
@@ -69,13 +72,22 @@ def write_copy(top: str, folder: str, copy: Copy, replaces: bool) -> str:
     Raises SssgenError where the folder is not below `top` or belongs to the installation, and, unless it `replaces`
     them, where a file is there already.
     """
-    inside = {f"{folder}/{name}": content for name, content in copy.files.items()}
-    check_names(inside)
-    if not replaces and (there := existing_files(os.path.join(top, folder), copy)):
+    if not replaces and (there := existing_files(top, folder, copy)):
         hint = "choose another name, or confirm that the files are replaced"
         raise failure(f"the folder has {', '.join(there)} already", hint, folder)
-    write_files(top, inside)
+    write_files(top, _inside(folder, copy))
     return os.path.join(top, folder, copy.opened)
+
+
+def _inside(folder: str, copy: Copy) -> dict[str, str | bytes]:
+    """The files by their names below the top. Raises SssgenError for names that leave it."""
+    inside = {f"{folder}/{name}": content for name, content in copy.files.items()}
+    try:
+        check_names(inside)
+    except SssgenError:
+        message = f"'{folder}' is no folder below the one where the preview was started"
+        raise failure(message, "write a name, such as my_jade, or looks/my_jade") from None
+    return inside
 
 
 def _is_copied(path: str) -> bool:
