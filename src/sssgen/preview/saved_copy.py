@@ -56,7 +56,7 @@ def copy_of(scene: Scene, material: Material, read: Collection[str], name: str) 
 
 
 def existing_files(top: str, folder: str, copy: Copy) -> list[str]:
-    """The files in a folder below `top` that a copy would replace by others. Raises SssgenError for a folder elsewhere."""
+    """The files in a folder below `top` that a copy would replace. Raises SssgenError for a folder elsewhere."""
     inside = _inside(folder, copy)
     paths = {name: os.path.join(top, folder, name) for name in copy.files}
     return [
