@@ -45,6 +45,8 @@ def test_an_example_becomes_a_material_of_the_user_which_the_page_follows() -> N
     assert comments and set(comments) <= set(Path(scene.material).read_text(encoding="utf-8").splitlines())
     talk.answer({"kind": "save", "values": {"surfaceRoughness": [0.5]}})
     assert "surface_roughness = 0.5" in Path(scene.material).read_text(encoding="utf-8")
+    talk.answer({"kind": "undo"})
+    assert "surface_roughness = 0.4" in Path(scene.material).read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("name", ["paper_lantern", "wax_mouse", "candle"])

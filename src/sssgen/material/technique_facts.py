@@ -27,7 +27,7 @@ def facts_of(technique: Technique) -> dict[str, Any]:
         "summary": doc.pop("summary", ""),
         "signature": slots.signature(technique.function),
         "parameters": [uniform_facts(uniform) for uniform in read if not isinstance(uniform.type, Sampler)],
-        "look": [uniform_facts(key) for key in look_keys(read).values()],
+        "look": [_look_facts(key) for key in look_keys(read).values()],
         "textures": [uniform_facts(uniform) for uniform in read if isinstance(uniform.type, Sampler)],
         "slots": [
             {
@@ -60,6 +60,13 @@ def uniform_facts(uniform: Uniform) -> dict[str, Any]:
     if uniform.quantity:
         facts["holds"] = uniform.quantity
     return {**facts, "aliases": list(hints.get("alias", ())), "doc": uniform.doc}
+
+
+def _look_facts(key: Uniform) -> dict[str, Any]:
+    """Everything about a key of the medium's look; its default is that of the parameter in its place."""
+    facts = uniform_facts(key)
+    del facts["default"]
+    return facts
 
 
 def _default(uniform: Uniform) -> list[float] | list[int] | list[bool]:

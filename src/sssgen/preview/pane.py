@@ -182,7 +182,7 @@ class Pane:
 
     def follow(self, path: str) -> None:
         """Shows another file from now on, with what was chosen. Raises SssgenError."""
-        self.name = path
+        self.name, self.history = path, FileHistory()
         self._make()
         self.error = ""
 

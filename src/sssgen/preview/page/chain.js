@@ -4,20 +4,27 @@ import { make } from './elements.js';
 
 /** @typedef {import('../page_messages.js').StageRow} StageRow */
 
+const FEW = 5;  // stages that are shown at first
+
 /** The list; `replace` and `remove` are called with a stage, `add` for a new one. */
 export class Chain {
   /** @param {HTMLElement} root @param {{ add: () => void, replace: (stage: StageRow) => void, remove: (stage: StageRow) => void }} actions */
   constructor(root, actions) {
     this.root = root;
     this.actions = actions;
+    /** @type {boolean | null} */
+    this.open = null;  // what the user chose
   }
 
   /** @param {StageRow[]} stages */
   show(stages) {
     this.root.hidden = !stages.length;
     const add = make('button', { textContent: '+ Stage', title: 'Add a technique to the chain', id: 'add-stage' });
-    add.addEventListener('click', () => this.actions.add());
-    this.root.replaceChildren(make('h2', {}, 'chain', add), make('ol', {}, ...stages.map((stage) => this.row(stage))));
+    add.addEventListener('click', (event) => { event.preventDefault(); this.actions.add(); });
+    const summary = make('summary', {}, `chain of ${stages.length} stages`, add);
+    const list = make('details', { open: this.open ?? stages.length <= FEW }, summary, make('ol', {}, ...stages.map((stage) => this.row(stage))));
+    summary.addEventListener('click', (event) => { if (!event.defaultPrevented) this.open = !list.open; });
+    this.root.replaceChildren(list);
   }
 
   /** @param {StageRow} stage */
