@@ -21,7 +21,6 @@ import numpy.typing as npt
 from scipy.optimize import nnls
 
 from sssgen.interchange.body_shares import FILE
-from sssgen.interchange.scatter_color import multiscatter_of_albedo
 from sssgen.lab.chart import charting
 from sssgen.lab.measure import scene_inputs
 from sssgen.lab.measure.candidates import Candidate
@@ -31,6 +30,7 @@ from sssgen.lab.measure.problem import WHITE, Problem
 from sssgen.lab.measure.scene_references import ROUND_LIGHTS, lit_body
 from sssgen.lab.reference.transport import radiance_along
 from sssgen.lab.reference.transport_mitsuba import Light
+from sssgen.material.scatter_color import multiscatter_of_albedo
 from sssgen.scene.geometry import Ball, Capsule
 from sssgen.scene.measured.measured_scene import MeasuredScene
 from sssgen.scene.measured.media import Medium

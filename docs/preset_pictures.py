@@ -1,4 +1,5 @@
-"""Draws every preset on the mouse of the examples, as `sssgen use` writes its page of three.js: docs/presets/*.png.
+"""Draws every preset on the mouse of the examples, as `sssgen use` writes its page of three.js: docs/presets/*.png, and
+of these the small pictures in the package, for menus.
 
 Chromium draws the pages without a GPU; all take some minutes. The projects of other engines are not drawn here.
 """
@@ -17,6 +18,7 @@ from PIL import Image
 
 from sssgen.cli.main import main as sssgen
 from sssgen.presets.preset import presets
+from sssgen.presets.preset_list import SHEET
 from sssgen.run.machine_parts import chromium
 from sssgen.scene.geometry_mesh import mesh_of
 from sssgen.scene.measured import measured_scene
@@ -26,6 +28,8 @@ PICTURES = Path(__file__).parent / "presets"
 SIZE, SHOWN = (640, 480), (400, 300)
 """Of the page, and of a picture in the documents, in pixels."""
 COLUMNS = 4
+SIDE = 88
+"""Of a small picture, in pixels."""
 SWITCHES = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 
@@ -48,6 +52,18 @@ def shot(browser: Any, folder: Path) -> Image.Image:
             raise RuntimeError(f"{folder.name}: {message}")
         page.evaluate("document.querySelector('#panel').remove()")
         return Image.open(BytesIO(page.screenshot())).convert("RGB")
+
+
+def write_thumbnails() -> None:
+    """The mouse of each picture as a square, in a row."""
+    names = list(presets())
+    sheet = Image.new("RGB", (SIDE * len(names), SIDE))
+    for index, name in enumerate(names):
+        picture = Image.open(PICTURES / f"{name}.png").convert("RGB")
+        x, y, half = 0.5 * picture.width, 0.52 * picture.height, 0.38 * picture.height
+        square = picture.crop((round(x - half), round(y - half), round(x + half), round(y + half)))
+        sheet.paste(square.resize((SIDE, SIDE), Image.Resampling.LANCZOS), (SIDE * index, 0))
+    sheet.save(SHEET, quality=85, optimize=True)
 
 
 def main() -> None:
@@ -74,6 +90,7 @@ def main() -> None:
             place = index % COLUMNS * SHOWN[0], index // COLUMNS * SHOWN[1]
             sheet.paste(Image.open(PICTURES / f"{name}.png"), place)
         sheet.save(PICTURES / "all.png", optimize=True)
+    write_thumbnails()
 
 
 if __name__ == "__main__":

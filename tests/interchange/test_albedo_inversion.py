@@ -6,7 +6,8 @@ import math
 
 import pytest
 
-from sssgen.interchange.albedo_inversion import albedo_of_color, subsurface_medium, transmission_medium
+from sssgen.interchange.albedo_inversion import subsurface_medium, transmission_medium
+from sssgen.material.scatter_color import albedo_of_color
 
 iadpython = pytest.importorskip("iadpython")
 

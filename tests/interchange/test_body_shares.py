@@ -10,9 +10,9 @@ from PIL import Image as Pillow
 
 from sssgen.interchange.body_shares import shares_of
 from sssgen.interchange.imported_material import Notes
-from sssgen.interchange.scatter_color import albedo_of_multiscatter
 from sssgen.interchange.surface_model import Image, Picture, Quantity, SurfaceModel, medium
 from sssgen.interchange.technique_choice import Choice, choose
+from sssgen.material.scatter_color import albedo_of_multiscatter
 
 ALBEDO = albedo_of_multiscatter((0.8, 0.5, 0.3))
 

@@ -14,8 +14,8 @@ from sssgen.interchange.gltf_reader import read
 from sssgen.interchange.imported_material import ImportedMaterial
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.material_writer import identifiers, mean_chord, write_import
-from sssgen.interchange.scatter_color import albedo_of_multiscatter, multiscatter_of_albedo
 from sssgen.material.material_loading import load_material
+from sssgen.material.scatter_color import albedo_of_multiscatter, multiscatter_of_albedo
 from sssgen.scene import mesh_files, scene_loading
 from sssgen.scene.pictures import images
 

@@ -99,6 +99,18 @@ def shown(browser: Any, address: str) -> Iterator[Shown]:
     shown.page.close()
 
 
+def test_a_preset_replaces_the_chain_of_the_material(browser: Any, address: str) -> None:
+    shown = Shown(browser, address, "new_material")
+    version = shown.version()
+    shown.page.click("#open-presets")
+    shown.page.click("#presets [data-name=jade]")
+    shown.until(lambda: shown.version() > version)
+    text = shown.page.evaluate("playground.editor.files['new_material.toml']")
+    assert 'name = "new_material"' in text and "interior_octaves" in text
+    shown.until(lambda: "interior_octaves" in shown.page.inner_text("#text"))
+    assert not shown.page.is_visible("#errors") and not shown.faults
+
+
 def test_typing_changes_the_picture_and_the_text(shown: Shown) -> None:
     brown = shown.color()
     assert brown[0] > 1.2 * brown[2]

@@ -9,9 +9,9 @@ import pytest
 
 import sssgen
 from folders import ROOT
-from sssgen.interchange.scatter_color import multiscatter_of_albedo
 from sssgen.material.material_loading import parse_material
 from sssgen.material.requirements import requirements
+from sssgen.material.scatter_color import multiscatter_of_albedo
 from sssgen.presets.engine_project import ENGINES
 from sssgen.presets.preset import Preset, preset, presets
 from sssgen.presets.preset_stages import BodySize, preset_text

@@ -66,7 +66,7 @@ def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def error_of(path: Path) -> str:
     scene = scene_of(str(path))
-    return measured_error(scene, load_material(scene.material))
+    return measured_error(scene, load_material(scene.material)).text
 
 
 def test_a_scene_without_a_medium_is_not_measured(scene: Path) -> None:

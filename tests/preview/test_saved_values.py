@@ -120,3 +120,73 @@ def test_the_last_good_picture_stays_beside_errors(stone: Path) -> None:
     stone.write_text(TEXT, encoding="utf-8")
     shown.renew()
     assert not shown.error and shown.version == version + 1
+
+
+WAX = """[material]
+name = "wax"
+
+[[thickness]]
+technique = "back_face_thickness"
+
+[translucency]
+technique = "interior_octaves"
+bind = { light_path = "depth_map_path" }
+color = [0.8, 0.5, 0.2]  # warm
+extinction = [5.0, 6.0, 7.0]
+"""
+
+
+@pytest.fixture
+def wax(tmp_path: Path) -> Path:
+    path = tmp_path / "wax.toml"
+    path.write_text(WAX, encoding="utf-8")
+    return path
+
+
+def values_of(shown: Pane) -> dict[str, list[float]]:
+    return {control["name"]: control["value"] for control in shown.picture.head["controls"]}
+
+
+def test_the_look_of_a_medium_is_saved_in_its_own_words(wax: Path) -> None:
+    shown = Pane(str(wax))
+    assert {control["name"]: control["look"] for control in shown.picture.head["controls"] if control["look"]} == {
+        "extinction": "depth", "scattering_albedo": "color", "mean_free_path": "depth",
+    }  # fmt: skip
+    numbers = {"scatteringAlbedo": [0.9, 0.8, 0.7], "extinction": [2.0, 4.0, 10.0], "meanFreePath": [0.1875]}
+    look = {"scatteringAlbedo": [0.7, 0.5, 0.2], "extinction": [0.5, 0.25, 0.1], "meanFreePath": [0.5, 0.25, 0.1]}
+    said = shown.save(numbers, look)
+    assert said == f"Saved: color, depth in {wax}."
+    expected = WAX.replace("[0.8, 0.5", "[0.7, 0.5").replace("extinction = [5.0, 6.0, 7.0]", "depth = [0.5, 0.25, 0.1]")
+    assert wax.read_text(encoding="utf-8") == expected
+    shown.renew()
+    assert not shown.error and values_of(shown)["mean_free_path"] == pytest.approx([0.1875])
+
+
+def test_a_parameter_of_the_medium_takes_the_line_of_the_look(wax: Path) -> None:
+    """The mean free path that followed from the depth stays as it was."""
+    text = WAX.replace("extinction = [5.0, 6.0, 7.0]", "depth = [0.5, 0.25, 0.1]")
+    wax.write_text(text, encoding="utf-8")
+    shown = Pane(str(wax))
+    path = values_of(shown)["mean_free_path"]
+    shown.save({"extinction": [3.0, 4.0, 5.0], "scatteringAlbedo": [0.9, 0.8, 0.7]})
+    expected = text.replace("depth = [0.5, 0.25, 0.1]", "extinction = [3.0, 4.0, 5.0]\nmean_free_path = 0.1875")
+    assert wax.read_text(encoding="utf-8") == expected.replace(
+        "color = [0.8, 0.5, 0.2]", "scattering_albedo = [0.9, 0.8, 0.7]"
+    )
+    shown.renew()
+    assert not shown.error and values_of(shown)["mean_free_path"] == path
+
+
+def test_a_conversion_is_saved_in_its_section(stone: Path) -> None:
+    text = TEXT.replace("[thickness]", "[[thickness]]").replace(
+        "# metres\n", '# metres\n\n[[thickness]]\ntechnique = "beer_lambert"\nattenuation_distance = 0.5\n'
+    ).replace("absorption_tint", "lobe_normalized")  # fmt: skip
+    stone.write_text(text, encoding="utf-8")
+    Pane(str(stone)).save({"sssAttenuationDistance": [0.25]})
+    assert stone.read_text(encoding="utf-8") == text.replace("distance = 0.5", "distance = 0.25")
+
+
+def test_channels_are_named_by_what_they_are(wax: Path) -> None:
+    controls = {control["name"]: control["channels"] for control in Pane(str(wax)).picture.head["controls"]}
+    assert controls["extinction"] == controls["scattering_albedo"] == "RGB"
+    assert (controls["octaves"], controls["mean_free_path"]) == ("1234", "")

@@ -8,7 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from sssgen.material.scatter_color import albedo_of_color
+from sssgen.scene.measured.measured_scene import of_scene
 from sssgen.scene.measured.media import Medium, media, preset
+from sssgen.scene.scene_loading import parse_scene
 from sssgen.support.diagnostics import SssgenError
 
 # The diffuse reflectances from the same table.
@@ -122,3 +125,35 @@ def test_media_of_a_users_file(tmp_path: Path) -> None:
     text = '[soap]\nreduced_scattering = [3.0, 2.0, 1.0]\nabsorption = [0, 0.1, 0.2]\nsource = "mine"\n'
     file.write_text(text, encoding="utf-8")
     assert preset("soap", 2.0, file=str(file)) == Medium("soap", (0.0, 0.2, 0.4), (6.0, 4.0, 2.0), 0.0, 1.0, "mine")
+
+
+def medium_of(lines: str) -> Medium | None:
+    text = f'[geometry]\nkind = "ball"\n[[light]]\ndirection = [0.0, 1.0, 0.0]\n[medium]\n{lines}\n'
+    return of_scene(parse_scene(text, "look.toml"), "look.toml").medium
+
+
+def test_a_scene_gives_the_look_of_its_medium() -> None:
+    medium = medium_of("color = [0.8, 0.2, 0.1]\ndepth = [0.5, 0.25, 0.1]\nior = 1.4")
+    assert medium is not None and medium.ior == 1.4
+    assert np.allclose(medium.extinction, (2.0, 4.0, 10.0))
+    assert np.allclose(medium.albedo, [albedo_of_color(part) for part in (0.8, 0.2, 0.1)])
+    forward = medium_of("color = [0.8, 0.2, 0.1]\ndepth = [0.5, 0.25, 0.1]\nanisotropy = 0.7")
+    assert forward is not None and forward.albedo[0] > medium.albedo[0]
+
+
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        ("color = [0.8, 0.2, 0.1]", "the medium has a color and no depth"),
+        ("depth = [0.8, 0.2, 0.1]", "the medium has a depth and no color"),
+        ("color = [0.8, 0.2, 0.1]\ndepth = [1.0, 1.0, 1.0]\nscattering = [1.0, 1.0, 1.0]", "give the scattering"),
+        ('preset = "wax"\ncolor = [0.8, 0.2, 0.1]', "a preset has its own color"),
+        ("color = [0.8, 0.2, 1.1]\ndepth = [1.0, 1.0, 1.0]", "'color' cannot be 1.1"),
+        ("color = [0.0, 0.0, 0.0]\ndepth = [1.0, 1.0, 1.0]", "this medium does not scatter"),
+        ("color = [0.8, 0.2, 0.1]\ndepth = [1.0, 1.0, 1.0]\nunit_mm = 10.0", "leave unit_mm out"),
+    ],
+)
+def test_a_faulty_look_is_an_error_at_its_place(lines: str, message: str) -> None:
+    with pytest.raises(SssgenError, match=r"look\.toml:[678]") as caught:
+        medium_of(lines)
+    assert message in str(caught.value)

@@ -61,7 +61,7 @@ class Shown:
         self.thread = threading.Thread(target=self._run)
         self.thread.start()
         assert started.wait(SECONDS)
-        self.page = browser.new_page(viewport={"width": 660, "height": 300})
+        self.page = browser.new_page(viewport={"width": 692, "height": 300})
         self.faults: list[str] = []
         self.page.on("pageerror", lambda error: self.faults.append(str(error)))
         self.page.goto(self.server.url)

@@ -13,6 +13,9 @@ from pathlib import Path
 
 from python_bundle import write_bundle
 from sssgen.pipeline.compiler import all_targets
+from sssgen.presets.preset import presets
+from sssgen.presets.preset_list import preset_list
+from sssgen.presets.preset_stages import two_units_text
 from sssgen.run.web_library import library
 from sssgen.support import paths
 from starts import all_starts, write_start
@@ -32,7 +35,7 @@ def build(folder: Path, names: Collection[str] = ()) -> int:
     first = FIRST if FIRST in starts else next(iter(starts))
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(PAGE, folder)
-    for module in MODULES.glob("*.js"):
+    for module in (*MODULES.glob("*.js"), MODULES / "panel.css", MODULES / "menus.css"):
         _copy(module, folder / "preview" / module.name)
     libraries = library()
     for name, file in libraries.files.items():
@@ -47,6 +50,8 @@ def build(folder: Path, names: Collection[str] = ()) -> int:
         "starts": [{"name": name, "title": start.title, "plain": not start.source} for name, start in starts.items()],
         "targets": [{"name": name, "title": target.title} for name, target in all_targets().items()],
     }
+    texts = {name: two_units_text(preset, name) for name, preset in presets().items()}
+    (folder / "presets.json").write_text(json.dumps({**preset_list(), "texts": texts}), encoding="utf-8")
     (folder / "starts.json").write_text(json.dumps(listed), encoding="utf-8")
     return len(starts)
 

@@ -17,9 +17,6 @@ from sssgen.support.file_writer import write_files
 STARTER = Path(__file__).with_name("starter.toml")
 """The material to start from, with `$file`, `$name` and `$title`."""
 
-MEAN_CHORD = 0.6
-"""Of a body that is two units large, as figures have it: the mean length of lines inside."""
-
 _ELSEWHERE = re.compile(r'"(\.\./\w+/)([\w./]+)"')
 """The name of a file in the folder of another example, in two parts: a copy has the file at the second part."""
 
@@ -95,7 +92,6 @@ def _starter(file: str, name: str) -> str:
 def _preset(preset: str, name: str) -> str:
     """The material of a preset, with the quality that needs no bake."""
     from sssgen.presets.preset import preset as named
-    from sssgen.presets.preset_stages import BodySize, preset_text
+    from sssgen.presets.preset_stages import two_units_text
 
-    chosen = named(preset)
-    return preset_text(chosen, "good", name, BodySize(0.5 * chosen.size_mm, MEAN_CHORD))
+    return two_units_text(named(preset), name)

@@ -16,8 +16,6 @@ from sssgen.support.file_writer import Written, check_folder, check_unchanged, w
 from sssgen.support.paths import posix, shell_word
 from sssgen.support.progress import ProgressBar
 
-HOLES = "the mesh has holes: light inside needs a closed body, and is wrong near them"
-
 
 def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
@@ -46,6 +44,8 @@ def run(arguments: Namespace) -> int:
     from sssgen.presets.engine_project import ENGINES, Request, engine_files, material_files
     from sssgen.presets.preset import preset
     from sssgen.presets.used_mesh import used_mesh
+    from sssgen.scene.mesh import Mesh
+    from sssgen.scene.mesh_suitability import mesh_warnings
 
     chosen, target, folder = preset(arguments.PRESET), arguments.target, arguments.output
     if target not in ENGINES:
@@ -67,7 +67,7 @@ def run(arguments: Namespace) -> int:
         bar(2, 3, "emitting")
         written += _write(folder, engine_files(request, folder), arguments.force)
     lines = [f"{'wrote' if file.changed else 'kept '} {posix(file.path)}" for file in written]
-    warnings = [HOLES] if not mesh.closed and chosen.scatters else []
+    warnings = mesh_warnings(Mesh(path=mesh.path), request.needs)
     lines += [f"warning: {warning}" for warning in warnings]
     lines.append(ENGINES[target].opened.replace("this folder", shell_word(posix(folder))))
     report = {"files": [posix(file.path) for file in written], "warnings": warnings}

@@ -6,7 +6,6 @@ import os
 import re
 from typing import NamedTuple
 
-from sssgen.editor import scene_parameters
 from sssgen.editor.documents import GLSL, MATERIAL, SCENE, TECHNIQUE, Document
 from sssgen.ir.nodes import Function, Module
 from sssgen.lang.assumption_comments import AssumedInput
@@ -16,6 +15,7 @@ from sssgen.material import library
 from sssgen.material.library import ROLES, Technique, folder_of, load_path
 from sssgen.material.material_loading import parse_material
 from sssgen.material.model import Material
+from sssgen.scene import scene_parameters
 from sssgen.scene.scene import Scene
 from sssgen.scene.scene_loading import parse_scene
 from sssgen.support.diagnostics import Diagnostic, SssgenError

@@ -28,7 +28,7 @@ def explain_technique(technique: Technique) -> str:
     parts = [f"**{facts['name']}** ({facts['role']})", facts["summary"], code_block(facts["signature"])]
     rows = [
         f"- `{uniform['name']}`: {uniform_text({**uniform, 'aliases': ()})}"
-        for uniform in (*facts["parameters"], *facts["textures"])
+        for uniform in (*facts["parameters"], *facts["look"], *facts["textures"])
     ]
     rows += [f"- slot `{slot['signature']}`" for slot in facts["slots"]]
     if rows:
@@ -41,7 +41,9 @@ def explain_uniform(uniform: Uniform, value: str = "") -> str:
     """A parameter or texture: type, default, range, unit, what it means, the file that declares it."""
     facts = uniform_facts(uniform)
     head = f"**{facts['name']}**: {uniform_text(facts)}"
-    parts = [head, facts["doc"], f"here: {value}" if value else "", f"*declared in* {display_name(uniform.span.file)}"]
+    file = uniform.span.file  # '' for a key that no file declares
+    declared = f"*declared in* {display_name(file)}" if file else ""
+    parts = [head, facts["doc"], f"here: {value}" if value else "", declared]
     return "\n\n".join(part for part in parts if part)
 
 

@@ -9,7 +9,6 @@ from typing import NamedTuple, TypeAlias
 from sssgen.editor import toml_places
 from sssgen.editor.analysis import Analysis, function_around
 from sssgen.editor.documents import MATERIAL, SCENE, TECHNIQUE, Document, Word
-from sssgen.editor.scene_parameters import uniforms_of
 from sssgen.editor.source_files import path_of
 from sssgen.ir.nodes import Constant, Declare, Expr, Function, Local, Module, Param, StructDecl, Uniform, Variable
 from sssgen.ir.spans import Span
@@ -20,7 +19,9 @@ from sssgen.material import library, slots
 from sssgen.material.library import Technique
 from sssgen.material.material_loading import examples
 from sssgen.material.material_reader import parameter_names
+from sssgen.material.medium_look import look_keys
 from sssgen.material.model import Material
+from sssgen.scene.scene_parameters import uniforms_of
 from sssgen.scene.scene_reader import material_beside
 from sssgen.support.diagnostics import SssgenError
 from sssgen.targets import builtin_facts
@@ -245,7 +246,8 @@ def uniforms_at(document: Document, analysis: Analysis, place: toml_places.TomlP
         for uniform in module.uniforms
         if uniform.name in slots.needs(module, function)[0]
     }
-    return {name: uniform for uniform in found.values() for name in parameter_names(uniform)}
+    look = look_keys(found.values())
+    return {name: uniform for uniform in (*found.values(), *look.values()) for name in parameter_names(uniform)}
 
 
 def _bound_functions(

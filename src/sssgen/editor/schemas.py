@@ -15,6 +15,7 @@ from sssgen.material.level_reader import LEVELED
 from sssgen.material.library import Technique
 from sssgen.material.material_loading import examples
 from sssgen.material.material_reader import CHOICES, FLAGS, MATERIAL_KEYS, STAGE_KEYS, parameter_names
+from sssgen.material.medium_look import look_keys
 from sssgen.material.model import MOST_LEVELS, NAME, UV_SETS
 from sssgen.material.shell_stages import choices
 from sssgen.material.technique_facts import uniform_facts, uniform_text
@@ -79,9 +80,9 @@ def _parameters(technique: Technique) -> Schema:
     """The keys of a technique's stage. What is bound to a slot brings keys of its own."""
     read, needed = slots.needs(technique.module, technique.function)
     keys: dict[str, Schema] = {key: {} for key in STAGE_KEYS}
-    for uniform in technique.uniforms:
-        if uniform.name in read:
-            keys |= dict.fromkeys(parameter_names(uniform), _parameter(uniform))
+    uniforms = [uniform for uniform in technique.uniforms if uniform.name in read]
+    for uniform in (*uniforms, *look_keys(uniforms).values()):
+        keys |= dict.fromkeys(parameter_names(uniform), _parameter(uniform))
     schema: Schema = {"description": technique.doc.get("summary", ""), "properties": keys}
     return schema | ({"required": ["bind"]} if needed else {"additionalProperties": False})
 
@@ -178,10 +179,13 @@ def _texture() -> Schema:
 
 
 def _medium() -> Schema:
-    own = ["absorption", "scattering", "anisotropy"]
+    coefficients, look = ["absorption", "scattering"], ["color", "depth"]
+    own = [*coefficients, "anisotropy", *look]
     keys = _keys(scene_keys.MEDIUM) | {"preset": {"enum": list(media())}}
     preset: Schema = {"properties": dict.fromkeys(own, False)}
-    custom: Schema = {"properties": {"unit_mm": False}}
+    by_look: Schema = {"required": look, "properties": dict.fromkeys(coefficients, False)}
+    by_coefficients: Schema = {"properties": dict.fromkeys(look, False)}
+    custom: Schema = {"properties": {"unit_mm": False}, "anyOf": [by_look, by_coefficients]}
     return {**_table(keys), "if": {"required": ["preset"]}, "then": preset, "else": custom}
 
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sssgen.interchange.scatter_color import multiscatter_of_albedo
+from sssgen.material.scatter_color import multiscatter_of_albedo
 
 Array = npt.NDArray[np.float64]
 

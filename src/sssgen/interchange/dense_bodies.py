@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sssgen.interchange.imported_material import Notes
-from sssgen.interchange.scatter_color import multiscatter_of_albedo
 from sssgen.interchange.surface_model import ZERO, Quantity, SurfaceModel
 from sssgen.interchange.texels import mean_of
+from sssgen.material.scatter_color import multiscatter_of_albedo
 from sssgen.scene.measured.media import Medium
 
 DENSE = 30.0

@@ -9,8 +9,8 @@ from sssgen.interchange.gltf_json import JsonElement
 from sssgen.interchange.gltf_textures import Textures
 from sssgen.interchange.imported_material import Element, ImportedMaterial
 from sssgen.interchange.mapping_report import Report
-from sssgen.interchange.scatter_color import albedo_of_multiscatter
 from sssgen.interchange.surface_model import ONE, Quantity, SurfaceModel, extinction_of_color, medium
+from sssgen.material.scatter_color import albedo_of_multiscatter
 
 Channels = Literal["rgb", "r", "g", "b", "a"]
 

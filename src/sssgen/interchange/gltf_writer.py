@@ -13,10 +13,10 @@ import numpy as np
 from sssgen.interchange.gltf_parameters import Parameters, Texture
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.mesh_glb import Buffer, document, glb, primitive
-from sssgen.interchange.scatter_color import multiscatter_of_albedo
 from sssgen.interchange.surface_model import Picture
 from sssgen.interchange.texels import read_texels
 from sssgen.material.model import Material
+from sssgen.material.scatter_color import multiscatter_of_albedo
 from sssgen.scene.mesh_files import FileContent
 from sssgen.scene.pictures import images
 

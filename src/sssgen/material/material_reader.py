@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from sssgen.ir.nodes import Function, Span, Uniform
@@ -12,6 +12,7 @@ from sssgen.lang.source_lines import keep_lines
 from sssgen.material import baked, library, roles, slots
 from sssgen.material.level_reader import level_count, stage_levels
 from sssgen.material.library import Technique
+from sssgen.material.medium_look import REPLACED, look_keys, medium_parameters
 from sssgen.material.model import ALPHA_MODES, SHADINGS, UV_SETS, Binding, Material, TechniqueUse, wrong_name
 from sssgen.material.values import WrongValue, read_texture, read_value
 from sssgen.support.diagnostics import Diagnostic, SssgenError, did_you_mean
@@ -191,11 +192,14 @@ class _Reader:
         if "level" in table:
             levels = stage_levels(self.document, (*path, "level"), table["level"], self.levels)
         stage = TechniqueUse(technique, {}, frozenset(), {}, bindings, span, levels=levels)
+        look = look_keys(uniforms.values())
         key_of: dict[Span, str] = {}
         for key, raw in table.items():
             if key in STAGE_KEYS:
                 continue
             matches = [uniform for uniform in uniforms.values() if key in parameter_names(uniform)]
+            if not matches and key in look:
+                matches = _replaced(key, uniforms.values(), table)
             if not matches:
                 self.unknown_parameter(technique, list(uniforms.values()), (*path, key))
             for uniform in matches:
@@ -204,7 +208,7 @@ class _Reader:
                     self.document.error(self.document.place(*path, key).key, message, "remove one of the two")
                     continue
                 key_of[uniform.span] = key
-                stage = self.parameter(stage, uniform, (*path, key), raw)
+                stage = self.parameter(stage, uniform, (*path, key), raw, look.get(key))
         if "uv" in table:
             stage = stage._replace(uv=self.uv_set(technique, (*path, "uv"), table["uv"]))
         return self.baked(stage, list(uniforms.values()), path, table)
@@ -265,7 +269,7 @@ class _Reader:
 
     def unknown_parameter(self, technique: Technique, uniforms: list[Uniform], path: tuple[str | int, ...]) -> None:
         key = str(path[-1])
-        names = [uniform.name for uniform in uniforms]
+        names = [*(uniform.name for uniform in uniforms), *look_keys(uniforms)]
         hint = did_you_mean(key, names, [name for uniform in uniforms for name in parameter_names(uniform)[1:]])
         if any(slot.name == key for slot in technique.slots):
             hint = f"'{key}' is a slot: write bind = {{ {key} = … }}"
@@ -277,9 +281,13 @@ class _Reader:
         self.document.error(self.document.place(*path).key, message, hint)
 
     def parameter(
-        self, stage: TechniqueUse, uniform: Uniform, path: tuple[str | int, ...], raw: object
-    ) -> TechniqueUse:
-        """The stage with one more parameter: `key = value` or `key = { value = …, fixed = true }`."""
+        self, stage: TechniqueUse, uniform: Uniform, path: tuple[str | int, ...], raw: object,
+        look: Uniform | None = None,
+    ) -> TechniqueUse:  # fmt: skip
+        """The stage with one more parameter: `key = value` or `key = { value = …, fixed = true }`.
+
+        `look` is the key of the medium's look that gives it, or None.
+        """
         error, place = self.document.error, self.document.place
         fixed = False
         if isinstance(raw, dict):
@@ -303,7 +311,7 @@ class _Reader:
                 spans = (*stage.texture_spans, (uniform.name, place(*path).value))
                 stage = stage._replace(textures={**stage.textures, uniform.name: str(value)}, texture_spans=spans)
             else:
-                components = uniform.default if isinstance(raw, dict) else read_value(uniform, raw)
+                components = uniform.default if isinstance(raw, dict) else _components(uniform, raw, look)
                 value = components
                 stage = stage._replace(values={**stage.values, uniform.name: components})
                 if fixed:
@@ -339,7 +347,8 @@ class _Reader:
                     self.document.error(span, diagnostic.message, diagnostic.hint)
                 continue
             for other in uniforms:
-                own_values = [table[name] for name in parameter_names(other) if name in table]
+                keys = (*parameter_names(other), *(key for key, names in REPLACED.items() if other.name in names))
+                own_values = [table[key] for key in keys if key in table]
                 if other.name in texture.parameters and all(
                     isinstance(raw, dict) and "value" not in raw for raw in own_values
                 ):
@@ -432,6 +441,21 @@ class _Reader:
 def parameter_names(uniform: Uniform) -> list[str]:
     """A uniform's name and its aliases."""
     return [uniform.name, *(str(name) for hint, names in uniform.hints if hint == "alias" for name in names)]
+
+
+def _replaced(key: str, uniforms: Iterable[Uniform], table: Mapping[str, object]) -> list[Uniform]:
+    """The parameters that a key of the medium's look sets: a mean free path of the stage's own stays beside a depth."""
+    named = {uniform.name: uniform for uniform in uniforms}
+    first, *others = [named[name] for name in REPLACED[key] if name in named]
+    return [first, *(one for one in others if not set(parameter_names(one)) & table.keys())]
+
+
+def _components(uniform: Uniform, raw: object, look: Uniform | None) -> tuple[float, ...]:
+    """The components of a parameter, or those that follow from a key of the medium's look. Raises WrongValue."""
+    if look is None:
+        return read_value(uniform, raw)
+    numbers = medium_parameters(look.name, read_value(look, raw))[uniform.name]
+    return read_value(uniform, numbers if len(numbers) > 1 else numbers[0])
 
 
 def _of_roles(allowed: tuple[str, ...]) -> list[str]:

@@ -35,16 +35,22 @@ def material_text(
     keys = {"name": name, "title": title, "doc": doc, **(settings or {})}
     lines = ["[material]", *(f"{key} = {toml_value(value)}" for key, value in keys.items() if value != "")]
     for stage in stages:
-        lines += ["", *([f"# {stage.comment}"] if stage.comment else [])]
-        lines += [f"[[{stage.section}]]", f"technique = {toml_value(stage.technique)}"]
-        if stage.levels:
-            lines.append(f"level = {toml_value(stage.levels if len(stage.levels) > 1 else stage.levels[0])}")
-        if stage.bind:
-            lines.append(f"bind = {{ {', '.join(f'{slot} = {toml_value(to)}' for slot, to in stage.bind)} }}")
-        for key, value in stage.values:
-            text = toml_value(value)
-            lines.append(f"{key} = {{ value = {text}, fixed = true }}" if key in stage.fixed else f"{key} = {text}")
+        lines += ["", *stage_lines(stage)]
     return "\n".join(lines) + "\n"
+
+
+def stage_lines(stage: MaterialSection) -> list[str]:
+    """The lines of a stage in a material file."""
+    lines = [f"# {stage.comment}"] if stage.comment else []
+    lines += [f"[[{stage.section}]]", f"technique = {toml_value(stage.technique)}"]
+    if stage.levels:
+        lines.append(f"level = {toml_value(stage.levels if len(stage.levels) > 1 else stage.levels[0])}")
+    if stage.bind:
+        lines.append(f"bind = {{ {', '.join(f'{slot} = {toml_value(to)}' for slot, to in stage.bind)} }}")
+    for key, value in stage.values:
+        text = toml_value(value)
+        lines.append(f"{key} = {{ value = {text}, fixed = true }}" if key in stage.fixed else f"{key} = {text}")
+    return lines
 
 
 def toml_value(value: Any) -> str:

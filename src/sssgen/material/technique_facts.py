@@ -9,6 +9,7 @@ from sssgen.ir.nodes import Uniform
 from sssgen.ir.types import Sampler, kind_of, spell
 from sssgen.material import slots
 from sssgen.material.library import Technique
+from sssgen.material.medium_look import look_keys
 from sssgen.support.paths import display_name, source_name
 
 _OTHERWISE_SHOWN = ("hint_range", "unit", "alias", "holds", "sample_range", "bound_range")
@@ -26,6 +27,7 @@ def facts_of(technique: Technique) -> dict[str, Any]:
         "summary": doc.pop("summary", ""),
         "signature": slots.signature(technique.function),
         "parameters": [uniform_facts(uniform) for uniform in read if not isinstance(uniform.type, Sampler)],
+        "look": [_look_facts(key) for key in look_keys(read).values()],
         "textures": [uniform_facts(uniform) for uniform in read if isinstance(uniform.type, Sampler)],
         "slots": [
             {
@@ -58,6 +60,13 @@ def uniform_facts(uniform: Uniform) -> dict[str, Any]:
     if uniform.quantity:
         facts["holds"] = uniform.quantity
     return {**facts, "aliases": list(hints.get("alias", ())), "doc": uniform.doc}
+
+
+def _look_facts(key: Uniform) -> dict[str, Any]:
+    """Everything about a key of the medium's look; its default is that of the parameter in its place."""
+    facts = uniform_facts(key)
+    del facts["default"]
+    return facts
 
 
 def _default(uniform: Uniform) -> list[float] | list[int] | list[bool]:

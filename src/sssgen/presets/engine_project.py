@@ -23,6 +23,7 @@ from sssgen.presets.preset_stages import RESPONSE, preset_text
 from sssgen.presets.qualities import QUALITIES
 from sssgen.presets.used_mesh import UsedMesh
 from sssgen.run.web_library import library, network_import_map
+from sssgen.scene.mesh_suitability import MeshNeeds
 from sssgen.support.diagnostics import SssgenError
 from sssgen.support.paths import place
 
@@ -82,6 +83,13 @@ class Request(NamedTuple):
     def baked(self) -> bool:
         """Whether the material reads a bake of the light inside."""
         return self.quality == "best" and self.preset.scatters
+
+    @property
+    def needs(self) -> MeshNeeds:
+        """What the material needs of the mesh."""
+        traced = self.quality != "good" or not self.preset.scatters
+        path = self.preset.interior(self.mesh.size.unit_mm).mean_free_path if self.preset.scatters else 1.0
+        return MeshNeeds(self.preset.scatters, (), None if traced else self.mesh.size.mean_chord / path)
 
     @property
     def name(self) -> str:

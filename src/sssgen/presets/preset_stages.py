@@ -11,9 +11,9 @@ from typing import NamedTuple
 from sssgen.bake.fluence import variant
 from sssgen.interchange.dense_bodies import isotropic_medium
 from sssgen.interchange.imported_material import Notes
-from sssgen.interchange.scatter_color import multiscatter_of_albedo
 from sssgen.interchange.technique_choice import choose_for_lights
 from sssgen.material.material_text import MaterialSection, material_text
+from sssgen.material.scatter_color import multiscatter_of_albedo
 from sssgen.presets.preset import Preset
 from sssgen.scene.measured.media import Medium
 from sssgen.support.diagnostics import failure
@@ -26,6 +26,8 @@ _OPAQUE = 12.0
 """The mean chord in mean free paths from which nothing is seen through a body."""
 _THICK = 4.0
 """The mean chord in mean free paths from which light is scattered many times."""
+_MEAN_CHORD = 0.6
+"""Of a body that is two units large, as figures have it: the mean length of lines inside."""
 _DENSEST = 10000.0
 """The largest extinction of techniques for light inside."""
 _LONGEST_PATH = 100.0
@@ -47,6 +49,11 @@ def preset_text(preset: Preset, quality: str, name: str, size: BodySize) -> str:
     doc = f"{preset.doc} A world unit is {size.unit_mm:.4g} mm. {preset.source}."
     two_sided: dict[str, object] = {"two_sided": True} if any(preset.sheet) else {}
     return material_text(name, stages, preset.title, doc, {"shading": "lit", **two_sided})
+
+
+def two_units_text(preset: Preset, name: str) -> str:
+    """The material file of a preset for a body that is two units large, with the quality that needs no bake."""
+    return preset_text(preset, "good", name, BodySize(0.5 * preset.size_mm, _MEAN_CHORD))
 
 
 def preset_stages(preset: Preset, quality: str, size: BodySize) -> list[MaterialSection]:

@@ -12,8 +12,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from sssgen.interchange.material_writer import mean_chord
+from sssgen.presets.preset_stages import BodySize
 from sssgen.preview.body_triangles import body_triangles
 from sssgen.scene.geometry import Ball, Box, Distance, Geometry, Mesh, Slab
+from sssgen.scene.mesh_files import FileContent
 from sssgen.support import cache
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import CachedResult, noted_files, remember
@@ -87,12 +90,27 @@ def packed_triangles(geometry: Geometry) -> bytes:
 
     The triangles of the shapes that are distance functions, which take seconds, are in the cache folder, too.
     """
-    at_origin = dataclasses.replace(geometry, position=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0), scale=1.0)
-    content = hashlib.sha256(geometry.data).hexdigest() if isinstance(geometry, Mesh) and geometry.data else ""
-    key = repr(at_origin) + content
+    at_origin, key = _at_origin(geometry), body_key(geometry)
     if isinstance(at_origin, Distance) and at_origin in SHAPES.values():
         return remember(_bodies, key, lambda: _load_triangles(at_origin, key), MOST_BODIES)
     return remember(_bodies, key, lambda: body_triangles(copy.deepcopy(at_origin)).pack(), MOST_BODIES)
+
+
+def body_key(geometry: Geometry) -> str:
+    """The same text for bodies that differ in their places alone, while their files stay as they are."""
+    content = hashlib.sha256(geometry.data).hexdigest() if isinstance(geometry, Mesh) and geometry.data else ""
+    return repr(_at_origin(geometry)) + content
+
+
+def _at_origin(geometry: Geometry) -> Geometry:
+    return dataclasses.replace(geometry, position=(0.0, 0.0, 0.0), rotation=(0.0, 0.0, 0.0), scale=1.0)
+
+
+def body_size(geometry: Geometry, longest_mm: float) -> BodySize:
+    """The size of a body whose longest side is so many millimetres."""
+    corners = np.frombuffer(packed_triangles(geometry), "<f4").reshape(-1, 8)[:, :3].astype(np.float64)
+    content = FileContent(corners, np.arange(len(corners)).reshape(-1, 3), None)
+    return BodySize(longest_mm / extent(geometry).size, geometry.scale * mean_chord(content))
 
 
 MOST_BODIES = 6

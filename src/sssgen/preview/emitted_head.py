@@ -9,6 +9,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NotRequired, TypedDict
 
 from sssgen.ir.frame_passes import FRAME_PASSES
+from sssgen.material.medium_look import REPLACED
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled
 from sssgen.targets.reflection_record import TextureRecord, UniformRecord
@@ -32,6 +33,10 @@ class Control(TypedDict):
     range: list[float] | None
     unit: str | None
     color: bool
+    channels: str
+    """The names of its components, a letter each; '' for a number and a matrix"""
+    look: str
+    """The key of the medium's look that it follows from, or ''"""
     default: list[float]
     value: list[float]
     drawn: str | None
@@ -109,6 +114,8 @@ def controls(
             "range": uniform["range"],
             "unit": uniform["unit"],
             "color": uniform["color"],
+            "channels": channels(uniform),
+            "look": look_of(uniform, uniforms),
             "default": [float(number) for number in uniform["default"]],
             "value": [float(number) for number in values.get(uniform["source_name"], uniform["default"])],
             "drawn": uniform["drawn"],
@@ -117,3 +124,30 @@ def controls(
         }
         for uniform in uniforms
     ]
+
+
+def channels(uniform: UniformRecord) -> str:
+    """The names of a vector's components: those of a colour, of a place, or of texture coordinates.
+
+    Three numbers in world units are a place, unless they are a length for each channel of the light.
+    """
+    count = {"vec2": 2, "vec3": 3, "vec4": 4}.get(uniform["type"], 0)
+    if uniform["color"]:
+        return "RGBA"[:count]
+    if count == 2:
+        return "uv" if uniform["technique_name"].startswith("uv") else "xy"
+    place = uniform["unit"] in ("m", "") or uniform["unit"] is None
+    if count == 3:
+        return "xyz" if place and "channel" not in uniform["doc"] else "RGB"
+    return "1234"[:count]
+
+
+def look_of(uniform: UniformRecord, uniforms: Sequence[UniformRecord]) -> str:
+    """The key of the medium's look that a parameter follows from, in a technique that takes it; or ''."""
+    own = {other["technique_name"] for other in uniforms if other["technique"] == uniform["technique"]}
+    return next((key for key, names in REPLACED.items() if uniform["technique_name"] in names and key not in own), "")
+
+
+def follows(control: Control) -> bool:
+    """Whether a parameter follows from a key of the medium's look that stands for another one."""
+    return bool(control["look"]) and REPLACED[control["look"]][0] != control["name"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 from sssgen.lab.chart.charting import Settings, cached_points
 from sssgen.lab.chart.picking import cost_of, limit_of
@@ -17,24 +18,37 @@ _MEASURED = (*ROLES, "conversion")
 """The roles whose techniques a chart compares."""
 
 
-def measured_error(scene: Scene, material: Material) -> str:
-    """The error with its entry, or what is to be done to have one. Raises SssgenError for a faulty scene."""
+class MeasuredError(NamedTuple):
+    """The error in a chart, or why there is none."""
+
+    text: str
+    """With the entry, or with what is to be done to have one"""
+    short: str
+
+
+_NONE = "error not measured"
+
+
+def measured_error(scene: Scene, material: Material) -> MeasuredError:
+    """The error of the nearest chain of the scene's chart. Raises SssgenError for a faulty scene."""
     if not {"medium", "inlay"} & set(scene.measured):
-        return "Error: not measured, as the scene has no [medium] and no [inlay]."
+        return MeasuredError("Error: not measured, as the scene has no [medium] and no [inlay].", _NONE)
     if _is_clear(scene.measured.get("medium")):
-        return "Error: not measured, as a clear medium scatters no light; sssgen chart compares scattering bodies."
+        reason = "as a clear medium scatters no light; sssgen chart compares scattering bodies"
+        return MeasuredError(f"Error: not measured, {reason}.", _NONE)
     file = scene.document.reporter.file
     record = cached_points(measured_scene.load(file), Settings())
     if record is None:
-        return f"Error: no chart of this scene is in the cache. It takes minutes: sssgen chart {shell_word(file)}"
+        command = f"sssgen chart {shell_word(file)}"
+        return MeasuredError(f"Error: no chart of this scene is in the cache. It takes minutes: {command}", _NONE)
     names = _techniques_of_material(material)
     point = nearest(record["points"], names)
     if point is None:
-        return "Error: the chart of this scene has no complete chain."
+        return MeasuredError("Error: the chart of this scene has no complete chain.", _NONE)
     same = "this chain" if _techniques_of_point(point) == names else "the nearest chain"
     error, highest = measures(point)[1], limit_of(point)
     numbers = f"{error:.3g}, at most {highest:.3g}; its cost {cost_of(point):g}"
-    return f"Error of {same} in the chart, {point['label']}: {numbers}."
+    return MeasuredError(f"Error of {same} in the chart, {point['label']}: {numbers}.", f"error {error:.3g} ({same})")
 
 
 def _is_clear(medium: object) -> bool:

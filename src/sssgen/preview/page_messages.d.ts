@@ -11,6 +11,10 @@ export interface Control {
   range: [number, number] | null;
   unit: string;
   color: boolean;
+  /** A letter for each component of a vector. */
+  channels: string;
+  /** The key of the medium's look that it follows from, or ''. */
+  look: '' | 'color' | 'depth';
   default: number[];
   value: number[];
   drawn: string;
@@ -59,9 +63,13 @@ interface AnyPicture {
   shapes: string[];
   mesh: string;
   note?: string;
+  /** Where the mesh does not suit the material. */
+  warnings?: string[];
   body?: string;
   /** Why its values cannot be saved, or ''. */
   saves: string;
+  /** Whether it can be saved under another name. */
+  copies?: boolean;
   /** Where its values are saved. */
   saved_in?: string;
   /** Files that are missing, with the command that makes them. */
@@ -103,11 +111,35 @@ export interface PictureMessage {
   version: number;
   error: string;
   label: string;
+  /** The files of the last change that can be taken back, or ''. */
+  undoes: string;
+  stages: StageRow[];
   pane: number;
   panes: number;
   beside: string;
   besides: Record<string, string>;
   limit: number;
+}
+
+/** A stage of the chain, with its place in the file. */
+export interface StageRow {
+  path: (string | number)[];
+  technique: string;
+  role: string;
+  doc: string;
+  /** Whether the menus change it. */
+  changes: boolean;
+}
+
+/** A technique in a menu; `reason` is why the chain does not link with it, or ''. */
+export interface TechniqueRow {
+  name: string;
+  role: string;
+  section: string;
+  summary: string;
+  needs: string[];
+  baseline: boolean;
+  reason: string;
 }
 
 /** The emitted text; `sources` has, for a line's number, its place as `file:line:column`. */

@@ -4,10 +4,12 @@ A message is a JSON object with a `kind`; one from the page may carry the bytes 
 page that is connected to a server and one that runs this module in the browser.
 
 From the page: `shape` (a body from the list), `beside` (what stands beside the picture), `mesh` (a file as the body),
-`texture` (a file, or none, in a slot), `save` (parameters and chosen textures, for the files); the question `measured`
-(the error in a chart); and, while the page shows emitted text, `text` (of a target and a form) and `source` (a file
-that lines come from). To the page: `picture` (of the pane `pane`), `said` and `error` (a text), and the answer to a
-question, which has its kind.
+`texture` (a file, or none, in a slot), `save` (parameters and chosen textures, for the files), `save_as` (the same, for
+a new folder), `edit` (a change of the chain) and `undo` (of what was written last); the questions `existing` (the files
+that `save_as` would replace), `menus` (presets and media), `techniques` (for a place in the chain), `medium` (the
+parameters of a medium by name) and `measured` (the error in a chart); and, while the page shows emitted text, `text`
+(of a target and a form) and `source` (a file that lines come from). To the page: `picture` (of the pane `pane`), `said`
+and `error` (a text), and the answer to a question, which has its kind.
 """
 
 from __future__ import annotations
@@ -17,12 +19,17 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from sssgen.presets.preset_list import MENU_QUALITIES, media_list, preset_list
 from sssgen.preview.bodies import OWN_MESH, SHAPES, dropped_mesh
+from sssgen.preview.chain_edits import technique_rows
 from sssgen.preview.emitted_text import source_of, text_of
-from sssgen.preview.measured_error import measured_error
+from sssgen.preview.measured_error import MeasuredError, measured_error
 from sssgen.preview.pane import Pane, StartPane
+from sssgen.preview.saved_copy import Copy, existing_files, write_copy
+from sssgen.scene.measured import media
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import FileState
+from sssgen.support.paths import posix
 
 MOST_BYTES = 64 << 20
 """The largest file that a page may send."""
@@ -64,12 +71,21 @@ class PageMessages:
             "mesh": self._mesh,
             "texture": self._texture,
             "save": self._save,
+            "save_as": self._save_as,
+            "edit": self._edit,
+            "undo": self._undo,
         }
         self._questions: Mapping[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
             "text": self._text,
             "source": self._source,
             "measured": self._measured_error,
+            "existing": self._existing,
+            "menus": self._menus,
+            "techniques": self._techniques,
+            "medium": self._medium,
         }
+        self._top = os.getcwd()
+        """Below it the pages may write new folders"""
 
     @property
     def files(self) -> dict[str, FileState]:
@@ -131,7 +147,8 @@ class PageMessages:
     def _measured_error(self, message: dict[str, Any]) -> dict[str, Any]:
         pane = self._pane(message)
         scene, material = pane.scene, pane.picture.material
-        return {"kind": "measured", "text": measured_error(scene, material) if scene and material else ""}
+        answer = measured_error(scene, material) if scene and material else MeasuredError("", "")
+        return {"kind": "measured", **answer._asdict()}
 
     def _shape(self, message: dict[str, Any], _: bytes) -> str:
         shape = message["shape"]
@@ -164,10 +181,53 @@ class PageMessages:
         return ""
 
     def _save(self, message: dict[str, Any], _: bytes) -> str:
-        values: Mapping[str, Sequence[Any]] = message["values"]
         pane = self._pane(message)
         try:
-            written = pane.save({str(name): [float(number) for number in value] for name, value in values.items()})
-            return " ".join(filter(None, (written, pane.save_textures())))
+            with pane.history.recorded(pane.written_files()):
+                written = pane.save(_numbers(message["values"]), _numbers(message.get("look", {})))
+                return " ".join(filter(None, (written, pane.save_textures())))
         finally:
             self.renew()
+
+    def _edit(self, message: dict[str, Any], _: bytes) -> str:
+        pane = self._pane(message)
+        pane.edit(message)
+        self.renew()
+        return f"{pane.history.last()} is changed."
+
+    def _undo(self, message: dict[str, Any], _: bytes) -> str:
+        said = self._pane(message).history.undo()
+        self.renew()
+        return said
+
+    def _menus(self, message: dict[str, Any]) -> dict[str, Any]:
+        return {"kind": "menus", "presets": preset_list(), "media": media_list(), "qualities": MENU_QUALITIES}
+
+    def _techniques(self, message: dict[str, Any]) -> dict[str, Any]:
+        material, path = self._pane(message).picture.material, tuple(message.get("path", ()))
+        rows = technique_rows(material, path) if material is not None else []
+        return {"kind": "techniques", "path": list(path), "rows": [row._asdict() for row in rows]}
+
+    def _medium(self, message: dict[str, Any]) -> dict[str, Any]:
+        medium = media.preset(str(message["name"]), float(message["unit_mm"]))
+        return {"kind": "medium", "name": medium.name, "parameters": medium.parameters}
+
+    def _existing(self, message: dict[str, Any]) -> dict[str, Any]:
+        folder, copy = self._copy(message)
+        return {"kind": "existing", "name": folder, "files": existing_files(self._top, folder, copy)}
+
+    def _save_as(self, message: dict[str, Any], data: bytes) -> str:
+        folder, copy = self._copy(message)
+        path = write_copy(self._top, folder, copy, message.get("replace") is True)
+        self._pane(message).follow(os.path.relpath(path))
+        return " ".join(filter(None, (f"{posix(os.path.relpath(path))} is written.", self._save(message, data))))
+
+    def _copy(self, message: dict[str, Any]) -> tuple[str, Copy]:
+        """The folder of a copy, relative to the top, and its files."""
+        folder = str(message["name"]).replace("\\", "/")
+        return folder, self._pane(message).copy(folder.rpartition("/")[2])
+
+
+def _numbers(values: Mapping[str, Sequence[Any]]) -> dict[str, list[float]]:
+    """Values as the page sends them. Raises ValueError, TypeError or AttributeError for others."""
+    return {str(name): [float(number) for number in value] for name, value in values.items()}

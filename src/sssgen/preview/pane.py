@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 from sssgen.material.material_loading import load_material
 from sssgen.material.model import Material
 from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.preview.bodies import OWN_MESH
+from sssgen.preview.chain_edits import edited_files, stage_rows
 from sssgen.preview.chosen_textures import ChosenTextures, save_texture
-from sssgen.preview.emitted_head import Control, Slot
+from sssgen.preview.emitted_head import Control, Slot, follows
+from sssgen.preview.file_history import FileHistory
 from sssgen.preview.flat_head import is_plain, transpile_plain
 from sssgen.preview.flat_picture import plain_picture, raymarched_picture
-from sssgen.preview.picture import Choices, Picture, picture_of
-from sssgen.preview.saved_values import Change, is_saved_in_scene, save_to_material, save_to_scene, saves_where
+from sssgen.preview.picture import Choices, Picture, on_shape, picture_of
+from sssgen.preview.saved_copy import Copy, copy_of
+from sssgen.preview.saved_values import (
+    Change,
+    is_saved_in_scene,
+    save_to_material,
+    save_to_scene,
+    saves_where,
+    write_text,
+)
 from sssgen.preview.technique_scene import SAVES, is_technique, scene_of_technique
 from sssgen.scene.geometry import Mesh
 from sssgen.scene.preview_scene import scene_of
@@ -22,6 +33,10 @@ from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import SssgenError, failure
 from sssgen.support.file_memo import FileState, noted_files
 from sssgen.support.paths import posix
+from sssgen.support.unsaved import kept
+
+Values = Mapping[str, Sequence[float]]
+"""A parameter's property on the page → its numbers."""
 
 
 class Pane:
@@ -35,6 +50,7 @@ class Pane:
         self._textures = ChosenTextures()
         self._make()
         self.first = self.scene, self.picture
+        self.history = FileHistory()
 
     @property
     def pieces(self) -> Mapping[str, bytes]:
@@ -87,8 +103,20 @@ class Pane:
             "version": self.version,
             "error": self.error or self.picture.head.get("missing", ""),
             "label": self.label,
+            "undoes": self.history.last(),
+            "stages": self._stages(),
             "picture": self.picture.head,
         }
+
+    def _stages(self) -> list[dict[str, Any]]:
+        """The chain, where the menus of the page change it."""
+        material = self.picture.material
+        if material is None or self.error or not self.picture.head.get("copies"):
+            return []
+        try:
+            return stage_rows(material)
+        except SssgenError:  # it is written in a way that the menus cannot change
+            return []
 
     def emit(self, target: str, form: str) -> Compiled:
         """The text of a target. Raises SssgenError where the target cannot carry the material."""
@@ -127,9 +155,42 @@ class Pane:
             raise failure("nothing can be saved here", self.picture.head["saves"])
         return self.scene, self.picture.material
 
-    def save(self, values: Mapping[str, Sequence[float]]) -> str:
+    def edit(self, change: Mapping[str, Any]) -> None:
+        """Changes the chain in the material's file, see `edited_files`. Raises SssgenError, and changes no file, where
+        the picture of the changed files has an error."""
+        scene, material = self.scene, self.picture.material
+        if scene is None or material is None or not self.picture.head.get("copies"):
+            raise failure("this has no chain that can be changed", self.picture.head["saves"])
+        files = edited_files(on_shape(scene, self.choices), material, change)
+        with kept(files):
+            self._new_picture()
+        with self.history.recorded(files):
+            for path, text in files.items():
+                write_text(path, text)
+
+    def written_files(self) -> list[str]:
+        """The files that Save may write."""
+        scene, material = self.scene, self.picture.material
+        return [] if scene is None or material is None else [material.file, scene.document.reporter.file]
+
+    def copy(self, name: str) -> Copy:
+        """The files of the material under another name. Raises SssgenError where it cannot be copied."""
+        scene, material = self.scene, self.picture.material
+        if scene is None or material is None or not self.picture.head.get("copies"):
+            raise failure("this cannot be saved under another name", self.picture.head["saves"])
+        return copy_of(scene, material, self.files, name)
+
+    def follow(self, path: str) -> None:
+        """Shows another file from now on, with what was chosen. Raises SssgenError."""
+        self.name, self.history = path, FileHistory()
+        self._make()
+        self.error = ""
+
+    def save(self, values: Values, look: Values = MappingProxyType({})) -> str:
         """Writes parameters, by the names of their properties, to the scene or to the material (see `saved_values`).
 
+        `look` has, for some of them, the numbers of the medium's look that they follow from: the material gets these,
+        once for all that follow.
         Returns what was written and where, for a person. Raises SssgenError for a property that the material does not
         have.
         """
@@ -146,16 +207,25 @@ class Pane:
             save_to_scene(scene.document.reporter.file, own)
             written.append(f"{', '.join(own)} in {posix(scene.document.reporter.file)}")
         # the level of detail is of no technique: the engine sets it, and the material has no value for it
-        others = {name: values[name] for name in values if name not in in_scene and controls[name]["technique"]}
+        others = {
+            name: values[name]
+            for name in values
+            if name not in in_scene and controls[name]["technique"] and not (name in look and follows(controls[name]))
+        }
         if others:
-            save_to_material(material, [_change(controls[name], value) for name, value in others.items()])
-            labels = ", ".join(controls[name]["label"] for name in others)
+            changes = [_change(controls[name], value, look.get(name)) for name, value in others.items()]
+            save_to_material(material, changes)
+            labels = ", ".join(
+                change.look or controls[name]["label"] for name, change in zip(others, changes, strict=True)
+            )
             written.append(f"{labels} in {posix(material.file)}")
         return f"Saved: {'; '.join(written)}." if written else ""
 
 
-def _change(control: Control, value: Sequence[float]) -> Change:
-    return Change(control["technique"], control["name"], value, control["default"])
+def _change(control: Control, value: Sequence[float], look: Sequence[float] | None) -> Change:
+    if look is None or not control["look"]:
+        return Change(control["technique"], control["name"], value, control["default"])
+    return Change(control["technique"], control["name"], look, control["default"], control["look"])
 
 
 class StartPane(Pane):
@@ -177,7 +247,9 @@ class StartPane(Pane):
         else:
             assert scene is not None and picture.material is not None  # only plain GLSL has none
             changed = picture_of(scene, picture.material, self.choices)
-        return scene, changed._replace(head={**changed.head, "saves": "this is the material as it was"})
+        return scene, changed._replace(
+            head={**changed.head, "saves": "this is the material as it was", "copies": False}
+        )
 
 
 def _picture(name: str, choices: Choices) -> tuple[Scene | None, Picture]:

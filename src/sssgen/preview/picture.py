@@ -17,6 +17,7 @@ from sssgen.material.requirements import bodies
 from sssgen.pipeline.compiler import compile
 from sssgen.preview.bodies import OWN_MESH, SHAPES, fit, frame, packed_triangles
 from sssgen.preview.emitted_head import DRAWN_BY_PAGE, TARGET, Slot, emitted_head
+from sssgen.preview.mesh_notes import mesh_notes
 from sssgen.run.render.missing_textures import missing_textures
 from sssgen.run.render.scene_values import shell_of
 from sssgen.run.render.shell_values import Shell
@@ -70,7 +71,7 @@ def picture_of(scene: Scene, material: Material, choices: Choices) -> Picture:
     compiled = compile(material, TARGET, guards=choices.guards, standalone=True)
     if scene.geometry is None:
         raise failure(f"{material.name} makes its own rays: it is a flat picture, not a material of a body")
-    scene = _on_shape(scene, choices)
+    scene = on_shape(scene, choices)
     named = {texture["property"]: texture["source_name"] for texture in compiled.reflection["textures"]}
     textures = dict(scene.textures)
     for name, file in choices.textures.items():
@@ -80,13 +81,14 @@ def picture_of(scene: Scene, material: Material, choices: Choices) -> Picture:
     reflection = _without_views(compiled.reflection)
     shell = shell_of(drawn, material, reflection)
     pieces = Pieces()
-    assert scene.geometry is not None  # `_on_shape` keeps one
+    assert scene.geometry is not None  # `on_shape` keeps one
     head = emitted_head(material, compiled, shell.unplaced(compiled.reflection["uniforms"]), scene.parameters)
     head |= {
         "shape": choices.shape,
         "shapes": ["", *SHAPES, *([OWN_MESH] if choices.mesh is not None else [])],
         "saves": "",
         "note": _note(material, choices.shape),
+        "warnings": mesh_notes(scene, material),
         "missing": missing_text(drawn, material, reflection, shell),
         "mesh": os.path.basename(choices.mesh.path) if choices.mesh is not None else "",
         "body": pieces.add(packed_triangles(scene.geometry)),
@@ -118,7 +120,7 @@ def _note(material: Material, shape: str) -> str:
     return f"It is made for the body of {', '.join(own)}: on this shape the light inside is wrong." if own else ""
 
 
-def _on_shape(scene: Scene, choices: Choices) -> Scene:
+def on_shape(scene: Scene, choices: Choices) -> Scene:
     """The scene with the chosen body, which is as large as its own."""
     shape = choices.mesh if choices.shape == OWN_MESH else SHAPES.get(choices.shape)
     if shape is None or scene.geometry is None:

@@ -12,7 +12,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from sssgen.material.library import Technique
+from sssgen.material.medium_look import KEYS, REPLACED, medium_parameters
 from sssgen.material.model import Material
+from sssgen.material.roles import SECTIONS, allowed_roles
+from sssgen.material.values import read_value
 from sssgen.scene.bake_advice import is_scene
 from sssgen.scene.scene import Scene
 from sssgen.support.diagnostics import failure
@@ -21,6 +25,7 @@ from sssgen.support.file_writer import write_files
 from sssgen.support.installed_files import copy_hint, is_installed
 from sssgen.support.paths import posix
 from sssgen.support.text_files import read_text
+from sssgen.support.toml_source import Path, parse
 
 
 def is_saved_in_scene(scene: Scene, material: Material, name: str) -> bool:
@@ -28,8 +33,9 @@ def is_saved_in_scene(scene: Scene, material: Material, name: str) -> bool:
     return name in scene.parameters or name in scene.textures or _scene_gets_all(scene, material)
 
 
-def saves_where(scene: Scene, material: Material) -> dict[str, str]:
-    """What a page says about Save: `saves` is why nothing can be saved, or ''; `saved_in` names the files."""
+def saves_where(scene: Scene, material: Material) -> dict[str, Any]:
+    """What a page says about Save: `saves` is why nothing can be saved, or ''; `saved_in` names the files. It `copies`:
+    it can be saved under another name."""
     scene_file, material_file, reason = posix(scene.document.reporter.file), posix(material.file), ""
     if _scene_gets_all(scene, material):
         files = f"{scene_file}; {material_file} comes with sssgen and stays as it is"
@@ -39,7 +45,7 @@ def saves_where(scene: Scene, material: Material) -> dict[str, str]:
         files = f"{material_file}, and {scene_file} for what the scene sets"
     else:
         files = material_file
-    return {"saves": reason, "saved_in": f"Save writes {files}."}
+    return {"saves": reason, "saved_in": f"Save writes {files}.", "copies": True}
 
 
 def _scene_gets_all(scene: Scene, material: Material) -> bool:
@@ -55,58 +61,108 @@ class Change(NamedTuple):
     old: Sequence[float] | None = None
     """The value that the material had: of stages with other values, such as those of another level of detail, none is
     changed. None for a texture, which all stages share"""
+    look: str = ""
+    """The key of the medium's look that is written, with this value, in place of the parameter"""
 
 
 def save_to_material(material: Material, changes: Iterable[Change]) -> None:
     """Writes changes into the material's file.
 
     A value is written at every stage of its technique that sets the old one, or, where none does, at the first stage
-    that sets none; one that a stage fixes keeps `fixed`. Raises SssgenError for a file that cannot be read or written,
-    or a stage that is gone.
+    that sets none; one that a stage fixes keeps `fixed`. A parameter takes the line of the look that it replaces, and
+    the reverse. Raises SssgenError for a file that cannot be read or written, or a stage that is gone.
     """
-    document = _parse(material.file)
-    stages = [(stage.technique.role, stage.technique.name) for stage in material.stages]
+    document = parse_document(material.file)
+    stages = [(section_of(stage.technique), stage.technique.name) for stage in material.stages]
+    renamed: dict[tuple[str | int, ...], str] = {}
     for change in changes:
-        technique, parameter = change.technique, change.parameter
-        tables = [
-            table
-            for role in dict.fromkeys(role for role, name in stages if name == technique)
-            for table in _stages(document, role)
-            if os.path.splitext(os.path.basename(str(table.get("technique"))))[0] == technique
-        ]
+        tables = {
+            path: table
+            for section in dict.fromkeys(section for section, name in stages if name == change.technique)
+            for path, table in stages_of(document, section).items()
+            if os.path.splitext(os.path.basename(str(table.get("technique"))))[0] == change.technique
+        }
         if not tables:
-            raise failure(f"the file has no stage of '{technique}' any more", "reload the page", posix(material.file))
-        for table in _changed_stages(tables, change):
-            old = table.get(parameter)
-            if isinstance(old, dict) and "value" in old:
-                old["value"] = _value(change.value)
-            else:
-                table[parameter] = _value(change.value)
-    _write(material.file, document)
+            message = f"the file has no stage of '{change.technique}' any more"
+            raise failure(message, "reload the page", posix(material.file))
+        for path, table in _changed_stages(tables, change).items():
+            if name := _change_stage(table, change):
+                renamed[*path, name] = change.look or change.parameter
+    write_text(material.file, _with_keys(document.as_string(), renamed))
 
 
-def _changed_stages(tables: Sequence[Any], change: Change) -> Sequence[Any]:
+def _change_stage(table: Any, change: Change) -> str:
+    """Writes a value into a stage; returns the key that it has there, if it is to be another one, or ''."""
+    key = _key_in(table, change.parameter)
+    wanted = change.look or change.parameter
+    if change.look:
+        for name in REPLACED[change.look][1:]:  # what follows from the look is not set apart from it
+            table.pop(name, None)
+    elif key in REPLACED:
+        for name, numbers in medium_parameters(key, _components(table, key, key)).items():
+            if name != change.parameter and name not in table:
+                table[name] = _value(numbers)
+    old = table.get(key or wanted)
+    if isinstance(old, dict) and "value" in old:
+        old["value"] = _value(change.value)
+    else:
+        table[key or wanted] = _value(change.value)
+    return key if key != wanted else ""
+
+
+def _changed_stages(tables: Mapping[Path, Any], change: Change) -> Mapping[Path, Any]:
     """The stages of a technique that get a new value."""
-    having = [table for table in tables if change.parameter in table]
-    others = [table for table in tables if change.parameter not in table]
+    having = {path: table for path, table in tables.items() if _key_in(table, change.parameter)}
+    others = {path: tables[path] for path in [path for path in tables if path not in having][:1]}
     if change.old is None:
-        return having or others[:1]
-    same = [table for table in having if _is_equal(table[change.parameter], change.old)]
-    return same or others[:1] or having
+        return having or others
+    same = {path: table for path, table in having.items() if _is_equal(table, change.parameter, change.old)}
+    return same or others or having
 
 
-def _is_equal(stored: Any, numbers: Sequence[float]) -> bool:
-    """Whether a value in a file is these numbers, in float32."""
-    value = stored["value"] if isinstance(stored, dict) and "value" in stored else stored
-    parts = value if isinstance(value, list) else [value]
-    if len(parts) != len(numbers) or not all(isinstance(part, (int, float)) for part in parts):
-        return False
-    return bool(np.array_equal(np.array(parts, np.float32), np.array(numbers, np.float32)))
+def _key_in(table: Any, parameter: str) -> str:
+    """The key that gives a parameter in a stage: its own name, or that of the medium's look; '' where none does."""
+    keys = (parameter, *(key for key, names in REPLACED.items() if names[0] == parameter))
+    return next((key for key in keys if key in table), "")
+
+
+def _components(table: Any, key: str, parameter: str) -> list[float]:
+    """The numbers of a parameter in a stage, under its own key or under one of the medium's look; [] for no numbers."""
+    stored = table[key]
+    raw = stored["value"] if isinstance(stored, dict) and "value" in stored else stored
+    if key in KEYS:
+        numbers = read_value(KEYS[key], _plain(raw))
+        return list(numbers) if key == parameter else medium_parameters(key, numbers)[parameter]
+    parts = raw if isinstance(raw, list) else [raw]
+    return list(parts) if all(isinstance(part, (int, float)) for part in parts) else []
+
+
+def _plain(item: Any) -> Any:
+    """The value without its layout."""
+    return item.unwrap() if hasattr(item, "unwrap") else item
+
+
+def _is_equal(table: Any, parameter: str, numbers: Sequence[float]) -> bool:
+    """Whether the value of a parameter in a stage is these numbers, in float32."""
+    stored = _components(table, _key_in(table, parameter), parameter)
+    return bool(np.array_equal(np.array(stored, np.float32), np.array(numbers, np.float32)))
+
+
+def _with_keys(text: str, renamed: Mapping[Path, str]) -> str:
+    """The text of a document in which some keys have another name; their lines stay where they are."""
+    if not renamed:
+        return text
+    document, lines = parse(text, ""), text.splitlines(keepends=True)
+    spans = sorted(((document.place(*path).key, name) for path, name in renamed.items()), reverse=True)
+    for span, name in spans:  # from the end, so that the columns before stay
+        line = lines[span.line - 1]
+        lines[span.line - 1] = line[: span.column - 1] + name + line[span.end_column - 1 :]
+    return "".join(lines)
 
 
 def save_to_scene(path: str, changes: Mapping[str, Sequence[float] | str], section: str = "parameters") -> None:
     """Writes parameter or texture → value into that section of a scene's file. Raises SssgenError."""
-    document = _parse(path)
+    document = parse_document(path)
     table = document.setdefault(section, need("tomlkit", "tomlkit", "preview").table())
     for name, value in changes.items():
         old = table.get(name)
@@ -114,17 +170,25 @@ def save_to_scene(path: str, changes: Mapping[str, Sequence[float] | str], secti
             old["file"] = value
         else:
             table[name] = _value(value)
-    _write(path, document)
+    write_text(path, document.as_string())
 
 
-def _parse(path: str) -> Any:
+def parse_document(path: str) -> Any:
+    """The document of a file, which keeps its layout. Raises SssgenError."""
     return need("tomlkit", "tomlkit", "preview").parse(read_text(path, posix(path)))
 
 
-def _stages(document: Any, role: str) -> list[Any]:
-    """The tables of a role: one, or an array of them."""
-    content = document.get(role)
-    return [content] if isinstance(content, dict) else list(content or ())
+def section_of(technique: Technique) -> str:
+    """The section of a technique's stages; '' for a technique that is bound to slots."""
+    return next((section for section in SECTIONS if technique.role in allowed_roles(section)), "")
+
+
+def stages_of(document: Any, section: str) -> dict[Path, Any]:
+    """The tables of a section, one or an array of them, by their paths."""
+    content = document.get(section)
+    if isinstance(content, dict):
+        return {(section,): content}
+    return {(section, number): table for number, table in enumerate(content or ())}
 
 
 def _value(numbers: Sequence[float] | str) -> Any:
@@ -135,5 +199,6 @@ def _value(numbers: Sequence[float] | str) -> Any:
     return short if len(short) > 1 else short[0]
 
 
-def _write(path: str, document: Any) -> None:
-    write_files(os.path.dirname(os.path.abspath(path)), {os.path.basename(path): document.as_string()})
+def write_text(path: str, text: str) -> None:
+    """Writes a file, in its own folder. Raises SssgenError."""
+    write_files(os.path.dirname(os.path.abspath(path)), {os.path.basename(path): text})

@@ -67,6 +67,11 @@ def rim_length(places: Array, corners: npt.NDArray[np.int64]) -> float:
     return float((np.abs(passed) * lengths).sum())
 
 
+def open_edges(corners: npt.NDArray[np.int64]) -> int:
+    """The number of edges that are not traversed equally often in both directions; 0 for a closed mesh."""
+    return int(np.count_nonzero(_edges(corners)[2]))
+
+
 def mixed_sides(corners: npt.NDArray[np.int64]) -> bool:
     """Whether two triangles share an edge with no other and face opposite ways: both traverse it in one direction."""
     _, number, passed = _edges(corners)

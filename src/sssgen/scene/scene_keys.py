@@ -72,6 +72,8 @@ MEDIUM: Mapping[str, Key] = {
     "unit_mm": number(POSITIVE),
     "absorption": vector(3, NOT_NEGATIVE),
     "scattering": vector(3, NOT_NEGATIVE),
+    "color": vector(3, (0.0, 1.0)),
+    "depth": vector(3, POSITIVE),
     "anisotropy": number((-0.95, 0.95)),
     "ior": number((1.0, 3.0)),
     "roughness": number((0.0, 1.0)),

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 
 _texts: dict[str, tuple[int, str]] = {}
 _changes = 0
@@ -18,6 +20,18 @@ def keep(path: str | os.PathLike[str], text: str) -> None:
 def drop(path: str | os.PathLike[str]) -> None:
     """Reads the file itself again."""
     _texts.pop(os.path.realpath(path), None)
+
+
+@contextmanager
+def kept(texts: Mapping[str, str]) -> Iterator[None]:
+    """Reads the texts, by their paths, in place of the files in the block."""
+    for path, text in texts.items():
+        keep(path, text)
+    try:
+        yield
+    finally:
+        for path in texts:
+            drop(path)
 
 
 def text_of(path: str | os.PathLike[str]) -> str | None:

@@ -7,6 +7,7 @@ import { Pieces } from './pieces.js';
 import { unpacked } from './packed.js';
 import { Picture } from './picture.js';
 import { box, button, list } from './preview/elements.js';
+import { PresetMenu } from './preset_menu.js';
 import { packedState, unpackedState } from './state_link.js';
 
 /** @typedef {import('./picture.js').Start} Start */
@@ -44,11 +45,18 @@ async function begin(name, state = null) {
   starts.value = name;
   document.title = `${start.title} · sssgen playground`;
   picture.begin(start, state);
+  button('open-presets').disabled = !picture.scene()?.head.body;
   editor.show(state?.files ?? start.files, start.files, state?.open ?? start.main);
   if (state?.target) target.value = state.target;
   if (state?.form) form.value = state.form;
   await refresh(false);
 }
+
+const menu = new PresetMenu((text) => {
+  const renamed = text.replace(/^name = ".*"$/m, `name = "${start.name}"`);
+  editor.show({ ...editor.files, [start.main]: renamed }, start.files, start.main);
+  refresh(true);
+});
 
 /** What Python is asked of the files as they are now.
  * @param {'picture' | 'text'} part */
@@ -148,6 +156,7 @@ starts.addEventListener('change', () => {
   begin(starts.value);
 });
 for (const choice of [target, form]) choice.addEventListener('change', () => write(false));
+button('open-presets').addEventListener('click', () => menu.open());
 button('again').addEventListener('click', () => begin(start.name));
 copyButton.addEventListener('click', () => copy(emitted.text, emitted.open));
 button('link').addEventListener('click', async () => {

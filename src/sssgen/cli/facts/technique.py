@@ -30,9 +30,9 @@ def lines(facts: Mapping[str, Any], width: int) -> list[str]:
         "",
         f"  {facts['signature']}",
     ]
-    for kind in ("parameters", "textures"):
+    for kind, title in (("parameters", "parameters"), ("look", "look, in place of them"), ("textures", "textures")):
         if facts[kind]:
-            text += ["", f"{kind}:"]
+            text += ["", f"{title}:"]
             for uniform in facts[kind]:
                 text.append(f"  {uniform['name']}: {uniform_text(uniform)}")
                 text += indent(uniform["doc"], "      ")

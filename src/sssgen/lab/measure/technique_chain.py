@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 
 import numpy as np
 
@@ -107,7 +108,7 @@ def chain_of(technique: Technique) -> list[MaterialSection]:
             f"'{technique.name}' has the role {role}, which is no part of a body's material", hint, technique.path
         )
     own = next(index for index, stage in enumerate(stages) if stage.technique == reference_to(technique))
-    stages[own] = stages[own]._replace(bind=tuple(_bindings(technique).items()))
+    stages[own] = stages[own]._replace(bind=tuple(bindings_of(technique).items()))
     return [*_suppliers(technique, ()), *stages]
 
 
@@ -150,19 +151,22 @@ def _givers(quantity: str) -> Iterator[Technique]:
             yield technique
 
 
-def _bindings(technique: Technique) -> dict[str, str]:
-    """A function for each slot, and for the slots of these."""
+def bindings_of(technique: Technique, given: Mapping[str, str] = MappingProxyType({})) -> dict[str, str]:
+    """A function for each slot, and for the slots of these: the `given` one of a slot, or one of the library.
+
+    Raises SssgenError for a slot that nothing in the library fits.
+    """
     bound: dict[str, str] = {}
     waiting = [technique]
     while waiting:
         for slot in facts_of(waiting.pop())["slots"]:
             if slot["name"] in bound:
                 continue
-            if not slot["functions"]:
+            if not slot["functions"] and slot["name"] not in given:
                 raise failure(f"nothing in the library fits the slot {slot['signature']}", "", technique.path)
-            name = BODY if BODY in slot["functions"] else _least(slot["functions"])
+            name = given.get(slot["name"]) or (BODY if BODY in slot["functions"] else _least(slot["functions"]))
             bound[slot["name"]] = name
-            if ":" not in name:
+            if name in library.index():
                 waiting.append(library.load(name))
     return bound
 

@@ -1,19 +1,13 @@
-// The controls of a material's parameters, grouped by technique.
+// The controls of a material's parameters, grouped by technique. A medium is shown as an artist or as a physicist has it.
 
-import * as THREE from 'three';
+import { ControlRow, shorter } from './control_row.js';
 import { make } from './elements.js';
+import { DEPTHS, albedoOf, coefficients, colorOf, depthOf, inverse, meanFreePath } from './medium_look.js';
 
 /** @typedef {import('../page_messages.js').Control} Control */
-/** @typedef {Control & { range: [number, number] }} Ranged */
+/** @typedef {import('./control_row.js').Field} Field */
 
-const shorter = (/** @type {number} */ number) => String(Number(number.toPrecision(5)));
-
-/** The least value above 0 on the slider of a range over powers of ten, which is logarithmic; 0 on an even slider.
- * @param {Ranged} control */
-function leastOf({ range: [low, high] }) {
-  if (low === 0 && high > 1) return 0.0001 * high;
-  return low > 0 && high / low > 500 ? low : 0;
-}
+const MODES = { artist: 'Artist', physical: 'Physical' };
 
 /** The panel: `changed(property, numbers)` is called for each change by hand. */
 export class Panel {
@@ -21,133 +15,161 @@ export class Panel {
   constructor(root, changed) {
     this.root = root;
     this.changed = changed;
+    this.mode = 'artist';  // of MODES
     /** @type {import('../page_messages.js').Values} */
     this.values = new Map();  // property → numbers that differ from the file's
+    /** @type {import('../page_messages.js').Values} */
+    this.look = new Map();  // property → numbers of the look that it follows from
     /** @type {Control[]} */
     this.controls = [];
+    /** @type {ControlRow[]} */
+    this.rows = [];
+    /** @type {(() => void)[]} */
+    this.refills = [];  // of what follows from the numbers
   }
 
   /** Shows the controls of a picture. A change by hand stays while the file's value is the same.
    * @param {Control[]} controls */
   show(controls) {
     const before = new Map(this.controls.map((control) => [control.property, control.value.join()]));
-    for (const { property, value } of controls) {
-      if (before.get(property) !== value.join()) this.values.delete(property);
-    }
-    for (const property of [...this.values.keys()]) {
-      if (!controls.some((control) => control.property === property)) this.values.delete(property);
-    }
+    const same = (/** @type {string} */ property) => controls.some((one) => one.property === property && before.get(property) === one.value.join());
+    for (const property of [...this.values.keys()]) if (before.has(property) && !same(property)) this.forget(property);
+    for (const property of [...this.values.keys()]) if (!controls.some((one) => one.property === property)) this.forget(property);
     this.controls = controls;
+    this.draw();
+  }
+
+  /** @param {string} property */
+  forget(property) { this.values.delete(property); this.look.delete(property); }
+
+  draw() {
+    this.rows = [];
+    this.refills = [];
     this.root.replaceChildren();
-    const groups = Map.groupBy(controls.filter((control) => !control.drawn && !control.placed && !control.type.startsWith('mat')), (control) => control.technique);
-    for (const [technique, members] of groups) {
-      this.root.append(make('h2', { textContent: technique || 'uniforms' }), ...members.map((control) => this.row(control)));
+    const shown = this.controls.filter((control) => !control.drawn && !control.placed && !control.type.startsWith('mat'));
+    if (shown.some((control) => this.isMedium(control))) this.root.append(this.modes());
+    for (const [technique, members] of Map.groupBy(shown, (control) => control.technique)) {
+      const fields = this.ordered(members.filter((control) => !this.isHidden(control))).map((control) => this.field(control));
+      const rows = fields.map((field) => new ControlRow(field));
+      this.rows.push(...rows);
+      this.root.append(make('h2', { textContent: technique ? technique.replaceAll('_', ' ') : 'uniforms' }), ...rows.map((row) => row.root));
+      if (this.mode === 'physical') this.root.append(...this.derived(members));
     }
   }
 
-  numbers(control) { return this.values.get(control.property) ?? control.value; }
-
-  row(control) {
-    const row = make('div', { className: 'row', title: `${control.doc} (${control.name})` });
-    row.dataset.property = control.property;
-    const undo = make('button', { className: 'undo', textContent: '↺', title: 'the value of the file' });
-    undo.addEventListener('click', () => { this.set(control, row, control.value); this.fill(control, row); });
-    row.append(make('label', { textContent: control.label.replaceAll('_', ' ') }), this.inputs(control, row), undo);
-    this.fill(control, row);
-    return row;
+  /** The parameters of a technique, its look first: colour, then depth.
+   * @param {Control[]} members */
+  ordered(members) {
+    const rank = (/** @type {Control} */ control) => (this.mode === 'artist' && this.isMedium(control) ? ['color', 'depth'].indexOf(control.look) : 2);
+    return members.toSorted((one, other) => rank(one) - rank(other));
   }
 
-  inputs(control, row) {
-    const box = make('span', { className: 'vector' });
-    const read = () => this.set(control, row, this.read(control, row));
-    if (control.type === 'bool') box.append(make('input', { type: 'checkbox', className: 'number', oninput: read }));
-    else if (control.color) {
-      box.append(make('input', { type: 'color', oninput: () => this.picked(control, row) }));
-      for (let index = 3; index < control.value.length; index++) box.append(this.number(control, read));
-    } else if (control.value.length === 1 && control.range) {
-      const slider = make('input', { type: 'range', min: 0, max: 1000, step: 1 });
-      slider.addEventListener('input', () => {
-        row.querySelector('.number').value = shorter(this.ofSlider(control, Number(slider.value) / 1000));
-        read();
-      });
-      box.append(slider, this.number(control, read));
-    } else for (let index = 0; index < control.value.length; index++) box.append(this.number(control, read));
-    if (control.unit && control.unit !== '1') box.append(make('span', { className: 'unit', textContent: control.unit }));
-    return box;
-  }
-
-  number(control, read) {
-    const [low, high] = control.range ?? ['', ''];
-    const field = make('input', { type: 'number', className: control.value.length === 3 ? 'number of-three' : 'number', step: /int/.test(control.type) ? 1 : 'any', min: low, max: high, oninput: read });
-    field.addEventListener('change', () => this.fill(control, field.closest('.row')));  // it then shows what is drawn
-    return field;
-  }
-
-  ofSlider(control, share) {
-    const [low, high] = control.range;
-    const least = leastOf(control);
-    const value = least ? (share === 0 ? low : least * (high / least) ** share) : low + (high - low) * share;
-    return /int/.test(control.type) ? Math.round(value) : value;
-  }
-
-  toSlider(control, value) {
-    const [low, high] = control.range;
-    const least = leastOf(control);
-    if (least) return value <= least ? 0 : Math.log(value / least) / Math.log(high / least);
-    return (value - low) / (high - low);
-  }
-
-  read(control, row) {
-    const now = this.numbers(control);
-    const fields = [...row.querySelectorAll('.number')];
-    const from = control.color ? 3 : 0;
-    const result = [...now];
-    fields.forEach((field, index) => {
-      const number = field.type === 'checkbox' ? Number(field.checked) : Number(field.value);
-      if (field.type === 'checkbox' || (field.value !== '' && Number.isFinite(number))) result[from + index] = this.within(control, number);
+  /** The switch between both ways to give a medium. */
+  modes() {
+    const buttons = Object.entries(MODES).map(([mode, text]) => {
+      const button = make('button', { textContent: text, title: mode === 'artist' ? 'Colour and depth' : 'Albedo and extinction, with σa and σs' });
+      button.setAttribute('aria-pressed', String(mode === this.mode));
+      button.dataset.mode = mode;
+      button.addEventListener('click', () => { this.mode = mode; this.draw(); });
+      return button;
     });
-    return result;
+    return make('div', { className: 'row modes' }, make('label', { textContent: 'Medium as' }), make('span', { className: 'switch' }, ...buttons));
   }
 
-  within(control, number) {
-    if (!control.range) return number;
-    return Math.min(Math.max(number, control.range[0]), control.range[1]);
+  /** Whether a parameter has a key of the look in its place. @param {Control} control */
+  isMedium(control) { return Boolean(control.look) && control.value.length === 3; }
+
+  /** Whether a parameter follows from the look of another one that is shown. @param {Control} control */
+  isHidden(control) { return this.mode === 'artist' && Boolean(control.look) && !this.isMedium(control) && Boolean(this.mediumOf(control)); }
+
+  /** The parameter that a mean free path follows from. @param {Control} control */
+  mediumOf(control) {
+    return this.controls.find((one) => one.technique === control.technique && one.look === control.look && this.isMedium(one));
   }
 
-  picked(control, row) {
-    const color = new THREE.Color(row.querySelector('input[type=color]').value);
-    this.set(control, row, [color.r, color.g, color.b, ...this.numbers(control).slice(3)]);
+  /** @param {Control} control */
+  numbers(control) { return [...this.values.get(control.property) ?? control.value]; }
+
+  /** @param {Control} control @returns {Field} */
+  field(control) {
+    const { property, type, doc, name, channels, color, range, unit } = control;
+    if (this.mode === 'artist' && this.isMedium(control)) return this.lookField(control);
+    return {
+      property, key: name, name, doc, type, channels, color, range, unit: unit ?? '', label: control.label.replaceAll('_', ' '),
+      read: () => this.numbers(control),
+      write: (numbers) => { this.look.delete(property); this.set(control, numbers); },
+      undo: () => this.set(control, control.value),
+      changed: () => this.values.has(property),
+    };
   }
 
-  /** The numbers of a control, as its inputs show them. */
-  fill(control, row) {
-    const numbers = this.numbers(control);
-    row.classList.toggle('changed', this.values.has(control.property));
-    const picker = row.querySelector('input[type=color]');
-    if (picker) picker.value = `#${new THREE.Color(...numbers.slice(0, 3).map((number) => Math.min(Math.max(number, 0), 1))).getHexString()}`;
-    row.querySelectorAll('.number').forEach((field, index) => {
-      const number = numbers[(control.color ? 3 : 0) + index];
-      if (field.type === 'checkbox') field.checked = number !== 0; else field.value = shorter(number);
-    });
-    const slider = row.querySelector('input[type=range]');
-    if (slider) slider.value = 1000 * this.toSlider(control, numbers[0]);
+  /** The colour in place of an albedo, or the depth in place of an extinction.
+   * @param {Control} control @returns {Field} */
+  lookField(control) {
+    const { property, type, look } = control;
+    const isColor = look === 'color';
+    const [of, to] = isColor ? [colorOf, albedoOf] : [depthOf, inverse];
+    const followers = this.controls.filter((one) => one.technique === control.technique && one.look === look && !this.isMedium(one));
+    return {
+      property, key: look, label: look, name: look, type, channels: 'RGB', color: isColor, unit: isColor ? '1' : 'm',
+      doc: isColor ? 'What a thick body reflects of diffuse light' : 'How deep light reaches: the mean free path, per channel, in world units',
+      range: isColor ? [0, 1] : /** @type {[number, number]} */ (DEPTHS),
+      read: () => [...this.look.get(property) ?? this.numbers(control).map(of)],
+      write: (numbers) => {
+        for (const one of [control, ...followers]) this.look.set(one.property, numbers);
+        this.set(control, numbers.map(to));
+        for (const one of followers) this.set(one, [meanFreePath(numbers)]);
+      },
+      undo: () => { for (const one of [control, ...followers]) this.set(one, one.value); },
+      changed: () => this.values.has(property),
+    };
   }
 
-  set(control, row, numbers) {
-    if (numbers.join() === control.value.join()) this.values.delete(control.property);
+  /** The coefficients of the medium, where a technique has its albedo and its extinction.
+   * @param {Control[]} members */
+  derived(members) {
+    const [albedo, extinction] = ['color', 'depth'].map((look) => members.find((one) => one.look === look && this.isMedium(one)));
+    if (!albedo || !extinction) return [];
+    const box = make('div', { className: 'derived' });
+    const fill = () => {
+      const { absorption, scattering } = coefficients(this.numbers(extinction), this.numbers(albedo));
+      const row = (/** @type {string} */ name, /** @type {number[]} */ numbers) => make('tr', {}, make('th', { textContent: name }), ...numbers.map((one) => make('td', { textContent: shorter(one) })), make('td', { className: 'unit', textContent: extinction.unit }));
+      box.replaceChildren(make('table', {}, row('absorption σa', absorption), row('scattering σs', scattering)));
+    };
+    fill();
+    this.refills.push(fill);
+    return [box];
+  }
+
+  /** Sets numbers; the file's are no change.
+   * @param {Control} control @param {number[]} numbers */
+  set(control, numbers) {
+    if (numbers.join() === control.value.join()) this.forget(control.property);
     else this.values.set(control.property, numbers);
-    row.classList.toggle('changed', this.values.has(control.property));
-    const slider = row.querySelector('input[type=range]');
-    if (slider && document.activeElement !== slider) slider.value = 1000 * this.toSlider(control, numbers[0]);
+    for (const refill of this.refills) refill();
     this.changed(control.property, numbers);
   }
 
+  /** Sets parameters by their names in techniques, as a medium gives them; returns whether the material has any.
+   * @param {Record<string, number | number[]>} parameters */
+  use(parameters) {
+    const given = this.controls.filter((control) => control.name in parameters && !control.drawn);
+    for (const control of given) {
+      const numbers = [parameters[control.name]].flat();
+      const [low, high] = control.range ?? [-Infinity, Infinity];
+      if (numbers.length !== control.value.length) continue;
+      this.look.delete(control.property);
+      this.set(control, numbers.map((number) => Math.min(Math.max(number, low), high)));
+    }
+    this.fill();
+    return given.length > 0;
+  }
+
+  fill() { for (const row of this.rows) row.fill(); }
+
   /** Gives up all changes by hand. */
   reset() {
-    for (const control of this.controls.filter((one) => this.values.has(one.property))) {
-      const row = this.root.querySelector(`[data-property="${control.property}"]`);
-      this.set(control, row, control.value);
-      this.fill(control, row);
-    }
+    for (const control of this.controls.filter((one) => this.values.has(one.property))) this.set(control, control.value);
+    this.fill();
   }
 }

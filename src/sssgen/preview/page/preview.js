@@ -1,17 +1,22 @@
 // The page of `sssgen preview`: it shows what the server sends, and sends back what is to be saved.
 
+import { Chain } from './chain.js';
 import { MESHES, onChoice, onDrop, refusal } from './chosen_files.js';
 import { connect } from './connection.js';
 import { CostBox } from './cost.js';
 import { box, button, checkbox, list, make } from './elements.js';
 import { EmittedText } from './emitted_text.js';
+import { FrameWatch } from './frame_time.js';
+import { Menus } from './menus.js';
 import { Pane } from './pane.js';
+import { SaveAs } from './save_as.js';
+import { Stage } from './stage.js';
 
 /** @typedef {import('../page_messages.js').PictureMessage} PictureMessage */
 
 const [renderer, shape, beside] = [list('renderer'), list('shape'), list('beside')];
 const environment = checkbox('environment');
-const [save, reset] = [button('save'), button('reset')];
+const [save, saveAs, reset, undo] = [button('save'), button('save-as'), button('reset'), button('undo')];
 /** @type {Map<string, ArrayBuffer>} */
 const pieces = new Map();  // by their digests
 /** @type {Pane[]} */
@@ -56,12 +61,17 @@ const follows = () => panes.length > 1 && panes[0].last?.beside === 'guards';
 
 const shownPane = () => panes[active] ?? panes[0];
 
-/** Whether there is something to save, and to undo. */
+/** Whether there is something to save, and to undo. Where the file is not the user's, Save offers a copy. */
 function enable() {
   const pane = shownPane();
-  const reason = pane?.picture?.saves ?? '';
-  save.disabled = !pane?.changed || Boolean(reason);
-  box('saved-in').textContent = reason || (pane?.picture?.saved_in ?? '');
+  const [reason, copies] = [pane?.picture?.saves ?? '', Boolean(pane?.picture?.copies)];
+  save.disabled = !pane?.changed || Boolean(reason && !copies);
+  save.textContent = reason && copies ? 'Save…' : 'Save';
+  saveAs.disabled = !copies;
+  undo.disabled = !pane?.last?.undoes;
+  undo.title = pane?.last?.undoes ? `Take back the last change of ${pane.last.undoes}` : 'Nothing was written';
+  box('saved-in').textContent = reason && copies ? 'This comes with sssgen and stays as it is: Save makes a copy of your own.' : reason || (pane?.picture?.saved_in ?? '');
+  box('saved-in').title = reason;
   box('saved-in').hidden = !box('saved-in').textContent;
   reset.disabled = !pane?.changed;
 }
@@ -101,6 +111,10 @@ function fill() {
   shape.value = picture.shape;
   box('shape-note').textContent = picture.note ?? '';
   box('shape-note').hidden = !picture.note;
+  box('warnings').replaceChildren(...(picture.warnings ?? []).map((text) => make('li', { textContent: text })));
+  box('warnings').hidden = !picture.warnings?.length;
+  chain.show(pane.last.stages);
+  for (const id of ['open-presets', 'open-media']) button(id).disabled = !picture.copies;
   beside.replaceChildren(...Object.entries(besides).map(([value, text]) => new Option(text, value)));
   beside.value = pane.last.beside;
   for (const id of ['shape-row', 'renderer-row', 'environment-row']) box(id).hidden = Boolean(picture.flat);
@@ -113,7 +127,7 @@ function fill() {
     tab.addEventListener('click', () => { active = one.number; fill(); emitted.renew(); });
     return tab;
   }));
-  box('controls').replaceChildren(pane.textures, pane.controls, box('cost'));
+  box('controls').replaceChildren(box('chain'), pane.controls, pane.textures, box('cost'));
   cost.show(picture);
   pane.controls.inert = pane.textures.inert = follows() && pane.number > 0;
   enable();
@@ -144,6 +158,8 @@ const python = connect((message) => {
     if (message.pane === active) emitted.renew();
   }
   else if (message.kind === 'measured') cost.heard(message);
+  else if (message.kind === 'existing') copying.heard(message);
+  else if (menus.heard(message) || (message.kind === 'error' && copying.refuse(message.text))) return;
   else if (message.kind === 'text' || message.kind === 'source') emitted.heard(message);
   else { say(message.text); fill(); }  // what was asked for is not shown
 }, () => {
@@ -159,7 +175,41 @@ function useMesh(file) {
   if (!reason) python.sendFile({ kind: 'mesh', name: file.name }, file);
 }
 
-const cost = new CostBox(box('cost'), (question) => python.send({ ...question, pane: active }));
+const cost = new CostBox(box('cost'), box('facts'), (question) => python.send({ ...question, pane: active }));
+/** A change of the file; where the file comes with sssgen, a copy is offered first.
+ * @param {object} change */
+function edit(change) {
+  const pane = shownPane();
+  if (pane.picture?.saves) copying.open(pane.picture.name);
+  else python.send({ kind: 'edit', pane: pane.number, ...change });
+}
+
+/** What was changed by hand, for a message that saves it.
+ * @param {Pane} pane */
+const changes = (pane) => ({ pane: pane.number, values: Object.fromEntries(pane.panel.values), look: Object.fromEntries(pane.panel.look) });
+
+const copying = new SaveAs({
+  ask: (question) => python.send({ ...question, pane: shownPane().number }),
+  save: (name, replace) => python.send({ kind: 'save_as', name, replace, ...changes(shownPane()) }),
+});
+const menus = new Menus({
+  ask: (question) => python.send({ ...question, pane: shownPane().number }),
+  edit,
+  use(parameters, name) {
+    const used = shownPane().panel.use(parameters);
+    say(used ? `The medium is ${name}. Save writes it.` : 'No technique of this material has a medium.');
+  },
+});
+const chain = new Chain(box('chain'), {
+  add: () => menus.openTechniques(null),
+  replace: (stage) => menus.openTechniques(stage),
+  remove: (stage) => edit({ action: 'remove', path: stage.path }),
+});
+const frames = new FrameWatch(() => {
+  const { stage } = shownPane() ?? {};
+  return stage instanceof Stage ? stage : null;
+}, (time, size) => cost.frame(time, size));
+cost.measure = () => frames.measure();
 const emitted = new EmittedText(box('emitted'), (question) => python.send({ ...question, pane: active }));
 button('show-text').addEventListener('click', () => emitted.toggle(!emitted.open));
 onDrop(document.body, useMesh);
@@ -177,8 +227,13 @@ renderer.addEventListener('change', () => next(async () => {
 }));
 save.addEventListener('click', () => {
   const pane = shownPane();
-  python.send({ kind: 'save', pane: pane.number, values: Object.fromEntries(pane.panel.values) });
+  if (pane.picture?.saves) copying.open(pane.picture.name);
+  else python.send({ kind: 'save', ...changes(pane) });
 });
+saveAs.addEventListener('click', () => copying.open(shownPane().picture?.name ?? 'material'));
+undo.addEventListener('click', () => python.send({ kind: 'undo', pane: shownPane().number }));
+button('open-presets').addEventListener('click', () => menus.open(menus.presets));
+button('open-media').addEventListener('click', () => menus.open(menus.media));
 reset.addEventListener('click', () => {
   const pane = shownPane();
   pane.panel.reset();

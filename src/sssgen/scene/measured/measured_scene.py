@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from sssgen.material.medium_look import COLOR, DEPTH
+from sssgen.material.scatter_color import albedo_of_color
 from sssgen.scene.body_identity import contents
 from sssgen.scene.camera import Camera
 from sssgen.scene.environment import Environment, read_environment
@@ -33,6 +35,9 @@ from sssgen.support.value_bytes import encode
 
 SIDE = 64
 """Pixels along the longer side of a measured picture."""
+LOOK = (COLOR, DEPTH)
+"""The keys of [medium] for its look, in place of its coefficients."""
+_MEANING = {COLOR: "what a thick body reflects of diffuse light", DEPTH: "the mean free path, in world units"}
 HELD_OUT = 50.0
 """Degrees about the vertical through the camera's target by which the held-out view is turned."""
 
@@ -164,7 +169,7 @@ def _medium(scene: Scene) -> Medium | None:
     if roughness > 0.0 and ior == 1.0:
         table.error("roughness", "a surface that does not refract has no roughness", "add ior, 1.4 say")
     if "preset" in table.content:
-        for key in ("absorption", "scattering", "anisotropy"):
+        for key in ("absorption", "scattering", "anisotropy", *LOOK):
             if key in table.content:
                 table.error(key, f"a preset has its own {key}", "give a preset, or the coefficients")
         name = table.text("preset", "", media.media())
@@ -174,14 +179,37 @@ def _medium(scene: Scene) -> Medium | None:
             if name in media.media()
             else None
         )
+    if "unit_mm" in table.content:
+        table.error("unit_mm", "all numbers are given in world units", "leave unit_mm out, or name a preset")
+    anisotropy = table.number("anisotropy", 0.0)
+    absorption, scattering = (_look if set(LOOK) & table.content.keys() else _coefficients)(table, anisotropy)
+    return Medium("custom", absorption, scattering, anisotropy, ior, "the scene", roughness)
+
+
+def _coefficients(table: Table, _: float) -> tuple[Any, Any]:
+    """The absorption and the scattering that a table gives."""
     absorption: Any = table.vector("absorption", (0.0, 0.0, 0.0))
     scattering: Any = table.vector("scattering", (5.0, 5.0, 5.0))
-    anisotropy = table.number("anisotropy", 0.0)
     if not any(scattering):
         table.error("scattering", "this medium does not scatter", "a measured medium needs scattering above 0")
-    if "unit_mm" in table.content:
-        table.error("unit_mm", "coefficients are given per world unit", "leave unit_mm out, or name a preset")
-    return Medium("custom", absorption, scattering, anisotropy, ior, "the scene", roughness)
+    return absorption, scattering
+
+
+def _look(table: Table, anisotropy: float) -> tuple[Any, Any]:
+    """The absorption and the scattering of a colour and a depth."""
+    for key in ("absorption", "scattering"):
+        if key in table.content:
+            table.error(key, f"{' and '.join(LOOK)} give the {key}", f"leave {key} out, or {' and '.join(LOOK)}")
+    for key, other in (LOOK, LOOK[::-1]):
+        if other not in table.content:
+            hint = f"write {other} = [0.5, 0.4, 0.3], say: {_MEANING[other]}"
+            table.error(key, f"the medium has a {key} and no {other}", hint)
+    color, depth = table.vector("color", (0.8, 0.8, 0.8)), table.vector("depth", (0.2, 0.2, 0.2))
+    if not any(color):
+        table.error("color", "this medium does not scatter", "a measured medium reflects light: a colour above 0")
+    albedo = [albedo_of_color(part, anisotropy) for part in color]
+    scattering = tuple(a / length for a, length in zip(albedo, depth, strict=True))
+    return tuple((1.0 - a) / length for a, length in zip(albedo, depth, strict=True)), scattering
 
 
 def _inlay(scene: Scene) -> Inlay:
