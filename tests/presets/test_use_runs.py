@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import subprocess
+from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -11,15 +12,19 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gltf_validation import validate
 from preview_page import NEEDS, browser
 from skips import or_skip
 from sssgen.cli.main import main
 from sssgen.run import compilers
+from sssgen.run.compilers.compiler_interface import Compiler, Source
 from sssgen.run.compilers.godot_process import find
 from sssgen.scene.arrays import Array
 from sssgen.support.folder_server import served
+from webgpu_browser import READ, STAND_IN
+from webgpu_browser import browser as gpu_browser
 
-__all__ = ["browser"]  # the fixture
+__all__ = ["browser", "gpu_browser"]  # the fixtures
 
 SIZE = (320, 240)
 SHOT = """extends SceneTree
@@ -32,6 +37,11 @@ func _initialize() -> void:
 	quit()
 """
 """A script that writes a picture of the project."""
+FEW_FRAMES = """
+    let left = 2;
+    const ask = requestAnimationFrame;
+    globalThis.requestAnimationFrame = (draw) => (left-- > 0 ? ask(draw) : 0);"""
+"""A frame takes seconds without a GPU."""
 
 
 @pytest.fixture
@@ -69,6 +79,63 @@ class TestPage:
             assert page.inner_text("#message") == ""
             page.evaluate("document.querySelector('#panel').remove()")
             check_coral(pixels(page.screenshot()))
+
+
+class TestWebGpuPage:
+    """The page without an engine; a texture stands in for the one of the canvas."""
+
+    def open(self, gpu_browser: Any, script: str) -> Any:
+        page = gpu_browser.new_page(viewport={"width": SIZE[0], "height": SIZE[1]})
+        page.set_default_timeout(120_000)
+        page.add_init_script(script)
+        return page
+
+    @pytest.mark.slow
+    @pytest.mark.parametrize("quality", ["fast", "good"])
+    def test_the_page(self, quality: str, ring: str, gpu_browser: Any) -> None:
+        assert main(["use", "coral", ring, "--target", "webgpu", "-o", "out", "--quality", quality]) == 0
+        page = self.open(gpu_browser, STAND_IN + FEW_FRAMES)
+        with contextlib.closing(page), served("out") as address:
+            page.goto(address)
+            page.wait_for_function(
+                "() => globalThis.shown || document.querySelector('#message').textContent", polling=100
+            )
+            assert page.inner_text("#message") == ""
+            assert page.locator("#panel input").count() == 3
+            picture = np.array(page.evaluate(READ), np.float64).reshape(SIZE[1], SIZE[0], 4)[..., :3]
+        check_coral(picture)
+        assert picture[2, 2] == pytest.approx([20.0, 21.0, 24.0], abs=1.0)  # the air
+        below = picture[SIZE[1] * 3 // 4 :]
+        assert (below.min(axis=-1) > 40.0).mean() > 0.2  # the lamp lights the ground
+        assert (below.max(axis=-1) < 12.0).mean() > 0.02  # and the ring throws a shadow on it
+
+    @pytest.mark.slow
+    def test_a_browser_without_webgpu_is_told_so(self, ring: str, gpu_browser: Any) -> None:
+        assert main(["use", "coral", ring, "--target", "webgpu", "-o", "out", "--quality", "fast"]) == 0
+        page = self.open(gpu_browser, "Object.defineProperty(navigator, 'gpu', { value: undefined });")
+        with contextlib.closing(page), served("out") as address:
+            page.goto(address)
+            page.wait_for_function("() => document.querySelector('#message').textContent", polling=100)
+            assert "needs WebGPU" in page.inner_text("#message")
+            assert "--target threejs" in page.inner_text("#message")
+
+
+@pytest.mark.parametrize("name", ["naga", pytest.param("tint", marks=pytest.mark.slow)])
+def test_the_shaders_of_the_webgpu_page(name: str, ring: str, compiler: Callable[[str], Compiler]) -> None:
+    assert main(["use", "coral", ring, "--target", "webgpu", "-o", "out"]) == 0
+    for shader in ("coral", "ground"):
+        assert not compiler(name).check(Source(Path("out", f"{shader}.wgsl").read_text(encoding="utf-8"), "wgsl"))
+
+
+@pytest.mark.parametrize("name", ["wax", "honey", "leaf"])
+def test_the_gltf_file_is_valid(name: str, ring: str) -> None:
+    assert main(["use", name, ring, "--target", "gltf", "-o", "out"]) == 0
+    validate(Path("out", f"{name}.glb"))
+    wanted = {
+        "wax": "KHR_materials_volume", "honey": "KHR_materials_transmission",
+        "leaf": "KHR_materials_diffuse_transmission",
+    }  # fmt: skip
+    assert wanted[name].encode() in Path("out", f"{name}.glb").read_bytes()
 
 
 @pytest.mark.slow

@@ -147,6 +147,6 @@ def report_kept(part: GltfPart, keeps_color: bool, report: Report) -> None:
             elif is_picture and field == "base_color" and keeps_color:
                 report.add_approximation(path, value, "its variation about the preset's colour")
             elif is_picture and field == "base_color":
-                report.add_omission(path, value, f"{OWN} colour; --keep-color keeps the detail of the picture")
+                report.add_omission(path, value, f"{OWN} colour; --keep-color keeps its detail, except in baked light")
             else:
                 report.add_omission(path, value, OWN)
