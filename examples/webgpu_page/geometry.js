@@ -1,4 +1,4 @@
-// A sphere and a camera: what a page has of its own.
+// Meshes and a camera: what a page has of its own.
 
 import { LAYOUT } from './material.js';
 
@@ -36,13 +36,23 @@ export function mesh(device, vertices, triangles, box, model = identity) {
   };
 }
 
-/** A camera at `distance` that looks down -z at the origin: world to clip space, and back, column by column. */
-export function camera(distance, aspect, degrees = 40, near = 0.1, far = 100) {
+/** A camera that looks at `target`, with +y up: world to clip space, and back, column by column. */
+export function camera(position, target, aspect, degrees = 40, near = 0.1, far = 100) {
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  const unit = (v) => v.map((part) => part / Math.hypot(...v));
+  const back = unit(position.map((part, axis) => part - target[axis]));
+  const side = unit([back[2], 0, -back[0]]);
+  const up = [0, 1, 2].map((axis) => back[(axis + 1) % 3] * side[(axis + 2) % 3] - back[(axis + 2) % 3] * side[(axis + 1) % 3]);
   const y = 1 / Math.tan((degrees * Math.PI) / 360), x = y / aspect;
   const a = far / (near - far), b = a * near;
+  const column = (axis) => [x * side[axis], y * up[axis], a * back[axis], -back[axis]];
+  const [right, above, behind] = [side, up, back].map((way) => -dot(way, position));
   return {
-    position: [0, 0, distance],
-    viewProjection: [x, 0, 0, 0, 0, y, 0, 0, 0, 0, a, -1, 0, 0, b - a * distance, distance],
-    inverseViewProjection: [1 / x, 0, 0, 0, 0, 1 / y, 0, 0, 0, 0, distance / b, 1 / b, 0, 0, -1 + (a * distance) / b, a / b],
+    position,
+    viewProjection: [...column(0), ...column(1), ...column(2), x * right, y * above, a * behind + b, -behind],
+    inverseViewProjection: [
+      ...side.map((part) => part / x), 0, ...up.map((part) => part / y), 0, ...position.map((part) => part / b), 1 / b,
+      ...position.map((part, axis) => (part * a) / b - back[axis]), a / b,
+    ],
   };
 }

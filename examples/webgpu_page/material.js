@@ -24,8 +24,8 @@ export async function load(folder, name) {
 }
 
 export class Material {
-  /** `format` is that of the view it draws into: an -srgb one, where `reflection.color` is linear. */
-  constructor(device, { wgsl, reflection }, format) {
+  /** `format` is that of the view it draws into: an -srgb one, where `reflection.color` is linear. `count`: its samples. */
+  constructor(device, { wgsl, reflection }, format, count = 1) {
     this.device = device;
     this.reflection = reflection;
     this.screen = reflection.raymarched; // one triangle over the screen, no mesh
@@ -51,6 +51,7 @@ export class Material {
       fragment: { module, entryPoint: fragment, targets: [{ format }] },
       primitive: { topology: 'triangle-list', cullMode: 'none' },
       depthStencil: { format: 'depth24plus', depthWriteEnabled: true, depthCompare: this.screen ? 'always' : 'less' },
+      multisample: { count },
     });
   }
 
@@ -99,10 +100,11 @@ export class Material {
     return this.device.createSampler({ addressModeU: mode, addressModeV: mode, addressModeW: mode, minFilter: 'linear', magFilter: 'linear' });
   }
 
-  /** Sets what the passes have drawn. */
+  /** Sets what the passes have drawn, as far as the material reads it. */
   show({ textures, samplers, values }) {
-    for (const name in textures) this.texture(name, textures[name], samplers[name]);
-    for (const name in values) this.set(name, values[name]);
+    const has = (list, name) => list.some((declared) => declared.name === name);
+    for (const name in textures) if (has(this.reflection.textures, name)) this.texture(name, textures[name], samplers[name]);
+    for (const name in values) if (has(this.reflection.uniforms, name)) this.set(name, values[name]);
   }
 
   /** Writes the shell's blocks. Matrices are 16 numbers, column by column; a light is { position: [x, y, z, w], color }. */

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 
 from sssgen.cli.main import main
-from sssgen.presets.engine_project import ENGINES
+from sssgen.presets.engines import ENGINES
 from sssgen.presets.used_mesh import used_mesh
 from sssgen.scene.mesh_files import read
 
@@ -33,13 +34,17 @@ def block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 def test_a_project_has_the_material_the_mesh_and_what_opens_it(target: str, block: str) -> None:
     assert main(["use", "jade", block, "--target", target, "-o", "out"]) == 0
     files = {path.relative_to("out").as_posix() for path in Path("out").rglob("*") if path.is_file()}
-    opened = "project.godot" if target == "godot" else "index.html"
-    assert {"jade.toml", "body.glb", "scene.toml", "surroundings.png", "README.md", opened} <= files
+    own = "jade/" if target == "unity-urp" else ""
+    opened = {"godot": "project.godot", "gltf": "jade.glb", "unity-urp": "Editor/JadeScene.cs"}.get(
+        target, "index.html"
+    )
+    wanted = {"jade.toml", "body.glb", "scene.toml", "surroundings.png", "README.md", opened}
+    assert {own + name for name in wanted} <= files
     for name in files:
-        if name.startswith(("main.", "index.", "project.", "scene.", "README")):
+        if name.endswith((".md", ".js", ".html", ".toml", ".gd", ".tscn", ".cs", ".meta", ".mat")):
             text = Path("out", name).read_text(encoding="utf-8")
-            assert "{{" not in text and "{%" not in text, name
-    assert f"sssgen use jade {block} --target {target}" in Path("out", "README.md").read_text(encoding="utf-8")
+            assert not re.search(r"\{% |\{\{ [\w.]+ ", text), name
+    assert f"sssgen use jade {block} --target {target}" in Path("out", own, "README.md").read_text(encoding="utf-8")
 
 
 def test_a_repeated_call_changes_nothing(block: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -61,7 +66,7 @@ def test_edited_files_are_kept_without_force(block: str, capsys: pytest.CaptureF
 def test_the_mesh_keeps_its_place_and_gets_normals(block: str) -> None:
     mesh = used_mesh(block, 40.0)
     assert (mesh.low, mesh.high) == ((0.0, 0.0, 0.0), (2.0, 1.0, 1.0))
-    assert mesh.size.unit_mm == pytest.approx(20.0) and mesh.closed
+    assert mesh.size.unit_mm == pytest.approx(20.0)
     assert mesh.size.mean_chord == pytest.approx(4.0 * 2.0 / 10.0)  # 4 V / S
     Path("body.glb").write_bytes(mesh.glb)
     content = read("body.glb")
@@ -97,7 +102,11 @@ def test_an_open_mesh_has_a_warning(block: str, capsys: pytest.CaptureFixture[st
         (["use", "waxx", "block.obj", "-o", "out"], "did you mean 'wax'"),
         (["use", "wax", "blok.obj", "-o", "out"], "cannot find the mesh"),
         (["use", "wax", "block.obj", "-t", "threjs", "-o", "out"], "did you mean 'threejs'"),
-        (["use", "wax", "block.obj", "-t", "unreal", "-o", "out"], "there is no project for the target 'unreal'"),
+        (["use", "wax", "block.obj", "-t", "unreal", "-o", "out"], "there is no project for the target 'unreal' yet"),
+        (["use", "wax", "block.obj", "-t", "metal", "-o", "out"], "sssgen emit NAME.toml -t metal"),
+        (["use", "wax", "block.obj", "-t", "gltf", "-o", "out", "--quality", "best"], "leave --quality out"),
+        (["use", "wax", "block.obj", "-o", "out", "--size", "big"], "'big' is no size"),
+        (["use", "wax", "block.obj", "-o", "out", "--material", "Skin"], "leave --material out"),
         (["use", "wax", "block.obj", "-t", "godot", "-o", "out", "--open"], "--open shows pages"),
         (["use", "wax", "block.obj", "-o", "out", "--size", "0"], "cannot be 0 mm large"),
         (["use", "wax", "block.obj", "-o", "out", "--size", "nan"], "cannot be nan mm large"),

@@ -4,24 +4,22 @@ from __future__ import annotations
 
 import contextlib
 import subprocess
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
 
+from gltf_validation import validate
 from preview_page import NEEDS, browser
+from ring_page import SIZE, check_coral, pixels, ring
 from skips import or_skip
 from sssgen.cli.main import main
 from sssgen.run import compilers
 from sssgen.run.compilers.godot_process import find
-from sssgen.scene.arrays import Array
 from sssgen.support.folder_server import served
 
-__all__ = ["browser"]  # the fixture
+__all__ = ["browser", "ring"]  # the fixtures
 
-SIZE = (320, 240)
 SHOT = """extends SceneTree
 func _initialize() -> void:
 	root.size = Vector2i(320, 240)
@@ -32,27 +30,6 @@ func _initialize() -> void:
 	quit()
 """
 """A script that writes a picture of the project."""
-
-
-@pytest.fixture
-def ring(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is missing: pip install -e '.[import]'")
-    monkeypatch.chdir(tmp_path)
-    trimesh.creation.torus(1.0, 0.4, major_sections=64, minor_sections=32).export("ring.obj")
-    return "ring.obj"
-
-
-def pixels(png: bytes) -> Array:
-    """(height, width, 3), 0 to 255."""
-    from PIL import Image
-
-    return np.asarray(Image.open(BytesIO(png)).convert("RGB"), np.float64)
-
-
-def check_coral(picture: Array) -> None:
-    """A red body fills a part of the picture, and is bright although the lamp is behind it."""
-    red = (picture[..., 0] > 90) & (picture[..., 0] > 2.0 * picture[..., 2])
-    assert 0.02 < red.mean() < 0.5
 
 
 class TestPage:
@@ -69,6 +46,17 @@ class TestPage:
             assert page.inner_text("#message") == ""
             page.evaluate("document.querySelector('#panel').remove()")
             check_coral(pixels(page.screenshot()))
+
+
+@pytest.mark.parametrize("name", ["wax", "honey", "leaf"])
+def test_the_gltf_file_is_valid(name: str, ring: str) -> None:
+    assert main(["use", name, ring, "--target", "gltf", "-o", "out"]) == 0
+    validate(Path("out", f"{name}.glb"))
+    wanted = {
+        "wax": "KHR_materials_volume", "honey": "KHR_materials_transmission",
+        "leaf": "KHR_materials_diffuse_transmission",
+    }  # fmt: skip
+    assert wanted[name].encode() in Path("out", f"{name}.glb").read_bytes()
 
 
 @pytest.mark.slow

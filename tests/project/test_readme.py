@@ -157,12 +157,13 @@ for (const stem of stems) {
   for (const uniform of reflection.uniforms) material.set(uniform.name, uniform.default);
   const lights = [{ position: [0, 1, 0, 1], color: [1, 1, 1] }];
   const ambient = [0, 0, 0];
-  material.view({ ...camera(3, 1), time: 1, ambient, lights, model: identity, inverseModel: identity });
+  const seen = camera([0, 0, 3], [0, 0, 0], 1);
+  material.view({ ...seen, time: 1, ambient, lights, model: identity, inverseModel: identity });
   const encoder = device.createCommandEncoder();
   const body = sphere(device, 4, 8);
   if (reflection.passes.length) {
     const { createPasses } = await import(pathToFileURL(page + '/../sssgen-webgpu.js'));
-    material.show(createPasses(device, reflection).draw(encoder, body, { ...camera(3, 1), size: [8, 8] }, lights));
+    material.show(createPasses(device, reflection).draw(encoder, body, { ...seen, size: [8, 8] }, lights));
   }
   const depth = { depthClearValue: 1, depthLoadOp: 'clear', depthStoreOp: 'discard' };
   const pass = encoder.beginRenderPass({
@@ -175,7 +176,7 @@ for (const stem of stems) {
   const error = await device.popErrorScope();
   console.log(stem.split('/').pop(), error ? error.message : 'drawn');
 }
-const { viewProjection: to, inverseViewProjection: back } = camera(3, 1.5);
+const { viewProjection: to, inverseViewProjection: back } = camera([1, 2, 3], [0.5, 0, -1], 1.5);
 for (let row = 0; row < 4; row++)
   for (let column = 0; column < 4; column++) {
     let sum = 0;

@@ -5,8 +5,9 @@ from __future__ import annotations
 import contextlib
 import os
 import shlex
-from argparse import ArgumentParser, Namespace
+from argparse import ArgumentParser, BooleanOptionalAction, Namespace
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 from sssgen.cli.options import add_output
 from sssgen.cli.output import OK, print_result
@@ -16,13 +17,18 @@ from sssgen.support.file_writer import Written, check_folder, check_unchanged, w
 from sssgen.support.paths import posix, shell_word
 from sssgen.support.progress import ProgressBar
 
+if TYPE_CHECKING:
+    from sssgen.interchange.mapping_report import Report
+    from sssgen.presets.request import Request
+
 
 def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
         "examples:\n"
         "  sssgen use wax cow.obj --target threejs -o page --open\n"
         "  sssgen use jade ring.glb --size 35 -o ring\n"
-        "  sssgen use skin_fair head.glb --quality best -o head\n"
+        "  sssgen use skin_fair head.glb --material Skin --quality best -o head\n"
+        "  sssgen use marble bust.glb --target unity-urp -o MyProject/Assets\n"
         "Presets: sssgen list presets."
     )
     add = parser.add_argument
@@ -34,47 +40,127 @@ def add_options(parser: ArgumentParser) -> None:
         "--quality", choices=tuple(QUALITIES), default="good",
         help=f"{'; '.join(f'{name}: {needs}' for name, needs in QUALITIES.items())} (default: good)",
     )  # fmt: skip
-    add("--size", type=float, metavar="MM", help="the mesh's longest side in millimetres (default: the preset's)")
+    add(
+        "--size", metavar="MM", help="the mesh's longest side in millimetres (default: the preset's), or `file`: a "
+        "unit of the mesh is a metre, as in glTF",
+    )  # fmt: skip
+    add(
+        "--material",
+        metavar="NAME",
+        default="",
+        help="of a glTF file: the part with this material alone, and its pictures",
+    )
+    add(
+        "--keep-color", action=BooleanOptionalAction, default=None,
+        help="keep the detail of a glTF file's colours (default: for skin, leaves and paper)",
+    )  # fmt: skip
     add("--open", action="store_true", help="show the page in a browser, until Ctrl+C")
     add("--force", action="store_true", help="replace files that were there before, also edited ones")
 
 
 def run(arguments: Namespace) -> int:
     """Writes the project; with --open also serves and opens it."""
-    from sssgen.presets.engine_project import ENGINES, Request, engine_files, material_files
+    from sssgen.presets.engine_project import engine_files, material_files
+    from sssgen.presets.kept_material import report_kept
     from sssgen.presets.preset import preset
+    from sssgen.presets.request import Request
     from sssgen.presets.used_mesh import used_mesh
-    from sssgen.scene.mesh import Mesh
-    from sssgen.scene.mesh_suitability import mesh_warnings
 
     chosen, target, folder = preset(arguments.PRESET), arguments.target, arguments.output
-    if target not in ENGINES:
-        hint = did_you_mean(target, ENGINES) or f"targets: {', '.join(ENGINES)}; `sssgen emit` writes shaders for all"
-        raise failure(f"there is no project for the target '{target}'", hint)
-    if arguments.open and not ENGINES[target].is_page:
-        raise failure(f"--open shows pages, and {ENGINES[target].title} is none", "leave --open out")
-    size = chosen.size_mm if arguments.size is None else arguments.size
-    if not 1e-3 <= size <= 1e6:
-        raise failure(f"a body cannot be {size:g} mm large", "--size is from 0.001 to 1000000")
+    _check_target(target, arguments.open)
+    if target == "gltf" and arguments.quality != "good":
+        raise failure("a glTF file has neither lobes nor baked light", "leave --quality out")
+    size = _size(arguments.size, chosen.size_mm)
     check_folder(folder)
     with ProgressBar() as bar:
         bar(0, 3, f"reading {os.path.basename(arguments.MESH)}")
-        mesh = used_mesh(arguments.MESH, size)
-        request = Request(chosen, mesh, target, arguments.quality, _command(arguments))
+        mesh = used_mesh(arguments.MESH, size, arguments.material)
+        keeps_color = chosen.keeps_color if arguments.keep_color is None else arguments.keep_color
+        request = Request(chosen, mesh, target, arguments.quality, keeps_color, _command(arguments))
         written = _write(folder, material_files(request), arguments.force)
         if request.baked:
-            written += _bake(folder, bar)
+            written += _bake(os.path.join(folder, request.folder), bar)
         bar(2, 3, "emitting")
         written += _write(folder, engine_files(request, folder), arguments.force)
+    if mesh.part is not None:
+        report_kept(mesh.part, request.shows_color, mesh.report)
+    warnings = _warnings(request)
     lines = [f"{'wrote' if file.changed else 'kept '} {posix(file.path)}" for file in written]
-    warnings = mesh_warnings(Mesh(path=mesh.path), request.needs)
-    lines += [f"warning: {warning}" for warning in warnings]
-    lines.append(ENGINES[target].opened.replace("this folder", shell_word(posix(folder))))
-    report = {"files": [posix(file.path) for file in written], "warnings": warnings}
+    lines += [
+        *_kept_lines(mesh.report),
+        *(f"warning: {warning}" for warning in warnings),
+        *_next_lines(request, folder),
+    ]
+    report = {"files": [posix(file.path) for file in written], "warnings": warnings, "report": mesh.report.as_json()}
     print_result(arguments.json, report, "\n".join(lines))
     if arguments.open:
         _show(folder)
     return OK
+
+
+def _check_target(target: str, opens: bool) -> None:
+    """Raises SssgenError for a target without a project, and where --open has nothing to open."""
+    from sssgen.presets.engines import ENGINES
+    from sssgen.targets import registry
+
+    if target not in ENGINES:
+        projects = f"projects: {', '.join(ENGINES)}"
+        if target in registry.names():
+            hint = (
+                f"emit its shader: `sssgen new NAME --from PRESET`, then `sssgen emit NAME.toml -t {target} -o DIR`; "
+            )
+            raise failure(f"there is no project for the target '{target}' yet", hint + projects)
+        raise failure(f"there is no project for the target '{target}'", did_you_mean(target, ENGINES) or projects)
+    if opens and not ENGINES[target].is_page:
+        raise failure(f"--open shows pages, and {ENGINES[target].title} is none", "leave --open out")
+
+
+def _size(text: str | None, usual: float) -> float | None:
+    """The longest side in millimetres, or None where the file says it. Raises SssgenError for another text."""
+    if text is None or text == "file":
+        return usual if text is None else None
+    try:
+        size = float(text)
+    except ValueError:
+        raise failure(f"'{text}' is no size", "--size takes millimetres, or `file`") from None
+    if not 1e-3 <= size <= 1e6:
+        raise failure(f"a body cannot be {size:g} mm large", "--size is from 0.001 to 1000000")
+    return size
+
+
+def _warnings(request: Request) -> list[str]:
+    """What is probably not as the user wants it."""
+    from sssgen.scene.mesh_suitability import mesh_warnings
+
+    mesh = request.mesh
+    warnings, part = mesh_warnings(mesh.geometry, request.needs), mesh.part
+    if part is not None and part.imported is None:
+        names = ", ".join(part.others)
+        warnings.append(
+            f"the file has several materials, whose pictures are left out: choose one with --material ({names})"
+        )
+    elif part is not None and part.others:
+        warnings.append(f"left out are the parts with other materials: {', '.join(part.others)}")
+    return warnings
+
+
+def _kept_lines(report: Report) -> list[str]:
+    """What became of the pictures of the file, and how many other elements were left out."""
+    lines = [
+        f"{row.outcome}: {row.element} ({row.value}){'' if row.outcome == 'mapped' else f': {row.became}'}"
+        for row in report.rows
+        if row.element.endswith("Texture") or row.outcome == "approximated"
+    ]
+    return [line.replace("mapped", "kept", 1) for line in lines]
+
+
+def _next_lines(request: Request, folder: str) -> list[str]:
+    """How the project is opened and changed."""
+    place = shell_word(posix(os.path.join(folder, request.folder)).rstrip("/"))
+    return [
+        f"open it: {request.opened.replace('this folder', shell_word(posix(folder)))}",
+        f"change it: `sssgen preview {place}/scene.toml`; then, in {place}: {request.change}",
+    ]
 
 
 def _write(folder: str, files: Mapping[str, str | bytes], force: bool) -> list[Written]:
@@ -89,8 +175,8 @@ def _bake(folder: str, bar: ProgressBar) -> list[Written]:
     from sssgen.bake import baked_files, fluence, relit
     from sssgen.lab.fluence.fluence_field import Settings
     from sssgen.lab.fluence.traced_body import fitting_voxels
-    from sssgen.presets.engine_project import RANK
     from sssgen.presets.preset_stages import RESPONSE
+    from sssgen.presets.request import RANK
 
     scene, path = fluence.body(os.path.join(folder, "scene.toml"), "", 10.0), os.path.join(folder, RESPONSE)
     if relit.is_current(path, scene):
@@ -102,7 +188,11 @@ def _bake(folder: str, bar: ProgressBar) -> list[Written]:
 def _command(arguments: Namespace) -> str:
     """The command line without what does not change the files."""
     words = ["sssgen", "use", arguments.PRESET, posix(arguments.MESH), "--target", arguments.target]
-    words += ["--quality", arguments.quality] + (["--size", f"{arguments.size:g}"] if arguments.size else [])
+    words += ["--quality", arguments.quality]
+    words += ["--size", arguments.size] if arguments.size else []
+    words += ["--material", arguments.material] if arguments.material else []
+    if arguments.keep_color is not None:
+        words.append("--keep-color" if arguments.keep_color else "--no-keep-color")
     return shlex.join([*words, "-o", posix(arguments.output)])
 
 

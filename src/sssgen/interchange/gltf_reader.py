@@ -29,6 +29,14 @@ _HARMLESS_EXTENSIONS = (
     "MSFT_lod",
 )
 """Extensions that a file may require: without them it is still read rightly, except for what the report names."""
+_UNPACK = "npx @gltf-transform/cli copy FILE.glb PLAIN.glb"
+_UNPACKED = {
+    "KHR_draco_mesh_compression": f"its triangles are compressed: export it without compression, or run `{_UNPACK}`",
+    "EXT_meshopt_compression": f"its data are compressed: export it without compression, or run `{_UNPACK}`",
+    "KHR_texture_basisu": "its pictures are KTX2: export them as PNG, JPEG or WebP, or run "
+    "`npx @gltf-transform/cli ktxdecompress FILE.glb PLAIN.glb`",
+}
+"""Extension that a file may require and that another program can remove → how"""
 _MOTIONS = {"animations": "a material does not move", "skins": "the mesh is taken in its rest pose"}
 
 
@@ -81,5 +89,6 @@ def _check_extensions(root: JsonElement) -> None:
         if not isinstance(element.value, str):
             raise element.fault(f"a string is needed, not {short_text(element.value)}")
         if element.value not in supported:
-            hint = "export the file without this extension: it says that the file is wrong without it"
+            usual = "export the file without this extension: it says that the file is wrong without it"
+            hint = _UNPACKED.get(element.value, usual)
             raise element.fault(f"the file requires '{element.value[:60]}', which is not read", hint)

@@ -61,11 +61,13 @@ class Buffer:
         return len(self.accessors) - 1
 
 
-def primitive(mesh: FileContent, buffer: Buffer) -> dict[str, Any]:
-    """A glTF primitive of the triangles; texture coordinates of the mesh have v up."""
+def primitive(mesh: FileContent, buffer: Buffer, tangents: Array | None = None) -> dict[str, Any]:
+    """A glTF primitive of the triangles; texture coordinates of the mesh have v up. `tangents`: (v, 4), unit."""
     attributes = {"POSITION": buffer.vectors(mesh.vertices, bounds=True)}
     if mesh.normals is not None:
         attributes["NORMAL"] = buffer.vectors(_unit_normals(mesh.normals))
+    if tangents is not None:
+        attributes["TANGENT"] = buffer.vectors(tangents)
     for name, uv in (("TEXCOORD_0", mesh.uv), ("TEXCOORD_1", mesh.uv2)):
         if uv is not None:
             attributes[name] = buffer.vectors(np.stack([uv[:, 0], 1.0 - uv[:, 1]], axis=1))
@@ -109,8 +111,8 @@ def glb(content: Mapping[str, Any], data: bytes) -> bytes:
     return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 
 
-def mesh_file(mesh: FileContent) -> bytes:
+def mesh_file(mesh: FileContent, tangents: Array | None = None) -> bytes:
     """A GLB file of the triangles, with an empty material: without one, trimesh drops texture coordinates."""
     buffer = Buffer()
-    drawn = {**primitive(mesh, buffer), "material": 0}
+    drawn = {**primitive(mesh, buffer, tangents), "material": 0}
     return glb(document(buffer, [drawn], materials=[{}]), bytes(buffer.data))

@@ -33,6 +33,7 @@ _KEYS = {
     "size_mm": number(_LENGTH),
     "roughness": number(_COLOR),
     "ior": number((1.0, 3.0)),
+    "mesh_color": text("kept"),
 }
 Color = tuple[float, float, float]
 _BLACK: Color = (0.0, 0.0, 0.0)
@@ -65,6 +66,8 @@ class Preset:
     """The share of the light that leaves on the other side of a sheet"""
     base: Color = _BLACK
     """What a sheet reflects"""
+    keeps_color: bool = False
+    """Whether a textured mesh keeps the detail of its colours, unless the user says"""
 
     @property
     def source(self) -> str:
@@ -87,11 +90,15 @@ class Preset:
         red, green, blue = extinction_of_color(self.clear_color, self.clear_depth_mm / unit_mm)
         return Medium(self.name, (red, green, blue), _BLACK, ior=self.ior)
 
+    def surface(self, color: Color) -> SurfaceModel:
+        """The neutral record of a body with nothing inside, which reflects a colour."""
+        return SurfaceModel(
+            self.name, self.doc, roughness=Quantity((self.roughness,)), ior=self.ior, base_color=Quantity(color)
+        )
+
     def model(self, unit_mm: float) -> SurfaceModel:
         """The neutral record, whose lengths are world units of `unit_mm` millimetres."""
-        surface = SurfaceModel(
-            self.name, self.doc, roughness=Quantity((self.roughness,)), ior=self.ior, base_color=Quantity(self.base)
-        )
+        surface = self.surface(self.base)
         if any(self.sheet):
             color, share = _share(self.sheet)
             # the chooser leaves the share of a sheet out of the reflection
@@ -121,7 +128,7 @@ def presets() -> Mapping[str, Preset]:
             table.number("roughness", 0.5), table.number("ior", index), medium,
             table.vector("color", _BLACK), table.vector("depth_mm", (1.0, 1.0, 1.0)), table.number("clear", 0.0),
             table.vector("clear_color", _BLACK), table.number("clear_depth_mm", 1.0), table.vector("sheet", _BLACK),
-            table.vector("base", _BLACK),
+            table.vector("base", _BLACK), table.text("mesh_color", "") == "kept",
         )  # fmt: skip
     document.reporter.check()
     return result

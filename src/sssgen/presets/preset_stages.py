@@ -6,15 +6,18 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 from sssgen.bake.fluence import variant
 from sssgen.interchange.dense_bodies import isotropic_medium
 from sssgen.interchange.imported_material import Notes
-from sssgen.interchange.technique_choice import choose_for_lights
+from sssgen.interchange.surface_model import SurfaceModel
+from sssgen.interchange.technique_choice import Choice, choose_for_lights
 from sssgen.material.material_text import MaterialSection, material_text
 from sssgen.material.scatter_color import multiscatter_of_albedo
-from sssgen.presets.preset import Preset
+from sssgen.presets.kept_material import with_pictures
+from sssgen.presets.preset import Color, Preset
 from sssgen.scene.measured.media import Medium
 from sssgen.support.diagnostics import failure
 
@@ -22,6 +25,8 @@ RESPONSE = "light.bin"
 """The file of the baked light, beside the material."""
 _MATTE = 0.85
 """The share of a thick body's colour that `fast` reflects; the rest is in the light behind."""
+_DETAIL = 0.5
+"""The share of the light of a scattering body that has the detail of the mesh's own colours."""
 _OPAQUE = 12.0
 """The mean chord in mean free paths from which nothing is seen through a body."""
 _THICK = 4.0
@@ -43,12 +48,17 @@ class BodySize(NamedTuple):
     """World units: the mean length of straight lines inside"""
 
 
+class PresetMaterial(NamedTuple):
+    """A material of a preset."""
+
+    text: str
+    files: Mapping[str, bytes]
+    """Its textures, by their names beside it"""
+
+
 def preset_text(preset: Preset, quality: str, name: str, size: BodySize) -> str:
     """The material file of a preset, called `name`, for a body of a size."""
-    stages = preset_stages(preset, quality, size)
-    doc = f"{preset.doc} A world unit is {size.unit_mm:.4g} mm. {preset.source}."
-    two_sided: dict[str, object] = {"two_sided": True} if any(preset.sheet) else {}
-    return material_text(name, stages, preset.title, doc, {"shading": "lit", **two_sided})
+    return preset_material(preset, quality, name, size).text
 
 
 def two_units_text(preset: Preset, name: str) -> str:
@@ -56,20 +66,65 @@ def two_units_text(preset: Preset, name: str) -> str:
     return preset_text(preset, "good", name, BodySize(0.5 * preset.size_mm, _MEAN_CHORD))
 
 
-def preset_stages(preset: Preset, quality: str, size: BodySize) -> list[MaterialSection]:
-    """The stages. A sheet is the same in all qualities: it needs no picture and no bake.
+def preset_material(
+    preset: Preset, quality: str, name: str, size: BodySize, kept: SurfaceModel | None = None, keeps_color: bool = False
+) -> PresetMaterial:
+    """The material of a preset for a body, with the pictures of `kept`, that of the colour only if `keeps_color`.
 
     Raises SssgenError for a mesh whose unit is too small or too large for the parameters of techniques.
     """
     _check_unit(preset, size)
+    choice = _choice(preset, quality, size, kept, keeps_color)
+    doc = f"{preset.doc} A world unit is {size.unit_mm:.4g} mm. {preset.source}."
+    read = {value for stage in choice.stages for _, value in stage.values if isinstance(value, str)}
+    files = {name: content for name, content in choice.files.items() if name in read}
+    return PresetMaterial(material_text(name, choice.stages, preset.title, doc, choice.settings), files)
+
+
+def _choice(preset: Preset, quality: str, size: BodySize, kept: SurfaceModel | None, keeps_color: bool) -> Choice:
+    """The stages. A sheet is the same in all qualities: it needs no picture of the body and no bake."""
+
+    def choose(model: SurfaceModel, mean_chord: float) -> Choice:
+        model = model if kept is None else with_pictures(model, kept, keeps_color)
+        return choose_for_lights(model, Notes(), mean_chord)
+
     if any(preset.sheet) or (quality == "fast" and not preset.scatters):
         # one thickness: its unit is free, and here it is the mean chord
-        return choose_for_lights(preset.model(size.unit_mm * size.mean_chord), Notes(), 1.0).stages
-    chosen = choose_for_lights(preset.model(size.unit_mm), Notes(), size.mean_chord).stages
+        return choose(preset.model(size.unit_mm * size.mean_chord), 1.0)
     if quality == "good" or not preset.scatters:
-        return _seen_through(preset, size, [_colored(preset, size, stage) for stage in chosen])
-    surface = [stage for stage in chosen if stage.section == "surface" and stage.technique != "base_color"]
-    return [*(_fast if quality == "fast" else _best)(preset, size), *surface]
+        choice = choose(preset.model(size.unit_mm), size.mean_chord)
+        stages = [_colored(preset, size, stage) for stage in choice.stages]
+        choice = choice._replace(stages=_seen_through(preset, size, stages))
+        has_detail = keeps_color and kept is not None and kept.base_color.image is not None
+        if not (has_detail and preset.scatters):
+            return choice
+        painted = choose(preset.surface(_reflected(preset, size, _DETAIL)), size.mean_chord)
+        return _with_detail(choice, painted)
+    inside, color = (_fast if quality == "fast" else _best)(preset, size)
+    choice = choose(preset.surface(color), size.mean_chord)
+    return choice._replace(stages=[*inside, *choice.stages])
+
+
+def _with_detail(choice: Choice, painted: Choice) -> Choice:
+    """The stages of a body with light inside, a part of which is the colour of `painted` in its place: light inside has
+    no picture."""
+    (color,) = [stage for stage in painted.stages if stage.technique == "base_color"]
+    stages = []
+    for stage in choice.stages:
+        values = [(key, _shares_left(value) if key == "octaves" else value) for key, value in stage.values]
+        stages.append(color if stage.technique == "base_color" else stage._replace(values=tuple(values)))
+    return choice._replace(stages=stages, files={**choice.files, **painted.files})
+
+
+def _shares_left(octaves: Any) -> list[float]:
+    return [(1.0 - _DETAIL) * share for share in octaves]
+
+
+def _reflected(preset: Preset, size: BodySize, share: float) -> Color:
+    """A share of what a thick body reflects of diffuse light."""
+    medium = isotropic_medium(preset.interior(size.unit_mm))
+    red, green, blue = (share * part for part in multiscatter_of_albedo(medium.albedo))
+    return red, green, blue
 
 
 def _check_unit(preset: Preset, size: BodySize) -> None:
@@ -108,43 +163,41 @@ def _seen_through(preset: Preset, size: BodySize, stages: list[MaterialSection])
     medium = isotropic_medium(preset.interior(size.unit_mm))
     if min(medium.extinction) * size.mean_chord > _OPAQUE:
         return stages
-    kept = [stage for stage in stages if stage.technique not in ("constant_thickness", "seen_through")]
+    replaced = [stage for stage in stages if stage.technique in ("constant_thickness", "seen_through")]
+    kept = [stage for stage in stages if stage not in replaced]
+    texture = [pair for stage in replaced for pair in stage.values if pair[0] == "entering_texture"]
     lengths = [] if preset.scatters else [MaterialSection("thickness", "back_face_thickness")]
     share = 1.0 if preset.scatters else preset.clear
     values = (
-        ("entering_color", [share] * 3), ("extinction", [*medium.extinction]), ("ior", preset.ior),
+        *texture, ("entering_color", [share] * 3), ("extinction", [*medium.extinction]), ("ior", preset.ior),
         ("sky_below", [0.0, 0.0, 0.0]), ("sky_above", [0.0, 0.0, 0.0]),
     )  # fmt: skip
     comment = "The engine's surroundings are seen through; for a sky of two colours set sky_below and sky_above."
     return [*lengths, *kept, MaterialSection("translucency", "seen_through_body", values, comment=comment)]
 
 
-def _fast(preset: Preset, size: BodySize) -> list[MaterialSection]:
-    """A matte colour that reaches around, and a lobe behind: diffusion through a slab of half the mean chord."""
+def _fast(preset: Preset, size: BodySize) -> tuple[list[MaterialSection], Color]:
+    """A lobe behind, diffusion through a slab of half the mean chord, and a matte colour that reaches around."""
     medium = isotropic_medium(preset.interior(size.unit_mm))
-    color = multiscatter_of_albedo(medium.albedo)
+    matte = _reflected(preset, size, _MATTE)
     depth = 0.5 * size.mean_chord
     transmitted = _transmitted(medium, depth)
     strongest = max(transmitted)
     wrap = 0.5 * min(medium.mean_free_path / max(depth, 1e-6), 1.0)
-    matte = [_MATTE * part for part in color]
     lobe = (
         ("subsurface_color", [part / strongest for part in transmitted]),
         ("scale", min(3.0 * strongest, 20.0)), ("power", 4.0), ("distortion", 0.3), ("ambient", min(strongest, 0.3)),
     )  # fmt: skip
-    return [
+    stages = [
         MaterialSection("thickness", "constant_thickness", (("thickness_factor", 1.0),)),
         MaterialSection("thickness", "beer_lambert", (("attenuation_distance", 4.0),)),
-        MaterialSection("surface", "base_color", (("tint", [*matte, 1.0]),)),
-        MaterialSection("translucency", "wrap_lighting", (("wrap", wrap), ("subsurface_color", matte))),
+        MaterialSection("translucency", "wrap_lighting", (("wrap", wrap), ("subsurface_color", [*matte]))),
         MaterialSection("translucency", "lobe_normalized", lobe),
     ]
+    return stages, matte
 
 
-def _best(preset: Preset, size: BodySize) -> list[MaterialSection]:
-    """The volume contains the diffuse reflection; its medium is in the bake's JSON."""
+def _best(preset: Preset, size: BodySize) -> tuple[list[MaterialSection], Color]:
+    """The volume contains the diffuse reflection, so that the colour is black; its medium is in the bake's JSON."""
     technique = f"fluence_relit{variant(preset.interior(size.unit_mm))}"
-    return [
-        MaterialSection("surface", "base_color", (("tint", [0.0, 0.0, 0.0, 1.0]),)),
-        MaterialSection("translucency", technique, (("inner_light", RESPONSE),)),
-    ]
+    return [MaterialSection("translucency", technique, (("inner_light", RESPONSE),))], (0.0, 0.0, 0.0)

@@ -1,31 +1,48 @@
-"""The mesh that a preset is for: its triangles as a .glb, and its size."""
+"""The mesh that a preset is for: its triangles as a .glb, its size, and what is kept of its material."""
 
 from __future__ import annotations
 
+import os
 from typing import NamedTuple
 
 import numpy as np
 
+from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.material_writer import mean_chord
 from sssgen.interchange.mesh_glb import mesh_file
+from sssgen.presets.kept_material import GltfPart, is_gltf, read_part
 from sssgen.presets.preset_stages import BodySize
 from sssgen.scene.arrays import Array
-from sssgen.scene.geometry_mesh import is_closed
-from sssgen.scene.mesh import Mesh, Triangles
+from sssgen.scene.geometry_base import any_tangent
+from sssgen.scene.mesh import Mesh
 from sssgen.scene.mesh_files import FileContent
+from sssgen.support.diagnostics import failure
+from sssgen.support.paths import posix
 
 
 class UsedMesh(NamedTuple):
     """A mesh, checked."""
 
     path: str
-    glb: bytes
+    content: FileContent
     """With smooth normals where the file has none"""
+    tangents: Array | None
+    """(v, 4) for a normal map; w is -1 where uv is mirrored"""
     size: BodySize
     low: tuple[float, float, float]
     high: tuple[float, float, float]
     """The corners of its box"""
-    closed: bool
+    geometry: Mesh
+    """The body as rays see it"""
+    part: GltfPart | None
+    """Of a glTF file"""
+    report: Report
+    """What became of the elements of a glTF file"""
+
+    @property
+    def glb(self) -> bytes:
+        """The triangles as a file."""
+        return mesh_file(self.content, self.tangents)
 
     @property
     def radius(self) -> float:
@@ -33,27 +50,52 @@ class UsedMesh(NamedTuple):
         return 0.5 * float(np.linalg.norm(np.subtract(self.high, self.low)))
 
 
-def used_mesh(path: str, longest_mm: float) -> UsedMesh:
-    """Reads a mesh whose longest side is `longest_mm` millimetres. Raises SssgenError for a faulty file."""
-    geometry = Mesh(path=path)
-    mesh = geometry.triangles
+def used_mesh(path: str, longest_mm: float | None, material: str = "") -> UsedMesh:
+    """Reads a mesh whose longest side is `longest_mm` millimetres, or which is in metres where that is None.
+
+    Of a glTF file, the triangles with one material alone, if it is named. Raises SssgenError for a faulty file.
+    """
+    report, part = Report(os.path.basename(path)), None
+    if is_gltf(path) and os.path.isfile(path):
+        part = read_part(path, material, report)
+        geometry = Mesh(path=f"{os.path.splitext(path)[0]}.glb", data=mesh_file(part.mesh))
+    elif material:
+        raise failure("a material is chosen of a glTF file", "leave --material out", posix(path))
+    else:
+        geometry = Mesh(path=path)
     low, high = geometry.bounds()
     longest = float((high - low).max())
-    content = _content(mesh, geometry.inside_out)
-    size = BodySize(longest_mm / longest, mean_chord(content))
-    return UsedMesh(path, mesh_file(content), size, _corner(low), _corner(high), is_closed(geometry))
+    has_relief = part is not None and part.imported is not None and part.imported.model.normal.image is not None
+    content, tangents = _content(geometry, has_relief)
+    size = BodySize(1000.0 if longest_mm is None else longest_mm / longest, mean_chord(content))
+    return UsedMesh(path, content, tangents, size, _corner(low), _corner(high), geometry, part, report)
 
 
-def _content(mesh: Triangles, inside_out: bool) -> FileContent:
-    """The triangles with the normals that sssgen draws; corners with equal values are one vertex."""
-    count = len(mesh.corners)
-    normals = mesh.corner_normals(np.arange(count)) * (-1.0 if inside_out else 1.0)
+def _content(geometry: Mesh, has_relief: bool) -> tuple[FileContent, Array | None]:
+    """The triangles with the normals that sssgen draws, and tangents; corners with equal values are one vertex."""
+    mesh = geometry.triangles
+    count, side = len(mesh.corners), -1.0 if geometry.inside_out else 1.0
+    normals = mesh.corner_normals(np.arange(count)) * side
     parts = [mesh.places[mesh.corners], normals, *([] if mesh.uv is None else [mesh.uv])]
+    if has_relief and mesh.tangents is not None:
+        handedness = np.broadcast_to(side * mesh.handedness[:, None, None], (count, 3, 1))
+        parts += [_tangents(mesh.tangents, normals), handedness]
     corners = np.concatenate([part.reshape(3 * count, -1) for part in parts], axis=1)
     vertices, numbers = np.unique(corners, axis=0, return_inverse=True)
     faces = numbers.reshape(count, 3)
-    faces = faces[:, ::-1] if inside_out else faces
-    return FileContent(vertices[:, :3], faces, None if mesh.uv is None else vertices[:, 6:8], normals=vertices[:, 3:6])
+    faces = faces[:, ::-1] if geometry.inside_out else faces
+    uv = None if mesh.uv is None else vertices[:, 6:8]
+    tangents = vertices[:, 8:12] if vertices.shape[1] == 12 else None
+    return FileContent(vertices[:, :3], faces, uv, normals=vertices[:, 3:6]), tangents
+
+
+def _tangents(along: Array, normals: Array) -> Array:
+    """Unit tangents (f, 3, 3), across the normals."""
+    across = along - (along * normals).sum(axis=2, keepdims=True) * normals
+    length = np.linalg.norm(across, axis=2, keepdims=True)
+    others = any_tangent(normals.reshape(-1, 3)).reshape(normals.shape)
+    result: Array = np.where(length > 1e-6, across / np.maximum(length, 1e-6), others)
+    return result
 
 
 def _corner(point: Array) -> tuple[float, float, float]:

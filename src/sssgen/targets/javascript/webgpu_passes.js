@@ -6,7 +6,7 @@
 // It executes the list of the reflection for a frame, before the render pass that draws the material. Where the device has
 // the feature float32-filterable, the pictures have 32-bit floats, else 16-bit ones.
 
-import { LAYERS, LAYER_GAP, PACKING, SIDE, emptyOf, isFiltered, isVolume, layersOf, lightsOf, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
+import { FAR, LAYERS, LAYER_GAP, PACKING, SIDE, emptyOf, isFiltered, isVolume, layersOf, lightsOf, showsLight, tileOf, tilesOf, viewNumbers } from './frame_passes.js';
 import { Responses } from './inner_volume.js';
 import { InnerTexture } from './webgpu_inner_light.js';
 
@@ -285,7 +285,8 @@ class Passes {
   #draw(frame, pass, bodies, views, eye, { corners }, picture) {
     const { width, height } = picture, tiles = tilesOf(views.length), lit = showsLight(pass);
     const layers = lit ? [{ back: false, before: -1 }] : layersOf(pass), isPacked = layers.length > 1;
-    const end = emptyOf(pass, Math.max(1e-3, ...views.map((view) => view.end)));
+    // what receives a shadow may lie far behind the bodies that cast it
+    const end = pass.name === 'shadow_depth' ? FAR : emptyOf(pass, Math.max(1e-3, ...views.map((view) => view.end)));
     const clearValue = lit ? [0, 0, 0, end] : [end, end, end, end];
     const gap = LAYER_GAP * 0.5 * Math.hypot(...minus(corners[7], corners[0]));
     /** @type {GPUTexture[]} */
