@@ -17,6 +17,7 @@ import build_playground
 import generated
 import playground_links
 from chart_pictures import beside_path_tracing
+from home_page import write_home
 from menu import ROOT, documents, problems
 from picture import Picture
 from records import best_point
@@ -52,8 +53,9 @@ def main(folder: Path, pictures: bool) -> int:
     settings = ["-c", str(Path(__file__).parent), "-b", "html", "-q", "-W", "--keep-going", "-d", f"{sources}-cache"]
     status = build_main([*settings, str(sources), str(folder)])
     if not status:
-        print(f"wrote {folder}/index.html: {len(texts)} pages")
+        print(f"wrote {folder}/README.html: {len(texts)} pages")
         print(f"wrote {folder}/playground/index.html: {build_playground.build(folder / 'playground')} beginnings")
+        write_home(folder)
     return status
 
 

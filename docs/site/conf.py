@@ -8,6 +8,7 @@ from typing import Any
 project = "sssgen"
 copyright = "The sssgen authors"
 extensions = ["myst_parser", "sphinx.ext.autodoc"]
+root_doc = "README"
 source_suffix = {".md": "markdown"}
 
 html_theme = "furo"
@@ -16,6 +17,8 @@ html_copy_source = False
 html_show_sphinx = False
 html_static_path = ["static"]
 html_css_files = ["site.css"]
+html_favicon = "static/icon.svg"
+templates_path = ["templates"]
 
 myst_heading_anchors = 6
 myst_enable_extensions = ["html_image"]

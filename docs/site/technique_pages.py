@@ -179,7 +179,7 @@ def _measured(technique: Technique) -> list[str]:
         costs = statistics.median(point["cost"]["value"] for point in same)
         figures = (f"{statistics.median(errors):.3f}", f"{max(errors):.3f}", f"{costs:.0f}", str(len(same)))
         rows.append((role.replace("_", " "), escaped(label), *figures))
-    accuracy = "../../accuracy.md"
+    accuracy = "../../accuracy/charts.md"
     return [
         "## Error and cost", "",
         f"From the record of the [chart]({accuracy}): the error against the exact reference (0 is none), and the cost "
