@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import Any
 
 project = "sssgen"
@@ -17,7 +18,13 @@ html_copy_source = False
 html_show_sphinx = False
 html_static_path = ["static"]
 html_css_files = ["site.css"]
+html_theme_options = {
+    "light_css_variables": {"color-brand-primary": "#a8430f", "color-brand-content": "#a8430f"},
+    "dark_css_variables": {"color-brand-primary": "#ff9a52", "color-brand-content": "#ff9a52"},
+}
+html_search_scorer = str(Path(__file__).with_name("scorer.js"))
 html_favicon = "static/icon.svg"
+html_extra_path = ["404.html"]
 templates_path = ["templates"]
 
 myst_heading_anchors = 6
@@ -33,8 +40,14 @@ default_role = "code"
 
 
 def setup(app: Any) -> None:
-    """Omits the docstrings that Python itself gives the fields of a NamedTuple."""
+    """Omits the docstrings that Python itself gives the fields of a NamedTuple; pictures load when they are seen."""
     app.connect("autodoc-process-docstring", _without_aliases)
+    app.connect("html-page-context", _with_lazy_pictures)
+
+
+def _with_lazy_pictures(app: Any, page: str, template: str, context: dict[str, Any], tree: Any) -> None:
+    if "body" in context:
+        context["body"] = re.sub(r"<img (?![^>]*loading=)", '<img loading="lazy" ', context["body"])
 
 
 def _without_aliases(app: Any, what: str, name: str, value: Any, options: Any, lines: list[str]) -> None:
