@@ -37,9 +37,7 @@ def _list(texts: Mapping[str, str]) -> str:
         lines += [f"{heading[0].upper()}{heading[1:]}:", ""]
         for name, command in COMMANDS.items():
             if command.group == group:
-                lines.append(
-                    f"- [`sssgen {name}`]({page_of('docs/reference/commands.md')}): {command.help}. JSON: {keys[name]}"
-                )
+                lines.append(f"- [`sssgen {name}`]({reference}): {command.help}. JSON: {keys[name]}")
         lines.append("")
     for section in sections():
         lines += [f"## {section.title}", ""]

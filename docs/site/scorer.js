@@ -1,6 +1,6 @@
 // How the search orders what it finds: presets and techniques first, the history and long tables last.
-var Scorer = {  // Sphinx reads it as a global
-  score: ({ 0: page, 4: score }) => score + (Scorer.places.find(([folder]) => page.startsWith(folder)) ?? ['', 0])[1],
+globalThis.Scorer = {  // Sphinx reads it
+  score: ({ 0: page, 4: score }) => score + (globalThis.Scorer.places.find(([folder]) => page.startsWith(folder)) ?? ['', 0])[1],
   places: [
     ['docs/reference/presets/', 14], ['docs/reference/techniques/', 8], ['docs/reference/commands', 4], ['docs/tutorials/', 3],
     ['CHANGELOG', -20], ['qualification', -8], ['docs/parity', -8], ['docs/accuracy/', -4], ['docs/errata', -4],

@@ -42,6 +42,7 @@ async function begin(name, state = null) {
   editor.show(state?.files ?? start.files, start.files, state?.open ?? start.main);
   if (state?.target) target.value = state.target;
   if (state?.form) form.value = state.form;
+  if (start.head && !state) picture.show({ head: start.head });  // while Python is loading
   await refresh(false);
 }
 
