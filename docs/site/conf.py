@@ -22,6 +22,7 @@ html_theme_options = {
     "light_css_variables": {"color-brand-primary": "#a8430f", "color-brand-content": "#a8430f"},
     "dark_css_variables": {"color-brand-primary": "#ff9a52", "color-brand-content": "#ff9a52"},
 }
+html_js_files = [("search.js", {"defer": "defer"})]
 html_search_scorer = str(Path(__file__).with_name("scorer.js"))
 html_favicon = "static/icon.svg"
 html_extra_path = ["404.html"]

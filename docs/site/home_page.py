@@ -65,7 +65,7 @@ def write_home(folder: Path) -> None:
         command=demo.command(first.name, "threejs"),
         techniques=len(library.index()),
         heroes=list(_heroes(pictures)),
-        engines=list(_engines(readme, pictures)),
+        engines=sorted(_engines(readme, pictures), key=lambda engine: not engine.picture),
         chart=_copied(ACCURACY / "front.png", pictures),
         before_after=_copied(ACCURACY / "before_after.png", pictures),
         findings=f"$ {findings['command']}\n{findings['text']}",
@@ -84,7 +84,7 @@ def _engines(readme: str, folder: Path) -> Iterator[Engine]:
     for match in _ENGINE.finditer(readme):
         picture = ROOT / "docs" / "engines" / f"{match['file']}.png"
         file = _copied(picture, folder) if picture.is_file() else ""
-        yield Engine(match["name"], page_of(match["page"]), match["run"], file)
+        yield Engine(match["name"], page_of(match["page"]), match["run"].replace("`", ""), file)
 
 
 def _copied(picture: Path, folder: Path) -> str:
