@@ -4,8 +4,8 @@
 # make gallery  the example scenes' pictures, and docs/gallery.md
 # make stability  what fails in the published techniques and holds in ours: docs/stability.md
 # make bake   bakes two meshes, and docs/bake.md with pictures beside the exact reference
-# make accuracy   error against cost of everything, on two cores 110 minutes: docs/accuracy.md
-# make site   the documents and the playground as static pages: build/site/index.html
+# make accuracy   error against cost of everything, on two cores 110 minutes: docs/accuracy.md and docs/accuracy/*.md
+# make site   a first page with a live demo, the documents and the playground, static: build/site/index.html
 # make fuzz   random programs and files for FUZZ_MINUTES (10)
 # make bench  the benchmarks   make bench-gpu  what shaders cost on this GPU, emitted and by hand
 # make setup  what the others need, done once: .venv, system packages, compilers

@@ -1,6 +1,6 @@
-"""Draws docs/accuracy/ and writes docs/accuracy.md: python docs/accuracy.py [--scheduler ADDRESS] [--processes N]
+"""Writes docs/accuracy.md, and docs/accuracy/ with its pictures: python docs/accuracy.py [--scheduler ADDRESS]
 
-It measures every figure of the page except those of the GPU, which benchmarks/gpu.py and `--gpu` write into
+It measures every figure of the pages except those of the GPU, which benchmarks/gpu.py and `--gpu` write into
 docs/accuracy/*.json on a machine with a GPU. An interrupted run continues where it stopped. The whole records of the
 charts are in build/accuracy/: in docs/accuracy/ is what pages quote.
 """
@@ -17,12 +17,14 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypedDict
 
+import accuracy_front
 import accuracy_goals
 import accuracy_pictures
 import accuracy_points
 import moving_goals
 import moving_trial
 import pick_trial
+from accuracy_pictures import moderate
 from choice_pictures import ScenePictures, scene_pictures
 
 from sssgen.lab.chart import charting as chart
@@ -41,7 +43,8 @@ DOCS = Path(__file__).parent
 FOLDER = DOCS / "accuracy"
 RECORDS = DOCS.parent / "build" / "accuracy"
 """The records of the charts, and what they were drawn from on a GPU: megabytes."""
-PAGE = DOCS / "accuracy.md"
+OVERVIEW = "overview"
+"""The template of docs/accuracy.md; docs/accuracy/NAME.md has the template NAME.md.in beside it."""
 GPU_CHART = "gpu_chart.json"
 BY_HAND = "gpu_jelly_cubes.json"
 """The record of `make bench-gpu`."""
@@ -64,7 +67,7 @@ ROLES = {
 
 
 def main() -> int:
-    """Measures, draws the charts and writes the page; with --gpu, times the chains of the stored chart instead."""
+    """Measures, draws the charts and writes the pages; with --gpu, times the chains of the stored chart instead."""
     options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--gpu", action="store_true", help="time the chains of build/accuracy/chart.json on this GPU")
     options.add_argument("--scheduler", default="")
@@ -85,7 +88,7 @@ def main() -> int:
     if not arguments.charts_only:
         lit = [refracting(body) for body in bodies if body.medium is not None]
         trial, bent = pick_trial.trial_rows(settings), chart.chart_record(lit, settings._replace(roles=("material",)))
-    page(record, pictures, trial, bent)
+    write_pages(record, pictures, trial, bent)
     print(f"{processor_minutes():.0f} minutes of processor time in this run, with its processes")
     return 0
 
@@ -107,22 +110,22 @@ def refracting(scene: MeasuredScene) -> MeasuredScene:
     return dataclasses.replace(scene, medium=dataclasses.replace(scene.medium, ior=INDEX))
 
 
-def page(
+def write_pages(
     record: Record,
     pictures: Sequence[ScenePictures],
     trial: Sequence[pick_trial.Row] | None,
     bent: Record | None,
 ) -> None:
-    """Writes the pictures and the page; `bent` has the bodies with a refracting boundary. What is None is not shown."""
+    """Writes pictures and pages; `bent` has the bodies with a refracting boundary. What is None is not shown."""
     chart_files = drawing.chart_files(record)
     records = {name: data for name, data in chart_files.items() if name.endswith((".csv", ".json"))}
     if bent is not None:
         records[BENT] = to_json(check_record(bent))
     write_files(str(RECORDS), records)
-    files = {name: data for name, data in chart_files.items() if name.endswith(".png")}
+    files = {name: moderate(data) for name, data in chart_files.items() if name.endswith(".png")}
     files["points.json"] = accuracy_points.quoted([record, *([bent] if bent is not None else [])])
+    files["front.png"] = moderate(accuracy_front.drawn(record))
     write_files(str(FOLDER), files | {"pictures.png": accuracy_pictures.drawn(pictures)})
-    text = (FOLDER / "page.md.in").read_text(encoding="utf-8")
     parts: dict[str, Callable[[], str]] = {
         "scenes": lambda: scene_table(record), "fronts": lambda: fronts(record),
         "moving goals": lambda: "\n".join(moving_goals.rows(moving_goals.load())),
@@ -137,12 +140,17 @@ def page(
         "pick": lambda: pick_trial.table(trial) if trial is not None else UNMEASURED,
         "moving picks": lambda: moving_trial.table(moving_trial.load()),
     }  # fmt: skip
+    texts = {
+        template.name.partition(".")[0]: template.read_text(encoding="utf-8") for template in FOLDER.glob("*.md.in")
+    }
     for name, part in parts.items():
         mark = f"<!-- {name} -->"
-        assert text.count(mark) == 1, name
-        text = text.replace(mark, part())
-    PAGE.write_text(text, encoding="utf-8")
-    print(f"wrote {PAGE}")
+        assert sum(text.count(mark) for text in texts.values()) == 1, name
+        texts = {page: text.replace(mark, part()) if mark in text else text for page, text in texts.items()}
+    for page, text in texts.items():
+        file = DOCS / "accuracy.md" if page == OVERVIEW else FOLDER / f"{page}.md"
+        file.write_text(text, encoding="utf-8")
+        print(f"wrote {file}")
 
 
 def timed() -> int:
@@ -161,7 +169,9 @@ def timed() -> int:
 
     timed_record = chart_gpu.with_gpu_cost(shortened, [measured_scene.load(name) for name in names], progress=progress)
     charts = drawing.chart_files(chart_gpu.by_gpu(timed_record), "gpu")
-    write_files(str(FOLDER), {"gpu_material.png": charts["gpu_material.png"], GPU_CHART: gpu_summary(timed_record)})
+    write_files(
+        str(FOLDER), {"gpu_material.png": moderate(charts["gpu_material.png"]), GPU_CHART: gpu_summary(timed_record)}
+    )
     write_files(str(RECORDS), {GPU_CHART: to_json(timed_record)})
     print(timed_record["record"]["device"], timed_record["record"]["rank_correlation"])
     return 0

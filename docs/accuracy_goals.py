@@ -64,7 +64,7 @@ def table(record: Record, bent: Record | None, interior: InteriorTimes) -> str:
     if bent is not None:
         rows.append(_volume("hypervolume of material with the boundary", bent, "material", VOLUME_WITH_BOUNDARY))
     within = {}
-    for scene in _lit(record):
+    for scene in lit(record):
         points = [point for point in record["points"] if point["scene"] == scene and point["role"] == "material"]
         point, met = choose(list(filter(is_allowed, points)), PICKED, None)
         assert point is not None
@@ -87,7 +87,7 @@ def _volume(name: str, record: Record, role: str, factor: float) -> str:
     ratios = {
         entry["scene"]: entry["ours"] / max(entry["baselines"], 1e-9)
         for entry in record["hypervolume"]
-        if entry["role"] == role and entry["scene"] in _lit(record)
+        if entry["role"] == role and entry["scene"] in lit(record)
     }
     good = sum(ratio >= factor for ratio in ratios.values())
     listed = ", ".join(f"{scene} {ratio:.2f}" for scene, ratio in ratios.items())
@@ -101,25 +101,54 @@ def _last_technique(label: str) -> str:
     return label.split(" → ")[-1].split(" by ")[0]
 
 
+class Chain(NamedTuple):
+    """A whole material that is measured on all bodies."""
+
+    cost: float
+    """The largest on the bodies; chains that evaluate a body's distance function depend on it"""
+    error: float
+    """The median over the bodies"""
+    label: str
+    points: Mapping[str, Point]
+    """By body"""
+
+    @property
+    def baseline(self) -> bool:
+        """Whether it is a published shader."""
+        return any(point["baseline"] for point in self.points.values())
+
+    @property
+    def moving(self) -> bool:
+        """Whether the light may move relative to the body."""
+        return all(FIXED not in point["requires"] for point in self.points.values())
+
+
+def chains(record: Record, fixed: bool) -> list[Chain]:
+    """The chains that are measured on all bodies, by cost; `fixed` as in Goal."""
+    scenes = lit(record)
+    found = [
+        Chain(
+            max(float(point["cost"]["value"]) for point in points.values()),
+            median(measures(point)[1] for point in points.values()), label, points,
+        )
+        for label, points in _by_label(record).items()
+        if len(points) == len(scenes)
+    ]  # fmt: skip
+    return sorted((chain for chain in found if fixed or chain.moving), key=lambda chain: chain[:3])
+
+
 def medians(record: Record, fixed: bool) -> str:
     """The chains with the smallest median error of all that are not more expensive; `fixed` as in Goal."""
-    scenes = _lit(record)
-    by_label = {
-        label: points
-        for label, points in _by_label(record).items()
-        if len(points) == len(scenes) and (fixed or _moving(points))
-    }
-    chains = sorted((_cost_of(points), _median(points), label) for label, points in by_label.items())
+    scenes = lit(record)
     rows = [
         f"| cost | median | {' | '.join(scenes)} | requires | chain |",
         f"|---:|---:|{'---:|' * len(scenes)}---|---|",
     ]
     least = float("inf")
-    for cost, error, label in chains:
+    for cost, error, label, points in chains(record, fixed):
         if error >= NOTABLE * least:
             continue
         least = error
-        points = by_label[label]
         errors = " | ".join(f"{points[scene]['error']['value']:.3f}" for scene in scenes)
         requires = ", ".join(next(iter(points.values()))["requires"])
         published = " (published)" if next(iter(points.values()))["baseline"] else ""
@@ -127,7 +156,8 @@ def medians(record: Record, fixed: bool) -> str:
     return "\n".join(rows)
 
 
-def _lit(record: Record) -> list[str]:
+def lit(record: Record) -> list[str]:
+    """The bodies, which have a medium."""
     return [scene["name"] for scene in record["scenes"] if "medium" in scene]
 
 
@@ -142,38 +172,20 @@ def _by_label(record: Record) -> dict[str, dict[str, Point]]:
 
 def _reached(record: Record, goal: Goal) -> tuple[str, bool]:
     """The smallest median within the cost, as text, and whether it is within the goal."""
-    scenes = _lit(record)
-    chains = [
-        (_median(points), _cost_of(points), label)
-        for label, points in _by_label(record).items()
-        if len(points) == len(scenes)
-        and _cost_of(points) <= goal.cost
-        and all(is_allowed(point) and not point["baseline"] for point in points.values())
-        and (goal.fixed or _moving(points))
+    allowed = [
+        chain
+        for chain in chains(record, goal.fixed)
+        if chain.cost <= goal.cost and not chain.baseline and all(map(is_allowed, chain.points.values()))
     ]
-    if not chains:
+    if not allowed:
         return "no chain", False
-    error, cost, label = min(chains)
-    return f"{error:.4f} at {cost:.0f}: {label}", error <= goal.error
-
-
-def _moving(points: Mapping[str, Point]) -> bool:
-    """Whether the light may move relative to the body."""
-    return all(FIXED not in point["requires"] for point in points.values())
+    best = min(allowed, key=lambda chain: (chain.error, chain.cost, chain.label))
+    return f"{best.error:.4f} at {best.cost:.0f}: {best.label}", best.error <= goal.error
 
 
 def _goal(name: str, goal: Goal, record: Record) -> str:
     light = ", with a light that is fixed to the body" if goal.fixed else ""
     return _row(f"{name} ≤ {goal.error:g} for at most {goal.cost:g} operations{light}", *_reached(record, goal))
-
-
-def _cost_of(points: Mapping[str, Point]) -> float:
-    """The largest cost on the scenes; chains that evaluate the body's distance function depend on it."""
-    return max(float(point["cost"]["value"]) for point in points.values())
-
-
-def _median(points: Mapping[str, Point]) -> float:
-    return median(measures(point)[1] for point in points.values())
 
 
 def _row(name: str, measured: str, met: bool) -> str:

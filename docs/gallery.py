@@ -134,7 +134,7 @@ def page(present: list[Backend], small: dict[str, list[str]], large: dict[str, l
         *_paragraph(
             "The ear and the candle by the default shading of engines, by their material, and by path tracing of the "
             "medium that the material's numbers describe; the highlights are the same (`docs/before_after.py`). The "
-            "ear's material is less red than its medium. [Jade, soap, milk glass and ice](accuracy.md"
+            "ear's material is less red than its medium. [Jade, soap, milk glass and ice](accuracy/bodies.md"
             "#the-gallery-beside-path-tracing) are beside path tracing, too."
         ),
     ]

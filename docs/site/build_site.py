@@ -16,7 +16,10 @@ sys.path.append(str(Path(__file__).with_name("playground")))
 import build_playground
 import generated
 import playground_links
+import preset_pages
 from chart_pictures import beside_path_tracing
+from home_page import write_home
+from llms import write_llms
 from menu import ROOT, documents, problems
 from picture import Picture
 from records import best_point
@@ -46,14 +49,18 @@ def main(folder: Path, pictures: bool) -> int:
         without = why_none(technique) if pictures and "picture" not in drawn else ""
         page, text = generated.technique_page(technique.name, captions, without)
         texts[page] = text
+    texts |= preset_pages.pages()
+    texts[preset_pages.LIST] += preset_pages.listed()
     playground_links.add_links(texts)
     for page, text in texts.items():
         staging.write(page, text)
     settings = ["-c", str(Path(__file__).parent), "-b", "html", "-q", "-W", "--keep-going", "-d", f"{sources}-cache"]
     status = build_main([*settings, str(sources), str(folder)])
     if not status:
-        print(f"wrote {folder}/index.html: {len(texts)} pages")
+        print(f"wrote {folder}/README.html: {len(texts)} pages")
         print(f"wrote {folder}/playground/index.html: {build_playground.build(folder / 'playground')} beginnings")
+        write_home(folder)
+        write_llms(folder, texts)
     return status
 
 

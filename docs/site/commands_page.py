@@ -6,7 +6,7 @@ import argparse
 import os
 import re
 
-from markup import escaped, fenced, folded, table
+from markup import escaped, fenced, folded
 from sssgen.cli.commands import COMMANDS, GROUPS, command_parser
 
 PAGE = "docs/reference/commands.md"
@@ -29,14 +29,14 @@ def page() -> str:
 def _command(parser: argparse.ArgumentParser, heading: str) -> list[str]:
     usage = re.sub(rf"^(usage: |{' ' * len('usage: ')})", "", parser.format_usage().strip("\n"), flags=re.MULTILINE)
     lines = [f"{heading} {parser.prog}", "", escaped(parser.description or ""), "", *fenced(usage, "text"), ""]
-    rows, inner = [], []
+    options, inner = [], []
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
             inner += list(dict.fromkeys(action.choices.values()))
         elif action.help != argparse.SUPPRESS and not isinstance(action, argparse._HelpAction):
-            rows.append((_name(action), escaped(_help(parser, action))))
-    if rows:
-        lines += [*table(("Argument", "Meaning"), rows), ""]
+            options += [f".. option:: {_name(action)}", "", f"   {_as_rst(_help(parser, action))}", ""]
+    if options:
+        lines += ["```{eval-rst}", f".. program:: {parser.prog}", "", *options, "```", ""]
     if parser.epilog:
         lines += [*fenced(folded(parser.epilog.strip("\n")), "text"), ""]
     for one in inner:
@@ -45,12 +45,19 @@ def _command(parser: argparse.ArgumentParser, heading: str) -> list[str]:
 
 
 def _name(action: argparse.Action) -> str:
+    """An option with its value, as Sphinx takes it: it becomes a place that the search leads to."""
     value = action.metavar or ("{" + ",".join(map(str, action.choices)) + "}" if action.choices else action.dest)
     shown = " ".join(value) if isinstance(value, tuple) else value
     if not action.option_strings:
-        return f"`{shown}`"
+        return shown
     ending = "" if action.nargs == 0 else f" {shown}"
-    return f"`{', '.join(action.option_strings)}{ending}`".replace("|", "\\|")
+    return ", ".join(f"{option}{ending}" for option in action.option_strings)
+
+
+def _as_rst(text: str) -> str:
+    """Plain text in which nothing is markup but `code`."""
+    pieces = re.split(r"(`[^`]*`)", " ".join(text.split()))
+    return "".join(piece if piece.startswith("`") else re.sub(r"([\\*_|])", r"\\\1", piece) for piece in pieces)
 
 
 def _help(parser: argparse.ArgumentParser, action: argparse.Action) -> str:

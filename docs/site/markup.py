@@ -30,6 +30,11 @@ def folded(text: str, width: int = 90) -> str:
     )
 
 
+def in_search(*words: str) -> list[str]:
+    """Words that the search of the site leads to this place of a page first."""
+    return [line for word in dict.fromkeys(words) for line in (f"```{{index}} ! {word}", "```", "")]
+
+
 def number(value: object) -> str:
     return f"{value:g}" if isinstance(value, int | float) and not isinstance(value, bool) else str(value).lower()
 

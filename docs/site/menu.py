@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).parents[2]
 MENU = Path(__file__).with_name("menu.toml")
-HOME = "README.md"
-"""The document that is the site's first page."""
+README = "README.md"
+"""The overview: the first of the documents, which has their menu."""
 
 
 class Section(NamedTuple):
@@ -21,6 +21,11 @@ class Section(NamedTuple):
 
 def sections() -> list[Section]:
     return [Section(**section) for section in tomllib.loads(MENU.read_text(encoding="utf-8"))["section"]]
+
+
+def page_of(document: str) -> str:
+    """The page of a document on the site, from the site's folder."""
+    return f"{document.removesuffix('.md')}.html"
 
 
 def documents() -> list[str]:

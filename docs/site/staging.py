@@ -11,7 +11,7 @@ import re
 import shutil
 from pathlib import Path
 
-from menu import HOME, ROOT, sections
+from menu import README, ROOT, sections
 from sssgen.run.backends import Array
 from sssgen.scene.pictures.images import write_png
 
@@ -35,7 +35,7 @@ class Staging:
             pieces += [self._linked(page, text[end : fence.start()]), fence[0]]
             end = fence.end()
         text = "".join([*pieces, self._linked(page, text[end:])])
-        self._put("index.md" if page == HOME else page, text + _contents() if page == HOME else text)
+        self._put(page, text + _contents() if page == README else text)
 
     def add_picture(self, place: str, colors: Array) -> None:
         """A picture that is drawn for the site."""
@@ -56,9 +56,7 @@ class Staging:
         if not target.is_relative_to(ROOT) or not target.exists():
             return link  # Sphinx reports it, or it leads to a generated page
         place = target.relative_to(ROOT).as_posix()
-        if place == HOME:
-            place = "index.md"
-        elif target.is_dir():
+        if target.is_dir():
             place = f"{place}/README.md" if (target / "README.md").is_file() else self._listing(target, place)
         elif target.suffix != ".md":
             self._copy(target, place)
@@ -84,10 +82,10 @@ class Staging:
 
 
 def _contents() -> str:
-    """The tables of contents for the end of the first page: they are the menu."""
+    """The tables of contents for the end of the overview: they are the menu."""
     parts = []
     for section in sections():
-        names = ["self" if page == HOME else "/" + page.removesuffix(".md") for page in section.pages]
+        names = ["self" if page == README else "/" + page.removesuffix(".md") for page in section.pages]
         lines = ["", "```{toctree}", ":hidden:", f":caption: {section.title!r}", "", *names, "```"]
         parts.append("\n".join(lines))
     return "\n".join(parts) + "\n"

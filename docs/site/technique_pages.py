@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import formula_math
-from markup import escaped, fenced, number, table
+from markup import escaped, fenced, in_search, number, table
 from records import points_of
 from sssgen.ir.types import VOID, spell
 from sssgen.lab.chart.record import measures
@@ -79,7 +79,7 @@ def page(technique: Technique, picture: Shown | None = None, limits: Sequence[Sh
     """The page of a technique, with its picture, or why it has none, and with pictures of its limits."""
     facts = facts_of(technique)
     doc = dict(facts["doc"])
-    lines = [f"# {technique.name}", "", escaped(facts["summary"]), ""]
+    lines = [*in_search(technique.name), f"# {technique.name}", "", escaped(facts["summary"]), ""]
     if picture is not None:
         lines += _shown(picture)
     elif without:
@@ -179,7 +179,7 @@ def _measured(technique: Technique) -> list[str]:
         costs = statistics.median(point["cost"]["value"] for point in same)
         figures = (f"{statistics.median(errors):.3f}", f"{max(errors):.3f}", f"{costs:.0f}", str(len(same)))
         rows.append((role.replace("_", " "), escaped(label), *figures))
-    accuracy = "../../accuracy.md"
+    accuracy = "../../accuracy/charts.md"
     return [
         "## Error and cost", "",
         f"From the record of the [chart]({accuracy}): the error against the exact reference (0 is none), and the cost "

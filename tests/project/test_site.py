@@ -1,10 +1,8 @@
-"""The documents as a site: the menu has every page, and the pages are whole and fetch nothing."""
+"""The documents as a site: the menu has every page, and the generated pages are whole."""
 
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
@@ -14,7 +12,9 @@ import pytest
 import commands_page
 import formula_math
 import generated
+import llms
 import menu
+import preset_pages
 import python_page
 import records
 import sssgen
@@ -24,6 +24,7 @@ from folders import ROOT
 from sssgen.cli.commands import COMMANDS, command_parser
 from sssgen.material import library, slots
 from sssgen.material.library import Technique
+from sssgen.presets.preset import presets
 from sssgen.run.backends import Backend
 
 
@@ -49,6 +50,27 @@ def test_every_command_and_option_is_in_the_reference() -> None:
         assert f"\n### sssgen {name}\n" in text
         for option in command_parser(name)._option_string_actions:
             assert option in text or option == "--help", f"{name} {option}"
+
+
+def test_every_preset_has_a_page_and_the_search_knows_its_name() -> None:
+    pages = preset_pages.pages()
+    assert list(pages) == [f"docs/reference/presets/{name}.md" for name in presets()]
+    assert "{index} ! wax\n" in pages["docs/reference/presets/wax.md"]
+    assert "(../techniques/interior_octaves.md)" in pages["docs/reference/presets/wax.md"]
+    assert all(f"(reference/presets/{name}.md)" in preset_pages.listed() for name in presets())
+
+
+def test_llms_txt_lists_every_command_with_its_json_and_every_page(tmp_path: Path) -> None:
+    texts = {page: (ROOT / page).read_text(encoding="utf-8") for page in menu.documents()} | generated.pages()
+    llms.write_llms(tmp_path, texts)
+    text = (tmp_path / "llms.txt").read_text(encoding="utf-8")
+    assert text.startswith("# sssgen\n\n> Describe a translucent material once")
+    for name, command in COMMANDS.items():
+        assert f"- [`sssgen {name}`](docs/reference/commands.html): {command.help}. JSON: " in text
+    for page in (page for section in menu.sections() for page in section.pages):
+        assert f"]({menu.page_of(page)})" in text
+    whole = (tmp_path / "llms-full.txt").read_text(encoding="utf-8")
+    assert texts["docs/lint.md"].strip() in whole and "# Changelog" not in whole
 
 
 def test_every_public_name_is_in_the_reference() -> None:
@@ -124,40 +146,6 @@ def test_the_errors_of_a_technique_are_those_of_the_chart() -> None:
     errors = [point["error"]["value"] for point in points]
     row = rf"\n\| view thickness \| march\\_view, 8 steps \| \S+ \| {max(errors):.3f} \| \d+ \| {len(points)} \|\n"
     assert points and re.search(row, technique_pages.page(library.load("march_view")))
-
-
-@pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The whole site, but the pictures of the techniques."""
-    pytest.importorskip("sphinx", reason="`make site` installs it")
-    folder = tmp_path_factory.mktemp("site") / "site"
-    command = [sys.executable, str(ROOT / "docs" / "site" / "build_site.py"), str(folder), "--without-pictures"]
-    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return folder
-
-
-@pytest.mark.slow
-def test_every_link_of_the_site_leads_somewhere(site: Path) -> None:
-    """Sphinx refuses links between documents that lead nowhere; here are those to files, and pictures."""
-    targets = 0
-    for page in site.rglob("*.html"):
-        text = page.read_text(encoding="utf-8")
-        for link in re.findall(r'<(?:a|img|script|link)\b[^>]*?\b(?:href|src)="([^"#?]+)', text):
-            if not re.match(r"[a-z]+:", link):
-                targets += 1
-                assert (page.parent / link).exists(), f"{page.relative_to(site)}: {link}"
-    assert targets > 1000
-
-
-@pytest.mark.slow
-def test_no_page_fetches_anything_from_elsewhere(site: Path) -> None:
-    for page in site.rglob("*.html"):
-        text = page.read_text(encoding="utf-8")
-        fetched = re.findall(r'<(?:img|script|link|iframe|source)\b[^>]*?\b(?:href|src)="((?:https?:)?//[^"]*)', text)
-        assert not fetched, f"{page.relative_to(site)}: {fetched}"
-    for style in site.rglob("*.css"):
-        assert not re.search(r"(?:url\(|@import)\s*[\"']?(?:https?:)?//", style.read_text(encoding="utf-8")), style
 
 
 PICTURED = ("beer_lambert", "voronoi_normal", "torus")

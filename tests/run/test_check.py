@@ -83,7 +83,7 @@ def test_a_material_in_both_forms(run: Run, compiler: Callable[[str], Compiler])
     compiler("glslang")
     ran = run("check", "ice", "--target", "glsl-330", "-t", "hlsl", "--compiler", "glslang", "--json")
     assert ran.status == 0
-    assert set(ran.data) == {"compilers", "missing", "engines", "results", "not_compiled"}
+    assert set(ran.data) == {"ok", "compilers", "missing", "engines", "results", "not_compiled"}
     assert ran.data["compilers"][0]["name"] == "glslang"
     assert {row["file"] for row in ran.data["results"]} == {
         "ice.glsl-330.vert", "ice.glsl-330.frag", "ice.glsl-330.glsl", "ice.hlsl", "ice.functions.hlsl",

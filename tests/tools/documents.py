@@ -9,6 +9,8 @@
     <!-- output: sssgen … -->      the block is the output of the command
     <!-- findings: sssgen … -->    the block is the output of a command that ends with status 1
     <!-- errors: sssgen … -->      the block is the error output of a command that ends with status 2
+    <!-- json: sssgen … -->        the block is a part of the JSON that the command prints: all of its first keys,
+                                   of lists the first elements, and of a text that ends with … its beginning
     <!-- python -->                the block is a session of the interpreter
 
 UPDATE_SNAPSHOTS=1 writes the blocks with generated contents: file, emitted, output, findings, errors.
@@ -17,6 +19,7 @@ UPDATE_SNAPSHOTS=1 writes the blocks with generated contents: file, emitted, out
 from __future__ import annotations
 
 import doctest
+import json
 import os
 import re
 import shlex
@@ -104,8 +107,17 @@ class Reader:
             _session(block)
         elif block.verb == "part of":
             _part(block)
+        elif block.verb == "json":
+            self._json(block)
         else:
             check(block, self.actual_text(block))
+
+    def _json(self, block: Block) -> None:
+        shown = json.loads(block.text)
+        status = 0 if shown["ok"] else 2 if "diagnostics" in shown else 1
+        printed = json.loads(self.run(block.argument, status)[0])
+        assert list(shown) == list(printed), f"{block}: the keys are {', '.join(printed)}"
+        assert is_part(shown, printed), f"{block} is not current: {json.dumps(printed, indent=2)[:2000]}"
 
     def actual_text(self, block: Block) -> str:
         """The expected text of the block."""
@@ -143,6 +155,18 @@ def check(block: Block, expected: str) -> None:
         block.document.write_text(text[:start] + expected + text[start + len(block.text) :], encoding="utf-8")
         return
     assert block.text == expected, f"{block} is not current; UPDATE_SNAPSHOTS=1 updates it"
+
+
+def is_part(shown: object, printed: object) -> bool:
+    """Whether all of a JSON value that a document shows is in a printed one."""
+    if isinstance(shown, dict) and isinstance(printed, dict):
+        return all(key in printed and is_part(value, printed[key]) for key, value in shown.items())
+    if isinstance(shown, list) and isinstance(printed, list):
+        pairs = zip(shown, printed, strict=False)
+        return len(shown) <= len(printed) and all(is_part(value, other) for value, other in pairs)
+    if isinstance(shown, str) and isinstance(printed, str) and shown.endswith("…"):
+        return printed.startswith(shown[:-1])
+    return shown == printed
 
 
 def _change(path: Path, block: Block) -> None:

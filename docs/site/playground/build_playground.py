@@ -1,6 +1,6 @@
-"""Builds the playground: python docs/site/playground/build_playground.py FOLDER [NAME …]
+"""Builds the playground, and the demo that the site's first page has of it: build_playground.py FOLDER [NAME …]
 
-It is static: any host serves the folder. Where names of starts are given, only these are built.
+It is static: any host serves the folder. Where names of starts are given, only these are built, without the demo.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import sys
 from collections.abc import Collection
 from pathlib import Path
 
+from demo import write_demo
 from python_bundle import write_bundle
 from sssgen.pipeline.compiler import all_targets
 from sssgen.presets.preset import presets
@@ -43,11 +44,16 @@ def build(folder: Path, names: Collection[str] = ()) -> int:
     index = (folder / "index.html").read_text(encoding="utf-8")
     (folder / "index.html").write_text(index.replace(IMPORT_MAP, libraries.import_map()), encoding="utf-8")
     write_bundle(folder / "python", starts, first)
+    if not names:
+        write_demo(folder, starts)
     for name, start in starts.items():
-        write_start(folder, name, start)
+        if names or not start.preset:
+            write_start(folder, name, start)
     listed = {
         "first": first,
-        "starts": [{"name": name, "title": start.title, "plain": not start.source} for name, start in starts.items()],
+        "starts": [
+            {"name": name, "title": start.title, "preset": bool(start.preset)} for name, start in starts.items()
+        ],
         "targets": [{"name": name, "title": target.title} for name, target in all_targets().items()],
     }
     texts = {name: two_units_text(preset, name) for name, preset in presets().items()}

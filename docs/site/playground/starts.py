@@ -1,4 +1,4 @@
-"""What the playground begins with: the example materials, a new material, plain GLSL; and the pieces of their pictures.
+"""What the playground begins with: presets, examples, a new material, plain GLSL; and the pieces of their pictures.
 
 What needs NumPy is computed here, once: the bodies, the textures, the values of the scenes. In the browser only text is
 made, and the part of a picture's head that follows from it.
@@ -15,10 +15,11 @@ from typing import Any, NamedTuple
 from body_piece import packed_body
 from packed_file import write_packed
 from playground_session import texture_files
+from preset_starts import preset_files
 from sssgen.material.material_loading import examples, load_material
 from sssgen.pipeline.compiler import compile
 from sssgen.preview.bodies import SHAPES, packed_triangles
-from sssgen.preview.emitted_head import PARTS, TARGET
+from sssgen.preview.emitted_head import PARTS, TARGET, emitted_head
 from sssgen.preview.flat_picture import raymarched_picture
 from sssgen.preview.picture import Choices, Picture, picture_of
 from sssgen.scene.preview_scene import scene_of
@@ -27,6 +28,8 @@ from sssgen.support.diagnostics import SssgenError
 from sssgen.support.file_memo import noted_files
 from sssgen.support.toml_source import parse
 
+PRESET = "preset_"
+"""What the names of presets begin with here: an example may have the same name."""
 OWN = Path(__file__).with_name("starts")
 """Beginnings that are no examples: a material, and a file of plain GLSL."""
 
@@ -41,11 +44,22 @@ class Start(NamedTuple):
     data: dict[str, str]
     source: str
     """What `scene_of` takes; '' for plain GLSL, which has no scene."""
+    preset: str = ""
+    """The preset that it shows on the mouse"""
 
 
 def all_starts() -> dict[str, Start]:
     """Every start by its name, which is that of its folder in the browser."""
-    return {**{name: _of_example(name, Path(path)) for name, path in examples().items()}, **_own()}
+    return {**_of_presets(), **{name: _of_example(name, Path(path)) for name, path in examples().items()}, **_own()}
+
+
+def _of_presets() -> dict[str, Start]:
+    found = {}
+    for preset, path in preset_files().items():
+        text = _text(path)
+        start = Start(_title(text, path.name), path.name, {path.name: text}, {}, str(path), preset)
+        found[f"{PRESET}{preset}"] = start
+    return found
 
 
 def _of_example(name: str, path: Path) -> Start:
@@ -78,7 +92,7 @@ def _text(path: Path) -> str:
 
 
 def write_start(folder: Path, name: str, start: Start) -> None:
-    """Writes starts/NAME.json.gz, and the pieces that it names into pieces/."""
+    """Writes starts/NAME.json.gz, and the pieces that it names into pieces/; that of a preset has its `head`, too."""
     record: dict[str, Any] = {"name": name, "title": start.title, "main": start.main, "files": start.files}
     record |= {"scenes": {}, "body_files": [], "texture_files": {}}
     if start.source:
@@ -92,15 +106,20 @@ def _scenes(folder: Path, scene: Scene, start: Start) -> dict[str, Any]:
     if material.makes_rays:
         return {"scenes": {"": _scene(folder, raymarched_picture(scene, material, Choices()), scene.parameters)}}
     scenes = {"": _scene(folder, picture_of(scene, material, Choices()), scene.parameters)}
-    for shape in SHAPES:
+    for shape in () if start.preset else SHAPES:
         with contextlib.suppress(SssgenError):  # what is baked for a body is for no other one
             scenes[shape] = _scene(folder, picture_of(scene, material, Choices(shape)), scene.parameters)
     assert scene.geometry is not None
     with noted_files() as read:
         packed_triangles(scene.geometry)
     body_files = {Path(file).name for file in read} & {file for file in start.files if file.endswith(".sss")}
-    textures = texture_files(material, compile(material, TARGET))
-    return {"scenes": scenes, "body_files": sorted(body_files), "texture_files": textures}
+    compiled = compile(material, TARGET, standalone=True)
+    textures = texture_files(material, compiled)
+    record = {"scenes": scenes, "body_files": sorted(body_files), "texture_files": textures}
+    if start.preset:  # it is drawn before Python is loaded
+        values = scenes[""]["values"]
+        record["head"] = {**emitted_head(material, compiled, values, scene.parameters), "texture_files": textures}
+    return record
 
 
 def _scene(folder: Path, picture: Picture, in_scene: Any) -> dict[str, Any]:

@@ -53,11 +53,12 @@ def run(arguments: Namespace) -> int:
     shaders = read(arguments.FILE, targets)
     with ProgressBar() as progress:
         report = check.run(shaders, compilers, arguments.unity_includes, progress)
+    good = _passes(report, shaders)
     if arguments.json:
-        print_json(check.as_json(report) | {"not_compiled": _reasons_not_compiled(report, shaders)})
+        print_json({"ok": good, **check.as_json(report), "not_compiled": _reasons_not_compiled(report, shaders)})
     else:
         _print(report, shaders, arguments.verbose)
-    return OK if _passes(report, shaders) else CHECK_FAILED
+    return OK if good else CHECK_FAILED
 
 
 def _compilers(names: list[str], wrong: list[Diagnostic]) -> list[str]:

@@ -11,7 +11,7 @@ import { Stage } from './preview/stage.js';
 /** @typedef {{ head: any, texels: Record<string, import('../../../../src/sssgen/preview/page_messages.js').Texels>, values: object, in_scene: string[] }} Scene
  *   `head` is the rest of the picture. */
 /** @typedef {{ name: string, title: string, main: string, files: Files, scenes: Record<string, Scene>, texture_files: Files,
- *   body_files: string[] }} Start  An example; its scenes are by shape. */
+ *   body_files: string[], head?: Head }} Start  An example; its scenes are by shape. A preset has its head: it is drawn without Python. */
 
 const [shape, renderer, environment] = [list('shape'), list('renderer'), checkbox('environment')];
 const OWN = 'its own';

@@ -4,16 +4,16 @@ import { Compiler } from './compiler.js';
 import { Editor } from './editor.js';
 import { EmittedText } from './emitted_text.js';
 import { Pieces } from './pieces.js';
-import { unpacked } from './packed.js';
+import { unpackedJson } from './packed.js';
 import { Picture } from './picture.js';
-import { box, button, list } from './preview/elements.js';
+import { box, button, list, make } from './preview/elements.js';
 import { PresetMenu } from './preset_menu.js';
 import { packedState, unpackedState } from './state_link.js';
 
 /** @typedef {import('./picture.js').Start} Start */
 /** @typedef {{ start: string, files: import('./editor.js').Files, open: string, target: string, form: string, shape: string,
  *   values: object }} State  What a link has. */
-/** @typedef {{ starts: { name: string, title: string }[], targets: { name: string, title: string }[], first: string }} Listed */
+/** @typedef {{ starts: { name: string, title: string, preset: boolean }[], targets: { name: string, title: string }[], first: string }} Listed */
 
 const [target, form, starts] = [list('target'), list('form'), list('start')];
 const copyButton = button('copy');
@@ -33,15 +33,10 @@ const emitted = new EmittedText(box('parts'), box('text'));
 /** @type {Start} */
 let start;
 
-/** @param {string} name @returns {Promise<Start>} */
-async function startOf(name) {
-  return JSON.parse(new TextDecoder().decode(await unpacked(`starts/${name}.json`)));
-}
-
 /** Begins with an example, or with the state of a link.
  * @param {string} name @param {State | null} state */
 async function begin(name, state = null) {
-  start = await startOf(name);
+  start = await unpackedJson(`starts/${name}.json`);
   starts.value = name;
   document.title = `${start.title} · sssgen playground`;
   picture.begin(start, state);
@@ -49,6 +44,7 @@ async function begin(name, state = null) {
   editor.show(state?.files ?? start.files, start.files, state?.open ?? start.main);
   if (state?.target) target.value = state.target;
   if (state?.form) form.value = state.form;
+  if (start.head && !state) picture.show({ head: start.head });  // while Python is loading
   await refresh(false);
 }
 
@@ -145,10 +141,13 @@ async function fromAddress(listed) {
   return begin(listed.starts.some(({ name }) => name === text) ? text : listed.first);
 }
 
-const options = (/** @type {Listed['starts']} */ rows) => rows.map(({ name, title }) => new Option(title, name));
+const options = (/** @type {{ name: string, title: string }[]} */ rows) => rows.map(({ name, title }) => new Option(title, name));
 /** @type {Listed} */
 const listed = await (await fetch('starts.json')).json();
-starts.append(...options(listed.starts));
+for (const [label, preset] of /** @type {const} */ ([['Presets, on a mouse', true], ['Examples', false]])) {
+  const rows = listed.starts.filter((row) => row.preset === preset);
+  if (rows.length) starts.append(make('optgroup', { label }, ...options(rows)));
+}
 target.append(...options(listed.targets));
 target.value = 'wgsl';
 starts.addEventListener('change', () => {

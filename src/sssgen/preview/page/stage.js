@@ -10,7 +10,7 @@ import { rendererOf } from './renderer.js';
 /** @typedef {import('../page_messages.js').BodyPicture} BodyPicture */
 /** @typedef {import('./coarse_body.js').Body} Body */
 /** @typedef {import('./material.js').EmittedMaterial} EmittedMaterial */
-/** @typedef {THREE.PointLight | THREE.DirectionalLight} Lamp */
+/** @typedef {THREE.PointLight | THREE.SpotLight | THREE.DirectionalLight} Lamp */
 /** @typedef {THREE.Mesh<THREE.SphereGeometry, THREE.MeshBasicMaterial> & { userData: { lamp: Lamp } }} Handle */
 
 const WRAPS = { repeat: THREE.RepeatWrapping, clamp: THREE.ClampToEdgeWrapping, mirror: THREE.MirroredRepeatWrapping };

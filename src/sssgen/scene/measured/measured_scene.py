@@ -131,7 +131,7 @@ def of_scene(scene: Scene, path: str) -> MeasuredScene:
     """The measured scene of a scene with physical data. Raises SssgenError for an incomplete description."""
     document, whole = scene.document, scene.document.place().key
     if not scene.measured:
-        hint = 'add [medium] with preset = "marble", say; or [inlay] with depth = 0.02: docs/accuracy.md'
+        hint = 'add [medium] with preset = "marble", say; or [inlay] with depth = 0.02: docs/accuracy/picking.md'
         document.error(whole, "the scene does not describe the medium of its body", hint)
     if scene.geometry is None:
         document.error(whole, "the scene has no geometry to measure", "add [geometry]")
