@@ -51,6 +51,14 @@ class Outcomes:
         self.distances: dict[Site, Array] = {}
         """Left minus right of each comparison, where it is the smallest of a lane; NaN where it was not reached."""
 
+    def part(self, lanes: slice) -> Outcomes:
+        """The outcomes of some of the lanes."""
+        part = Outcomes(len(range(*lanes.indices(self.lanes))))
+        part.branches = {key: mask[lanes] for key, mask in self.branches.items()}
+        part.cases = {key: mask[lanes] for key, mask in self.cases.items()}
+        part.distances = {site: distance[lanes] for site, distance in self.distances.items()}
+        return part
+
     def branch(self, node: object, condition: Array, active: Array) -> None:
         """A condition was evaluated in the active lanes."""
         for value in (True, False):

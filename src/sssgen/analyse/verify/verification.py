@@ -27,11 +27,11 @@ from typing import NamedTuple
 import numpy as np
 
 from sssgen.analyse.verify.branch_outcomes import Outcomes, branches
-from sssgen.analyse.verify.input_search import Search, select_inputs, select_quads
+from sssgen.analyse.verify.input_search import Search
 from sssgen.analyse.verify.lane_interpreter import Program, Run
 from sssgen.analyse.verify.loop_inputs import loop_inputs
 from sssgen.analyse.verify.machines import Machines, backends_of, start_machines
-from sssgen.analyse.verify.plain_inputs import Source, picture, select_lanes
+from sssgen.analyse.verify.plain_inputs import Source, join, picture
 from sssgen.analyse.verify.plain_probes import TEXTURES, FunctionProbes, Leaf, Probe, probe_functions
 from sssgen.analyse.verify.rounding_noise import is_explained, noise
 from sssgen.analyse.verify.stage_variables import MAIN, Plain, plain, without_functions
@@ -227,14 +227,15 @@ class Case:
         rounds = ROUNDS if uniforms else 1
         lanes = -(-samples // rounds // 4) * 4  # derivatives need whole quads
         picked = search.rounds(sampled, rounds, lanes)
-        if rounds > 1:
-            runs = [search.run(round_) for round_ in picked]
-            chosen = [
-                select_quads(run, lanes) if self.program.neighbours else select_inputs(run, lanes, self.seed)
-                for run in runs
-            ]
-            picked = [select_lanes(run.values, lanes_of) for run, lanes_of in zip(runs, chosen, strict=True)]
+        if rounds > 1 and picked:
+            picked = search.best_of_rounds(picked, lanes)
         return [Inputs(values, self.textures) for values in picked if next(iter(values.values())).shape[-1]]
+
+    def interpreted(self) -> list[Inputs]:
+        """The rounds as the interpreter runs them: all at once, unless lanes read their neighbours in the picture."""
+        if self.program.neighbours or len(self.inputs) < 2:
+            return self.inputs
+        return [Inputs(join([inputs.values for inputs in self.inputs]), self.textures)]
 
     def row(self) -> Row:
         """The comparison of all translations."""
@@ -272,7 +273,7 @@ class Case:
         """The undefined lanes of all rounds, and which branches the function's own text takes."""
         undefined: list[Array] = []
         reached: set[tuple[int, bool]] = set()
-        for inputs in self.inputs:
+        for inputs in self.interpreted():
             lanes = next(iter(inputs.values.values())).shape[-1]
             outcomes = Outcomes(lanes)
             everything = {**inputs.values, **inputs.textures}
@@ -334,7 +335,7 @@ class Case:
         keys = [self.keys[probe.name] for probe in self.case.probes]
         parts: list[list[Array]] = []
         start = 0
-        for inputs in self.inputs:
+        for inputs in self.interpreted():
             count = next(iter(inputs.values.values())).shape[-1]
             own = lanes[(lanes >= start) & (lanes < start + count)] - start
             if len(own):
