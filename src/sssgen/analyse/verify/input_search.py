@@ -34,6 +34,8 @@ from sssgen.run.backends.call_program import grid
 
 WORK = 60_000
 """How many operations on 2000 lanes a search runs at most, after the first run."""
+FEWEST_STEPS = 4
+"""The search for boundaries is left out where so few steps take more than `WORK`: they would not come near."""
 SITES, BRACKETS = 64, 3
 """How many comparisons are searched, and from how many pairs of inputs."""
 MIN_ROUNDS = 200
@@ -68,6 +70,8 @@ class Samples(NamedTuple):
     """How many operations of a lane were undefined."""
     rounds: int
     """Of all loops together."""
+    work: int
+    """The number of evaluated nodes."""
     outcomes: Outcomes
     random_count: int
     """How many of the first lanes were drawn at random; the search found the others."""
@@ -82,9 +86,13 @@ class Samples(NamedTuple):
         """Some of the lanes, all of which were drawn at random."""
         values = {name: value[..., lanes] for name, value in self.values.items()}
         outcomes = self.outcomes.part(lanes)
-        faults = self.faults[lanes]
-        return Samples(
-            values, self.undefined[lanes], self.endless[lanes], faults, self.rounds, outcomes, outcomes.lanes
+        return self._replace(
+            values=values,
+            undefined=self.undefined[lanes],
+            endless=self.endless[lanes],
+            faults=self.faults[lanes],
+            outcomes=outcomes,
+            random_count=outcomes.lanes,
         )
 
 
@@ -116,8 +124,9 @@ class Search:
             parts.append(self.repair(first))
             first = self.run(join(parts))._replace(random_count=first.random_count)
             parts = [first.values]
+        affordable = FEWEST_STEPS * self.cost(first.work, BRACKETS) < WORK
         self.work = 0.0
-        if first.outcomes.distances:
+        if first.outcomes.distances and affordable:
             parts += [self.boundaries(first), self.approach(first)]
         parts = [part for part in parts if part]
         return self.run(join(parts))._replace(random_count=first.random_count) if len(parts) > 1 else first
@@ -132,8 +141,13 @@ class Search:
         outcomes = Outcomes(lanes)
         run = Run(self.program, lanes, {**self.textures, **values}, outcomes, limit=self.limit)
         run.result(self.key, {**self.textures, **values})
-        self.work += run.work * (1.0 + lanes / 2000.0) / 2.0
-        return Samples(values, run.undefined, run.endless, run.faults, run.rounds, outcomes, lanes)
+        self.work += self.cost(run.work, lanes)
+        return Samples(values, run.undefined, run.endless, run.faults, run.rounds, run.work, outcomes, lanes)
+
+    @staticmethod
+    def cost(work: int, lanes: int) -> float:
+        """How many operations on 2000 lanes take as long."""
+        return work * (1.0 + lanes / 2000.0) / 2.0
 
     def best_of_rounds(self, rounds: list[dict[str, Array]], lanes: int) -> list[dict[str, Array]]:
         """Of the inputs of each round, those to compare: as many as `lanes`."""

@@ -99,7 +99,10 @@ def _with_error(exact: Array, ulp: float, always: Array | None = None) -> Array:
         if always is not None:
             inexact |= always & (result != 0.0)
         if inexact.any():
-            moved = exact + ulp * _draw(exact.shape) * np.spacing(np.abs(single))
+            moved = _draw(exact.shape)
+            moved *= np.spacing(single)  # negative for negative numbers: the error has any sign
+            moved *= ulp
+            moved += exact
             result = np.where(inexact, moved.astype(np.float32).astype(np.float64), result)
         small = np.abs(result) < SMALLEST
         if small.any():

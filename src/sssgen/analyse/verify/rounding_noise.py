@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from sssgen.analyse.verify.lane_interpreter import DTYPES, Program, Run, Value, build_value
+from sssgen.analyse.verify.lane_interpreter import Program, Run
+from sssgen.analyse.verify.lane_values import DTYPES, Value, build_value
 from sssgen.analyse.verify.plain_inputs import select_lanes
 from sssgen.analyse.verify.rounded_floats import _draw, round_floats, seed_errors, with_error
 from sssgen.ir.intrinsics.table import LARGEST
@@ -44,7 +45,7 @@ class RoundedRun(Run):
         return round_floats(value)
 
     def finite(self, value: Value) -> Value:
-        self.require(np.abs(np.asarray(value)) <= NEARLY_LARGEST)  # in another order, its terms may overflow
+        self.require_size(np.asarray(value), NEARLY_LARGEST)  # in another order, its terms may overflow
         return value
 
     def unwritten(self, type_: Type) -> Value:

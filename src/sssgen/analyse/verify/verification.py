@@ -65,8 +65,8 @@ ROUNDS = 16
 """How many values a uniform has."""
 SAME_TEXT = {"glsl"}
 """The translations whose builtins are those of the author's text."""
-DRAWS_EACH = (16, 128)
-"""How many runs with errors a deviation is compared with; the second number for what the first does not explain."""
+DRAWS_EACH = (4, 16, 128)
+"""How many runs with errors a deviation is compared with; each further number for what those before do not explain."""
 _SCREEN = "void main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }"
 VERSIONS = ("450 core", "330 core", "300 es")
 """The versions to try, where the text has no `#version` or one before 3.30."""
