@@ -52,7 +52,8 @@ def run_alone(run: Run, lanes: Array, execute: Callable[[Array], Array]) -> Arra
     def all_wide(old: Mapping[str, Value], before: Mapping[str, Value], after: Mapping[str, Value]) -> dict[str, Value]:
         return {name: wide(value, before[name], after[name]) for name, value in old.items()}
 
-    left = execute(np.ones(len(chosen), bool))
+    with run.of_lanes(chosen):
+        left = execute(np.ones(len(chosen), bool))
     run.lanes = total
     for name, mask in masks.items():
         setattr(run, name, widen(mask, getattr(run, name), chosen, total))

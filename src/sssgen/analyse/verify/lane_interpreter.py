@@ -13,6 +13,7 @@ still in a loop, or take a branch with calls, these lanes are copied and run alo
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
 import numpy as np
@@ -125,6 +126,10 @@ class Run:
     def number(self, value: Value) -> Value:
         """A value as this run computes with it."""
         return value
+
+    def of_lanes(self, chosen: Array) -> AbstractContextManager[None]:
+        """While only the chosen lanes are run, which are numbers."""
+        return nullcontext()
 
     def unwritten(self, type_: Type) -> Value:
         """What a variable has before it is written, which GLSL does not define."""
