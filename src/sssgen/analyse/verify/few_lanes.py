@@ -7,7 +7,8 @@ that are in it rather than from all lanes until the last one leaves it.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING
+from contextlib import AbstractContextManager
+from typing import Protocol
 
 import numpy as np
 
@@ -15,8 +16,25 @@ from sssgen.analyse.verify.branch_outcomes import Outcomes
 from sssgen.analyse.verify.lane_values import Value, narrow, widen
 from sssgen.run.backends import Array
 
-if TYPE_CHECKING:
-    from sssgen.analyse.verify.lane_interpreter import Run
+
+class LaneState(Protocol):
+    """What a run of the interpreter has of each lane."""
+
+    lanes: int
+    """Their number."""
+    active: Array
+    undefined: Array
+    endless: Array
+    stopped: Array
+    faults: Array
+    frame: dict[str, Value]
+    values: dict[str, Value]
+    returned: Value
+    loops: list[list[Array]]
+    outcomes: Outcomes | None
+
+    def of_lanes(self, chosen: Array) -> AbstractContextManager[None]: ...
+
 
 FEWEST = 512
 """The fewest lanes of which some are run alone; of fewer, an operation takes about the same time."""
@@ -27,10 +45,10 @@ _MASKS = ("active", "undefined", "endless", "stopped", "faults")
 
 def are_few(lanes: Array) -> bool:
     """Whether to run these lanes alone."""
-    return len(lanes) >= FEWEST and 0 < np.count_nonzero(lanes) <= SHARE * len(lanes)
+    return len(lanes) >= FEWEST and 0 < int(np.count_nonzero(lanes)) <= SHARE * len(lanes)
 
 
-def run_alone(run: Run, lanes: Array, execute: Callable[[Array], Array]) -> Array:
+def run_alone(run: LaneState, lanes: Array, execute: Callable[[Array], Array]) -> Array:
     """What `execute(lanes)` returns, which gets and returns lanes, called on a run of these lanes only."""
     total, chosen = run.lanes, np.flatnonzero(lanes)
     masks = {name: getattr(run, name) for name in _MASKS}

@@ -11,7 +11,7 @@ The search is bounded by the number of operations that it runs, not by time: the
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,6 +28,7 @@ from sssgen.analyse.verify.plain_inputs import (
     select_lanes,
     suggest_numbers,
 )
+from sssgen.analyse.verify.time_limit import TimeOverError
 from sssgen.ir.types import kind_of
 from sssgen.run.backends import Array
 from sssgen.run.backends.call_program import grid
@@ -57,6 +58,10 @@ SEARCH_SHARE = 0.5
 """The share of inputs that the search chose, those for outcomes included."""
 INPUTS_PER_OUTCOME = 6
 """How many inputs are chosen for each outcome."""
+
+
+FEW = 64
+"""The inputs whose run tells how long others take."""
 
 
 class Samples(NamedTuple):
@@ -107,11 +112,28 @@ class Search:
         self.rng = np.random.default_rng([seed, 1])
         self.work = 0.0
         self.limit = ROUNDS
+        self.ended_early = False
+
+    def time_of_few(self, clock: Callable[[], float]) -> float:
+        """The seconds of a run of a few inputs."""
+        start = clock()
+        self.run(draw_inputs(self.sources, FEW, self.numbers, self.seed))
+        self.work = 0.0
+        return clock() - start
 
     def inputs(self, samples: int) -> Samples:
-        """Many inputs, those of the search included."""
+        """Many inputs; those of the search are missing where it `ended_early`."""
         values = draw_inputs(self.sources, 2 * samples, self.numbers, self.seed)
         first = self.run(values)
+        try:
+            return self.more_inputs(first, samples)
+        except TimeOverError:
+            self.ended_early = True
+            return first
+
+    def more_inputs(self, first: Samples, samples: int) -> Samples:
+        """The first inputs and those of the search."""
+        values = first.values
         self.limit = max(MIN_ROUNDS, 2 * first.rounds)
         if any(source.bounds_loops for source in self.sources):
             free = [source._replace(bounds_loops=False) for source in self.sources]
@@ -150,7 +172,14 @@ class Search:
         return work * (1.0 + lanes / 2000.0) / 2.0
 
     def best_of_rounds(self, rounds: list[dict[str, Array]], lanes: int) -> list[dict[str, Array]]:
-        """Of the inputs of each round, those to compare: as many as `lanes`."""
+        """Of the inputs of each round, those to compare: as many as `lanes`; the first where the time is over."""
+        try:
+            return self.choose_of_rounds(rounds, lanes)
+        except TimeOverError:
+            self.ended_early = True
+            return [select_lanes(values, np.arange(lanes)) for values in rounds]
+
+    def choose_of_rounds(self, rounds: list[dict[str, Array]], lanes: int) -> list[dict[str, Array]]:
         if self.program.neighbours:
             sampled = [self.run(values) for values in rounds]
             return [select_lanes(of_round.values, select_quads(of_round, lanes)) for of_round in sampled]

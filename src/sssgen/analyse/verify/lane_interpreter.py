@@ -48,7 +48,6 @@ _ARITHMETIC: dict[str, Callable[..., Value]] = {
 _INT_DIVIDE: Callable[..., Value] = rt.int_divide.__wrapped__  # type: ignore[attr-defined]
 _UNARY: dict[str, Callable[..., Value]] = {"-": np.negative, "!": np.logical_not, "~": np.invert}
 _COMPARISONS = frozenset({"<", ">", "<=", ">=", "==", "!="})
-
 ONE_THREAD = 8192
 """The most numbers that a product of vectors adds in one thread; starting more takes longer than the sum."""
 
@@ -56,7 +55,9 @@ ONE_THREAD = 8192
 class Program:
     """A module that can be run; its nodes keep their identities from run to run."""
 
-    def __init__(self, module: ir.Module) -> None:
+    def __init__(self, module: ir.Module, check: Callable[[], None] = lambda: None) -> None:
+        self.check = check
+        """Called at each call of a function and each round of a loop; it may raise an error to end the run."""
         self.module = module._replace(functions=tuple([separate(function) for function in module.functions]))
         self.functions = {function.key: function for function in self.module.functions}
         self.neighbours = any(BUILTINS[name].kind == "derivative" for name in builtins_of(self.module))
@@ -153,6 +154,7 @@ class Run:
         return result, left
 
     def call(self, call: ir.Call) -> Value:
+        self.program.check()
         function = self.program.functions[call.function]
         pairs = list(zip(call.args, function.params, strict=True))
         args = [self.value(arg) for arg, param in pairs if param.direction != "out"]
@@ -232,6 +234,7 @@ class Run:
                 active = active & holds
             if not active.any():
                 return left & ~self.stopped
+            self.program.check()
             self.all_rounds += 1
             self.rounds += not counts
             if self.rounds > self.limit or self.all_rounds > ALL_ROUNDS:
@@ -248,8 +251,8 @@ class Run:
                 self.statement(step, active)
 
     def condition(self, expr: ir.Expr, node: object) -> Array:
-        condition = self.value(expr)
-        if condition.shape != (self.lanes,):
+        condition: Array = self.value(expr)
+        if np.shape(condition) != (self.lanes,):
             condition = np.broadcast_to(condition, (self.lanes,))
         if self.outcomes is not None:
             self.outcomes.branch(node, condition, self.active)
