@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from sssgen.analyse.verify import verification
+from sssgen.analyse.verify import driven_function
 from sssgen.analyse.verify.machines import Machines
 from sssgen.analyse.verify.verification import Options, verify
 from sssgen.analyse.verify.verification_report import Coverage, Row
@@ -51,7 +51,7 @@ def test_a_changed_text_is_found(
         }
         return compiled._replace(files=files)
 
-    monkeypatch.setattr(verification, "transpile", changed)
+    monkeypatch.setattr(driven_function, "transpile", changed)
     found = row(text).comparisons
     assert not found["glsl"].ok and not found["hlsl"].ok
     assert "for a = " in found["glsl"].at or "for x = " in found["glsl"].at

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import sys
 from argparse import ArgumentParser, Namespace
+from math import inf
 from pathlib import Path
 from typing import Any
 
-from sssgen.cli.options import add_guards, add_output, add_seed
-from sssgen.cli.output import CHECK_FAILED, OK, print_json, print_result
+from sssgen.analyse.verify.time_limit import EACH, TOTAL, TimeLimit
+from sssgen.cli.options import add_guards, add_output, add_seed, check_samples
+from sssgen.cli.output import CHECK_FAILED, INTERRUPTED, OK, print_json, print_result
 from sssgen.cli.translation import REFLECTION, explain_renames, macros, one_target, print_changes, title
 from sssgen.ir.nodes import Module
 from sssgen.lang.loader import load_file
@@ -24,6 +27,9 @@ from sssgen.support.progress import ProgressBar
 from sssgen.support.text_files import read_code
 from sssgen.targets.program_reflection import ROWS
 
+MAX_SAMPLES = 1_000_000
+"""The most inputs of --verify."""
+
 
 def add_options(parser: ArgumentParser) -> None:
     parser.epilog = (
@@ -35,7 +41,8 @@ def add_options(parser: ArgumentParser) -> None:
         "  sssgen transpile --stages water.vert water.frag --target wgsl -o web/water\n"
         "  sssgen transpile noise.glsl --verify\n"
         "  sssgen transpile noise.glsl --as technique --function snoise\n"
-        "The accepted language: docs/transpile.md. Exit status 1: --verify found a difference."
+        "The accepted language: docs/transpile.md. \n"
+        "Exit status 1: --verify found a difference, or did not reach each function in its time."
     )
     add = parser.add_argument
     add("FILE", nargs="?", help="a file of GLSL 1.00 ES to 4.60: functions, or a vertex, fragment or compute shader")
@@ -91,6 +98,20 @@ def add_options(parser: ArgumentParser) -> None:
         help="the number of inputs for --verify (default: 1000)",
     )
     add_seed(parser, "the seed of these inputs")
+    add(
+        "--seconds",
+        type=float,
+        default=TOTAL,
+        metavar="N",
+        help=f"the time of --verify for the file; it lists functions not reached (default: {TOTAL:g}; 0: no limit)",
+    )
+    add(
+        "--function-seconds",
+        type=float,
+        default=EACH,
+        metavar="N",
+        help=f"its time for each function; it may try fewer inputs (default: {EACH:g}; 0: no limit)",
+    )
     add("--as", dest="as_", choices=("technique",), help="write a function as the start of a technique's file")
     add(
         "--function",
@@ -218,24 +239,45 @@ def _verify(arguments: Namespace, path: Path, computes: bool) -> int:
     from sssgen.analyse.verify import compute_verification as compute
     from sssgen.analyse.verify import inline_includes as includes
     from sssgen.analyse.verify import verification as transpiled
+    from sssgen.analyse.verify.verification_report import Report, Row
 
+    check_samples(arguments, MAX_SAMPLES)
+    for option, seconds in (("--seconds", arguments.seconds), ("--function-seconds", arguments.function_seconds)):
+        if not 0.0 <= seconds < inf:
+            raise failure(f"{option} {seconds:g} is not a time", "seconds, or 0 for no limit")
+    limit = TimeLimit(arguments.seconds or inf, arguments.function_seconds or inf)
     if arguments.define:
         raise failure("-D cannot be used with --verify", "write the #define into the file")
     text = includes.expand(read_code(path, path.as_posix()), path, arguments.include)
-    report: Any
     if computes:
         if arguments.function:
             raise failure("a compute shader is run as a whole", "leave out --function", path.as_posix())
         if arguments.target:
             raise failure("a compute shader runs on all back ends together", "leave out --target", path.as_posix())
-        report = compute.verify_compute(text, path.as_posix(), arguments.seed)
+        computed = compute.verify_compute(text, path.as_posix(), arguments.seed)
+        print_result(arguments.json, computed.as_json(), "\n".join(computed.lines()), computed.ok)
+        return OK if computed.ok else CHECK_FAILED
+    with ProgressBar() as progress:
+
+        def show(report: Report, row: Row) -> None:
+            if arguments.json:
+                return  # one object at the end
+            with progress.hide():
+                lines = [report.head()] if len(report.rows) == 1 else []
+                print("\n".join([*lines, *report.row_lines(row)]), flush=True)
+
+        options = transpiled.Options(
+            arguments.samples, arguments.seed, arguments.entry, arguments.function, arguments.target or ""
+        )
+        report = transpiled.verify(text, path.as_posix(), options, progress=progress, limit=limit, show=show)
+    if arguments.json:
+        print_json({"ok": report.ok, **report.as_json()})
     else:
-        with ProgressBar() as progress:
-            options = transpiled.Options(
-                arguments.samples, arguments.seed, arguments.entry, arguments.function, arguments.target or ""
-            )
-            report = transpiled.verify(text, path.as_posix(), options, progress=progress)
-    print_result(arguments.json, report.as_json(), "\n".join(report.lines()), report.ok)
+        for line in report.last_lines():
+            print(line)
+    if report.interrupted:
+        print("interrupted", file=sys.stderr)
+        return INTERRUPTED
     return OK if report.ok else CHECK_FAILED
 
 

@@ -70,21 +70,23 @@ def fmod(x: Value, y: Value) -> Value:
     return x - y * np.trunc(x / y)
 
 
-@silent
-def min(x: Value, y: Value) -> Value:
+def _min(x: Value, y: Value) -> Value:
     """x where one is NaN, by the specification's formula."""
     return np.where(y < x, y, x)
 
 
-@silent
-def max(x: Value, y: Value) -> Value:
+def _max(x: Value, y: Value) -> Value:
     """x where one is NaN, by the specification's formula."""
     return np.where(x < y, y, x)
 
 
+min, max = silent(_min), silent(_max)
+
+
+@silent
 def clamp(x: Value, y: Value, z: Value) -> Value:
     """min(max(x, y), z) also for y > z; NaN stays NaN."""
-    return min(max(x, y), z)
+    return _min(_max(x, y), z)
 
 
 def saturate(x: Value) -> Value:

@@ -7,7 +7,7 @@ component of a vector counts by itself.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -51,12 +51,43 @@ class Outcomes:
         self.distances: dict[Site, Array] = {}
         """Left minus right of each comparison, where it is the smallest of a lane; NaN where it was not reached."""
 
+    def part(self, lanes: slice) -> Outcomes:
+        """The outcomes of some of the lanes."""
+        part = Outcomes(len(range(*lanes.indices(self.lanes))))
+        part.branches = {key: mask[lanes] for key, mask in self.branches.items()}
+        part.cases = {key: mask[lanes] for key, mask in self.cases.items()}
+        part.distances = {site: distance[lanes] for site, distance in self.distances.items()}
+        return part
+
+    def add(self, few: Outcomes, chosen: Array) -> None:
+        """Adds the outcomes of a run of the chosen lanes, which are numbers."""
+
+        def wide(values: Array, missing: Any) -> Array:
+            result = np.full(self.lanes, missing, values.dtype)
+            result[chosen] = values
+            return result
+
+        for key, mask in few.branches.items():
+            self._add(self.branches, key, wide(mask, False))
+        for case, mask in few.cases.items():
+            self._add(self.cases, case, wide(mask, False))
+        for site, distance in few.distances.items():
+            self._add_distance(site, wide(distance, np.nan))
+
+    def _add(self, masks: dict[Any, Array], key: Any, lanes: Array) -> None:
+        seen = masks.get(key)
+        masks[key] = lanes if seen is None else seen | lanes
+
+    def _add_distance(self, site: Site, distance: Array) -> None:
+        old = self.distances.get(site)
+        if old is not None:
+            distance = np.where(np.isnan(distance) | (np.abs(old) < np.abs(distance)), old, distance)
+        self.distances[site] = distance
+
     def branch(self, node: object, condition: Array, active: Array) -> None:
         """A condition was evaluated in the active lanes."""
         for value in (True, False):
-            lanes = active & (condition == value)
-            seen = self.branches.get((id(node), value))
-            self.branches[id(node), value] = lanes if seen is None else seen | lanes
+            self._add(self.branches, (id(node), value), active & (condition == value))
 
     def comparison(self, node: object, comparison: int, left: Array, right: Array | float, active: Array) -> None:
         """Two numbers were compared in the active lanes."""
@@ -75,13 +106,8 @@ class Outcomes:
             for side in (-2.0, -1.0, 0.0, 1.0, 2.0):
                 lanes = active & (case == side)
                 if lanes.any():
-                    seen = self.cases.get((site, int(side)))
-                    self.cases[site, int(side)] = lanes if seen is None else seen | lanes
-            old = self.distances.get(site)
-            new = np.where(active, values, np.nan)
-            if old is not None:
-                new = np.where(np.isnan(new) | (np.abs(old) < np.abs(new)), old, new)
-            self.distances[site] = new
+                    self._add(self.cases, (site, int(side)), lanes)
+            self._add_distance(site, np.where(active, values, np.nan))
 
 
 def branches(module: Module, key: str) -> list[Branch]:

@@ -11,7 +11,7 @@ The search is bounded by the number of operations that it runs, not by time: the
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,12 +28,15 @@ from sssgen.analyse.verify.plain_inputs import (
     select_lanes,
     suggest_numbers,
 )
+from sssgen.analyse.verify.time_limit import TimeOverError
 from sssgen.ir.types import kind_of
 from sssgen.run.backends import Array
 from sssgen.run.backends.call_program import grid
 
 WORK = 60_000
 """How many operations on 2000 lanes a search runs at most, after the first run."""
+FEWEST_STEPS = 4
+"""The search for boundaries is left out where so few steps take more than `WORK`: they would not come near."""
 SITES, BRACKETS = 64, 3
 """How many comparisons are searched, and from how many pairs of inputs."""
 MIN_ROUNDS = 200
@@ -57,11 +60,23 @@ INPUTS_PER_OUTCOME = 6
 """How many inputs are chosen for each outcome."""
 
 
+FEW = 64
+"""The inputs whose run tells how long others take."""
+
+
 class Samples(NamedTuple):
     """Inputs with what is known of them."""
 
     values: dict[str, Array]
-    run: Run
+    undefined: Array
+    """The lanes with an undefined operation, also of their neighbours where they read these."""
+    endless: Array
+    faults: Array
+    """How many operations of a lane were undefined."""
+    rounds: int
+    """Of all loops together."""
+    work: int
+    """The number of evaluated nodes."""
     outcomes: Outcomes
     random_count: int
     """How many of the first lanes were drawn at random; the search found the others."""
@@ -69,8 +84,21 @@ class Samples(NamedTuple):
     @property
     def sound(self) -> Array:
         """The lanes without an undefined operation of their own; those of neighbours may reach them."""
-        sound: Array = (self.run.faults == 0.0) & ~self.run.endless
+        sound: Array = (self.faults == 0.0) & ~self.endless
         return sound
+
+    def part(self, lanes: slice) -> Samples:
+        """Some of the lanes, all of which were drawn at random."""
+        values = {name: value[..., lanes] for name, value in self.values.items()}
+        outcomes = self.outcomes.part(lanes)
+        return self._replace(
+            values=values,
+            undefined=self.undefined[lanes],
+            endless=self.endless[lanes],
+            faults=self.faults[lanes],
+            outcomes=outcomes,
+            random_count=outcomes.lanes,
+        )
 
 
 class Search:
@@ -84,16 +112,33 @@ class Search:
         self.rng = np.random.default_rng([seed, 1])
         self.work = 0.0
         self.limit = ROUNDS
+        self.ended_early = False
+
+    def time_of_few(self, clock: Callable[[], float]) -> float:
+        """The seconds of a run of a few inputs."""
+        start = clock()
+        self.run(draw_inputs(self.sources, FEW, self.numbers, self.seed))
+        self.work = 0.0
+        return clock() - start
 
     def inputs(self, samples: int) -> Samples:
-        """Many inputs, those of the search included."""
+        """Many inputs; those of the search are missing where it `ended_early`."""
         values = draw_inputs(self.sources, 2 * samples, self.numbers, self.seed)
         first = self.run(values)
-        self.limit = max(MIN_ROUNDS, 2 * first.run.rounds)
+        try:
+            return self.more_inputs(first, samples)
+        except TimeOverError:
+            self.ended_early = True
+            return first
+
+    def more_inputs(self, first: Samples, samples: int) -> Samples:
+        """The first inputs and those of the search."""
+        values = first.values
+        self.limit = max(MIN_ROUNDS, 2 * first.rounds)
         if any(source.bounds_loops for source in self.sources):
             free = [source._replace(bounds_loops=False) for source in self.sources]
             large = self.run(draw_inputs(free, samples, self.numbers, self.seed))
-            values = join([values, select_lanes(large.values, ~large.run.endless)])
+            values = join([values, select_lanes(large.values, ~large.endless)])
             first = self.run(values)
         self.work = 0.0
         parts = [values]
@@ -101,8 +146,9 @@ class Search:
             parts.append(self.repair(first))
             first = self.run(join(parts))._replace(random_count=first.random_count)
             parts = [first.values]
+        affordable = FEWEST_STEPS * self.cost(first.work, BRACKETS) < WORK
         self.work = 0.0
-        if first.outcomes.distances:
+        if first.outcomes.distances and affordable:
             parts += [self.boundaries(first), self.approach(first)]
         parts = [part for part in parts if part]
         return self.run(join(parts))._replace(random_count=first.random_count) if len(parts) > 1 else first
@@ -117,8 +163,30 @@ class Search:
         outcomes = Outcomes(lanes)
         run = Run(self.program, lanes, {**self.textures, **values}, outcomes, limit=self.limit)
         run.result(self.key, {**self.textures, **values})
-        self.work += run.work * (1.0 + lanes / 2000.0) / 2.0
-        return Samples(values, run, outcomes, lanes)
+        self.work += self.cost(run.work, lanes)
+        return Samples(values, run.undefined, run.endless, run.faults, run.rounds, run.work, outcomes, lanes)
+
+    @staticmethod
+    def cost(work: int, lanes: int) -> float:
+        """How many operations on 2000 lanes take as long."""
+        return work * (1.0 + lanes / 2000.0) / 2.0
+
+    def best_of_rounds(self, rounds: list[dict[str, Array]], lanes: int) -> list[dict[str, Array]]:
+        """Of the inputs of each round, those to compare: as many as `lanes`; the first where the time is over."""
+        try:
+            return self.choose_of_rounds(rounds, lanes)
+        except TimeOverError:
+            self.ended_early = True
+            return [select_lanes(values, np.arange(lanes)) for values in rounds]
+
+    def choose_of_rounds(self, rounds: list[dict[str, Array]], lanes: int) -> list[dict[str, Array]]:
+        if self.program.neighbours:
+            sampled = [self.run(values) for values in rounds]
+            return [select_lanes(of_round.values, select_quads(of_round, lanes)) for of_round in sampled]
+        together = self.run(join(rounds))
+        ends = np.cumsum([next(iter(values.values())).shape[-1] for values in rounds])
+        parts = [together.part(slice(start, end)) for start, end in zip([0, *ends[:-1]], ends, strict=True)]
+        return [select_lanes(part.values, select_inputs(part, lanes, self.seed)) for part in parts]
 
     def rounds(self, sampled: Samples, count: int, lanes: int) -> list[dict[str, Array]]:
         """The inputs of each round: in one round, all lanes have the same uniforms.
@@ -150,7 +218,7 @@ class Search:
 
     def boundaries(self, first: Samples) -> dict[str, Array]:
         """Neighbouring inputs on both sides of each comparison."""
-        usable = ~(first.run.undefined | first.run.endless)
+        usable = ~(first.undefined | first.endless)
         starts: list[tuple[Site, int, int]] = []
         for site, distance in list(first.outcomes.distances.items())[:SITES]:
             below, above = (np.flatnonzero(usable & side) for side in (distance < 0.0, distance > 0.0))
@@ -220,7 +288,7 @@ class Search:
 
     def approach(self, first: Samples) -> dict[str, Array]:
         """Inputs that come nearer to the other side of comparisons of which only one was reached."""
-        usable = ~(first.run.undefined | first.run.endless)
+        usable = ~(first.undefined | first.endless)
         sites: list[Site] = []
         lanes: list[int] = []
         for site, distance in list(first.outcomes.distances.items())[:SITES]:
@@ -264,14 +332,14 @@ class Search:
 
     def repair(self, first: Samples) -> dict[str, Array]:
         """Inputs made of those with the fewest undefined operations, by changes that do not add one."""
-        faults = first.run.faults + np.where(first.run.endless, np.inf, 0.0)
+        faults = first.faults + np.where(first.endless, np.inf, 0.0)
         chosen = np.resize(np.argsort(faults, kind="stable")[:REPAIRED], REPAIRED)
         best, fewest = select_lanes(first.values, chosen), faults[chosen]
         for number in range(len(fewest) * 4):
             if self.work > REPAIR_WORK or np.median(fewest) == 0.0:
                 break
             changed = self.change_gently(best)
-            run = self.run(changed).run
+            run = self.run(changed)
             count = run.faults + np.where(run.endless, np.inf, 0.0)
             better = count <= fewest
             best = {name: np.where(better, changed[name], value) for name, value in best.items()}
@@ -341,7 +409,7 @@ def select_inputs(sampled: Samples, count: int, seed: int) -> Array:
     """The lanes of `count` inputs: for each outcome some, then others as they were drawn."""
     rng = np.random.default_rng([seed, 2])
     lanes = sampled.outcomes.lanes
-    defined = ~(sampled.run.undefined | sampled.run.endless)
+    defined = ~(sampled.undefined | sampled.endless)
     reached = [*sampled.outcomes.branches.values(), *sampled.outcomes.cases.values()]
     each = max(1, min(INPUTS_PER_OUTCOME, count // (2 * max(len(reached), 1))))
     order = rng.permutation(lanes)
@@ -352,7 +420,7 @@ def select_inputs(sampled: Samples, count: int, seed: int) -> Array:
     search_lanes = [int(lane) for lane in order if lane >= sampled.random_count and defined[lane]]
     picked = dict.fromkeys([*list(picked), *search_lanes][: max(len(picked), int(SEARCH_SHARE * count))][:count])
     rest = [int(lane) for lane in range(lanes) if defined[lane] and lane not in picked]
-    undefined = [int(lane) for lane in np.flatnonzero(sampled.run.undefined & ~sampled.run.endless)]
+    undefined = [int(lane) for lane in np.flatnonzero(sampled.undefined & ~sampled.endless)]
     room = count - len(picked)
     result = [*picked, *rest[:room]]
     if not defined.any():
@@ -371,7 +439,7 @@ def select_quads(sampled: Samples, count: int) -> Array:
     width = shape.width // 2 * 2
     image = np.arange(shape.rows * shape.width).reshape(shape.rows, shape.width)[:, :width]
     quads = image.reshape(shape.rows // 2, 2, width // 2, 2).swapaxes(1, 2).reshape(-1, 2, 2)
-    faults = sampled.run.faults + np.where(sampled.run.undefined | sampled.run.endless, 1.0, 0.0)
+    faults = sampled.faults + np.where(sampled.undefined | sampled.endless, 1.0, 0.0)
     order = np.argsort(faults[quads].sum(axis=(1, 2)), kind="stable")
     chosen: Array = quads[np.resize(order, count // 4)].swapaxes(0, 1)
     return chosen.reshape(-1)

@@ -6,36 +6,38 @@
 - Lanes whose loops take more than `ROUNDS` rounds, which would take long, or hang, elsewhere.
 
 It computes with the functions of the NumPy runtime, in float64 or with `Rounded` numbers. Literals are rounded to
-float32, as in every driver. Lanes are masked: a statement is executed while some lane is active.
+float32, as in every driver. Lanes are masked: a statement is executed while some lane is active. Where few lanes are
+still in a loop, or take a branch with calls, these lanes are copied and run alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, TypeAlias
+from contextlib import AbstractContextManager, nullcontext
+from typing import Any
 
 import numpy as np
 
 from sssgen.analyse.verify.branch_outcomes import CASES, Outcomes
+from sssgen.analyse.verify.few_lanes import are_few, run_alone
+from sssgen.analyse.verify.lane_values import DTYPES, Value, is_readable, spread_to_quads, zero
+from sssgen.analyse.verify.loop_inputs import is_counted
 from sssgen.ir import nodes as ir
 from sssgen.ir.intrinsics import BUILTINS
 from sssgen.ir.intrinsics.table import LARGEST
 from sssgen.ir.rules import element_type
 from sssgen.ir.types import VOID, Matrix, Scalar, Struct, Type, Vector, components, kind_of
 from sssgen.ir.types import Array as ArrayType
-from sssgen.ir.walk import builtins_of
+from sssgen.ir.walk import all_expressions, builtins_of, statements
 from sssgen.passes.scopes import separate
 from sssgen.run.backends import Array
 from sssgen.run.backends import call_program as calls
-from sssgen.run.evaluate.evaluation import shape_of
 from sssgen.targets import numpy_runtime as rt
-from sssgen.targets.runtime.numpy_textures import Texture
 
-Value: TypeAlias = Any
 ROUNDS = 5000
-"""The most rounds of all loops together in a lane."""
-FAR = 1024.0
-"""The largest coordinate of a texture."""
+"""The most rounds of all loops together, without those that count from a constant to a constant."""
+ALL_ROUNDS = 100_000
+"""The most rounds of all loops together."""
 
 # The interpreter has arrays and silences NumPy by itself: it calls what `silent` wraps, an attribute unknown to mypy.
 _ARITHMETIC: dict[str, Callable[..., Value]] = {
@@ -46,19 +48,34 @@ _ARITHMETIC: dict[str, Callable[..., Value]] = {
 _INT_DIVIDE: Callable[..., Value] = rt.int_divide.__wrapped__  # type: ignore[attr-defined]
 _UNARY: dict[str, Callable[..., Value]] = {"-": np.negative, "!": np.logical_not, "~": np.invert}
 _COMPARISONS = frozenset({"<", ">", "<=", ">=", "==", "!="})
-DTYPES: dict[str, np.dtype[Any]] = {
-    "float": np.dtype(np.float64), "int": np.dtype(np.int32), "uint": np.dtype(np.uint32), "bool": np.dtype(bool),
-}  # fmt: skip
+ONE_THREAD = 8192
+"""The most numbers that a product of vectors adds in one thread; starting more takes longer than the sum."""
 
 
 class Program:
     """A module that can be run; its nodes keep their identities from run to run."""
 
-    def __init__(self, module: ir.Module) -> None:
+    def __init__(self, module: ir.Module, check: Callable[[], None] = lambda: None) -> None:
+        self.check = check
+        """Called at each call of a function and each round of a loop; it may raise an error to end the run."""
         self.module = module._replace(functions=tuple([separate(function) for function in module.functions]))
         self.functions = {function.key: function for function in self.module.functions}
         self.neighbours = any(BUILTINS[name].kind == "derivative" for name in builtins_of(self.module))
         """Whether lanes read values of other lanes."""
+        constants = {constant.name for constant in module.constants}
+        nodes = [stmt for function in self.module.functions for stmt in statements(function.body or ())]
+        self.counted = {id(stmt) for stmt in nodes if isinstance(stmt, ir.For) and is_counted(stmt, constants)}
+        """The ids of loops that count from a constant to a constant."""
+        self.long_branches = {id(stmt) for stmt in nodes if isinstance(stmt, ir.If) and _is_long(stmt)}
+        """The ids of the branches with calls or loops."""
+
+
+def _is_long(branch: ir.If) -> bool:
+    parts = [part for block in (branch.then, branch.otherwise) for part in statements(block)]
+    calls_functions = any(
+        isinstance(part, ir.Call) for block in (branch.then, branch.otherwise) for part in all_expressions(block)
+    )
+    return calls_functions or any(isinstance(part, ir.For | ir.While) for part in parts)
 
 
 class Run:
@@ -77,10 +94,13 @@ class Run:
         self.stopped = np.zeros(lanes, bool)
         """Lanes that were discarded, or that take too long."""
         self.active = np.ones(lanes, bool)
+        self.last_mask: Array | None = None
+        self.last_is_full = False
         self.frame: dict[str, Value] = {}
         self.returned: Value = None
         self.loops: list[list[Array]] = []
         self.rounds = 0
+        self.all_rounds = 0
         self.work = 0
         """The number of evaluated nodes."""
         self.values = dict(uniforms)
@@ -100,13 +120,17 @@ class Run:
             args = [self.number(arguments[param.name]) for param in function.params]
             value, _ = self.enter(function, args)
         if self.program.neighbours:
-            self.undefined = _spread(self.undefined | self.endless, shape)
+            self.undefined = spread_to_quads(self.undefined | self.endless, shape)
         value = np.broadcast_to(value, (*np.shape(value)[:-1], self.lanes))
         return np.where(self.stopped, np.zeros_like(value), value)
 
     def number(self, value: Value) -> Value:
         """A value as this run computes with it."""
         return value
+
+    def of_lanes(self, chosen: Array) -> AbstractContextManager[None]:
+        """While only the chosen lanes are run, which are numbers."""
+        return nullcontext()
 
     def unwritten(self, type_: Type) -> Value:
         """What a variable has before it is written, which GLSL does not define."""
@@ -130,6 +154,7 @@ class Run:
         return result, left
 
     def call(self, call: ir.Call) -> Value:
+        self.program.check()
         function = self.program.functions[call.function]
         pairs = list(zip(call.args, function.params, strict=True))
         args = [self.value(arg) for arg, param in pairs if param.direction != "out"]
@@ -145,9 +170,10 @@ class Run:
         """The lanes that reach the end of a block."""
         for stmt in block:
             self.active = active
-            active = self.statement(stmt, active)
-            if not active.any():
-                break
+            left = self.statement(stmt, active)
+            if left is not active and not left.any():
+                return left
+            active = left
         return active
 
     def statement(self, stmt: ir.Stmt, active: Array) -> Array:
@@ -165,8 +191,8 @@ class Run:
             condition = self.condition(stmt.condition, stmt)
             active = self.active
             yes, no = active & condition, active & ~condition
-            yes = self.block(stmt.then, yes) if yes.any() else yes
-            no = self.block(stmt.otherwise, no) if no.any() else no
+            yes = self.branch(stmt, stmt.then, yes) if yes.any() else yes
+            no = self.branch(stmt, stmt.otherwise, no) if no.any() else no
             return (yes | no) & ~self.stopped
         elif isinstance(stmt, ir.For):
             if stmt.init is not None:
@@ -187,11 +213,19 @@ class Run:
             return np.zeros_like(active)
         return active & ~self.stopped if self.stopped.any() else active
 
+    def branch(self, stmt: ir.If, block: ir.Block, lanes: Array) -> Array:
+        if id(stmt) in self.program.long_branches and not self.program.neighbours and are_few(lanes):
+            return run_alone(self, lanes, lambda few: self.block(block, few))
+        return self.block(block, lanes)
+
     def loop(
         self, loop: ir.Stmt, condition: ir.Expr | None, body: ir.Block, step: ir.Stmt | None, active: Array
     ) -> Array:
         left = np.zeros_like(active)
+        counts = id(loop) in self.program.counted
         while True:
+            if not self.program.neighbours and are_few(active):
+                return left | run_alone(self, active, lambda few: self.loop(loop, condition, body, step, few))
             self.active = active
             if condition is not None:
                 holds = self.condition(condition, loop)
@@ -200,8 +234,10 @@ class Run:
                 active = active & holds
             if not active.any():
                 return left & ~self.stopped
-            self.rounds += 1
-            if self.rounds > self.limit:
+            self.program.check()
+            self.all_rounds += 1
+            self.rounds += not counts
+            if self.rounds > self.limit or self.all_rounds > ALL_ROUNDS:
                 self.endless = self.endless | active
                 self.stopped = self.stopped | active
                 return left & ~self.stopped
@@ -215,7 +251,9 @@ class Run:
                 self.statement(step, active)
 
     def condition(self, expr: ir.Expr, node: object) -> Array:
-        condition = np.broadcast_to(self.value(expr), (self.lanes,))
+        condition: Array = self.value(expr)
+        if np.shape(condition) != (self.lanes,):
+            condition = np.broadcast_to(condition, (self.lanes,))
         if self.outcomes is not None:
             self.outcomes.branch(node, condition, self.active)
         return condition
@@ -245,7 +283,9 @@ class Run:
         return place
 
     def choose(self, mask: Array, yes: Value, no: Value) -> Value:
-        return yes if mask.all() else rt.select(mask, yes, no)
+        if mask is not self.last_mask:  # of a block of statements it is the same
+            self.last_mask, self.last_is_full = mask, bool(mask.all())
+        return yes if self.last_is_full else rt.select(mask, yes, no)
 
     # Expressions
 
@@ -344,7 +384,7 @@ class Run:
         if row.defined is not None and (name != "abs" or kind_of(expr.type) == "int"):
             self.require(np.asarray(row.defined(rt, *args)))
         if row.kind == "fetch" and len(args) > 1 and np.asarray(args[1]).dtype.kind == "f":
-            self.require(_readable(args[0], args[1]))
+            self.require(is_readable(args[0], args[1]))
         if row.kind == "derivative" and not self.active.all():
             self.require(np.zeros(1, bool))
         level = 1 if row.size_query else 2 if row.by_texel else 0
@@ -433,11 +473,14 @@ class Run:
 
     def finite(self, value: Value) -> Value:
         """The result of an operation; the lanes where it is no finite float32 are undefined."""
-        plain = np.asarray(value)
-        holds = np.abs(plain) <= LARGEST
-        if not holds.all():
-            self.require(holds)
+        self.require_size(value, LARGEST)
         return value
+
+    def require_size(self, value: Array, largest: float) -> None:
+        """Active lanes with a number beyond the largest, or NaN, are undefined."""
+        flat = value.reshape(-1)  # most values are small: their squares are added in a third of the time
+        if flat.size > ONE_THREAD or not flat.dot(flat) <= largest * largest:
+            self.require(np.abs(value) <= largest)
 
 
 class _FixedIndex:
@@ -455,40 +498,3 @@ _EVALUATE: dict[type, Callable[[Any, Any], Value]] = {
     ir.Construct: Run.construct, ir.Swizzle: Run.swizzle, ir.Index: Run.element, ir.Member: Run.member,
     _FixedIndex: lambda _, known: known.value,
 }  # fmt: skip
-
-
-def zero(type_: Type) -> Value:
-    """The value 0 of a type, in one lane."""
-    return build_value(type_, lambda shape, kind: np.zeros((*shape, 1), DTYPES[kind]))
-
-
-def build_value(type_: Type, numbers: Callable[[tuple[int, ...], str], Array]) -> Value:
-    """A value of a type whose parts are the `numbers` of a shape, without lanes, and a kind."""
-    if isinstance(type_, Struct):
-        return rt.Record(**{field.name: build_value(field.type, numbers) for field in type_.fields})
-    if isinstance(type_, ArrayType):
-        return rt.array(*[build_value(type_.element, numbers) for _ in range(type_.length)])
-    return numbers(shape_of(type_), kind_of(type_))
-
-
-def _readable(texture: Texture, coord: Array) -> Array:
-    """Where drivers agree on a read: not far away, where a texel is less than the last place, nor beyond the layers."""
-    axes = texture.axes
-    holds = np.abs(coord[:axes]).max(axis=0) <= (LARGEST if texture.dim == "Cube" else FAR)
-    if texture.layers:
-        holds = holds & (coord[axes] > -0.5) & (coord[axes] < len(texture.levels[0]) - 0.5)
-    if texture.compare and len(coord) > axes:
-        holds = holds & (coord[-1] >= 0.0) & (coord[-1] <= 1.0)
-    return np.asarray(holds)
-
-
-def _spread(lanes: Array, shape: calls.Grid) -> Array:
-    """The lanes of all quads in which one of these lanes is."""
-    image = np.zeros((shape.rows, shape.width + shape.width % 2), bool)
-    flat = np.zeros(shape.rows * shape.width, bool)
-    flat[: len(lanes)] = lanes
-    image[:, : shape.width] = flat.reshape(shape.rows, shape.width)
-    quads = image.reshape(shape.rows // 2, 2, -1, 2).any(axis=(1, 3))
-    image = np.repeat(np.repeat(quads, 2, axis=0), 2, axis=1)[:, : shape.width]
-    spread: Array = image.reshape(-1)[: len(lanes)]
-    return spread

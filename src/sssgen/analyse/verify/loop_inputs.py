@@ -71,14 +71,19 @@ def loop_inputs(module: Module, key: str) -> set[str]:
 def _bounds(function: Function, stmt: Stmt, constants: set[str]) -> Iterator[Name]:
     if not isinstance(stmt, For | While):
         return
-    counter = count(stmt) if isinstance(stmt, For) else None
-    if counter is not None and _is_fixed(counter.start, constants) and _is_fixed(counter.stop, constants):
+    if isinstance(stmt, For) and is_counted(stmt, constants):
         return
     condition = stmt.condition
     if condition is not None and not _is_fixed(condition, constants):
         yield from _read(function, condition)
     else:
         yield from _around_breaks(function, stmt.body)
+
+
+def is_counted(loop: For, constants: Iterable[str]) -> bool:
+    """Whether a loop counts from a constant to a constant."""
+    counter = count(loop)
+    return counter is not None and _is_fixed(counter.start, constants) and _is_fixed(counter.stop, constants)
 
 
 def _around_breaks(function: Function, block: Block) -> Iterator[Name]:

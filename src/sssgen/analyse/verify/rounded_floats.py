@@ -6,6 +6,7 @@ that float32 represents exactly has no error, so that whole numbers stay whole; 
 divisor is a power of two, since drivers multiply by a reciprocal. Subnormal results may become 0, and a 0 has any sign.
 
 The numbers are stored in float64, rounded to float32. The functions of the NumPy runtime take them like other arrays.
+Who computes with them silences NumPy's warnings about overflow.
 """
 
 from __future__ import annotations
@@ -27,17 +28,65 @@ _EXACT = frozenset(
     {np.floor, np.ceil, np.trunc, np.rint, np.absolute, np.negative, np.positive, np.sign, np.minimum, np.maximum}
 )
 
-_generator: ContextVar[np.random.Generator] = ContextVar("errors")
+
+class _Errors:
+    """The errors of one run, as a driver makes them: the same for the same result in the same lane.
+
+    In a sum over a hundred samples of one hash, errors that differ from sample to sample would cancel. Numbers are
+    mixed as in splitmix64 (Steele, Lea, Flood 2014, Fast splittable pseudorandom number generators).
+    """
+
+    def __init__(self, seed: int) -> None:
+        self.generator = np.random.default_rng(seed)
+        self.salts = np.zeros(0, np.uint64)
+        """A number for each lane: each is another driver."""
+
+    def salts_of(self, lanes: int) -> Array:
+        """Those of a value; one that is the same in all lanes has one."""
+        if not len(self.salts) or lanes not in (1, len(self.salts)):
+            self.salts = self.generator.integers(0, 2**63, lanes, np.uint64)
+        return self.salts if lanes > 1 else self.salts[:1]
+
+    def of(self, exact: Array) -> Array:
+        """A number in [-1, 1] for each result."""
+        mixed = np.ascontiguousarray(exact, np.float64).view(np.uint64) ^ self.salts_of(np.shape(exact)[-1])
+        mixed *= _FIRST
+        mixed ^= mixed >> _HALF
+        mixed *= _SECOND
+        return (mixed >> _HALF).astype(np.float64) * 2.0**-31 - 1.0
+
+    def share(self, lanes: int) -> Array:
+        """The share of the granted error of builtins that each driver has: all in half of them, else down to 2^-15."""
+        salts = self.salts_of(lanes)
+        return np.exp2(-((salts & _FOUR_BITS) * ((salts >> _FOUR) & _ONE)).astype(np.float64))
+
+
+_FIRST, _SECOND, _HALF = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB), np.uint64(32)
+_FOUR_BITS, _FOUR, _ONE = np.uint64(15), np.uint64(4), np.uint64(1)
+_errors: ContextVar[_Errors] = ContextVar("errors")
 
 
 @contextmanager
 def seed_errors(seed: int) -> Iterator[None]:
     """The errors that follow depend on this seed."""
-    token = _generator.set(np.random.default_rng(seed))
+    token = _errors.set(_Errors(seed))
     try:
         yield
     finally:
-        _generator.reset(token)
+        _errors.reset(token)
+
+
+@contextmanager
+def errors_of_lanes(chosen: Array) -> Iterator[None]:
+    """The errors are those of the chosen lanes, which are numbers."""
+    errors = _errors.get()
+    salts = errors.salts
+    if len(salts):
+        errors.salts = salts[chosen]
+    try:
+        yield
+    finally:
+        errors.salts = salts
 
 
 class RoundedArray(np.ndarray):
@@ -73,16 +122,15 @@ def round_floats(value: Array) -> Array:
     """Numbers rounded to float32; other arrays as they are."""
     if isinstance(value, RoundedArray) or not isinstance(value, np.ndarray) or value.dtype.kind != "f":
         return value
-    with np.errstate(all="ignore"):
-        return value.astype(np.float32).astype(np.float64).view(RoundedArray)
+    return value.astype(np.float32).astype(np.float64).view(RoundedArray)
 
 
 def with_error(value: Array, ulp: float, absolute: Array | float) -> Array:
-    """Numbers with a random error: of so many units in the last place, or absolute, whichever is larger."""
-    with np.errstate(all="ignore"):
-        plain = np.asarray(value)
-        size = np.maximum(ulp * np.spacing(np.abs(plain).astype(np.float32)), absolute)
-        return round_floats(plain + _draw(plain.shape) * size)
+    """Numbers with an error of at most so many units in the last place, or absolute, whichever is larger."""
+    plain = np.asarray(value)
+    size = np.maximum(ulp * np.spacing(np.abs(plain).astype(np.float32)), absolute)
+    errors = _errors.get()
+    return round_floats(plain + errors.of(plain) * errors.share(np.shape(plain)[-1]) * size)
 
 
 def _wrap(value: Any) -> Any:
@@ -92,22 +140,25 @@ def _wrap(value: Any) -> Any:
 
 
 def _with_error(exact: Array, ulp: float, always: Array | None = None) -> Array:
-    with np.errstate(all="ignore"):
-        single = exact.astype(np.float32)
-        result = single.astype(np.float64)
-        inexact = result != exact
-        if always is not None:
-            inexact |= always & (result != 0.0)
-        if inexact.any():
-            moved = exact + ulp * _draw(exact.shape) * np.spacing(np.abs(single))
-            result = np.where(inexact, moved.astype(np.float32).astype(np.float64), result)
-        small = np.abs(result) < SMALLEST
-        if small.any():
-            draw = _draw(exact.shape)
-            flushed = np.where((draw < -0.5) | (result == 0.0), np.copysign(0.0, draw - 0.25), result)
-            result = np.where(small, flushed, result)
+    single = exact.astype(np.float32)
+    result = single.astype(np.float64)
+    inexact = result != exact
+    if always is not None:
+        inexact |= always & (result != 0.0)
+    moved = _errors.get().of(exact)
+    moved *= np.spacing(single)  # negative for negative numbers: the error has any sign
+    if ulp != 1.0:
+        moved *= ulp
+    moved += exact
+    np.copyto(result, moved.astype(np.float32), where=inexact)
+    small = np.abs(result) < SMALLEST
+    if small.any():
+        chance = _errors.get().of(exact)
+        flushed = np.where((chance < -0.5) | (result == 0.0), np.copysign(0.0, chance - 0.25), result)
+        result = np.where(small, flushed, result)
     return result.view(RoundedArray)
 
 
-def _draw(shape: tuple[int, ...]) -> Array:
-    return _generator.get().uniform(-1.0, 1.0, shape)
+def draw(shape: tuple[int, ...]) -> Array:
+    """Random numbers in [-1, 1]."""
+    return _errors.get().generator.uniform(-1.0, 1.0, shape)

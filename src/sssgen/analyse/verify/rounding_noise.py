@@ -9,13 +9,15 @@ table of builtins grants; derivatives of another driver may be those of one row 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from typing import Any
 
 import numpy as np
 
-from sssgen.analyse.verify.lane_interpreter import DTYPES, Program, Run, Value, build_value
+from sssgen.analyse.verify.lane_interpreter import Program, Run
+from sssgen.analyse.verify.lane_values import DTYPES, Value, build_value
 from sssgen.analyse.verify.plain_inputs import select_lanes
-from sssgen.analyse.verify.rounded_floats import _draw, round_floats, seed_errors, with_error
+from sssgen.analyse.verify.rounded_floats import draw, errors_of_lanes, round_floats, seed_errors, with_error
 from sssgen.ir.intrinsics.table import LARGEST
 from sssgen.ir.types import Type
 from sssgen.run.backends import Array
@@ -43,14 +45,17 @@ class RoundedRun(Run):
     def number(self, value: Value) -> Value:
         return round_floats(value)
 
+    def of_lanes(self, chosen: Array) -> AbstractContextManager[None]:
+        return errors_of_lanes(chosen)
+
     def finite(self, value: Value) -> Value:
-        self.require(np.abs(np.asarray(value)) <= NEARLY_LARGEST)  # in another order, its terms may overflow
+        self.require_size(np.asarray(value), NEARLY_LARGEST)  # in another order, its terms may overflow
         return value
 
     def unwritten(self, type_: Type) -> Value:
         def numbers(shape: tuple[int, ...], kind: str) -> Array:
-            values = _draw((*shape, self.lanes))
-            magnitudes = np.exp2(24.0 * _draw(values.shape))
+            values = draw((*shape, self.lanes))
+            magnitudes = np.exp2(24.0 * draw(values.shape))
             return round_floats(magnitudes * values) if kind == "float" else (2.0 * (values > 0.0)).astype(DTYPES[kind])
 
         return build_value(type_, numbers)
@@ -95,14 +100,14 @@ class GrantedRun(RoundedRun):
 
     def of_a_quad(self, derivatives: Array, axis: str) -> Array:
         """Derivatives as another device may have them: of one row (column) of a quad of pixels in both."""
-        draw = float(_draw(()))
-        if draw < -0.5:
+        chance = float(draw(()))
+        if chance < -0.5:
             return derivatives
         shape = grid(self.lanes)
         image = derivatives.reshape(*derivatives.shape[:-1], shape.rows, shape.width)
         across = {"x": -2, "y": -1}[axis]
         count = image.shape[across]
-        places = np.minimum(np.arange(count) // 2 * 2 + int(draw > 0.25), count - 1)
+        places = np.minimum(np.arange(count) // 2 * 2 + int(chance > 0.25), count - 1)
         taken: Array = np.take(image, places, across).reshape(derivatives.shape)
         return taken
 
@@ -133,8 +138,8 @@ def noise(
             other = Run(program, count, {**textures, **chosen}, exact_literals=True)
             largest = _apart(_first(other.result(key, {**textures, **chosen})), exact)
         expected = np.concatenate([exact] * repeats)
-        for draw in range(-(-draws // repeats)):
-            with seed_errors(1000 * seed + draw):
+        for number in range(-(-draws // repeats)):
+            with seed_errors(1000 * seed + number):
                 actual, undefined = result(GrantedRun if granted else RoundedRun, program, key, repeated, textures)
             moved = np.where(undefined, np.inf, _apart(actual, expected)).reshape(repeats, count).max(axis=0)
             largest = np.maximum(largest, moved)

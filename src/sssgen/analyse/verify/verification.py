@@ -18,7 +18,7 @@ A uniform has one value in each of several rounds. Functions that cannot be run 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from functools import partial
@@ -27,14 +27,17 @@ from typing import NamedTuple
 import numpy as np
 
 from sssgen.analyse.verify.branch_outcomes import Outcomes, branches
-from sssgen.analyse.verify.input_search import Search, select_inputs, select_quads
+from sssgen.analyse.verify.driven_function import DrivenFunction, Inputs
+from sssgen.analyse.verify.input_search import FEW, Search
 from sssgen.analyse.verify.lane_interpreter import Program, Run
 from sssgen.analyse.verify.loop_inputs import loop_inputs
-from sssgen.analyse.verify.machines import Machines, backends_of, start_machines
-from sssgen.analyse.verify.plain_inputs import Source, picture, select_lanes
-from sssgen.analyse.verify.plain_probes import TEXTURES, FunctionProbes, Leaf, Probe, probe_functions
-from sssgen.analyse.verify.rounding_noise import is_explained, noise
-from sssgen.analyse.verify.stage_variables import MAIN, Plain, plain, without_functions
+from sssgen.analyse.verify.machines import SECONDS, Machines, backends_of, start_machines
+from sssgen.analyse.verify.plain_inputs import Source, join, picture
+from sssgen.analyse.verify.plain_probes import TEXTURES, FunctionProbes, Leaf, probe_functions
+from sssgen.analyse.verify.rounding_limits import RoundingLimits
+from sssgen.analyse.verify.rounding_noise import noise
+from sssgen.analyse.verify.stage_variables import MAIN, Plain, plain
+from sssgen.analyse.verify.time_limit import TimeLimit, TimeOverError
 from sssgen.analyse.verify.verification_report import (
     EVERY,
     Comparison,
@@ -42,22 +45,16 @@ from sssgen.analyse.verify.verification_report import (
     Report,
     Row,
 )
-from sssgen.ir.nodes import Function, Module, Param, Span
+from sssgen.ir.nodes import Function, Module
 from sssgen.ir.types import Sampler, spell, with_article
 from sssgen.lang import shadertoy
 from sssgen.lang.plain_glsl import load_glsl_text
 from sssgen.passes.prune import prune
-from sssgen.passes.reachable import keep_reachable
-from sssgen.passes.stage.variables_to_parameters import variables_to_parameters
-from sssgen.passes.uniforms_to_parameters import uniforms_to_parameters
-from sssgen.pipeline.compiler import transpile
-from sssgen.run.backends import Array, Bound, Call, Place, Stage, Text
-from sssgen.run.backends import call_program as calls
+from sssgen.run.backends import Array
 from sssgen.run.backends.backend_process import BackendProcess
 from sssgen.run.evaluate.deviation import GOAL, errors
 from sssgen.support.diagnostics import SssgenError, did_you_mean, failure
 from sssgen.support.progress import Progress, silent
-from sssgen.targets import registry
 from sssgen.targets.runtime.numpy_textures import Texture
 
 SAMPLES = 1000
@@ -65,11 +62,12 @@ ROUNDS = 16
 """How many values a uniform has."""
 SAME_TEXT = {"glsl"}
 """The translations whose builtins are those of the author's text."""
-DRAWS_EACH = (16, 128)
-"""How many runs with errors a deviation is compared with; the second number for what the first does not explain."""
-_SCREEN = "void main() { gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0); }"
-VERSIONS = ("450 core", "330 core", "300 es")
-"""The versions to try, where the text has no `#version` or one before 3.30."""
+RUNS = 30
+"""A function takes about as long as so many runs of a few inputs."""
+LEAST_SECONDS = 10.0
+"""What a back end gets for one answer where the time of the function is nearly over."""
+SEARCH, ANALYSIS = 0.4, 0.6
+"""The shares of a function's time at which the search for inputs, and the run that finds undefined ones, end."""
 
 
 def load(text: str, shown: str, version: str = "") -> Module:
@@ -100,13 +98,15 @@ DEFAULTS = Options()
 
 def verify(
     text: str, shown: str, options: Options = DEFAULTS, read: Callable[[str, str], Module] | None = None,
-    machines: Machines | None = None, progress: Progress = silent,
+    machines: Machines | None = None, progress: Progress = silent, limit: TimeLimit | None = None,
+    show: Callable[[Report, Row], None] = lambda report, row: None,
 ) -> Report:  # fmt: skip
     """Runs the functions of a text without `#include` (see `inline_includes`).
 
     `shown` is the text's name in messages; `read(text, shown)` parses it; without `machines` the back ends are started
-    here. Raises SssgenError where the front end refuses the text, where no function has the name, where no back end
-    runs the target here, and without OpenGL, which runs the reference.
+    here. `show` gets the report so far and each row as it is done. Ctrl-C and the end of the time leave functions out.
+    Raises SssgenError where the front end refuses the text, where no function has the name, where no back end runs the
+    target here, and without OpenGL, which runs the reference.
     """
     written = plain(_scene(text) if options.entry == "shadertoy" else text)
     read = read or partial(load, version=written.version)
@@ -118,11 +118,29 @@ def verify(
     probes = "\n".join(probe.text for case in cases for probe in case.probes)
     with_probes = read(written.text + probes, shown)
     with nullcontext(machines) if machines else start_machines(backends_of(options.target)) as (running, missing):
-        rows = []
+        titles = [title(case.function) for case in cases]
+        report = Report([], missing, (*running, *missing), max(map(len, titles), default=0))
+        limit = limit or TimeLimit()
+        limit.start()
         for index, case in enumerate(cases):
-            progress(index, len(cases), case.function.name)
-            rows.append(Case(case, written, with_probes, running, options).row())
-    return Report(rows, missing, (*running, *missing))
+            progress(index, len(cases), titles[index])
+            limit.start_function()
+            try:
+                if limit.over:
+                    row = unreached(case.function)
+                else:
+                    row = Case(case, written, with_probes, running, options, limit).row()
+            except KeyboardInterrupt:
+                rest = [unreached(other.function) for other in cases[index:]]
+                return report._replace(rows=[*report.rows, *rest], interrupted=True)
+            report = report._replace(rows=[*report.rows, row])
+            show(report, row)
+    return report
+
+
+def unreached(function: Function) -> Row:
+    """The row of a function that the time did not suffice for."""
+    return Row(title(function), function.span.line, reason="not reached", complete=False)
 
 
 def _functions_named(name: str, functions: list[Function], shown: str) -> list[Function]:
@@ -142,24 +160,7 @@ def _scene(text: str) -> str:
     return text[:start] + " ".join(lines) + "\n" + text[start:]
 
 
-class Inputs(NamedTuple):
-    """One round."""
-
-    values: dict[str, Array]
-    """By the probe's parameter or the uniform's name, lanes last."""
-    textures: dict[str, Texture]
-
-
-class _Translation(NamedTuple):
-    """A translated text, and the probes in it."""
-
-    probes: tuple[Probe, ...]
-    text: Text
-    names: Mapping[str, str]
-    """Old name → name in the text."""
-
-
-class Case:
+class Case(DrivenFunction):
     """One function on all back ends."""
 
     def __init__(
@@ -169,18 +170,14 @@ class Case:
         module: Module,
         machines: Mapping[str, BackendProcess],
         options: Options,
+        limit: TimeLimit | None = None,
     ) -> None:
-        self.case, self.written, self.machines, self.seed = case, written, machines, options.seed
-        self.texts: dict[str, list[_Translation]] = {}
-        names = {probe.name for probe in case.probes}
-        self.keys = {function.name: function.key for function in module.functions if function.name in names}
-        self.written_names = {function.name for function in module.functions if function.name not in names}
-        module = keep_reachable(module, list(self.keys.values()))
-        # probes set the variables that are read; their initial values might need a main() that is not there
-        variables = tuple([variable._replace(value=None) for variable in module.variables])
-        self.module = module._replace(variables=variables)
-        closed = {function.name: function.params for function in uniforms_to_parameters(self.module).functions}
-        self.params: dict[str, tuple[Param, ...]] = {name: closed[name] for name in names if name in closed}
+        super().__init__(case, written, module, machines)
+        self.limit = limit or TimeLimit()
+        self.samples, self.seed = options.samples, options.seed
+        self.shortened = ""
+        """Why it has fewer inputs than were asked for; '' where it has not."""
+        self.rounding = {granted: RoundingLimits(partial(self.noise, granted=granted)) for granted in (False, True)}
         self.inputs: list[Inputs] = []
         self.unread = ""
         """Why its textures cannot be drawn; '' where they can."""
@@ -192,15 +189,14 @@ class Case:
                 self.unread = f"it reads '{lacking[0].name}', {kind}, which is not supported here"
         if case.probes and not self.unread:
             # without what has no effect: an undefined value there does no harm
-            self.program = Program(prune(self.module, list(self.keys.values())))
+            self.program = Program(prune(self.module, list(self.keys.values())), self.limit.check)
             self.key = self.keys[case.probes[0].name]
             self.textures = self.pictures()
-            self.inputs = self.search(options.samples)
-
-    def uniforms(self) -> dict[str, Param]:
-        """The uniforms of the text that the function reads."""
-        own = {leaf.name for probe in self.case.probes for leaf in probe.leaves}
-        return {param.name: param for params in self.params.values() for param in params if param.name not in own}
+            try:
+                with self.limit.until(SEARCH):
+                    self.inputs = self.search(options.samples)
+            except TimeOverError:
+                self.shortened = "one run of a few inputs takes too long"
 
     def pictures(self) -> dict[str, Texture]:
         """A picture for each texture."""
@@ -223,56 +219,100 @@ class Case:
             if not isinstance(param.type, Sampler)
         ]
         search = Search(self.program, self.key, [*sources, *uniforms], self.textures, self.seed)
+        affordable = self.limit.each / (RUNS * max(search.time_of_few(self.limit.clock), 1e-9))
+        if affordable < 1.0:
+            samples = min(samples, max(FEW, int(samples * affordable)))
         sampled = search.inputs(samples)
         rounds = ROUNDS if uniforms else 1
         lanes = -(-samples // rounds // 4) * 4  # derivatives need whole quads
         picked = search.rounds(sampled, rounds, lanes)
-        if rounds > 1:
-            runs = [search.run(round_) for round_ in picked]
-            chosen = [
-                select_quads(run, lanes) if self.program.neighbours else select_inputs(run, lanes, self.seed)
-                for run in runs
-            ]
-            picked = [select_lanes(run.values, lanes_of) for run, lanes_of in zip(runs, chosen, strict=True)]
+        if rounds > 1 and picked:
+            picked = search.best_of_rounds(picked, lanes)
+        if samples < self.samples:
+            self.shortened = "fewer inputs, as each takes long"
+        elif search.ended_early:
+            self.shortened = "the search for inputs ended early"
         return [Inputs(values, self.textures) for values in picked if next(iter(values.values())).shape[-1]]
+
+    def interpreted(self) -> list[Inputs]:
+        """The rounds as the interpreter runs them: all at once, unless lanes read their neighbours in the picture."""
+        if self.program.neighbours or len(self.inputs) < 2:
+            return self.inputs
+        return [Inputs(join([inputs.values for inputs in self.inputs]), self.textures)]
 
     def row(self) -> Row:
         """The comparison of all translations."""
-        row = Row(_title(self.case.function), self.case.function.span.line)
+        row = Row(title(self.case.function), self.case.function.span.line, asked=self.samples)
         if self.case.reason or not self.case.probes:
             return row._replace(reason=self.case.reason)
         if self.unread:
             return row._replace(reason=self.unread)
         if not self.inputs:
-            return row._replace(reason="its loops do not end")
-        undefined, coverage = self.analysis()
-        row = row._replace(branches=coverage)
+            reason = f"not reached: {self.shortened}" if self.shortened else "its loops do not end"
+            return row._replace(reason=reason, complete=not self.shortened)
         try:
-            original = self.all_rounds(self.original)
+            with self.limit.until(ANALYSIS):
+                undefined, coverage = self.analysis()
+        except TimeOverError:
+            reason = "not reached: the run that finds undefined inputs takes too long"
+            return row._replace(reason=reason, complete=False)
+        row = row._replace(branches=coverage)
+        names = [name for name, backend in EVERY.items() if backend in self.machines]
+        try:
+            original, results = self.outputs(names)
         except SssgenError as error:
             return row._replace(reason=f"the driver refuses it as written: {error.diagnostics[0].message}")
-        names = [name for name, backend in EVERY.items() if backend in self.machines]
-        with ThreadPoolExecutor(len(names)) as pool:  # each waits for its own process
-            results = dict(zip(names, pool.map(self.result, names), strict=True))
-        defined = _finite(original) & ~undefined
+        except KeyboardInterrupt:
+            for machine in self.machines.values():
+                machine.close()  # which ends the threads that wait for it
+            raise
+        defined = _finite(original)
+        defined &= ~undefined[: len(defined)]
         comparisons = {
             name: Comparison(None, error=outputs)
             if isinstance(outputs, str)
             else self.comparison(name, outputs, original, defined)
             for name, outputs in results.items()
         }
-        reason = ""
-        if not defined.any():
-            reason = "GLSL leaves every result undefined"
-        elif all(comparison.deviation is None and not comparison.error for comparison in comparisons.values()):
-            reason = "every result is ill-conditioned: it depends on rounding"
-        return row._replace(lanes=len(defined), undefined=int((~defined).sum()), comparisons=comparisons, reason=reason)
+        return row._replace(
+            lanes=len(defined),
+            undefined=int((~defined).sum()),
+            comparisons=comparisons,
+            reason=_reason(defined, comparisons.values()),
+            shortened=self.shortened,
+        )
+
+    def outputs(self, names: Sequence[str]) -> tuple[dict[str, Array], dict[str, dict[str, Array] | str]]:
+        """The author's outputs and those of the translations, or why one does not run: of the rounds in the time."""
+        original: list[list[Array]] = []
+        results: dict[str, list[list[Array]]] = {name: [] for name in names}
+        failures: dict[str, str] = {}
+
+        def run(name: str, inputs: Inputs) -> None:
+            if name not in failures:
+                try:
+                    results[name].append(self.run_translation(EVERY[name], inputs))
+                except SssgenError as error:
+                    failures[name] = error.diagnostics[0].message
+
+        with ThreadPoolExecutor(max(len(names), 1)) as pool:  # each waits for its own process
+            for inputs in self.inputs:
+                if original and self.limit.left <= 0.0:
+                    self.shortened = f"the time was over after {len(original)} of {len(self.inputs)} values of uniforms"
+                    break
+                for machine in self.machines.values():
+                    machine.limit_time(min(SECONDS, max(self.limit.left, LEAST_SECONDS)))
+                original.append(self.original(inputs))
+                list(pool.map(partial(run, inputs=inputs), names))
+        return self.join_rounds(original), {
+            name: failures[name] if name in failures else self.join_rounds(results[name]) for name in names
+        }
 
     def analysis(self) -> tuple[Array, Coverage]:
         """The undefined lanes of all rounds, and which branches the function's own text takes."""
         undefined: list[Array] = []
         reached: set[tuple[int, bool]] = set()
-        for inputs in self.inputs:
+        for inputs in self.interpreted():
             lanes = next(iter(inputs.values.values())).shape[-1]
             outcomes = Outcomes(lanes)
             everything = {**inputs.values, **inputs.textures}
@@ -293,19 +333,14 @@ class Case:
                 return Comparison(None, error=f"{output} has the shape {actual[output].shape}, not {right.shape}")
         each = {output: np.where(defined, errors(actual[output], right), 0.0) for output, right in expected.items()}
         beyond = np.any([error > GOAL for error in each.values()], axis=0)
-        unexplained = beyond.copy()
-        for draws in DRAWS_EACH:
-            if not unexplained.any():
-                break
-            lanes = np.flatnonzero(unexplained)
-            limits = self.noise(lanes, draws, name not in SAME_TEXT)
-            wrong = [~is_explained(error[lanes], limits[output]) for output, error in each.items()]
-            unexplained[lanes] = np.any(wrong, axis=0)
-        excluded = beyond & ~unexplained
-        left = defined & ~excluded
+        unexplained, undecided = self.rounding[name not in SAME_TEXT].unexplained(each, beyond)
+        if undecided.any() and (undecided | ~beyond).all():
+            return Comparison(None, error="it deviates, and there was no time to say whether rounding explains it")
+        excluded = beyond & ~unexplained & ~undecided
+        left = defined & ~excluded & ~undecided
         if not left.any():
-            return Comparison(None, int(excluded.sum()))
-        comparison = Comparison(0.0, int(excluded.sum()))
+            return Comparison(None, int(excluded.sum()), undecided=int(undecided.sum()))
+        comparison = Comparison(0.0, int(excluded.sum()), undecided=int(undecided.sum()))
         for output, error in each.items():
             lane = int(np.argmax(np.where(left, error, 0.0)))
             if left[lane] and error[lane] > (comparison.deviation or 0.0):
@@ -334,7 +369,7 @@ class Case:
         keys = [self.keys[probe.name] for probe in self.case.probes]
         parts: list[list[Array]] = []
         start = 0
-        for inputs in self.inputs:
+        for inputs in self.interpreted():
             count = next(iter(inputs.values.values())).shape[-1]
             own = lanes[(lanes >= start) & (lanes < start + count)] - start
             if len(own):
@@ -345,124 +380,15 @@ class Case:
             for index, probe in enumerate(self.case.probes)
         }
 
-    def result(self, name: str) -> dict[str, Array] | str:
-        """The outputs of one translation, or why it does not run."""
-        try:
-            return self.all_rounds(partial(self.run_translation, EVERY[name]))
-        except SssgenError as error:
-            return error.diagnostics[0].message
 
-    def all_rounds(self, run: Callable[[Inputs], list[Array]], rounds: Sequence[Inputs] = ()) -> dict[str, Array]:
-        """Each output of all rounds, lanes first."""
-        results = [run(inputs) for inputs in rounds or self.inputs]
-        return {
-            probe.output: np.concatenate([np.moveaxis(result[index], -1, 0) for result in results])
-            for index, probe in enumerate(self.case.probes)
-        }
-
-    def original(self, inputs: Inputs) -> list[Array]:
-        """The outputs of the author's text, in the first version that the driver accepts.
-
-        Where it accepts none, functions that this one does not call are removed: the driver may refuse only those.
-        """
-        try:
-            return self.original_of(self.written, inputs)
-        except SssgenError:
-            called = {function.name for function in self.module.functions}
-            others = {name for name in self.written_names if name not in called}
-            if not others:
-                raise
-            alone = self.written._replace(text=without_functions(self.written.text, others))
-            outputs = self.original_of(alone, inputs)
-            self.written = alone  # for the next rounds
-            return outputs
-
-    def original_of(self, written: Plain, inputs: Inputs) -> list[Array]:
-        """The outputs of a text of the author, in the first version that the driver accepts."""
-        number = written.version.split(" ")[0]
-        versions = [written.version] if number and (int(number) >= 330 or written.is_es) else VERSIONS
-        refusals: list[SssgenError] = []
-        for version in versions:
-            try:
-                return self.draw_original(written, version, inputs)
-            except SssgenError as error:
-                refusals.append(error)
-        raise refusals[0]
-
-    def draw_original(self, written: Plain, version: str, inputs: Inputs) -> list[Array]:
-        """The outputs of the author's text, followed by the probes. Its uniforms are bound by their names."""
-        probes = "\n".join(probe.text for probe in self.case.probes)
-        text = Text(f"{written.for_driver(version)}\n{probes}")
-        probe_calls = [
-            self.call(probe, probe.name, [leaf.name for leaf in probe.leaves], inputs) for probe in self.case.probes
-        ]
-        target = registry.load("glsl-es-300" if version.endswith("es") else "glsl-330")
-        drawing, layout = calls.drawing(target, text, probe_calls, inputs.textures)
-        uniforms = self.uniforms()
-        bound = {name: Bound(inputs.textures[name], Place(0, 0)) for name in uniforms if name in inputs.textures}
-        bound |= {shown: bound[name] for name, shown in _elements(self.module).items() if name in bound}
-        values = {name: inputs.values[name][..., 0] for name in uniforms if name in inputs.values}
-        vertex = Stage(Text(f"#version {version}\n{_SCREEN}"))
-        drawing = drawing._replace(vertex=vertex, textures={**drawing.textures, **bound}, values=values)
-        return calls.results(probe_calls, layout, self.machines["gl"].draw(drawing))
-
-    def run_translation(self, backend: str, inputs: Inputs) -> list[Array]:
-        """The outputs of the translation for a back end."""
-        machine = self.machines[backend]
-        outputs: list[Array] = []
-        for probes, text, names in self.translations(machine.target.name):
-            probe_calls = [
-                self.call(probe, names.get(probe.name, probe.name), [p.name for p in self.params[probe.name]], inputs)
-                for probe in probes
-            ]
-            outputs += machine.run(text, probe_calls, inputs.textures)
-        return outputs
-
-    def translations(self, target: str) -> list[_Translation]:
-        """The texts for a target, cached."""
-        if target not in self.texts:
-            probes = self.case.probes
-            separate = self.passes_variables(target)
-            groups = [[probe] for probe in probes] if separate else [probes]
-            self.texts[target] = [self.translation(target, group) for group in groups]
-        return self.texts[target]
-
-    def passes_variables(self, target: str) -> bool:
-        """Whether module variables become parameters of the target's functions."""
-        return bool(self.module.variables) and not registry.load(target).capabilities.module_variables
-
-    def translation(self, target: str, probes: Sequence[Probe]) -> _Translation:
-        """One text with these probes; only one, where module variables become its parameters."""
-        keys = [self.keys[probe.name] for probe in probes]
-        module = keep_reachable(self.module, keys)
-        if self.passes_variables(target):
-            module = variables_to_parameters(module, keys[0])
-        compiled = transpile(module, target, "verified", "none", keys, keep=True)
-        text = "\n".join([text for name, text in compiled.files.items() if not name.endswith(".json")])
-        return _Translation(tuple(probes), Text(text), compiled.reflection["renames"])
-
-    def call(self, probe: Probe, name: str, params: Sequence[str], inputs: Inputs) -> Call:
-        """The call of a probe, called `name` in the text."""
-        types = {param.name: param.type for param in self.params[probe.name]}
-        args = tuple([inputs.values.get(param, param) for param in params])
-        return Call(name, tuple([types[param] for param in params]), probe.result, args)
-
-
-def _elements(module: Module) -> dict[str, str]:
-    """The author's name of each texture that is an element of an array, as `maps[1]`, by its name in the IR.
-
-    The elements of an array have the place of its declaration, and the names `maps_0`, `maps_1`, …
-    """
-    arrays: dict[Span, list[str]] = {}
-    for uniform in module.uniforms:
-        if isinstance(uniform.type, Sampler):
-            arrays.setdefault(uniform.span, []).append(uniform.name)
-    return {
-        name: f"{names[0].partition('_0')[0]}[{index}]"
-        for names in arrays.values()
-        for index, name in enumerate(names)
-        if "_0" in names[0]
-    }
+def _reason(defined: Array, comparisons: Iterable[Comparison]) -> str:
+    """Why there is no result; '' where there is."""
+    if not defined.any():
+        return "GLSL leaves every result undefined"
+    if all(comparison.deviation is None and not comparison.error for comparison in comparisons):
+        undecided = any(comparison.undecided for comparison in comparisons)
+        return "" if undecided else "every result is ill-conditioned: it depends on rounding"
+    return ""
 
 
 def _text(value: Array) -> str:
@@ -476,5 +402,6 @@ def _finite(outputs: Mapping[str, Array]) -> Array:
     return finite
 
 
-def _title(function: Function) -> str:
+def title(function: Function) -> str:
+    """The function as `box(vec3,vec3)`."""
     return function.key.replace(MAIN, "main")

@@ -32,6 +32,8 @@ class Comparison(NamedTuple):
     at: str = ""
     """The place of the largest deviation, the value there, that of the author's text, and the inputs."""
     error: str = ""
+    undecided: int = 0
+    """The number of lanes that deviate, for which the time did not suffice to say whether rounding explains it."""
 
     @property
     def ok(self) -> bool:
@@ -68,6 +70,28 @@ class Row(NamedTuple):
     reason: str = ""
     """Why it was not run; '' where it was."""
     branches: Coverage = Coverage()
+    asked: int = 0
+    """The number of lanes that were asked for."""
+    shortened: str = ""
+    """Why not all inputs were tried; '' where they were."""
+    complete: bool = True
+    """False where the function was not run because the time was over."""
+
+    @property
+    def undecided(self) -> int:
+        """The largest number of lanes that a comparison left undecided."""
+        return max([comparison.undecided for comparison in self.comparisons.values()], default=0)
+
+    @property
+    def partly(self) -> str:
+        """What of its inputs was not verified; '' where nothing is left."""
+        if not self.complete or self.reason or not (self.shortened or self.undecided):
+            return ""
+        tried = f"{self.lanes - self.undecided} of {max(self.asked, self.lanes)} inputs"
+        undecided = f"{self.undecided} deviate, and there was no time to say whether rounding explains it"
+        return "; ".join(
+            [tried, *([self.shortened] if self.shortened else []), *([undecided] if self.undecided else [])]
+        )
 
     @property
     def ok(self) -> bool:
@@ -92,7 +116,7 @@ class Row(NamedTuple):
         """The row for programs."""
         row: dict[str, Any] = {"function": self.function, "line": self.line, "ok": self.ok}
         if self.reason:
-            return row | {"not_run": self.reason}
+            return row | {"not_run": self.reason} | ({} if self.complete else {"reached": False})
         texts = {
             name: {
                 "deviation": comparison.deviation
@@ -101,13 +125,15 @@ class Row(NamedTuple):
                 "ok": comparison.ok,
                 "excluded": comparison.excluded,
             }
+            | ({"undecided": comparison.undecided} if comparison.undecided else {})
             | ({"at": comparison.at} if comparison.at else {})
             | ({"error": comparison.error} if comparison.error else {})
             for name, comparison in self.comparisons.items()
         }
         reached, outcomes, never = self.branches
         branches = {"outcomes": outcomes, "taken": reached, "never": list(never)}
-        return row | {"lanes": self.lanes, "undefined": self.undefined, "branches": branches, "texts": texts}
+        row |= {"lanes": self.lanes, "undefined": self.undefined, "branches": branches, "texts": texts}
+        return row | ({"partly": self.partly} if self.partly else {})
 
 
 class Report(NamedTuple):
@@ -119,35 +145,67 @@ class Report(NamedTuple):
     backends: tuple[str, ...] = tuple(BACKENDS.values())
     """The back ends that were asked for."""
 
+    width: int = 0
+    """The number of characters of the longest function."""
+    interrupted: bool = False
+
     @property
     def ok(self) -> bool:
-        """Whether a function ran, and all that ran pass."""
+        """Whether a function ran, all that ran pass, and the time was enough to reach all of them."""
         executed_rows = [row for row in self.rows if not row.reason]
-        return bool(executed_rows) and all(row.ok for row in executed_rows)
+        return bool(executed_rows) and all(row.ok for row in executed_rows) and all(row.complete for row in self.rows)
 
     def as_json(self) -> dict[str, Any]:
         """The report for programs."""
-        return {"goal": GOAL, "functions": [row.as_json() for row in self.rows], "missing": self.missing}
+        complete = all(row.complete and not row.partly for row in self.rows)
+        rows = [row.as_json() for row in self.rows]
+        return {"goal": GOAL, "complete": complete, "functions": rows, "missing": self.missing}
+
+    @property
+    def available(self) -> list[str]:
+        """The translations whose back ends are here."""
+        return [name for name, backend in EVERY.items() if backend in self.backends and backend not in self.missing]
 
     def lines(self) -> Iterator[str]:
         """The report as lines of text: the largest deviations from the author's text, and the excluded lanes."""
-        available = [
-            name for name, backend in EVERY.items() if backend in self.backends and backend not in self.missing
-        ]
-        width = max([len("largest deviation"), *(len(row.function) for row in self.rows)])
-        yield (
-            f"{'largest deviation':{width}}"
-            + "".join([f"{name:>9}" for name in available])
-            + f"   of lanes (goal: {GOAL:g})"
-        )
+        yield self.head()
         for row in self.rows:
-            yield f"{row.function:{width}}" + (f"  not run: {row.reason}" if row.reason else row.cells(available))
-            for name, comparison in row.comparisons.items():
-                if comparison.error:
-                    yield f"    {name} does not run: {comparison.error}"
-                elif not comparison.ok and not row.reason:
-                    yield f"    {name} {comparison.at}"
-            if row.branches.never:
-                yield f"    never taken: {', '.join(row.branches.never)}"
+            yield from self.row_lines(row)
+        yield from self.last_lines()
+
+    def first_cell(self, text: str) -> str:
+        """A text in the width of the first column."""
+        width = max([self.width, len("largest deviation"), *(len(row.function) for row in self.rows)])
+        return f"{text:{width}}"
+
+    def head(self) -> str:
+        """The first line."""
+        columns = "".join([f"{name:>9}" for name in self.available])
+        return f"{self.first_cell('largest deviation')}{columns}   of lanes (goal: {GOAL:g})"
+
+    def row_lines(self, row: Row) -> Iterator[str]:
+        """The lines of one function."""
+        cells = f"  not run: {row.reason}" if row.reason else row.cells(self.available)
+        yield self.first_cell(row.function) + cells
+        for name, comparison in row.comparisons.items():
+            if comparison.error:
+                yield f"    {name} does not run: {comparison.error}"
+            elif not comparison.ok and not row.reason:
+                yield f"    {name} {comparison.at}"
+        if row.branches.never:
+            yield f"    never taken: {', '.join(row.branches.never)}"
+        if row.partly:
+            yield f"    partly verified: {row.partly}"
+
+    def last_lines(self) -> Iterator[str]:
+        """What is missing: back ends, and functions or inputs that the time did not suffice for."""
         for name, instruction in self.missing.items():
             yield f"{name} is missing: {instruction}"
+        partly = [row.function for row in self.rows if row.partly]
+        unreached = [row.function for row in self.rows if not row.complete]
+        if partly:
+            yield f"partly verified: {', '.join(partly)}"
+        if unreached:
+            yield f"not reached: {', '.join(unreached)}"
+        if (partly or unreached) and not self.interrupted:
+            yield "more time: --seconds N for the file, --function-seconds N for each function; 0 is no limit"

@@ -60,6 +60,10 @@ class BackendProcess(DrawingBackend):
         """The result of `function(back end, *arguments)`, computed in the other process."""
         return self._ask("apply", function, arguments)
 
+    def limit_time(self, seconds: float) -> None:
+        """How long each further answer may take."""
+        self.process.seconds = seconds
+
     def close(self) -> None:
         """Ends the process."""
         self.process.close()
