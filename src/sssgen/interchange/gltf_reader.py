@@ -16,7 +16,6 @@ from sssgen.scene.mesh_files import FileContent
 
 _OTHER_EXTENSIONS = ("KHR_texture_transform", "EXT_texture_webp", "KHR_mesh_quantization")
 _HARMLESS_EXTENSIONS = (
-    "KHR_materials_sheen",
     "KHR_materials_iridescence",
     "KHR_materials_anisotropy",
     "KHR_materials_dispersion",
