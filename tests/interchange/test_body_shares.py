@@ -20,7 +20,9 @@ ALBEDO = albedo_of_multiscatter((0.8, 0.5, 0.3))
 def chosen(base: Quantity, share: float = 1.0) -> Choice:
     """The choice for a body of five mean free paths, of which the subsurface has a share."""
     inside = medium((5.0,) * 3, ALBEDO)
-    return choose(SurfaceModel("wax", base_color=base, subsurface=Quantity((share,)), interior=inside), Notes(), 1.0, True, 1.0)
+    return choose(
+        SurfaceModel("wax", base_color=base, subsurface=Quantity((share,)), interior=inside), Notes(), 1.0, True, 1.0
+    )
 
 
 def value(choice: Choice, technique: str, name: str) -> object:

@@ -121,11 +121,11 @@ def test_an_image_with_a_third_transform_is_its_mean(tmp_path: Path) -> None:
 
 
 def test_what_has_no_effect_is_left_out(tmp_path: Path) -> None:
-    material = {"extensions": {"KHR_materials_volume": {"thicknessFactor": 1.0}, "KHR_materials_sheen": {}}}
+    material = {"extensions": {"KHR_materials_volume": {"thicknessFactor": 1.0}, "KHR_materials_iridescence": {}}}
     _, report = imported(tmp_path, material, animations=[{"channels": [], "samplers": []}])
     left = {row.element: row.became for row in report.rows if row.outcome == "left out"}
     assert left["/materials/0/extensions/KHR_materials_volume/thicknessFactor"] == "no light enters the body"
-    assert "/materials/0/extensions/KHR_materials_sheen" in left and "/animations" in left
+    assert "/materials/0/extensions/KHR_materials_iridescence" in left and "/animations" in left
 
 
 def test_a_sheet_that_scatters_keeps_its_light(tmp_path: Path) -> None:

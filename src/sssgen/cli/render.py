@@ -31,7 +31,8 @@ def add_options(parser: ArgumentParser) -> None:
         "  sssgen render paper_lantern --size 1280x960 --samples 3 -o large.png\n"
         "  sssgen render --compare lantern.png golden.png -o difference.png\n"
         "  sssgen render lamp.glb -o lamp.png\n"
-        "A material is drawn in the scene.toml beside it, or as a ball lit from behind; a glTF file as sssgen import reads it."
+        "A material is drawn in the scene.toml beside it, or as a ball lit from behind;\n"
+        "a glTF file as sssgen import reads it."
     )
     add = parser.add_argument
     add("SCENE", nargs="?", help="the .toml file of a scene or a material, an example, or a glTF file")

@@ -37,6 +37,7 @@ def read(path: str, report: Report, name: str = "", top: str = "") -> list[Impor
 
 
 def read_view(path: str, report: Report, top: str = "") -> ImportedView:
-    """The camera and the lights of a file that `read` accepts; adds to the report what is left out. Raises SssgenError."""
+    """The camera and the lights of a file that `read` accepts. Adds to the report what is left out. Raises
+    SssgenError."""
     suffix = os.path.splitext(path)[1].lower()
     return gltf_view.read_view(path, report, top) if suffix in gltf_container.SUFFIXES else ImportedView()

@@ -28,6 +28,14 @@ _HARMLESS_EXTENSIONS = (
     "MSFT_lod",
 )
 """Extensions that a file may require: without them it is still read rightly, except for what the report names."""
+_DECODED = {
+    **dict.fromkeys(
+        ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"),
+        "write it without compression: npx @gltf-transform/cli copy FILE.glb plain.glb",
+    ),
+    "KHR_texture_basisu": "write its KTX2 pictures as PNG: npx @gltf-transform/cli ktxdecompress FILE.glb plain.glb",
+}
+"""Extension of compressed data → what to do."""
 _MOTIONS = {"animations": "a material does not move", "skins": "the mesh is taken in its rest pose"}
 
 
@@ -80,5 +88,7 @@ def _check_extensions(root: JsonElement) -> None:
         if not isinstance(element.value, str):
             raise element.fault(f"a string is needed, not {short_text(element.value)}")
         if element.value not in supported:
-            hint = "export the file without this extension: it says that the file is wrong without it"
+            hint = _DECODED.get(
+                element.value, "export the file without this extension: it says that it is wrong without it"
+            )
             raise element.fault(f"the file requires '{element.value[:60]}', which is not read", hint)

@@ -62,9 +62,7 @@ def write_import(
     files: dict[str, str | bytes] = {}
     written: list[WrittenMaterial] = []
     names = identifiers([part.model.name for part in materials])
-    chords = [
-        4.0 / 3.0 * ball_radius(part.model) if part.mesh is None else mean_chord(part.mesh) for part in materials
-    ]
+    chords = [4.0 / 3.0 * ball_radius(part.model) if part.mesh is None else mean_chord(part.mesh) for part in materials]
     metres = world_unit([(part.model, chord) for part, chord in zip(materials, chords, strict=True)])
     for done, (imported, name, chord) in enumerate(zip(materials, names, chords, strict=True)):
         progress(done, len(materials), name)

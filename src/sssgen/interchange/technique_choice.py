@@ -31,9 +31,7 @@ _ONE_MEDIUM = (
     "These values belong to one medium, with a share of the tint above and [medium] of the scene: change them together."
 )
 _BLACK = [0.0, 0.0, 0.0]
-_SEEN_THROUGH = (
-    "The scene and its surroundings are seen through; for a sky of two colours set sky_below and sky_above."
-)
+_SEEN_THROUGH = "The scene and its surroundings are seen through; for a sky of two colours set sky_below and sky_above."
 _LONGEST, _DENSEST = 10.0, 1000.0
 """The largest thickness and extinction that techniques take, in world units."""
 _DENSEST_INSIDE = 10000.0
@@ -369,8 +367,10 @@ def _tint_exceeds_one(base: Quantity, kept: Array) -> bool:
 
 
 def world_unit(models: Sequence[tuple[SurfaceModel, float]]) -> float:
-    """The length of a world unit in metres for which the thicknesses and extinctions of all materials are in the ranges of
-    techniques; each model with the mean chord of its body."""
+    """The length of a world unit in metres for which the numbers of all materials are in the ranges of techniques.
+
+    Each model is given with the mean chord of its body, in metres.
+    """
     ready = [as_matte(limit_numbers(model, Notes()), Notes(), mean_chord) for model, mean_chord in models]
     longest = max(model.thickness.factor[0] for model in ready)
     densest = max((max(model.interior.extinction) for model in ready if model.interior is not None), default=0.0)

@@ -113,7 +113,7 @@ class Scene:
     shows_environment: bool = False
     """Whether the picture shows the environment beside the bodies, in place of `background`"""
     bodies: tuple[str, ...] = ()
-    """The files of scenes whose bodies are drawn together, with the camera, the lights and the surroundings of this one"""
+    """The files of scenes whose bodies are drawn together, with the camera, lights and surroundings of this one"""
     folder: str = ""
     """The folder of the scene's file, to which the names of files are relative"""
 

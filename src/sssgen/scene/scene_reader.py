@@ -142,7 +142,9 @@ class _Reader:
     def bodies(self, top: Table) -> tuple[str, ...]:
         content = top.content.get("bodies", [])
         if not isinstance(content, list) or not all(isinstance(name, str) for name in content):
-            top.error("bodies", "'bodies' is a list of scenes", 'write bodies = ["glass/scene.toml", "wood/scene.toml"]')
+            top.error(
+                "bodies", "'bodies' is a list of scenes", 'write bodies = ["glass/scene.toml", "wood/scene.toml"]'
+            )
             return ()
         if len(content) > MAX_BODIES:
             top.error("bodies", f"the scene has {len(content)} bodies", f"at most {MAX_BODIES} are supported")
@@ -150,7 +152,9 @@ class _Reader:
         for key in ("material", "geometry", "parameters", "textures"):
             if content and key in top.content:
                 hint = f"'{key}' is that of each scene in 'bodies'"
-                self.document.error(self.document.place(key).key, "a scene has a body of its own, or those of others", hint)
+                self.document.error(
+                    self.document.place(key).key, "a scene has a body of its own, or those of others", hint
+                )
         return tuple([self.file(("bodies", index), name) for index, name in enumerate(content)])
 
     def background(self, top: Table) -> Any:

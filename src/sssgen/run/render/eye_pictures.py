@@ -20,7 +20,6 @@ from sssgen.scene.pictures.resizing import resized
 from sssgen.targets.reflection_record import Reflection
 from sssgen.targets.runtime.numpy_textures import Texture
 
-
 MOST_TEXELS = 1024
 """Along a side of the picture of the scene behind a body."""
 

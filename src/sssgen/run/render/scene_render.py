@@ -134,9 +134,7 @@ def _reads_rays(entry: EntryRecord) -> bool:
     return bool({"ray_origin", "ray_direction"} & set(entry["inputs"]))
 
 
-def _compile(
-    scene: Scene, shell: Mapping[str, str], backend: Backend, guards: str
-) -> tuple[Material, Compiled]:
+def _compile(scene: Scene, shell: Mapping[str, str], backend: Backend, guards: str) -> tuple[Material, Compiled]:
     """The scene's material with the techniques of a shell, and its shader."""
     # an engine has its own shadows, surroundings and tone mapping
     roles = [f"{role}={name}" for role, name in shell.items() if role in backend.target.shell]
