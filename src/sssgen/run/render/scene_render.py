@@ -178,14 +178,14 @@ def _render_bodies(scene: Scene, backend: Backend, guards: str, progress: Progre
     canvas = Canvas(backdrop(wider, padded) / scene.exposure)
     bodies = []
     shell = {**scene.shell, "tone_mapping": NONE}
-    for body in bodies_of(scene):
-        material, compiled = _compile(body, shell, backend, guards)
-        values = shell_of(body, material, compiled.reflection)
-        if missing := missing_textures(body, material, compiled.reflection, values.textures):
+    for part in bodies_of(scene):
+        material, compiled = _compile(part, shell, backend, guards)
+        values = shell_of(part, material, compiled.reflection)
+        if missing := missing_textures(part, material, compiled.reflection, values.textures):
             raise MissingTextures(missing)
         if compiled.reflection["raymarched"]:
-            raise failure(f"{material.name} marches its own rays: it is drawn alone", "", body.document.reporter.file)
-        bodies.append(Body(body, compiled, values))
+            raise failure(f"{material.name} marches its own rays: it is drawn alone", "", part.document.reporter.file)
+        bodies.append(Body(part, compiled, values))
     warnings: list[Diagnostic] = []
     for number, body in enumerate(in_order(bodies, scene.camera)):
         progress(number, len(bodies), f"drawing {body.compiled.reflection['material']}")
