@@ -278,7 +278,7 @@ class _Chooser:
             self.add(
                 "translucency", "seen_through_body" if self.measured else "seen_through",
                 entering_texture=texture, entering_color=color,
-                extinction=extinction, ior=1.0 if model.thin_walled else min(max(model.ior, 1.0), 3.0),
+                extinction=extinction, ior=min(max(model.ior, 1.0), 3.0),
                 sky_below=_BLACK, sky_above=_BLACK,
             )  # fmt: skip
             self.stages[-1] = self.stages[-1]._replace(comment=_SEEN_THROUGH)

@@ -93,12 +93,20 @@ class Canvas:
 
     def tone_mapped(self, shell: Mapping[str, str]) -> Array:
         """The colours after the tone mapping of a shell, where a lit body is."""
-        name = shell.get("tone_mapping", NONE)
-        if name == NONE or not self.mapped.any():
-            return self.color
-        technique, oracle = subject(name), backends.require("numpy")
         result = self.color.copy()
-        lit = self.color[self.mapped]
-        bands = [lit[start : start + _BAND] for start in range(0, len(lit), _BAND)]
-        result[self.mapped] = np.concatenate([evaluate(technique, {"color": band}, oracle)["result"] for band in bands])
+        if self.mapped.any():
+            result[self.mapped] = tone_mapped(self.color[self.mapped], shell)
         return result
+
+
+def tone_mapped(color: Array, shell: Mapping[str, str]) -> Array:
+    """Linear colours (…, 3) after the tone mapping of a shell."""
+    name = shell.get("tone_mapping", NONE)
+    if name == NONE:
+        return color
+    technique, oracle = subject(name), backends.require("numpy")
+    flat = color.reshape(-1, 3)
+    bands = [flat[start : start + _BAND] for start in range(0, len(flat), _BAND)]
+    mapped = [evaluate(technique, {"color": band}, oracle)["result"] for band in bands]
+    result: Array = np.concatenate(mapped).reshape(color.shape)
+    return result
