@@ -227,24 +227,41 @@ def resin_inlay() -> dict[str, Any]:
 
 
 def surroundings() -> dict[str, Any]:
-    """A dark studio with lamps behind cloth, as scenes mirror it: all directions, up at the top, +x in the middle."""
-    v, u = np.mgrid[0:64, 0:128]
-    polar, azimuth = np.pi * (1.0 - (v + 0.5) / 64), 2.0 * np.pi * ((u + 0.5) / 128 - 0.5)
-    way = np.stack([np.sin(polar) * np.cos(azimuth), np.cos(polar), np.sin(polar) * np.sin(azimuth)], axis=-1)
+    """What scenes mirror: a dark studio with lamps behind cloth, and a bright room with windows."""
+    way = directions()
     # the floor is brown, the ceiling is lighter and blue
-    picture = blend(color("#28231f"), color("#46505c"), smooth(-0.5, 0.9, way[..., 1]))
-    for facing, width, height, light in (
+    studio = blend(color("#28231f"), color("#46505c"), smooth(-0.5, 0.9, way[..., 1]))
+    room = blend(color("#6c6b6a"), color("#aeb4bb"), smooth(-0.7, 0.7, way[..., 1]))
+    lamps = (
         ((-0.55, 0.62, 0.56), 0.55, 0.42, color("#ffffff")),
         ((0.95, 0.12, 0.3), 0.13, 0.6, color("#d8e4ff")),
         ((0.1, 0.5, -0.86), 0.8, 0.16, color("#fff0dc")),
-    ):
+    )
+    windows = (
+        ((-0.9, 0.35, 0.25), 0.5, 0.55, color("#ffffff")),
+        ((0.55, 0.3, -0.78), 0.75, 0.45, color("#fffaf2")),
+        ((0.5, 0.75, 0.45), 0.5, 0.3, color("#f4f8ff")),
+    )
+    return {"studio": with_lamps(studio, way, lamps), "room": with_lamps(room, way, windows)}
+
+
+def directions() -> Any:
+    """The unit direction of each texel of a picture of all directions: up at the top, +x in the middle."""
+    v, u = np.mgrid[0:64, 0:128]
+    polar, azimuth = np.pi * (1.0 - (v + 0.5) / 64), 2.0 * np.pi * ((u + 0.5) / 128 - 0.5)
+    return np.stack([np.sin(polar) * np.cos(azimuth), np.cos(polar), np.sin(polar) * np.sin(azimuth)], axis=-1)
+
+
+def with_lamps(picture: Any, way: Any, lamps: Any) -> Any:
+    """A picture of all directions with upright rectangles: the direction of each, its half sizes and its colour."""
+    for facing, width, height, light in lamps:
         ahead = np.array(facing) / np.linalg.norm(facing)
         right = np.cross([0.0, 1.0, 0.0], ahead) / np.hypot(ahead[0], ahead[2])
         far = np.maximum(way @ ahead, 1e-3)
         x, y = np.abs(way @ right) / far, np.abs(way @ np.cross(ahead, right)) / far
         lamp = smooth(width + 0.04, width - 0.04, x) * smooth(height + 0.04, height - 0.04, y)
         picture = blend(picture, light, lamp)
-    return {"studio": picture}
+    return picture
 
 
 EXAMPLES = (paper_lantern, ice, ice_inlay, resin_inlay, surroundings)

@@ -20,7 +20,9 @@ ALBEDO = albedo_of_multiscatter((0.8, 0.5, 0.3))
 def chosen(base: Quantity, share: float = 1.0) -> Choice:
     """The choice for a body of five mean free paths, of which the subsurface has a share."""
     inside = medium((5.0,) * 3, ALBEDO)
-    return choose(SurfaceModel("wax", base_color=base, subsurface=Quantity((share,)), interior=inside), Notes(), 1.0)
+    return choose(
+        SurfaceModel("wax", base_color=base, subsurface=Quantity((share,)), interior=inside), Notes(), 1.0, True, 1.0
+    )
 
 
 def value(choice: Choice, technique: str, name: str) -> object:
@@ -61,7 +63,7 @@ def test_no_light_enters_a_metal() -> None:
         "gold", base_color=Quantity((0.9, 0.7, 0.3)), metalness=Quantity((1.0,)), subsurface=Quantity((1.0,)),
         interior=medium((5.0,) * 3, ALBEDO),
     )  # fmt: skip
-    choice = choose(model, Notes(), 1.0)
+    choice = choose(model, Notes(), 1.0, True, 1.0)
     assert value(choice, "base_color", "tint")[:3] == pytest.approx((0.9, 0.7, 0.3))
     assert "interior_octaves" not in [stage.technique for stage in choice.stages]
 

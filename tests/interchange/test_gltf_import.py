@@ -120,12 +120,24 @@ def test_an_image_with_a_third_transform_is_its_mean(tmp_path: Path) -> None:
     assert any("the mean of its picture" in row.became for row in rows)
 
 
+def test_a_sheen_is_the_same_everywhere(tmp_path: Path) -> None:
+    sheen = {"sheenColorFactor": [0.8, 0.4, 0.2], "sheenRoughnessFactor": 0.6, "sheenColorTexture": {"index": 0}}
+    material = {"extensions": {"KHR_materials_sheen": sheen}}
+    pictures, textures = [{"uri": data_uri(png((255, 0, 255)))}], [{"source": 0}]
+    folder, report = written(tmp_path, material, images=pictures, textures=textures)
+    chain = {stage.technique.name: stage.values for stage in load_material(str(next(folder.glob("[!s]*.toml")))).stages}
+    np.testing.assert_allclose(chain["sheen_constants"]["sheen_tint"], [0.8, 0.0, 0.2], atol=1e-6)
+    assert chain["sheen_constants"]["sheen_spread"] == pytest.approx((0.6,))
+    rows = {row.element.rpartition("/")[2]: row.outcome for row in report.rows}
+    assert (rows["sheenColorFactor"], rows["sheenRoughnessFactor"]) == ("approximated", "mapped")
+
+
 def test_what_has_no_effect_is_left_out(tmp_path: Path) -> None:
-    material = {"extensions": {"KHR_materials_volume": {"thicknessFactor": 1.0}, "KHR_materials_sheen": {}}}
+    material = {"extensions": {"KHR_materials_volume": {"thicknessFactor": 1.0}, "KHR_materials_iridescence": {}}}
     _, report = imported(tmp_path, material, animations=[{"channels": [], "samplers": []}])
     left = {row.element: row.became for row in report.rows if row.outcome == "left out"}
     assert left["/materials/0/extensions/KHR_materials_volume/thicknessFactor"] == "no light enters the body"
-    assert "/materials/0/extensions/KHR_materials_sheen" in left and "/animations" in left
+    assert "/materials/0/extensions/KHR_materials_iridescence" in left and "/animations" in left
 
 
 def test_a_sheet_that_scatters_keeps_its_light(tmp_path: Path) -> None:

@@ -17,6 +17,8 @@ UP = np.array([0.0, 0.0, 1.0])
 
 def lit(**values: Any) -> Array:
     surface = {"albedo": np.ones(3), "metallic": 0.0, "roughness": 0.5, "occlusion": 1.0, "N": UP, "V": UP}
+    surface |= {"specular": 0.04, "clearcoat": 0.0, "clearcoat_roughness": 0.0}
+    surface |= {"sheen_color": np.zeros(3), "sheen_roughness": 0.0}
     maps = {"irradiance_map": WHITE, "reflection_map": WHITE}
     result: Array = technique("prefiltered_environment")(**{**surface, **maps, **values})
     return result
@@ -84,3 +86,26 @@ def test_the_highlight_is_of_the_mirrored_direction_and_its_level() -> None:
 
 def test_a_normal_of_zero_is_finite() -> None:
     assert np.isfinite(lit(N=np.zeros(3), V=np.zeros(3))).all()
+
+
+def test_a_clear_coat_mirrors_over_the_base() -> None:
+    """KHR_materials_clearcoat: mix(base, coat, weight * F), F = 0.04 from the front."""
+    bare, coated = lit(albedo=np.zeros(3), specular=0.0, roughness=1.0), 0.5 * 0.04
+    close(lit(albedo=np.zeros(3), specular=0.0, roughness=1.0, clearcoat=0.5), (1.0 - coated) * bare + coated)
+
+
+def test_the_reflectance_of_a_dielectric_is_that_of_the_surface() -> None:
+    levels = [
+        float(lit(albedo=np.zeros(3), roughness=0.1, specular=value)[..., 0].max()) for value in (0.02, 0.04, 0.08)
+    ]
+    assert levels[0] < levels[1] < levels[2]
+    assert levels[2] - levels[1] == pytest.approx(2.0 * (levels[1] - levels[0]), rel=1e-6)
+
+
+def test_a_sheen_adds_its_light_and_takes_it_from_the_base() -> None:
+    fibres = {"sheen_color": np.array([1.0, 0.0, 0.0]), "sheen_roughness": 0.5}
+    V = from_angle(0.1)
+    plain, sheen = lit(V=V), lit(V=V, **fibres)
+    assert sheen[..., 1].max() < plain[..., 1].max()  # green is the base alone
+    black = lit(V=V, albedo=np.zeros(3), specular=0.0, roughness=1.0, **fibres)
+    assert black[..., 0].max() > black[..., 1].max() + 0.05

@@ -42,7 +42,7 @@ def run(arguments: Namespace) -> int:
     """Reads the file, writes its materials, and prints what became of its elements."""
     from sssgen.interchange import format_readers
     from sssgen.interchange.mapping_report import Report
-    from sssgen.interchange.material_writer import write_import
+    from sssgen.interchange.material_writer import WHOLE_SCENE, write_import
     from sssgen.interchange.thickness_bake import OPTION as BAKE_OPTION
     from sssgen.interchange.thickness_bake import bake_materials
 
@@ -53,7 +53,8 @@ def run(arguments: Namespace) -> int:
         imports = format_readers.read(path, report, arguments.material, arguments.root or "")
         if arguments.bake:
             imports = bake_materials(imports, report, bar)
-        written = write_import(arguments.output, imports, report, force=arguments.force, progress=bar)
+        view = format_readers.read_view(path, report, arguments.root or "")
+        written = write_import(arguments.output, imports, report, view, force=arguments.force, progress=bar)
     folder = posix(arguments.output)
     materials = [
         {"name": part.name, "material": f"{folder}/{part.material}", "scene": f"{folder}/{part.scene}"}
@@ -61,12 +62,15 @@ def run(arguments: Namespace) -> int:
     ]
     first = next((part for part in written if part.transmits), written[0])
     scene = shlex.quote(f"{folder}/{first.scene}")
+    has_mesh = any(part.mesh is not None for part in imports)
+    drawn = shlex.quote(f"{folder}/{WHOLE_SCENE}") if has_mesh else scene
+    picture = os.path.splitext(report.source)[0] if has_mesh else first.name
     no_effect = [row for row in report.rows if row.value == BAKE_OPTION]
     lines = [
         *(f"wrote {part['material']} and its scene" for part in materials),
         *(f"{BAKE_OPTION} has no effect on {row.element}: {row.became}" for row in no_effect),
         f"{report.summary()}: {folder}/report.md",
-        f"draw it: sssgen render {scene} -o {first.name}.png",
+        f"draw it: sssgen render {drawn} -o {shlex.quote(picture)}.png",
         f"change it: sssgen preview {scene}",
     ]
     print_result(arguments.json, {"materials": materials, "report": report.as_json()}, "\n".join(lines))

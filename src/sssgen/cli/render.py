@@ -4,14 +4,23 @@ from __future__ import annotations
 
 import os
 import re
+import tempfile
 from argparse import ArgumentParser, Namespace
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 from sssgen.cli.options import add_guards, add_output
 from sssgen.cli.output import CHECK_FAILED, OK, print_result, print_warnings, report_errors
 from sssgen.run.backend_registry import PREFERRED, SCENES
 from sssgen.support.diagnostics import failure
+from sssgen.support.paths import posix
 from sssgen.support.progress import ProgressBar
+
+if TYPE_CHECKING:
+    from sssgen.scene.scene import Scene
+
+
+_GLTF = (".glb", ".gltf")
 
 
 def add_options(parser: ArgumentParser) -> None:
@@ -21,10 +30,12 @@ def add_options(parser: ArgumentParser) -> None:
         "  sssgen render wax.toml -o wax.png\n"
         "  sssgen render paper_lantern --size 1280x960 --samples 3 -o large.png\n"
         "  sssgen render --compare lantern.png golden.png -o difference.png\n"
-        "A material is drawn in the scene.toml beside it, or as a ball lit from behind."
+        "  sssgen render lamp.glb -o lamp.png\n"
+        "A material is drawn in the scene.toml beside it, or as a ball lit from behind;\n"
+        "a glTF file as sssgen import reads it."
     )
     add = parser.add_argument
-    add("SCENE", nargs="?", help="the .toml file of a scene or a material, or an example")
+    add("SCENE", nargs="?", help="the .toml file of a scene or a material, an example, or a glTF file")
     add_output(parser, "FILE", "a .png or .exr file (default: SCENE's name with .png)")
     add("--backend", "-b", metavar="NAME", default=PREFERRED, help=f"{', '.join(SCENES)} (default: {PREFERRED})")
     add_guards(parser)
@@ -50,11 +61,9 @@ def run(arguments: Namespace) -> int:
 
 def _render(arguments: Namespace) -> int:
     from sssgen.run import backends
-    from sssgen.run.render.missing_textures import MissingTextures
-    from sssgen.run.render.scene_render import render, with_samples
-    from sssgen.scene.pictures import images
     from sssgen.scene.preview_scene import scene_of
     from sssgen.scene.scene_keys import MAX_SAMPLES
+    from sssgen.scene.scene_loading import load
 
     size = _size(arguments.size) if arguments.size else None
     name, *more = backends.backend_names(arguments.backend, scenes=True)
@@ -64,7 +73,34 @@ def _render(arguments: Namespace) -> int:
         raise failure(f"--time {arguments.time:g} is not a time", "seconds, less than 1e9")
     if arguments.samples is not None and not 1 <= arguments.samples <= MAX_SAMPLES:
         raise failure(f"--samples {arguments.samples} is not a number of samples", f"from 1 to {MAX_SAMPLES}")
-    scene = scene_of(arguments.SCENE)
+    if arguments.SCENE.lower().endswith(_GLTF):
+        with tempfile.TemporaryDirectory() as folder:
+            return _draw(arguments, load(_imported(arguments.SCENE, folder)), name, size)
+    return _draw(arguments, scene_of(arguments.SCENE), name, size)
+
+
+def _imported(path: str, folder: str) -> str:
+    """The scene of a glTF file, written to a folder; a line says what became of its elements."""
+    from sssgen.interchange import format_readers
+    from sssgen.interchange.mapping_report import Report
+    from sssgen.interchange.material_writer import WHOLE_SCENE, write_import
+
+    report = Report(os.path.basename(path))
+    with ProgressBar() as bar:
+        bar(0, 1, f"reading {report.source}")
+        materials = format_readers.read(path, report)
+        if not any(part.mesh is not None for part in materials):
+            raise failure("the file has no triangles to draw", "sssgen import writes its materials", posix(path))
+        write_import(folder, materials, report, format_readers.read_view(path, report), progress=bar)
+    return os.path.join(folder, WHOLE_SCENE)
+
+
+def _draw(arguments: Namespace, scene: Scene, name: str, size: tuple[int, int] | None) -> int:
+    from sssgen.run import backends
+    from sssgen.run.render.missing_textures import MissingTextures
+    from sssgen.run.render.scene_render import render, with_samples
+    from sssgen.scene.pictures import images
+
     scene = with_samples(scene, arguments.samples or scene.samples)
     output = arguments.output or f"{os.path.splitext(os.path.basename(arguments.SCENE))[0]}.png"
     if images.check_suffix(output) == ".npy":

@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 
-from sssgen.interchange import gltf_reader, materialx_reader, unity_reader
+from sssgen.interchange import gltf_container, gltf_reader, gltf_view, materialx_reader, unity_reader
 from sssgen.interchange.imported_material import ImportedMaterial
+from sssgen.interchange.imported_view import ImportedView
 from sssgen.interchange.mapping_report import Report
 from sssgen.support.diagnostics import did_you_mean, failure
 from sssgen.support.paths import posix
@@ -33,3 +34,10 @@ def read(path: str, report: Report, name: str = "", top: str = "") -> list[Impor
         hint = did_you_mean(suffix, READERS) or f"readable files end in {', '.join(READERS)}"
         raise failure(f"'{suffix}' is not the suffix of a file with materials", hint, posix(path))
     return READERS[suffix](path, report, name, top)
+
+
+def read_view(path: str, report: Report, top: str = "") -> ImportedView:
+    """The camera and the lights of a file that `read` accepts. Adds to the report what is left out. Raises
+    SssgenError."""
+    suffix = os.path.splitext(path)[1].lower()
+    return gltf_view.read_view(path, report, top) if suffix in gltf_container.SUFFIXES else ImportedView()

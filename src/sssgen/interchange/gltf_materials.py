@@ -20,6 +20,7 @@ EXTENSIONS = (
     "KHR_materials_specular",
     "KHR_materials_emissive_strength",
     "KHR_materials_clearcoat",
+    "KHR_materials_sheen",
     "KHR_materials_transmission",
     "KHR_materials_volume",
     "KHR_materials_diffuse_transmission",
@@ -28,7 +29,6 @@ EXTENSIONS = (
 )
 """The extensions of materials that are read."""
 _OMISSIONS = {
-    "KHR_materials_sheen": "no technique has a sheen",
     "KHR_materials_iridescence": "no technique has thin-film interference",
     "KHR_materials_anisotropy": "highlights are isotropic",
     "KHR_materials_dispersion": "all colours are refracted alike",
@@ -151,6 +151,10 @@ class MaterialReader:
             if coat.has("clearcoatNormalTexture"):
                 path = f"{coat.path}/clearcoatNormalTexture"
                 self.report.add_omission(path, "a texture", "the coat has the normal of the surface")
+
+        if (sheen := self.extension("sheen")) is not None:
+            self.quantity("sheen_color", sheen, "sheenColorFactor", (0.0, 0.0, 0.0), "sheenColorTexture", srgb=True)
+            self.quantity("sheen_roughness", sheen, "sheenRoughnessFactor", (0.0,), "sheenRoughnessTexture", "a")
 
     def transmission(self) -> None:
         if (transmission := self.extension("transmission")) is not None:

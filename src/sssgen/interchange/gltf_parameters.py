@@ -38,6 +38,8 @@ class Parameters:
         self.textures: dict[str, Texture] = {}
         self.transforms: dict[str, dict[str, tuple[float, ...]]] = {}
         """Set of texture coordinates → the values of `TRANSFORM_PARAMETERS`"""
+        self._stages: dict[str, set[int]] = {}
+        """Name → the stages that have it"""
         self.used_stages: set[int] = set()
         """The stages that were asked for"""
         folder = os.path.dirname(material.file)
@@ -48,6 +50,7 @@ class Parameters:
                 self.used_stages.add(number)
             for name, value, aliases in _values(stage):
                 for known in (name, *aliases):
+                    self._stages.setdefault(known, set()).add(number)
                     self.values.setdefault(known, Parameter(value, number))
             for uniform in stage.technique.uniforms:
                 if (file := stage.textures.get(uniform.name)) is not None:
@@ -60,7 +63,7 @@ class Parameters:
         parameter = self.values.get(name)
         if parameter is None or len(parameter.value) != components:
             return None
-        self.used_stages.add(parameter.stage)
+        self.used_stages |= self._stages[name]
         return parameter.value
 
     def texture(self, *names: str) -> Texture | None:

@@ -16,7 +16,6 @@ from sssgen.scene.mesh_files import FileContent
 
 _OTHER_EXTENSIONS = ("KHR_texture_transform", "EXT_texture_webp", "KHR_mesh_quantization")
 _HARMLESS_EXTENSIONS = (
-    "KHR_materials_sheen",
     "KHR_materials_iridescence",
     "KHR_materials_anisotropy",
     "KHR_materials_dispersion",
@@ -29,14 +28,14 @@ _HARMLESS_EXTENSIONS = (
     "MSFT_lod",
 )
 """Extensions that a file may require: without them it is still read rightly, except for what the report names."""
-_UNPACK = "npx @gltf-transform/cli copy FILE.glb PLAIN.glb"
-_UNPACKED = {
-    "KHR_draco_mesh_compression": f"its triangles are compressed: export it without compression, or run `{_UNPACK}`",
-    "EXT_meshopt_compression": f"its data are compressed: export it without compression, or run `{_UNPACK}`",
-    "KHR_texture_basisu": "its pictures are KTX2: export them as PNG, JPEG or WebP, or run "
-    "`npx @gltf-transform/cli ktxdecompress FILE.glb PLAIN.glb`",
+_DECODED = {
+    **dict.fromkeys(
+        ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"),
+        "write it without compression: npx @gltf-transform/cli copy FILE.glb plain.glb",
+    ),
+    "KHR_texture_basisu": "write its KTX2 pictures as PNG: npx @gltf-transform/cli ktxdecompress FILE.glb plain.glb",
 }
-"""Extension that a file may require and that another program can remove → how"""
+"""Extension of compressed data → what to do."""
 _MOTIONS = {"animations": "a material does not move", "skins": "the mesh is taken in its rest pose"}
 
 
@@ -89,6 +88,7 @@ def _check_extensions(root: JsonElement) -> None:
         if not isinstance(element.value, str):
             raise element.fault(f"a string is needed, not {short_text(element.value)}")
         if element.value not in supported:
-            usual = "export the file without this extension: it says that the file is wrong without it"
-            hint = _UNPACKED.get(element.value, usual)
+            hint = _DECODED.get(
+                element.value, "export the file without this extension: it says that it is wrong without it"
+            )
             raise element.fault(f"the file requires '{element.value[:60]}', which is not read", hint)

@@ -9,13 +9,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from sssgen.interchange.imported_material import BAKED_SET, ImportedMaterial, Notes, report_fields
+from sssgen.interchange.imported_view import ImportedView
 from sssgen.interchange.mapping_report import Report
 from sssgen.interchange.mesh_glb import mesh_file
-from sssgen.interchange.scene_text import ball_radius, scene_text
-from sssgen.interchange.technique_choice import Choice, choose
+from sssgen.interchange.scene_text import ball_radius, scene_text, whole_scene_text
+from sssgen.interchange.technique_choice import Choice, choose, world_unit
 from sssgen.interchange.texture_composer import Coordinates
 from sssgen.material.material_text import material_text
 from sssgen.material.model import wrong_name
+from sssgen.scene.geometry_mesh import has_inside
 from sssgen.scene.mesh_files import FileContent
 from sssgen.support.file_writer import check_unchanged, write_files
 from sssgen.support.paths import place
@@ -23,6 +25,9 @@ from sssgen.support.progress import Progress, silent
 
 _LONGEST_NAME = 48
 """Letters of a material's name; sssgen takes 64."""
+WHOLE_SCENE = "scene.toml"
+"""The scene that shows all bodies together."""
+_PLAIN = ImportedView()
 SURROUNDINGS = "surroundings.png"
 """The picture of the surroundings that all scenes of an import share."""
 
@@ -42,6 +47,7 @@ def write_import(
     folder: str,
     materials: Sequence[ImportedMaterial],
     report: Report,
+    view: ImportedView = _PLAIN,
     *,
     force: bool = False,
     progress: Progress = silent,
@@ -50,21 +56,27 @@ def write_import(
 
     Adds the rows of the materials' fields to the report, which is written as report.md and report.json. Raises
     SssgenError for a picture that cannot be read, where the system refuses, and, without `force`, where a file of a
-    material is there already with another content: it may have been edited.
+    material is there already with another content: it may have been edited. `view` is that of the scene that shows all
+    bodies together, which is written where any material has a mesh.
     """
     files: dict[str, str | bytes] = {}
     written: list[WrittenMaterial] = []
     names = identifiers([part.model.name for part in materials])
-    for done, (imported, name) in enumerate(zip(materials, names, strict=True)):
+    chords = [4.0 / 3.0 * ball_radius(part.model) if part.mesh is None else mean_chord(part.mesh) for part in materials]
+    metres = world_unit([(part.model, chord) for part, chord in zip(materials, chords, strict=True)])
+    for done, (imported, name, chord) in enumerate(zip(materials, names, chords, strict=True)):
         progress(done, len(materials), name)
         notes = Notes()
-        chord = 4.0 / 3.0 * ball_radius(imported.model) if imported.mesh is None else mean_chord(imported.mesh)
-        choice = choose(imported.model, notes, chord)
+        closed = imported.mesh is None or is_closed(imported.mesh)
+        choice = choose(imported.model, notes, chord, closed, metres)
         report_fields(imported, notes, report)
         files |= {f"{name}/{path}": content for path, content in _material_files(imported, choice, name).items()}
         written.append(WrittenMaterial(name, folder, imported.model.transmits))
-    with open(os.path.join(place("examples"), "surroundings", "textures", "studio.png"), "rb") as file:
+    with open(os.path.join(place("examples"), "surroundings", "textures", "room.png"), "rb") as file:
         files[SURROUNDINGS] = file.read()
+    if meshes := [part.mesh for part in materials if part.mesh is not None]:
+        shown = [part.scene for part, imported in zip(written, materials, strict=True) if imported.mesh is not None]
+        files[WHOLE_SCENE] = whole_scene_text(report.source, shown, meshes, view, metres, SURROUNDINGS)
     reports: dict[str, str | bytes] = {"report.md": report.markdown(), "report.json": report.json_text()}
     if not force:
         imported_before = all(os.path.isfile(os.path.join(folder, name)) for name in reports)
@@ -106,6 +118,12 @@ def identifiers(names: Sequence[str]) -> list[str]:
             unused, number = f"{base}_{number}", number + 1
         result.append(unused)
     return result
+
+
+def is_closed(mesh: FileContent) -> bool:
+    """Whether the triangles have an inside; vertices at one place count as one."""
+    _, places = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    return has_inside(places.reshape(-1)[mesh.faces])
 
 
 def mean_chord(mesh: FileContent) -> float:

@@ -102,6 +102,8 @@ class SurfaceModel:
     """Linear radiance, with its strength"""
     coat: Quantity = ZERO
     coat_roughness: Quantity = ZERO
+    sheen_color: Quantity = BLACK
+    sheen_roughness: Quantity = ZERO
 
     transmission: Quantity = ZERO
     """The share of the light at a dielectric boundary that enters the body in place of the diffuse reflection"""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +30,8 @@ _DARKEST = 1e-3
 _ONE_MEDIUM = (
     "These values belong to one medium, with a share of the tint above and [medium] of the scene: change them together."
 )
+_BLACK = [0.0, 0.0, 0.0]
+_SEEN_THROUGH = "The scene and its surroundings are seen through; for a sky of two colours set sky_below and sky_above."
 _LONGEST, _DENSEST = 10.0, 1000.0
 """The largest thickness and extinction that techniques take, in world units."""
 _DENSEST_INSIDE = 10000.0
@@ -52,8 +55,13 @@ class Choice(NamedTuple):
 
 
 class _Chooser:
-    def __init__(self, model: SurfaceModel, notes: Notes, mean_chord: float, metres: float, light_path: str) -> None:
+    def __init__(
+        self, model: SurfaceModel, notes: Notes, mean_chord: float, closed: bool, metres: float, light_path: str
+    ) -> None:
         self.model, self.notes, self.mean_chord = model, notes, mean_chord
+        has_map = model.thickness.image is not None
+        self.measured = closed and model.interior is not None and not model.thin_walled and not has_map
+        """Whether the length inside the body along the eye's rays is measured for each picture"""
         self.composer = Composer(model)
         self.stages: list[MaterialSection] = []
         self.clamped: dict[str, str] = {}
@@ -119,10 +127,16 @@ class _Chooser:
         model = self.model
         if model.unlit or not model.transmits:
             return
+        seen_through = self.measured and not model.transmission.is_zero
         if scatters_inside(model):
             self.add("thickness", "back_face_thickness")
-        if not (model.transmission.is_zero and model.diffuse_transmission.is_zero):
+        elif seen_through:
+            self.add("thickness", "eye_layers_thickness")
+        if not model.diffuse_transmission.is_zero or not (model.transmission.is_zero or self.measured):
             self.thickness_of_absorption()
+        elif seen_through:
+            became = "the length inside the body along each ray of the eye"
+            self.notes.add_approximation("thickness", became, "refraction changes that length")
 
     def thickness_of_absorption(self) -> None:
         model = self.model
@@ -210,6 +224,20 @@ class _Chooser:
                 coat_weight=coat.factor[0], coat_roughness=coat_roughness.factor[0],
             )  # fmt: skip
 
+        self.sheen()
+
+    def sheen(self) -> None:
+        values = {field: mean_of(getattr(self.model, field)) for field in ("sheen_color", "sheen_roughness")}
+        if not any(values["sheen_color"]):
+            return
+        for field in values:
+            if getattr(self.model, field).image is not None:
+                self.notes.add_approximation(field, "the mean of its picture: the sheen is the same everywhere")
+        self.add(
+            "surface", "sheen_constants", sheen_tint=list(values["sheen_color"]),
+            sheen_spread=values["sheen_roughness"][0],
+        )  # fmt: skip
+
     def specular(self) -> None:
         model = self.model
         tint = mean_of(model.specular_color)
@@ -248,9 +276,17 @@ class _Chooser:
             tint = model.base_color if model.transmission_tint is None else model.transmission_tint
             texture, color = self.product("entering", tint, model.transmission)
             self.add(
-                "translucency", "seen_through", entering_texture=texture, entering_color=color,
-                extinction=extinction, ior=1.0 if model.thin_walled else min(max(model.ior, 1.0), 3.0),
+                "translucency", "seen_through_body" if self.measured else "seen_through",
+                entering_texture=texture, entering_color=color,
+                extinction=extinction, ior=min(max(model.ior, 1.0), 3.0),
+                sky_below=_BLACK, sky_above=_BLACK,
             )  # fmt: skip
+            self.stages[-1] = self.stages[-1]._replace(comment=_SEEN_THROUGH)
+            if self.measured:
+                self.add(
+                    "translucency", "lamps_through_body", entering_texture=texture, entering_color=color,
+                    extinction=extinction, ior=min(max(model.ior, 1.0), 3.0),
+                )  # fmt: skip
         if scatters_inside(model):
             self.interior()
         elif not model.diffuse_transmission.is_zero:
@@ -295,13 +331,14 @@ class _Chooser:
         return shares_of([part * self.mean_chord for part in medium.extinction], medium.albedo)
 
 
-def choose(model: SurfaceModel, notes: Notes, mean_chord: float) -> Choice:
+def choose(model: SurfaceModel, notes: Notes, mean_chord: float, closed: bool, metres: float) -> Choice:
     """The stages of a material; `mean_chord`, in metres, is used where the thickness is not known.
 
-    `notes` gets what the stages cannot express.
+    `closed` says whether the body's mesh has an inside, `metres` is the length of a world unit. `notes` gets what the
+    stages cannot express.
     """
     model = as_matte(limit_numbers(model, notes), notes, mean_chord)
-    return _Chooser(model, notes, mean_chord, _unit(model), "depth_map_path").choose()
+    return _Chooser(model, notes, mean_chord, closed, metres, "depth_map_path").choose()
 
 
 def choose_for_lights(model: SurfaceModel, notes: Notes, mean_chord: float) -> Choice:
@@ -309,7 +346,7 @@ def choose_for_lights(model: SurfaceModel, notes: Notes, mean_chord: float) -> C
 
     A dense body transmits light where it is thin, so that it has no other technique.
     """
-    return _Chooser(limit_numbers(model, notes), notes, mean_chord, 1.0, "light_layers_path").choose()
+    return _Chooser(limit_numbers(model, notes), notes, mean_chord, False, 1.0, "light_layers_path").choose()
 
 
 def _limit_pair(pair: tuple[float, float]) -> tuple[float, float]:
@@ -329,13 +366,18 @@ def _tint_exceeds_one(base: Quantity, kept: Array) -> bool:
     return base.image is not None and bool((np.array(base.factor) * kept > 1.0).any())
 
 
-def _unit(model: SurfaceModel) -> float:
-    """The length of a world unit in metres for which thickness and extinction are in the ranges of techniques."""
+def world_unit(models: Sequence[tuple[SurfaceModel, float]]) -> float:
+    """The length of a world unit in metres for which the numbers of all materials are in the ranges of techniques.
+
+    Each model is given with the mean chord of its body, in metres.
+    """
+    ready = [as_matte(limit_numbers(model, Notes()), Notes(), mean_chord) for model, mean_chord in models]
+    longest = max(model.thickness.factor[0] for model in ready)
+    densest = max((max(model.interior.extinction) for model in ready if model.interior is not None), default=0.0)
     metres = 1.0
-    longest = model.thickness.factor[0]
     while longest / metres > _LONGEST:
         metres *= 10.0
-    if model.interior is not None and metres == 1.0:
-        while max(model.interior.extinction) * metres > _DENSEST and longest / metres <= 0.1 * _LONGEST:
+    if metres == 1.0:
+        while densest * metres > _DENSEST and longest / metres <= 0.1 * _LONGEST:
             metres /= 10.0
     return metres

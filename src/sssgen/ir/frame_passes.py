@@ -18,6 +18,7 @@ INNER_LIGHT = "inner_light"
 LIGHT_LAYERS = "light_layers"
 SHADOW, OCCLUDERS = "shadow_depth", "occluders"
 IRRADIANCE, REFLECTIONS = "irradiance", "reflections"
+BEHIND = "scene_behind"
 
 FAR = 6.0e4
 """The distance beside the body in a picture of light: more than any of a body's, and it fits into half a float."""
@@ -27,8 +28,8 @@ class FramePass(NamedTuple):
     """A pass: what it draws, from where, and what a texel has."""
 
     of: str
-    """body (the object alone), casters (all that casts a shadow), both (each in layers of its own) or surroundings (the
-    light around the scene)"""
+    """body (the object alone), casters (all that casts a shadow), both (each in layers of its own) or surroundings (all
+    but the object)"""
     seen_from: str
     """eye, light, distant light, first light, each light (the four brightest, in tiles of 2 × 2), each shadow (the
     same, of the lights that cast one), everywhere (a cube map), or inside (a volume that fills the body's box)"""
@@ -112,6 +113,11 @@ FRAME_PASSES = {
         "draw the light of the surroundings into a cube map with levels, in world space; level 0 is the light "
         "itself, level i of n the mean that a mirror of roughness i / n shows from the front",
     ),
+    BEHIND: FramePass(
+        "surroundings", "eye", (), "0",
+        "draw the scene without the translucent body from the eye, linear and before tone mapping, into a square float "
+        "texture with mipmaps",
+    ),
     LAYERS: FramePass(
         "body", "distant light", ("entry 1", "exit 1", "entry 2"), "far",
         "draw the translucent body alone from the light, which must be far away, three times into a float texture: "
@@ -152,7 +158,7 @@ class PassUse(NamedTuple):
     lights: Uniform | None
     """What these lights are, where the pass says it: an array"""
     size: Uniform | None
-    """The width of the picture in texels, or the last level of a cube map"""
+    """The width of the picture in texels, or the last level of a picture with levels"""
 
 
 def pass_name(uniform: Uniform) -> str:

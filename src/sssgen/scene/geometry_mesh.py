@@ -167,10 +167,15 @@ def _volume(vertices: Array, faces: Indices) -> float:
 
 def is_closed(mesh: Mesh) -> bool:
     """Whether each edge has equally many triangles in both directions: the mesh has an inside."""
-    vertices, faces = mesh.triangles.places, mesh.triangles.corners
+    return has_inside(mesh.triangles.corners)
+
+
+def has_inside(faces: Indices) -> bool:
+    """The same of triangles (f, 3) whose vertices at one place are one vertex."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    forward = edges[:, 0] * len(vertices) + edges[:, 1]
-    backward = edges[:, 1] * len(vertices) + edges[:, 0]
+    count = int(faces.max()) + 1
+    forward = edges[:, 0] * count + edges[:, 1]
+    backward = edges[:, 1] * count + edges[:, 0]
     return np.array_equal(np.sort(forward), np.sort(backward))
 
 

@@ -91,7 +91,7 @@ class Scene:
     """n, for n × n samples per pixel"""
     time: float
     background: tuple[Vector, Vector]
-    """Linear colour at the picture's bottom and top"""
+    """Linear colour at the picture's bottom and top; grey where the environment is shown"""
     ambient: Vector
     exposure: float
     """The factor of the linear picture before it is encoded"""
@@ -110,6 +110,10 @@ class Scene:
     """Role → technique, which take the place of the material's own in shells without an engine"""
     measured: Mapping[str, Any] = field(default_factory=dict)
     """The physical description, as the tables of the file: `medium`, `inlay`, `environment`; the lab reads them"""
+    shows_environment: bool = False
+    """Whether the picture shows the environment beside the bodies, in place of `background`"""
+    bodies: tuple[str, ...] = ()
+    """The files of scenes whose bodies are drawn together, with the camera, lights and surroundings of this one"""
     folder: str = ""
     """The folder of the scene's file, to which the names of files are relative"""
 

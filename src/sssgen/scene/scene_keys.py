@@ -9,6 +9,7 @@ from sssgen.scene.toml_table import NOT_NEGATIVE, POSITIVE, Key, number, other, 
 
 MAX_LIGHTS = 4
 MAX_PARTS = 64
+MAX_BODIES = 512
 MAX_SIDE = 8192
 MAX_SAMPLES = 8
 MAX_TEXELS = 256
@@ -25,6 +26,7 @@ KEYS: Mapping[str, Key] = {
     "ambient": vector(3, NOT_NEGATIVE),
     "exposure": number(POSITIVE),
     "geometry": other(),
+    "bodies": other(),
     "camera": other(),
     "light": other(),
     "shell": other(),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 
 from sssgen.material.material_loading import examples
 from sssgen.scene.scene import Scene
@@ -27,6 +28,29 @@ def load(path: str | os.PathLike[str], draws: bool = True) -> Scene:
             raise failure(f"unknown scene '{text}'", hint)
         path = os.path.join(os.path.dirname(names[text]), "scene.toml")
     return parse_scene(read_text(os.fspath(path), posix(path)), path, draws)
+
+
+def bodies_of(scene: Scene) -> list[Scene]:
+    """A scene for each of a scene's `bodies`, with the picture, the camera, the lights and the surroundings of `scene`.
+
+    Raises SssgenError for a faulty file, and for one with several bodies itself.
+    """
+    shared = {
+        name: getattr(scene, name)
+        for name in (
+            "size", "samples", "time", "background", "ambient", "exposure", "camera", "lights", "shell", "folder",
+            "shows_environment",
+        )
+    }  # fmt: skip
+    environment = {"environment": scene.measured["environment"]} if "environment" in scene.measured else {}
+    result = []
+    for path in scene.bodies:
+        body = load(path)
+        if not body.material or body.geometry is None:
+            raise failure("this scene has no body of its own", "add material and [geometry]", posix(path))
+        own = {key: value for key, value in body.measured.items() if key != "environment"}
+        result.append(replace(body, measured=own | environment, **shared))
+    return result
 
 
 def parse_scene(text: str, path: str | os.PathLike[str], draws: bool = True) -> Scene:

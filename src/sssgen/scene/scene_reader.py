@@ -23,6 +23,7 @@ from sssgen.scene.scene_keys import (
     DISTANCE_TEXTURE,
     KEYS,
     LIGHT,
+    MAX_BODIES,
     MAX_LIGHTS,
     MAX_PARTS,
     MEASURED,
@@ -40,6 +41,10 @@ from sssgen.support.toml_source import Document, Path, parse
 
 _ONLY_IN_MATERIALS = set(SECTIONS) - set(KEYS)
 
+ENVIRONMENT_SHOWN = "environment"
+"""The background that is the scene's [environment]."""
+_GREY = (0.5, 0.5, 0.5)
+"""In its place where two colours are shown."""
 MAX_COUNT = 2**24
 """The largest number of samples of a picture: each takes a few hundred bytes."""
 
@@ -113,11 +118,13 @@ class _Reader:
             top.text("title", ""),
             self.shell(top.content.get("shell", {})),
             {key: top.content[key] for key in list(MEASURED)[1:] if key in top.content},
+            top.content.get("background") == ENVIRONMENT_SHOWN,
+            self.bodies(top),
             self.folder,
         )
 
     def material(self, top: Table) -> str:
-        if "material" not in top.content and ("medium" in top.content or "inlay" in top.content):
+        if "material" not in top.content and not {"medium", "inlay", "bodies"}.isdisjoint(top.content):
             return ""
         if "material" not in top.content:
             self.document.error(self.document.place().key, "the scene has no material", 'add: material = "…"')
@@ -132,8 +139,30 @@ class _Reader:
             top.error("material", f"unknown material '{name}'", file_hint or hint)
         return beside or name
 
+    def bodies(self, top: Table) -> tuple[str, ...]:
+        content = top.content.get("bodies", [])
+        if not isinstance(content, list) or not all(isinstance(name, str) for name in content):
+            top.error(
+                "bodies", "'bodies' is a list of scenes", 'write bodies = ["glass/scene.toml", "wood/scene.toml"]'
+            )
+            return ()
+        if len(content) > MAX_BODIES:
+            top.error("bodies", f"the scene has {len(content)} bodies", f"at most {MAX_BODIES} are supported")
+            return ()
+        for key in ("material", "geometry", "parameters", "textures"):
+            if content and key in top.content:
+                hint = f"'{key}' is that of each scene in 'bodies'"
+                self.document.error(
+                    self.document.place(key).key, "a scene has a body of its own, or those of others", hint
+                )
+        return tuple([self.file(("bodies", index), name) for index, name in enumerate(content)])
+
     def background(self, top: Table) -> Any:
         raw = top.content.get("background", [0.0, 0.0, 0.0])
+        if raw == ENVIRONMENT_SHOWN:
+            if "environment" not in top.content:
+                top.error("background", "the scene has no environment to show", "add [environment]")
+            return _GREY, _GREY
         if not (isinstance(raw, list) and raw and all(isinstance(part, list) for part in raw)):
             color = top.vector("background", (0.0, 0.0, 0.0))
             return color, color

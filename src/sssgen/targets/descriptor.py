@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import NamedTuple, TypeVar
 
-from sssgen.ir.frame_passes import VOLUMES, shows_light
+from sssgen.ir.frame_passes import FRAME_PASSES, VOLUMES, shows_light
 from sssgen.passes.capabilities import Capabilities
 from sssgen.targets.frame import Variant
 
@@ -320,6 +320,8 @@ class Target(NamedTuple):
         """What draws the pass with this name; '' where the user's program does."""
         if name in VOLUMES:
             return self.draws_inside
+        if FRAME_PASSES[name].of == "surroundings":
+            return ""
         return self.draws_passes if self.draws_light or not shows_light(name) else ""
 
     @property

@@ -11,27 +11,33 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from sssgen.ir.spans import Span
 from sssgen.material.material_loading import load_material
-from sssgen.material.shell_stages import with_shell
+from sssgen.material.model import Material
+from sssgen.material.shell_stages import NONE, with_shell
 from sssgen.pipeline.compiler import Compiled, compile
 from sssgen.run.backend_registry import check_draws
 from sssgen.run.backends import Array, Backend
 from sssgen.run.render import pixel_mesh
+from sssgen.run.render.environment_maps import reflection_map
 from sssgen.run.render.eye_pictures import with_eye_pictures
 from sssgen.run.render.missing_textures import MissingTextures, missing_textures
-from sssgen.run.render.scene_values import shell_of
+from sssgen.run.render.scene_values import environment_of, shell_of
+from sssgen.run.render.screen_window import Window, whole_window, window_of
+from sssgen.run.render.several_bodies import Body, Canvas, in_order
 from sssgen.run.render.shade import shade
 from sssgen.run.render.shell_values import Shell
-from sssgen.scene.geometry import Mesh
+from sssgen.scene.geometry import Hits, Mesh
 from sssgen.scene.geometry_mesh import is_closed
 from sssgen.scene.pictures.images import decode_srgb, encode_srgb
+from sssgen.scene.pictures.resizing import resized
 from sssgen.scene.scene import Scene
+from sssgen.scene.scene_loading import bodies_of
 from sssgen.scene.scene_reader import MAX_COUNT
 from sssgen.support.diagnostics import Diagnostic, failure
 from sssgen.support.progress import Progress, silent
@@ -41,6 +47,8 @@ from sssgen.targets.reflection_record import EntryRecord, Reflection
 LARGEST = 8192
 """The largest number of samples along a side: the largest picture that every driver supports."""
 
+_SOFTNESS = 4
+"""Pixels along a texel of the environment that is shown: it is not sharp."""
 STEPS = 3
 """Of a render: compile, cast rays, draw."""
 
@@ -75,21 +83,20 @@ def render(
     fit its material, a picture that is too large, and a back end that draws no scenes or refuses this one.
     """
     check_draws(backend.name)
-    if not scene.material:
-        raise failure("the scene names no material", 'add: material = "…"', scene.document.reporter.file)
     scene = dataclasses.replace(scene, size=size or scene.size, time=scene.time if time is None else time)
-    # an engine has its own shadows, surroundings and tone mapping
-    shell_roles = [f"{role}={name}" for role, name in scene.shell.items() if role in backend.target.shell]
-    material = with_shell(load_material(scene.material), shell_roles)
-    progress(0, STEPS, "compiling the material")
-    compiled = compile(material, backend.target.name, guards=guards)
-    reflection = compiled.reflection
     width, height = (side * scene.samples for side in scene.size)
     if max(width, height) + 2 * pixel_mesh.BORDER > LARGEST or width * height > MAX_COUNT:
         raise failure(
             f"{scene.size[0]} × {scene.size[1]} pixels of {scene.samples} × {scene.samples} samples are too many",
             f"at most {LARGEST - 2 * pixel_mesh.BORDER} samples on a side, and {MAX_COUNT / 1e6:.0f} million in all",
         )
+    if scene.bodies:
+        return _render_bodies(scene, backend, guards, progress)
+    if not scene.material:
+        raise failure("the scene names no material", 'add: material = "…"', scene.document.reporter.file)
+    progress(0, STEPS, "compiling the material")
+    material, compiled = _compile(scene, scene.shell, backend, guards)
+    reflection = compiled.reflection
     raymarched = reflection["raymarched"] or any(_reads_rays(entry) for entry in reflection["entries"].values())
     if not raymarched and scene.geometry is None:
         raise failure(
@@ -127,54 +134,143 @@ def _reads_rays(entry: EntryRecord) -> bool:
     return bool({"ray_origin", "ray_direction"} & set(entry["inputs"]))
 
 
+def _compile(scene: Scene, shell: Mapping[str, str], backend: Backend, guards: str) -> tuple[Material, Compiled]:
+    """The scene's material with the techniques of a shell, and its shader."""
+    # an engine has its own shadows, surroundings and tone mapping
+    roles = [f"{role}={name}" for role, name in shell.items() if role in backend.target.shell]
+    material = with_shell(load_material(scene.material), roles)
+    return material, compile(material, backend.target.name, guards=guards)
+
+
 def _surface(
     scene: Scene, compiled: Compiled, shell: Shell, backend: Backend, size: tuple[int, int], progress: Progress
 ) -> tuple[Array, Array]:
     """The samples of a surface, and which of them hit it."""
-    (width, height), edge = size, pixel_mesh.BORDER
     progress(1, STEPS, "casting the eye's rays")
     mesh = place_mesh(scene, compiled, shell, backend.target, size)
-    inner = slice(edge, edge + height), slice(edge, edge + width)
     progress(2, STEPS, f"drawing on {backend.name}")
+    picture = _shade_mesh(backend, compiled, mesh)
+    return _without_border(picture), _without_border(mesh.hit)
+
+
+def _shade_mesh(backend: Backend, compiled: Compiled, mesh: PlacedMesh) -> Array:
+    """The picture with its border, (height, width, 4), row 0 at the bottom."""
     picture = shade(backend, compiled, mesh.shell, mesh.size, mesh.points)
     if compiled.reflection["two_sided"] and not mesh.front.all():
         # which triangle covers a pixel's centre is the driver's choice, so each side is drawn on its own
         behind = shade(backend, compiled, dataclasses.replace(mesh.shell, front=False), mesh.size, mesh.points)
         picture = np.where(mesh.front[..., None], picture, behind)
-    return picture[inner], mesh.hit[inner]
+    return picture
+
+
+def _without_border(picture: Array) -> Array:
+    edge = pixel_mesh.BORDER
+    return picture[edge:-edge, edge:-edge]
+
+
+def _render_bodies(scene: Scene, backend: Backend, guards: str, progress: Progress) -> RenderedPicture:
+    """The picture of a scene with several bodies. Raises SssgenError as `render`."""
+    if "tone_mapping" not in backend.target.shell:
+        hint = "choose gl, webgpu or another back end without an engine"
+        raise failure(f"{backend.name} draws one body in a picture", hint, scene.document.reporter.file)
+    size = scene.size[0] * scene.samples, scene.size[1] * scene.samples
+    wider, padded = _with_border(scene, size)
+    canvas = Canvas(backdrop(wider, padded) / scene.exposure)
+    bodies = []
+    shell = {**scene.shell, "tone_mapping": NONE}
+    for part in bodies_of(scene):
+        material, compiled = _compile(part, shell, backend, guards)
+        values = shell_of(part, material, compiled.reflection)
+        if missing := missing_textures(part, material, compiled.reflection, values.textures):
+            raise MissingTextures(missing)
+        if compiled.reflection["raymarched"]:
+            raise failure(f"{material.name} marches its own rays: it is drawn alone", "", part.document.reporter.file)
+        bodies.append(Body(part, compiled, values))
+    warnings: list[Diagnostic] = []
+    for number, body in enumerate(in_order(bodies, scene.camera)):
+        progress(number, len(bodies), f"drawing {body.compiled.reflection['material']}")
+        window = window_of(body.corners, wider.camera, padded)
+        if window is None:
+            continue
+        mesh = place_window(body.scene, body.compiled, body.shell, backend.target, window, lambda: canvas.color)
+        if not canvas.shows(window, mesh.distance):
+            continue
+        color, cover = _checked(body.compiled.reflection, _shade_mesh(backend, body.compiled, mesh), mesh.hit)
+        canvas.draw(body, window, color, cover, mesh.distance)
+        warnings += _warnings(body.scene, body.compiled.reflection)
+    linear = canvas.tone_mapped(scene.shell) * scene.exposure
+    return RenderedPicture(
+        _average(_without_border(linear), scene.samples)[::-1],
+        _average(_without_border(canvas.covered[..., None].astype(float)), scene.samples)[::-1, :, 0],
+        warnings,
+    )
 
 
 class PlacedMesh(NamedTuple):
-    """The points of a scene that a picture shows, as a mesh."""
+    """The points of a scene that a window of a picture shows, as a mesh."""
 
     shell: Shell
-    size: tuple[int, int]
-    """Of the picture with its border."""
+    window: Window
     points: Array
     """`pixel_mesh.vertices`."""
-    hit: Array
-    """(height, width): whether a pixel shows the surface."""
-    front: Array
-    """Likewise, whether it shows a front face."""
+    hits: Hits
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Of the window."""
+        return self.window.size
+
+    @property
+    def hit(self) -> Array:
+        """(height, width): whether a pixel shows the surface."""
+        return self.hits.hit.reshape(self.size[::-1])
+
+    @property
+    def front(self) -> Array:
+        """Likewise, whether it shows a front face."""
+        return (self.hits.front | ~self.hits.hit).reshape(self.size[::-1])
+
+    @property
+    def distance(self) -> Array:
+        """Likewise, the distance from the eye; inf where there is no surface, and on the border."""
+        length = np.linalg.norm(self.hits.position - self.window.camera.position, axis=1)
+        distance = np.where(self.hits.hit, length, np.inf).reshape(self.size[::-1])
+        border = np.ones_like(distance, bool)
+        border[pixel_mesh.BORDER : -pixel_mesh.BORDER, pixel_mesh.BORDER : -pixel_mesh.BORDER] = False
+        return np.where(border, np.inf, distance)
 
 
-def place_mesh(scene: Scene, compiled: Compiled, shell: Shell, target: Target, size: tuple[int, int]) -> PlacedMesh:
-    """The mesh of a scene's points, and the shell with its camera and what the program draws of it."""
-    assert scene.geometry is not None
+def _with_border(scene: Scene, size: tuple[int, int]) -> tuple[Scene, tuple[int, int]]:
+    """The scene with a camera that sees the border too, and the size with it."""
     (width, height), edge = size, pixel_mesh.BORDER
     padded = width + 2 * edge, height + 2 * edge
     half_angle = math.tan(math.radians(0.5 * scene.camera.field_of_view)) * padded[1] / height
     wider = dataclasses.replace(scene.camera, field_of_view=2.0 * math.degrees(math.atan(half_angle)))
-    origin, directions = wider.rays(*padded)
+    return dataclasses.replace(scene, camera=wider), padded
+
+
+def place_mesh(scene: Scene, compiled: Compiled, shell: Shell, target: Target, size: tuple[int, int]) -> PlacedMesh:
+    """The mesh of a scene's points, with the border, and the shell with its camera and what the program draws of it."""
+    wider, padded = _with_border(scene, size)
+    behind = lambda: backdrop(wider, padded) / scene.exposure  # noqa: E731
+    return place_window(wider, compiled, shell, target, whole_window(wider.camera, padded), behind)
+
+
+def place_window(
+    scene: Scene, compiled: Compiled, shell: Shell, target: Target, window: Window, behind: Callable[[], Array]
+) -> PlacedMesh:
+    """The same for a window; `behind` makes the linear picture of all else, of the whole screen."""
+    assert scene.geometry is not None
+    origin, directions = window.rays()
     hits = scene.geometry.hits(origin, directions)
-    points = pixel_mesh.vertices(hits, origin, directions, shell.model, padded)
+    points = pixel_mesh.vertices(hits, origin, directions, shell.model, window.size)
     far = float(np.linalg.norm(points[:, :3] @ shell.model[:3, :3].T + shell.model[:3, 3] - origin, axis=1).max())
-    deep = dataclasses.replace(scene, camera=dataclasses.replace(wider, near=1e-3 * far, far=2.0 * far))
-    matrix = _matrix(deep, target, padded[0] / padded[1])
+    deep = dataclasses.replace(scene, camera=dataclasses.replace(window.camera, near=1e-3 * far, far=2.0 * far))
+    matrix = window.to_clip() @ _matrix(deep, target, window.whole[0] / window.whole[1])
     shell = dataclasses.replace(shell, view_projection=matrix)
-    shell = with_eye_pictures(shell, scene.geometry, compiled.reflection, wider, hits, padded)
-    shape = padded[1], padded[0]
-    return PlacedMesh(shell, padded, points, hits.hit.reshape(shape), (hits.front | ~hits.hit).reshape(shape))
+    return PlacedMesh(
+        with_eye_pictures(shell, scene.geometry, compiled.reflection, window, hits, behind), window, points, hits
+    )
 
 
 def _matrix(scene: Scene, target: Target, aspect: float) -> Array:
@@ -186,6 +282,14 @@ def _matrix(scene: Scene, target: Target, aspect: float) -> Array:
 def _develop(scene: Scene, reflection: Reflection, samples: Array, hit: Array) -> RenderedPicture:
     """Composites samples over the background, averages them to pixels, and flips rows so that row 0 is at the top."""
     height, width = hit.shape
+    color, cover = _checked(reflection, samples, hit)
+    exposed = np.where(hit[..., None], color, 0.0) * scene.exposure
+    mixed = exposed * cover[..., None] + backdrop(scene, (width, height)) * (1.0 - cover[..., None])
+    return RenderedPicture(_average(mixed, scene.samples)[::-1], _average(cover[..., None], scene.samples)[::-1, :, 0])
+
+
+def _checked(reflection: Reflection, samples: Array, hit: Array) -> tuple[Array, Array]:
+    """The linear colours (height, width, 3) of samples, and how much each covers. Raises SssgenError for NaN."""
     color, alpha = samples[..., :3].astype(np.float64), samples[..., 3].astype(np.float64)
     if reflection["color"] == "encoded":
         color = decode_srgb(color)
@@ -196,12 +300,21 @@ def _develop(scene: Scene, reflection: Reflection, samples: Array, hit: Array) -
             "a guard is missing: find the operation with sssgen eval",
         )
     solid = {"opaque": np.ones_like(alpha), "mask": (alpha > 0.0).astype(float), "blend": np.clip(alpha, 0.0, 1.0)}
-    cover = np.where(hit, solid[reflection["alpha_mode"]], 0.0)
+    return color, np.where(hit, solid[reflection["alpha_mode"]], 0.0)
+
+
+def backdrop(scene: Scene, size: tuple[int, int]) -> Array:
+    """What a picture of this size shows beside the bodies, (height, width, 3), row 0 at the bottom."""
+    width, height = size
+    environment = environment_of(scene) if scene.shows_environment else None
+    if environment is not None:
+        coarse = -(-width // _SOFTNESS), -(-height // _SOFTNESS)
+        _, directions = scene.camera.rays(*coarse)
+        light = reflection_map(environment).sample(directions.T)[:3].T.reshape(*coarse[::-1], 3)
+        return scene.exposure * resized(light, width, height)
     up = ((np.arange(height) + 0.5) / height)[:, None, None]
-    behind = np.array(scene.background[0]) * (1.0 - up) + np.array(scene.background[1]) * up
-    exposed = np.where(hit[..., None], color, 0.0) * scene.exposure
-    mixed = exposed * cover[..., None] + np.broadcast_to(behind, (height, width, 3)) * (1.0 - cover[..., None])
-    return RenderedPicture(_average(mixed, scene.samples)[::-1], _average(cover[..., None], scene.samples)[::-1, :, 0])
+    colors = np.array(scene.background[0]) * (1.0 - up) + np.array(scene.background[1]) * up
+    return np.broadcast_to(colors, (height, width, 3))
 
 
 def _average(samples: Array, n: int) -> Array:

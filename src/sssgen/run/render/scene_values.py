@@ -129,11 +129,11 @@ def _surroundings(scene: Scene, material: Material, reflection: Reflection) -> d
     makers = {IRRADIANCE: irradiance_map, REFLECTIONS: reflection_map}
     asked = {drawn["name"] for drawn in _passes(scene, material, reflection)}
     needed = [(name, maker) for name, maker in makers.items() if name in asked]
-    environment = _environment(scene) if needed else None
+    environment = environment_of(scene) if needed else None
     return {name: half(maker(environment)) for name, maker in needed} if environment is not None else {}
 
 
-def _environment(scene: Scene) -> Environment | None:
+def environment_of(scene: Scene) -> Environment | None:
     """The scene's surroundings, if it has some. Raises SssgenError for faults in their table."""
     environment = read_environment(scene) if "environment" in scene.measured else None
     scene.document.reporter.check()
@@ -309,7 +309,7 @@ def _textures(
         elif not os.path.isfile(file):
             note(file)
         elif texture["drawn"] in VOLUMES and is_response(file):
-            textures[name] = inner_light(file, scene, _environment(scene))
+            textures[name] = inner_light(file, scene, environment_of(scene))
         else:
             wrap = getattr(chosen, "wrap", "") or texture["import"]["wrap"]
             textures[name] = _picture(file, wrap, texture)
