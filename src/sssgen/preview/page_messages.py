@@ -4,15 +4,16 @@ A message is a JSON object with a `kind`; one from the page may carry the bytes 
 page that is connected to a server and one that runs this module in the browser.
 
 From the page: `shape` (a body from the list), `beside` (what stands beside the picture), `mesh` (a file as the body),
-`texture` (a file, or none, in a slot), `save` (parameters and chosen textures, for the files); the question `measured`
-(the error in a chart); and, while the page shows emitted text, `text` (of a target and a form) and `source` (a file
-that lines come from). To the page: `picture` (of the pane `pane`), `said` and `error` (a text), and the answer to a
-question, which has its kind.
+`texture` (a file, or none, in a slot), `save` (parameters and chosen textures, for the files), `lights` (the lamps, for
+the scene's file); the question `measured` (the error in a chart); and, while the page shows emitted text, `text` (of a
+target and a form) and `source` (a file that lines come from). To the page: `picture` (of the pane `pane`), `said` and
+`error` (a text), and the answer to a question, which has its kind.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -21,6 +22,8 @@ from sssgen.preview.bodies import OWN_MESH, SHAPES, dropped_mesh
 from sssgen.preview.emitted_text import source_of, text_of
 from sssgen.preview.measured_error import measured_error
 from sssgen.preview.pane import Pane, StartPane
+from sssgen.scene.scene import Light
+from sssgen.scene.scene_keys import MAX_LIGHTS
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import FileState
 
@@ -64,6 +67,7 @@ class PageMessages:
             "mesh": self._mesh,
             "texture": self._texture,
             "save": self._save,
+            "lights": self._save_lights,
         }
         self._questions: Mapping[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
             "text": self._text,
@@ -171,3 +175,21 @@ class PageMessages:
             return " ".join(filter(None, (written, pane.save_textures())))
         finally:
             self.renew()
+
+    def _save_lights(self, message: dict[str, Any], _: bytes) -> str:
+        lights = [_light(row["position"], row["color"]) for row in message["lights"]]
+        if len(lights) > MAX_LIGHTS:
+            raise ValueError(len(lights))
+        try:
+            return self._pane(message).save_lights(lights)
+        finally:
+            self.renew()
+
+
+def _light(place: Sequence[Any], color: Sequence[Any]) -> Light:
+    """The light of a message: a position that ends with 1, or a direction that ends with 0. Raises ValueError."""
+    x, y, z, w = (float(number) for number in place)
+    red, green, blue = (float(number) for number in color)
+    if not all(math.isfinite(number) for number in (x, y, z, red, green, blue)) or (w == 0.0 and x == y == z == 0.0):
+        raise ValueError(place)
+    return Light((x, y, z) if w else None, None if w else (x, y, z), (red, green, blue))
