@@ -12,7 +12,6 @@ target and a form) and `source` (a file that lines come from). To the page: `pic
 
 from __future__ import annotations
 
-import json
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
@@ -21,33 +20,12 @@ from typing import Any
 from sssgen.preview.bodies import OWN_MESH, SHAPES, dropped_mesh
 from sssgen.preview.emitted_text import source_of, text_of
 from sssgen.preview.measured_error import measured_error
+from sssgen.preview.page_frames import MOST_BYTES
 from sssgen.preview.pane import Pane, StartPane
 from sssgen.scene.scene import Light
 from sssgen.scene.scene_keys import MAX_LIGHTS
 from sssgen.support.diagnostics import failure
 from sssgen.support.file_memo import FileState
-
-MOST_BYTES = 64 << 20
-"""The largest file that a page may send."""
-MOST_TEXT = 1 << 20
-"""The largest message besides its file."""
-
-
-def unpack(frame: bytes) -> tuple[dict[str, Any], bytes]:
-    """The message and the file in a binary frame: JSON in one line, then the bytes. Raises ValueError."""
-    line, _, data = frame.partition(b"\n")
-    return parse(line), data
-
-
-def parse(text: str | bytes) -> dict[str, Any]:
-    """The message in a JSON text. Raises ValueError."""
-    if len(text) > MOST_TEXT:
-        raise ValueError("too long")
-    message = json.loads(text)
-    if not isinstance(message, dict):
-        raise ValueError("no object")
-    return message
-
 
 BESIDE = {"": "nothing", "guards": "without guards", "start": "as at the start"}
 """What may stand beside a picture, and its name on the page."""

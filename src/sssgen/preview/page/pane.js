@@ -73,8 +73,13 @@ export class Pane {
     }
   }
 
+  /** Starts a stage before there is a picture: a browser takes long for its first one. */
+  async prepare() {
+    this.stage ??= await this.stageFor({ flat: undefined }, this.page.settings().renderer);
+  }
+
   /** A stage with the chosen renderer; without WebGPU that of WebGL 2, which is said.
-   * @param {Picture} picture @param {string} kind  of `rendererOf`
+   * @param {Pick<Picture, 'flat'>} picture @param {string} kind  of `rendererOf`
    * @returns {Promise<AnyStage>} */
   async stageFor(picture, kind) {
     const { pieceOf, say, settings, fallback } = this.page;

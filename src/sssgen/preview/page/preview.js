@@ -149,6 +149,8 @@ async function show(message) {
 /** One picture after the other. */
 const next = (/** @type {() => unknown} */ work) => { waiting = waiting.then(work, work); return waiting; };
 
+next(() => { fit(1); return panes[0].prepare(); });
+
 const python = connect((message) => {
   if (message.kind === 'picture') {
     newest[message.pane] = message;

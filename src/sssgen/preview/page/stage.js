@@ -106,10 +106,12 @@ export class Stage {
   /** Shows a picture; `values` are the numbers that differ from the file's.
    * @param {BodyPicture} picture @param {import('../page_messages.js').Values} values */
   async show(picture, values) {
-    const body = await this.pieceOf(picture.body);
+    const [body, ...filled] = await Promise.all([
+      this.pieceOf(picture.body),
+      ...picture.textures.map(async ({ property, texels }) => (texels ? [[property, await this.textureOf(texels)]] : [])),
+    ]);
     /** @type {Record<string, THREE.Texture>} */
-    const textures = {};
-    for (const { property, texels } of picture.textures) if (texels) textures[property] = await this.textureOf(texels);
+    const textures = Object.fromEntries(filled.flat());
     const program = programOf(picture);
     const kept = this.mesh && this.program === program;
     const material = kept ? this.mesh.material : await materialOf(picture, values, textures);
