@@ -19,7 +19,6 @@ from typing import Any
 
 from sssgen.preview.bodies import OWN_MESH, SHAPES, dropped_mesh
 from sssgen.preview.emitted_text import source_of, text_of
-from sssgen.preview.measured_error import measured_error
 from sssgen.preview.page_frames import MOST_BYTES
 from sssgen.preview.pane import Pane, StartPane
 from sssgen.scene.scene import Light
@@ -111,6 +110,8 @@ class PageMessages:
         return source_of(str(message["name"]), folder, self.files)
 
     def _measured_error(self, message: dict[str, Any]) -> dict[str, Any]:
+        from sssgen.preview.measured_error import measured_error
+
         pane = self._pane(message)
         scene, material = pane.scene, pane.picture.material
         return {"kind": "measured", "text": measured_error(scene, material) if scene and material else ""}
