@@ -12,7 +12,7 @@ export const MOST_LAMPS = 4;
 const HANDLE = 0.035;  // of half the picture's height
 const AFAR = 1.35;  // where the handle of a lamp from afar is, in radii of the body; in a closer view
 const IN_VIEW = 0.95;  // of half the picture's height
-const SHADOW_SIZE = { point: 1024, distant: 2048 };  // a point lamp has six pictures
+const SHADOW_SIZE = { point: 1536, distant: 2048 };  // a point lamp has six pictures
 
 export const isDistant = (/** @type {Lamp} */ lamp) => lamp instanceof THREE.DirectionalLight;
 
@@ -122,7 +122,7 @@ export class Lamps {
       lamp.castShadow = ground || Boolean(this.picture?.shadows && index === 0);
       const size = SHADOW_SIZE[isDistant(lamp) ? 'distant' : 'point'];
       lamp.shadow.mapSize.set(size, size);
-      lamp.shadow.radius = isDistant(lamp) ? 5 : 3;
+      lamp.shadow.radius = 5;
     });
   }
 

@@ -14,7 +14,7 @@ import { VIEWS } from './views.js';
 /** @typedef {{ stages: () => Stage[], shown: () => Stage | null, say: (text: string) => void, save: (lights: import('../page_messages.js').Light[]) => void }} Page
  *   The stages with a body; the one whose controls are shown; `save` writes lamps into the scene. */
 
-const KINDS = { none: 'none: lamps only', studio: 'studio', sky: 'clear sky', file: 'file…' };
+const KINDS = { none: 'lamps only', studio: 'studio', sky: 'clear sky', file: 'file…' };
 const LARGEST = 256 << 20;  // bytes of a panorama
 
 /** The bar, and the settings of all stages. */
@@ -111,7 +111,7 @@ export class StageBar {
     this.sliders = make('div', {},
       slider({ label: 'Strength', min: 0, max: 3, step: 0.01, value: light.strength, id: 'surroundings-strength' }, (strength) => this.light({ strength })),
       slider({ label: 'Turned', min: -180, max: 180, step: 1, value: light.turn, unit: '°', id: 'surroundings-turn' }, (turn) => this.light({ turn })),
-      tick('As background', light.background, (background) => this.light({ background }), 'surroundings-background'),
+      tick('Background', light.background, (background) => this.light({ background }), 'surroundings-background'),
       slider({ label: 'Blur', min: 0, max: 1, step: 0.01, value: light.blur, id: 'surroundings-blur' }, (blur) => this.light({ blur })));
     const sheet = make('div', {}, row('Light from', kind, open), this.file, this.sliders);
     onChoice(open, PANORAMAS, (file) => this.useFile(file));
